@@ -194,7 +194,7 @@ frames = "0..2"
 cases = 6
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "normal", mean = 0.8, sigma = 0.15, min = 0.4, max = 1.6 }
+distribution = { kind = "normal", mean = 0.8, sigma = 0.15, min = 0.4, max = 1.6 }
 [[sweep]]
 path = "sensor.bit_depth"
 values = [8, 10, 12]
@@ -208,10 +208,10 @@ design = "saltelli"
 cases = 10
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "uniform", min = 0.4, max = 1.6 }
+distribution = { kind = "uniform", min = 0.4, max = 1.6 }
 [[vary]]
 path = "attitude.control.jitter_arcsec[2]"
-law = { kind = "log_normal", median = 15.0, sigma_ln = 0.4 }
+distribution = { kind = "log_normal", median = 15.0, sigma_ln = 0.4 }
 [record]
 figures = ["hit_rate"]
 worst_by = "hit_rate"

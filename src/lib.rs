@@ -22,7 +22,7 @@ pub use ::monitor;
 pub use ::report;
 pub use files::{self, failure, sha256, toml_file};
 pub use gate;
-pub use run::{self, flight, pipeline_choice};
+pub use run::{self, frame_jobs, pipeline_choice};
 pub use scenario::{self, run_file};
 pub use score;
 pub use show;

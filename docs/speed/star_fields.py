@@ -32,7 +32,7 @@ cases = {cases}
 
 [[vary]]
 path = "sensor.read_noise_e"
-law = {{ kind = "uniform", min = 14.9, max = 15.1 }}
+distribution = {{ kind = "uniform", min = 14.9, max = 15.1 }}
 """
 # What makes the frames of `argon` a star field: one value each.
 VALUES = {

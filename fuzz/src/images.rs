@@ -1,7 +1,7 @@
 //! Images.
 
 use boresight::files::{read_expected, read_frame, read_radiance};
-use boresight::show::is_own_picture;
+use boresight::show::is_boresight_picture;
 
 use crate::Sandbox;
 
@@ -28,7 +28,7 @@ pub(crate) fn png(sandbox: &Sandbox, bytes: &[u8]) {
     let mut bytes = bytes.to_vec();
     mend_checksums(&mut bytes);
     let _ = read_frame(&sandbox.file("a.png", &bytes), 0, BITS, None);
-    let _ = is_own_picture(&bytes);
+    let _ = is_boresight_picture(&bytes);
 }
 
 /// Writes behind every chunk the checksum that it has.

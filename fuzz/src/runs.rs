@@ -1,7 +1,7 @@
 //! Directories of runs, one file of which is of anybody's making: what puts files together that each reader is content with.
 
 use boresight::gate::read_result;
-use boresight::report::report_of;
+use boresight::report::read_report;
 
 use crate::Sandbox;
 
@@ -51,7 +51,7 @@ pub(crate) fn directory(sandbox: &Sandbox, bytes: &[u8]) {
         }
         let directory = sandbox.path().join(run);
         let _ = read_result(&directory, None);
-        let _ = report_of(&directory);
+        let _ = read_report(&directory);
     }
 }
 
@@ -67,7 +67,7 @@ mod tests {
             files.iter().for_each(|(file, right)| drop(sandbox.file(&format!("{run}{file}"), right)));
             let directory = sandbox.path().join(run);
             read_result(&directory, None).unwrap();
-            report_of(&directory).unwrap();
+            read_report(&directory).unwrap();
         }
     }
 }

@@ -19,9 +19,9 @@ use sim::scene::docking::TargetFile;
 use crate::Sandbox;
 
 /// Most pixels of a camera whose simulator is made: larger ones cost what they are asked for.
-const MOST_PIXELS: usize = 1 << 16;
+const MAX_PIXELS: usize = 1 << 16;
 /// Most frames of one.
-const MOST_FRAMES: u64 = 1 << 16;
+const MAX_FRAMES: u64 = 1 << 16;
 
 pub(crate) fn scenario(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = ScenarioSource::read(&word(&sandbox.file("scenario.toml", bytes)));
@@ -32,9 +32,9 @@ pub(crate) fn simulator(sandbox: &Sandbox, bytes: &[u8]) {
     let pixels = |camera: &contract::Camera| camera.columns.saturating_mul(camera.rows);
     let is_small = if let Ok(scenario) = source.typed::<FarRangeScenario>("fuzz") {
         let frames: u64 = scenario.schedule.iter().fold(0, |sum, group| sum.saturating_add(group.count));
-        pixels(&scenario.camera) <= MOST_PIXELS && frames <= MOST_FRAMES
+        pixels(&scenario.camera) <= MAX_PIXELS && frames <= MAX_FRAMES
     } else if let Ok(scenario) = source.typed::<DockingScenario>("fuzz") {
-        scenario.cameras.iter().all(|lens| pixels(&lens.camera) <= MOST_PIXELS)
+        scenario.cameras.iter().all(|lens| pixels(&lens.camera) <= MAX_PIXELS)
     } else {
         false
     };

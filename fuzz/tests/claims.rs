@@ -16,7 +16,7 @@ static MEMORY: PeakAlloc = PeakAlloc;
 static ALONE: Mutex<()> = Mutex::new(());
 
 /// Most that an input of a few kilobytes may cost, bytes. 60000 × 60000 pixels of 16 bits are 7.2 GB.
-const MOST_BYTES: usize = 64 << 20;
+const MAX_BYTES: usize = 64 << 20;
 /// Formats whose headers say how much follows.
 const FORMATS: [&str; 7] = ["avi", "baseline_rows", "exr", "fits", "parquet", "png", "tiff"];
 
@@ -31,7 +31,7 @@ fn cost(sandbox: &Sandbox, target: &str, bytes: &[u8]) -> usize {
 
 fn check(sandbox: &Sandbox, target: &str, what: &str, bytes: &[u8]) {
     let cost = cost(sandbox, target, bytes);
-    assert!(cost < MOST_BYTES, "{target}: {what}: {} bytes cost {cost}", bytes.len());
+    assert!(cost < MAX_BYTES, "{target}: {what}: {} bytes cost {cost}", bytes.len());
 }
 
 fn seed(target: &str, name: &str) -> Vec<u8> {

@@ -19,7 +19,7 @@ frames = "2000..2002"
 cases = 8
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "normal", mean = 0.8, sigma = 0.1 }
+distribution = { kind = "normal", mean = 0.8, sigma = 0.1 }
 `;
 
 /** How each kind of report is made in the directory DIR, and what it must show. */

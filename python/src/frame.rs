@@ -28,7 +28,7 @@ pub(crate) struct Frame {
 
 impl Frame {
     /// A frame whose pixels go over to Python as they lie in memory.
-    pub(crate) fn of(py: Python<'_>, frame: contract::Frame) -> PyResult<Self> {
+    pub(crate) fn from_contract(py: Python<'_>, frame: contract::Frame) -> PyResult<Self> {
         let (rows, columns) = (frame.rows(), frame.columns());
         let windows = frame.windows();
         let windows = windows.map(|all| all.iter().map(|w| (w.x, w.y, w.columns, w.rows)).collect());
@@ -38,9 +38,9 @@ impl Frame {
     }
 
     /// A docking field, likewise.
-    pub(crate) fn of_field(py: Python<'_>, field: Field) -> PyResult<Self> {
+    pub(crate) fn from_field(py: Python<'_>, field: Field) -> PyResult<Self> {
         let lines = Some(field.lines().code());
-        Ok(Self { lines, ..Self::of(py, field.into_image())? })
+        Ok(Self { lines, ..Self::from_contract(py, field.into_image())? })
     }
 }
 
@@ -66,7 +66,7 @@ pub(crate) struct Telemetry {
 }
 
 impl Telemetry {
-    pub(crate) fn of(telemetry: &contract::Telemetry) -> Self {
+    pub(crate) fn from_contract(telemetry: &contract::Telemetry) -> Self {
         let [w, x, y, z] = telemetry.body_from_icrs.wxyz();
         Self {
             time_utc: format_utc(telemetry.time),
@@ -98,7 +98,7 @@ pub(crate) struct FieldTelemetry {
 }
 
 impl FieldTelemetry {
-    pub(crate) fn of(telemetry: &DockingTelemetry) -> Self {
+    pub(crate) fn from_contract(telemetry: &DockingTelemetry) -> Self {
         let DockingTelemetry { time_s, camera, digitiser } = *telemetry;
         Self { time_s, camera, contrast: digitiser.contrast, brightness: digitiser.brightness }
     }

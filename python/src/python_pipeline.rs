@@ -10,9 +10,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 
 use crate::errors::refused;
-use crate::ready::Ready;
+use crate::prepared::PreparedScenario;
 use crate::scenario::setup;
-use crate::wait::Ended;
+use crate::wait::Interruption;
 use crate::worlds::{PythonFactory, PythonInterface};
 
 /// Longest reason of an exception, in characters: it stands in a table.
@@ -25,47 +25,51 @@ pub(crate) struct PythonPipeline {
     callable: Result<Py<PyAny>, String>,
     /// Turns what it returns into a line of the protocol.
     line: Py<PyAny>,
-    ended: Arc<Ended>,
+    ended: Arc<Interruption>,
 }
 
 impl PythonPipeline {
     /// A pipeline of a callable, or of a class, which is made with the setup. What a class raises when it is made is the caller's.
-    pub(crate) fn new(given: &Bound<'_, PyAny>, ready: &Ready, ended: &Arc<Ended>) -> PyResult<Self> {
+    pub(crate) fn new(
+        given: &Bound<'_, PyAny>,
+        prepared: &PreparedScenario,
+        ended: &Arc<Interruption>,
+    ) -> PyResult<Self> {
         let py = given.py();
         check(given)?;
-        let callable = if is_class(given) { given.call1((setup(py, ready)?,))? } else { given.clone() };
+        let callable = if is_class(given) { given.call1((setup(py, prepared)?,))? } else { given.clone() };
         if !callable.is_callable() {
             return Err(refused_kind(&callable)?);
         }
-        Self::of(given, Ok(callable.unbind()), ended)
+        Self::from_callable(given, Ok(callable.unbind()), ended)
     }
 
     /// A pipeline for one case of many, of a callable that all share, or of a class, which is made with the case's setup. What a class
     /// raises when it is made is the outcome of every frame of the case.
-    pub(crate) fn of_case<'py>(
+    pub(crate) fn for_case<'py>(
         given: &Bound<'py, PyAny>,
         setup: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
-        ended: &Arc<Ended>,
+        ended: &Arc<Interruption>,
     ) -> PyResult<Self> {
         let made =
             if is_class(given) { setup().and_then(|setup| given.call1((setup,))) } else { Ok(given.clone()) };
         let callable =
             made.and_then(|made| if made.is_callable() { Ok(made) } else { Err(refused_kind(&made)?) });
         let callable = callable.map(Bound::unbind).map_err(|error| reason(given.py(), error, ended));
-        Self::of(given, callable, ended)
+        Self::from_callable(given, callable, ended)
     }
 
     /// A pipeline of what was made of a callable or a class.
-    fn of(
+    fn from_callable(
         given: &Bound<'_, PyAny>,
         callable: Result<Py<PyAny>, String>,
-        ended: &Arc<Ended>,
+        ended: &Arc<Interruption>,
     ) -> PyResult<Self> {
         let line = given.py().import("boresight._values")?.getattr("answer_line")?.unbind();
         Ok(Self { name: name(given), callable, line, ended: Arc::clone(ended) })
     }
 
-    fn again(&self, py: Python<'_>) -> Self {
+    fn clone_for_thread(&self, py: Python<'_>) -> Self {
         Self {
             name: self.name.clone(),
             callable: self.callable.as_ref().map(|callable| callable.clone_ref(py)).map_err(Clone::clone),
@@ -75,7 +79,7 @@ impl PythonPipeline {
     }
 
     /// The answer to a question as a line of the protocol, or why there is none; `key` says what `number` counts.
-    fn ask(
+    fn call(
         &self,
         (key, number): (&str, u64),
         question: impl FnOnce(Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>)>,
@@ -88,14 +92,14 @@ impl PythonPipeline {
             let asked = question(py).and_then(|(frame, telemetry)| callable.call1(py, (frame, telemetry)));
             let answer = asked.map_err(|error| reason(py, error, &self.ended))?;
             let line = self.line.call1(py, (answer, key, number)).and_then(|line| line.extract(py));
-            line.map_err(|error| said(&error))
+            line.map_err(|error| exception_text(&error))
         })
     }
 }
 
 /// Why there is no answer, by the exception in its place; what is no `Exception` ends the work besides.
-fn reason(py: Python<'_>, error: PyErr, ended: &Ended) -> String {
-    let reason = format!("{}{}", said(&error), place(py, &error));
+fn reason(py: Python<'_>, error: PyErr, ended: &Interruption) -> String {
+    let reason = format!("{}{}", exception_text(&error), traceback_location(py, &error));
     if !error.is_instance_of::<PyException>(py) {
         ended.set(error);
     }
@@ -103,7 +107,7 @@ fn reason(py: Python<'_>, error: PyErr, ended: &Ended) -> String {
 }
 
 /// The beginning of what an exception says.
-fn said(error: &PyErr) -> String {
+fn exception_text(error: &PyErr) -> String {
     let text = error.to_string();
     match text.char_indices().nth(REASON).and_then(|(end, _)| text.get(..end)) {
         Some(beginning) => format!("{beginning}…"),
@@ -112,16 +116,16 @@ fn said(error: &PyErr) -> String {
 }
 
 /// Where an exception was raised, as it follows on what it says.
-fn place(py: Python<'_>, error: &PyErr) -> String {
-    let mut place = String::new();
+fn traceback_location(py: Python<'_>, error: &PyErr) -> String {
+    let mut traceback_location = String::new();
     let mut step = error.traceback(py).map(Bound::into_any);
     while let Some(at) = step {
         let line = at.getattr("tb_lineno").map(|line| line.to_string()).unwrap_or_default();
         let file = at.getattr("tb_frame").and_then(|frame| frame.getattr("f_code")?.getattr("co_filename"));
-        place = file.map_or_else(|_| String::new(), |file| format!(" ({file}, line {line})"));
+        traceback_location = file.map_or_else(|_| String::new(), |file| format!(" ({file}, line {line})"));
         step = at.getattr("tb_next").ok().filter(|next| !next.is_none());
     }
-    place
+    traceback_location
 }
 
 /// Refuses what is no pipeline.
@@ -147,7 +151,7 @@ pub(crate) fn name(given: &Bound<'_, PyAny>) -> String {
 }
 
 impl PythonFactory for PythonPipeline {
-    fn of<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send> {
+    fn into_factory<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send> {
         Box::new(self)
     }
 }
@@ -158,24 +162,27 @@ impl<I: PythonInterface> PipelineFactory<I> for PythonPipeline {
     }
 
     fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
-        Ok(Box::new(Running::<I> { callable: Python::attach(|py| self.again(py)), setup: setup.clone() }))
+        Ok(Box::new(RunningPipeline::<I> {
+            callable: Python::attach(|py| self.clone_for_thread(py)),
+            setup: setup.clone(),
+        }))
     }
 }
 
 /// A callable at work on one sequence.
-pub(crate) struct Running<I: PythonInterface> {
+pub(crate) struct RunningPipeline<I: PythonInterface> {
     pub(crate) callable: PythonPipeline,
     pub(crate) setup: I::Setup,
 }
 
-impl<I: PythonInterface> Pipeline<I> for Running<I> {
+impl<I: PythonInterface> Pipeline<I> for RunningPipeline<I> {
     fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome {
         let number = I::number(image);
         let question = |py: Python<'_>| {
             let frame = Py::new(py, I::frame(py, image.clone())?)?.into_any();
             Ok((frame, I::telemetry(py, telemetry)?))
         };
-        let answer = self.callable.ask((I::IMAGE, number), question);
+        let answer = self.callable.call((I::IMAGE, number), question);
         let outcome = answer.and_then(|line| I::outcome(line.as_bytes(), number, &self.setup));
         outcome.unwrap_or_else(I::failed)
     }

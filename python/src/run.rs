@@ -6,7 +6,7 @@ use std::sync::Arc;
 use boresight::failure::Failure;
 use boresight::files::{Checksums, RunDirectory, read_csv_table, read_parquet_table};
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::run::{Expectation, FirstFailure, Flight, ScenarioSource};
+use boresight::run::{Expectation, FirstFailure, FrameJobs, ScenarioSource};
 use boresight::scenario::DockingScenario;
 use pipeline::external::DEFAULT_MEMORY_MB;
 use pyo3::prelude::*;
@@ -19,11 +19,11 @@ use crate::json;
 use crate::python_pipeline::PythonPipeline;
 use crate::scenario::Scenario;
 use crate::table::Table;
-use crate::wait::Ended;
+use crate::wait::Interruption;
 use crate::worlds::factory;
 
 /// Largest score.json that is read.
-const MOST_SCORE_BYTES: u64 = 1 << 26;
+const MAX_SCORE_BYTES: u64 = 1 << 26;
 
 /// What a run gave: score, truth and measurements.
 ///
@@ -43,16 +43,16 @@ impl Run {
 
     fn parquet(&self, py: Python<'_>, name: &str) -> PyResult<Table> {
         let path = self.path.join(name);
-        Table::of_parts(py.detach(|| read_parquet_table(&path)).map_err(file_error)?)
+        Table::from_parts(py.detach(|| read_parquet_table(&path)).map_err(file_error)?)
     }
 
     fn csv(&self, py: Python<'_>, name: &str) -> PyResult<Table> {
         let path = self.path.join(name);
         let columns = py.detach(|| read_csv_table(&path)).map_err(file_error)?;
-        batch(columns).map(Table::of_batch)
+        batch(columns).map(Table::from_batch)
     }
 
-    fn of_world(&self, what: &str, is_docking: bool) -> PyResult<()> {
+    fn check_world(&self, what: &str, is_docking: bool) -> PyResult<()> {
         if self.is_docking == is_docking {
             return Ok(());
         }
@@ -79,7 +79,7 @@ impl Run {
         }
         let source = ScenarioSource::read(&file.to_string_lossy()).map_err(raised)?;
         Checksums::check(&directory, |_| true).map_err(file_error)?;
-        let is_docking = source.world().is_of::<DockingScenario>();
+        let is_docking = source.world().has_scenario::<DockingScenario>();
         Ok(Self { path: directory, is_docking, first_failure: None, _temporary: None })
     }
 
@@ -93,7 +93,7 @@ impl Run {
     #[getter]
     fn score<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let path = self.path.join("score.json");
-        let text = sim::regular_file::read_text(&path, MOST_SCORE_BYTES);
+        let text = sim::regular_file::read_text(&path, MAX_SCORE_BYTES);
         let text = text.map_err(|error| FileError::new_err(format!("{}: {error}", path.display())))?;
         json::text_to_python(py, &text)
     }
@@ -113,7 +113,7 @@ impl Run {
     /// The truth about each object in each frame: truth/objects.parquet. Far range alone.
     #[getter]
     fn truth_objects(&self, py: Python<'_>) -> PyResult<Table> {
-        self.of_world("truth_objects", false)?;
+        self.check_world("truth_objects", false)?;
         self.parquet(py, "truth/objects.parquet")
     }
 
@@ -132,14 +132,14 @@ impl Run {
     /// What the pipeline took each cluster for: clusters.parquet. Far range alone.
     #[getter]
     fn clusters(&self, py: Python<'_>) -> PyResult<Table> {
-        self.of_world("clusters", false)?;
+        self.check_world("clusters", false)?;
         self.parquet(py, "clusters.parquet")
     }
 
     /// What the pipeline said at the end of each portion: motion.csv. Docking alone.
     #[getter]
     fn motion(&self, py: Python<'_>) -> PyResult<Table> {
-        self.of_world("motion", true)?;
+        self.check_world("motion", true)?;
         self.csv(py, "motion.csv")
     }
 
@@ -169,36 +169,41 @@ pub(crate) fn run(
     out: Option<PathBuf>,
     timeout_s: f64,
 ) -> PyResult<Run> {
-    let ready = Scenario::given(scenario)?;
-    let frames = arguments::frames(frames, ready.frame_count())?;
+    let prepared = Scenario::from_argument(scenario)?;
+    let frames = arguments::frames(frames, prepared.frame_count())?;
     let jobs = arguments::jobs(jobs)?;
-    let ended = Arc::new(Ended::default());
+    let ended = Arc::new(Interruption::default());
     let temporary = |error: std::io::Error| {
         BoresightError::new_err(format!("a temporary directory cannot be made: {error}"))
     };
     let scratch = tempfile::tempdir().map_err(temporary)?;
     let asked = match pipeline {
         Some(given) if given.extract::<String>().is_err() => {
-            Asked::Python(PythonPipeline::new(given, &ready, &ended)?)
+            PipelineArgument::Python(PythonPipeline::new(given, &prepared, &ended)?)
         }
         word => {
             let word = word.map(|word| word.extract()).transpose()?;
-            Asked::Word(PipelineChoice { word, timeout_s, memory_mb: DEFAULT_MEMORY_MB, sandbox: None })
+            PipelineArgument::Word(PipelineChoice {
+                word,
+                timeout_s,
+                memory_mb: DEFAULT_MEMORY_MB,
+                sandbox: None,
+            })
         }
     };
     let run = || {
         // The pipeline first: while nothing has been written.
-        let prepared = &ready.world;
+        let world = &prepared.world;
         let factory = match asked {
-            Asked::Word(choice) => prepared.factory(&choice, scratch.path())?,
-            Asked::Python(pipeline) => factory(ready.source.world(), pipeline)?,
+            PipelineArgument::Word(choice) => world.factory(&choice, scratch.path())?,
+            PipelineArgument::Python(pipeline) => factory(prepared.source.world(), pipeline)?,
         };
-        let (directory, temporary) = place(out.as_deref())?;
-        let flight = Flight { frames, jobs, images: None, expectation: Expectation::Dropped };
-        let ran = prepared.run(&directory, &flight, &factory, &|| ended.go_on())?;
-        match ran.not_flown {
+        let (directory, temporary) = create_directory(out.as_deref())?;
+        let frame_jobs = FrameJobs { frames, jobs, images: None, expectation: Expectation::Dropped };
+        let ran = world.run(&directory, &frame_jobs, &factory, &|| ended.go_on())?;
+        match ran.incomplete {
             None => Ok((directory, temporary, ran.first_failure)),
-            Some(not_flown) => Err(Failure::Usage(not_flown.to_string())),
+            Some(incomplete) => Err(Failure::Usage(incomplete.to_string())),
         }
     };
     let ran: Result<_, Failure> = py.detach(run);
@@ -206,18 +211,18 @@ pub(crate) fn run(
         return Err(interrupt);
     }
     let (directory, temporary, first_failure) = ran.map_err(raised)?;
-    let is_docking = ready.source.world().is_of::<DockingScenario>();
+    let is_docking = prepared.source.world().has_scenario::<DockingScenario>();
     Ok(Run { path: directory.path().to_owned(), is_docking, first_failure, _temporary: temporary })
 }
 
 /// The pipeline asked for.
-enum Asked {
+enum PipelineArgument {
     Word(PipelineChoice),
     Python(PythonPipeline),
 }
 
 /// Where a run is written, and the temporary directory that it is in.
-fn place(out: Option<&Path>) -> Result<(RunDirectory, Option<TempDir>), Failure> {
+fn create_directory(out: Option<&Path>) -> Result<(RunDirectory, Option<TempDir>), Failure> {
     if let Some(out) = out {
         return Ok((RunDirectory::create(out)?, None));
     }

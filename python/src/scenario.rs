@@ -13,31 +13,31 @@ use serde_json::Value;
 use crate::arguments;
 use crate::errors::{BoresightError, raised, refused};
 use crate::json;
-use crate::ready::Ready;
+use crate::prepared::PreparedScenario;
 use crate::simulated_frame::SimulatedFrame;
 use crate::stream::FrameStream;
-use crate::worlds::Made;
+use crate::worlds::PendingFrame;
 
 /// What to simulate: a built-in scenario or a TOML file, with all its values checked.
 ///
 /// It does not change: `with_values` and `with_seed` give another one.
 #[pyclass(frozen, module = "boresight")]
 pub(crate) struct Scenario {
-    pub(crate) ready: Arc<Ready>,
+    pub(crate) prepared: Arc<PreparedScenario>,
 }
 
 impl Scenario {
     /// A scenario, of an object or of the word that names one.
-    pub(crate) fn given(given: &Bound<'_, PyAny>) -> PyResult<Arc<Ready>> {
+    pub(crate) fn from_argument(given: &Bound<'_, PyAny>) -> PyResult<Arc<PreparedScenario>> {
         match given.cast::<Self>() {
-            Ok(scenario) => Ok(Arc::clone(&scenario.get().ready)),
-            Err(_) => Ok(Self::load(given.py(), given)?.ready),
+            Ok(scenario) => Ok(Arc::clone(&scenario.get().prepared)),
+            Err(_) => Ok(Self::load(given.py(), given)?.prepared),
         }
     }
 
     fn checked(py: Python<'_>, source: ScenarioSource) -> PyResult<Self> {
-        let ready = py.detach(|| Ready::new(source)).map_err(raised)?;
-        Ok(Self { ready: Arc::new(ready) })
+        let prepared = py.detach(|| PreparedScenario::new(source)).map_err(raised)?;
+        Ok(Self { prepared: Arc::new(prepared) })
     }
 }
 
@@ -56,7 +56,7 @@ impl Scenario {
     ///
     /// `study` is the study's file. Raises `InputError` for a case that the study does not have.
     #[staticmethod]
-    fn of_case(py: Python<'_>, study: PathBuf, case: i64) -> PyResult<Self> {
+    fn from_case(py: Python<'_>, study: PathBuf, case: i64) -> PyResult<Self> {
         let study = Study::read(&study).map_err(raised)?;
         let number = u64::try_from(case).ok().filter(|number| *number < study.cases());
         let expected = || refused("case", case, &format!("a case of the study, 0 to {}", study.cases() - 1));
@@ -73,31 +73,31 @@ impl Scenario {
     /// Name: that of the built-in one, or the file's without its extension.
     #[getter]
     fn name(&self) -> &str {
-        &self.ready.source.name
+        &self.prepared.source.name
     }
 
     /// What it is, in one line.
     #[getter]
     fn title(&self) -> &str {
-        self.ready.source.scenario.title()
+        self.prepared.source.scenario.title()
     }
 
     /// `far_range` or `docking`.
     #[getter]
     fn world(&self) -> &'static str {
-        self.ready.source.world().code()
+        self.prepared.source.world().code()
     }
 
     /// Seed of every random draw.
     #[getter]
     fn seed(&self) -> u64 {
-        self.ready.source.scenario.seed()
+        self.prepared.source.scenario.seed()
     }
 
     /// Number of its frames (docking: fields).
     #[getter]
     fn frame_count(&self) -> u64 {
-        self.ready.frame_count()
+        self.prepared.frame_count()
     }
 
     /// The same scenario with other values, by their paths: `{"sensor.gain_e_per_dn": 3.0, "schedule[0].count": 100}`.
@@ -112,64 +112,64 @@ impl Scenario {
             let value = json::from_python(&path, &value)?;
             overlay.push((path, value));
         }
-        Self::checked(py, with_overlay(&self.ready.source, &overlay).map_err(raised)?)
+        Self::checked(py, with_overlay(&self.prepared.source, &overlay).map_err(raised)?)
     }
 
     /// The same scenario with another seed, 0 to 2**63 - 1: other noise, the same sky.
     fn with_seed(&self, py: Python<'_>, seed: &Bound<'_, PyAny>) -> PyResult<Self> {
         let overlay = [("seed".to_owned(), json::from_python("seed", seed)?)];
-        Self::checked(py, with_overlay(&self.ready.source, &overlay).map_err(raised)?)
+        Self::checked(py, with_overlay(&self.prepared.source, &overlay).map_err(raised)?)
     }
 
     /// The value at a path, as in `sensor.gain_e_per_dn`; tables as dictionaries, None for what the scenario leaves out.
     fn value<'py>(&self, py: Python<'py>, path: &str) -> PyResult<Bound<'py, PyAny>> {
-        json::to_python(py, &value_at(&self.ready.source, path).map_err(raised)?)
+        json::to_python(py, &value_at(&self.prepared.source, path).map_err(raised)?)
     }
 
     /// All its values with all defaults, as a TOML file that can be run.
     fn to_toml(&self) -> PyResult<String> {
-        self.ready.source.scenario.to_toml().map_err(raised)
+        self.prepared.source.scenario.to_toml().map_err(raised)
     }
 
     /// What a pipeline is told before the first frame, a dictionary: camera, mounting and star list (docking: cameras and target). Its keys
     /// are those of the greeting in docs/external-pipeline.md.
     #[getter]
     fn setup<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        setup(py, &self.ready)
+        setup(py, &self.prepared)
     }
 
     /// Makes one frame: the same bits as in a whole run.
     fn frame(&self, py: Python<'_>, number: i64) -> PyResult<Py<SimulatedFrame>> {
-        let count = self.ready.frame_count();
+        let count = self.prepared.frame_count();
         let expected = || {
             refused("number", number, &format!("a frame of the scenario, 0 to {}", count.saturating_sub(1)))
         };
         let number = u64::try_from(number).ok().filter(|number| *number < count).ok_or_else(expected)?;
         let mut made = None;
-        let mut take = |frame: Made| {
+        let mut take = |frame: PendingFrame| {
             made = Some(frame);
             Ok(())
         };
-        py.detach(|| self.ready.world.make(number..number + 1, 1, &mut take)).map_err(raised)?;
-        SimulatedFrame::new(py, made.ok_or_else(expected)?, &self.ready)
+        py.detach(|| self.prepared.world.make(number..number + 1, 1, &mut take)).map_err(raised)?;
+        SimulatedFrame::new(py, made.ok_or_else(expected)?, &self.prepared)
     }
 
     /// Makes frames, in order, on `jobs` threads (default: all cores) while the caller works on those before: an iterator over
     /// `SimulatedFrame`. `frames` is a `range` of step 1; all frames without one.
     #[pyo3(signature = (frames=None, *, jobs=None))]
     fn frames(&self, frames: Option<&Bound<'_, PyAny>>, jobs: Option<i64>) -> PyResult<FrameStream> {
-        let frames = arguments::frames(frames, self.ready.frame_count())?;
-        FrameStream::start(&self.ready, frames, arguments::jobs(jobs)?)
+        let frames = arguments::frames(frames, self.prepared.frame_count())?;
+        FrameStream::start(&self.prepared, frames, arguments::jobs(jobs)?)
     }
 
     fn __repr__(&self) -> String {
-        let image = self.ready.source.world().image();
+        let image = self.prepared.source.world().image();
         format!("<boresight.Scenario {}: {} {image}s, seed {}>", self.name(), self.frame_count(), self.seed())
     }
 }
 
 /// What a pipeline is told before the first frame, as a dictionary.
-pub(crate) fn setup<'py>(py: Python<'py>, ready: &Ready) -> PyResult<Bound<'py, PyAny>> {
-    let line = ready.world.greeting().map_err(BoresightError::new_err)?;
+pub(crate) fn setup<'py>(py: Python<'py>, prepared: &PreparedScenario) -> PyResult<Bound<'py, PyAny>> {
+    let line = prepared.world.greeting().map_err(BoresightError::new_err)?;
     json::text_to_python(py, &String::from_utf8_lossy(&line))
 }

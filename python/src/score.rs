@@ -35,7 +35,7 @@ pub(crate) fn score<'py>(
         Err(_) => PathBuf::from(arguments::word("truth", truth)?),
     };
     if let Ok(path) = measurements.extract::<PathBuf>() {
-        let scored = py.detach(|| scored(&directory, &path, attitude));
+        let scored = py.detach(|| score_json(&directory, &path, attitude));
         return text_to_python(py, &scored.map_err(raised)?);
     }
     let text: String =
@@ -46,7 +46,7 @@ pub(crate) fn score<'py>(
     let folder = tempfile::tempdir().map_err(temporary)?;
     let path = folder.path().join("measurements.csv");
     std::fs::write(&path, text).map_err(temporary)?;
-    let scored = py.detach(|| scored(&directory, &path, attitude));
+    let scored = py.detach(|| score_json(&directory, &path, attitude));
     let scored = scored.map_err(|failure| {
         // The table has no file: its lines are its rows, below the names of the columns.
         let told = failure.to_string().replace(&path.display().to_string(), "measurements");
@@ -68,7 +68,7 @@ fn attitude_choice(word: &str) -> PyResult<AttitudeChoice> {
 }
 
 /// The score of a file of measurements, as JSON.
-fn scored(
+fn score_json(
     directory: &Path,
     measurements: &Path,
     attitude: Option<AttitudeChoice>,
@@ -82,11 +82,11 @@ fn scored(
     };
     read_text(&run_file).map_err(unreadable)?;
     let world = world_of_run(&run_file)?;
-    let beside = || {
+    let neighbouring_file = || {
         let path = measurements.with_file_name(world.evidence_file()?);
         path.is_file().then_some(path)
     };
-    let json = world.score(directory, measurements, beside().as_deref(), attitude)?.json()?;
+    let json = world.score(directory, measurements, neighbouring_file().as_deref(), attitude)?.json()?;
     Checksums::check(directory, |_| true)?;
     Ok(json)
 }

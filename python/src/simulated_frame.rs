@@ -10,9 +10,9 @@ use pyo3::types::PyDict;
 
 use crate::errors::{raised, refused};
 use crate::frame::Frame;
-use crate::ready::Ready;
+use crate::prepared::PreparedScenario;
 use crate::table::{Table, row};
-use crate::worlds::{Made, Parts};
+use crate::worlds::{FrameParts, PendingFrame};
 
 /// A frame with its telemetry and its truth. As a `Frame` it can be given to a pipeline, which looks at no more than a `Frame` has.
 #[pyclass(frozen, extends = Frame, module = "boresight")]
@@ -22,14 +22,19 @@ pub(crate) struct SimulatedFrame {
     telemetry: Py<PyAny>,
     truth: RecordBatch,
     objects: Option<RecordBatch>,
-    ready: Arc<Ready>,
+    prepared: Arc<PreparedScenario>,
     expected: PyOnceLock<Py<PyArray2<f64>>>,
 }
 
 impl SimulatedFrame {
-    pub(crate) fn new(py: Python<'_>, made: Made, ready: &Arc<Ready>) -> PyResult<Py<Self>> {
-        let Parts { frame, telemetry, truth, objects } = made(py)?;
-        let own = Self { telemetry, truth, objects, ready: Arc::clone(ready), expected: PyOnceLock::new() };
+    pub(crate) fn new(
+        py: Python<'_>,
+        made: PendingFrame,
+        prepared: &Arc<PreparedScenario>,
+    ) -> PyResult<Py<Self>> {
+        let FrameParts { frame, telemetry, truth, objects } = made(py)?;
+        let own =
+            Self { telemetry, truth, objects, prepared: Arc::clone(prepared), expected: PyOnceLock::new() };
         Py::new(py, PyClassInitializer::from(frame).add_subclass(own))
     }
 }
@@ -48,7 +53,7 @@ impl SimulatedFrame {
         let objects = self.objects.clone();
         let objects = objects
             .ok_or_else(|| refused("objects", "asked of a docking field", "a frame of the far range"))?;
-        Ok(Table::of_batch(objects))
+        Ok(Table::from_batch(objects))
     }
 
     /// The frame without noise: expected photoelectrons, dark current and hot pixels included, before saturation; float64 of shape
@@ -58,7 +63,7 @@ impl SimulatedFrame {
         let (py, own, number) = (slf.py(), slf.get(), slf.as_super().get().number);
         let make = || -> PyResult<_> {
             let ([rows, columns], electrons) = py
-                .detach(|| own.ready.world.expected(number))
+                .detach(|| own.prepared.world.expected(number))
                 .ok_or_else(|| refused("expected", "asked of a docking field", "a frame of the far range"))?
                 .map_err(raised)?;
             Ok(PyArray1::from_vec(py, electrons).reshape([rows, columns])?.unbind())

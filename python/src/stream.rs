@@ -9,9 +9,9 @@ use boresight::failure::Failure;
 use pyo3::prelude::*;
 
 use crate::errors::{BoresightError, raised};
-use crate::ready::Ready;
+use crate::prepared::PreparedScenario;
 use crate::simulated_frame::SimulatedFrame;
-use crate::worlds::Made;
+use crate::worlds::PendingFrame;
 
 /// How often a waiting caller looks whether somebody pressed Ctrl-C.
 const LOOK: Duration = Duration::from_millis(50);
@@ -21,26 +21,31 @@ const WAITING: usize = 2;
 /// Frames in order, an iterator. They are made on other threads, some ahead of the one that is taken.
 #[pyclass(frozen, module = "boresight")]
 pub(crate) struct FrameStream {
-    ready: Arc<Ready>,
-    made: Mutex<Receiver<Result<Made, Failure>>>,
+    prepared: Arc<PreparedScenario>,
+    made: Mutex<Receiver<Result<PendingFrame, Failure>>>,
 }
 
 impl FrameStream {
     /// Starts the threads. They end when all is made, or nobody takes frames any more.
-    pub(crate) fn start(ready: &Arc<Ready>, frames: Range<u64>, jobs: usize) -> PyResult<Self> {
+    pub(crate) fn start(prepared: &Arc<PreparedScenario>, frames: Range<u64>, jobs: usize) -> PyResult<Self> {
         let (send, made) = sync_channel(WAITING);
-        let own = Arc::clone(ready);
+        let own = Arc::clone(prepared);
         std::thread::Builder::new()
             .name("boresight frames".to_owned())
             .spawn(move || make(&own, frames, jobs, &send))
             .map_err(|error| BoresightError::new_err(format!("a thread cannot be started: {error}")))?;
-        Ok(Self { ready: Arc::clone(ready), made: Mutex::new(made) })
+        Ok(Self { prepared: Arc::clone(prepared), made: Mutex::new(made) })
     }
 }
 
-fn make(ready: &Ready, frames: Range<u64>, jobs: usize, send: &SyncSender<Result<Made, Failure>>) {
-    let mut hand_over = |made: Made| send.send(Ok(made)).map_err(|_| Failure::Interrupted);
-    if let Err(failure) = ready.world.make(frames, jobs, &mut hand_over) {
+fn make(
+    prepared: &PreparedScenario,
+    frames: Range<u64>,
+    jobs: usize,
+    send: &SyncSender<Result<PendingFrame, Failure>>,
+) {
+    let mut hand_over = |made: PendingFrame| send.send(Ok(made)).map_err(|_| Failure::Interrupted);
+    if let Err(failure) = prepared.world.make(frames, jobs, &mut hand_over) {
         // Nobody may be there to hear it.
         let _ = send.send(Err(failure));
     }
@@ -56,7 +61,7 @@ impl FrameStream {
         let next = || self.made.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
         loop {
             match py.detach(next) {
-                Ok(Ok(made)) => return SimulatedFrame::new(py, made, &self.ready).map(Some),
+                Ok(Ok(made)) => return SimulatedFrame::new(py, made, &self.prepared).map(Some),
                 Ok(Err(failure)) => return Err(raised(failure)),
                 Err(RecvTimeoutError::Timeout) => py.check_signals()?,
                 Err(RecvTimeoutError::Disconnected) => return Ok(None),

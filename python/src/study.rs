@@ -7,7 +7,7 @@ use boresight::failure::Failure;
 use boresight::files::read_parquet_table;
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::FirstFailure;
-use boresight::study::{Campaign, Evaluated, Known, Study, StudyPipeline, Workers};
+use boresight::study::{Campaign, CaseOutcome, CaseResult, Study, StudyPipeline, Workers};
 use pipeline::external::DEFAULT_MEMORY_MB;
 use pyo3::prelude::*;
 use tempfile::TempDir;
@@ -17,7 +17,7 @@ use crate::errors::{BoresightError, file_error};
 use crate::json::text_to_python;
 use crate::study_pipeline::PythonStudyPipeline;
 use crate::table::Table;
-use crate::wait::{AfterCtrlC, Ended, interruptibly};
+use crate::wait::{AfterCtrlC, Interruption, interruptibly};
 
 /// What a study gave: its summary, and a row a case.
 #[pyclass(frozen, module = "boresight")]
@@ -52,7 +52,7 @@ impl StudyResult {
     /// A row a case: `case`, `seed`, `set.PATH` for what was drawn, and NAME, NAME.count, NAME.of for each figure.
     #[getter]
     fn rows(&self, py: Python<'_>) -> PyResult<Table> {
-        Table::of_parts(py.detach(|| read_parquet_table(&self.cases)).map_err(file_error)?)
+        Table::from_parts(py.detach(|| read_parquet_table(&self.cases)).map_err(file_error)?)
     }
 
     fn __repr__(&self) -> String {
@@ -80,7 +80,7 @@ pub(crate) fn study(
     timeout_s: f64,
 ) -> PyResult<StudyResult> {
     let jobs = arguments::jobs(jobs)?;
-    let ended = Arc::new(Ended::default());
+    let ended = Arc::new(Interruption::default());
     let pipeline: Box<dyn StudyPipeline + Send> = match pipeline {
         Some(given) if given.extract::<String>().is_err() => {
             Box::new(PythonStudyPipeline::new(given, &ended)?)
@@ -105,7 +105,7 @@ pub(crate) fn study(
         let workers = Workers { jobs, scratch: scratch.path(), ended: Some(ended) };
         let first_failure: Mutex<Option<(u64, FirstFailure)>> = Mutex::new(None);
         let cases = campaign.run(workers, |case| {
-            if let Known::Run(Evaluated { row, first_failure: Some(failure), .. }) = case {
+            if let CaseOutcome::Run(CaseResult { row, first_failure: Some(failure), .. }) = case {
                 let mut first = first_failure.lock().unwrap_or_else(PoisonError::into_inner);
                 if first.as_ref().is_none_or(|(case, _)| row.case < *case) {
                     *first = Some((row.case, failure.clone()));

@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 
 use crate::errors::BoresightError;
 use crate::json::text_to_python;
-use crate::python_pipeline::{PythonPipeline, Running, check, name};
-use crate::wait::Ended;
+use crate::python_pipeline::{PythonPipeline, RunningPipeline, check, name};
+use crate::wait::Interruption;
 use crate::worlds::{PythonFactory, PythonInterface, factory};
 
 /// A callable of (frame, telemetry), or a class of them, of which every case has an instance of its own.
@@ -21,25 +21,25 @@ pub(crate) struct PythonStudyPipeline {
     given: Py<PyAny>,
     /// SHA-256 of its name and its source.
     hash: [u8; 32],
-    ended: Arc<Ended>,
+    ended: Arc<Interruption>,
 }
 
 impl PythonStudyPipeline {
     /// A pipeline for the cases of a study; `ended` is set by what it raises that is no `Exception`.
-    pub(crate) fn new(given: &Bound<'_, PyAny>, ended: &Arc<Ended>) -> PyResult<Self> {
+    pub(crate) fn new(given: &Bound<'_, PyAny>, ended: &Arc<Interruption>) -> PyResult<Self> {
         check(given)?;
         let hash =
             given.py().import("boresight._values")?.call_method1("callable_hash", (given,))?.extract()?;
         Ok(Self { name: name(given), given: given.clone().unbind(), hash, ended: Arc::clone(ended) })
     }
 
-    fn again(&self) -> Self {
+    fn clone_for_thread(&self) -> Self {
         let given = Python::attach(|py| self.given.clone_ref(py));
         Self { name: self.name.clone(), given, hash: self.hash, ended: Arc::clone(&self.ended) }
     }
 
     /// The pipeline of a case, whose setup is what a greeting of the protocol says.
-    fn of_case(
+    fn build_for_case(
         &self,
         greeting: impl FnOnce() -> Result<Vec<u8>, String>,
     ) -> Result<PythonPipeline, ContractError> {
@@ -48,7 +48,7 @@ impl PythonStudyPipeline {
                 let line = greeting().map_err(BoresightError::new_err)?;
                 text_to_python(py, &String::from_utf8_lossy(&line))
             };
-            PythonPipeline::of_case(self.given.bind(py), setup, &self.ended)
+            PythonPipeline::for_case(self.given.bind(py), setup, &self.ended)
         });
         made.map_err(|error| ContractError::CannotBuild {
             pipeline: self.name.clone(),
@@ -78,12 +78,12 @@ impl StudyPipeline for PythonStudyPipeline {
     }
 
     fn factory(&self, scenario: &dyn AnyScenario, _: &Path) -> Result<AnyFactory, Failure> {
-        factory(scenario.world(), self.again())
+        factory(scenario.world(), self.clone_for_thread())
     }
 }
 
 impl PythonFactory for PythonStudyPipeline {
-    fn of<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send> {
+    fn into_factory<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send> {
         Box::new(self)
     }
 }
@@ -94,7 +94,7 @@ impl<I: PythonInterface> PipelineFactory<I> for PythonStudyPipeline {
     }
 
     fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
-        let callable = self.of_case(|| I::greeting(setup))?;
-        Ok(Box::new(Running::<I> { callable, setup: setup.clone() }))
+        let callable = self.build_for_case(|| I::greeting(setup))?;
+        Ok(Box::new(RunningPipeline::<I> { callable, setup: setup.clone() }))
     }
 }

@@ -6,7 +6,7 @@ use arrow_array::types::{Float64Type, TimestampNanosecondType, UInt32Type, UInt6
 use arrow_array::{Array, ArrayRef, RecordBatch, RecordBatchIterator};
 use arrow_schema::ffi::FFI_ArrowSchema;
 use arrow_schema::{ArrowError, DataType, SchemaRef};
-use boresight::files::WholeTable;
+use boresight::files::LoadedTable;
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -27,13 +27,13 @@ pub(crate) struct Table {
 
 impl Table {
     /// A table of a file.
-    pub(crate) fn of_parts(table: WholeTable) -> PyResult<Self> {
+    pub(crate) fn from_parts(table: LoadedTable) -> PyResult<Self> {
         let schema = schema(&table.header);
         let batches = table.parts.into_iter().map(batch).collect::<PyResult<_>>()?;
         Ok(Self { schema, batches })
     }
 
-    pub(crate) fn of_batch(batch: RecordBatch) -> Self {
+    pub(crate) fn from_batch(batch: RecordBatch) -> Self {
         Self { schema: batch.schema(), batches: vec![batch] }
     }
 
@@ -161,7 +161,7 @@ pub(crate) fn row<'py>(py: Python<'py>, batch: RecordBatch) -> PyResult<Bound<'p
     let cells = PyDict::new(py);
     let nulls: Vec<bool> = batch.columns().iter().map(|column| column.is_null(0)).collect();
     let names: Vec<String> = batch.schema_ref().fields().iter().map(|field| field.name().clone()).collect();
-    let table = Table::of_batch(batch);
+    let table = Table::from_batch(batch);
     for (index, (name, is_null)) in names.into_iter().zip(nulls).enumerate() {
         if is_null {
             cells.set_item(name, py.None())?;

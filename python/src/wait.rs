@@ -23,12 +23,12 @@ pub(crate) enum AfterCtrlC {
 
 /// Why work is to end although all is well with it: Ctrl-C, or an exception like it.
 #[derive(Default)]
-pub(crate) struct Ended {
+pub(crate) struct Interruption {
     is_set: AtomicBool,
     reason: Mutex<Option<PyErr>>,
 }
 
-impl Ended {
+impl Interruption {
     /// Ends the work; the first reason counts.
     pub(crate) fn set(&self, reason: PyErr) {
         self.reason.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(reason);
@@ -62,7 +62,7 @@ impl Ended {
 pub(crate) fn interruptibly<T: Send + 'static>(
     py: Python<'_>,
     after: AfterCtrlC,
-    ended: &Arc<Ended>,
+    ended: &Arc<Interruption>,
     work: impl FnOnce(&AtomicBool) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
     let own = Arc::clone(ended);

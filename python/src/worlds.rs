@@ -6,7 +6,7 @@ use std::ops::Range;
 use arrow_array::RecordBatch;
 use boresight::failure::Failure;
 use boresight::files::Row;
-use boresight::flight::in_order;
+use boresight::frame_jobs::process_in_order;
 use boresight::run::world::{ImageOf, TelemetryOf};
 use boresight::run::{AnyFactory, AnyMission, AnyWorld, DockingMission, FarRangeMission, SceneTruth, World};
 use contract::docking::{Docking, Field, FieldTelemetry as DockingTelemetry};
@@ -20,29 +20,29 @@ use crate::arrow::batch;
 use crate::frame::{FieldTelemetry, Frame, Telemetry};
 
 /// One line each.
-fn all<P: PythonFactory>() -> [Entry<P>; 2] {
-    [Entry::of::<FarRangeMission>(), Entry::of::<DockingMission>()]
+fn world_entries<P: PythonFactory>() -> [WorldEntry<P>; 2] {
+    [WorldEntry::for_world::<FarRangeMission>(), WorldEntry::for_world::<DockingMission>()]
 }
 
 /// A mission of a world, or what is none of it.
-type Taken = Result<Box<dyn AnyPythonWorld>, Box<dyn Any>>;
+type DowncastMission = Result<Box<dyn AnyPythonWorld>, Box<dyn Any>>;
 /// Rows and columns of a frame, and its electrons row by row.
 type ExpectedFrame = Result<([usize; 2], Vec<f64>), Failure>;
 
 /// A world: its word, what makes its frames, and the factory of a pipeline that is a callable.
-struct Entry<P> {
+struct WorldEntry<P> {
     code: &'static str,
-    take: fn(Box<dyn Any>) -> Taken,
+    take: fn(Box<dyn Any>) -> DowncastMission,
     factory: fn(P) -> AnyFactory,
 }
 
-impl<P: PythonFactory> Entry<P> {
-    fn of<W: PythonWorld>() -> Self {
+impl<P: PythonFactory> WorldEntry<P> {
+    fn for_world<W: PythonWorld>() -> Self {
         Self {
             code: W::CODE,
             take: |prepared| prepared.downcast::<W>().map(|prepared| prepared as Box<dyn AnyPythonWorld>),
             factory: |pipeline| {
-                let factory: Box<dyn PipelineFactory<W::Interface> + Send> = pipeline.of();
+                let factory: Box<dyn PipelineFactory<W::Interface> + Send> = pipeline.into_factory();
                 AnyFactory::new(factory)
             },
         }
@@ -53,12 +53,12 @@ impl<P: PythonFactory> Entry<P> {
 ///
 /// # Errors
 /// [`Failure::Usage`] when they are of a world that has no class in Python.
-pub(crate) fn in_python(
+pub(crate) fn prepare_for_python(
     world: &dyn AnyWorld,
     prepared: Box<dyn AnyMission>,
 ) -> Result<Box<dyn AnyPythonWorld>, Failure> {
     let mut prepared = prepared.into_any();
-    for entry in all::<Never>() {
+    for entry in world_entries::<NoCallable>() {
         match (entry.take)(prepared) {
             Ok(taken) => return Ok(taken),
             Err(other) => prepared = other,
@@ -72,7 +72,7 @@ pub(crate) fn in_python(
 /// # Errors
 /// [`Failure::Usage`] when its frames have no class in Python.
 pub(crate) fn factory<P: PythonFactory>(world: &dyn AnyWorld, pipeline: P) -> Result<AnyFactory, Failure> {
-    match all::<P>().into_iter().find(|entry| entry.code == world.code()) {
+    match world_entries::<P>().into_iter().find(|entry| entry.code == world.code()) {
         Some(entry) => Ok((entry.factory)(pipeline)),
         None => Err(Failure::Usage(format!("a callable of the world {} cannot be called", world.code()))),
     }
@@ -81,14 +81,14 @@ pub(crate) fn factory<P: PythonFactory>(world: &dyn AnyWorld, pipeline: P) -> Re
 /// A callable that can be the pipeline of any world.
 pub(crate) trait PythonFactory {
     /// It as one of the interface `I`.
-    fn of<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send>;
+    fn into_factory<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send>;
 }
 
 /// No callable.
-enum Never {}
+enum NoCallable {}
 
-impl PythonFactory for Never {
-    fn of<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send> {
+impl PythonFactory for NoCallable {
+    fn into_factory<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send> {
         match self {}
     }
 }
@@ -104,21 +104,21 @@ pub(crate) trait PythonInterface: Protocol {
 
 impl PythonInterface for FarRange {
     fn frame(py: Python<'_>, frame: contract::Frame) -> PyResult<Frame> {
-        Frame::of(py, frame)
+        Frame::from_contract(py, frame)
     }
 
     fn telemetry(py: Python<'_>, telemetry: &contract::Telemetry) -> PyResult<Py<PyAny>> {
-        Ok(Py::new(py, Telemetry::of(telemetry))?.into_any())
+        Ok(Py::new(py, Telemetry::from_contract(telemetry))?.into_any())
     }
 }
 
 impl PythonInterface for Docking {
     fn frame(py: Python<'_>, field: Field) -> PyResult<Frame> {
-        Frame::of_field(py, field)
+        Frame::from_field(py, field)
     }
 
     fn telemetry(py: Python<'_>, telemetry: &DockingTelemetry) -> PyResult<Py<PyAny>> {
-        Ok(Py::new(py, FieldTelemetry::of(telemetry))?.into_any())
+        Ok(Py::new(py, FieldTelemetry::from_contract(telemetry))?.into_any())
     }
 }
 
@@ -158,10 +158,10 @@ impl PythonWorld for DockingMission {
 }
 
 /// A frame that was made, not a value of Python yet.
-pub(crate) type Made = Box<dyn FnOnce(Python<'_>) -> PyResult<Parts> + Send>;
+pub(crate) type PendingFrame = Box<dyn FnOnce(Python<'_>) -> PyResult<FrameParts> + Send>;
 
 /// What a frame of a scenario consists of.
-pub(crate) struct Parts {
+pub(crate) struct FrameParts {
     pub(crate) frame: Frame,
     pub(crate) telemetry: Py<PyAny>,
     pub(crate) truth: RecordBatch,
@@ -178,7 +178,7 @@ pub(crate) trait AnyPythonWorld: AnyMission {
         &self,
         frames: Range<u64>,
         jobs: usize,
-        take: &mut dyn FnMut(Made) -> Result<(), Failure>,
+        take: &mut dyn FnMut(PendingFrame) -> Result<(), Failure>,
     ) -> Result<(), Failure>;
 
     /// [`PythonWorld::expected`].
@@ -198,11 +198,11 @@ where
         &self,
         frames: Range<u64>,
         jobs: usize,
-        take: &mut dyn FnMut(Made) -> Result<(), Failure>,
+        take: &mut dyn FnMut(PendingFrame) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let expose = |workspace: &mut W::Workspace<'_>, frame| World::expose(self, workspace, frame);
         let bytes = self.exposure_bytes() as u64;
-        in_order(
+        process_in_order(
             frames,
             jobs,
             bytes,
@@ -213,7 +213,7 @@ where
                 take(Box::new(move |py| {
                     let (truth, objects) = W::tables(truth)?;
                     let telemetry = W::Interface::telemetry(py, &telemetry)?;
-                    Ok(Parts { frame: W::Interface::frame(py, image)?, telemetry, truth, objects })
+                    Ok(FrameParts { frame: W::Interface::frame(py, image)?, telemetry, truth, objects })
                 }))
             },
         )

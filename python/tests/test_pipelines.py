@@ -167,7 +167,7 @@ frames = "0..40"
 cases = 640
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "uniform", min = 0.6, max = 1.0 }
+distribution = { kind = "uniform", min = 0.6, max = 1.0 }
 """
 
 

@@ -85,7 +85,7 @@ frames = "2000..2010"
 cases = 8
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "uniform", min = 0.6, max = 1.0 }
+distribution = { kind = "uniform", min = 0.6, max = 1.0 }
 """
 
 

@@ -14,10 +14,10 @@ frames = "2000..2004"
 cases = 6
 [[vary]]
 path = "star_list.magnitude_limit"
-law = { kind = "uniform", min = 5.0, max = 8.0 }
+distribution = { kind = "uniform", min = 5.0, max = 8.0 }
 [[vary]]
 path = "sensor.hot_pixels.count"
-law = { kind = "whole", min = 0, max = 40 }
+distribution = { kind = "integer", min = 0, max = 40 }
 """
 
 

@@ -110,8 +110,8 @@ pub(super) fn run_on_dask(
     for line in
         child.stdout.take().map(BufReader::new).into_iter().flat_map(BufRead::lines).map_while(Result::ok)
     {
-        if let Ok(told) = serde_json::from_str::<Told>(&line) {
-            done(told.shard);
+        if let Ok(finished) = serde_json::from_str::<FinishedShard>(&line) {
+            done(finished.shard);
         }
     }
     let status = child
@@ -127,6 +127,6 @@ pub(super) fn run_on_dask(
 
 /// What the driver tells of each shard.
 #[derive(serde::Deserialize)]
-struct Told {
+struct FinishedShard {
     shard: u64,
 }

@@ -13,12 +13,12 @@ use indicatif::ProgressBar;
 use run::any_world::ProcessingOrder;
 use run::docking::answers::FieldAnswers;
 use run::docking::renderer::DockingRenderer;
-use run::{AnyWorld, DockingMission, Expectation, Flight, Options, ScenarioSource, World as _, worlds};
+use run::{AnyWorld, DockingMission, Expectation, FrameJobs, Options, ScenarioSource, World as _, worlds};
 use scenario::DockingScenario;
 use serde_json::{Map, Value, json};
 
 use super::Answer;
-use super::fly::tell_of_unfinished;
+use super::execute::note_unfinished_run;
 use super::options::{PipelineOptions, RendererOptions, Selection};
 use super::output::Output;
 
@@ -48,7 +48,7 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
     }
     let prepared =
         source.prepare(Options { renderer: arguments.renderer.renderer()?, ..Options::default() })?;
-    let flight = Flight {
+    let frame_jobs = FrameJobs {
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.renderer.jobs(&arguments.selection),
         images: arguments.format.clone(),
@@ -56,18 +56,18 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
     };
     if arguments.out == Path::new("-") {
         // The video alone, for another program to read as it comes.
-        prepared.check_stream(&flight)?;
+        prepared.check_stream(&frame_jobs)?;
         output.check_free("--out -")?;
-        prepared.stream(&flight)?;
+        prepared.stream(&frame_jobs)?;
         return Ok(Answer::Yes);
     }
-    prepared.check_flight(&flight)?;
+    prepared.check_frame_jobs(&frame_jobs)?;
     output.warn(&prepared.warnings());
     let directory = RunDirectory::create(&arguments.out)?;
-    tell_of_unfinished(&directory);
-    let frames = flight.frames.end - flight.frames.start;
+    note_unfinished_run(&directory);
+    let frames = frame_jobs.frames.end - frame_jobs.frames.start;
     let progress = output.progress(frames, &source.name);
-    let rendered = prepared.render(&directory, &flight, &|| progress.inc(1));
+    let rendered = prepared.render(&directory, &frame_jobs, &|| progress.inc(1));
     progress.finish_and_clear();
     let files = rendered?;
     let path = directory.path();
@@ -108,7 +108,7 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     }
     let sequence = &arguments.sequence;
     let dataset = worlds().into_iter().find(|world| !is_stream && path.join(world.setup_file()).exists());
-    let is_docking = dataset.is_none_or(|world| world.is_of::<DockingScenario>());
+    let is_docking = dataset.is_none_or(|world| world.has_scenario::<DockingScenario>());
     let is_plain = sequence.given().is_none() && arguments.out.as_deref() != Some(Path::new("-"));
     match dataset {
         Some(world) if is_plain => process_dataset(world, arguments, output),
@@ -201,9 +201,9 @@ struct SequenceArguments {
 impl SequenceArguments {
     /// The first option that is given: the input is a docking sequence then.
     fn given(&self) -> Option<&'static str> {
-        let told = [("--scenario", self.scenario.is_some()), ("--setup", self.setup.is_some())];
+        let given_options = [("--scenario", self.scenario.is_some()), ("--setup", self.setup.is_some())];
         self.given_of_fields()
-            .or_else(|| told.into_iter().find_map(|(option, is_given)| is_given.then_some(option)))
+            .or_else(|| given_options.into_iter().find_map(|(option, is_given)| is_given.then_some(option)))
     }
 
     /// The first option that is given and tells of fields what `telemetry.csv` tells.
@@ -312,6 +312,10 @@ fn check_sums(folder: &Path) -> Result<(), FileError> {
 
 /// The file that tells cameras and target: the one asked for, or `setup.toml` in a folder or beside a video.
 fn setup_file(path: &Path, sequence: &SequenceArguments) -> Option<PathBuf> {
-    let beside = || if path.is_dir() { path.join("setup.toml") } else { path.with_file_name("setup.toml") };
-    sequence.setup.clone().or_else(|| Some(beside()).filter(|file| path != Path::new("-") && file.is_file()))
+    let neighbouring_file =
+        || if path.is_dir() { path.join("setup.toml") } else { path.with_file_name("setup.toml") };
+    sequence
+        .setup
+        .clone()
+        .or_else(|| Some(neighbouring_file()).filter(|file| path != Path::new("-") && file.is_file()))
 }

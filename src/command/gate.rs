@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use files::{Failure, WholeFile};
-use gate::{Baseline, CompareOptions, GateReport, Replace, compare, junit, junit_of_failure, read_result};
+use files::{AtomicFile, Failure};
+use gate::{
+    Baseline, CompareOptions, GateReport, Replacement, compare, junit, junit_of_failure, read_result,
+};
 use indexmap::IndexMap;
 use scenario::AttitudeChoice;
 
 use super::Answer;
-use super::options::{AttitudeOption, place};
+use super::options::{AttitudeOption, output_path};
 use super::output::Output;
 use super::report::{check_option, write_gate};
 use crate::table::{baseline_text, gate_table};
@@ -51,10 +53,10 @@ struct CompareArguments {
     #[arg(long, value_name = "TEXT", requires = "accept_changed", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     reason: Option<String>,
     /// Write the report as JUnit XML too, or why nothing could be compared; a new file
-    #[arg(long, value_name = "FILE", value_parser = place())]
+    #[arg(long, value_name = "FILE", value_parser = output_path())]
     junit: Option<PathBuf>,
     /// Write the report as one HTML file too, flipped frames as pictures; replaced if it is there
-    #[arg(long, value_name = "FILE", value_parser = place())]
+    #[arg(long, value_name = "FILE", value_parser = output_path())]
     report: Option<PathBuf>,
     // Not flattened: of an `Option` of arguments clap asks the group of their struct, which a struct with others in it does not have.
     /// Far range: turn a centroid without a line of sight into one by this attitude, in the place of what the run was asked for
@@ -67,7 +69,7 @@ struct BaselineArguments {
     /// Directory of a run, or of a study that is complete
     result: PathBuf,
     /// Folder of the baseline
-    #[arg(short, long, value_name = "DIR", value_parser = place())]
+    #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: PathBuf,
     /// Why this is what later results are held against
     #[arg(long, value_name = "TEXT")]
@@ -125,7 +127,7 @@ fn make_baseline(arguments: &BaselineArguments, output: &Output) -> Result<Answe
     let sample = read_result(&arguments.result, arguments.attitude.choice)?;
     let baseline = Baseline::new(sample, &arguments.reason, arguments.block_length)?;
     let mut baseline = baseline.with_tolerances(&sizes(&arguments.tolerance))?;
-    let replace = if arguments.replace { Replace::Allow } else { Replace::Refuse };
+    let replace = if arguments.replace { Replacement::Allow } else { Replacement::Refuse };
     baseline.write(&arguments.out, replace)?;
     let text = format!("{}baseline in {}", baseline_text(&baseline), arguments.out.display());
     output.answer(&baseline.header, text)?;
@@ -147,7 +149,7 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
             Ok(report) => junit(report)?,
             Err(failure) => junit_of_failure(failure)?,
         };
-        WholeFile::with_text(path, &xml)?.commit_new()?;
+        AtomicFile::with_text(path, &xml)?.commit_new()?;
     }
     let report = compared?;
     if let Some(path) = &arguments.report {

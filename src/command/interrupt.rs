@@ -22,13 +22,13 @@ static KEPT: Mutex<Option<Box<dyn Fn() -> String + Send>>> = Mutex::new(None);
 const NOTHING_HALF: &str = "no file was left half written; the same command begins anew";
 
 /// Has an interrupt tell from now on what the command keeps and how to go on; an empty text tells nothing.
-pub(super) fn tell_when_interrupted(kept: impl Fn() -> String + Send + 'static) {
+pub(super) fn report_interruption(kept: impl Fn() -> String + Send + 'static) {
     *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(kept));
 }
 
 /// Tells it.
 #[cfg(unix)]
-fn tell() {
+fn print_interruption() {
     let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     let text = kept.as_ref().map_or_else(|| NOTHING_HALF.to_owned(), |kept| kept());
     if !text.is_empty() {
@@ -54,7 +54,7 @@ pub(super) fn clean_up_when_interrupted() {
             if let Ok(number) = first_signal() {
                 pipeline::external::end_all();
                 remove_all();
-                tell();
+                print_interruption();
                 // It does not come back from any of the three.
                 let _ = signal_hook::low_level::emulate_default_handler(number);
                 std::process::exit(128 + number);

@@ -3,7 +3,7 @@
 mod answer;
 mod cluster;
 mod dataset;
-mod fly;
+mod execute;
 mod gate;
 mod interrupt;
 #[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]

@@ -111,7 +111,7 @@ pub(super) struct AttitudeOption {
 }
 
 /// Reads the place of a command's output: `-`, which elsewhere is standard output, is none.
-pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
+pub(super) fn output_path() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|word| match word.to_str() {
         Some("-") => Err("expected a name: only docking's `render` and `process` write to standard output (`./-` is a file)"),
         Some("") => Err("expected a name"),
@@ -121,7 +121,7 @@ pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
 
 /// Who draws a docking scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum RendererWord {
+pub(super) enum RendererName {
     /// The fast renderer
     #[default]
     Fast,
@@ -135,7 +135,7 @@ pub(super) enum RendererWord {
 pub(super) struct RendererOptions {
     /// Who draws the scene of a docking scenario
     #[arg(long, value_name = "RENDERER", value_enum, default_value_t)]
-    renderer: RendererWord,
+    renderer: RendererName,
     /// The command of Mitsuba, as a shell would split it; default: that of BORESIGHT_MITSUBA, or `mitsuba`, or `uvx`
     #[arg(long, value_name = "COMMAND")]
     mitsuba: Option<String>,
@@ -164,7 +164,7 @@ impl RendererOptions {
 
     /// The renderer asked for.
     pub(super) fn renderer(&self) -> Result<RendererChoice, Failure> {
-        if self.renderer == RendererWord::Fast {
+        if self.renderer == RendererName::Fast {
             self.check_fast()?;
             return Ok(RendererChoice::BuiltIn);
         }
@@ -190,7 +190,7 @@ impl RendererOptions {
     /// The number of threads: one where each image has several of its own.
     pub(super) fn jobs(&self, selection: &Selection) -> usize {
         match (self.renderer, selection.jobs) {
-            (RendererWord::Mitsuba, None) => 1,
+            (RendererName::Mitsuba, None) => 1,
             _ => selection.jobs(),
         }
     }
@@ -198,7 +198,7 @@ impl RendererOptions {
 
 impl Selection {
     /// A whole scenario as it is.
-    pub(super) fn of(scenario: &str) -> Self {
+    pub(super) fn for_scenario(scenario: &str) -> Self {
         Self { scenario: scenario.to_owned(), frames: None, seed: None, jobs: None }
     }
 

@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_terminal_is_told_how_letters_look_and_nothing_else() {
+    fn a_terminal_gets_letter_styles_and_nothing_else() {
         assert_eq!(harmless_but_styled("\u{1b}[1;31mday\u{1b}[0m 1\tä\n"), "\u{1b}[1;31mday\u{1b}[0m 1\tä\n");
         assert_eq!(
             harmless_but_styled("\u{1b}[2J\u{1b}]0;x\u{7}\u{1b}["),

@@ -14,7 +14,7 @@ use files::Failure;
 use serde_json::json;
 
 use super::Answer;
-use super::options::place;
+use super::options::output_path;
 use super::output::Output;
 
 pub(super) use pages::{
@@ -27,7 +27,7 @@ pub(super) struct ReportArguments {
     #[arg(value_name = "DIR")]
     directory: PathBuf,
     /// The file to write, replaced if it is there; default: `report.html` in the directory
-    #[arg(short, long, value_name = "FILE", value_parser = place())]
+    #[arg(short, long, value_name = "FILE", value_parser = output_path())]
     out: Option<PathBuf>,
     /// Far range, for the error budget: `all` flies the same frames again, once a stage, and keeps what they gave in DIR/budget; or the
     /// directory of a run of the same frames with --inject STAGE, may be given for every stage

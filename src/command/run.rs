@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use files::{Failure, RunDirectory};
-use run::{Expectation, Flight, Options};
+use run::{Expectation, FrameJobs, Options};
 use scenario::Stage;
 
 use super::Answer;
-use super::fly::{Presentation, fly};
-use super::options::{AttitudeOption, PipelineOptions, RendererOptions, Selection, place};
+use super::execute::{Presentation, execute};
+use super::options::{AttitudeOption, PipelineOptions, RendererOptions, Selection, output_path};
 use super::output::Output;
 
 /// Where numbered run directories go when `--out` is not given.
@@ -20,7 +20,7 @@ pub(super) struct RunArguments {
     #[command(flatten)]
     selection: Selection,
     /// A new or empty directory for the results; default: the next free `runs/SCENARIO-001`
-    #[arg(short, long, value_name = "DIR", value_parser = place())]
+    #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,
@@ -43,7 +43,7 @@ impl RunArguments {
     /// What the bare command means: `run argon`.
     pub(super) fn argon() -> Self {
         Self {
-            selection: Selection::of("argon"),
+            selection: Selection::for_scenario("argon"),
             out: None,
             pipeline: PipelineOptions::default(),
             attitude: AttitudeOption::default(),
@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         renderer: arguments.renderer.renderer()?,
     };
     let prepared = source.prepare(options)?;
-    let flight = Flight {
+    let frame_jobs = FrameJobs {
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.renderer.jobs(&arguments.selection),
         images: arguments.save_frames.clone(),
@@ -85,7 +85,7 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
     };
     let scratch = super::scratch_directory()?;
     let factory = prepared.factory(&choice, scratch.path())?;
-    prepared.check_flight(&flight)?;
+    prepared.check_frame_jobs(&frame_jobs)?;
     let directory = match &arguments.out {
         Some(path) => RunDirectory::create(path)?,
         None => RunDirectory::create_numbered(Path::new(RUNS), &source.name)?,
@@ -94,5 +94,5 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         .inject
         .map(|stage| format!("the truth was injected for {stage}: this is no result of the pipeline"));
     let shown = Presentation { name: &source.name, has_report: !arguments.no_report, note };
-    fly(prepared.as_ref(), &flight, &factory, &directory, shown, output)
+    execute(prepared.as_ref(), &frame_jobs, &factory, &directory, shown, output)
 }

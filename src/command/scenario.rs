@@ -8,7 +8,7 @@ use clap::Subcommand;
 use files::Failure;
 use run::pipeline_choice::PipelineChoice;
 use run::worlds::FIRST;
-use run::{AnyWorld, Options, ScenarioSource, json_schema, world_called};
+use run::{AnyWorld, Options, ScenarioSource, json_schema, world_by_name};
 use scenario::{BUILT_IN, CAMERAS};
 use serde_json::json;
 
@@ -35,7 +35,7 @@ pub(super) enum ScenarioCommand {
     /// Print the JSON Schema of scenario files
     Schema {
         /// Of this world alone: far_range or docking
-        #[arg(long, value_name = "WORLD", value_parser = world_called)]
+        #[arg(long, value_name = "WORLD", value_parser = world_by_name)]
         world: Option<&'static dyn AnyWorld>,
     },
     /// Write a commented starting point to a file that does not exist yet
@@ -43,7 +43,7 @@ pub(super) enum ScenarioCommand {
         /// The TOML file to write
         file: PathBuf,
         /// Of this world: far_range or docking
-        #[arg(long, value_name = "WORLD", value_parser = world_called, default_value = FIRST.code())]
+        #[arg(long, value_name = "WORLD", value_parser = world_by_name, default_value = FIRST.code())]
         world: &'static dyn AnyWorld,
     },
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use files::{Checksums, Failure, refuse_unfinished};
-use run::{NotFlown, world_of_run, worlds};
+use run::{IncompleteRun, world_of_run, worlds};
 use serde_json::{Map, Value};
 
 use super::Answer;
@@ -50,29 +50,30 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
             evidence = Some(given.clone());
         }
     }
-    let beside = || {
+    let neighbouring_file = || {
         let path = arguments.measurements.with_file_name(world.evidence_file()?);
         path.is_file().then_some(path)
     };
-    let evidence = evidence.or_else(beside);
+    let evidence = evidence.or_else(neighbouring_file);
     let (directory, attitude) = (&arguments.directory, arguments.attitude.choice);
     let scored = world.score(directory, &arguments.measurements, evidence.as_deref(), attitude)?;
     Checksums::check(&arguments.directory, |_| true)?;
     let mut document = scored.json()?;
-    // Measurements of a run that was not flown to its end do not look complete.
-    let beside = arguments.measurements.parent().map_or(Ok(None), NotFlown::of_directory)?;
-    if let Some(not_flown) = &beside {
-        output.note(format!("the run is not complete: {not_flown}"));
-        document = with_not_flown(&document, not_flown)?;
+    // Measurements of an incomplete run must not look complete.
+    let incomplete_run =
+        arguments.measurements.parent().map_or(Ok(None), IncompleteRun::read_from_directory)?;
+    if let Some(incomplete) = &incomplete_run {
+        output.note(format!("the run is not complete: {incomplete}"));
+        document = with_incomplete_run(&document, incomplete)?;
     }
     output.answer_json(&document, score_table(scored.as_ref(), output.is_terminal()))?;
     Ok(Answer::Yes)
 }
 
-/// The JSON of a score with what was not flown, as `run` writes it.
-fn with_not_flown(score: &str, not_flown: &NotFlown) -> Result<String, Failure> {
+/// Returns the JSON of a score with the entry `not_flown`, as `run` writes it.
+fn with_incomplete_run(score: &str, incomplete: &IncompleteRun) -> Result<String, Failure> {
     let unwritable = |error| Failure::Usage(format!("the score cannot be written as JSON: {error}"));
     let mut document: Map<String, Value> = serde_json::from_str(score).map_err(unwritable)?;
-    document.insert("not_flown".to_owned(), serde_json::to_value(not_flown).map_err(unwritable)?);
+    document.insert("not_flown".to_owned(), serde_json::to_value(incomplete).map_err(unwritable)?);
     serde_json::to_string_pretty(&document).map_err(unwritable)
 }

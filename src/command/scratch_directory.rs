@@ -33,12 +33,12 @@ impl ScratchDirectory {
     pub(super) fn create(folder: &Path) -> Result<Self, Failure> {
         remove_abandoned(folder);
         // Held meanwhile: whoever removes them all knows this one too.
-        let mut places = places();
+        let mut directories = directories();
         let directory = tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder).map_err(|error| {
             Failure::Usage(format!("a temporary directory cannot be made in {}: {error}", folder.display()))
         })?;
         let lock = File::create_new(directory.path().join(MARK)).ok().filter(|file| file.try_lock().is_ok());
-        places.push(directory.path().to_owned());
+        directories.push(directory.path().to_owned());
         Ok(Self { directory, _lock: lock })
     }
 
@@ -49,20 +49,20 @@ impl ScratchDirectory {
 
 impl Drop for ScratchDirectory {
     fn drop(&mut self) {
-        places().retain(|place| place != self.directory.path());
+        directories().retain(|directory| directory != self.directory.path());
     }
 }
 
 /// Removes those of this process, which is about to end without dropping them.
 #[cfg(unix)]
 pub(super) fn remove_all() {
-    for place in places().iter() {
+    for directory in directories().iter() {
         // Another thread may put a file there meanwhile.
-        let _ = std::fs::remove_dir_all(place).or_else(|_| std::fs::remove_dir_all(place));
+        let _ = std::fs::remove_dir_all(directory).or_else(|_| std::fs::remove_dir_all(directory));
     }
 }
 
-fn places() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
+fn directories() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     PLACES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Command};
 use clap_complete::Shell;
-use files::{Earlier, Failure, FileError, WholeFile};
+use files::{AtomicFile, Failure, FileError, ReplaceableFile};
 
 use super::Answer;
-use super::options::place;
+use super::options::output_path;
 use super::output::Output;
 
 #[derive(Debug, Args)]
@@ -20,7 +20,7 @@ pub(super) struct CompletionsArguments {
 #[derive(Debug, Args)]
 pub(super) struct ManArguments {
     /// Directory of the pages, made when it is not there; pages that are there are replaced
-    #[arg(short, long, value_name = "DIR", value_parser = place())]
+    #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: PathBuf,
 }
 
@@ -55,7 +55,8 @@ pub(super) fn man(arguments: &ManArguments, root: Command, output: &Output) -> R
 }
 
 /// Manual pages of the command, which later ones replace.
-const PAGES: Earlier<'static> = Earlier { what: "an earlier page of this manual", is: &is_page };
+const PAGES: ReplaceableFile<'static> =
+    ReplaceableFile { description: "an earlier page of this manual", matches: &is_page };
 
 fn is_page(beginning: &[u8]) -> bool {
     let title = b".TH boresight";
@@ -73,7 +74,7 @@ fn write_pages(
     let mut page = Vec::new();
     let command_with_usage = command.clone().override_usage(usage(command));
     clap_mangen::Man::new(command_with_usage).title(name).render(&mut page).map_err(io)?;
-    let file = WholeFile::create(&path)?;
+    let file = AtomicFile::create(&path)?;
     file.file().write_all(&page).map_err(io)?;
     file.replace(PAGES)?;
     pages.push(path);
@@ -90,11 +91,12 @@ fn usage(command: &Command) -> String {
     let options = shown()
         .filter(|argument| !argument.is_positional())
         .map(|option| if option.is_required_set() { option.to_string() } else { format!("[{option}]") });
-    let places = command.get_positionals().filter(|place| !place.is_hide_set()).map(ToString::to_string);
+    let positionals =
+        command.get_positionals().filter(|positional| !positional.is_hide_set()).map(ToString::to_string);
     let below = match (command.has_subcommands(), command.is_subcommand_required_set()) {
         (false, _) => None,
         (true, true) => Some("<COMMAND>".to_owned()),
         (true, false) => Some("[COMMAND]".to_owned()),
     };
-    std::iter::once(name).chain(options).chain(places).chain(below).collect::<Vec<_>>().join(" ")
+    std::iter::once(name).chain(options).chain(positionals).chain(below).collect::<Vec<_>>().join(" ")
 }

@@ -1,9 +1,9 @@
 //! `boresight show`: frames of a run or dataset as one annotated picture.
 
+mod annotated_frame;
 mod docking;
 mod far_range;
 mod picture_file;
-mod shown;
 mod source;
 use std::path::PathBuf;
 
@@ -11,10 +11,10 @@ use clap::{Args, ValueEnum};
 use files::Failure;
 use run::{DockingMission, FarRangeMission, World as _};
 use serde_json::{Value, json};
-use show::{MOST_PANELS, Panel, ShowError, Stretch, encode, picture};
+use show::{MAX_PANELS, Panel, ShowError, Stretch, encode, picture};
 
+use self::annotated_frame::{AnnotatedFrame, PixelSource, display_name};
 use self::picture_file::PictureFile;
-use self::shown::{PixelSource, Shown, spoken};
 use self::source::Source;
 use super::Answer;
 use super::output::Output;
@@ -36,7 +36,7 @@ pub(super) struct ShowArguments {
     stretch: Option<Stretch>,
     /// The whole frame, with the target enlarged in a close-up, or the surroundings of the target alone
     #[arg(long, value_name = "VIEW", value_enum, default_value_t)]
-    view: View,
+    view: ShownArea,
     /// The answers to draw, CSV; default: `measurements.csv` in RUN, if it is there. What the pipeline recognised
     /// (features.parquet, clusters.parquet) is read from beside it
     #[arg(long, value_name = "FILE")]
@@ -45,7 +45,7 @@ pub(super) struct ShowArguments {
 
 /// Part of the frame that is drawn.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-enum View {
+enum ShownArea {
     /// The whole frame
     #[default]
     Frame,
@@ -54,7 +54,7 @@ enum View {
 }
 
 /// Reads frames of a directory and makes their panels.
-type Panels = fn(&Source, &[u64]) -> Result<Vec<Shown>, Failure>;
+type Panels = fn(&Source, &[u64]) -> Result<Vec<AnnotatedFrame>, Failure>;
 
 /// Whether a panel of a whole frame has a close-up of the target in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,7 +71,7 @@ const PANELS: [(&str, Panels, CloseUp); 2] = [
 ];
 
 pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer, Failure> {
-    if arguments.frames.len() > MOST_PANELS {
+    if arguments.frames.len() > MAX_PANELS {
         return Err(undrawn(ShowError::PanelCount(arguments.frames.len())));
     }
     let source = Source::open(&arguments.directory, arguments.measurements.as_deref())?;
@@ -86,9 +86,9 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
             ))
         })?;
     let mut shown = panels(&source, &arguments.frames)?;
-    for Shown { panel, frame, .. } in &mut shown {
+    for AnnotatedFrame { panel, frame, .. } in &mut shown {
         panel.stretch = arguments.stretch.unwrap_or(panel.stretch);
-        if arguments.view == View::Target {
+        if arguments.view == ShownArea::Target {
             panel.view = panel.close_up.take().ok_or_else(|| {
                 Failure::Usage(format!(
                     "--view is target, and frame {frame} has neither a target nor an answer in it, expected --view frame"

@@ -8,17 +8,17 @@ use clap::{Args, Subcommand};
 use files::{Failure, FileError, RunDirectory};
 use pipeline::external::protocol::harmless;
 use run::pipeline_choice::PipelineChoice;
-use run::{Expectation, FirstFailure, Flight, Options};
+use run::{Expectation, FirstFailure, FrameJobs, Options};
 use serde::Serialize;
 use study::{
-    Campaign, CaseFile, Evaluated, Known, Plan, RequirementVerdict, ShardManifest, Study, StudyFile, Workers,
-    command_line,
+    Campaign, CaseFile, CaseOutcome, CaseResult, Plan, RequirementVerdict, ShardManifest, Study, StudyFile,
+    Workers, command_line,
 };
 
 use super::Answer;
-use super::fly::{Presentation, fly};
-use super::interrupt::tell_when_interrupted;
-use super::options::{PipelineOptions, default_jobs, place};
+use super::execute::{Presentation, execute};
+use super::interrupt::report_interruption;
+use super::options::{PipelineOptions, default_jobs, output_path};
 use super::output::Output;
 use super::report::write_beside_results;
 use crate::command::cluster::{Engine, check_dask, run_on_dask};
@@ -45,11 +45,11 @@ pub(super) struct RunArguments {
     /// A TOML file (docs/studies.md)
     study: PathBuf,
     /// Directory of the results; one that holds a part of the same study is gone on with
-    #[arg(short, long, value_name = "DIR", value_parser = place())]
+    #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: PathBuf,
     /// One shard of so many, `I/N` with I from 1
     #[arg(long, value_name = "I/N")]
-    shard: Option<ShardOf>,
+    shard: Option<ShardSelection>,
     /// Number of shards; default: one for 32 cases, at most 1000
     #[arg(long, value_name = "N", conflicts_with = "shard")]
     shards: Option<u64>,
@@ -82,7 +82,7 @@ pub(super) struct MergeArguments {
     /// The study's file
     study: PathBuf,
     /// Directory of the shards
-    #[arg(short, long, value_name = "DIR", value_parser = place())]
+    #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: PathBuf,
     /// Write no report.html
     #[arg(long)]
@@ -102,7 +102,7 @@ pub(super) struct ReplayArguments {
     #[arg(long, value_name = "HEX")]
     hash: Option<String>,
     /// A new or empty directory for the run; default: the next free `runs/STUDY-case-K-001`
-    #[arg(short, long, value_name = "DIR", value_parser = place())]
+    #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: Option<PathBuf>,
     /// Keep the images as well: fits, png or exr; docking: png, avi, mjpeg (AVI) or y4m
     #[arg(long, value_name = "FORMAT")]
@@ -124,12 +124,12 @@ pub(super) struct CheckArguments {
 
 /// A shard of so many.
 #[derive(Debug, Clone, Copy)]
-struct ShardOf {
+struct ShardSelection {
     shard: u64,
     of: u64,
 }
 
-impl FromStr for ShardOf {
+impl FromStr for ShardSelection {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -202,7 +202,7 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
         return finish(&campaign, &arguments.study, &campaign.merge()?, output);
     }
     let store = campaign.store().clone();
-    tell_when_interrupted(move || {
+    report_interruption(move || {
         let (finished, plan, folder) = (store.finished_cases(), store.plan(), store.folder().display());
         format!(
             "{finished} of {} cases are kept in {folder}; the same command goes on from there",
@@ -214,12 +214,12 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let until = study.file.stop.until.as_ref().map(|until| until.figure.clone());
     let live = Mutex::new(LiveFigure::new(&study, until.unwrap_or_else(|| study.worst_by())));
     let failure = Mutex::new(None);
-    let done = |case: Known<'_>| {
+    let done = |case: CaseOutcome<'_>| {
         progress.inc(1);
         if let Some(text) = lock(&live).add(case.row()) {
             progress.set_message(harmless(&format!("{}, {text}", study.name)));
         }
-        if let Known::Run(Evaluated { row, first_failure: Some(first), .. }) = case {
+        if let CaseOutcome::Run(CaseResult { row, first_failure: Some(first), .. }) = case {
             let mut known = lock(&failure);
             if known.as_ref().is_none_or(|(case, _)| row.case < *case) {
                 *known = Some((row.case, first.clone()));
@@ -287,10 +287,10 @@ fn finish(
 
 /// The plan of a study, with what makes each shard.
 #[derive(Serialize)]
-struct Planned {
+struct PlanDocument {
     #[serde(flatten)]
     plan: Plan,
-    pieces: Vec<Piece>,
+    pieces: Vec<ShardDocument>,
     /// Folder that relative paths in the commands start from.
     directory: PathBuf,
     /// Files that the commands read, absolute: the study's own, its scenario's, those that cases read, and those among the words of a program.
@@ -298,7 +298,7 @@ struct Planned {
 }
 
 #[derive(Serialize)]
-struct Piece {
+struct ShardDocument {
     shard: u64,
     first_case: u64,
     cases: u64,
@@ -353,7 +353,12 @@ fn check_pipeline(choice: &PipelineChoice, study: &Study) -> Result<(), Failure>
     Ok(())
 }
 
-fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> Result<Planned, Failure> {
+fn planned(
+    study: &Study,
+    plan: &Plan,
+    path: &Path,
+    choice: &PipelineChoice,
+) -> Result<PlanDocument, Failure> {
     let path =
         std::path::absolute(path).map_err(|error| Failure::Usage(format!("{}: {error}", path.display())))?;
     let piece = |shard: u64| {
@@ -365,7 +370,7 @@ fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> 
             format!("{shard}/{}", plan.shards),
         ]);
         arguments.extend(choice.arguments(study.scenario().world().code()));
-        Piece { shard, first_case: cases.start, cases: cases.end - cases.start, arguments }
+        ShardDocument { shard, first_case: cases.start, cases: cases.end - cases.start, arguments }
     };
     let absolute =
         |file: &Path| std::path::absolute(file).map_err(|error| FileError::io(file, "find", error));
@@ -374,7 +379,7 @@ fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> 
         study.files_read().iter().chain(&program).map(|file| absolute(file)).collect::<Result<_, _>>()?;
     files.sort();
     files.dedup();
-    Ok(Planned {
+    Ok(PlanDocument {
         pieces: (1..=plan.shards).map(piece).collect(),
         plan: plan.clone(),
         directory: absolute(Path::new("."))?,
@@ -418,19 +423,19 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
     let name = format!("{}-case-{}", study.name, case.number);
     let prepared = case.source.prepare(Options::default())?;
     let factory = prepared.factory(&choice, scratch.path())?;
-    let flight = Flight {
+    let frame_jobs = FrameJobs {
         frames: study.frames(prepared.frame_count())?,
         jobs: default_jobs(),
         images: arguments.save_frames.clone(),
         expectation: Expectation::Dropped,
     };
-    prepared.check_flight(&flight)?;
+    prepared.check_frame_jobs(&frame_jobs)?;
     let directory = match &arguments.out {
         Some(path) => RunDirectory::create(path)?,
         None => RunDirectory::create_numbered(Path::new(super::run::RUNS), &name)?,
     };
     let shown = Presentation { name: &name, has_report: !arguments.no_report, note: None };
-    fly(prepared.as_ref(), &flight, &factory, &directory, shown, output)
+    execute(prepared.as_ref(), &frame_jobs, &factory, &directory, shown, output)
 }
 
 fn check(arguments: &CheckArguments, output: &Output) -> Result<Answer, Failure> {

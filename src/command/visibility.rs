@@ -8,7 +8,7 @@ use pipeline::external::protocol::harmless;
 use visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, assess, write_report};
 
 use super::Answer;
-use super::options::place;
+use super::options::output_path;
 use super::output::Output;
 use super::report::{check_option, write_visibility, write_visibility_beside};
 use crate::table::{visibility_markdown, visibility_table};
@@ -19,10 +19,10 @@ pub(super) struct VisibilityArguments {
     #[arg(required_unless_present_any = ["schema", "list"])]
     requirement: Option<String>,
     /// A new or empty directory for visibility.json, visibility.md and the curves
-    #[arg(short, long, value_name = "DIR", value_parser = place())]
+    #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: Option<PathBuf>,
     /// Write the report as one HTML file too, replaced if it is there; with --out it is in the directory anyway
-    #[arg(long, value_name = "FILE", value_parser = place())]
+    #[arg(long, value_name = "FILE", value_parser = output_path())]
     report: Option<PathBuf>,
     /// Frames simulated for each result, instead of the file's `confirm.frames`; 0: none
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000))]
@@ -64,14 +64,14 @@ pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Re
     }
     let steps = requirements.file.requirements.len() as u64 + 2;
     let progress = output.progress_of(steps, "steps", &requirements.name);
-    let told = |what: &str| {
+    let show_progress = |what: &str| {
         progress.set_message(harmless(&format!("{}, {what}", requirements.name)));
         progress.inc(1);
     };
     let threads = arguments.jobs.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Failure::Usage(format!("threads cannot be started: {error}")))?;
-    let report = pool.install(|| assess(&requirements, told))?;
+    let report = pool.install(|| assess(&requirements, show_progress))?;
     progress.finish_and_clear();
     if let Some(folder) = &arguments.out {
         write_report(&report, &visibility_markdown(&report), folder)?;

@@ -3,7 +3,7 @@
 use comfy_table::{Attribute, Cell};
 use contract::docking::Doubt;
 use indexmap::IndexMap;
-use score::docking::{DockingGroup, DockingScore, Gross, MissCause, names};
+use score::docking::{DockingGroup, DockingScore, GrossError, MissCause, names};
 use score::{Figure, warm_up_note};
 
 use crate::table::far_range::{finish, percent, plain_table, share};
@@ -44,7 +44,7 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
     text.push_str(&causes(
         "Wrong answers by error",
         &rows,
-        &Gross::ALL.map(Gross::code),
+        &GrossError::ALL.map(GrossError::code),
         |row| row.wrong.clone(),
         styled,
     ));
@@ -72,7 +72,7 @@ impl Row<'_> {
     }
 
     /// The value of the best estimator and, after a stroke, that of the paper's formulas.
-    fn beside(&self, name: &str, format: fn(f64) -> String) -> String {
+    fn values_of_both(&self, name: &str, format: fn(f64) -> String) -> String {
         let paper = self.figure(&format!("{}{name}", names::PAPER), format);
         match (self.figure(name, format).as_str(), paper.as_str()) {
             ("–", "–") => "–".to_owned(),
@@ -139,9 +139,9 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
             vec![
                 row.name.to_owned(),
                 row.frames.to_string(),
-                row.beside(names::RANGE_RMS_M, length),
-                row.beside(names::LATERAL_RMS_M, length),
-                row.beside(names::ATTITUDE_RMS_DEG, degrees),
+                row.values_of_both(names::RANGE_RMS_M, length),
+                row.values_of_both(names::LATERAL_RMS_M, length),
+                row.values_of_both(names::ATTITUDE_RMS_DEG, degrees),
                 row.figure(names::WITHIN_3_SIGMA, percent),
                 row.figure(names::NEES_MEAN, plain),
                 row.figure(names::DOUBTFUL_RATE, percent),
@@ -177,11 +177,11 @@ fn portions(rows: &[Row<'_>], styled: bool) -> String {
             let mut cells = vec![
                 row.name.to_owned(),
                 row.portions.to_string(),
-                row.beside(&name(names::RANGE_RMS_M), length),
-                row.beside(&name("range_rate_rms_m_s"), speed),
+                row.values_of_both(&name(names::RANGE_RMS_M), length),
+                row.values_of_both(&name("range_rate_rms_m_s"), speed),
             ];
-            cells.push(row.beside(&name("alpha_rms_deg"), degrees));
-            cells.push(row.beside(&name("beta_rms_deg"), degrees));
+            cells.push(row.values_of_both(&name("alpha_rms_deg"), degrees));
+            cells.push(row.values_of_both(&name("beta_rms_deg"), degrees));
             for angle in ["phi1_rms_deg", "phi2_rms_deg", "phi3_rms_deg"] {
                 cells.push(row.figure(&name(angle), degrees));
             }

@@ -145,7 +145,7 @@ fn rows(columns: &[Column<'_>], reference: Option<&Table2>, best_mode: Option<&[
             add(label, name, format, None);
         }
     }
-    add("start-up", names::FRAMES_UNTIL_SETTLED, whole, None);
+    add("start-up", names::FRAMES_UNTIL_SETTLED, integer_text, None);
     rows
 }
 
@@ -200,7 +200,7 @@ fn number(value: f64) -> String {
 }
 
 /// A count. The interval of a mean count may begin below 0, where no count is.
-fn whole(count: f64) -> String {
+fn integer_text(count: f64) -> String {
     format!("{:.0}", count.max(0.0))
 }
 
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ra_and_dec_rest_on_is_told() {
+    fn what_ra_and_dec_rest_on_is_reported() {
         let text = |attitude: Option<&str>| {
             let score = Score { attitude: attitude.map(str::to_owned), ..score(5, 3000) };
             far_range(&score, TableStyle { width: 100, ..TableStyle::default() })
@@ -460,7 +460,7 @@ mod tests {
     }
 
     #[test]
-    fn misses_are_counted_and_shared_by_cause_and_no_wrong_answer_is_said_so() {
+    fn misses_are_counted_and_shared_by_cause_and_no_wrong_answer_is_stated() {
         let text = far_range(&score(2, 300), TableStyle::default());
         let misses = line(&text, "merged with star");
         assert!(misses.contains("15 (5.0)") && misses.contains("30 (5.0)"), "{text}");

@@ -2,7 +2,7 @@
 
 use comfy_table::Cell;
 use run::docking::DockingJudgement;
-use run::{AnyJudgement, figure_called};
+use run::{AnyJudgement, figure_by_name};
 use score::FarRangeJudgement;
 
 use crate::table::far_range::{finish, percent, plain_table};
@@ -31,13 +31,13 @@ fn figures(scored: &dyn AnyJudgement, styled: bool) -> String {
     let mut table = plain_table(styled);
     table.set_header(["figure", "value", "count", "of"]);
     for (name, figure) in scored.figures() {
-        let spec = figure_called(name);
+        let spec = figure_by_name(name);
         let value = figure.value.map(|value| match spec.is_rate() {
             true => format!("{} %", percent(value)),
             false => format!("{value:.4}"),
         });
         table.add_row([
-            Cell::new(spec.beside_percent()),
+            Cell::new(spec.label_without_percent()),
             Cell::new(value.unwrap_or_else(|| "–".to_owned())),
             Cell::new(figure.count),
             Cell::new(figure.of),

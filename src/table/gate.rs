@@ -2,7 +2,7 @@
 use comfy_table::{Attribute, Cell};
 use gate::{Baseline, FigureReport, FigureVerdict, Flip, GateReport, Pairing};
 use pipeline::external::protocol::harmless;
-use run::figure_called;
+use run::figure_by_name;
 
 use crate::table::far_range::{finish, percent, plain_table};
 
@@ -10,7 +10,7 @@ use crate::table::far_range::{finish, percent, plain_table};
 const SHOWN: usize = 10;
 
 /// Rows of the table, unless more figures are worse or better.
-const MOST_ROWS: usize = 20;
+const MAX_ROWS: usize = 20;
 
 /// A report as text: a row a figure, then the units that changed. Ends with a line feed.
 pub fn gate_table(report: &GateReport, styled: bool) -> String {
@@ -25,7 +25,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
         let verdict = Cell::new(figure.verdict.words());
         let is_plain = matches!(figure.verdict, FigureVerdict::NoWorse | FigureVerdict::TooLittleData);
         table.add_row([
-            Cell::new(figure_called(name).beside_percent()),
+            Cell::new(figure_by_name(name).label_without_percent()),
             Cell::new(value(figure.baseline)),
             Cell::new(value(figure.result)),
             Cell::new(difference(name, figure)),
@@ -34,8 +34,8 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
             Cell::new(value(figure.smallest_visible)),
         ]);
     }
-    let worse: Vec<String> = report.worse().map(|name| figure_called(name).words).collect();
-    let differing: Vec<String> = report.changed().map(|name| figure_called(name).words).collect();
+    let worse: Vec<String> = report.worse_figures().map(|name| figure_by_name(name).words).collect();
+    let differing: Vec<String> = report.changed_figures().map(|name| figure_by_name(name).words).collect();
     let verdict = match (worse.is_empty(), differing.is_empty(), &report.accepted) {
         (false, _, _) => format!("WORSE: {}", worse.join(", ")),
         (true, true, _) => "no worse".to_owned(),
@@ -77,7 +77,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
             text.push('\n');
         } else {
             text.push_str(if flips.units.len() > SHOWN { ", the first ten:\n" } else { ":\n" });
-            text.push_str(&changed(&flips.units, styled));
+            text.push_str(&flipped_units(&flips.units, styled));
         }
     }
     text
@@ -96,12 +96,12 @@ fn rows(report: &GateReport) -> Vec<(&String, &FigureReport)> {
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
     let spoken = by_rank.iter().filter(|(_, figure)| !is_silent(figure)).count();
-    by_rank.truncate(spoken.max(MOST_ROWS));
+    by_rank.truncate(spoken.max(MAX_ROWS));
     by_rank.sort_by_key(|(name, _)| report.figures.get_index_of(*name));
     by_rank
 }
 
-fn changed(flips: &[Flip], styled: bool) -> String {
+fn flipped_units(flips: &[Flip], styled: bool) -> String {
     let mut table = plain_table(styled);
     let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
     table.set_header(["number", "group", "baseline", "result"].map(bold));
@@ -139,7 +139,7 @@ pub fn baseline_text(baseline: &Baseline) -> String {
     let remembers = if rule.memory_of.is_empty() {
         "no figure remembers anything".to_owned()
     } else {
-        format!("{} remembers {} {units}", figure_called(&rule.memory_of).words, rule.memory)
+        format!("{} remembers {} {units}", figure_by_name(&rule.memory_of).words, rule.memory)
     };
     format!(
         "{} with seed {}: {} {units} in {} blocks of about {}; {remembers}\n",
@@ -153,7 +153,7 @@ fn signed(name: &str, value: f64) -> String {
 }
 
 fn number(name: &str, value: f64) -> String {
-    if figure_called(name).is_rate() {
+    if figure_by_name(name).is_rate() {
         return percent(value);
     }
     let size = value.abs();

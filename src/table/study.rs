@@ -3,10 +3,11 @@ use std::collections::HashMap;
 
 use comfy_table::{Attribute, Cell};
 use pipeline::external::protocol::harmless;
-use run::figure_called;
+use run::figure_by_name;
 use score::{attitude_note, warm_up_note};
 use study::{
-    CaseFigure, CaseRow, Estimate, RankCorrelation, RequirementVerdict, Study, Summary, Waited, overall,
+    CaseFigure, CaseRow, Estimate, RankCorrelation, RequirementVerdict, StoppingStatus, Study, Summary,
+    overall,
 };
 
 use crate::table::far_range::{finish, percent, plain_table};
@@ -27,7 +28,7 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         if figure.cases == 0 {
             continue;
         }
-        let show = |estimate: &Option<Estimate>| shown(name, estimate.as_ref());
+        let show = |estimate: &Option<Estimate>| estimate_text(name, estimate.as_ref());
         table.add_row([
             label(name),
             figure.cases.to_string(),
@@ -38,12 +39,12 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         ]);
     }
     let stopped = match summary.waited {
-        Some(Waited::NarrowEnough) => ", stopped as its figure was known well enough",
+        Some(StoppingStatus::NarrowEnough) => ", stopped as its figure was known well enough",
         _ => "",
     };
     let draws = if summary.sweep.is_empty() { String::new() } else { format!(" ({} draws)", summary.draws) };
     let mut text = format!("{}: {} cases of {}{draws}{stopped}\n", summary.study, summary.cases, summary.of);
-    if summary.waited == Some(Waited::NearlyConstant) {
+    if summary.waited == Some(StoppingStatus::NearlyConstant) {
         text.push_str(
             "The figure of `until` is the same in nearly every draw: how much it scatters is not known, and the study did not stop for it. \
              A figure that varies can be waited for.\n",
@@ -90,8 +91,9 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         let paths = first.at.keys().map(String::as_str);
         table.set_header(paths.chain(["cases"]).chain(labels.iter().map(String::as_str)).map(bold));
         for point in &summary.sweep {
-            let figure =
-                |name: &&String| shown(name, point.figures.get(*name).and_then(|figure| figure.all.as_ref()));
+            let figure = |name: &&String| {
+                estimate_text(name, point.figures.get(*name).and_then(|figure| figure.all.as_ref()))
+            };
             let cells = point.at.values().cloned().chain([point.cases.to_string()]);
             table.add_row(cells.chain(figures.iter().map(figure)));
         }
@@ -162,11 +164,11 @@ fn requirements(summary: &Summary, styled: bool) -> String {
 /// How the figures go with what was drawn.
 fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String {
     let (varied, constant): (Vec<&String>, Vec<&String>) =
-        figures.iter().copied().partition(|name| of_figure(summary, name).next().is_some());
+        figures.iter().copied().partition(|name| correlations_with(summary, name).next().is_some());
     let mut text = String::new();
     if !varied.is_empty() {
         let mut parameters: Vec<&String> = Vec::new();
-        for correlation in varied.iter().flat_map(|name| of_figure(summary, name)) {
+        for correlation in varied.iter().flat_map(|name| correlations_with(summary, name)) {
             if parameters.len() < SHOWN && !parameters.contains(&&correlation.parameter) {
                 parameters.push(&correlation.parameter);
             }
@@ -177,7 +179,7 @@ fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String 
         table.set_header(header.map(|text| Cell::new(text).add_attribute(Attribute::Bold)));
         for parameter in parameters {
             let cell = |name: &&String| {
-                of_figure(summary, name).find(|c| &c.parameter == parameter).map_or_else(
+                correlations_with(summary, name).find(|c| &c.parameter == parameter).map_or_else(
                     || "–".to_owned(),
                     |c| {
                         let interval = c.low.zip(c.high);
@@ -208,7 +210,7 @@ fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String 
     text
 }
 
-fn of_figure<'a>(summary: &'a Summary, figure: &'a str) -> impl Iterator<Item = &'a RankCorrelation> {
+fn correlations_with<'a>(summary: &'a Summary, figure: &'a str) -> impl Iterator<Item = &'a RankCorrelation> {
     summary.correlations.iter().filter(move |correlation| correlation.figure == figure)
 }
 
@@ -266,7 +268,7 @@ fn differences(summary: &Summary, styled: bool) -> String {
 
 /// A difference of two figures with its interval; of rates in points of a percent.
 fn shown_difference(name: &str, estimate: &Estimate) -> String {
-    let is_rate = figure_called(name).is_rate();
+    let is_rate = figure_by_name(name).is_rate();
     let one = |value: f64| {
         if is_rate { format!("{:+.2}", 100.0 * value) } else { signed(name, value) }
     };
@@ -322,16 +324,16 @@ impl LiveFigure {
         }
         self.next = self.cases.len() + (self.cases.len() / 20).max(1);
         let estimate = overall(&self.name, &self.cases, &self.draws);
-        Some(format!("{} {}", label(&self.name), shown(&self.name, estimate.as_ref())))
+        Some(format!("{} {}", label(&self.name), estimate_text(&self.name, estimate.as_ref())))
     }
 }
 
 /// What a figure is called beside its values.
 fn label(key: &str) -> String {
-    figure_called(key).beside_percent()
+    figure_by_name(key).label_without_percent()
 }
 
-fn shown(name: &str, estimate: Option<&Estimate>) -> String {
+fn estimate_text(name: &str, estimate: Option<&Estimate>) -> String {
     let Some(estimate) = estimate else { return "–".to_owned() };
     match (estimate.low, estimate.high) {
         (Some(low), Some(high)) => {
@@ -342,7 +344,7 @@ fn shown(name: &str, estimate: Option<&Estimate>) -> String {
 }
 
 fn number(name: &str, value: f64) -> String {
-    if figure_called(name).is_rate() {
+    if figure_by_name(name).is_rate() {
         return format!("{} %", percent(value));
     }
     let size = value.abs();

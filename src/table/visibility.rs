@@ -7,7 +7,7 @@ use crate::table::far_range::{finish, plain_table};
 const SHOWN: usize = 9;
 
 /// A heading, columns, rows.
-struct Sheet {
+struct TextTable {
     title: String,
     head: Vec<&'static str>,
     rows: Vec<Vec<String>>,
@@ -38,7 +38,7 @@ pub fn visibility_table(report: &VisibilityReport, styled: bool) -> String {
 /// The report in Markdown.
 pub fn visibility_markdown(report: &VisibilityReport) -> String {
     let mut text = format!("# {}\n\n{}\n", report.title, in_figures(report));
-    let requirements = Sheet {
+    let requirements = TextTable {
         title: "Requirements".to_owned(),
         head: vec!["ID", "requirement", "", "margin", "evidence"],
         rows: report.requirements.iter().map(|verdict| requirement(verdict).to_vec()).collect(),
@@ -74,7 +74,7 @@ fn in_figures(report: &VisibilityReport) -> String {
     )
 }
 
-fn curves(report: &VisibilityReport) -> Vec<Sheet> {
+fn curves(report: &VisibilityReport) -> Vec<TextTable> {
     let mut sheets = Vec::new();
     let asked = format!("{:.0} %", 100.0 * report.camera.probability);
     if !report.detection_simulated.is_empty() {
@@ -91,7 +91,7 @@ fn curves(report: &VisibilityReport) -> Vec<Sheet> {
                 ),
             ]
         });
-        sheets.push(Sheet {
+        sheets.push(TextTable {
             title: "Detection of stars at the nominal exposure".to_owned(),
             head: vec!["V ± 0.05", "analytic, %", "simulated", "% (95 %)"],
             rows: rows.collect(),
@@ -107,7 +107,7 @@ fn curves(report: &VisibilityReport) -> Vec<Sheet> {
             percent(point.probability),
         ]
     });
-    sheets.push(Sheet {
+    sheets.push(TextTable {
         title: format!("Exposure: V detected with 50 % and {asked}, stars over the sky"),
         head: vec!["exposure, s", "V, 50 %", "V, asked", "stars", "enough, %"],
         rows: rows.collect(),
@@ -121,7 +121,7 @@ fn curves(report: &VisibilityReport) -> Vec<Sheet> {
             percent(pointing.probability),
         ]
     });
-    sheets.push(Sheet {
+    sheets.push(TextTable {
         title: "Worst pointings at the nominal exposure".to_owned(),
         head: vec!["RA, °", "Dec, °", "bright enough", "detected", "enough, %"],
         rows: rows.collect(),
@@ -138,7 +138,7 @@ fn curves(report: &VisibilityReport) -> Vec<Sheet> {
                 percent(point.probability),
             ]
         });
-        sheets.push(Sheet {
+        sheets.push(TextTable {
             title: "Exposures that spare the target and leave enough stars".to_owned(),
             head: vec!["range, km", "longest, s", "shortest, s", "", "median, s", "stars", "enough, %"],
             rows: rows.collect(),
@@ -151,7 +151,7 @@ fn curves(report: &VisibilityReport) -> Vec<Sheet> {
             let phases = if low == high { format!("{low:.0}") } else { format!("{low:.0} to {high:.0}") };
             vec![phases, km(row.nominal_km), km(row.longest_km)]
         });
-        sheets.push(Sheet {
+        sheets.push(TextTable {
             title: format!("Greatest range of the target, with {asked}"),
             head: vec!["phase, °", "nominal exposure, km", "longest, km"],
             rows: rows.collect(),
@@ -209,7 +209,7 @@ fn remarks(report: &VisibilityReport) -> Vec<String> {
         lines.push(format!(
             "{} met (simulated), {} met (law), {} not decided, {} not met, {} impossible. Simulated rates with one-sided bounds; of stars with two-sided limits of 95 %.",
             count(Status::MetSimulated),
-            count(Status::MetLaw),
+            count(Status::MetModel),
             count(Status::NotDecided),
             count(Status::NotMet),
             count(Status::Impossible)

@@ -47,11 +47,11 @@ cases = {cases}
 
 [[vary]]
 path = "psf.sigma_px"
-law = {{ kind = "normal", mean = 0.8, sigma = 0.15, min = 0.4, max = 1.6 }}
+distribution = {{ kind = "normal", mean = 0.8, sigma = 0.15, min = 0.4, max = 1.6 }}
 
 [[vary]]
 path = "sensor.read_noise_e"
-law = {{ kind = "log_normal", median = 15.0, sigma_ln = 0.4 }}
+distribution = {{ kind = "log_normal", median = 15.0, sigma_ln = 0.4 }}
 """
 SWEEP = """
 [[sweep]]

@@ -286,7 +286,7 @@ fn star_grid(number: usize) -> StarField {
         let cell = |i: usize, jitter: f64| 40.0 * i as f64 + 12.0 + 15.0 * jitter;
         (PixelPoint::new(cell(k % 4, u), cell(k / 4, v)), FLUXES_E[(k + number) % FLUXES_E.len()])
     };
-    StarField::of((0..16).map(star).collect(), number)
+    StarField::from_stars((0..16).map(star).collect(), number)
 }
 
 /// Twenty stars at random places with random fluxes, N(> F) ∝ F^−1.2.
@@ -303,7 +303,7 @@ fn random_stars(number: usize) -> StarField {
         let place = PixelPoint::new(FIELD_SIDE as f64 * x, FIELD_SIDE as f64 * y);
         (place, 2500.0 * libm::pow(flux, -1.0 / 1.2))
     };
-    StarField::of((0..20).map(star).collect(), number)
+    StarField::from_stars((0..20).map(star).collect(), number)
 }
 
 struct StarField {
@@ -315,7 +315,7 @@ struct StarField {
 }
 
 impl StarField {
-    fn of(stars: Vec<(PixelPoint, f64)>, number: usize) -> Self {
+    fn from_stars(stars: Vec<(PixelPoint, f64)>, number: usize) -> Self {
         let (u, v) = lattice(number);
         let camera_from_icrs = Rotation::from_rotation_vector(Vector3::new(3.0 * u, 3.0 * v, 1.0));
         let listed = |((place, electrons), id): (&(PixelPoint, f64), u32)| {

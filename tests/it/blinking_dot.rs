@@ -6,12 +6,13 @@ use std::sync::Once;
 
 use boresight::failure::Failure;
 use boresight::files::{
-    CsvLine, CsvReader, CsvWriter, FileError, RunDirectory, WholeFile, read_csv, table, toml_file,
+    AtomicFile, CsvLine, CsvReader, CsvWriter, FileError, RunDirectory, read_csv, table, toml_file,
 };
 use boresight::run::plain::{CsvAnswers, CsvImages, ScoredUnit, UnitJudgement, UnitScorer};
 use boresight::run::world::{Dataset, Scorer};
 use boresight::run::{
-    ByNumber, Flight, Of, OpenDataset, Options, ScenarioSource, World, refuse_attitude, register,
+    ErasedWorld, FrameJobs, OpenDataset, Options, RowsByNumber, ScenarioSource, World, refuse_attitude,
+    register,
 };
 use boresight::run_file::RunFile;
 use boresight::scenario::{AttitudeChoice, scenario_file};
@@ -149,7 +150,7 @@ impl ScoredUnit<BlinkingDot> for Unit {
             Definition::rate("correct_rate", "correct rate", |Unit(truth, answer): &Unit| {
                 Some(truth.column == answer.column)
             }),
-            Definition::of(
+            Definition::amount(
                 "column_rms_px",
                 "column RMS",
                 "px",
@@ -243,10 +244,14 @@ impl World for BlinkingDot {
         std::fs::write(path, format!("{:?}", image.pixels_dn)).map_err(|error| error.to_string())
     }
 
-    fn dataset<'a>(&'a self, directory: &'a RunDirectory, _: &Flight<CsvImages>) -> Result<Files, Failure> {
+    fn dataset<'a>(
+        &'a self,
+        directory: &'a RunDirectory,
+        _: &FrameJobs<CsvImages>,
+    ) -> Result<Files, Failure> {
         self.0.write(&directory.run())?;
         let config = format!("threshold_dn = {}\n", self.scenario().blinking_dot.threshold_dn);
-        WholeFile::with_text(&directory.path().join(Self::SETUP_FILE), &config)?.commit_new()?;
+        AtomicFile::with_text(&directory.path().join(Self::SETUP_FILE), &config)?.commit_new()?;
         let lines = CsvWriter::create(&directory.path().join("lines.csv"))?;
         Ok(Files { lines, truth: CsvWriter::create(&directory.path().join(Self::TRUTH_FILE))? })
     }
@@ -274,10 +279,10 @@ impl World for BlinkingDot {
         let truth = directory.join(Self::TRUTH_FILE);
         let answers = CsvReader::open::<Dot>(measurements)?
             .read_rows(|row, _| Dot::read(row).map(|answer| (answer.number, Ok(answer.column))))?;
-        let mut answers = ByNumber::new(answers, measurements, "number", &truth);
+        let mut answers = RowsByNumber::new(answers, measurements, "number", &truth);
         let mut scorer = UnitScorer::<Unit>::default();
         for dot in read_csv::<Dot>(&truth)? {
-            let answer = answers.of(dot.number)?.unwrap_or(Ok(None));
+            let answer = answers.take(dot.number)?.unwrap_or(Ok(None));
             Scorer::<Self>::add(&mut scorer, &dot, &(), &answer)?;
         }
         answers.end()?;
@@ -305,7 +310,7 @@ impl Dataset<BlinkingDot> for Files {
 /// Runs the command with these words in this process, which knows the world, and gives its exit status.
 fn boresight(words: &str) -> u8 {
     static REGISTERED: Once = Once::new();
-    REGISTERED.call_once(|| register(&Of::<BlinkingDot>::NEW));
+    REGISTERED.call_once(|| register(&ErasedWorld::<BlinkingDot>::NEW));
     boresight::command::run_words(["boresight"].into_iter().chain(words.split(' ')).map(Into::into))
 }
 
@@ -340,9 +345,9 @@ fn a_world_of_its_own_runs_through_everything() {
     assert_eq!(boresight(&format!("gate {} {}", at("baseline"), at("low"))), 1);
 
     // A study of the threshold.
-    let law = "law = { kind = \"choice\", values = [5, 50] }";
+    let distribution = "distribution = { kind = \"choice\", values = [5, 50] }";
     let study = format!(
-        "title = \"\"\nscenario = \"dot.toml\"\nseed = 1\n[stop]\ncases = 8\n[[vary]]\npath = \"blinking_dot.threshold_dn\"\n{law}\n"
+        "title = \"\"\nscenario = \"dot.toml\"\nseed = 1\n[stop]\ncases = 8\n[[vary]]\npath = \"blinking_dot.threshold_dn\"\n{distribution}\n"
     );
     bench.write("study.toml", study);
     assert_eq!(boresight(&format!("study run {} --out {}", at("study.toml"), at("study"))), 0);

@@ -62,13 +62,13 @@ fn collect(owner: &str, schema: &Value, all: &mut Vec<(String, Field)>) {
     }
 }
 
-fn is_of(schema: &Value, name: &str) -> bool {
+fn is_type(schema: &Value, name: &str) -> bool {
     schema["type"] == name || schema["type"].as_array().is_some_and(|types| types.iter().any(|t| t == name))
 }
 
 /// The number that a schema is of, inside lists too.
 fn number(schema: &Value) -> Option<&Value> {
-    if is_of(schema, "number") || is_of(schema, "integer") {
+    if is_type(schema, "number") || is_type(schema, "integer") {
         Some(schema)
     } else if schema["items"].is_object() {
         number(&schema["items"])
@@ -78,7 +78,7 @@ fn number(schema: &Value) -> Option<&Value> {
 }
 
 /// The first range that a description names, and whether its lower limit is outside of it: "0.05 to 1e5", "above 0 to 5" or "above 0, at most 5".
-fn named(description: &str) -> Option<(bool, [f64; 2])> {
+fn named_range(description: &str) -> Option<(bool, [f64; 2])> {
     let plain = description.replace('−', "-").replace("10 000", "10000");
     let words: Vec<&str> = plain.split_whitespace().collect();
     let number = |at: usize| words.get(at)?.trim_end_matches([',', ';', '.', ':', ')']).parse::<f64>().ok();
@@ -99,7 +99,7 @@ fn a_range_in_the_documentation_is_the_declared_one() {
     let (mut closed, mut open) = (0, 0);
     for (name, field) in numbers() {
         let [at_least, above, at_most, below] = field.limits;
-        let Some((is_open, [from, to])) = named(&field.description) else { continue };
+        let Some((is_open, [from, to])) = named_range(&field.description) else { continue };
         *(if is_open { &mut open } else { &mut closed }) += 1;
         let lower = if is_open { above } else { at_least };
         if lower != Some(from) || below.or(at_most) != Some(to) {
@@ -135,7 +135,7 @@ fn every_angle_is_within_ten_turns() {
 }
 
 #[test]
-fn the_schema_of_scenarios_tells_the_ranges() {
+fn the_schema_of_scenarios_has_the_ranges() {
     let schema = json_schema(Some(FIRST)).to_value();
     let gain = &schema["$defs"]["SensorConfig"]["properties"]["gain_e_per_dn"];
     assert_eq!((gain["minimum"].as_f64(), gain["maximum"].as_f64()), (Some(0.05), Some(1e5)));

@@ -1,6 +1,8 @@
 //! Are the errors of the docking motion as large as σ says? A small part of what `docking_consistency` of the research programs measures.
 
-use boresight_research::docking_consistency::approaches::{Estimator, Flown, Lens, Plan, fly};
+use boresight_research::docking_consistency::approaches::{
+    Estimator, Lens, MeasuredApproach, Plan, simulate,
+};
 use boresight_research::docking_consistency::tally::{GROUPS, Tally, errors};
 use rayon::prelude::*;
 
@@ -11,15 +13,15 @@ const DOUBLED: u64 = 8;
 /// Place of ρ among the parameters.
 const RANGE: usize = 12;
 
-fn flown(approaches: u64, portions: u64, noise_dn: f64) -> Vec<Flown> {
+fn simulate_all(approaches: u64, portions: u64, noise_dn: f64) -> Vec<MeasuredApproach> {
     let plan = Plan::noise_only(1, portions, noise_dn);
-    (0..approaches).into_par_iter().map(|number| fly(&plan, number).unwrap()).collect()
+    (0..approaches).into_par_iter().map(|number| simulate(&plan, number).unwrap()).collect()
 }
 
 #[test]
 fn errors_are_as_large_as_sigma_says_and_sigma_follows_noise_and_range() {
-    let (once, twice) = (flown(APPROACHES, 3, 2.0), flown(DOUBLED, 2, 4.0));
-    let tally = Tally::of(&once, Estimator::Exact);
+    let (once, twice) = (simulate_all(APPROACHES, 3, 2.0), simulate_all(DOUBLED, 2, 4.0));
+    let tally = Tally::from_approaches(&once, Estimator::Exact);
     assert_eq!(tally.portions, 2 * APPROACHES as usize);
     // The standard error of the fields' mean, from the scatter between these approaches, is 0.026: five of it.
     let of_field = tally.field_nees.unwrap().value;
@@ -33,7 +35,7 @@ fn errors_are_as_large_as_sigma_says_and_sigma_follows_noise_and_range() {
     let within = tally.within_all.unwrap().value;
     assert!(within >= 0.985 - 0.018, "{within}");
 
-    let sigmas = |flown: &Flown| errors(flown, Estimator::Exact)[0].sigmas;
+    let sigmas = |approach: &MeasuredApproach| errors(approach, Estimator::Exact)[0].sigmas;
     for parameter in 0..16 {
         let mut ratios: Vec<f64> =
             once.iter().zip(&twice).map(|(a, b)| sigmas(b)[parameter] / sigmas(a)[parameter]).collect();
@@ -46,8 +48,8 @@ fn errors_are_as_large_as_sigma_says_and_sigma_follows_noise_and_range() {
     for lens in Lens::ALL {
         let mut by_range: Vec<(f64, f64)> = once
             .iter()
-            .filter(|flown| flown.lens == lens)
-            .map(|flown| (flown.portions[1].truth.range_m(), sigmas(flown)[RANGE]))
+            .filter(|approach| approach.lens == lens)
+            .map(|approach| (approach.portions[1].truth.range_m(), sigmas(approach)[RANGE]))
             .collect();
         by_range.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (near, far) = (by_range[0], by_range[by_range.len() - 1]);

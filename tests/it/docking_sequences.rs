@@ -78,12 +78,12 @@ fn the_order_of_fields_is_heeded() {
 }
 
 /// The docking scenario with the camera held at a place.
-fn held(phi_deg: [f64; 3], d3_m: f64) -> String {
+fn still_scenario(phi_deg: [f64; 3], d3_m: f64) -> String {
     still_or_flown(phi_deg, d3_m, 0.0, 0.4)
 }
 
 /// The docking scenario with the camera closing on the target's axis.
-fn flown(d3_m: f64, speed_m_s: f64, duration_s: f64) -> String {
+fn approach_scenario(d3_m: f64, speed_m_s: f64, duration_s: f64) -> String {
     still_or_flown([0.0; 3], d3_m, speed_m_s, duration_s)
 }
 
@@ -107,7 +107,7 @@ fn reasons(bench: &Bench, set: &str) -> Vec<String> {
 fn a_picture_without_the_target_gives_no_pose() {
     let bench = Bench::new();
     // 30° to the side of a lens of 15°: nothing but panels and sky.
-    bench.write("away.toml", held([0.0, 30.0, 0.0], 12.0));
+    bench.write("away.toml", still_scenario([0.0, 30.0, 0.0], 12.0));
     let score = bench.boresight("run away.toml --out run --json").done().json();
     assert_eq!(figure(&score, "measured_rate"), 0.0, "{score}");
     let told = reasons(&bench, "run");
@@ -135,15 +135,15 @@ fn upside_down(bench: &Bench, approach: &str, fields: u64) -> Vec<String> {
 #[test]
 fn a_target_upside_down_is_inconsistent() {
     for d3_m in [20.0, 8.0] {
-        let told = upside_down(&Bench::new(), &held([0.0; 3], d3_m), 6);
+        let told = upside_down(&Bench::new(), &still_scenario([0.0; 3], d3_m), 6);
         assert!(told.iter().all(|status| status == "inconsistent"), "{d3_m} m: {told:?}");
     }
 }
 
 /// The docking unit leaves the narrow lens's picture at 6 m: what was seen before holds.
 #[test]
-fn a_target_upside_down_is_inconsistent_where_only_the_fields_before_tell() {
-    let approach = flown(8.0, 10.0, 0.45);
+fn a_target_upside_down_is_inconsistent_where_only_the_earlier_fields_show_it() {
+    let approach = approach_scenario(8.0, 10.0, 0.45);
     let told = upside_down(&Bench::new(), &approach, 23);
     assert!(told.iter().all(|status| status == "inconsistent"), "{told:?}");
 }
@@ -153,7 +153,7 @@ fn a_target_upside_down_is_inconsistent_where_only_the_fields_before_tell() {
 /// field on the poses are doubtful.
 #[test]
 fn known_limit_a_target_upside_down_begun_within_5_m_is_taken_for_upright_in_two_fields() {
-    let statuses = upside_down(&Bench::new(), &held([0.0; 3], 4.0), 6);
+    let statuses = upside_down(&Bench::new(), &still_scenario([0.0; 3], 4.0), 6);
     let (first, later) = statuses.split_at(2);
     assert!(first.iter().all(|status| status == "measured"), "the limit is gone: {statuses:?}");
     assert!(later.iter().all(|status| status == "doubtful: motion"), "{statuses:?}");
@@ -173,9 +173,9 @@ fn double(path: &Path) {
 }
 
 #[test]
-fn two_targets_are_told_apart_from_one() {
+fn two_targets_are_distinguished_from_one() {
     let bench = Bench::new();
-    bench.write("far.toml", held([0.0; 3], 20.0));
+    bench.write("far.toml", still_scenario([0.0; 3], 20.0));
     bench.boresight("render far.toml --frames 0..6 --out set").done();
     for number in 0..6 {
         double(&bench.path(&format!("set/frames/{number:06}.png")));

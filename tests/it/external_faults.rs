@@ -243,7 +243,7 @@ fn in_a_study_each_is_a_failed_case_and_the_study_goes_on() {
         bench.write(
             "study.toml",
             "title = \"two frames\"\nscenario = \"starting-point\"\nseed = 5\nframes = \"100..102\"\n[stop]\ncases = 2\n\
-             [[vary]]\npath = \"psf.sigma_px\"\nlaw = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
+             [[vary]]\npath = \"psf.sigma_px\"\ndistribution = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
         );
         write_program(&bench, &FAR_RANGE, body);
         let answer = with_program(
@@ -350,7 +350,7 @@ fn cases_without_a_start_are_failed_rows_and_the_first_ten_end_a_study() {
     let study = |cases: u64| {
         format!(
             "title = \"four frames\"\nscenario = \"starting-point\"\nseed = 5\nframes = \"100..104\"\n[stop]\ncases = {cases}\n\
-             [[vary]]\npath = \"psf.sigma_px\"\nlaw = {{ kind = \"uniform\", min = 0.7, max = 0.9 }}\n"
+             [[vary]]\npath = \"psf.sigma_px\"\ndistribution = {{ kind = \"uniform\", min = 0.7, max = 0.9 }}\n"
         )
     };
     let bench = Bench::new();
@@ -425,7 +425,7 @@ fn a_flood_takes_no_memory() {
 
 /// The limit is of the program's own choice where it is given, and holds for its children too.
 #[test]
-fn memory_is_limited_as_told_in_children_too() {
+fn memory_is_limited_as_requested_in_children_too() {
     let hoard = "hello()\nn = ask()\nhoard = bytearray(200_000_000)\nnone(n)\nwhile True:\n    none(ask())";
     let child = "hello()\nn = ask()\nchild = subprocess.run([sys.executable, '-c', 'bytearray(200_000_000)'])\n\
                  if child.returncode:\n    sys.exit('the child had no memory')\nnone(n)\nwhile True:\n    none(ask())";

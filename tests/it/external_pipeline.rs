@@ -221,7 +221,7 @@ fn an_answer_that_is_garbage_costs_its_frame_and_is_shown() {
 }
 
 #[test]
-fn a_place_that_is_not_a_number_or_off_the_detector_is_a_failure() {
+fn a_position_that_is_not_a_number_or_off_the_detector_is_a_failure() {
     for (x, part) in [("float('nan')", "NaN"), ("-3", "(-3, 1)"), ("752", "(752, 1)")] {
         let answer = format!(r#"{{"frame": frame, "status": "detected", "x_px": {x}, "y_px": 1}}"#);
         let then = format!("print(json.dumps({answer}), flush=True)");

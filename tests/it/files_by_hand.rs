@@ -131,7 +131,7 @@ fn a_fits_file_written_by_hand_is_read_from_its_first_row_on() {
 
 /// Fifty fields a second, the first at the start and the even rows first (CCIR): time and rows follow from the number.
 #[test]
-fn a_field_of_docking_is_told_its_own_moment_and_rows() {
+fn a_field_of_docking_has_its_own_time_and_rows() {
     let bench = Bench::new();
     bench.boresight("render docking --frames 24000..24004 --out set").done();
     let rows = bench.csv("set/telemetry.csv");

@@ -150,9 +150,9 @@ fn a_number_that_is_not_one_is_named_by_row() {
 }
 
 /// A table that has the name of a column and not its type.
-struct Foreign;
+struct MistypedColumn;
 
-impl Row for Foreign {
+impl Row for MistypedColumn {
     fn columns(rows: &[Self]) -> Vec<Column> {
         vec![Column::new("frame", rows.iter().map(|_| 1.0))]
     }
@@ -165,9 +165,9 @@ impl Row for Foreign {
 }
 
 /// A table with one column of the truth and no more.
-struct Poor;
+struct SingleColumn;
 
-impl Row for Poor {
+impl Row for SingleColumn {
     fn columns(rows: &[Self]) -> Vec<Column> {
         vec![Column::new("frame", rows.iter().map(|_| 1_u64))]
     }
@@ -181,18 +181,18 @@ impl Row for Poor {
 
 #[test]
 fn a_missing_column_and_one_of_another_type_are_named() {
-    let (_directory, path) = write([vec![Foreign]]);
+    let (_directory, path) = write([vec![MistypedColumn]]);
     let wrong_type = message::<FrameTruth>(&path);
     assert!(wrong_type.contains("`frame` is `Float64`, expected type UInt64"), "{wrong_type}");
-    let (_directory, path) = write([vec![Poor]]);
+    let (_directory, path) = write([vec![SingleColumn]]);
     let missing = message::<FrameTruth>(&path);
     assert!(missing.contains("column `group` is missing; found `frame`"), "{missing}");
 }
 
 #[test]
-fn columns_that_nobody_asked_for_are_passed_over() {
+fn unrequested_columns_are_passed_over() {
     let (_directory, path) = write([vec![object(1, 0), object(1, 1)]]);
-    assert_eq!(TableReader::<Poor>::open(&path).unwrap().next().unwrap().unwrap().1.len(), 2);
+    assert_eq!(TableReader::<SingleColumn>::open(&path).unwrap().next().unwrap().unwrap().1.len(), 2);
 }
 
 #[test]

@@ -3,13 +3,13 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use boresight::files::{ColumnType, Declared, csv_tables, parquet_tables};
+use boresight::files::{ColumnType, FieldDeclaration, csv_tables, parquet_tables};
 use boresight::gate::row_columns;
 use boresight::study::case_columns;
 use boresight::visibility;
 
 /// A row of the page: names, type, and what the columns are.
-fn line(field: &Declared, is_csv: bool) -> String {
+fn line(field: &FieldDeclaration, is_csv: bool) -> String {
     let names: Vec<String> = field.names.iter().map(|name| format!("`{name}`")).collect();
     let names = match names.as_slice() {
         [first, .., last] if names.len() > 9 => format!("{first} … {last}: {} columns", names.len()),

@@ -104,7 +104,7 @@ fn a_figure_that_vanishes_is_gone_and_shuts_the_gate() {
     let baseline = baseline_of(sample_of(1, &frames));
     frames.iter_mut().for_each(|frame| frame.n_stars = None);
     let report = compare(&baseline, &sample_of(1, &frames), &CompareOptions::default()).unwrap();
-    assert_eq!(report.worse().collect::<Vec<_>>(), ["stars_mean"]);
+    assert_eq!(report.worse_figures().collect::<Vec<_>>(), ["stars_mean"]);
     assert_eq!(report.figures["stars_mean"].verdict, FigureVerdict::Gone);
 }
 
@@ -367,7 +367,7 @@ fn a_baseline_asks_for_a_reason_and_is_not_replaced_by_accident() {
 }
 
 #[test]
-fn damaged_and_foreign_files_are_told_by_name() {
+fn damaged_and_foreign_files_are_refused_by_name() {
     let bench = bench();
     bench.boresight("gate nowhere run").refused(&["nowhere", "baseline.toml"]);
     bench.boresight("gate run run").refused(&["run", "baseline.toml"]);
@@ -405,7 +405,7 @@ fn a_study_is_held_against_a_study_case_by_case() {
     let study = |pipeline: &str| {
         format!(
             "title = \"a\"\nscenario = \"argon\"\nseed = 5\nframes = \"2000..2004\"\n[stop]\ncases = 8\n{pipeline}[[vary]]\npath = \
-             \"psf.sigma_px\"\nlaw = {{ kind = \"normal\", mean = 0.8, sigma = 0.1 }}\n"
+             \"psf.sigma_px\"\ndistribution = {{ kind = \"normal\", mean = 0.8, sigma = 0.1 }}\n"
         )
     };
     bench.write("study.toml", study(""));
@@ -421,7 +421,7 @@ fn a_study_is_held_against_a_study_case_by_case() {
     assert_eq!(report["pairing"], "blocks");
     bench.write("wide.toml", study("").replace("sigma = 0.1", "sigma = 0.2"));
     bench.boresight("study run wide.toml --out wide").done();
-    bench.boresight("gate base wide").refused(&["scenario.study.vary[0].law.sigma", "0.1", "0.2"]);
+    bench.boresight("gate base wide").refused(&["scenario.study.vary[0].distribution.sigma", "0.1", "0.2"]);
     bench.boresight("run argon --frames 0..2 --out run").done();
     bench.boresight("gate base run").refused(&["`kind` is `study`", "`run`"]);
 }

@@ -76,7 +76,7 @@ struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
-    fn of(
+    fn from_images(
         case: &'a Case,
         cases: &Cases,
         scene: &sim::scene::docking::DockingScene,
@@ -291,7 +291,7 @@ fn figures(values: &[f64], share: f64) -> (usize, f64, f64) {
 }
 
 /// What is measured of the edges of a kind.
-fn of_kind_in(edges: &[Edge], kind: Kind, measured: impl Fn(&Edge) -> Option<f64>) -> Vec<f64> {
+fn values_of_kind(edges: &[Edge], kind: Kind, measured: impl Fn(&Edge) -> Option<f64>) -> Vec<f64> {
     edges.iter().filter(|edge| edge.kind == kind).filter_map(measured).collect()
 }
 
@@ -319,17 +319,17 @@ fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
     let mut shades = [Vec::new(), Vec::new()];
     let mut exact_shadows = Vec::new();
     for case in &cases.case {
-        let pair = Pair::of(case, &cases, &scene, &model, 1);
-        let finer = Pair::of(case, &cases, &scene, &model, FINER).edges();
+        let pair = Pair::from_images(case, &cases, &scene, &model, 1);
+        let finer = Pair::from_images(case, &cases, &scene, &model, FINER).edges();
         let edges = pair.edges();
-        let own_shadows = of_kind_in(&edges, Kind::Shadow, |edge| edge.exact_px);
+        let own_shadows = values_of_kind(&edges, Kind::Shadow, |edge| edge.exact_px);
         print!("{:20}", pair.case.name);
         for ((kind, all), others) in kinds.iter().zip(&mut shifts).zip(&mut others) {
             let of_kind = edges.iter().filter(|edge| edge.kind == *kind).count();
-            let own = of_kind_in(&edges, *kind, |edge| edge.shift_px);
+            let own = values_of_kind(&edges, *kind, |edge| edge.shift_px);
             *others += of_kind - own.len();
             let (count, rms, most) = figures(&own, 0.99);
-            let (_, fine_rms, _) = figures(&of_kind_in(&finer, *kind, |edge| edge.exact_px), 0.99);
+            let (_, fine_rms, _) = figures(&values_of_kind(&finer, *kind, |edge| edge.exact_px), 0.99);
             print!(" {kind:?} {count} {rms:.4}/{most:.3}, finer {fine_rms:.4}");
             assert_agrees(&case.name, *kind, (rms, most), fine_rms);
             all.extend(own);

@@ -88,7 +88,7 @@ fn tables_and_swept_files_of_a_study_are_identified_by_their_content() {
         bench.write(&format!("{name}/other.csv"), OTHER_STARS);
         bench.write(&format!("{name}/draws.csv"), "sigma\n0.7\n0.8\n");
         let sweep = "[[sweep]]\npath = \"catalog.source\"\nvalues = [\"stars.csv\", \"other.csv\"]\n";
-        let table = "[[vary]]\npath = \"psf.sigma_px\"\nlaw = { kind = \"table\", path = \"draws.csv\", column = \"sigma\" }\n";
+        let table = "[[vary]]\npath = \"psf.sigma_px\"\ndistribution = { kind = \"table\", path = \"draws.csv\", column = \"sigma\" }\n";
         let head = "title = \"t\"\nscenario = \"sky.toml\"\nseed = 5\nframes = \"0..1\"\n[stop]\ncases = 4\n";
         bench.write(&format!("{name}/study.toml"), format!("{head}{sweep}{table}"));
     }

@@ -25,13 +25,13 @@ enum Meaning {
 
 /// Where a path leads.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Place {
+enum PathTarget {
     Module(ModuleId),
     /// An item that the file of this module defines.
     Item(ModuleId),
 }
 
-impl Place {
+impl PathTarget {
     fn is_module(&self) -> bool {
         matches!(self, Self::Module(_))
     }
@@ -122,22 +122,22 @@ impl Crate {
         from: ModuleId,
         path: &[String],
         seen: &mut BTreeSet<(ModuleId, String)>,
-    ) -> BTreeSet<Place> {
-        let mut targets = BTreeSet::from([Place::Module(from)]);
+    ) -> BTreeSet<PathTarget> {
+        let mut targets = BTreeSet::from([PathTarget::Module(from)]);
         for (index, segment) in path.iter().enumerate() {
             let step = |target| match target {
-                Place::Item(_) => BTreeSet::from([target]),
-                Place::Module(module) => match segment.as_str() {
-                    "crate" => BTreeSet::from([Place::Module(0)]),
+                PathTarget::Item(_) => BTreeSet::from([target]),
+                PathTarget::Module(module) => match segment.as_str() {
+                    "crate" => BTreeSet::from([PathTarget::Module(0)]),
                     "self" => BTreeSet::from([target]),
-                    "super" => self.modules[module].parent.map(Place::Module).into_iter().collect(),
+                    "super" => self.modules[module].parent.map(PathTarget::Module).into_iter().collect(),
                     name => self.look_up(module, name, seen),
                 },
             };
             targets = targets.into_iter().flat_map(step).collect();
             // A function may have the name of a module; only the module has something behind it.
-            if index + 1 < path.len() && targets.iter().any(Place::is_module) {
-                targets.retain(Place::is_module);
+            if index + 1 < path.len() && targets.iter().any(PathTarget::is_module) {
+                targets.retain(PathTarget::is_module);
             }
         }
         targets
@@ -149,7 +149,7 @@ impl Crate {
         module: ModuleId,
         name: &str,
         seen: &mut BTreeSet<(ModuleId, String)>,
-    ) -> BTreeSet<Place> {
+    ) -> BTreeSet<PathTarget> {
         if !seen.insert((module, name.to_owned())) {
             return BTreeSet::new();
         }
@@ -157,15 +157,15 @@ impl Crate {
         let mut targets = BTreeSet::new();
         for meaning in names.get(name).into_iter().flatten() {
             match meaning {
-                Meaning::Item => _ = targets.insert(Place::Item(module)),
-                Meaning::Module(child) => _ = targets.insert(Place::Module(*child)),
+                Meaning::Item => _ = targets.insert(PathTarget::Item(module)),
+                Meaning::Module(child) => _ = targets.insert(PathTarget::Module(*child)),
                 Meaning::Alias(path) => targets.extend(self.resolve(module, path, &mut seen.clone())),
             }
         }
         if targets.is_empty() {
             for path in globs {
                 for target in self.resolve(module, path, &mut seen.clone()) {
-                    if let Place::Module(other) = target {
+                    if let PathTarget::Module(other) = target {
                         targets.extend(self.look_up(other, name, seen));
                     }
                 }
@@ -182,7 +182,7 @@ impl Crate {
             for path in &module.mentions {
                 for target in self.resolve(id, path, &mut BTreeSet::new()) {
                     // A module alone is only a part of a path: what is meant is named behind it.
-                    let Place::Item(owner) = target else { continue };
+                    let PathTarget::Item(owner) = target else { continue };
                     let owner = self.modules[owner].file.as_path();
                     if owner != module.file {
                         targets.entry(owner).or_default().insert(path.join("::"));

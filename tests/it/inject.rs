@@ -13,7 +13,7 @@ fn run(bench: &Bench, stage: &str) -> Value {
 }
 
 #[test]
-fn each_stage_takes_its_own_error_away_and_is_told_in_every_file() {
+fn each_stage_takes_its_own_error_away_and_is_reported_in_every_file() {
     let bench = Bench::new();
     let own = run(&bench, "");
     assert!(own.get("inject").is_none());

@@ -18,11 +18,11 @@ const HELP: &str =
 
 /// A folder with a program in the place of Mitsuba, and the images that it may copy: `good.exr` of 4 × 3 px and some that are
 /// no image of the scene.
-struct Stage {
+struct FakeMitsuba {
     folder: TempDir,
 }
 
-impl Stage {
+impl FakeMitsuba {
     fn new(script: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let image = |radiance: Vec<f32>| RadianceImage { columns: 4, rows: 3, radiance };
@@ -94,14 +94,14 @@ fn render(renderer: &MitsubaRenderer, distance_m: f64) -> Result<RadianceImage, 
 
 #[test]
 fn the_image_is_the_sum_of_sun_and_fill() {
-    let stage = Stage::new(&copies("good.exr"));
+    let stage = FakeMitsuba::new(&copies("good.exr"));
     assert_eq!(render(&stage.renderer(30.0), 5.0).unwrap().radiance, vec![1.0; 12]);
     assert_eq!(stage.renders(), 2);
 }
 
 #[test]
-fn mitsuba_is_told_variant_threads_and_place() {
-    let stage = Stage::new(&format!("{}; echo \"$@\" > $STAGE/arguments", copies("good.exr")));
+fn mitsuba_gets_variant_threads_and_path() {
+    let stage = FakeMitsuba::new(&format!("{}; echo \"$@\" > $STAGE/arguments", copies("good.exr")));
     render(&stage.renderer(30.0), 5.0).unwrap();
     let arguments = fs::read_to_string(stage.path("arguments")).unwrap();
     assert_eq!(arguments.trim(), "-m scalar_rgb -t 4 -o image.exr scene.xml");
@@ -109,7 +109,7 @@ fn mitsuba_is_told_variant_threads_and_place() {
 
 #[test]
 fn what_was_rendered_is_not_rendered_again_even_when_mitsuba_is_gone() {
-    let stage = Stage::new(&copies("good.exr"));
+    let stage = FakeMitsuba::new(&copies("good.exr"));
     let first = render(&stage.renderer(30.0), 5.0).unwrap();
     stage.script("exit 1");
     assert_eq!(render(&stage.renderer(30.0), 5.0).unwrap(), first);
@@ -119,7 +119,7 @@ fn what_was_rendered_is_not_rendered_again_even_when_mitsuba_is_gone() {
 
 #[test]
 fn a_damaged_image_of_the_cache_is_made_anew() {
-    let stage = Stage::new(&copies("good.exr"));
+    let stage = FakeMitsuba::new(&copies("good.exr"));
     let first = render(&stage.renderer(30.0), 5.0).unwrap();
     let files: Vec<_> =
         fs::read_dir(stage.path("cache")).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -131,7 +131,7 @@ fn a_damaged_image_of_the_cache_is_made_anew() {
 
 #[test]
 fn many_at_once_with_one_cache_all_get_the_image() {
-    let stage = Stage::new(&format!("{HELP}sleep 0.05; cp $STAGE/good.exr image.exr"));
+    let stage = FakeMitsuba::new(&format!("{HELP}sleep 0.05; cp $STAGE/good.exr image.exr"));
     std::thread::scope(|scope| {
         let all: Vec<_> = (0..6).map(|_| scope.spawn(|| render(&stage.renderer(30.0), 5.0))).collect();
         for one in all {
@@ -142,7 +142,7 @@ fn many_at_once_with_one_cache_all_get_the_image() {
 
 #[test]
 fn a_missing_command_is_named() {
-    let stage = Stage::new("");
+    let stage = FakeMitsuba::new("");
     let renderer = stage.renderer_of(stage.path("nowhere").display().to_string(), 30.0);
     let message = render(&renderer, 5.0).unwrap_err();
     assert!(message.contains("the command of Mitsuba, cannot be started"), "{message}");
@@ -150,15 +150,15 @@ fn a_missing_command_is_named() {
 
 #[test]
 fn another_version_is_refused_and_so_is_another_program() {
-    let message = Stage::new("echo 'Mitsuba version 3.5.0 (Linux)'; echo scalar_rgb").message();
+    let message = FakeMitsuba::new("echo 'Mitsuba version 3.5.0 (Linux)'; echo scalar_rgb").message();
     assert!(message.contains("is Mitsuba 3.5.0, expected Mitsuba 3.9.1"), "{message}");
-    let message = Stage::new("echo 'hello'; exit 3").message();
+    let message = FakeMitsuba::new("echo 'hello'; exit 3").message();
     assert!(message.contains("is not Mitsuba (it says: hello)"), "{message}");
 }
 
 #[test]
 fn a_mitsuba_without_the_variant_is_refused() {
-    let message = Stage::new("echo 'Mitsuba version 3.9.1 (Linux)'; echo llvm_ad_rgb").message();
+    let message = FakeMitsuba::new("echo 'Mitsuba version 3.9.1 (Linux)'; echo llvm_ad_rgb").message();
     assert!(message.contains("has no variant scalar_rgb"), "{message}");
 }
 
@@ -167,14 +167,14 @@ fn a_refused_scene_comes_with_mitsuba_s_own_words_without_colours() {
     let script = format!(
         "{HELP}printf '\\033[31mCaught a critical exception:\\033[0m no such plugin\\n' >&2; exit 255"
     );
-    let message = Stage::new(&script).message();
+    let message = FakeMitsuba::new(&script).message();
     assert!(message.contains("refused the scene while rendering the layer sun"), "{message}");
     assert!(message.ends_with("Caught a critical exception: no such plugin"), "{message}");
 }
 
 #[test]
-fn an_abort_is_told_with_its_status() {
-    let message = Stage::new(&format!("{HELP}echo 'LLVM ERROR'; exit 250")).message();
+fn an_abort_is_reported_with_its_status() {
+    let message = FakeMitsuba::new(&format!("{HELP}echo 'LLVM ERROR'; exit 250")).message();
     assert!(message.contains("250") && message.contains("LLVM ERROR"), "{message}");
 }
 
@@ -185,20 +185,20 @@ fn success_without_a_good_image_is_no_success() {
         ("negative.exr", "-1 at pixel (2, 1)"),
         ("small.exr", "has 3×2 px, expected 4×3"),
     ] {
-        let stage = Stage::new(&copies(image));
+        let stage = FakeMitsuba::new(&copies(image));
         let message = stage.message();
         assert!(message.contains(words) && message.contains("layer sun"), "{message}");
         assert_eq!(fs::read_dir(stage.path("cache")).unwrap().count(), 0, "{image} is kept");
     }
-    let message = Stage::new(&format!("{HELP}: > image.exr")).message();
+    let message = FakeMitsuba::new(&format!("{HELP}: > image.exr")).message();
     assert!(message.contains("image.exr: not a readable EXR file"), "{message}");
-    let message = Stage::new(&format!("{HELP}exit 0")).message();
+    let message = FakeMitsuba::new(&format!("{HELP}exit 0")).message();
     assert!(message.contains("image.exr: cannot"), "{message}");
 }
 
 #[test]
 fn a_render_that_hangs_is_ended_with_its_children() {
-    let stage = Stage::new(&format!("{HELP}sleep 100 & echo $! > $STAGE/child; echo sampling; wait"));
+    let stage = FakeMitsuba::new(&format!("{HELP}sleep 100 & echo $! > $STAGE/child; echo sampling; wait"));
     let begin = Instant::now();
     let message = render(&stage.renderer(0.5), 5.0).unwrap_err();
     assert!(message.contains("ended after 0.5 s") && message.contains("sampling"), "{message}");

@@ -90,7 +90,7 @@ fn centre_of_light(image: &RadianceImage, polygon: &[PixelPoint]) -> PixelPoint 
 /// Half a pixel, a mirrored axis, a wrong sign of the principal point or of an angle would each be 0.5 px and more.
 #[test]
 #[ignore = "needs Mitsuba 3.9.1"]
-fn squares_at_known_places_fall_where_the_projection_says() {
+fn squares_at_known_positions_fall_where_the_projection_says() {
     let renderer = renderer(64);
     let mut facets = Vec::new();
     for (row, y) in [-0.36, 0.0, 0.36].into_iter().enumerate() {

@@ -26,7 +26,7 @@ struct Monitor {
 }
 
 impl Monitor {
-    fn of(feed: impl FnOnce() -> Feed + Send + 'static) -> Self {
+    fn start(feed: impl FnOnce() -> Feed + Send + 'static) -> Self {
         let (told, address) = mpsc::channel();
         let (stop, stopped) = tokio::sync::oneshot::channel();
         let thread = std::thread::spawn(move || {
@@ -41,7 +41,7 @@ impl Monitor {
     }
 
     fn docking(frames: std::ops::Range<u64>) -> Self {
-        Self::of(move || live("docking", frames))
+        Self::start(move || live("docking", frames))
     }
 
     /// Sends bytes as they are, and reads what comes until the server closes.
@@ -163,8 +163,8 @@ fn a_far_range_replay_shows_the_measurements_of_the_run_and_the_pictures_of_its_
     let bench = Bench::new();
     bench.boresight("run argon --frames 9000..9006 --out run").done();
     let directory = bench.path("run");
-    let replayed = Monitor::of(move || replay(directory));
-    let live = Monitor::of(|| live("argon", 9000..9006));
+    let replayed = Monitor::start(move || replay(directory));
+    let live = Monitor::start(|| live("argon", 9000..9006));
     for row in bench.csv("run/measurements.csv") {
         let frame = &row["frame"];
         let path = format!("/api/frames/{frame}.json");
@@ -209,7 +209,7 @@ fn a_docking_replay_draws_the_fields_as_they_were_digitised() {
     let bench = Bench::new();
     bench.boresight("run docking --frames 20000..20020 --out run").done();
     let directory = bench.path("run");
-    let replayed = Monitor::of(move || replay(directory));
+    let replayed = Monitor::start(move || replay(directory));
     let live = Monitor::docking(20000..20020);
     for row in bench.csv("run/measurements.csv") {
         let (report, picture) =
@@ -440,7 +440,7 @@ fn the_page_is_served_or_the_command_says_how_it_is_built() {
 }
 
 #[test]
-fn mistakes_are_told_before_anything_is_served() {
+fn mistakes_are_reported_before_anything_is_served() {
     let bench = Bench::new();
     bench.write("empty/nothing", "");
     for (words, expected) in [
@@ -472,8 +472,8 @@ fn a_built_in_scenario_is_itself_beside_a_folder_of_its_name() {
 }
 
 #[test]
-fn of_the_true_places_that_of_the_target_has_a_name() {
-    let monitor = Monitor::of(|| live("argon", 145..146));
+fn of_the_true_positions_that_of_the_target_has_a_name() {
+    let monitor = Monitor::start(|| live("argon", 145..146));
     let report = monitor.json("/api/frames/145.json");
     let labels = report["truth_overlay"].as_array().unwrap().iter();
     let named: Vec<_> = labels.filter_map(|shape| Some((&shape["kind"], shape["label"].as_str()?))).collect();
@@ -481,8 +481,8 @@ fn of_the_true_places_that_of_the_target_has_a_name() {
 }
 
 #[test]
-fn the_page_is_told_where_a_day_begins() {
-    let monitor = Monitor::of(|| live("argon", 0..1));
+fn the_page_knows_where_a_day_begins() {
+    let monitor = Monitor::start(|| live("argon", 0..1));
     let session = monitor.json("/api/session.json");
     let begins: Vec<u64> =
         session["begins"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use boresight::report::{Block, FarRangeRun, FrameSheet, far_range_page};
+use boresight::report::{Block, FarRangeRun, FrameDetail, far_range_page};
 use boresight::score::Verdict;
 use contract::Angle;
 use serde_json::Value;
@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::support::{Bench, STUDY};
 
 /// Longest page, bytes.
-const MOST_BYTES: usize = 3_000_000;
+const MAX_BYTES: usize = 3_000_000;
 
 /// A page without the charting library in it, which has addresses of its own that it never asks for.
 struct PageText {
@@ -47,7 +47,7 @@ impl PageText {
 
     /// Whatever every page must be.
     fn check(&self, sections: &[&str]) {
-        assert!(self.bytes < MOST_BYTES, "{} bytes", self.bytes);
+        assert!(self.bytes < MAX_BYTES, "{} bytes", self.bytes);
         for section in sections {
             assert!(self.html.contains(&format!("<section id=\"{section}\">")), "no section {section}");
         }
@@ -183,9 +183,9 @@ fn the_points_of_a_long_run_lie_as_all_of_its_errors_do() {
             verdict
         })
         .collect();
-    let page = far_range_page(&run, &FrameSheet::open(&bench.path("run")).unwrap()).unwrap();
+    let page = far_range_page(&run, &FrameDetail::open(&bench.path("run")).unwrap()).unwrap();
     let bytes = page.html().unwrap().len();
-    assert!(bytes < MOST_BYTES, "{bytes} bytes");
+    assert!(bytes < MAX_BYTES, "{bytes} bytes");
     let section = page.sections.iter().find(|section| section.id == "fig-5").unwrap();
     let chart = section.blocks.iter().find_map(|block| match block {
         Block::Chart(chart) => Some(chart),

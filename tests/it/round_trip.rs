@@ -140,7 +140,7 @@ fn score_of_places(bench: &Bench, dx: f64, dy: f64) -> Value {
 }
 
 #[test]
-fn the_true_places_are_all_correct_and_without_error() {
+fn the_true_positions_are_all_correct_and_without_error() {
     let score = score_of_places(&with_run(), 0.0, 0.0);
     assert_eq!((figure(&score, "hit_rate"), figure(&score, "correct_rate")), (1.0, 1.0));
     for name in ["ra_within_1px", "ra_within_2px", "dec_within_1px", "dec_within_2px"] {
@@ -187,7 +187,7 @@ fn a_shift_of_half_a_pixel_is_the_bias_and_nothing_else() {
 
 /// It had been given the true attitude without a word, and its errors stood beside those of pipelines that had to find theirs.
 #[test]
-fn centroids_have_lines_of_sight_by_the_attitude_that_is_asked_for_alone() {
+fn centroids_have_lines_of_sight_by_the_attitude_that_is_requested_alone() {
     let bench = with_run();
     let granted = score_of_places(&bench, 0.5, 0.0);
     let none = bench.boresight("score run outside.csv --json").done().json();
@@ -265,7 +265,7 @@ fn within_a_pixel_means_the_pixel_of_the_scenarios_own_camera() {
 }
 
 #[test]
-fn wrong_places_are_detected_and_wrong() {
+fn wrong_positions_are_detected_and_wrong() {
     let score = score_of_places(&with_run(), 60.0, -40.0);
     assert_eq!(figure(&score, "hit_rate"), 1.0);
     assert_eq!((figure(&score, "correct_rate"), figure(&score, "wrong_rate")), (0.0, 1.0));
@@ -275,7 +275,7 @@ fn wrong_places_are_detected_and_wrong() {
 }
 
 #[test]
-fn a_place_on_a_hot_pixel_is_wrong_and_says_what_was_taken() {
+fn a_position_on_a_hot_pixel_is_wrong_and_says_what_was_taken() {
     let bench = with_run();
     let objects = bench.objects("run");
     let hot_pixel = |frame: u64| {

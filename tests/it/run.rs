@@ -240,7 +240,7 @@ fn a_slice_of_whole_images_is_that_of_the_whole() {
 
 /// A camera that suppresses zeros tells pipelines so, in a run as in a dataset: what would look below is refused.
 #[test]
-fn zero_suppression_is_told_to_pipelines_and_those_that_look_below_it_are_refused() {
+fn zero_suppression_is_known_to_pipelines_and_those_that_read_below_it_are_refused() {
     let bench = Bench::new();
     let scenario = |thresholds: &str| {
         bench.scenario("suppressed.toml", "argon", |table| {

@@ -31,7 +31,7 @@ fn every_built_in_scenario_passes_its_check() {
 
 /// What follows from the numbers of a scenario, and none of them looks wrong.
 #[test]
-fn a_check_tells_what_follows_from_the_numbers() {
+fn a_check_reports_what_follows_from_the_numbers() {
     let bench = Bench::new();
     for scenario in BUILT_IN {
         let check = bench.boresight(&format!("scenario check {} --json", scenario.name)).done().json();
@@ -126,11 +126,11 @@ struct Schema(Value);
 
 impl Schema {
     fn read() -> Self {
-        Self::of("far_range")
+        Self::for_world("far_range")
     }
 
     /// Of one world.
-    fn of(world: &str) -> Self {
+    fn for_world(world: &str) -> Self {
         Self(Bench::new().boresight(&format!("scenario schema --world {world}")).done().json())
     }
 
@@ -184,7 +184,7 @@ impl Schema {
 #[test]
 fn every_key_of_the_built_in_scenarios_is_in_the_schema() {
     for scenario in BUILT_IN {
-        let schema = Schema::of(if scenario.name == "docking" { "docking" } else { "far_range" });
+        let schema = Schema::for_world(if scenario.name == "docking" { "docking" } else { "far_range" });
         let keys = schema.check_keys(
             scenario.name,
             &scenario.text.parse::<toml::Table>().unwrap().into(),
@@ -300,7 +300,7 @@ fn the_other_point_spread_functions_of_a_new_scenario_are_right_too() {
 
 /// 752 × 580 pixels of 12 bits; 40 regions of 20 × 9 with eight bytes each to say where they are.
 #[test]
-fn a_check_tells_the_telemetry_of_a_frame() {
+fn a_check_reports_the_telemetry_of_a_frame() {
     let bench = Bench::new();
     bench.boresight("scenario new whole.toml").done();
     let roi =

@@ -22,7 +22,7 @@ fn run_argon(bench: &Bench) {
 }
 
 /// A picture that was drawn, and its document.
-fn drawn(bench: &Bench, words: &str) -> (RgbImage, Value) {
+fn draw(bench: &Bench, words: &str) -> (RgbImage, Value) {
     let document = bench.boresight(&format!("{words} --json")).done().json();
     let file = bench.path(document["file"].as_str().unwrap());
     let image = image::open(file).unwrap().to_rgb8();
@@ -32,9 +32,9 @@ fn drawn(bench: &Bench, words: &str) -> (RgbImage, Value) {
 }
 
 /// Where a panel or a close-up is in its picture.
-struct Place(Value);
+struct PanelLocation(Value);
 
-impl Place {
+impl PanelLocation {
     fn number(&self, name: &str) -> f64 {
         self.0[name].as_f64().unwrap()
     }
@@ -46,11 +46,11 @@ impl Place {
     }
 
     /// A point of the frame in the picture; 0 is the edge of its first pixel.
-    fn of(&self, at: PixelPoint) -> (f64, f64) {
+    fn picture_position(&self, at: PixelPoint) -> (f64, f64) {
         let zoom = self.number("zoom");
-        let place =
+        let panel =
             |edge: &str, at: f64, first: &str| self.number(edge) + (at - self.number(first) + 0.5) * zoom;
-        (place("left", at.x, "first_column"), place("top", at.y, "first_row"))
+        (panel("left", at.x, "first_column"), panel("top", at.y, "first_row"))
     }
 
     /// The middle of the pixels of a colour within so many pixels of a point, as a point of the picture.
@@ -99,20 +99,20 @@ fn truth_and_answer_are_drawn_where_the_files_have_them() {
     let answer = PixelPoint::new(target.position.x + 0.3, target.position.y - 3.2);
     let row = format!("10201,detected,{},{}", answer.x, answer.y);
     bench.write("theirs/measurements.csv", format!("frame,status,x_px,y_px\n{row}\n"));
-    let (image, document) = drawn(&bench, "show run 10201 --measurements theirs/measurements.csv");
+    let (image, document) = draw(&bench, "show run 10201 --measurements theirs/measurements.csv");
     assert!(bench.path("run/show/010201.png").is_file());
     let frame = &document["frames"][0];
     assert_eq!((&frame["pixels"], &frame["stretch"]), (&"drawn_again".into(), &"asinh".into()));
     assert_eq!((&frame["verdict"], &frame["cause"]), (&"correct".into(), &Value::Null));
     for name in ["panel", "close_up"] {
-        let place = Place(frame[name].clone());
-        let at = place.of(target.position);
-        check_at(place.centre(&image, ORANGE, at, 40.0), at, "target");
-        let at = place.of(answer);
-        check_at(place.centre(&image, GREEN, at, 14.0), at, "answer");
+        let panel = PanelLocation(frame[name].clone());
+        let at = panel.picture_position(target.position);
+        check_at(panel.centre(&image, ORANGE, at, 40.0), at, "target");
+        let at = panel.picture_position(answer);
+        check_at(panel.centre(&image, GREEN, at, 14.0), at, "answer");
     }
     // A star with nothing near it.
-    let panel = Place(frame["panel"].clone());
+    let panel = PanelLocation(frame["panel"].clone());
     let shown = |o: &&sim::truth::ObjectTruth| {
         o.frame == 10201 && o.cut < 0.99 && Visibility::of_snr(o.snr) == Visibility::Detectable
     };
@@ -123,7 +123,7 @@ fn truth_and_answer_are_drawn_where_the_files_have_them() {
             && (20.0..500.0).contains(&star.position.y)
             && star.position.x > 20.0
     });
-    let at = panel.of(alone.unwrap().position);
+    let at = panel.picture_position(alone.unwrap().position);
     check_at(panel.centre(&image, BLUE, at, 8.0), at, "star");
     // What the document counts is what the truth has.
     let stars = objects
@@ -140,7 +140,7 @@ fn the_verdict_is_that_of_the_score() {
     let bench = Bench::new();
     bench.boresight("run argon --frames 298..304 --out run --no-report").done();
     let score = bench.json("run/score.json");
-    let (_, document) = drawn(&bench, "show run 298 299 300 301 302 303");
+    let (_, document) = draw(&bench, "show run 298 299 300 301 302 303");
     let frames = document["frames"].as_array().unwrap();
     for verdict in ["correct", "wrong"] {
         let count = frames.iter().filter(|frame| frame["verdict"] == verdict).count() as u64;
@@ -158,8 +158,8 @@ fn the_verdict_is_that_of_the_score() {
 fn regions_are_drawn_where_the_telemetry_has_them() {
     let bench = Bench::new();
     run_argon(&bench);
-    let (image, document) = drawn(&bench, "show run 10200");
-    let place = Place(document["frames"][0]["panel"].clone());
+    let (image, document) = draw(&bench, "show run 10200");
+    let panel = PanelLocation(document["frames"][0]["panel"].clone());
     let telemetry = bench.csv("run/telemetry.csv");
     let windows: Vec<[f64; 4]> = telemetry[0]["windows"]
         .split(';')
@@ -170,7 +170,7 @@ fn regions_are_drawn_where_the_telemetry_has_them() {
         .collect();
     assert_eq!(document["frames"][0]["drawn"]["region"].as_u64().unwrap() as usize, windows.len());
     let is = |x: f64, y: f64, colour: [u8; 3]| {
-        let (x, y) = (place.number("left") + x, place.number("top") + y);
+        let (x, y) = (panel.number("left") + x, panel.number("top") + y);
         let pixel = (x >= 0.0 && y >= 0.0).then(|| image.get_pixel_checked(x as u32, y as u32)).flatten();
         pixel.is_some_and(|pixel| is_near(pixel.0, colour))
     };
@@ -194,11 +194,11 @@ fn the_stretch_rises_with_the_pixels() {
     bench.boresight("render starting-point --frames 200..201 --format png --out data").done();
     let dn = image::open(bench.path("data/frames/000200.png")).unwrap().to_luma16();
     for stretch in ["asinh", "linear", "full"] {
-        let (image, document) = drawn(&bench, &format!("show data 200 --stretch {stretch}"));
+        let (image, document) = draw(&bench, &format!("show data 200 --stretch {stretch}"));
         let frame = &document["frames"][0];
         assert_eq!((&frame["pixels"], &frame["stretch"]), (&"stored".into(), &stretch.into()));
-        let place = Place(frame["panel"].clone());
-        let (left, top) = (place.number("left") as u32, place.number("top") as u32);
+        let panel = PanelLocation(frame["panel"].clone());
+        let (left, top) = (panel.number("left") as u32, panel.number("top") as u32);
         let mut greys: Vec<(u16, u8)> = dn
             .enumerate_pixels()
             .map(|(x, y, pixel)| (pixel.0[0], image.get_pixel(left + x, top + y).0))
@@ -228,7 +228,7 @@ fn the_stretch_rises_with_the_pixels() {
 fn a_dataset_without_answers_shows_truth_and_one_without_truth_pixels() {
     let bench = Bench::new();
     bench.boresight("render starting-point --frames 200..202 --format fits --out data").done();
-    let (_, document) = drawn(&bench, "show data 200");
+    let (_, document) = draw(&bench, "show data 200");
     let frame = &document["frames"][0];
     assert_eq!((&frame["verdict"], &frame["cause"]), (&Value::Null, &Value::Null));
     assert!(frame["drawn"].get("answer").is_none() && frame["drawn"]["target"] == 1, "{frame}");
@@ -237,12 +237,12 @@ fn a_dataset_without_answers_shows_truth_and_one_without_truth_pixels() {
         fs::remove_file(bench.path(name)).unwrap();
     }
     fs::remove_dir_all(bench.path("data/truth")).unwrap();
-    let (_, document) = drawn(&bench, "show data 200 201");
+    let (_, document) = draw(&bench, "show data 200 201");
     assert!(
         document["frames"].as_array().unwrap().iter().all(|frame| frame["drawn"] == serde_json::json!({}))
     );
     bench.boresight("process data").done();
-    let (_, document) = drawn(&bench, "show data 201");
+    let (_, document) = draw(&bench, "show data 201");
     let frame = &document["frames"][0];
     assert_eq!((&frame["drawn"], &frame["verdict"]), (&serde_json::json!({ "answer": 1 }), &Value::Null));
     // Pictures are no images of the dataset.
@@ -256,15 +256,15 @@ fn stored_frames_and_frames_drawn_again_are_the_same_picture_but_for_their_capti
     let bench = Bench::new();
     bench.boresight("run argon --frames 10200..10201 --save-frames fits --out stored --no-report").done();
     bench.boresight("run argon --frames 10200..10201 --out again --no-report").done();
-    let (stored, stored_document) = drawn(&bench, "show stored 10200");
-    let (again, again_document) = drawn(&bench, "show again 10200");
+    let (stored, stored_document) = draw(&bench, "show stored 10200");
+    let (again, again_document) = draw(&bench, "show again 10200");
     let (a, b) = (&stored_document["frames"][0], &again_document["frames"][0]);
     assert_eq!((&a["pixels"], &b["pixels"]), (&"stored".into(), &"drawn_again".into()));
     assert_eq!((&a["panel"], &a["drawn"]), (&b["panel"], &b["drawn"]));
     for part in ["panel", "close_up"] {
-        let place = Place(a[part].clone());
-        for y in place.side("top", "height") {
-            for x in place.side("left", "width") {
+        let panel = PanelLocation(a[part].clone());
+        for y in panel.side("top", "height") {
+            for x in panel.side("left", "width") {
                 assert_eq!(stored.get_pixel(x, y), again.get_pixel(x, y), "({x}, {y})");
             }
         }
@@ -275,22 +275,22 @@ fn stored_frames_and_frames_drawn_again_are_the_same_picture_but_for_their_capti
 fn docking_features_lie_where_the_table_has_them() {
     let bench = Bench::new();
     bench.boresight("run docking --frames 21170..21180 --out run --no-report").done();
-    let (image, document) = drawn(&bench, "show run 21179");
+    let (image, document) = draw(&bench, "show run 21179");
     let frame = &document["frames"][0];
     assert_eq!((&frame["verdict"], &frame["stretch"]), (&"success".into(), &"full".into()));
-    let place = Place(frame["panel"].clone());
+    let panel = PanelLocation(frame["panel"].clone());
     let path = bench.path("run/features.parquet");
     let rows: Vec<files::docking::FeatureRow> =
         files::TableReader::open(&path).unwrap().flat_map(|rows| rows.unwrap().1).collect();
     let rows: Vec<_> = rows.into_iter().filter(|row| row.field == 21179).collect();
     let point = |row: &files::docking::FeatureRow| PixelPoint::new(row.position[0], row.position[1]);
     let cross = rows.iter().find(|row| row.kind == "cross").unwrap();
-    let at = place.of(point(cross));
-    check_at(place.centre(&image, ORANGE, at, 16.0), at, "cross");
+    let at = panel.picture_position(point(cross));
+    check_at(panel.centre(&image, ORANGE, at, 16.0), at, "cross");
     let circle = rows.iter().find(|row| row.kind == "circle").unwrap();
     let radius = circle.radius_px.unwrap();
     // The circle, at the angles between its twelve marks.
-    let (x, y) = place.of(point(circle));
+    let (x, y) = panel.picture_position(point(circle));
     let blue = (0..12).filter(|i| {
         let (sin, cos) = libm::sincos((15.0 + 30.0 * f64::from(*i)).to_radians());
         let (x, y) = ((x + radius * cos) as u32, (y + radius * sin) as u32);
@@ -302,9 +302,9 @@ fn docking_features_lie_where_the_table_has_them() {
 
     // Of a stored image, of a stored video and drawn again the pixels are the same.
     let pixels = |document: &Value, image: &RgbImage| -> Vec<u8> {
-        let place = Place(document["frames"][0]["panel"].clone());
-        let rows = place.side("top", "height").start..place.side("top", "height").start + 60;
-        rows.flat_map(|y| place.side("left", "width").map(move |x| (x, y)))
+        let panel = PanelLocation(document["frames"][0]["panel"].clone());
+        let rows = panel.side("top", "height").start..panel.side("top", "height").start + 60;
+        rows.flat_map(|y| panel.side("left", "width").map(move |x| (x, y)))
             .flat_map(|(x, y)| image.get_pixel(x, y).0)
             .collect()
     };
@@ -313,13 +313,13 @@ fn docking_features_lie_where_the_table_has_them() {
         let run =
             format!("run docking --frames 21170..21180 --save-frames {format} --out {format} --no-report");
         bench.boresight(&run).done();
-        let (image, document) = drawn(&bench, &format!("show {format} 21179"));
+        let (image, document) = draw(&bench, &format!("show {format} 21179"));
         assert_eq!(document["frames"][0]["pixels"], "stored");
         assert!(pixels(&document, &image) == expected, "{format}");
     }
     // A dataset without answers.
     bench.boresight("render docking --frames 21178..21180 --out data").done();
-    let (_, document) = drawn(&bench, "show data 21178 21179");
+    let (_, document) = draw(&bench, "show data 21178 21179");
     let drawn_marks = &document["frames"][1]["drawn"];
     assert_eq!(drawn_marks, &serde_json::json!({ "true_centre": 2 }));
 }
@@ -328,7 +328,7 @@ fn docking_features_lie_where_the_table_has_them() {
 fn the_target_alone_fills_the_picture() {
     let bench = Bench::new();
     run_argon(&bench);
-    let (_, document) = drawn(&bench, "show run 10200 10201 --view target -o pair.png");
+    let (_, document) = draw(&bench, "show run 10200 10201 --view target -o pair.png");
     for frame in document["frames"].as_array().unwrap() {
         assert!(frame["panel"]["zoom"].as_f64().unwrap() >= 8.0 && frame["close_up"].is_null(), "{frame}");
     }

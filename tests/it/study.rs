@@ -251,7 +251,8 @@ fn a_study_stops_when_its_figure_is_known_well_enough() {
 fn a_case_that_makes_no_scenario_is_a_row_with_its_error() {
     let bench = bench();
     let choice = |values: &str| {
-        let vary = "\n[[vary]]\npath = \"sensor.read_noise_e\"\nlaw = { kind = \"choice\", values = ";
+        let vary =
+            "\n[[vary]]\npath = \"sensor.read_noise_e\"\ndistribution = { kind = \"choice\", values = ";
         format!("{}{vary}{values} }}\n", STUDY.replace("cases = 6", "cases = 12"))
     };
     bench.write("some.toml", choice("[5.0, 5.0, 5.0, -1.0]"));
@@ -277,7 +278,7 @@ fn a_case_that_makes_no_scenario_is_a_row_with_its_error() {
 }
 
 #[test]
-fn a_damaged_plan_is_told_as_such() {
+fn a_damaged_plan_is_reported_as_such() {
     let bench = bench();
     bench.write("study.toml", STUDY);
     bench.boresight("study run study.toml --out out --shard 1/2").done();
@@ -331,7 +332,7 @@ fn docking_is_studied_too() {
         cases = 4
         [[vary]]
         path = "television.noise.sigma_dn8"
-        law = { kind = "uniform", min = 0.5, max = 4.0 }
+        distribution = { kind = "uniform", min = 0.5, max = 4.0 }
         "#,
     );
     let summary = bench.boresight("study run docking.toml --out out --json").done().json();
@@ -362,7 +363,7 @@ fn the_plan_holds_the_command_of_every_shard() {
 
 /// The study of docs/studies.md that draws no dark pixels runs as it stands there, and is refused with thresholds below.
 #[test]
-fn whole_images_are_drawn_above_a_floor_by_one_word_and_never_looked_at_below() {
+fn whole_images_are_drawn_above_a_floor_by_one_word_and_never_read_below() {
     let bench = Bench::new();
     let page = include_str!("../../docs/studies.md");
     let study = page.split("```toml").find(|part| part.contains("zero_suppression_dn\"\nvalues")).unwrap();
@@ -405,8 +406,19 @@ fn a_study_that_is_wrong_says_where() {
     refused("\"psf.sigma_px\"", "\"score.within_deg[0]\"", &["vary[0].path", "is `score.within_deg[0]`"]);
     refused("psf.sigma_px", "schedule[9].count", &["vary[0].path", "has 5 of these"]);
     refused("psf.sigma_px", "sensor.hot_pixels", &["vary[1].path", "sensor.hot_pixels"]);
-    refused("sigma = 0.1", "sigma = -0.1", &["vary[0].law.sigma", "-0.1", "above 0"]);
+    refused("sigma = 0.1", "sigma = -0.1", &["vary[0].distribution.sigma", "-0.1", "above 0"]);
     refused("kind = \"normal\"", "kind = \"normale\"", &["normale"]);
+    // Names of earlier versions are refused with those of today.
+    refused(
+        "distribution = { kind = \"normal\"",
+        "law = { kind = \"normal\"",
+        &["study.toml:", "unknown field `law`", "`law` is now called `distribution`"],
+    );
+    refused(
+        "kind = \"integer\"",
+        "kind = \"whole\"",
+        &["study.toml:", "unknown variant `whole`", "`whole` is now called `integer`"],
+    );
     refused("max = 40", "max = -1", &["max"]);
     refused("cases = 6", "cases = 0", &["stop.cases", "is 0"]);
     refused("frames = \"2000..2002\"", "frames = \"2..1\"", &["frames", "2..1", "A < B"]);
@@ -421,13 +433,13 @@ fn a_study_that_is_wrong_says_where() {
         &["record.figures[0]", "hitrate", "did you mean `hit_rate`"],
     );
     refused(
-        "kind = \"whole\", min = 0, max = 40",
+        "kind = \"integer\", min = 0, max = 40",
         "kind = \"table\", path = \"none.csv\", column = \"x\"",
-        &["vary[1].law.path", "none.csv"],
+        &["vary[1].distribution.path", "none.csv"],
     );
     refused(
-        "path = \"psf.sigma_px\"\nlaw = { kind = \"normal\", mean = 0.8, sigma = 0.1 }",
-        "path = \"psf\"\nlaw = { kind = \"isotropic_attitude\" }",
+        "path = \"psf.sigma_px\"\ndistribution = { kind = \"normal\", mean = 0.8, sigma = 0.1 }",
+        "path = \"psf\"\ndistribution = { kind = \"isotropic_attitude\" }",
         &["vary[0].path", "ra_deg", "phi_deg"],
     );
     // A law that leads out of what a parameter may be: the case and the value in its scenario.

@@ -17,7 +17,7 @@ frames = "2000..2010"
 cases = 40
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "uniform", min = 0.6, max = 1.0 }
+distribution = { kind = "uniform", min = 0.6, max = 1.0 }
 "#;
 
 fn python() -> String {
@@ -206,7 +206,7 @@ fn a_study_travels_to_eight_workers_in_another_folder() {
 
 #[test]
 #[ignore = "needs Python with Dask; continuous integration runs it"]
-fn a_program_that_workers_do_not_find_is_said_at_once() {
+fn a_program_that_workers_do_not_find_is_reported_at_once() {
     let bench = Bench::new();
     bench.write("study.toml", STUDY);
     let output = on_dask(&bench, "dask").env("BORESIGHT_PROGRAM", "/nowhere/boresight").output().unwrap();
@@ -218,7 +218,7 @@ fn a_program_that_workers_do_not_find_is_said_at_once() {
 
 #[test]
 #[ignore = "needs Python with Dask; continuous integration runs it"]
-fn a_scheduler_that_dies_is_said_and_its_shards_are_kept() {
+fn a_scheduler_that_dies_is_reported_and_its_shards_are_kept() {
     let bench = Bench::new();
     bench.write("study.toml", STUDY);
     let (mut scheduler, address) = scheduler();

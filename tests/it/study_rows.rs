@@ -17,7 +17,7 @@ frames = "2000..2001"
 cases = 4
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "normal", mean = 0.8, sigma = 0.1 }
+distribution = { kind = "normal", mean = 0.8, sigma = 0.1 }
 "#;
 
 /// Cases of one seed would be one case, counted often: every interval would be too narrow.

@@ -26,10 +26,10 @@ frames = "2000..2002"
 cases = 6
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "normal", mean = 0.8, sigma = 0.1 }
+distribution = { kind = "normal", mean = 0.8, sigma = 0.1 }
 [[vary]]
 path = "sensor.hot_pixels.count"
-law = { kind = "whole", min = 0, max = 40 }
+distribution = { kind = "integer", min = 0, max = 40 }
 "#;
 
 /// An empty directory in which the command runs: relative paths in arguments start there.

@@ -1,4 +1,4 @@
-//! `boresight visibility`: the analytic law against frames of the simulator, the sky against closed forms and published numbers, the
+//! `boresight visibility`: the analytic detection model against frames of the simulator, the sky against closed forms and published numbers, the
 //! search for a parameter against simulation on both sides of it, and the command's answers.
 
 use std::path::Path;
@@ -8,7 +8,7 @@ use boresight::scenario::FarRangeScenario;
 use boresight::statistics::clopper_pearson;
 use boresight::visibility::{
     Bench as TestBench, CameraConfig, CameraModel, Curves, Demand, Design, DetectionRule, MotionGuidance,
-    MotionTable, Over, Pointing, Requirements, Sky, SkyTable, StarTrial,
+    MotionTable, Pointing, Requirements, Sky, SkyStatistic, SkyTable, StarTrial,
 };
 use serde_json::Value;
 use sim::optics::{OpticsConfig, RadiometryConfig};
@@ -49,17 +49,17 @@ fn camera() -> CameraConfig {
     requirements("").camera
 }
 
-/// Boresights that the Sun leaves free: nearer to it the background is not even over the field, as the law takes it to be.
+/// Boresights that the Sun leaves free: nearer to it the background is not even over the field, as the detection model takes it to be.
 fn pointings(count: usize, motion: &MotionTable) -> Vec<Pointing> {
     let sky = SkyTable { sun_exclusion_deg: 40.0, ..SkyTable::default() };
-    let all = (0..count).map(|i| Pointing::of_lattice(i, count, motion, &sky).unwrap());
+    let all = (0..count).map(|i| Pointing::from_lattice(i, count, motion, &sky).unwrap());
     all.filter(|pointing| pointing.excluded.is_none()).collect()
 }
 
-/// Stars of simulated frames, in bins of their analytic chance: as many are detected as the law says, within 4 standard deviations of
-/// a sum of independent events and the share that the law leaves out: two stars that make one cluster (`crowded`), and, where a star is
+/// Stars of simulated frames, in bins of their analytic chance: as many are detected as the detection model says, within 4 standard deviations of
+/// a sum of independent events and the share that the detection model leaves out: two stars that make one cluster (`crowded`), and, where a star is
 /// seen by chance alone, a bright neighbour's wings.
-fn check_law(trials: &[StarTrial], crowded: f64, what: &str) {
+fn check_detection_model(trials: &[StarTrial], crowded: f64, what: &str) {
     for (low, high) in [(0.02, 0.15), (0.15, 0.4), (0.4, 0.6), (0.6, 0.85), (0.85, 0.98), (0.999, 1.1)] {
         let bin: Vec<_> = trials.iter().filter(|trial| (low..high).contains(&trial.chance)).collect();
         assert!(bin.len() > 60, "{what}: {} stars between {low} and {high}", bin.len());
@@ -87,19 +87,19 @@ fn trials(
 }
 
 #[test]
-fn the_law_of_detection_is_that_of_simulated_frames_at_thresholds_in_digital_numbers() {
+fn the_detection_model_is_that_of_simulated_frames_at_thresholds_in_digital_numbers() {
     let rule = DetectionRule::Dn { low_dn: 46, high_dn: 67 };
-    check_law(&trials(&camera(), rule, &MOTION, 0.25), 0.02, "smeared, 0.25 s");
-    check_law(&trials(&camera(), rule, &STILL, 0.08), 0.02, "still, 0.08 s");
+    check_detection_model(&trials(&camera(), rule, &MOTION, 0.25), 0.02, "smeared, 0.25 s");
+    check_detection_model(&trials(&camera(), rule, &STILL, 0.08), 0.02, "still, 0.08 s");
     // 1.0 s at 2.5 px/s: a trail of 2.5 px.
     let dark = CameraConfig { background: Default::default(), ..camera() };
-    check_law(&trials(&dark, rule, &MOTION, 1.0), 0.05, "a longer trail");
+    check_detection_model(&trials(&dark, rule, &MOTION, 1.0), 0.05, "a longer trail");
 }
 
 /// A whole threshold of 53 DN stands for one of 53.0 to 54.0, to which the estimates of a frame's noise come by some hundredths: a
 /// camera whose threshold is not near a whole number agrees.
 #[test]
-fn the_law_of_detection_is_that_of_simulated_frames_at_thresholds_in_standard_deviations() {
+fn the_detection_model_is_that_of_simulated_frames_at_thresholds_in_standard_deviations() {
     let mut camera = camera();
     (camera.sensor.gain_e_per_dn, camera.background) = (2.0, Default::default());
     let rule = DetectionRule::Sigmas { low: 3.0, high: 6.0 };
@@ -107,16 +107,16 @@ fn the_law_of_detection_is_that_of_simulated_frames_at_thresholds_in_standard_de
     // b = 40 + 40 · 0.25/2 = 45, σ = sqrt((10 + 225)/4 + 1/12) = 7.67: 45 + 46.03 = 91.03.
     assert_eq!(rule.thresholds(&model, 10.0).high_dn, 91.0);
     camera.sensor.bias_dn = 40.5;
-    check_law(&trials(&camera, rule, &STILL, 0.25), 0.02, "six standard deviations");
+    check_detection_model(&trials(&camera, rule, &STILL, 0.25), 0.02, "six standard deviations");
 }
 
 /// Rates of frames with enough stars, in the interval of a design's analytic probability.
 #[test]
-fn enough_stars_are_detected_as_often_as_the_law_says() {
+fn enough_stars_are_detected_as_often_as_the_model_predicts() {
     let requirements = requirements("");
     let design = Design::new(&requirements, &requirements.camera, 3000, 0.25).unwrap();
     for exposure_s in [0.07, 0.1] {
-        let expected = design.stars_chance(exposure_s, 10, Over::Sky).unwrap();
+        let expected = design.stars_chance(exposure_s, 10, SkyStatistic::Sky).unwrap();
         let rule = DetectionRule::Dn { low_dn: 46, high_dn: 67 };
         let bench = TestBench { camera: &requirements.camera, rule: &rule, motion: &MOTION, seed: 3 };
         let frames = bench.stars(&pointings(220, &MOTION), exposure_s).unwrap();
@@ -240,7 +240,7 @@ find = { parameter = "exposure_s", from = 0.01, to = 0.25 }
     assert_eq!(found["is_monotone"], true);
 }
 
-/// By the law alone: a larger aperture or a wider field has more stars.
+/// By the detection model alone: a larger aperture or a wider field has more stars.
 #[test]
 fn the_smallest_aperture_and_the_longest_focal_length_are_found() {
     let (report, status) = answer(
@@ -350,9 +350,9 @@ demand = { kind = "target_detected", from_km = 10.0, to_km = 60.0, phase_max_deg
     assert_eq!(verdict["simulated"]["count"], 60, "{verdict:#}");
 }
 
-/// Simulated at a range where the target is often missed: the law's rate lies in the interval.
+/// Simulated at a range where the target is often missed: the detection model's rate lies in the interval.
 #[test]
-fn the_target_is_detected_as_often_as_the_law_says() {
+fn the_target_is_detected_as_often_as_the_model_predicts() {
     let lines = r#"
 target = { body = { kind = "lambert_sphere", radius_m = 0.4, albedo = 0.3 }, light = { kind = "phases", phases_deg = [60.0] }, ranges_km = [1.0, 50.0] }
 "#;
@@ -375,7 +375,7 @@ target = { body = { kind = "lambert_sphere", radius_m = 0.4, albedo = 0.3 }, lig
 }
 
 #[test]
-fn the_built_in_example_tells_where_the_stars_are_lost_and_does_not_depend_on_threads() {
+fn the_built_in_example_shows_where_the_stars_are_lost_and_does_not_depend_on_threads() {
     let bench = Bench::new();
     let one = bench.boresight("visibility uasc-far-range --frames 10 --jobs 1 --json --out a");
     let two = bench.boresight("visibility uasc-far-range --frames 10 --jobs 2 --json --out b");
@@ -389,7 +389,7 @@ fn the_built_in_example_tells_where_the_stars_are_lost_and_does_not_depend_on_th
     let lost_km = report["stars_lost"]["half_of_frames_km"].as_f64().unwrap();
     assert!((6.2..8.2).contains(&lost_km), "{lost_km}");
     let statuses: Vec<_> = report["requirements"].as_array().unwrap().iter().map(|r| &r["status"]).collect();
-    // Ten frames show no 90 %: 0.9^10 = 0.35. All but one are met by the law alone, or by none that could be simulated.
+    // Ten frames show no 90 %: 0.9^10 = 0.35. All but one are met by the detection model alone, or by none that could be simulated.
     assert_eq!(statuses.iter().filter(|status| **status == "met_law").count(), statuses.len() - 1);
     assert_eq!(bench.csv("a/sky.csv").len(), 10_000);
     for name in ["detection", "limiting_magnitude", "exposure_window", "target_range"] {
@@ -399,7 +399,7 @@ fn the_built_in_example_tells_where_the_stars_are_lost_and_does_not_depend_on_th
     bench.boresight("visibility uasc-far-range --frames 0 --out a").refused(&["not empty"]);
 }
 
-/// What the frames could never show is met by the law, and says so; with the frames that it asks for it is shown.
+/// What the frames could never show is met by the detection model, and says so; with the frames that it asks for it is shown.
 #[test]
 fn too_few_frames_show_nothing() {
     let lines = |frames: u64| {
@@ -431,7 +431,7 @@ fn all_met_is_exit_status_0() {
 }
 
 #[test]
-fn mistakes_are_told_with_their_place() {
+fn mistakes_are_reported_with_their_position() {
     let bench = Bench::new();
     let refused = |text: String, parts: &[&str]| {
         bench.write("r.toml", text);

@@ -10,7 +10,7 @@ use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::error::Place;
+use crate::error::FileLocation;
 use crate::far_range::telemetry::read_with_lines;
 use crate::frame::file::read_image;
 use crate::frame::raw_image::Size;
@@ -168,7 +168,7 @@ impl CameraFile {
     fn read_image(&self, path: &Path, row: &TelemetryRow) -> Result<Frame, FileError> {
         let Camera { columns, rows, .. } = self.camera;
         let image = read_image(path, Some(Size { columns, rows, whose: "that of camera.toml" }))?;
-        image.told.check(path, row)?;
+        image.metadata.check(path, row)?;
         image.into_frame(path, row.frame, self.bit_depth, row.windows.clone())
     }
 
@@ -189,7 +189,7 @@ pub(crate) fn locate_alone(directory: &Path, file: &str, field: &str) -> Result<
     let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
     locate_image(directory, &root, Some(file)).map_err(|reason| {
         let expected = format!("an image in the dataset's directory; it is {reason}");
-        FileError::value(&directory.join("telemetry.csv"), Place::Whole, field, file, expected)
+        FileError::value(&directory.join("telemetry.csv"), FileLocation::Whole, field, file, expected)
     })
 }
 
@@ -205,7 +205,7 @@ pub(crate) fn refuse_twice<'a>(
         if let Some(other) = known.insert(real, number) {
             let field = format!("file of {what} {number}");
             let expected = format!("an image of its own; {what} {other} has it too");
-            return Err(FileError::value(table, Place::Whole, field, path.display(), expected));
+            return Err(FileError::value(table, FileLocation::Whole, field, path.display(), expected));
         }
     }
     Ok(())
@@ -223,7 +223,7 @@ fn refuse_unnamed(table: &Path, frames: &[DatasetFrame]) -> Result<(), FileError
             let path = entry.map_err(error)?.path();
             if extension(&path).is_some_and(|e| extensions.contains(&e)) && !named.contains(path.as_path()) {
                 let expected = "a row that names it: the frame's telemetry is missing";
-                return Err(FileError::value(table, Place::Header, "file", path.display(), expected));
+                return Err(FileError::value(table, FileLocation::Header, "file", path.display(), expected));
             }
         }
     }

@@ -15,12 +15,12 @@
     )
 )]
 
+mod all_tables;
 mod complete;
 mod csv;
 mod dataset;
 pub mod docking;
 mod error;
-mod every_table;
 mod far_range;
 mod frame;
 mod parquet;
@@ -35,24 +35,25 @@ pub use self::csv::{
 pub use self::parquet::{
     ParquetFile, ParquetWriter, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
 };
+pub use all_tables::{LoadedTable, csv_tables, parquet_tables, read_csv_table, read_parquet_table};
 pub use complete::{
-    Checksums, Earlier, PartialFiles, RunDirectory, WholeFile, file_sha256, refuse_unfinished, sha256,
+    AtomicFile, Checksums, PartialFiles, ReplaceableFile, RunDirectory, file_sha256, refuse_unfinished,
+    sha256,
 };
 pub use dataset::{CameraFile, Dataset, DatasetFrame};
 pub use docking::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
-pub use error::{Failure, FileError, Place, failure, open_regular};
-pub use every_table::{WholeTable, csv_tables, parquet_tables, read_csv_table, read_parquet_table};
+pub use error::{Failure, FileError, FileLocation, failure, open_regular};
 pub use far_range::{
     FrameCluster, MeasurementWriter, StarRow, TelemetryRow, TelemetryWriter, outcome_as_filed,
     read_measurements, read_stars, read_telemetry, write_stars,
 };
 pub use frame::{
-    Expected, FrameHeader, ImageFormat, Sip, SipTerm, TanSip, WcsError, read_expected, read_frame,
+    ExpectedImage, FrameHeader, ImageFormat, Sip, SipTerm, TanSip, WcsError, read_expected, read_frame,
     read_radiance, write_expected, write_frame, write_radiance,
 };
 pub use table::{
-    Atom, Cell, Cells, Column, ColumnType, ColumnValues, Columns, Declared, Field, Names, Nanoseconds, Table,
-    TextCells, Value, format_utc, nullable, optional, parse_utc, seldom_repeating,
+    Atom, Cell, Cells, Column, ColumnNames, ColumnType, ColumnValues, Columns, Field, FieldDeclaration,
+    Nanoseconds, Table, TextCells, Value, format_utc, nullable, optional, parse_utc, without_dictionary,
 };
 pub use video::{
     AviCoding, AviWriter, FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions, Y4mWriter,

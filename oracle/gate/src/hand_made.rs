@@ -40,7 +40,7 @@ pub(super) fn unit(number: u64, verdict: &str, cause: Option<&str>) -> UnitVerdi
 /// A figure of which every unit has at most one value.
 pub(super) fn figure(name: &str, reduction: Reduction, values: &[Option<f64>]) -> FigureTerms {
     let term = |value: &Option<f64>| value.map_or(Term::default(), |sum| Term { sum, of: 1 });
-    FigureTerms::counted(name, reduction, values.iter().map(term).collect())
+    FigureTerms::from_terms(name, reduction, values.iter().map(term).collect())
 }
 
 /// As many frames as the figures have terms.

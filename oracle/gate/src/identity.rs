@@ -1,6 +1,6 @@
 //! What was run, and whether two runs can be compared.
 use files::Failure;
-use run::world_called;
+use run::world_by_name;
 use scenario::identity::first_difference;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -20,7 +20,7 @@ impl SourceKind {
     pub fn units(self, world: &str) -> String {
         match self {
             Self::Study => "cases".to_owned(),
-            Self::Run => format!("{}s", world_called(world).map_or("frame", |world| world.image())),
+            Self::Run => format!("{}s", world_by_name(world).map_or("frame", |world| world.image())),
         }
     }
 }

@@ -31,7 +31,7 @@ mod report;
 mod sample;
 
 pub use baseline::rows::row_columns;
-pub use baseline::{Baseline, BaselineFigure, BaselineHeader, BlockRule, Replace};
+pub use baseline::{Baseline, BaselineFigure, BaselineHeader, BlockRule, Replacement};
 pub use comparison::compare::compare;
 pub use comparison::flips::{Flip, FlipKind, Flips};
 pub use comparison::options::CompareOptions;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use files::sha256::{hex, sha256_hex};
 use files::{Checksums, Failure, FileError, file_sha256, table_sha256, toml_file};
-use run::{figure_called, world_of_run, worlds};
+use run::{figure_by_name, world_of_run, worlds};
 use scenario::AttitudeChoice;
 use scenario::identity::split;
 use scenario::run_file::RunFile;
@@ -151,7 +151,7 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
 #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
 fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
     let figure = |(index, name): (usize, &String)| {
-        let figure = figure_called(name);
+        let figure = figure_by_name(name);
         let is_rate = figure.is_rate();
         let term = |figure: CaseFigure| match figure.value {
             _ if is_rate => Term { sum: figure.count as f64, of: figure.of as u32 },
@@ -160,7 +160,7 @@ fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
         };
         let reduction = if is_rate { Reduction::Rate } else { Reduction::Mean };
         let terms = table.rows.iter().map(|row| term(row.figures[index])).collect();
-        FigureTerms::counted(name, reduction, terms).resting_on(&figure, attitude)
+        FigureTerms::from_terms(name, reduction, terms).with_attitude(&figure, attitude)
     };
     let headlines: Vec<&str> = worlds().into_iter().map(|world| world.headline()).collect();
     let verdict = table.figures.iter().position(|name| headlines.contains(&name.as_str()));

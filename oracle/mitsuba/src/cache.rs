@@ -30,7 +30,7 @@ impl Cache {
     /// # Errors
     /// [`FileError::Io`] when it cannot be made.
     pub(super) fn open(asked_for: Option<&Path>) -> Result<Self, FileError> {
-        let folder = asked_for.map_or_else(users_own, Path::to_owned);
+        let folder = asked_for.map_or_else(user_cache_folder, Path::to_owned);
         std::fs::create_dir_all(&folder).map_err(|source| FileError::Io {
             path: folder.clone(),
             doing: "create",
@@ -40,7 +40,7 @@ impl Cache {
     }
 
     /// Where the image of a scene is, once it is made: named by the SHA-256 of all that it depends on.
-    pub(super) fn place(&self, scene: &SceneFiles) -> PathBuf {
+    pub(super) fn entry_path(&self, scene: &SceneFiles) -> PathBuf {
         let mut hash = Sha256::new();
         let mut part = |bytes: &[u8]| {
             // With its length before it, no part can pass for the end of the one before.
@@ -61,16 +61,16 @@ impl Cache {
     ///
     /// # Errors
     /// [`FileError::Io`] when it cannot be made.
-    pub(super) fn workshop(&self) -> Result<Workshop, FileError> {
+    pub(super) fn scratch_folder(&self) -> Result<ScratchFolder, FileError> {
         let io = |source| FileError::Io { path: self.folder.clone(), doing: "create a folder in", source };
         self.remove_abandoned();
         let folder = tempfile::Builder::new().prefix(RENDER).tempdir_in(&self.folder).map_err(io)?;
         // Other processes see the file when it is locked.
-        let unseen = folder.path().join("locking");
-        let lock = File::create(&unseen).map_err(io)?;
+        let preliminary = folder.path().join("locking");
+        let lock = File::create(&preliminary).map_err(io)?;
         lock.try_lock().map_err(|error| io(error.into()))?;
-        std::fs::rename(unseen, folder.path().join(LOCK)).map_err(io)?;
-        Ok(Workshop { folder, _lock: lock })
+        std::fs::rename(preliminary, folder.path().join(LOCK)).map_err(io)?;
+        Ok(ScratchFolder { folder, _lock: lock })
     }
 
     /// Removes the folders that no process holds the lock of. That it cannot be done is no matter: nothing reads them.
@@ -87,13 +87,13 @@ impl Cache {
 }
 
 /// A folder for one rendering. The lock, which ends with the process, tells other processes that it is in use.
-pub(super) struct Workshop {
+pub(super) struct ScratchFolder {
     // Dropped first: the lock holds until the folder is gone.
     folder: tempfile::TempDir,
     _lock: File,
 }
 
-impl Workshop {
+impl ScratchFolder {
     /// Where it is.
     pub(super) fn path(&self) -> &Path {
         self.folder.path()
@@ -102,7 +102,7 @@ impl Workshop {
 
 /// Reads an image and judges it: the size of the crop, every radiance finite and not negative. The exit status does not
 /// say so: a reflectance without a value renders with success.
-pub(super) fn read_judged(
+pub(super) fn read_validated(
     path: &Path,
     scene: &SceneFiles,
     layer: &'static str,
@@ -122,7 +122,7 @@ pub(super) fn read_judged(
     }
 }
 
-fn users_own() -> PathBuf {
+fn user_cache_folder() -> PathBuf {
     let variable = |name| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     variable("XDG_CACHE_HOME")
         .or_else(|| variable("LOCALAPPDATA"))
@@ -146,9 +146,9 @@ mod tests {
         }
         std::fs::write(folder.path().join("0123.exr"), "").unwrap();
 
-        let first = cache.workshop().unwrap();
+        let first = cache.scratch_folder().unwrap();
         assert!(!abandoned.exists());
-        let second = cache.workshop().unwrap();
+        let second = cache.scratch_folder().unwrap();
         assert!(first.path().exists() && second.path().exists());
         drop((first, second));
         let left: Vec<_> =

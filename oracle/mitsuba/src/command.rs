@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use files::FileError;
 
-use super::process::{self, End};
+use super::process::{self, ProcessEnd};
 use super::{MitsubaError, VARIANT, VERSION};
 
 /// The environment's name for the command of Mitsuba.
@@ -70,7 +70,7 @@ impl MitsubaCommand {
         arguments: &[&str],
         folder: &Path,
         limit: Duration,
-    ) -> Result<(End, std::fs::File), MitsubaError> {
+    ) -> Result<(ProcessEnd, std::fs::File), MitsubaError> {
         let path = folder.join("log.txt");
         let log = std::fs::File::options()
             .read(true)
@@ -89,11 +89,11 @@ impl MitsubaCommand {
     /// [`MitsubaError::WrongVersion`], [`MitsubaError::VariantMissing`], and those of starting it.
     pub(super) fn check(&self, folder: &Path, limit: Duration) -> Result<(), MitsubaError> {
         let (end, log) = self.run(&["--help"], folder, limit)?;
-        if let End::TimeLimit = end {
+        if let ProcessEnd::TimeLimit = end {
             return Err(MitsubaError::TimeLimit {
                 limit_s: limit.as_secs_f64(),
                 doing: "asked for its version".to_owned(),
-                words: process::last_words(&log),
+                words: process::last_output(&log),
             });
         }
         let text = process::written(&log, 1 << 16).unwrap_or_default();
@@ -105,7 +105,7 @@ impl MitsubaCommand {
                 Err(MitsubaError::WrongVersion { command: self.text(), found })
             }
             None => {
-                let found = format!("not Mitsuba (it says: {})", process::last_words(&log));
+                let found = format!("not Mitsuba (it says: {})", process::last_output(&log));
                 Err(MitsubaError::WrongVersion { command: self.text(), found })
             }
         }
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_asked_for_comes_before_the_environment_and_that_before_the_path() {
+    fn the_option_comes_before_the_environment_and_that_before_the_path() {
         let folder = tempfile::tempdir().unwrap();
         let path = Some(folder.path().as_os_str());
         let uvx = format!("uvx{}", std::env::consts::EXE_SUFFIX);

@@ -22,13 +22,13 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use cache::{Cache, read_judged};
+use cache::{Cache, read_validated};
 use command::MitsubaCommand;
 use contract::docking::Pose;
 use contract::{Camera, OutOfRange};
 pub use error::MitsubaError;
 use files::FileError;
-use process::{End, last_words};
+use process::{ProcessEnd, last_output};
 use sim::SimError;
 use sim::mitsuba::{Layer, SceneFiles, Settings};
 use sim::scene::docking::{DockingScene, Lighting};
@@ -117,17 +117,17 @@ impl MitsubaRenderer {
     }
 
     fn layer(&self, scene: &SceneFiles, layer: &'static str) -> Result<RadianceImage, MitsubaError> {
-        let place = self.cache.place(scene);
+        let entry_path = self.cache.entry_path(scene);
         // A file that is there and damaged is made anew.
-        if let Ok(image) = read_judged(&place, scene, layer) {
+        if let Ok(image) = read_validated(&entry_path, scene, layer) {
             return Ok(image);
         }
-        let workshop = self.cache.workshop()?;
-        let command = self.command(workshop.path())?;
-        let fresh = self.render(command, scene, layer, workshop.path())?;
-        let image = read_judged(&fresh, scene, layer)?;
-        std::fs::rename(&fresh, &place).map_err(|source| FileError::Io {
-            path: place,
+        let scratch_folder = self.cache.scratch_folder()?;
+        let command = self.command(scratch_folder.path())?;
+        let fresh = self.render(command, scene, layer, scratch_folder.path())?;
+        let image = read_validated(&fresh, scene, layer)?;
+        std::fs::rename(&fresh, &entry_path).map_err(|source| FileError::Io {
+            path: entry_path,
             doing: "create",
             source,
         })?;
@@ -162,17 +162,17 @@ impl MitsubaRenderer {
         let (end, log) = command.run(&arguments, folder, self.limit)?;
         let doing = format!("rendering the layer {layer}");
         match end {
-            End::Exited(status) if status.success() => Ok(folder.join("image.exr")),
-            End::TimeLimit => Err(MitsubaError::TimeLimit {
+            ProcessEnd::Exited(status) if status.success() => Ok(folder.join("image.exr")),
+            ProcessEnd::TimeLimit => Err(MitsubaError::TimeLimit {
                 limit_s: self.options.time_limit_s,
                 doing,
-                words: last_words(&log),
+                words: last_output(&log),
             }),
-            End::Exited(status) if status.code() == Some(SCENE_REFUSED) => {
-                Err(MitsubaError::Scene { doing, words: last_words(&log) })
+            ProcessEnd::Exited(status) if status.code() == Some(SCENE_REFUSED) => {
+                Err(MitsubaError::Scene { doing, words: last_output(&log) })
             }
-            End::Exited(status) => {
-                Err(MitsubaError::Failed { status: status.to_string(), doing, words: last_words(&log) })
+            ProcessEnd::Exited(status) => {
+                Err(MitsubaError::Failed { status: status.to_string(), doing, words: last_output(&log) })
             }
         }
     }

@@ -6,7 +6,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// How a program ended.
-pub(super) enum End {
+pub(super) enum ProcessEnd {
     /// By itself, with this status.
     Exited(ExitStatus),
     /// It did not, and was killed.
@@ -20,28 +20,28 @@ const POLL: Duration = Duration::from_millis(10);
 ///
 /// # Errors
 /// That of the operating system, when it cannot be started.
-pub(super) fn run(command: &mut Command, log: &File, limit: Duration) -> io::Result<End> {
+pub(super) fn run(command: &mut Command, log: &File, limit: Duration) -> io::Result<ProcessEnd> {
     command.stdin(Stdio::null()).stdout(log.try_clone()?).stderr(log.try_clone()?);
     // The command is often a wrapper around the program: a group of its own, so that both end together.
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(command, 0);
-    let mut group = Group(command.spawn()?);
+    let mut group = ProcessGroup(command.spawn()?);
     let deadline = Instant::now() + limit;
     loop {
         if let Some(status) = group.0.try_wait()? {
-            return Ok(End::Exited(status));
+            return Ok(ProcessEnd::Exited(status));
         }
         if Instant::now() >= deadline {
-            return Ok(End::TimeLimit);
+            return Ok(ProcessEnd::TimeLimit);
         }
         std::thread::sleep(POLL);
     }
 }
 
 /// A child that is ended with its whole group, whatever way it is left.
-struct Group(Child);
+struct ProcessGroup(Child);
 
-impl Drop for Group {
+impl Drop for ProcessGroup {
     fn drop(&mut self) {
         // A child that was waited for has given its number back.
         if matches!(self.0.try_wait(), Ok(None)) {
@@ -74,7 +74,7 @@ pub(super) fn written(mut log: &File, limit: u64) -> io::Result<String> {
 }
 
 /// The last lines of it that say something, in one.
-pub(super) fn last_words(log: &File) -> String {
+pub(super) fn last_output(log: &File) -> String {
     let Ok(text) = written(log, 4096) else { return "unreadable".to_owned() };
     let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
     let last = lines.get(lines.len().saturating_sub(6)..).unwrap_or_default();

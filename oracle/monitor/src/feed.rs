@@ -11,56 +11,56 @@ use serde_json::Value;
 
 use crate::ground::GroundTrack;
 use crate::session::picture::Stretch;
-use crate::session::{Order, Session};
+use crate::session::{PictureOrder, Session};
 
 /// Most frames of a monitored run: what is known of each is kept, some kilobytes.
-pub const MOST_FRAMES: u64 = 50_000;
+pub const MAX_FRAMES: u64 = 50_000;
 
 /// Takes a scenario if it is of a certain world.
-type Take = fn(Box<dyn Any>) -> Result<Box<dyn Monitored>, Box<dyn Any>>;
+type WorldCast = fn(Box<dyn Any>) -> Result<Box<dyn MonitoredWorld>, Box<dyn Any>>;
 
 /// The worlds that the page shows: one line each.
-const WORLDS: [(&str, Take); 2] =
-    [(FarRangeMission::CODE, take::<FarRangeMission>), (DockingMission::CODE, take::<DockingMission>)];
+const WORLDS: [(&str, WorldCast); 2] = [
+    (FarRangeMission::CODE, cast_world::<FarRangeMission>),
+    (DockingMission::CODE, cast_world::<DockingMission>),
+];
 
-fn take<W: Monitored + 'static>(prepared: Box<dyn Any>) -> Result<Box<dyn Monitored>, Box<dyn Any>> {
-    prepared.downcast::<W>().map(|prepared| prepared as Box<dyn Monitored>)
+fn cast_world<W: MonitoredWorld + 'static>(
+    prepared: Box<dyn Any>,
+) -> Result<Box<dyn MonitoredWorld>, Box<dyn Any>> {
+    prepared.downcast::<W>().map(|prepared| prepared as Box<dyn MonitoredWorld>)
 }
 
 /// A scenario of a world that the page shows.
-pub(super) trait Monitored: Send + Sync {
+pub(super) trait MonitoredWorld: Send + Sync {
     /// What lives as long as the monitor.
-    fn surroundings(&self, measurements: &Measurements) -> Result<Surroundings, Failure>;
+    fn context(&self, measurements: &Measurements) -> Result<MonitorContext, Failure>;
 
     /// The moment of a frame; `None` where there is no such frame.
     fn time(&self, frame: u64) -> Option<Epoch>;
 
     /// What the page is told once: of the session, and of the scene.
-    fn overview(
-        &self,
-        measurements: &Measurements,
-        surroundings: &Surroundings,
-    ) -> Result<[Value; 2], Failure>;
+    fn overview(&self, measurements: &Measurements, context: &MonitorContext) -> Result<[Value; 2], Failure>;
 
     /// Processes or reads frame after frame, as far as they are wanted.
     fn feed(
         &self,
         measurements: &Measurements,
-        surroundings: &Surroundings,
+        context: &MonitorContext,
         session: &Session,
     ) -> Result<(), Failure>;
 
     /// Has `serve` draw frames again, as PNG.
-    fn paint(&self, surroundings: &Surroundings, serve: Serve<'_>) -> Result<(), Failure>;
+    fn paint(&self, context: &MonitorContext, serve: Serve<'_>) -> Result<(), Failure>;
 }
 
 /// Draws one picture after the other by a function, as they are ordered.
 pub(super) type Serve<'a> =
-    &'a dyn Fn(&mut dyn FnMut(&Order) -> Result<Bytes, Failure>) -> Result<(), Failure>;
+    &'a dyn Fn(&mut dyn FnMut(&PictureOrder) -> Result<Bytes, Failure>) -> Result<(), Failure>;
 
 /// What is monitored.
 pub struct Feed {
-    pub(super) world: Box<dyn Monitored>,
+    pub(super) world: Box<dyn MonitoredWorld>,
     pub(super) measurements: Measurements,
 }
 
@@ -108,7 +108,7 @@ impl Measurements {
 }
 
 /// What a feed needs that lives as long as the monitor.
-pub(super) struct Surroundings {
+pub(super) struct MonitorContext {
     pub(super) ground: Option<GroundTrack>,
     pub(super) stretch: Stretch,
     pub(super) frames: Range<u64>,
@@ -125,10 +125,10 @@ pub(super) fn frames<R: Row>(measurements: &Measurements, table: &str) -> Result
         }
     };
     let count = frames.end - frames.start;
-    if count > MOST_FRAMES {
+    if count > MAX_FRAMES {
         return Err(Failure::Usage(format!(
             "{count} frames are monitored, expected at most {}: what is known of each is kept (--frames A..B)",
-            MOST_FRAMES
+            MAX_FRAMES
         )));
     }
     Ok(frames)

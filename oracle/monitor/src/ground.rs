@@ -24,12 +24,12 @@ pub(super) enum GroundTrack {
     /// That of the scenario's chaser.
     Chaser(Box<Trajectory>),
     /// A circular orbit.
-    Circular(Circular),
+    Circular(CircularOrbit),
 }
 
 /// A circular orbit: at `epoch` in the direction `radial`, moving along `ahead`.
 #[derive(Debug, Clone)]
-pub(super) struct Circular {
+pub(super) struct CircularOrbit {
     epoch: Epoch,
     radial: Vector3<f64>,
     ahead: Vector3<f64>,
@@ -63,7 +63,7 @@ impl GroundTrack {
         let sun_angle = libm::atan2(sun.dot(&quarter), sun.dot(&node));
         let (sin_u, cos_u) = libm::sincos(sun_angle + libm::atan2(towards.z, towards.y));
         let rate_rad_s = (GM_KM3_S2 / (STATION_RADIUS_KM * STATION_RADIUS_KM * STATION_RADIUS_KM)).sqrt();
-        Some(Self::Circular(Circular {
+        Some(Self::Circular(CircularOrbit {
             epoch: moment.time,
             radial: node * cos_u + quarter * sin_u,
             ahead: quarter * cos_u - node * sin_u,
@@ -72,7 +72,7 @@ impl GroundTrack {
     }
 
     /// The points below the spacecraft and below the Sun; `None` outside the times of the Earth's ephemeris.
-    pub(super) fn at(&self, time: Epoch) -> Option<Ground> {
+    pub(super) fn ground_at(&self, time: Epoch) -> Option<Ground> {
         Some(Ground {
             spacecraft: point(time, &self.position_km(time)),
             sun: point(time, &sun_direction(time)?),

@@ -25,6 +25,6 @@ mod report;
 mod server;
 mod session;
 
-pub use feed::{Feed, MOST_FRAMES, Measurements};
+pub use feed::{Feed, MAX_FRAMES, Measurements};
 pub use server::assets::{BUILD_COMMAND, is_page_built};
 pub use server::serve;

@@ -110,14 +110,19 @@ pub(super) struct Ground {
 #[serde(tag = "world", rename_all = "snake_case")]
 pub(super) enum Model {
     /// Target frame, m.
-    Docking { camera: usize, measured: Option<View>, truth: View, sun: Option<[f64; 3]> },
+    Docking { camera: usize, measured: Option<CameraPose>, truth: CameraPose, sun: Option<[f64; 3]> },
     /// Radial, along-track and normal axes of the target's orbit, km.
-    FarRange { measured: Option<View>, truth: View, sun: [f64; 3], line_of_sight: Option<[f64; 3]> },
+    FarRange {
+        measured: Option<CameraPose>,
+        truth: CameraPose,
+        sun: [f64; 3],
+        line_of_sight: Option<[f64; 3]>,
+    },
 }
 
 /// A camera: where it is, and its axes x (columns), y (rows) and z (optical) in the model's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(super) struct View {
+pub(super) struct CameraPose {
     pub(super) position: [f64; 3],
     pub(super) axes: [[f64; 3]; 3],
 }

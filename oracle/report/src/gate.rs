@@ -1,6 +1,6 @@
 //! The report of a gate: what changed, and the frames that flipped.
 
-use run::figure_called;
+use run::figure_by_name;
 use std::path::Path;
 
 use files::Failure;
@@ -8,17 +8,17 @@ use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
 
 use crate::charts::chart::{BESIDE, Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
 use crate::charts::plotly::{Layout, Trace};
-use crate::figures::words::{capital, spoken};
+use crate::figures::words::{capital, display_name};
 use crate::figures::{cell, significant};
 use crate::page::data_table::DataTable;
 use crate::page::picture::Picture;
 use crate::page::{Page, Section};
-use crate::worlds::report_of_world;
+use crate::worlds::world_report;
 
 /// Flipped frames that are shown as pictures, at most.
-const MOST_PICTURES: usize = 12;
+const MAX_PICTURES: usize = 12;
 /// Flipped frames that are listed, at most.
-const MOST_ROWS: usize = 200;
+const MAX_ROWS: usize = 200;
 
 /// Something that flips happened to, as pictures.
 pub struct FlippedFrames {
@@ -40,8 +40,8 @@ impl FlippedFrames {
         if report.units == "cases" || flips.units.is_empty() {
             return Ok(none);
         }
-        let Some(world) = report_of_world(&report.world) else { return Ok(none) };
-        let chosen = chosen(&flips.units);
+        let Some(world) = world_report(&report.world) else { return Ok(none) };
+        let chosen = first_flip_of_each_kind(&flips.units);
         let numbers: Vec<u64> = chosen.iter().map(|flip| flip.number).collect();
         let (mut pictures, reason) = (world.pictures)(result, &numbers)?;
         for (picture, flip) in pictures.iter_mut().zip(&chosen) {
@@ -52,18 +52,18 @@ impl FlippedFrames {
 }
 
 /// Of every change the first unit, lost ones first, then more of the lost.
-fn chosen(flips: &[Flip]) -> Vec<&Flip> {
+fn first_flip_of_each_kind(flips: &[Flip]) -> Vec<&Flip> {
     let order = [FlipKind::Lost, FlipKind::Won, FlipKind::Other];
     let mut chosen: Vec<&Flip> = Vec::new();
     for kind in order {
         for flip in flips.iter().filter(|flip| flip.kind == kind) {
-            if chosen.len() < MOST_PICTURES && !chosen.iter().any(|other| change(other) == change(flip)) {
+            if chosen.len() < MAX_PICTURES && !chosen.iter().any(|other| change(other) == change(flip)) {
                 chosen.push(flip);
             }
         }
     }
     for flip in flips.iter().filter(|flip| flip.kind == FlipKind::Lost) {
-        if chosen.len() < MOST_PICTURES && !chosen.iter().any(|other| other.number == flip.number) {
+        if chosen.len() < MAX_PICTURES && !chosen.iter().any(|other| other.number == flip.number) {
             chosen.push(flip);
         }
     }
@@ -81,16 +81,16 @@ fn kind_words(kind: FlipKind) -> &'static str {
 /// From which verdict to which.
 fn change(flip: &Flip) -> String {
     let words = |verdict: &str, cause: &Option<String>| match cause {
-        Some(cause) => format!("{} ({})", spoken(verdict), spoken(cause)),
-        None => spoken(verdict),
+        Some(cause) => format!("{} ({})", display_name(verdict), display_name(cause)),
+        None => display_name(verdict),
     };
     format!("{} → {}", words(&flip.baseline, &flip.baseline_cause), words(&flip.result, &flip.result_cause))
 }
 
 /// The page of a gate.
 pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
-    let worse: Vec<String> = report.worse().map(|name| figure_called(name).words).collect();
-    let names: Vec<String> = report.changed().map(|name| figure_called(name).words).collect();
+    let worse: Vec<String> = report.worse_figures().map(|name| figure_by_name(name).words).collect();
+    let names: Vec<String> = report.changed_figures().map(|name| figure_by_name(name).words).collect();
     let lead = if worse.is_empty() && !names.is_empty() {
         let accepted = report.accepted.as_ref().map(|reason| format!(" Accepted: {reason}"));
         format!(
@@ -123,7 +123,7 @@ pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
             ("Seeds", format!("{} and {}", report.baseline_seed, report.result_seed)),
             ("Versions", format!("{} and {}", report.baseline_version, report.result_version)),
         ],
-        sections: vec![effects(report), changed(report, frames)],
+        sections: vec![effects(report), flipped_units(report, frames)],
         data: data(report),
     }
 }
@@ -159,13 +159,13 @@ fn effects(report: &GateReport) -> Section {
     )
     .narrow();
     for (name, figure) in &report.figures {
-        let is_rate = figure_called(name).is_rate();
+        let is_rate = figure_by_name(name).is_rate();
         let number = |value: Option<f64>| match value {
             Some(value) if is_rate => format!("{:.2}", 100.0 * value),
             value => cell(value),
         };
         table.push([
-            figure_called(name).to_string(),
+            figure_by_name(name).to_string(),
             figure.verdict.words().to_owned(),
             number(figure.baseline),
             number(figure.result),
@@ -182,7 +182,7 @@ fn effects(report: &GateReport) -> Section {
         .figures
         .iter()
         .filter(|(_, figure)| figure.difference.is_some())
-        .partition(|(name, _)| figure_called(name).is_rate());
+        .partition(|(name, _)| figure_by_name(name).is_rate());
     let mut section = Section::new("effects", "What changed");
     if !rates.is_empty() {
         let (traces, layout) = differences(&rates, |_| 0.01, "difference, points");
@@ -202,7 +202,7 @@ fn effects(report: &GateReport) -> Section {
 
 /// A figure's name without its unit, which the axis of differences has not.
 fn plain_label(name: &str) -> String {
-    figure_called(name).words
+    figure_by_name(name).words
 }
 
 /// A figure of the gate by its name.
@@ -244,7 +244,7 @@ fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &st
 }
 
 /// Units that flipped.
-fn changed(report: &GateReport, frames: FlippedFrames) -> Section {
+fn flipped_units(report: &GateReport, frames: FlippedFrames) -> Section {
     let section = Section::new("flips", format!("{} that flipped", capital(&report.units)));
     let Some(flips) = &report.flips else {
         return section.text("The frames are not the same: only blocks of them are compared, and none can be said to have flipped.");
@@ -267,21 +267,21 @@ fn changed(report: &GateReport, frames: FlippedFrames) -> Section {
             .pictures(frames.pictures),
     };
     let mut table = DataTable::new(["number", "group", "how", "from", "cause", "to", "cause"]);
-    for flip in flips.units.iter().take(MOST_ROWS) {
-        let cause = |cause: &Option<String>| cause.as_deref().map(spoken).unwrap_or_default();
+    for flip in flips.units.iter().take(MAX_ROWS) {
+        let cause = |cause: &Option<String>| cause.as_deref().map(display_name).unwrap_or_default();
         table.push([
             flip.number.to_string(),
             flip.group.clone(),
             kind_words(flip.kind).to_lowercase(),
-            spoken(&flip.baseline),
+            display_name(&flip.baseline),
             cause(&flip.baseline_cause),
-            spoken(&flip.result),
+            display_name(&flip.result),
             cause(&flip.result_cause),
         ]);
     }
-    let section = if flips.units.len() > MOST_ROWS {
+    let section = if flips.units.len() > MAX_ROWS {
         section.text(format!(
-            "The first {MOST_ROWS} of {}; `boresight gate --json` lists all.",
+            "The first {MAX_ROWS} of {}; `boresight gate --json` lists all.",
             flips.units.len()
         ))
     } else {

@@ -2,11 +2,11 @@
 //!
 //! A page ([`Page`]) is computed from what was read, and is the same for the same files: nothing of it comes from a clock or from anywhere
 //! else. Charts are drawn by plotly.js, which the page contains ([`Chart`]), with the numbers in a table behind each; pictures ([`Picture`]) are of frames
-//! that the simulator renders anew, one by one ([`FrameSheet`]). It asks nothing of any network.
+//! that the simulator renders anew, one by one ([`FrameDetail`]). It asks nothing of any network.
 //!
 //! - [`far_range_page`], [`docking_page`]: a run; [`study_page`]: a study; [`visibility_page`]: the answer to requirements; [`gate_page`]: what a
 //!   gate found.
-//! - [`report_of`]: whatever a directory holds; [`write_page`] puts it into a file.
+//! - [`read_report`]: whatever a directory holds; [`write_page`] puts it into a file.
 
 #![cfg_attr(
     not(test),
@@ -36,11 +36,11 @@ mod worlds;
 use std::path::{Path, PathBuf};
 
 pub use charts::chart::Chart;
-pub use docking::{DockingRun, FieldSheet, PortionReport, docking_page};
-pub use far_range::{FarRangeRun, FrameSheet, InjectedRun, far_range_page, kept_budget};
+pub use docking::{DockingRun, FieldDetail, PortionReport, docking_page};
+pub use far_range::{FarRangeRun, FrameDetail, InjectedRun, far_range_page, kept_budget};
 pub use gate::{FlippedFrames, gate_page};
 pub use page::data_table::DataTable;
-pub use page::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
+pub use page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
 pub use page::{Block, Page, Section};
 pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
@@ -48,16 +48,16 @@ pub use visibility::{read_visibility, visibility_page};
 
 use self::figures::run_page::run_page;
 use self::read::is_far_range_run;
-use self::worlds::report_of_world;
-use files::{Checksums, Earlier, Failure, WholeFile, refuse_unfinished};
-use run::{AnyJudgement, NotFlown, world_of_run};
+use self::worlds::world_report;
+use files::{AtomicFile, Checksums, Failure, ReplaceableFile, refuse_unfinished};
+use run::{AnyJudgement, IncompleteRun, world_of_run};
 
 /// The report of a directory of results, with the error budget that is kept there.
 ///
 /// # Errors
 /// A [`Failure`] that names the file which is missing or cannot be read.
-pub fn report_of(directory: &Path) -> Result<Page, Failure> {
-    let page = match ResultKind::of(directory)? {
+pub fn read_report(directory: &Path) -> Result<Page, Failure> {
+    let page = match ResultKind::from_directory(directory)? {
         ResultKind::Run => return page_of_run(directory, None),
         ResultKind::Study => study_page(&StudyResult::read(directory)?),
         ResultKind::Visibility => visibility_page(&read_visibility(directory)?),
@@ -70,12 +70,12 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
 fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
     refuse_unfinished(directory)?;
     let world = world_of_run(&directory.join("run.toml"))?;
-    let mut page = match report_of_world(world.code()) {
+    let mut page = match world_report(world.code()) {
         Some(of_world) => (of_world.page)(directory, scored)?,
         None => run_page(directory)?,
     };
-    if let Some(not_flown) = NotFlown::of_directory(directory)? {
-        page.warnings.push(format!("The run is not complete: {not_flown}."));
+    if let Some(incomplete) = IncompleteRun::read_from_directory(directory)? {
+        page.warnings.push(format!("The run is not complete: {incomplete}."));
     }
     Ok(page)
 }
@@ -98,25 +98,26 @@ pub fn check_budget(directory: &Path) -> Result<(), Failure> {
 /// place of one stage's result.
 ///
 /// # Errors
-/// As [`report_of`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
+/// As [`read_report`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
 pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
     check_budget(directory)?;
     let mut run = FarRangeRun::read(directory)?;
     run.budget = InjectedRun::read_all(budget, &run.run_file, &run.score)?;
-    far_range_page(&run, &FrameSheet::open(directory)?)
+    far_range_page(&run, &FrameDetail::open(directory)?)
 }
 
 /// The report of a run that has just been scored. What was scored is read from its files only where it is not at hand; verdicts are taken
 /// out of `scored`.
 ///
 /// # Errors
-/// As [`report_of`].
-pub fn report_of_run(directory: &Path, scored: &mut dyn AnyJudgement) -> Result<Page, Failure> {
+/// As [`read_report`].
+pub fn read_run_report(directory: &Path, scored: &mut dyn AnyJudgement) -> Result<Page, Failure> {
     page_of_run(directory, Some(scored))
 }
 
 /// Reports, which a later one replaces.
-pub const REPORTS: Earlier<'static> = Earlier { what: "an earlier report of Boresight", is: &is_report };
+pub const REPORTS: ReplaceableFile<'static> =
+    ReplaceableFile { description: "an earlier report of Boresight", matches: &is_report };
 
 /// Whether a file that begins so is a report.
 fn is_report(beginning: &[u8]) -> bool {
@@ -130,6 +131,6 @@ fn is_report(beginning: &[u8]) -> bool {
 /// A [`Failure`] when the page cannot be put together, the file not be written, or something else than a report is there.
 pub fn write_page(page: &Page, path: &Path) -> Result<u64, Failure> {
     let html = page.html()?;
-    WholeFile::with_text(path, &html)?.replace(REPORTS)?;
+    AtomicFile::with_text(path, &html)?.replace(REPORTS)?;
     Ok(html.len() as u64)
 }

@@ -27,7 +27,7 @@ impl ResultKind {
     ///
     /// # Errors
     /// [`Failure::Usage`] for a directory that holds none of them.
-    pub fn of(directory: &Path) -> Result<Self, Failure> {
+    pub fn from_directory(directory: &Path) -> Result<Self, Failure> {
         let has = |name: &str| directory.join(name).is_file();
         if has("run.toml") {
             Ok(Self::Run)
@@ -54,8 +54,8 @@ impl ResultKind {
 
 /// Whether a directory is that of a run of the far range.
 pub(super) fn is_far_range_run(directory: &Path) -> Result<bool, Failure> {
-    Ok(ResultKind::of(directory)? == ResultKind::Run
-        && world_of_run(&directory.join("run.toml"))?.is_of::<FarRangeScenario>())
+    Ok(ResultKind::from_directory(directory)? == ResultKind::Run
+        && world_of_run(&directory.join("run.toml"))?.has_scenario::<FarRangeScenario>())
 }
 
 /// A file of a run that is not there.

@@ -5,16 +5,16 @@ use std::path::Path;
 
 use files::{Failure, FileError};
 use indexmap::IndexMap;
-use run::figure_called;
+use run::figure_by_name;
 use score::{Better, attitude_note, warm_up_note};
-use study::{CaseTable, Estimate, FigureSummary, Summary, Waited};
+use study::{CaseTable, Estimate, FigureSummary, StoppingStatus, Summary};
 
 use crate::charts::chart::{
     BESIDE, Chart, MEASURED, REFERENCE, TRUTH, WRONG, axes, cloud, intervals, intervals_across, plain,
     points, rounded,
 };
 use crate::charts::plotly::{Axis, ColourScale, Layout, Mode, Trace};
-use crate::charts::thin::{bins, drawn, summary as summed};
+use crate::charts::thin::{bins, summary as summed, thinning_caption};
 use crate::figures::significant;
 use crate::figures::words::capital;
 use crate::page::data_table::DataTable;
@@ -24,9 +24,9 @@ use crate::read::read_json;
 /// Cases that a chart shows one by one in the table behind it; of more, a summary.
 const TABLE_BINS: usize = 60;
 /// Drawn values that have a chart of their own, at most.
-const MOST_SCATTERS: usize = 24;
+const MAX_SCATTERS: usize = 24;
 /// Figures that have a curve over the sweep, at most.
-const MOST_CURVES: usize = 24;
+const MAX_CURVES: usize = 24;
 /// Colours of the curves of a figure, in turn.
 const CURVES: [&str; 5] = [MEASURED, BESIDE, TRUTH, WRONG, REFERENCE];
 
@@ -69,12 +69,12 @@ impl StudyResult {
 pub fn study_page(study: &StudyResult) -> Page {
     let summary = &study.summary;
     let worst_by = &summary.worst_by;
-    let by = figure_called(worst_by).words;
+    let by = figure_by_name(worst_by).words;
     let lead = match summary.figures.get(worst_by).and_then(|figure| figure.all) {
         Some(all) => format!(
             "{} cases; {by}, by which the worst are the worst, is {}.",
             summary.cases,
-            shown(worst_by, &all)
+            estimate_text(worst_by, &all)
         ),
         None => format!("{} cases.", summary.cases),
     };
@@ -126,9 +126,9 @@ pub fn study_page(study: &StudyResult) -> Page {
 /// Whether the figure of the stopping rule ended the study.
 fn stopped(summary: &Summary) -> &'static str {
     match summary.waited {
-        Some(Waited::NarrowEnough) => "yes",
-        Some(Waited::TooWide) => "no: its interval is wider than asked",
-        Some(Waited::NearlyConstant) => {
+        Some(StoppingStatus::NarrowEnough) => "yes",
+        Some(StoppingStatus::TooWide) => "no: its interval is wider than asked",
+        Some(StoppingStatus::NearlyConstant) => {
             "no: it is the same in nearly every draw, and its scatter is not known"
         }
         None => "no",
@@ -137,16 +137,16 @@ fn stopped(summary: &Summary) -> &'static str {
 
 /// What a figure is drawn and written in: rates in percent, others as they are.
 fn scale(name: &str) -> f64 {
-    if figure_called(name).is_rate() { 100.0 } else { 1.0 }
+    if figure_by_name(name).is_rate() { 100.0 } else { 1.0 }
 }
 
 /// A number of a figure.
 fn number(name: &str, value: f64) -> String {
-    if figure_called(name).is_rate() { format!("{:.2}\u{a0}%", 100.0 * value) } else { significant(value) }
+    if figure_by_name(name).is_rate() { format!("{:.2}\u{a0}%", 100.0 * value) } else { significant(value) }
 }
 
 /// A value with its interval, which a narrow column may have on a line of its own.
-fn shown(name: &str, estimate: &Estimate) -> String {
+fn estimate_text(name: &str, estimate: &Estimate) -> String {
     let bound = |value: f64| number(name, value).replace("\u{a0}%", "");
     let interval = estimate.low.zip(estimate.high);
     let interval = interval.map(|(low, high)| format!(" ({}\u{a0}to\u{a0}{})", bound(low), bound(high)));
@@ -155,7 +155,7 @@ fn shown(name: &str, estimate: &Estimate) -> String {
 
 /// What a figure is called beside its values.
 fn label(key: &str) -> String {
-    figure_called(key).beside_percent()
+    figure_by_name(key).label_without_percent()
 }
 
 /// Every figure: over all cases, and its quantiles over them.
@@ -166,7 +166,7 @@ fn figures(study: &StudyResult) -> Section {
     ).narrow();
     for (name, figure) in &summary.figures {
         let estimate = |estimate: &Option<Estimate>| {
-            estimate.as_ref().map_or_else(|| "–".to_owned(), |e| shown(name, e))
+            estimate.as_ref().map_or_else(|| "–".to_owned(), |e| estimate_text(name, e))
         };
         table.push([
             label(name),
@@ -177,7 +177,7 @@ fn figures(study: &StudyResult) -> Section {
             estimate(&figure.p95),
         ]);
     }
-    let is_rate = |(name, _): &(&String, &FigureSummary)| figure_called(name).is_rate();
+    let is_rate = |(name, _): &(&String, &FigureSummary)| figure_by_name(name).is_rate();
     let rates = summary.figures.iter().filter(is_rate);
     let rates: Vec<(&String, Estimate, &FigureSummary)> =
         rates.filter_map(|(name, figure)| Some((name, figure.all?, figure))).collect();
@@ -189,7 +189,7 @@ fn figures(study: &StudyResult) -> Section {
     let column = |pick: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
         rates.iter().rev().map(|(_, all, figure)| rounded(100.0 * pick(all, figure), 4)).collect()
     };
-    let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| figure_called(name).words).collect();
+    let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| figure_by_name(name).words).collect();
     let quantile = |estimate: Option<Estimate>| estimate.map_or(f64::NAN, |estimate| estimate.value);
     let traces = vec![
         intervals_across(
@@ -213,7 +213,7 @@ fn figures(study: &StudyResult) -> Section {
     let mut data = DataTable::new(["rate", "all", "low", "high"]);
     for (name, all, _) in &rates {
         let bound = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
-        data.push([figure_called(name).words, number(name, all.value), bound(all.low), bound(all.high)]);
+        data.push([figure_by_name(name).words, number(name, all.value), bound(all.low), bound(all.high)]);
     }
     let height = 110 + 30 * rates.len() as u32;
     let caption = "Rates over all frames, and how far the cases spread about them.";
@@ -267,13 +267,13 @@ fn sweep(study: &StudyResult) -> Section {
     };
     let mut names: Vec<&String> = summary.figures.keys().filter(has_value).collect();
     names.sort_by_key(|name| *name != &summary.worst_by);
-    let left_out = names.len().saturating_sub(MOST_CURVES);
-    names.truncate(MOST_CURVES);
+    let left_out = names.len().saturating_sub(MAX_CURVES);
+    names.truncate(MAX_CURVES);
     let charts = names.iter().map(|name| curve(summary, name)).collect();
     let mut section = Section::new("sweep", "Sweep");
     if left_out > 0 {
         section = section.text(format!(
-            "Of the figures the first {MOST_CURVES} are drawn; summary.json has all at every point."
+            "Of the figures the first {MAX_CURVES} are drawn; summary.json has all at every point."
         ));
     }
     section.charts(charts).table(differences(summary))
@@ -296,7 +296,7 @@ fn curve(summary: &Summary, name: &str) -> Chart {
     for point in &summary.sweep {
         let estimate = point.figures.get(name).and_then(|figure| figure.all);
         let all = point.at.iter().map(|(path, value)| label_of(path, value)).collect::<Vec<_>>().join(", ");
-        let text = estimate.as_ref().map_or_else(|| "–".to_owned(), |estimate| shown(name, estimate));
+        let text = estimate.as_ref().map_or_else(|| "–".to_owned(), |estimate| estimate_text(name, estimate));
         data.push([all, point.cases.to_string(), text]);
         let others = point.at.iter().filter(|(path, _)| *path != across);
         let others = others.map(|(path, value)| label_of(path, value)).collect::<Vec<_>>().join(", ");
@@ -309,7 +309,7 @@ fn curve(summary: &Summary, name: &str) -> Chart {
             points.iter().map(|(_, estimate)| rounded(scale(name) * pick(estimate), 9)).collect()
         };
         let x: Vec<String> = points.iter().map(|(x, _)| plain(x)).collect();
-        let title = if others.is_empty() { figure_called(name).words } else { others.clone() };
+        let title = if others.is_empty() { figure_by_name(name).words } else { others.clone() };
         let (low, high) = (of(|e| e.low.unwrap_or(e.value)), of(|e| e.high.unwrap_or(e.value)));
         intervals(&title, x, of(|e| e.value), &low, &high, CURVES[place % CURVES.len()])
             .mode(Mode::LinesAndMarkers)
@@ -317,11 +317,11 @@ fn curve(summary: &Summary, name: &str) -> Chart {
     let traces: Vec<Trace> = curves.iter().enumerate().map(trace).collect();
     let has_legend = traces.len() > 1;
     Chart::new(
-        format!("{} over the sweep, with 95 % intervals.", capital(&figure_called(name).words)),
+        format!("{} over the sweep, with 95 % intervals.", capital(&figure_by_name(name).words)),
         320,
         data,
         traces,
-        axes(&plain(across), &plain(&figure_called(name).to_string())).legend(has_legend),
+        axes(&plain(across), &plain(&figure_by_name(name).to_string())).legend(has_legend),
     )
 }
 
@@ -382,7 +382,7 @@ fn sensitivities(study: &StudyResult) -> Section {
         .collect();
     let names: Vec<String> = parameters.iter().map(|name| plain(name)).collect();
     let labels: Vec<String> =
-        figures.iter().rev().map(|name| plain(&figure_called(name).to_string())).collect();
+        figures.iter().rev().map(|name| plain(&figure_by_name(name).to_string())).collect();
     let map = Trace::heat_map(names, labels, &z)
         .colour_range([-1.0, 1.0])
         .colour_scale(ColourScale::BlueToRed)
@@ -448,7 +448,7 @@ fn indices(study: &StudyResult) -> Section {
     Section::new("indices", "Sobol indices").chart(Chart::new(
         format!(
             "Of {}: the part of its variance that is a value's alone, and with all in which it takes part.",
-            figure_called(&summary.worst_by).words
+            figure_by_name(&summary.worst_by).words
         ),
         400,
         data,
@@ -462,14 +462,14 @@ fn scatter(study: &StudyResult) -> Section {
     let (summary, table) = (&study.summary, &study.table);
     let name = &summary.worst_by;
     let section =
-        Section::new("scatter", format!("{} against what was drawn", capital(&figure_called(name).words)));
+        Section::new("scatter", format!("{} against what was drawn", capital(&figure_by_name(name).words)));
     let Some(values) = table.figure(name) else { return section.text("No case has the figure.") };
     let mut charts = Vec::new();
     for parameter in table.drawn.keys() {
         let Some(numbers) = table.numbers(parameter) else { continue };
         let rows: Vec<usize> = (0..numbers.len()).filter(|&row| values[row].value.is_some()).collect();
         let value = |row: usize| scale(name) * values[row].value.unwrap_or(f64::NAN);
-        let traces = cloud(&figure_called(name).words, &rows, Some(&value), MEASURED, |rows| {
+        let traces = cloud(&figure_by_name(name).words, &rows, Some(&value), MEASURED, |rows| {
             let x: Vec<f64> = rows.iter().map(|&row| numbers[row]).collect();
             let y = rows.iter().map(|&row| rounded(value(row), 9)).collect();
             let cases: Vec<u64> = rows.iter().map(|&row| table.rows[row].case).collect();
@@ -490,20 +490,20 @@ fn scatter(study: &StudyResult) -> Section {
         charts.push(Chart::new(
             format!(
                 "{} against {parameter}, a point a case. {}",
-                figure_called(name),
-                drawn(&[(rows.len(), "cases")], true)
+                figure_by_name(name),
+                thinning_caption(&[(rows.len(), "cases")], true)
             ),
             260,
             data,
             traces,
-            axes(&plain(parameter), &plain(&figure_called(name).to_string())).legend(!is_drawn_whole),
+            axes(&plain(parameter), &plain(&figure_by_name(name).to_string())).legend(!is_drawn_whole),
         ));
     }
-    let left_out = charts.len().saturating_sub(MOST_SCATTERS);
-    charts.truncate(MOST_SCATTERS);
+    let left_out = charts.len().saturating_sub(MAX_SCATTERS);
+    charts.truncate(MAX_SCATTERS);
     let section = if left_out > 0 {
         section.text(format!(
-            "Of so many drawn values the first {MOST_SCATTERS} are shown; cases.parquet has all."
+            "Of so many drawn values the first {MAX_SCATTERS} are shown; cases.parquet has all."
         ))
     } else {
         section
@@ -518,7 +518,7 @@ fn scatter(study: &StudyResult) -> Section {
 /// The worst cases, with the commands that run them again.
 fn worst(study: &StudyResult) -> Section {
     let summary = &study.summary;
-    let way = match figure_called(&summary.worst_by).sense.better {
+    let way = match figure_by_name(&summary.worst_by).sense.better {
         Better::More => "the smallest",
         Better::Less => "the largest",
         Better::Near(_) => "the farthest from what is best",
@@ -545,6 +545,6 @@ fn worst(study: &StudyResult) -> Section {
         0 => String::new(),
         more => format!(" {more} more cases are as bad as the last of these."),
     };
-    let words = figure_called(&summary.worst_by).words;
+    let words = figure_by_name(&summary.worst_by).words;
     section.text(format!("Those whose {words} is {way}.{more}")).table(table)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use files::Failure;
-use visibility::{Simulated, VisibilityReport, read_sky};
+use visibility::{SimulatedRate, VisibilityReport, read_sky};
 
 use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, axes, dashed, intervals, line, log_axis, rounded,
@@ -62,7 +62,7 @@ pub fn visibility_page(report: &VisibilityReport) -> Page {
     }
 }
 
-fn shown(simulated: Option<&Simulated>) -> String {
+fn rate_text(simulated: Option<&SimulatedRate>) -> String {
     simulated.map_or_else(
         || "–".to_owned(),
         |s| format!("{} of {} ({:.1}–{:.1}\u{a0}%)", s.count, s.of, 100.0 * s.low, 100.0 * s.high),
@@ -107,7 +107,7 @@ fn requirements(report: &VisibilityReport) -> Section {
             probability(verdict.asked),
             probability(verdict.reached),
             margin.unwrap_or_else(|| "–".to_owned()),
-            shown(verdict.simulated.as_ref()),
+            rate_text(verdict.simulated.as_ref()),
             evidence,
         ]);
         if let Some(f) = &verdict.found {
@@ -117,7 +117,7 @@ fn requirements(report: &VisibilityReport) -> Section {
                 f.parameter.to_string(),
                 unit(f.value),
                 probability(f.probability),
-                shown(f.simulated.as_ref()),
+                rate_text(f.simulated.as_ref()),
                 f.failing_value.map_or_else(|| "–".to_owned(), unit),
                 f.failing_probability.map_or_else(|| "–".to_owned(), probability),
             ]);
@@ -133,20 +133,20 @@ fn detection(report: &VisibilityReport) -> Section {
     if report.detection.is_empty() {
         return section.text("No star is detected with half of the chances at the nominal exposure.");
     }
-    let law = &report.detection;
+    let model = &report.detection;
     let seen = &report.detection_simulated;
-    let magnitudes: Vec<f64> = law.iter().map(|p| p.magnitude).collect();
+    let magnitudes: Vec<f64> = model.iter().map(|p| p.magnitude).collect();
     let mut traces = vec![dashed(
         "law, a star of mean colour",
         magnitudes,
-        law.iter().map(|p| rounded(p.probability, 6)).collect(),
+        model.iter().map(|p| rounded(p.probability, 6)).collect(),
         REFERENCE,
     )];
     if !seen.is_empty() {
         let x: Vec<f64> = seen.iter().map(|p| p.magnitude).collect();
         let expected = seen.iter().map(|p| rounded(p.analytic, 6)).collect();
-        let law = line("law, mean over the simulated stars", x.clone(), expected, MEASURED);
-        traces.push(law.mode(Mode::LinesAndMarkers).marker(Marker::new().size(13).symbol(Symbol::Square)));
+        let model = line("law, mean over the simulated stars", x.clone(), expected, MEASURED);
+        traces.push(model.mode(Mode::LinesAndMarkers).marker(Marker::new().size(13).symbol(Symbol::Square)));
         let low: Vec<f64> = seen.iter().map(|p| p.low).collect();
         let high: Vec<f64> = seen.iter().map(|p| p.high).collect();
         let rate = seen.iter().map(|p| rounded(p.count as f64 / p.of.max(1) as f64, 6)).collect();
@@ -154,7 +154,7 @@ fn detection(report: &VisibilityReport) -> Section {
     }
     let mut data =
         DataTable::new(["V", "electrons", "probability", "detected", "of", "low", "high", "law over them"]);
-    for point in law {
+    for point in model {
         let simulated = seen.iter().find(|s| s.magnitude == point.magnitude);
         let number = |pick: fn(&visibility::SimulatedPoint) -> f64| cell(simulated.map(pick));
         let count = |pick: fn(&visibility::SimulatedPoint) -> u64| {

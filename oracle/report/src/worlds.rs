@@ -6,7 +6,7 @@ use files::Failure;
 use run::{AnyJudgement, DockingMission, FarRangeMission, World};
 
 use crate::page::Page;
-use crate::page::picture::Rendered;
+use crate::page::picture::RenderedPictures;
 use crate::{docking, far_range};
 
 /// What the report of a world has of its own.
@@ -15,7 +15,7 @@ pub(crate) struct WorldReport {
     /// Makes the page of a run directory and checks that what it read is what was written; of a run of this process from its verdicts, which it may take.
     pub(crate) page: fn(&Path, Option<&mut dyn AnyJudgement>) -> Result<Page, Failure>,
     /// Renders frames of a run directory anew.
-    pub(crate) pictures: fn(&Path, &[u64]) -> Result<Rendered, Failure>,
+    pub(crate) pictures: fn(&Path, &[u64]) -> Result<RenderedPictures, Failure>,
 }
 
 /// One line each.
@@ -25,6 +25,6 @@ const WORLDS: [WorldReport; 2] = [
 ];
 
 /// What the report of a world has of its own, by the world's word; `None` for a world that has nothing.
-pub(crate) fn report_of_world(code: &str) -> Option<WorldReport> {
+pub(crate) fn world_report(code: &str) -> Option<WorldReport> {
     WORLDS.into_iter().find(|world| world.code == code)
 }

@@ -12,29 +12,29 @@
 )]
 
 pub mod any_world;
-mod by_number;
 mod check;
 mod choice;
 pub mod docking;
 pub mod far_range;
-pub mod flight;
+pub mod frame_jobs;
 pub mod plain;
 mod provenance;
+mod rows_by_number;
 mod run_result;
 pub mod world;
 pub mod worlds;
 
-pub use any_world::erased::Of;
+pub use any_world::erased::ErasedWorld;
 pub use any_world::source::world_of_run;
 pub use any_world::{AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, Options, ScenarioSource};
-pub use by_number::ByNumber;
 pub use choice::pipeline_choice;
 pub use choice::renderer_choice::RendererChoice;
 pub use docking::DockingMission;
 pub use far_range::{FarRangeMission, SceneTruth};
-pub use flight::{Expectation, Flight};
-pub use run_result::{AnswerSummary, FirstFailure, NotFlown, RunResult};
+pub use frame_jobs::{Expectation, FrameJobs};
+pub use rows_by_number::RowsByNumber;
+pub use run_result::{AnswerSummary, FirstFailure, IncompleteRun, RunResult};
 pub use world::{
     AnswerCount, FrameAnswer, Judgement, OpenDataset, World, process, process_into, refuse_attitude,
 };
-pub use worlds::{figure_called, json_schema, register, world_called, worlds};
+pub use worlds::{figure_by_name, json_schema, register, world_by_name, worlds};

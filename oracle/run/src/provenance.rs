@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use files::{ColumnValues, Failure, FileError, ParquetFile, Place, read_origins};
+use files::{ColumnValues, Failure, FileError, FileLocation, ParquetFile, read_origins};
 use hifitime::Epoch;
 use indexmap::IndexMap;
 use scenario::AttitudeChoice;
@@ -106,7 +106,7 @@ fn check_origins(world: &dyn AnyWorld, directory: &Path, answers: &Path) -> Resu
     let times = times(world, &directory.join(world.truth_file()))?;
     for origin in origins {
         let refuse = |column: &str, found: &str, expected: &str| {
-            FileError::value(answers, Place::Line(origin.line), column, found, expected)
+            FileError::value(answers, FileLocation::Line(origin.line), column, found, expected)
         };
         if let Some(configuration) = origin.configuration.as_ref().filter(|found| **found != hash) {
             let expected = format!("{hash}, the hash of {}", directory.join("run.toml").display());

@@ -19,7 +19,7 @@ pub struct RunResult<S> {
     /// The first failure of the pipeline, if it failed at all.
     pub first_failure: Option<FirstFailure>,
     /// What was not flown, where the pipeline never started. Its failed starts were flown, and are scored.
-    pub not_flown: Option<NotFlown>,
+    pub incomplete: Option<IncompleteRun>,
 }
 
 /// Answers in a few numbers.
@@ -35,7 +35,7 @@ pub struct AnswerSummary {
 
 /// What was not flown of a run whose pipeline never started.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct NotFlown {
+pub struct IncompleteRun {
     /// Images that were not flown; 0 of a run that has no more than were flown.
     pub frames: u64,
     /// Starts that failed, one for each image that was flown.
@@ -44,9 +44,9 @@ pub struct NotFlown {
     pub reason: String,
 }
 
-impl NotFlown {
+impl IncompleteRun {
     /// What is missing of a run of so many images.
-    pub(crate) fn of(images: u64, FailedStarts { count, reason }: &FailedStarts) -> Self {
+    pub(crate) fn from_failed_starts(images: u64, FailedStarts { count, reason }: &FailedStarts) -> Self {
         let frames = images.saturating_sub(u64::from(*count));
         Self { frames, failed_starts: *count, reason: reason.clone() }
     }
@@ -55,11 +55,12 @@ impl NotFlown {
     ///
     /// # Errors
     /// A [`Failure`] that names the file when it cannot be read.
-    pub fn of_directory(directory: &Path) -> Result<Option<Self>, Failure> {
+    pub fn read_from_directory(directory: &Path) -> Result<Option<Self>, Failure> {
         /// The part of `score.json` that tells it.
         #[derive(Deserialize)]
-        struct Rest {
-            not_flown: Option<NotFlown>,
+        struct ScoreDocument {
+            #[serde(rename = "not_flown")]
+            incomplete: Option<IncompleteRun>,
         }
         let path = directory.join("score.json");
         if !path.is_file() {
@@ -67,13 +68,13 @@ impl NotFlown {
         }
         let text = sim::regular_file::read_text(&path, LONGEST_JSON)
             .map_err(|source| FileError::io(&path, "read", source))?;
-        let rest: Rest =
+        let document: ScoreDocument =
             serde_json::from_str(&text).map_err(|error| FileError::format(&path, "score", error))?;
-        Ok(rest.not_flown)
+        Ok(document.incomplete)
     }
 }
 
-impl fmt::Display for NotFlown {
+impl fmt::Display for IncompleteRun {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { frames, failed_starts, reason } = self;
         let failed = FailedStarts { count: *failed_starts, reason: reason.clone() };
@@ -92,7 +93,7 @@ pub struct FirstFailure {
 
 impl FirstFailure {
     /// That of an image, if the pipeline itself failed at it.
-    pub(crate) fn of<I: Interface>(frame: u64, outcome: &I::Outcome) -> Option<Self> {
+    pub(crate) fn from_outcome<I: Interface>(frame: u64, outcome: &I::Outcome) -> Option<Self> {
         I::failure(outcome).map(|reason| Self { frame, reason: reason.to_owned() })
     }
 }

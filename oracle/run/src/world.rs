@@ -7,7 +7,7 @@ use std::str::FromStr;
 use std::sync::{Mutex, PoisonError};
 
 use contract::{FailedStarts, Interface, Pipeline, PipelineFactory};
-use files::{Failure, FileError, PartialFiles, RunDirectory, WholeFile};
+use files::{AtomicFile, Failure, FileError, PartialFiles, RunDirectory};
 use indexmap::IndexMap;
 use pipeline::external::Protocol;
 use scenario::AttitudeChoice;
@@ -17,11 +17,11 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::any_world::{Options, ScenarioSource};
-use crate::flight::{Flight, in_order};
-use crate::run_result::{AnswerSummary, FirstFailure, NotFlown, RunResult};
+use crate::frame_jobs::{FrameJobs, process_in_order};
+use crate::run_result::{AnswerSummary, FirstFailure, IncompleteRun, RunResult};
 
 /// Starts of a pipeline in a row that may fail before a run is over.
-const MOST_FAILED_STARTS: u32 = 3;
+const MAX_FAILED_STARTS: u32 = 3;
 
 /// The setup that pipelines of a world are built with.
 pub type SetupOf<W> = <<W as World>::Interface as Interface>::Setup;
@@ -141,7 +141,7 @@ pub trait World: Sized + Send + Sync + 'static {
     ///
     /// # Errors
     /// A [`Failure`] that says why it cannot.
-    fn check_flight(&self, _: &Flight<Self::Images>) -> Result<(), Failure> {
+    fn check_frame_jobs(&self, _: &FrameJobs<Self::Images>) -> Result<(), Failure> {
         Ok(())
     }
 
@@ -154,7 +154,7 @@ pub trait World: Sized + Send + Sync + 'static {
     ///
     /// # Errors
     /// [`Failure::Usage`] for a format that is no stream, or a world that has none.
-    fn check_stream(&self, _: &Flight<Self::Images>) -> Result<(), Failure> {
+    fn check_stream(&self, _: &FrameJobs<Self::Images>) -> Result<(), Failure> {
         let code = Self::CODE;
         Err(Failure::Usage(format!(
             "--out is -, expected the name of a place: {code} writes nothing to standard output (`./-` is a file)"
@@ -165,8 +165,8 @@ pub trait World: Sized + Send + Sync + 'static {
     ///
     /// # Errors
     /// As [`World::check_stream`]; a [`Failure`] when it cannot be written.
-    fn stream(&self, flight: &Flight<Self::Images>) -> Result<(), Failure> {
-        self.check_stream(flight)
+    fn stream(&self, frame_jobs: &FrameJobs<Self::Images>) -> Result<(), Failure> {
+        self.check_stream(frame_jobs)
     }
 
     /// Opens a dataset for a pipeline: real images, or a rendered one.
@@ -233,7 +233,7 @@ pub trait World: Sized + Send + Sync + 'static {
         _: &Self::Workspace<'_>,
         _: &Self::Exposure,
         _: &RunDirectory,
-        _: &Flight<Self::Images>,
+        _: &FrameJobs<Self::Images>,
     ) -> Result<(), Failure> {
         Ok(())
     }
@@ -245,7 +245,9 @@ pub trait World: Sized + Send + Sync + 'static {
     ///
     /// # Errors
     /// A [`Failure`] when it cannot be configured.
-    fn beside(&self) -> Result<Option<Box<dyn PipelineFactory<Self::Interface> + Send>>, Failure> {
+    fn comparison_pipeline(
+        &self,
+    ) -> Result<Option<Box<dyn PipelineFactory<Self::Interface> + Send>>, Failure> {
         Ok(None)
     }
 
@@ -253,7 +255,7 @@ pub trait World: Sized + Send + Sync + 'static {
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
-    fn informed(&self) -> Result<Option<Box<dyn InformedPipeline<Self>>>, Failure> {
+    fn informed_pipeline(&self) -> Result<Option<Box<dyn InformedPipeline<Self>>>, Failure> {
         Ok(None)
     }
 
@@ -264,7 +266,7 @@ pub trait World: Sized + Send + Sync + 'static {
     fn dataset<'a>(
         &'a self,
         directory: &'a RunDirectory,
-        flight: &Flight<Self::Images>,
+        frame_jobs: &FrameJobs<Self::Images>,
     ) -> Result<Self::Dataset<'a>, Failure>;
 
     /// A scorer that has seen no frame.
@@ -289,11 +291,11 @@ pub trait World: Sized + Send + Sync + 'static {
     fn render(
         &self,
         directory: &RunDirectory,
-        flight: &Flight<Self::Images>,
+        frame_jobs: &FrameJobs<Self::Images>,
         done: impl Fn(),
     ) -> Result<(), Failure> {
-        let mut dataset = self.dataset(directory, flight)?;
-        fly(self, directory, flight, |exposure| {
+        let mut dataset = self.dataset(directory, frame_jobs)?;
+        run_frames(self, directory, frame_jobs, |exposure| {
             let (image, telemetry, truth) = Self::receive(exposure, &Self::Feedback::default());
             dataset.add(&image, telemetry, truth)?;
             done();
@@ -312,24 +314,25 @@ pub trait World: Sized + Send + Sync + 'static {
     fn run(
         &self,
         directory: &RunDirectory,
-        flight: &Flight<Self::Images>,
+        frame_jobs: &FrameJobs<Self::Images>,
         factory: &dyn PipelineFactory<Self::Interface>,
         go_on: impl Fn() -> Result<(), Failure>,
     ) -> Result<RunResult<Self::Judgement>, Failure> {
-        let mut dataset = self.dataset(directory, flight)?;
-        let mut running = Running::build(self, factory)?;
+        let mut dataset = self.dataset(directory, frame_jobs)?;
+        let mut running = RunningPipeline::build(self, factory)?;
         let mut answers = Self::Answers::create(&Self::Answers::files(&directory.measurements()))?;
         let mut scorer = self.scorer();
-        let mut beside = match self.beside()? {
+        let mut beside = match self.comparison_pipeline()? {
             Some(factory) => Some((factory.build(self.setup())?, self.scorer())),
             None => None,
         };
         let mut first_failure = None;
-        let flown = fly(self, directory, flight, |exposure| {
+        let ran = run_frames(self, directory, frame_jobs, |exposure| {
             let FrameAnswer { image, telemetry, truth, outcome } = running.process(exposure)?;
             let number = Self::Interface::number(&image);
-            first_failure =
-                first_failure.take().or_else(|| FirstFailure::of::<Self::Interface>(number, &outcome));
+            first_failure = first_failure
+                .take()
+                .or_else(|| FirstFailure::from_outcome::<Self::Interface>(number, &outcome));
             answers.add(number, &outcome)?;
             scorer.add(&truth, &telemetry, &outcome)?;
             if let Some((pipeline, scorer)) = &mut beside {
@@ -339,23 +342,25 @@ pub trait World: Sized + Send + Sync + 'static {
             go_on()?;
             running.check_starts().map(|()| image)
         });
-        let not_flown = running.not_flown(&flight.frames);
-        match flown {
+        let incomplete = running.incomplete(&frame_jobs.frames);
+        match ran {
             Err(Failure::NotStarted(_)) => {}
-            flown => flown?,
+            ran => ran?,
         }
         dataset.finish()?;
         answers.finish()?;
         let mut scored = scorer.finish();
         if let Some((_, scorer)) = beside {
-            scored.show_beside(scorer.finish());
+            scored.show_comparison(scorer.finish());
         }
-        let json =
-            serde_json::to_string_pretty(&ScoreFile { score: scored.score(), not_flown: not_flown.as_ref() })
-                .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?;
-        WholeFile::with_text(&directory.score(), &(json + "\n"))?.commit_new()?;
+        let json = serde_json::to_string_pretty(&ScoreFile {
+            score: scored.score(),
+            incomplete: incomplete.as_ref(),
+        })
+        .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?;
+        AtomicFile::with_text(&directory.score(), &(json + "\n"))?.commit_new()?;
         directory.seal()?;
-        Ok(RunResult { scored, first_failure, not_flown })
+        Ok(RunResult { scored, first_failure, incomplete })
     }
 
     /// Makes frames on `jobs` threads, has a fresh pipeline process them, and hands each with its answer to `take`, in order, on
@@ -370,10 +375,10 @@ pub trait World: Sized + Send + Sync + 'static {
         factory: &dyn PipelineFactory<Self::Interface>,
         mut take: impl FnMut(FrameAnswer<Self>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let mut running = Running::build(self, factory)?;
+        let mut running = RunningPipeline::build(self, factory)?;
         let make = |workspace: &mut Self::Workspace<'_>, frame| self.expose(workspace, frame);
         let bytes = self.exposure_bytes() as u64;
-        in_order(
+        process_in_order(
             frames,
             jobs,
             bytes,
@@ -396,13 +401,13 @@ pub trait World: Sized + Send + Sync + 'static {
         frames: Range<u64>,
         factory: &dyn PipelineFactory<Self::Interface>,
     ) -> Result<RunResult<Self::Judgement>, Failure> {
-        let mut running = Running::build(self, factory)?;
+        let mut running = RunningPipeline::build(self, factory)?;
         let mut first_failure = None;
         let mut scorer = self.scorer();
         let mut workspace = self.workspace()?;
         for frame in frames.clone() {
             let processed = running.process(self.expose(&mut workspace, frame)?)?;
-            let failure = || FirstFailure::of::<Self::Interface>(frame, &processed.outcome);
+            let failure = || FirstFailure::from_outcome::<Self::Interface>(frame, &processed.outcome);
             first_failure = first_failure.or_else(failure);
             scorer.add(&processed.truth, &processed.telemetry, &processed.outcome)?;
             Self::reuse(&mut workspace, processed.image);
@@ -410,7 +415,7 @@ pub trait World: Sized + Send + Sync + 'static {
                 break;
             }
         }
-        Ok(RunResult { scored: scorer.finish(), first_failure, not_flown: running.not_flown(&frames) })
+        Ok(RunResult { scored: scorer.finish(), first_failure, incomplete: running.incomplete(&frames) })
     }
 }
 
@@ -536,7 +541,7 @@ pub trait Judgement {
     fn units(&self) -> UnitTable;
 
     /// Takes the judgement of another pipeline on the same frames, to be shown beside this one.
-    fn show_beside(&mut self, _: Self)
+    fn show_comparison(&mut self, _: Self)
     where
         Self: Sized,
     {
@@ -544,7 +549,7 @@ pub trait Judgement {
 }
 
 /// A pipeline at work on a sequence.
-struct Running<W: World> {
+struct RunningPipeline<W: World> {
     pipeline: Processor<W>,
     feedback: W::Feedback,
 }
@@ -554,9 +559,9 @@ enum Processor<W: World> {
     Informed(Box<dyn InformedPipeline<W>>),
 }
 
-impl<W: World> Running<W> {
+impl<W: World> RunningPipeline<W> {
     fn build(world: &W, factory: &dyn PipelineFactory<W::Interface>) -> Result<Self, Failure> {
-        let pipeline = match world.informed()? {
+        let pipeline = match world.informed_pipeline()? {
             Some(informed) => Processor::Informed(informed),
             None => Processor::Own(factory.build(world.setup())?),
         };
@@ -584,14 +589,15 @@ impl<W: World> Running<W> {
         check_starts(self.failed_starts())
     }
 
-    fn not_flown(&self, frames: &Range<u64>) -> Option<NotFlown> {
-        self.failed_starts().map(|failed| NotFlown::of(frames.end - frames.start, failed))
+    fn incomplete(&self, frames: &Range<u64>) -> Option<IncompleteRun> {
+        self.failed_starts()
+            .map(|failed| IncompleteRun::from_failed_starts(frames.end - frames.start, failed))
     }
 }
 
 /// Refuses to go on with a pipeline that does not start.
 fn check_starts(failed: Option<&FailedStarts>) -> Result<(), Failure> {
-    match failed.filter(|failed| failed.count >= MOST_FAILED_STARTS) {
+    match failed.filter(|failed| failed.count >= MAX_FAILED_STARTS) {
         Some(failed) => Err(failed.clone().into()),
         None => Ok(()),
     }
@@ -602,16 +608,16 @@ fn check_starts(failed: Option<&FailedStarts>) -> Result<(), Failure> {
 struct ScoreFile<'a, S> {
     #[serde(flatten)]
     score: &'a S,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    not_flown: Option<&'a NotFlown>,
+    #[serde(rename = "not_flown", skip_serializing_if = "Option::is_none")]
+    incomplete: Option<&'a IncompleteRun>,
 }
 
 /// Makes frames, saves what is kept of each apart, and hands them to `take`, which gives back their images: later ones are made in
 /// their memory.
-fn fly<W: World>(
+fn run_frames<W: World>(
     world: &W,
     directory: &RunDirectory,
-    flight: &Flight<W::Images>,
+    frame_jobs: &FrameJobs<W::Images>,
     mut take: impl FnMut(W::Exposure) -> Result<ImageOf<W>, Failure>,
 ) -> Result<(), Failure> {
     let spare = Mutex::new(Vec::new());
@@ -620,13 +626,13 @@ fn fly<W: World>(
         let reused = spares().pop();
         reused.into_iter().for_each(|image| W::reuse(workspace, image));
         let exposure = world.expose(workspace, frame)?;
-        world.save(workspace, &exposure, directory, flight)?;
+        world.save(workspace, &exposure, directory, frame_jobs)?;
         Ok(exposure)
     };
-    let (frames, bytes) = (flight.frames.clone(), world.exposure_bytes() as u64);
-    in_order(
+    let (frames, bytes) = (frame_jobs.frames.clone(), world.exposure_bytes() as u64);
+    process_in_order(
         frames,
-        flight.jobs,
+        frame_jobs.jobs,
         bytes,
         || world.workspace(),
         make,
@@ -650,7 +656,7 @@ pub fn process<I: Interface, A: Answers<I>>(
 ) -> Result<AnswerCount, Failure> {
     // Under other names until all is done, so that a run that fails leaves nothing in the way of the next one.
     let files = A::files(measurements);
-    let partial = PartialFiles::of(&files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    let partial = PartialFiles::for_paths(&files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let waiting: Vec<PathBuf> = (0..files.len()).map(|index| partial.path(index).to_owned()).collect();
     let processed = process_into(images, setup, factory, A::create(&waiting)?, done)?;
     partial.complete()?;
@@ -673,7 +679,7 @@ pub fn process_into<I: Interface, A: Answers<I>>(
     for image in images {
         let (image, telemetry) = image?;
         let (number, outcome) = (I::number(&image), pipeline.process(&image, &telemetry));
-        let failure = || FirstFailure::of::<I>(number, &outcome);
+        let failure = || FirstFailure::from_outcome::<I>(number, &outcome);
         processed.first_failure = processed.first_failure.or_else(failure);
         answers.add(number, &outcome)?;
         processed.frames += 1;

@@ -8,14 +8,14 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use score::FigureSpec;
 
 use crate::any_world::AnyWorld;
-use crate::any_world::erased::Of;
+use crate::any_world::erased::ErasedWorld;
 use crate::{DockingMission, FarRangeMission};
 
 /// The world of a scenario that names none.
-pub const FIRST: &dyn AnyWorld = &Of::<FarRangeMission>::NEW;
+pub const FIRST: &dyn AnyWorld = &ErasedWorld::<FarRangeMission>::NEW;
 
 /// The worlds that there are: one line each.
-const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &Of::<DockingMission>::NEW];
+const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &ErasedWorld::<DockingMission>::NEW];
 
 /// Worlds of somebody's own.
 static REGISTERED: RwLock<Vec<&'static dyn AnyWorld>> = RwLock::new(Vec::new());
@@ -28,14 +28,14 @@ fn by_key(world: &'static dyn AnyWorld) -> impl Iterator<Item = (String, FigureS
     world.figures().into_iter().map(|figure| (figure.name.clone(), figure))
 }
 
-/// Adds a world for the rest of the process, as in `register(&Of::<MyWorld>::NEW)`: every command, study and gate then has it.
+/// Adds a world for the rest of the process, as in `register(&ErasedWorld::<MyWorld>::NEW)`: every command, study and gate then has it.
 pub fn register(world: &'static dyn AnyWorld) {
     FIGURES.write().unwrap_or_else(PoisonError::into_inner).extend(by_key(world));
     REGISTERED.write().unwrap_or_else(PoisonError::into_inner).push(world);
 }
 
 /// The figure of a key, of whatever world; a key that no world has is [`FigureSpec::unknown`].
-pub fn figure_called(key: &str) -> FigureSpec {
+pub fn figure_by_name(key: &str) -> FigureSpec {
     let figures = FIGURES.read().unwrap_or_else(PoisonError::into_inner);
     figures.get(key).cloned().unwrap_or_else(|| FigureSpec::unknown(key))
 }
@@ -50,7 +50,7 @@ pub fn worlds() -> Vec<&'static dyn AnyWorld> {
 ///
 /// # Errors
 /// A message that names the word and those that there are.
-pub fn world_called(word: &str) -> Result<&'static dyn AnyWorld, String> {
+pub fn world_by_name(word: &str) -> Result<&'static dyn AnyWorld, String> {
     let worlds = worlds();
     worlds.iter().copied().find(|world| world.code() == word).ok_or_else(|| {
         let codes: Vec<&str> = worlds.iter().map(|world| world.code()).collect();

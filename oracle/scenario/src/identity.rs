@@ -77,7 +77,7 @@ mod tests {
     const SCENARIO: &str = "title = \"a\"\nseed = 1\n[psf]\nsigma_px = 0.8\n[far_range]\nthreshold = 4\n[[schedule]]\ncount = 3\n";
 
     #[test]
-    fn what_differs_first_is_named_down_to_its_place() {
+    fn what_differs_first_is_named_down_to_its_position() {
         let value = |text: &str| Value::Table(text.parse().unwrap());
         for (a, b, at, of_a, of_b) in [
             // Neither has what the other has; by name, not by place.
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn the_content_of_a_file_stands_in_the_place_of_its_path() {
+    fn the_content_of_a_file_replaces_its_path() {
         let scenario =
             |path: &str| format!("{SCENARIO}[catalog]\nsource = \"{path}\"\n").parse::<Table>().unwrap();
         let split = |path: &str, sha256: &str| {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use files::sha256::sha256_hex;
 use files::toml_file;
-use files::{FileError, WholeFile};
+use files::{AtomicFile, FileError};
 use serde::{Deserialize, Serialize};
 
 use crate::{FarRangeScenario, Stage};
@@ -230,7 +230,7 @@ impl<S: ScenarioFile> RunFile<S> {
     /// [`Failure`] when it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Failure> {
         let text = S::run_to_toml(self)?;
-        Ok(WholeFile::with_text(path, &text)?.commit_new()?)
+        Ok(AtomicFile::with_text(path, &text)?.commit_new()?)
     }
 
     /// Reads the file.

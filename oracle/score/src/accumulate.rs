@@ -15,8 +15,8 @@ use super::cause::{Cause, Detector};
 use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use super::figure_spec::{Better, FigureSpec};
 use super::report::{GroupScore, Score, names};
-use super::settled;
-use super::verdict::{FrameVerdict, Taken, Unproject, Verdict, judge};
+use super::settling;
+use super::verdict::{FrameVerdict, MistakenObject, Unproject, Verdict, judge};
 use crate::covariance::consistency;
 use crate::covariance::image_state::ImageState;
 
@@ -130,7 +130,7 @@ fn check_possible(truth: &FrameTruth, objects: &[ObjectTruth]) -> Result<(), Sco
 ///     inject: None,
 ///     columns: 752,
 ///     rows: 580,
-///     limits: WithinLimits::of_degrees([0.024, 0.048]),
+///     limits: WithinLimits::from_degrees([0.024, 0.048]),
 ///     warm_up_frames: 0,
 ///     unproject: Box::new(|_| Some(contract::Direction::z())),
 /// };
@@ -182,7 +182,9 @@ impl<'a> Scorer<'a> {
         let verdict = judge(truth, objects, outcome, detector, &self.context.unproject, granted);
         let position = outcome.and_then(Outcome::measurement).map(|measurement| measurement.position);
         let image = match verdict {
-            Verdict::Correct { .. } => position.and_then(|position| ImageState::of(position, objects)),
+            Verdict::Correct { .. } => {
+                position.and_then(|position| ImageState::from_objects(position, objects))
+            }
             _ => None,
         };
         let verdict = FrameVerdict {
@@ -236,8 +238,8 @@ impl<'a> Scorer<'a> {
 
 /// The figures of every score, in their order.
 pub fn figures() -> Vec<FigureSpec> {
-    let limits = WithinLimits::of_degrees([0.0; 2]);
-    definitions(&limits).into_iter().map(|definition| definition.figure).chain([settled::spec()]).collect()
+    let limits = WithinLimits::from_degrees([0.0; 2]);
+    definitions(&limits).into_iter().map(|definition| definition.figure).chain([settling::spec()]).collect()
 }
 
 /// The frames of each group in order of time, with those of the warm-up in the group that they precede: what a start is, with no regard to
@@ -283,7 +285,7 @@ fn group_score(
         figures: definitions(limits)
             .iter()
             .map(|definition| (definition.figure.name.clone(), definition.figure(sequences)))
-            .chain([(settled::spec().name, settled::figure(starts))])
+            .chain([(settling::spec().name, settling::figure(starts))])
             .collect(),
         misses: causes(&|verdict| match verdict {
             Verdict::Missed { cause } => Some(*cause),
@@ -295,14 +297,14 @@ fn group_score(
         }),
         wrong_taken: counts(
             &[
-                Taken::Star(0),
-                Taken::Planet(0),
-                Taken::Moon,
-                Taken::HotPixel(0),
-                Taken::CosmicRay(0),
-                Taken::Nothing,
+                MistakenObject::Star(0),
+                MistakenObject::Planet(0),
+                MistakenObject::Moon,
+                MistakenObject::HotPixel(0),
+                MistakenObject::CosmicRay(0),
+                MistakenObject::Nothing,
             ]
-            .map(Taken::code),
+            .map(MistakenObject::code),
             frames().filter_map(|frame| match frame.verdict {
                 Verdict::Wrong { taken, .. } => Some(taken.code()),
                 _ => None,
@@ -334,10 +336,10 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
         let holds = move |frame: &FrameVerdict| {
             frame.verdict.line_of_sight_error().map(|error| component(error).abs() < limit)
         };
-        Definition::rate(name, words, holds).within(limit_deg).resting_on_attitude()
+        Definition::rate(name, words, holds).with_limit_deg(limit_deg).resting_on_attitude()
     };
     let px = |name: &str, words: &str, reduction: Reduction, component: fn(AnswerError) -> Option<f64>| {
-        Definition::of(name, words, "px", reduction, move |frame: &FrameVerdict| match frame.verdict {
+        Definition::amount(name, words, "px", reduction, move |frame: &FrameVerdict| match frame.verdict {
             Verdict::Correct { error } => component(error),
             _ => None,
         })
@@ -347,7 +349,7 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
             Verdict::Correct { error } => Some(component(error.line_of_sight?).degrees()),
             _ => None,
         };
-        Definition::of(name, words, "°", reduction, value).resting_on_attitude()
+        Definition::amount(name, words, "°", reduction, value).resting_on_attitude()
     };
     let ra = |error: LineOfSightError| error.ra;
     let dec = |error: LineOfSightError| error.dec;
@@ -367,9 +369,9 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
         within(names::DEC_WITHIN_2PX, "Dec within 2 px", dec, dec_2px),
         of_all(names::CORRECT_RATE, "correct rate", |frame| matches!(frame.verdict, Verdict::Correct { .. })),
         of_all(names::WRONG_RATE, "wrong rate", |frame| matches!(frame.verdict, Verdict::Wrong { .. }))
-            .best(Better::Less),
+            .with_direction(Better::Less),
         of_all(names::MISS_RATE, "miss rate", |frame| matches!(frame.verdict, Verdict::Missed { .. }))
-            .best(Better::Less),
+            .with_direction(Better::Less),
         deg(names::RA_RMS_DEG, "RA RMS", Reduction::Rms, ra),
         deg(names::DEC_RMS_DEG, "Dec RMS", Reduction::Rms, dec),
         deg(names::RA_MEAN_DEG, "RA mean", Reduction::Mean, ra),
@@ -383,7 +385,8 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
         px(names::CENTROID_X_MEDIAN_PX, "centroid x median", Reduction::Median, x_px),
         px(names::CENTROID_Y_MEDIAN_PX, "centroid y median", Reduction::Median, y_px),
         Definition::rate(names::LINE_OF_SIGHT_RATE, "line of sight rate", has_own),
-        Definition::of(names::STARS_MEAN, "stars mean", None, Reduction::Mean, stars).best(Better::More),
+        Definition::amount(names::STARS_MEAN, "stars mean", None, Reduction::Mean, stars)
+            .with_direction(Better::More),
         of_all(names::ATTITUDE_FROM_STARS_RATE, "attitude from stars rate", |frame| {
             frame.attitude_source == Some(AttitudeSource::Stars)
         }),
@@ -395,7 +398,7 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
 impl UnitTable {
     /// The frames of a far-range run, from their verdicts, with what each adds to every figure but the frames until settled, which only
     /// a whole sequence has.
-    pub fn of_frames(frames: &[FrameVerdict], limits: &WithinLimits) -> Self {
+    pub fn from_frames(frames: &[FrameVerdict], limits: &WithinLimits) -> Self {
         let unit = |frame: &FrameVerdict| {
             let row = frame.row();
             UnitVerdict {
@@ -411,8 +414,8 @@ impl UnitTable {
             figures: definitions(limits)
                 .iter()
                 .map(|definition| {
-                    FigureTerms::of_counted(definition, frames, |frame| !frame.is_warm_up)
-                        .resting_on(&definition.figure, attitude.as_ref())
+                    FigureTerms::from_counted_units(definition, frames, |frame| !frame.is_warm_up)
+                        .with_attitude(&definition.figure, attitude.as_ref())
                 })
                 .collect(),
         }

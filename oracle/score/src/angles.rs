@@ -17,7 +17,7 @@ pub struct WithinLimits {
 
 impl WithinLimits {
     /// One and two pixels of a camera at its principal point, without distortion, each axis by its own scale.
-    pub fn of_pixels(camera: &Camera) -> Self {
+    pub fn from_pixels(camera: &Camera) -> Self {
         let (across_columns, across_rows) = camera.focal_length_px();
         let of = |focal_length_px: f64| {
             [1.0, 2.0].map(|px: f64| Angle::from_radians(libm::atan(px / focal_length_px)).degrees())
@@ -26,7 +26,7 @@ impl WithinLimits {
     }
 
     /// The same two angles for both axes, degrees.
-    pub fn of_degrees(limits: [f64; 2]) -> Self {
+    pub fn from_degrees(limits: [f64; 2]) -> Self {
         Self { ra_deg: limits, dec_deg: limits }
     }
 }
@@ -57,8 +57,8 @@ impl AttitudeUsed {
 /// where none of them has a line of sight. `own` and `centroids`: whether there are detections with a line of sight of their own, and with
 /// a centroid alone; `granted` is what the latter are given. `None` of nothing detected.
 pub fn attitude_word(own: bool, centroids: bool, granted: Option<&str>) -> Option<String> {
-    let own_word = own.then_some(AttitudeUsed::Own.code());
-    let words: Vec<&str> = own_word.into_iter().chain(granted.filter(|_| centroids)).collect();
+    let own_code = own.then_some(AttitudeUsed::Own.code());
+    let words: Vec<&str> = own_code.into_iter().chain(granted.filter(|_| centroids)).collect();
     match (words.is_empty(), centroids) {
         (true, false) => None,
         (true, true) => Some("none".to_owned()),
@@ -107,14 +107,14 @@ pub struct AnswerError {
 
 impl AnswerError {
     /// The errors of a measurement, in units of the covariances that it states too.
-    pub fn of(
+    pub fn from_measurement(
         measurement: &Measurement,
         centroid_px: Option<[f64; 2]>,
         line_of_sight: Option<LineOfSightError>,
     ) -> Self {
         let own = line_of_sight.filter(|error| error.attitude == AttitudeUsed::Own);
         let normalised = |error: Option<[f64; 2]>, covariance: Option<Covariance2>| {
-            Some(NormalisedError::of(error?, &covariance?))
+            Some(NormalisedError::from_error(error?, &covariance?))
         };
         Self {
             centroid_px,
@@ -155,7 +155,7 @@ impl LineOfSightError {
     ///
     /// `None` when there is no such direction, or no finite one: no line of sight and no attitude granted, a line of sight that is not a
     /// number, or no direction that has its image at that position.
-    pub fn of(
+    pub fn from_measurement(
         measurement: &Measurement,
         truth: &FrameTruth,
         unproject: &dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>>,
@@ -210,15 +210,20 @@ mod tests {
     /// The error of a line of sight of the pipeline's own.
     fn own(line_of_sight: Direction<Icrs>, truth: &FrameTruth) -> LineOfSightError {
         let measurement = measured(CENTRE, Some(line_of_sight));
-        LineOfSightError::of(&measurement, truth, &unproject, GrantedAttitude::None).unwrap()
+        LineOfSightError::from_measurement(&measurement, truth, &unproject, GrantedAttitude::None).unwrap()
     }
 
     #[test]
     fn one_pixel_to_the_right_is_positive_in_ra_and_down_is_positive_in_dec() {
         let at = |x, y| {
             let point = PixelPoint::new(CENTRE.x + x, CENTRE.y + y);
-            LineOfSightError::of(&measured(point, None), &frame(0), &unproject, GrantedAttitude::True)
-                .unwrap()
+            LineOfSightError::from_measurement(
+                &measured(point, None),
+                &frame(0),
+                &unproject,
+                GrantedAttitude::True,
+            )
+            .unwrap()
         };
         let (right, down) = (at(1.0, 0.0), at(0.0, 1.0));
         assert!((right.ra.radians() - libm::atan(PIXEL)).abs() < 1e-12 && right.dec.radians().abs() < 1e-12);
@@ -241,7 +246,9 @@ mod tests {
         let wrong_attitude = roll * truth.camera_from_icrs;
         let line_of_sight = wrong_attitude.inverse() * direction_at(CENTRE);
         assert!((own(line_of_sight, &truth).ra.radians() + 0.001).abs() < 1e-9);
-        let of = |granted| LineOfSightError::of(&measured(CENTRE, None), &truth, &unproject, granted);
+        let of = |granted| {
+            LineOfSightError::from_measurement(&measured(CENTRE, None), &truth, &unproject, granted)
+        };
         let granted = of(GrantedAttitude::True).unwrap();
         assert!(granted.ra.radians().abs() < 1e-12);
         assert_eq!(granted.attitude, AttitudeUsed::True);
@@ -250,39 +257,41 @@ mod tests {
         assert!((granted.ra.radians() + 0.001).abs() < 1e-9);
         assert_eq!(granted.attitude, AttitudeUsed::Telemetry);
         // A line of sight of its own is what the pipeline says, whatever is granted to others.
-        let told = LineOfSightError::of(
+        let error = LineOfSightError::from_measurement(
             &measured(CENTRE, Some(line_of_sight)),
             &truth,
             &unproject,
             GrantedAttitude::True,
         );
-        assert_eq!(told, Some(own(line_of_sight, &truth)));
+        assert_eq!(error, Some(own(line_of_sight, &truth)));
     }
 
     /// What it had been given silently, the true attitude, leaves nothing of an error but the image's.
     #[test]
     fn a_centroid_has_no_line_of_sight_unless_an_attitude_is_granted() {
-        let of = |granted| LineOfSightError::of(&measured(CENTRE, None), &frame(0), &unproject, granted);
+        let of = |granted| {
+            LineOfSightError::from_measurement(&measured(CENTRE, None), &frame(0), &unproject, granted)
+        };
         assert_eq!(of(GrantedAttitude::None), None);
         assert_eq!(GrantedAttitude::default(), GrantedAttitude::None);
     }
 
     #[test]
     fn a_pixel_of_each_axis_has_the_angle_of_its_own_scale() {
-        let limits = WithinLimits::of_pixels(&camera());
+        let limits = WithinLimits::from_pixels(&camera());
         // 8.6 and 8.3 µm at 20.187 mm: the paper's 0.024° are 0.983 px across columns and 1.019 px across rows.
         for (limits, px) in [(limits.ra_deg, 0.983), (limits.dec_deg, 1.019)] {
             assert!((0.024 / limits[0] - px).abs() < 5e-4, "{limits:?}");
             assert!((0.048 / limits[1] - px).abs() < 5e-4, "{limits:?}");
         }
         assert_eq!(
-            WithinLimits::of_degrees([0.024, 0.048]),
+            WithinLimits::from_degrees([0.024, 0.048]),
             WithinLimits { ra_deg: [0.024, 0.048], dec_deg: [0.024, 0.048] }
         );
     }
 
     #[test]
-    fn the_attitude_of_a_run_is_told_in_a_word() {
+    fn the_attitude_of_a_run_is_reported_in_a_word() {
         for (own, centroids, granted, word) in [
             (true, false, Some("true"), Some("own")),
             (true, false, None, Some("own")),
@@ -331,9 +340,13 @@ mod tests {
     }
 
     #[test]
-    fn a_place_without_a_direction_has_no_error() {
-        let nowhere =
-            LineOfSightError::of(&measured(CENTRE, None), &frame(0), &|_| None, GrantedAttitude::True);
+    fn a_position_without_a_direction_has_no_error() {
+        let nowhere = LineOfSightError::from_measurement(
+            &measured(CENTRE, None),
+            &frame(0),
+            &|_| None,
+            GrantedAttitude::True,
+        );
         assert_eq!(nowhere, None);
     }
 }

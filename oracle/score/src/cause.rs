@@ -3,7 +3,7 @@
 use contract::{Cluster, Label, NoSolution, Outcome, Solution};
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
 
-use super::belonging::{covers, holds, merged_with, target};
+use super::cluster_members::{covers, holds, merged_with, target};
 
 /// Why the target was not taken. When several hold, the first in this order is the cause:
 ///
@@ -112,12 +112,12 @@ impl Cause {
     }
 
     /// Whether no pipeline could have found the target: it is outside the field, in eclipse, too faint or cut away.
-    pub fn is_beyond_help(self) -> bool {
+    pub fn is_undetectable(self) -> bool {
         matches!(self, Self::OutsideField | Self::InEclipse | Self::TooFaint | Self::CutByRoi)
     }
 
     /// Why the target was lost in an image that it shares with a brighter object of this kind.
-    pub(super) fn of_outshining(kind: ObjectKind) -> Self {
+    pub(super) fn from_brighter_object(kind: ObjectKind) -> Self {
         match kind {
             ObjectKind::Star => Self::MergedWithStar,
             ObjectKind::Planet => Self::MergedWithPlanet,
@@ -146,15 +146,15 @@ pub(super) fn cause(
     let Some(outcome) = outcome else { return Cause::NotReported };
     let target = target(objects);
     let neighbour = target.and_then(|target| merged_with(target, objects));
-    beyond_help(truth, target, detector)
-        .or_else(|| own_word(&outcome.solution))
-        .or_else(|| by_labels(target?, neighbour, &outcome.clusters))
-        .or_else(|| neighbour.map(|other| Cause::of_outshining(other.kind)))
+    undetectable_cause(truth, target, detector)
+        .or_else(|| pipeline_reason(&outcome.solution))
+        .or_else(|| cause_by_label(target?, neighbour, &outcome.clusters))
+        .or_else(|| neighbour.map(|other| Cause::from_brighter_object(other.kind)))
         .unwrap_or(Cause::Unexplained)
 }
 
 /// What no pipeline could have helped.
-fn beyond_help(truth: &FrameTruth, target: Option<&ObjectTruth>, detector: Detector) -> Option<Cause> {
+fn undetectable_cause(truth: &FrameTruth, target: Option<&ObjectTruth>, detector: Detector) -> Option<Cause> {
     let in_field = truth.target_position.is_some_and(|at| at.is_on_detector(detector.columns, detector.rows));
     if !in_field {
         Some(Cause::OutsideField)
@@ -168,7 +168,7 @@ fn beyond_help(truth: &FrameTruth, target: Option<&ObjectTruth>, detector: Detec
 }
 
 /// The reason that the pipeline gives, where it is a reason for the whole frame.
-fn own_word(solution: &Solution) -> Option<Cause> {
+fn pipeline_reason(solution: &Solution) -> Option<Cause> {
     match solution {
         Solution::NoSolution(NoSolution::Failed(_)) => Some(Cause::PipelineFailed),
         Solution::NoSolution(NoSolution::SaturatedFrame) => Some(Cause::SaturatedFrame),
@@ -179,7 +179,11 @@ fn own_word(solution: &Solution) -> Option<Cause> {
 }
 
 /// The label of the cluster at the target's place; `None` when the clusters are not told or say nothing.
-fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[Cluster]) -> Option<Cause> {
+fn cause_by_label(
+    target: &ObjectTruth,
+    neighbour: Option<&ObjectTruth>,
+    clusters: &[Cluster],
+) -> Option<Cause> {
     if clusters.is_empty() {
         return None;
     }
@@ -191,7 +195,7 @@ fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[
     match nearest.map(|cluster| cluster.label) {
         Some(Label::Star(_)) => Some(match neighbour {
             Some(other) if matches!(other.kind, ObjectKind::Star | ObjectKind::Planet | ObjectKind::Moon) => {
-                Cause::of_outshining(other.kind)
+                Cause::from_brighter_object(other.kind)
             }
             _ => Cause::TakenForStar,
         }),
@@ -204,7 +208,7 @@ fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[
         None => Some(
             neighbour
                 .filter(|other| clusters.iter().any(|cluster| holds(cluster.position, other)))
-                .map_or(Cause::BelowThreshold, |other| Cause::of_outshining(other.kind)),
+                .map_or(Cause::BelowThreshold, |other| Cause::from_brighter_object(other.kind)),
         ),
     }
 }
@@ -220,7 +224,7 @@ mod tests {
     const DETECTOR: Detector = Detector { columns: COLUMNS, rows: ROWS };
 
     /// The cause for a detectable target in sunlight, alone but for `others`.
-    fn of(outcome: &Outcome, others: &[ObjectTruth]) -> Cause {
+    fn cause_with(outcome: &Outcome, others: &[ObjectTruth]) -> Cause {
         let objects: Vec<_> = [target_with(1000.0)].into_iter().chain(others.iter().cloned()).collect();
         cause(&frame(0), &objects, Some(outcome), DETECTOR)
     }
@@ -240,7 +244,7 @@ mod tests {
     #[test]
     fn a_hot_pixel_beside_it_does_not_excuse_a_target_that_is_called_a_star() {
         let hot_pixel = hot_pixel_at(3, right_of_target(1.0), 5000.0);
-        assert_eq!(of(&labelled(Label::Star(7)), &[hot_pixel]), Cause::TakenForStar);
+        assert_eq!(cause_with(&labelled(Label::Star(7)), &[hot_pixel]), Cause::TakenForStar);
     }
 
     #[test]
@@ -281,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn the_pipelines_own_reason_is_heard() {
+    fn the_pipelines_reason_counts() {
         for (reason, expected) in [
             (NoSolution::Failed("out of memory".into()), Cause::PipelineFailed),
             (NoSolution::SaturatedFrame, Cause::SaturatedFrame),
@@ -289,12 +293,12 @@ mod tests {
             (NoSolution::EmptyFrame, Cause::BelowThreshold),
             (NoSolution::NoTarget, Cause::Unexplained),
         ] {
-            assert_eq!(of(&Outcome::none(reason), &[]), expected);
+            assert_eq!(cause_with(&Outcome::none(reason), &[]), expected);
         }
     }
 
     #[test]
-    fn the_label_of_the_targets_cluster_tells() {
+    fn the_label_of_the_targets_cluster_decides() {
         for (label, expected) in [
             (Label::Star(5), Cause::TakenForStar),
             (Label::Hotspot, Cause::TakenForHotspot),
@@ -302,7 +306,7 @@ mod tests {
             (Label::Unlinked, Cause::NotLinked),
             (Label::Target, Cause::Unexplained),
         ] {
-            assert_eq!(of(&labelled(label), &[]), expected, "{label:?}");
+            assert_eq!(cause_with(&labelled(label), &[]), expected, "{label:?}");
         }
     }
 
@@ -311,33 +315,33 @@ mod tests {
         let near = star_at(5, right_of_target(2.5), 800.0);
         let invisible = ObjectTruth { snr: 0.5, ..near.clone() };
         let apart = star_at(5, right_of_target(3.5), 800.0);
-        assert_eq!(of(&labelled(Label::Star(5)), &[near]), Cause::MergedWithStar);
-        assert_eq!(of(&labelled(Label::Star(5)), &[invisible]), Cause::TakenForStar);
-        assert_eq!(of(&labelled(Label::Star(5)), &[apart]), Cause::TakenForStar);
+        assert_eq!(cause_with(&labelled(Label::Star(5)), &[near]), Cause::MergedWithStar);
+        assert_eq!(cause_with(&labelled(Label::Star(5)), &[invisible]), Cause::TakenForStar);
+        assert_eq!(cause_with(&labelled(Label::Star(5)), &[apart]), Cause::TakenForStar);
     }
 
     #[test]
     fn a_common_cluster_drawn_to_a_brighter_star_is_still_a_merger() {
         let star = star_at(5, right_of_target(2.5), 50_000.0);
         let clusters = vec![cluster(right_of_target(2.4), Label::Star(5))];
-        assert_eq!(of(&Outcome { clusters, ..no_target() }, &[star]), Cause::MergedWithStar);
+        assert_eq!(cause_with(&Outcome { clusters, ..no_target() }, &[star]), Cause::MergedWithStar);
     }
 
     #[test]
     fn no_cluster_at_a_detectable_target_is_the_pipelines_threshold() {
         let clusters = vec![cluster(right_of_target(40.0), Label::Candidate)];
-        assert_eq!(of(&Outcome { clusters, ..no_target() }, &[]), Cause::BelowThreshold);
+        assert_eq!(cause_with(&Outcome { clusters, ..no_target() }, &[]), Cause::BelowThreshold);
     }
 
     #[test]
-    fn without_clusters_the_truth_tells() {
+    fn without_clusters_the_truth_decides() {
         let star = star_at(5, right_of_target(2.0), 5000.0);
         let hot = hot_pixel_at(9, right_of_target(1.0), 400.0);
-        assert_eq!(of(&no_target(), std::slice::from_ref(&star)), Cause::MergedWithStar);
-        assert_eq!(of(&no_target(), std::slice::from_ref(&hot)), Cause::TakenForHotspot);
-        assert_eq!(of(&no_target(), &[hot, star]), Cause::MergedWithStar);
+        assert_eq!(cause_with(&no_target(), std::slice::from_ref(&star)), Cause::MergedWithStar);
+        assert_eq!(cause_with(&no_target(), std::slice::from_ref(&hot)), Cause::TakenForHotspot);
+        assert_eq!(cause_with(&no_target(), &[hot, star]), Cause::MergedWithStar);
         let track = cosmic_ray_at(0, right_of_target(1.0), 900.0);
-        assert_eq!(of(&no_target(), &[track]), Cause::MergedWithCosmicRay);
+        assert_eq!(cause_with(&no_target(), &[track]), Cause::MergedWithCosmicRay);
     }
 
     #[test]
@@ -346,8 +350,8 @@ mod tests {
             [(ObjectKind::Planet, Cause::MergedWithPlanet), (ObjectKind::Moon, Cause::MergedWithMoon)]
         {
             let other = ObjectTruth { kind, ..star_at(5, right_of_target(2.0), 5000.0) };
-            assert_eq!(of(&no_target(), std::slice::from_ref(&other)), cause);
-            assert_eq!(of(&labelled(Label::Star(5)), &[other]), cause);
+            assert_eq!(cause_with(&no_target(), std::slice::from_ref(&other)), cause);
+            assert_eq!(cause_with(&labelled(Label::Star(5)), &[other]), cause);
         }
     }
 
@@ -356,12 +360,12 @@ mod tests {
         let elsewhere = right_of_target(40.0);
         let clusters = vec![cluster(elsewhere, Label::Target), cluster(CENTRE, Label::Candidate)];
         let outcome = Outcome { clusters, ..detected_at(elsewhere) };
-        assert_eq!(of(&outcome, &[]), Cause::LostMotionTest);
-        assert_eq!(of(&detected_at(elsewhere), &[]), Cause::Unexplained);
+        assert_eq!(cause_with(&outcome, &[]), Cause::LostMotionTest);
+        assert_eq!(cause_with(&detected_at(elsewhere), &[]), Cause::Unexplained);
     }
 
     #[test]
-    fn what_no_pipeline_could_help_comes_before_its_own_reason() {
+    fn what_no_pipeline_could_help_comes_before_the_pipelines_reason() {
         let truth = FrameTruth { target_visibility: Visibility::Invisible, ..frame(0) };
         let failed = Outcome::none(NoSolution::Failed("no light".into()));
         assert_eq!(cause(&truth, &[target_with(1.0)], Some(&failed), DETECTOR), Cause::TooFaint);

@@ -51,7 +51,7 @@ pub struct Definition<'a, U> {
 }
 
 impl<'a, U> Definition<'a, U> {
-    /// A rate of the units for which `holds` says something; more is better unless [`Definition::best`] says otherwise.
+    /// A rate of the units for which `holds` says something; more is better unless [`Definition::with_direction`] says otherwise.
     pub fn rate(
         name: impl Into<String>,
         words: impl Into<String>,
@@ -74,8 +74,8 @@ impl<'a, U> Definition<'a, U> {
     }
 
     /// A mean, median or root mean square of the units that have a value, in the unit `unit`: an error's, of which a root mean square is
-    /// the better the less it is, a mean or median the nearer to 0, unless [`Definition::best`] says otherwise.
-    pub fn of(
+    /// the better the less it is, a mean or median the nearer to 0, unless [`Definition::with_direction`] says otherwise.
+    pub fn amount(
         name: impl Into<String>,
         words: impl Into<String>,
         unit: impl Into<Option<&'static str>>,
@@ -90,7 +90,7 @@ impl<'a, U> Definition<'a, U> {
 
     /// The same with another direction.
     #[must_use]
-    pub fn best(mut self, better: Better) -> Self {
+    pub fn with_direction(mut self, better: Better) -> Self {
         self.figure.sense.better = better;
         self
     }
@@ -104,7 +104,7 @@ impl<'a, U> Definition<'a, U> {
 
     /// The same, of errors below a limit, degrees.
     #[must_use]
-    pub fn within(self, limit_deg: f64) -> Self {
+    pub fn with_limit_deg(self, limit_deg: f64) -> Self {
         Self { limit_deg: Some(limit_deg), ..self }
     }
 
@@ -165,29 +165,29 @@ pub struct FigureTerms {
 impl FigureTerms {
     /// The same figure with the attitude that its lines of sight rest on, if `figure`, which it is of, is one of lines of sight.
     #[must_use]
-    pub fn resting_on(self, figure: &FigureSpec, attitude: Option<&String>) -> Self {
+    pub fn with_attitude(self, figure: &FigureSpec, attitude: Option<&String>) -> Self {
         Self { attitude: attitude.filter(|_| figure.rests_on_attitude).cloned(), ..self }
     }
 
     /// The terms of units by a definition.
     pub fn new<U>(definition: &Definition<'_, U>, units: &[U]) -> Self {
-        Self::of_counted(definition, units, |_| true)
+        Self::from_counted_units(definition, units, |_| true)
     }
 
     /// The terms of units by a definition; those that are not counted have no value.
-    pub fn of_counted<U>(
+    pub fn from_counted_units<U>(
         definition: &Definition<'_, U>,
         units: &[U],
         is_counted: impl Fn(&U) -> bool,
     ) -> Self {
         let term = |unit: &U| if is_counted(unit) { definition.term(unit) } else { Term::default() };
         let terms = units.iter().map(term).collect();
-        let counted = Self::counted(&definition.figure.name, definition.reduction, terms);
+        let counted = Self::from_terms(&definition.figure.name, definition.reduction, terms);
         Self { limit_deg: definition.limit_deg, ..counted }
     }
 
     /// Terms that were counted, of a figure without a limit that rests on no attitude.
-    pub fn counted(name: &str, reduction: Reduction, terms: Vec<Term>) -> Self {
+    pub fn from_terms(name: &str, reduction: Reduction, terms: Vec<Term>) -> Self {
         Self { name: name.to_owned(), reduction, limit_deg: None, attitude: None, terms }
     }
 }
@@ -231,8 +231,8 @@ mod tests {
     #[test]
     fn figures_of_lines_of_sight_alone_rest_on_an_attitude() {
         for figure in crate::figures() {
-            let terms = FigureTerms::counted(&figure.name, Reduction::Mean, Vec::new());
-            let rests = terms.resting_on(&figure, Some(&"true".to_owned())).attitude.is_some();
+            let terms = FigureTerms::from_terms(&figure.name, Reduction::Mean, Vec::new());
+            let rests = terms.with_attitude(&figure, Some(&"true".to_owned())).attitude.is_some();
             let is_of_lines_of_sight = ["ra_", "dec_"].iter().any(|axis| figure.name.starts_with(axis));
             assert_eq!(rests, is_of_lines_of_sight, "{figure}");
         }

@@ -64,7 +64,7 @@ impl FigureSpec {
     }
 
     /// The label beside values that are written with their percent sign, and without any other unit.
-    pub fn beside_percent(&self) -> String {
+    pub fn label_without_percent(&self) -> String {
         if self.unit == Some("%") { self.words.clone() } else { self.to_string() }
     }
 }

@@ -24,8 +24,8 @@
 mod accumulate;
 mod angles;
 mod argon_table2;
-mod belonging;
 mod cause;
+mod cluster_members;
 mod covariance;
 mod definition;
 #[allow(
@@ -37,7 +37,7 @@ mod figure_spec;
 #[cfg(test)]
 mod hand_made;
 mod report;
-mod settled;
+mod settling;
 mod verdict;
 
 pub use accumulate::{FarRangeJudgement, ScoreContext, ScoreError, Scorer, WARM_UP, figures};
@@ -45,11 +45,11 @@ pub use angles::{
     AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_note, attitude_word,
 };
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
-pub use belonging::belonging_to;
 pub use cause::Cause;
+pub use cluster_members::brightest_member;
 pub use covariance::image_state::ImageState;
 pub use covariance::normalised_error::NormalisedError;
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 pub use figure_spec::{Better, FigureSpec, Kind, Sense, angle};
 pub use report::{ConsistencyRow, Figure, GroupScore, Score, is_zero, names, warm_up_note};
-pub use verdict::{FrameVerdict, Taken, Unproject, Verdict, VerdictRow};
+pub use verdict::{FrameVerdict, MistakenObject, Unproject, Verdict, VerdictRow};

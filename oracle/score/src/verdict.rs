@@ -7,8 +7,8 @@ use serde::Serialize;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 
 use super::angles::{AnswerError, GrantedAttitude, LineOfSightError};
-use super::belonging::{brightest, members, target, transmitted_electrons};
 use super::cause::{Cause, Detector, cause};
+use super::cluster_members::{brightest, members, target, transmitted_electrons};
 use crate::covariance::image_state::ImageState;
 use crate::covariance::normalised_error::NormalisedError;
 
@@ -39,7 +39,7 @@ pub enum Verdict {
         /// Error of the answer, from the true target.
         error: AnswerError,
         /// What was taken for the target.
-        taken: Taken,
+        taken: MistakenObject,
         /// Why the target itself was not taken.
         cause: Cause,
     },
@@ -48,7 +48,7 @@ pub enum Verdict {
 /// What was taken for the target: of the objects that belong to the chosen cluster, without the target, the one
 /// with the most transmitted electrons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Taken {
+pub enum MistakenObject {
     /// The star of this number in the catalogue.
     Star(u32),
     /// The planet of this number, 1 to 8.
@@ -63,7 +63,7 @@ pub enum Taken {
     Nothing,
 }
 
-impl Taken {
+impl MistakenObject {
     /// The word used in files; the number has a column of its own.
     pub fn code(self) -> &'static str {
         match self {
@@ -153,8 +153,8 @@ impl FrameVerdict {
             group: &self.group,
             verdict: self.verdict.code(),
             cause: cause.map(Cause::code),
-            taken: taken.map(Taken::code),
-            taken_id: taken.and_then(Taken::id),
+            taken: taken.map(MistakenObject::code),
+            taken_id: taken.and_then(MistakenObject::id),
             centroid_x_error_px: centroid_px.map(|[x, _]| x),
             centroid_y_error_px: centroid_px.map(|[_, y]| y),
             ra_error_deg: error.map(|error| error.ra.degrees()),
@@ -184,7 +184,7 @@ pub struct VerdictRow<'a> {
     pub verdict: &'static str,
     /// [`Cause::code`], when missed or wrong.
     pub cause: Option<&'static str>,
-    /// [`Taken::code`], when wrong.
+    /// [`MistakenObject::code`], when wrong.
     pub taken: Option<&'static str>,
     /// Number of the star or hot pixel taken.
     pub taken_id: Option<u32>,
@@ -230,7 +230,7 @@ pub(super) fn judge(
     let missed = |outcome| Verdict::Missed { cause: cause(truth, objects, outcome, detector) };
     let Some(answer) = outcome else { return missed(None) };
     let Some(measurement) = answer.measurement() else { return missed(outcome) };
-    let line_of_sight = LineOfSightError::of(measurement, truth, unproject, granted);
+    let line_of_sight = LineOfSightError::from_measurement(measurement, truth, unproject, granted);
     let is_on_detector = measurement.position.is_on_detector(detector.columns, detector.rows);
     if !is_on_detector || (measurement.line_of_sight.is_some() && line_of_sight.is_none()) {
         let no_answer = Outcome::none(NoSolution::Failed("the answer is no direction".to_owned()));
@@ -239,22 +239,22 @@ pub(super) fn judge(
     let centre = target(objects).map(|target| target.position).or(truth.target_position);
     let centroid_px =
         centre.map(|centre| [measurement.position.x - centre.x, measurement.position.y - centre.y]);
-    let error = AnswerError::of(measurement, centroid_px, line_of_sight);
-    match chosen(measurement.position, objects) {
-        Chosen::Target => Verdict::Correct { error },
-        Chosen::TargetOutshone(by) => {
-            Verdict::Wrong { error, taken: taken(by), cause: Cause::of_outshining(by.kind) }
+    let error = AnswerError::from_measurement(measurement, centroid_px, line_of_sight);
+    match cluster_content(measurement.position, objects) {
+        ClusterContent::Target => Verdict::Correct { error },
+        ClusterContent::TargetOutshone(by) => {
+            Verdict::Wrong { error, taken: mistaken_object(by), cause: Cause::from_brighter_object(by.kind) }
         }
-        Chosen::Other(other) => Verdict::Wrong {
+        ClusterContent::Other(other) => Verdict::Wrong {
             error,
-            taken: other.map_or(Taken::Nothing, taken),
+            taken: other.map_or(MistakenObject::Nothing, mistaken_object),
             cause: cause(truth, objects, outcome, detector),
         },
     }
 }
 
 /// What the cluster at the reported position holds.
-enum Chosen<'a> {
+enum ClusterContent<'a> {
     /// Mostly the target.
     Target,
     /// The target, and more of others, of which this is the brightest.
@@ -263,7 +263,7 @@ enum Chosen<'a> {
     Other(Option<&'a ObjectTruth>),
 }
 
-fn chosen(position: PixelPoint, objects: &[ObjectTruth]) -> Chosen<'_> {
+fn cluster_content(position: PixelPoint, objects: &[ObjectTruth]) -> ClusterContent<'_> {
     let members = || members(position, objects);
     let (mut of_target, mut total) = (0.0, 0.0);
     for object in members() {
@@ -274,22 +274,22 @@ fn chosen(position: PixelPoint, objects: &[ObjectTruth]) -> Chosen<'_> {
         }
     }
     if of_target > 0.5 * total {
-        return Chosen::Target;
+        return ClusterContent::Target;
     }
     match brightest(members().filter(|object| object.kind != ObjectKind::Target)) {
-        Some(other) if of_target > 0.0 => Chosen::TargetOutshone(other),
-        other => Chosen::Other(other),
+        Some(other) if of_target > 0.0 => ClusterContent::TargetOutshone(other),
+        other => ClusterContent::Other(other),
     }
 }
 
-fn taken(object: &ObjectTruth) -> Taken {
+fn mistaken_object(object: &ObjectTruth) -> MistakenObject {
     match object.kind {
-        ObjectKind::Star => Taken::Star(object.id),
-        ObjectKind::Planet => Taken::Planet(object.id),
-        ObjectKind::Moon => Taken::Moon,
-        ObjectKind::HotPixel => Taken::HotPixel(object.id),
-        ObjectKind::CosmicRay => Taken::CosmicRay(object.id),
-        ObjectKind::Target => Taken::Nothing,
+        ObjectKind::Star => MistakenObject::Star(object.id),
+        ObjectKind::Planet => MistakenObject::Planet(object.id),
+        ObjectKind::Moon => MistakenObject::Moon,
+        ObjectKind::HotPixel => MistakenObject::HotPixel(object.id),
+        ObjectKind::CosmicRay => MistakenObject::CosmicRay(object.id),
+        ObjectKind::Target => MistakenObject::Nothing,
     }
 }
 
@@ -316,13 +316,13 @@ mod tests {
     }
 
     #[test]
-    fn a_place_within_reach_of_the_target_is_correct_and_beyond_is_wrong() {
+    fn a_position_within_reach_of_the_target_is_correct_and_beyond_is_wrong() {
         let objects = [target_with(1000.0)];
         assert_eq!(verdict(&objects, &detected_at(right_of_target(1.49))).code(), "correct");
         let Verdict::Wrong { taken, .. } = verdict(&objects, &detected_at(right_of_target(1.51))) else {
             panic!("1.51 px off is another place");
         };
-        assert_eq!(taken, Taken::Nothing);
+        assert_eq!(taken, MistakenObject::Nothing);
     }
 
     #[test]
@@ -353,10 +353,10 @@ mod tests {
     fn what_was_taken_is_named() {
         let far = right_of_target(50.0);
         for (object, expected, merged) in [
-            (star_at(7, far, 500.0), Taken::Star(7), false),
-            (hot_pixel_at(99, far, 500.0), Taken::HotPixel(99), false),
-            (cosmic_ray_at(2, far, 500.0), Taken::CosmicRay(2), false),
-            (star_at(8, right_of_target(1.0), 5000.0), Taken::Star(8), true),
+            (star_at(7, far, 500.0), MistakenObject::Star(7), false),
+            (hot_pixel_at(99, far, 500.0), MistakenObject::HotPixel(99), false),
+            (cosmic_ray_at(2, far, 500.0), MistakenObject::CosmicRay(2), false),
+            (star_at(8, right_of_target(1.0), 5000.0), MistakenObject::Star(8), true),
         ] {
             let place = object.position;
             let Verdict::Wrong { taken, cause, .. } =
@@ -375,7 +375,7 @@ mod tests {
         let Verdict::Wrong { taken, cause, .. } = verdict(&objects, &detected_at(CENTRE)) else {
             panic!("most of it is the hot pixel's");
         };
-        assert_eq!((taken, cause), (Taken::HotPixel(3), Cause::TakenForHotspot));
+        assert_eq!((taken, cause), (MistakenObject::HotPixel(3), Cause::TakenForHotspot));
     }
 
     #[test]
@@ -405,12 +405,12 @@ mod tests {
             GrantedAttitude::True,
         );
         let measurement = contract::Measurement::new(right_of_target(0.5), None);
-        let error = AnswerError::of(&measurement, Some([0.5, 0.0]), None);
+        let error = AnswerError::from_measurement(&measurement, Some([0.5, 0.0]), None);
         assert_eq!(nowhere, Verdict::Correct { error });
     }
 
     #[test]
-    fn the_centroid_is_held_against_the_centre_of_the_targets_light() {
+    fn the_centroid_is_held_against_the_centre_of_the_targets_flux() {
         let mut target = target_with(1000.0);
         target.position = PixelPoint::new(CENTRE.x + 0.75, CENTRE.y - 0.25);
         let error = |objects: &[ObjectTruth]| verdict(objects, &detected_at(right_of_target(1.0))).error();
@@ -439,25 +439,25 @@ mod tests {
             Verdict::Wrong { taken, .. } => taken,
             other => panic!("{other:?}"),
         };
-        assert_eq!(taken(&[target_with(1000.0), cut.clone()]), Taken::Nothing);
+        assert_eq!(taken(&[target_with(1000.0), cut.clone()]), MistakenObject::Nothing);
         // Nor did it outshine a target of which nothing is left.
         let gone = ObjectTruth { position: far, cut: 1.0, ..target_with(1000.0) };
-        assert_eq!(taken(&[gone, cut]), Taken::Nothing);
+        assert_eq!(taken(&[gone, cut]), MistakenObject::Nothing);
     }
 
     #[test]
     fn what_was_taken_has_a_word_and_a_number_in_files() {
         let taken = [
-            Taken::Star(7),
-            Taken::Planet(5),
-            Taken::Moon,
-            Taken::HotPixel(99),
-            Taken::CosmicRay(2),
-            Taken::Nothing,
+            MistakenObject::Star(7),
+            MistakenObject::Planet(5),
+            MistakenObject::Moon,
+            MistakenObject::HotPixel(99),
+            MistakenObject::CosmicRay(2),
+            MistakenObject::Nothing,
         ];
         let words = ["star", "planet", "moon", "hot_pixel", "cosmic_ray", "nothing"];
-        assert_eq!(taken.map(Taken::code), words);
-        assert_eq!(taken.map(Taken::id), [Some(7), Some(5), Some(0), Some(99), Some(2), None]);
+        assert_eq!(taken.map(MistakenObject::code), words);
+        assert_eq!(taken.map(MistakenObject::id), [Some(7), Some(5), Some(0), Some(99), Some(2), None]);
     }
 
     /// Outshone is who is there and has less than another: what the pipeline says of the cluster does not count then.
@@ -475,9 +475,9 @@ mod tests {
     }
 
     #[test]
-    fn a_target_without_light_cannot_be_found() {
+    fn a_target_without_flux_cannot_be_found() {
         let verdict = verdict(&[target_with(0.0)], &detected_at(CENTRE));
-        assert!(matches!(verdict, Verdict::Wrong { taken: Taken::Nothing, .. }), "{verdict:?}");
+        assert!(matches!(verdict, Verdict::Wrong { taken: MistakenObject::Nothing, .. }), "{verdict:?}");
     }
 
     #[test]

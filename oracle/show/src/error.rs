@@ -3,13 +3,13 @@
 use thiserror::Error;
 
 /// Most panels of a contact sheet.
-pub const MOST_PANELS: usize = 16;
+pub const MAX_PANELS: usize = 16;
 
 /// Why a picture cannot be drawn.
 #[derive(Debug, Error)]
 pub enum ShowError {
     /// Too few or too many frames for a picture.
-    #[error("{0} frames are asked for, expected 1 to {MOST_PANELS}")]
+    #[error("{0} frames are asked for, expected 1 to {MAX_PANELS}")]
     PanelCount(usize),
     /// A view without pixels, or a canvas that cannot be allocated.
     #[error("a picture of {width} × {height} pixels cannot be drawn")]

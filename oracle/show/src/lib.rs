@@ -1,7 +1,7 @@
 //! Annotated pictures of frames: pixels, true objects, the pipeline's answer, transmitted regions, a scale bar and a legend.
 //!
 //! [`picture`] is a pure function of [`Panel`]s: one frame is drawn large, with a close-up and a table beside it; several become a
-//! contact sheet. [`encode`] writes the result as a PNG with a palette, which names this program in a text chunk; [`is_own_picture`]
+//! contact sheet. [`encode`] writes the result as a PNG with a palette, which names this program in a text chunk; [`is_boresight_picture`]
 //! recognises that chunk. Nothing here reads or writes files.
 //!
 //! Positions are pixels of the frame: the centre of the first pixel is (0, 0).
@@ -23,10 +23,10 @@ mod layout;
 mod panel;
 mod png_file;
 
-pub use error::{MOST_PANELS, ShowError};
+pub use error::{MAX_PANELS, ShowError};
 pub use layout::view::Placement;
-pub use layout::{PanelPlace, Picture, picture};
+pub use layout::{PanelLayout, Picture, picture};
 pub use panel::class::Class;
 pub use panel::stretch::Stretch;
 pub use panel::{Mark, Panel, Pixels, PlateScale, Reduction, Shape, Table, Tone, Verdict};
-pub use png_file::{encode, is_own_picture};
+pub use png_file::{encode, is_boresight_picture};

@@ -19,7 +19,7 @@ const SHADES: usize = 19;
 /// Colours of a palette.
 const COLOURS: usize = 256;
 /// Most bytes of text that are read of a PNG.
-const MOST_TEXT: usize = 1 << 20;
+const MAX_TEXT: usize = 1 << 20;
 
 /// The bytes of a PNG. They depend on the picture, its title and the version of Boresight alone. A picture of more than 256 colours
 /// keeps about a hundred greys, and smooth edges get the nearest colour: the noise of a frame takes most of the bytes.
@@ -51,8 +51,8 @@ pub fn encode(picture: &Picture, title: &str) -> Result<Vec<u8>, ShowError> {
 }
 
 /// Whether the beginning of a file is that of a PNG of [`encode`].
-pub fn is_own_picture(bytes: &[u8]) -> bool {
-    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: MOST_TEXT });
+pub fn is_boresight_picture(bytes: &[u8]) -> bool {
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: MAX_TEXT });
     let Ok(info) = decoder.read_header_info() else { return false };
     if info.color_type != ColorType::Indexed {
         return false;
@@ -147,7 +147,7 @@ mod tests {
         let drawn = picture(vec![[1, 2, 3]; 12], 4);
         let bytes = encode(&drawn, "argon, frame 12 – σ").unwrap();
         assert_eq!(bytes, encode(&drawn, "argon, frame 12 – σ").unwrap());
-        assert!(is_own_picture(&bytes));
+        assert!(is_boresight_picture(&bytes));
         let header = Decoder::new(Cursor::new(&bytes)).read_info().unwrap();
         let texts = &header.info().uncompressed_latin1_text;
         let of = |keyword: &str| texts.iter().find(|chunk| chunk.keyword == keyword).unwrap().text.clone();
@@ -156,13 +156,13 @@ mod tests {
     }
 
     #[test]
-    fn other_files_are_nobodys_or_somebody_elses() {
+    fn pictures_of_other_programs_are_recognised() {
         let own = encode(&picture(vec![[1, 2, 3]; 12], 4), "own").unwrap();
         let mut other = Cursor::new(Vec::new());
         image::GrayImage::new(4, 3).write_to(&mut other, image::ImageFormat::Png).unwrap();
-        assert!(!is_own_picture(other.get_ref()));
+        assert!(!is_boresight_picture(other.get_ref()));
         for bytes in [&b""[..], b"GIF89a", &own[..20], &own[..45], &own[1..]] {
-            assert!(!is_own_picture(bytes));
+            assert!(!is_boresight_picture(bytes));
         }
     }
 }

@@ -5,8 +5,8 @@
 
 use statrs::function::beta::beta_reg;
 
-use super::clusters::{ClusterSum, LEAST_CLUSTERS, Ratio, counted, independent_trials, t_quantile};
-use super::quantile::{Clustered, independent_values};
+use super::clusters::{ClusterSum, LEAST_CLUSTERS, Ratio, independent_trials, non_empty, t_quantile};
+use super::quantile::{ClusterValue, independent_values};
 
 /// Two one-sided bounds: the value is at least `low` with the confidence that was asked for, and at most `high` with the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Bounds {
 /// clusters do (Korn & Graubard 1998, Survey Methodology 24, 193–201). They hold with the confidence at least. `None` where nothing is
 /// counted.
 pub fn cluster_rate_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
-    let counted = counted(clusters);
+    let counted = non_empty(clusters);
     let ratio = Ratio::new(&counted)?;
     let n = independent_trials(&counted, &ratio) * size;
     let count = ratio.value * n;
@@ -32,7 +32,7 @@ pub fn cluster_rate_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) 
 
 /// Bounds of a mean over clusters, Σ sum / Σ of, by Student's t. `None` below [`LEAST_CLUSTERS`].
 pub fn cluster_mean_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
-    let counted = counted(clusters);
+    let counted = non_empty(clusters);
     if counted.len() < LEAST_CLUSTERS {
         return None;
     }
@@ -44,7 +44,12 @@ pub fn cluster_mean_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) 
 /// Bounds of the quantile `p` of values in clusters, sorted by value: order statistics of as many independent values as scatter about
 /// the quantile like the clusters, the next one outwards. Values that do not exist may stand at the ends as infinities. A bound that would
 /// lie beyond the smallest or the largest value is absent; at a `size` above 1 it is then that value.
-pub fn cluster_quantile_bounds(sorted: &[Clustered], p: f64, confidence: f64, size: f64) -> Option<Bounds> {
+pub fn cluster_quantile_bounds(
+    sorted: &[ClusterValue],
+    p: f64,
+    confidence: f64,
+    size: f64,
+) -> Option<Bounds> {
     let count = sorted.len();
     let n = (independent_values(sorted, p)? * size).floor();
     // The largest rank that P(at least that many are below the quantile) allows, and the smallest.
@@ -101,7 +106,7 @@ mod tests {
     /// The textbook's 59 runs for the 95 % quantile with a confidence of 95 %: 0.95⁵⁹ = 0.0485, 0.95⁵⁸ = 0.0510.
     #[test]
     fn the_bound_of_a_quantile_exists_from_59_values_on() {
-        let values = |n: usize| -> Vec<Clustered> { (0..n).map(|i| (i, i as f64)).collect() };
+        let values = |n: usize| -> Vec<ClusterValue> { (0..n).map(|i| (i, i as f64)).collect() };
         let of = |n, p, size| cluster_quantile_bounds(&values(n), p, 0.95, size).unwrap();
         assert_eq!(of(58, 0.95, 1.0).high, None);
         assert_eq!(of(59, 0.95, 1.0).high, Some(58.0));
@@ -140,7 +145,7 @@ mod tests {
             cluster_mean_bounds(&sums, 0.95, 1.0)
         });
         let quantile = wrong(1.644_853_626_951_472_2, |random| {
-            let mut values: Vec<Clustered> = (0..100).map(|i| (i, normal(random))).collect();
+            let mut values: Vec<ClusterValue> = (0..100).map(|i| (i, normal(random))).collect();
             values.sort_by(|a, b| a.1.total_cmp(&b.1));
             cluster_quantile_bounds(&values, 0.95, 0.95, 1.0)
         });

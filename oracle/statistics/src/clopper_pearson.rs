@@ -69,7 +69,7 @@ mod tests {
     ];
 
     #[test]
-    fn nothing_tried_says_nothing() {
+    fn zero_trials_have_the_widest_interval() {
         assert_eq!(clopper_pearson(0, 0, 0.95), (0.0, 1.0));
     }
 
@@ -82,7 +82,7 @@ mod tests {
 
     /// scipy: binom.sf(count − 1, n, p), on either side of the mean.
     #[test]
-    fn tails_agree_with_the_binomial_law() {
+    fn tails_agree_with_the_binomial_distribution() {
         for (count, n, p, expected) in [
             (3, 10, 0.2, 0.322_200_473_6),
             (8, 10, 0.7, 0.382_782_786_4),

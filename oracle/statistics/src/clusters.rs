@@ -61,7 +61,7 @@ pub(super) fn t_quantile(clusters: f64, p: f64) -> f64 {
 /// The interval of a mean over clusters, Σ sum / Σ of ± t s. Clusters without a value are left out. `None` below
 /// [`LEAST_CLUSTERS`].
 pub fn cluster_mean_interval(clusters: &[ClusterSum]) -> Option<Interval> {
-    let counted = counted(clusters);
+    let counted = non_empty(clusters);
     if counted.len() < LEAST_CLUSTERS {
         return None;
     }
@@ -75,7 +75,7 @@ pub fn cluster_mean_interval(clusters: &[ClusterSum]) -> Option<Interval> {
 /// independent trials. Clusters that are all alike tell nothing of their scatter: they count as one trial each when all or none of their
 /// trials count, and in full otherwise. `None` where nothing is counted.
 pub fn cluster_rate_interval(clusters: &[ClusterSum]) -> Option<Interval> {
-    let counted = counted(clusters);
+    let counted = non_empty(clusters);
     let ratio = Ratio::new(&counted)?;
     wilson(ratio.value, independent_trials(&counted, &ratio))
 }
@@ -101,7 +101,7 @@ pub(super) fn independent_trials(counted: &[ClusterSum], ratio: &Ratio) -> f64 {
     }
 }
 
-pub(super) fn counted(clusters: &[ClusterSum]) -> Vec<ClusterSum> {
+pub(super) fn non_empty(clusters: &[ClusterSum]) -> Vec<ClusterSum> {
     clusters.iter().copied().filter(|cluster| cluster.of > 0.0).collect()
 }
 

@@ -11,7 +11,7 @@ use rand::Rng;
 use sim::randomness::{Effect, Seed};
 
 /// Up to so many blocks all exchanges are gone through.
-const MOST_EXHAUSTED: usize = 13;
+const MAX_EXHAUSTED: usize = 13;
 /// Exchanges drawn where there are more, besides the one that changes nothing.
 const DRAWN: usize = 9_999;
 /// Sets that an interval takes of those drawn: its ends are quantiles that scatter by a twentieth of its width.
@@ -31,7 +31,7 @@ impl Exchanges {
     /// All sets of up to 13 blocks; of more, 9999 that are drawn, the same ones for the same number of blocks, and the empty one.
     pub fn new(blocks: usize) -> Self {
         let words = blocks.div_ceil(64).max(1);
-        if blocks <= MOST_EXHAUSTED {
+        if blocks <= MAX_EXHAUSTED {
             return Self { blocks, words, bits: (0..1u64 << blocks).collect() };
         }
         let mut stream = Seed { seed: blocks as u64, case: 0 }.stream(0, Effect::BlockExchange, 0);
@@ -47,21 +47,21 @@ impl Exchanges {
 
     /// How many sets besides the empty one an interval takes: all, or some of those drawn.
     fn for_an_interval(&self) -> usize {
-        if self.blocks <= MOST_EXHAUSTED { self.bits.len() - 1 } else { FOR_AN_INTERVAL }
+        if self.blocks <= MAX_EXHAUSTED { self.bits.len() - 1 } else { FOR_AN_INTERVAL }
     }
 
-    fn sets(&self) -> impl Iterator<Item = Set<'_>> {
-        self.bits.chunks_exact(self.words).map(|words| Set { words })
+    fn sets(&self) -> impl Iterator<Item = ExchangeSet<'_>> {
+        self.bits.chunks_exact(self.words).map(|words| ExchangeSet { words })
     }
 }
 
 /// One set of blocks.
 #[derive(Clone, Copy)]
-struct Set<'a> {
+struct ExchangeSet<'a> {
     words: &'a [u64],
 }
 
-impl Set<'_> {
+impl ExchangeSet<'_> {
     fn has(self, block: usize) -> bool {
         self.words[block / 64] >> (block % 64) & 1 == 1
     }
@@ -89,7 +89,7 @@ impl BlockEffects {
 
 /// The test of one figure among several.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tested {
+pub struct FigureTest {
     /// Effect over the root of the sum of squares of the blocks' effects.
     pub statistic: f64,
     /// Probability of as large a statistic under the null hypothesis, for this figure alone.
@@ -102,7 +102,7 @@ pub struct Tested {
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointTest {
     /// One a figure, in their order.
-    pub figures: Vec<Tested>,
+    pub figures: Vec<FigureTest>,
     /// What the largest statistic of all figures exceeds with a probability of at most `alpha` under the null hypothesis.
     pub critical: f64,
 }
@@ -120,7 +120,7 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
     let rows: Vec<f64> = (0..exchanges.blocks)
         .flat_map(|block| figures.iter().map(move |figure| figure.effects[block]))
         .collect();
-    let statistics = |set: Set<'_>, into: &mut [f64]| {
+    let statistics = |set: ExchangeSet<'_>, into: &mut [f64]| {
         into.fill(0.0);
         for (block, row) in rows.chunks_exact(figures.len().max(1)).enumerate() {
             let sign = 1.0 - 2.0 * f64::from(u8::from(set.has(block)));
@@ -131,7 +131,7 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
         }
     };
     let mut observed = vec![0.0; figures.len()];
-    statistics(Set { words: &vec![0; exchanges.words] }, &mut observed);
+    statistics(ExchangeSet { words: &vec![0; exchanges.words] }, &mut observed);
     // From the largest statistic down: where each stands, and at each exchange the largest of it and those below it.
     let mut order: Vec<usize> = (0..figures.len()).collect();
     order.sort_by(|a, b| observed[*b].total_cmp(&observed[*a]).then(a.cmp(b)));
@@ -149,8 +149,8 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
         largest.push(below);
     }
     let count = largest.len() as f64;
-    let mut tested: Vec<Tested> = (0..figures.len())
-        .map(|figure| Tested {
+    let mut tested: Vec<FigureTest> = (0..figures.len())
+        .map(|figure| FigureTest {
             statistic: observed[figure],
             p: alone[figure] as f64 / count,
             adjusted_p: together[figure] as f64 / count,
@@ -291,7 +291,7 @@ mod tests {
         assert_eq!(test.figures[0].p, 1.0 / 64.0);
         assert!((test.figures[0].statistic - 6f64.sqrt()).abs() < 1e-12);
         let nothing = test_of(&[effects(&[0.0; 6])], 0.05);
-        assert_eq!(nothing.figures[0], Tested { statistic: 0.0, p: 1.0, adjusted_p: 1.0 });
+        assert_eq!(nothing.figures[0], FigureTest { statistic: 0.0, p: 1.0, adjusted_p: 1.0 });
     }
 
     /// Of effects that are powers of two every exchange has a sum of its own, 31, 29, 27, … of five blocks.
@@ -306,7 +306,7 @@ mod tests {
 
     /// 0.1 + 0.2 - 0.3 is 0 but for its rounding, and so is the same with all signs turned: five of the eight exchanges reach it.
     #[test]
-    fn exchanges_that_rounding_alone_tells_apart_are_equal() {
+    fn exchanges_that_rounding_alone_separates_are_equal() {
         let test = test_of(&[effects(&[0.1, 0.2, -0.3])], 0.05);
         assert_eq!(test.figures[0].p, 5.0 / 8.0);
         assert!(test.figures[0].statistic > 0.0);
@@ -358,7 +358,7 @@ mod tests {
 
     /// Binomial of 1000 at 0.05: standard deviation 6.9; three of them above.
     #[test]
-    fn the_family_has_the_level_that_it_says_with_few_blocks_and_wild_laws() {
+    fn the_family_has_the_level_that_it_says_with_few_blocks_and_wild_distributions() {
         let correlated = |random: &mut sim::randomness::Stream| {
             let common = normal(random);
             std::array::from_fn(|_| common + 0.5 * normal(random))
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn no_blocks_say_nothing() {
+    fn zero_blocks_have_no_result() {
         let test = joint_test(&[effects(&[])], &Exchanges::new(0), 0.05);
         assert_eq!((test.figures[0].p, test.critical), (1.0, 0.0));
         assert_eq!(interval_by_sets(&Exchanges::new(0), |_| Some(1.0)), None);

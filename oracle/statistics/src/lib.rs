@@ -56,10 +56,10 @@ pub use clusters::{
     ClusterSum, LEAST_CLUSTERS, cluster_mean_interval, cluster_rate_interval, mean_difference_interval,
     rate_difference_interval,
 };
-pub use exchange::{BlockEffects, Exchanges, JointTest, Tested, interval_by_sets, joint_test};
+pub use exchange::{BlockEffects, Exchanges, FigureTest, JointTest, interval_by_sets, joint_test};
 pub use interval::{Interval, Z_95};
 pub use location::{below_median, mean_interval, median, median_interval, rms_interval};
 pub use normal_quantile::normal_quantile;
 pub use proportion::wilson;
-pub use quantile::{Clustered, cluster_quantile_interval};
+pub use quantile::{ClusterValue, cluster_quantile_interval};
 pub use rank_correlation::cluster_rank_correlation;

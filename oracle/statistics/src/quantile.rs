@@ -3,15 +3,15 @@
 use statrs::function::beta::beta_reg;
 
 use super::Interval;
-use super::clusters::{ClusterSum, OUTSIDE, Ratio, counted, independent_trials};
+use super::clusters::{ClusterSum, OUTSIDE, Ratio, independent_trials, non_empty};
 
 /// A value and the number of the cluster that it belongs to.
-pub type Clustered = (usize, f64);
+pub type ClusterValue = (usize, f64);
 
 /// The interval of the quantile `p` of values in clusters, sorted by value: from fractional order statistics (Hutson 1999, Journal of
 /// Statistical Computation and Simulation 63, 91–103) of as many independent values as scatter about the quantile like the clusters.
 /// `None` where a limit would lie beyond the smallest or the largest value: too few are known.
-pub fn cluster_quantile_interval(sorted: &[Clustered], p: f64) -> Option<Interval> {
+pub fn cluster_quantile_interval(sorted: &[ClusterValue], p: f64) -> Option<Interval> {
     let count = sorted.len();
     let n = independent_values(sorted, p)?;
     let rank = |probability: f64| {
@@ -33,7 +33,7 @@ pub fn cluster_quantile_interval(sorted: &[Clustered], p: f64) -> Option<Interva
 }
 
 /// How many independent values scatter about the quantile `p` as these do.
-pub(super) fn independent_values(sorted: &[Clustered], p: f64) -> Option<f64> {
+pub(super) fn independent_values(sorted: &[ClusterValue], p: f64) -> Option<f64> {
     let count = sorted.len();
     let clusters = sorted.iter().map(|(cluster, _)| cluster + 1).max()?;
     let below = ((p * count as f64).round() as usize).clamp(1, count.saturating_sub(1).max(1));
@@ -45,7 +45,7 @@ pub(super) fn independent_values(sorted: &[Clustered], p: f64) -> Option<f64> {
             sum.sum += f64::from(u8::from(*value <= limit));
         }
     }
-    let counted = counted(&sums);
+    let counted = non_empty(&sums);
     Some(independent_trials(&counted, &Ratio::new(&counted)?))
 }
 
@@ -56,7 +56,7 @@ mod tests {
     use sim::randomness::{Stream, normal};
 
     /// Draws of `points` values each: the draw's own number and one of the value's.
-    fn values(random: &mut Stream, draws: usize, points: usize) -> Vec<Clustered> {
+    fn values(random: &mut Stream, draws: usize, points: usize) -> Vec<ClusterValue> {
         let mut values = Vec::new();
         for draw in 0..draws {
             let of_draw = normal(random);

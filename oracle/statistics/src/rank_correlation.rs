@@ -11,8 +11,8 @@ pub fn cluster_rank_correlation(values: &[(usize, f64, f64)]) -> Option<(f64, Op
     if count < 4.0 {
         return None;
     }
-    let x = Ranked::new(values.iter().map(|(_, x, _)| *x).collect());
-    let y = Ranked::new(values.iter().map(|(_, _, y)| *y).collect());
+    let x = RankedValues::new(values.iter().map(|(_, x, _)| *x).collect());
+    let y = RankedValues::new(values.iter().map(|(_, _, y)| *y).collect());
     let mean = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / count;
     let (of_x, of_y) = (mean(&x.centred, &x.centred), mean(&y.centred, &y.centred));
     let spread = (of_x * of_y).sqrt();
@@ -59,14 +59,14 @@ pub fn cluster_rank_correlation(values: &[(usize, f64, f64)]) -> Option<(f64, Op
 }
 
 /// Values by their ranks; equal ones share the mean of theirs.
-struct Ranked {
+struct RankedValues {
     /// Rank less the middle rank, over the number of values.
     centred: Vec<f64>,
     /// Places of the values in ascending order, cut where they differ.
     order: Vec<Vec<usize>>,
 }
 
-impl Ranked {
+impl RankedValues {
     fn new(values: Vec<f64>) -> Self {
         let mut places: Vec<usize> = (0..values.len()).collect();
         places.sort_by(|a, b| values[*a].total_cmp(&values[*b]));

@@ -8,11 +8,11 @@ use rayon::prelude::*;
 
 use crate::case_file::CaseFile;
 use crate::cases::{CaseRow, CaseTable};
-use crate::definition::{MOST_FAILED_CASES, Study};
-use crate::evaluate::Evaluated;
+use crate::definition::{MAX_FAILED_CASES, Study};
+use crate::evaluate::CaseResult;
 use crate::evaluate::engine::{Workers, run_cases};
-use crate::evaluate::tried::StudyPipeline;
-use crate::findings::stopping::Stopping;
+use crate::evaluate::study_pipeline::StudyPipeline;
+use crate::findings::stopping::StoppingRule;
 use crate::findings::summary::Summary;
 use crate::shard::record::StudyRecord;
 use crate::shard::{Plan, ShardManifest, ShardStore};
@@ -22,22 +22,22 @@ pub struct Campaign<'a> {
     study: &'a Study,
     pipeline: &'a dyn StudyPipeline,
     store: ShardStore,
-    starts: Starts,
+    starts: StartCounter,
 }
 
 /// What is known of the pipeline's starts in the cases that were run: where it starts in none of the first
-/// [`MOST_FAILED_CASES`], it would start in none.
+/// [`MAX_FAILED_CASES`], it would start in none.
 #[derive(Debug, Default)]
-struct Starts {
+struct StartCounter {
     has_started: AtomicBool,
     failed_cases: AtomicU64,
 }
 
-impl Starts {
+impl StartCounter {
     /// Counts a case, and refuses to go on where there were too many without a start.
-    fn add(&self, case: &Evaluated, cases: u64) -> Result<(), Failure> {
+    fn add(&self, case: &CaseResult, cases: u64) -> Result<(), Failure> {
         // Of a study of fewer cases none can be run: rows of errors alone are no study.
-        let most = if case.row.error.is_some() { MOST_FAILED_CASES.min(cases) } else { MOST_FAILED_CASES };
+        let most = if case.row.error.is_some() { MAX_FAILED_CASES.min(cases) } else { MAX_FAILED_CASES };
         if case.has_started || self.has_started.load(Ordering::Relaxed) {
             self.has_started.store(true, Ordering::Relaxed);
         } else if self.failed_cases.fetch_add(1, Ordering::Relaxed) + 1 >= most {
@@ -48,7 +48,7 @@ impl Starts {
                 (None, first) => {
                     let reason = first.as_ref().map_or("", |first| &first.reason);
                     format!(
-                        "the pipeline did not start in any of the first {MOST_FAILED_CASES} cases: {reason}"
+                        "the pipeline did not start in any of the first {MAX_FAILED_CASES} cases: {reason}"
                     )
                 }
             }));
@@ -59,14 +59,14 @@ impl Starts {
 
 /// A case that a campaign knows.
 #[derive(Debug, Clone, Copy)]
-pub enum Known<'a> {
+pub enum CaseOutcome<'a> {
     /// It was in a shard that is there already.
     Kept(&'a CaseRow),
     /// It was run now.
-    Run(&'a Evaluated),
+    Run(&'a CaseResult),
 }
 
-impl Known<'_> {
+impl CaseOutcome<'_> {
     /// Its row.
     pub fn row(&self) -> &CaseRow {
         match self {
@@ -91,7 +91,7 @@ impl<'a> Campaign<'a> {
         pipeline.check(study.scenario())?;
         let shards = shards.or_else(|| ShardStore::planned_shards(out));
         let plan = Plan::new(study, study.hash_with(pipeline), shards)?;
-        Ok(Self { study, pipeline, store: ShardStore::open(out, plan)?, starts: Starts::default() })
+        Ok(Self { study, pipeline, store: ShardStore::open(out, plan)?, starts: StartCounter::default() })
     }
 
     /// Opens a folder that holds a plan of the study.
@@ -121,20 +121,20 @@ impl<'a> Campaign<'a> {
         &self,
         shard: u64,
         workers: Workers<'_>,
-        done: impl Fn(Known<'_>) + Sync,
+        done: impl Fn(CaseOutcome<'_>) + Sync,
     ) -> Result<(CaseTable, ShardManifest), Failure> {
         let empty = self.study.table();
         if let Some((table, manifest)) = self.store.read(shard, &empty)? {
-            table.rows.iter().for_each(|row| done(Known::Kept(row)));
+            table.rows.iter().for_each(|row| done(CaseOutcome::Kept(row)));
             return Ok((table, manifest));
         }
         let mut cases: BTreeSet<u64> = self.store.plan().cases_of(shard).collect();
         let (journal, kept) = self.store.journal(shard)?;
         let mut rows: Vec<CaseRow> = kept.into_iter().filter(|row| cases.remove(&row.case)).collect();
-        rows.iter().for_each(|row| done(Known::Kept(row)));
+        rows.iter().for_each(|row| done(CaseOutcome::Kept(row)));
         let cases = cases.into_iter().collect();
         rows.extend(run_cases(self.study, cases, self.pipeline, workers, |case| {
-            done(Known::Run(case));
+            done(CaseOutcome::Run(case));
             self.starts.add(case, self.study.cases())?;
             // A pipeline that did not start may do so another time.
             if case.has_started { Ok(journal.add(&case.row)?) } else { Ok(()) }
@@ -150,8 +150,12 @@ impl<'a> Campaign<'a> {
     ///
     /// # Errors
     /// As [`Campaign::shard`].
-    pub fn run(&self, workers: Workers<'_>, done: impl Fn(Known<'_>) + Sync) -> Result<CaseFile, Failure> {
-        let mut stopping = Stopping::new(self.study);
+    pub fn run(
+        &self,
+        workers: Workers<'_>,
+        done: impl Fn(CaseOutcome<'_>) + Sync,
+    ) -> Result<CaseFile, Failure> {
+        let mut stopping = StoppingRule::new(self.study);
         for shard in 1..=self.store.plan().shards {
             let (table, _) = self.shard(shard, workers, &done)?;
             if stopping.add(&table).is_some() {
@@ -189,7 +193,7 @@ impl<'a> Campaign<'a> {
     /// Writes the cases of the shards in order, up to where the stopping rule stops. Shards are read on all threads, some at a time.
     fn gather(&self) -> Result<CaseFile, Failure> {
         let empty = self.study.table();
-        let mut stopping = Stopping::new(self.study);
+        let mut stopping = StoppingRule::new(self.study);
         let shards: Vec<u64> = (1..=self.store.plan().shards).collect();
         let read = |shard: &u64| -> Result<Option<CaseTable>, Failure> {
             Ok(self.store.read(*shard, &empty)?.map(|(table, _)| table))

@@ -11,7 +11,7 @@ use crate::cases::{BATCH_ROWS, CAUSE, CaseFigure, CaseTable, SET, cells, texts};
 /// Rows whose encoded bytes are held before they are written.
 const ROW_GROUP_ROWS: usize = 1 << 17;
 /// Cases with an error that are named.
-const MOST_ERRORS: usize = 10;
+const MAX_ERRORS: usize = 10;
 
 /// Writes the rows of a study.
 pub(crate) struct CaseWriter<'a>(ParquetWriter<&'a File>);
@@ -69,7 +69,7 @@ impl CaseFile {
             for error in texts(path, batch, "error")?.iter() {
                 cases.draws.push((number / together) as usize);
                 cases.has_error.push(error.is_some());
-                if let Some(error) = error.filter(|_| cases.errors.len() < MOST_ERRORS) {
+                if let Some(error) = error.filter(|_| cases.errors.len() < MAX_ERRORS) {
                     cases.errors.push((number, error.to_owned()));
                 }
                 number += 1;
@@ -95,7 +95,7 @@ impl CaseFile {
     }
 
     /// Names of what was drawn.
-    pub(crate) fn drawn(&self) -> impl Iterator<Item = &String> {
+    pub(crate) fn drawn_columns(&self) -> impl Iterator<Item = &String> {
         self.empty.drawn.keys()
     }
 
@@ -148,7 +148,7 @@ impl CaseFile {
 
     /// What was drawn for some cases, as a person reads it.
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
-    pub(crate) fn shown(&self, cases: &[usize]) -> Result<Vec<Vec<String>>, FileError> {
+    pub(crate) fn drawn_texts(&self, cases: &[usize]) -> Result<Vec<Vec<String>>, FileError> {
         let mut table =
             CaseTable { figures: Vec::new(), causes: Vec::new(), ..self.empty.with_rows(Vec::new()) };
         let names: Vec<String> = table.columns().iter().map(|column| column.name().to_owned()).collect();
@@ -159,7 +159,8 @@ impl CaseFile {
             table.add(&self.path, batch)?;
             for (case, shown) in cases.iter().zip(&mut shown) {
                 if (first..first + table.rows.len()).contains(case) {
-                    *shown = table.rows[case - first].drawn.iter().map(|drawn| drawn.shown()).collect();
+                    *shown =
+                        table.rows[case - first].drawn.iter().map(|drawn| drawn.display_text()).collect();
                 }
             }
             first += table.rows.len();
@@ -170,8 +171,8 @@ impl CaseFile {
 
     /// The attitude that the lines of sight of the cases rest on, as [`CaseTable::attitude`].
     pub(crate) fn attitude(&self, granted: Option<&str>) -> Result<Option<String>, FileError> {
-        let Some(told) = self.figure(names::LINE_OF_SIGHT_RATE)? else { return Ok(None) };
-        let (own, of) = told.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
+        let Some(figure) = self.figure(names::LINE_OF_SIGHT_RATE)? else { return Ok(None) };
+        let (own, of) = figure.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
         Ok(attitude_word(own > 0, of > own, granted))
     }
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use files::sha256::hex;
 use files::{
-    Cell, Cells, Column, ColumnType, ColumnValues, Columns, Declared, FileError, ParquetFile, Row, Table,
-    TableOptions, TextCells, table, write_table,
+    Cell, Cells, Column, ColumnType, ColumnValues, Columns, FieldDeclaration, FileError, ParquetFile, Row,
+    Table, TableOptions, TextCells, table, write_table,
 };
 use indexmap::IndexMap;
 use score::{attitude_word, names};
@@ -16,16 +16,16 @@ use sha2::{Digest, Sha256};
 
 /// A drawn value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Drawn {
+pub enum DrawnValue {
     /// A number.
     Number(f64),
     /// Anything else, as JSON.
     Text(String),
 }
 
-impl Drawn {
+impl DrawnValue {
     /// As a person reads it.
-    pub fn shown(&self) -> String {
+    pub fn display_text(&self) -> String {
         match self {
             Self::Number(number) => number.to_string(),
             Self::Text(text) => text.clone(),
@@ -59,7 +59,7 @@ pub struct CaseRow {
     /// Frames that count.
     pub frames: u64,
     /// Drawn values, in the order of the table's columns.
-    pub drawn: Vec<Drawn>,
+    pub drawn: Vec<DrawnValue>,
     /// Figures, in the order of the table's columns.
     pub figures: Vec<CaseFigure>,
     /// Frames by cause, in the order of the table's columns.
@@ -83,8 +83,8 @@ table! {
 }
 
 /// The columns of `cases.parquet` that every study has.
-pub fn case_columns() -> Vec<Declared> {
-    CaseHead::declared()
+pub fn case_columns() -> Vec<FieldDeclaration> {
+    CaseHead::declarations()
 }
 
 /// Rows with their columns.
@@ -128,8 +128,8 @@ impl CaseTable {
             hash.update(row.frames.to_le_bytes());
             for drawn in &row.drawn {
                 match drawn {
-                    Drawn::Number(number) => hash.update(number.to_bits().to_le_bytes()),
-                    Drawn::Text(text) => {
+                    DrawnValue::Number(number) => hash.update(number.to_bits().to_le_bytes()),
+                    DrawnValue::Text(text) => {
                         hash.update((text.len() as u64).to_le_bytes());
                         hash.update(text);
                     }
@@ -176,14 +176,14 @@ impl CaseTable {
             let name = format!("{SET}{name}");
             let cells = rows().map(|row| &row.drawn[index]);
             columns.push(if *is_number {
-                let number = |cell: &Drawn| match cell {
-                    Drawn::Number(number) => Some(*number),
-                    Drawn::Text(_) => None,
+                let number = |cell: &DrawnValue| match cell {
+                    DrawnValue::Number(number) => Some(*number),
+                    DrawnValue::Text(_) => None,
                 };
                 // A word among numbers has no number: the writer refuses the column.
-                Column::of(name, false, f64::values(cells.map(number).collect()))
+                Column::from_values(name, false, f64::values(cells.map(number).collect()))
             } else {
-                Column::texts(name, cells.map(Drawn::shown))
+                Column::texts(name, cells.map(DrawnValue::display_text))
             });
         }
         for (index, name) in self.figures.iter().enumerate() {
@@ -266,12 +266,14 @@ impl CaseTable {
             let name = format!("{SET}{name}");
             if *is_number {
                 let numbers = number(&name)?.values();
-                rows.iter_mut().zip(numbers).for_each(|(row, &number)| row.drawn.push(Drawn::Number(number)));
+                rows.iter_mut()
+                    .zip(numbers)
+                    .for_each(|(row, &number)| row.drawn.push(DrawnValue::Number(number)));
             } else {
                 let texts = texts(&name)?.iter().map(Option::unwrap_or_default);
                 rows.iter_mut()
                     .zip(texts)
-                    .for_each(|(row, text)| row.drawn.push(Drawn::Text(text.to_owned())));
+                    .for_each(|(row, text)| row.drawn.push(DrawnValue::Text(text.to_owned())));
             }
         }
         for name in &self.figures {
@@ -319,8 +321,8 @@ impl CaseTable {
     /// The attitude that the lines of sight of the cases rest on, where the figures recorded tell ([`score::attitude_word`]); `granted` is
     /// what the scenario grants to centroids.
     pub fn attitude(&self, granted: Option<&str>) -> Option<String> {
-        let told = self.figure(names::LINE_OF_SIGHT_RATE)?;
-        let (own, of) = told.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
+        let figure = self.figure(names::LINE_OF_SIGHT_RATE)?;
+        let (own, of) = figure.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
         attitude_word(own > 0, of > own, granted)
     }
 
@@ -329,8 +331,8 @@ impl CaseTable {
     pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
         let index = self.drawn.get_index_of(name)?;
         let number = |row: &CaseRow| match row.drawn[index] {
-            Drawn::Number(number) => Some(number),
-            Drawn::Text(_) => None,
+            DrawnValue::Number(number) => Some(number),
+            DrawnValue::Text(_) => None,
         };
         self.rows.iter().map(number).collect()
     }
@@ -339,7 +341,7 @@ impl CaseTable {
 #[cfg(test)]
 impl CaseRow {
     /// A case of these figures, of which nothing was drawn.
-    pub(super) fn of(case: u64, seed: u64, figures: Vec<CaseFigure>) -> Self {
+    pub(super) fn from_figures(case: u64, seed: u64, figures: Vec<CaseFigure>) -> Self {
         let (drawn, causes) = (Vec::new(), Vec::new());
         Self { case, seed, has_failed: false, error: None, frames: 1, drawn, figures, causes }
     }
@@ -348,7 +350,7 @@ impl CaseRow {
 #[cfg(test)]
 impl CaseTable {
     /// Cases of these figures, of which nothing was drawn.
-    pub(super) fn of(figures: &[&str], rows: Vec<CaseRow>) -> Self {
+    pub(super) fn from_rows(figures: &[&str], rows: Vec<CaseRow>) -> Self {
         let figures = figures.iter().map(|name| (*name).to_owned()).collect();
         Self { drawn: IndexMap::new(), figures, causes: Vec::new(), rows }
     }
@@ -382,7 +384,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cases_of_a_study_tell_what_their_lines_of_sight_rest_on() {
+    fn the_cases_of_a_study_state_what_their_lines_of_sight_rest_on() {
         let word = |counts: &[(u64, u64)], granted| {
             let row = |&(count, of): &(u64, u64)| CaseRow {
                 case: 0,

@@ -2,7 +2,7 @@
 
 use sim::randomness::{Effect, Seed, normal, uniform};
 use statistics::{
-    ClusterSum, Clustered, Interval, cluster_quantile_interval, cluster_rank_correlation,
+    ClusterSum, ClusterValue, Interval, cluster_quantile_interval, cluster_rank_correlation,
     mean_difference_interval, normal_quantile, rate_difference_interval,
 };
 
@@ -16,7 +16,7 @@ const POINTS: u64 = 16;
 const FRAMES: u64 = 25;
 
 /// A case at two points of a sweep.
-struct Tried {
+struct SweptCase {
     replication: usize,
     /// What was drawn.
     x: f64,
@@ -26,7 +26,7 @@ struct Tried {
     hits: [u64; 2],
 }
 
-fn tried(kind: DesignKind, study: u64, replications: u64) -> Vec<Tried> {
+fn swept_cases(kind: DesignKind, study: u64, replications: u64) -> Vec<SweptCase> {
     let design =
         Design::new(kind, 2, POINTS, Seed { seed: 29, case: study }.streams(0, Effect::CaseSeed).word(0));
     let design = design.unwrap();
@@ -39,30 +39,30 @@ fn tried(kind: DesignKind, study: u64, replications: u64) -> Vec<Tried> {
         let mut hits = |chance: f64| (0..FRAMES).filter(|_| uniform(random) < chance).count() as u64;
         let hits = [hits(chance), hits(chance - 0.2)];
         let replication = if kind == DesignKind::Random { number } else { number / POINTS } as usize;
-        Tried { replication, x, amount: [amount, 0.5 * amount + 0.3], hits }
+        SweptCase { replication, x, amount: [amount, 0.5 * amount + 0.3], hits }
     };
     (0..replications * POINTS).map(case).collect()
 }
 
-fn amounts(cases: &[Tried], point: usize) -> Vec<CaseFigure> {
+fn amounts(cases: &[SweptCase], point: usize) -> Vec<CaseFigure> {
     cases.iter().map(|case| CaseFigure { value: Some(case.amount[point]), count: 1, of: 1 }).collect()
 }
 
-fn rates(cases: &[Tried], point: usize) -> Vec<CaseFigure> {
+fn rates(cases: &[SweptCase], point: usize) -> Vec<CaseFigure> {
     let figure = |count: u64| CaseFigure { value: Some(count as f64 / FRAMES as f64), count, of: FRAMES };
     cases.iter().map(|case| figure(case.hits[point])).collect()
 }
 
-fn replications(cases: &[Tried]) -> Vec<usize> {
+fn replications(cases: &[SweptCase]) -> Vec<usize> {
     cases.iter().map(|case| case.replication).collect()
 }
 
-fn of_all(name: &str, figures: &[CaseFigure], cases: &[Tried]) -> Option<Interval> {
+fn of_all(name: &str, figures: &[CaseFigure], cases: &[SweptCase]) -> Option<Interval> {
     let all = overall(name, figures, &replications(cases))?;
     Some(Interval { low: all.low?, high: all.high? })
 }
 
-fn difference(is_rate: bool, cases: &[Tried]) -> Option<Interval> {
+fn difference(is_rate: bool, cases: &[SweptCase]) -> Option<Interval> {
     let of = |point| {
         let figures = if is_rate { rates(cases, point) } else { amounts(cases, point) };
         sums(is_rate, &figures, &replications(cases))
@@ -71,13 +71,13 @@ fn difference(is_rate: bool, cases: &[Tried]) -> Option<Interval> {
     if is_rate { rate_difference_interval(&pairs) } else { mean_difference_interval(&pairs) }
 }
 
-fn quantile(cases: &[Tried], p: f64) -> Option<Interval> {
-    let mut sorted: Vec<Clustered> = cases.iter().map(|case| (case.replication, case.amount[0])).collect();
+fn quantile(cases: &[SweptCase], p: f64) -> Option<Interval> {
+    let mut sorted: Vec<ClusterValue> = cases.iter().map(|case| (case.replication, case.amount[0])).collect();
     sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
     cluster_quantile_interval(&sorted, p)
 }
 
-fn correlation(cases: &[Tried]) -> Option<Interval> {
+fn correlation(cases: &[SweptCase]) -> Option<Interval> {
     let triples: Vec<_> = cases.iter().map(|case| (case.replication, case.x, case.amount[0])).collect();
     cluster_rank_correlation(&triples)?.1
 }
@@ -92,7 +92,7 @@ fn coverage(intervals: impl Iterator<Item = Option<Interval>>, truth: f64) -> (f
 }
 
 /// An interval of a study, and what it should hold.
-type Cell = (&'static str, f64, fn(&[Tried]) -> Option<Interval>);
+type Cell = (&'static str, f64, fn(&[SweptCase]) -> Option<Interval>);
 
 /// A count of 2,000 at 95 % scatters by 0.5 %: two of them within the 93 to 97 % that are wanted.
 #[test]
@@ -109,7 +109,8 @@ fn intervals_of_replicated_designs_hold_their_truth() {
         ("correlation", 6.0 / std::f64::consts::PI * libm::asin(0.5 / sd), correlation),
     ];
     let many = 10;
-    let of = |kind| -> Vec<Vec<Tried>> { (0..STUDIES).map(|study| tried(kind, study, many)).collect() };
+    let of =
+        |kind| -> Vec<Vec<SweptCase>> { (0..STUDIES).map(|study| swept_cases(kind, study, many)).collect() };
     let independent = of(DesignKind::Random);
     let mut missed = Vec::new();
     for kind in [DesignKind::LatinHypercube, DesignKind::Sobol] {

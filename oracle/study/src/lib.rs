@@ -1,10 +1,10 @@
 //! Studies: a pipeline over everything that can vary (Monte Carlo, sweeps, designs of experiments).
 //!
-//! A study is a scenario and the laws of some of its parameters ([`StudyFile`]). Case k is a scenario of its own: its values are
+//! A study is a scenario and the distributions of some of its parameters ([`StudyFile`]). Case k is a scenario of its own: its values are
 //! drawn from the address (seed of the study, k), so that any shard, in any order, on any machine, gives the same rows. What
 //! is made of a case is one row of a table ([`CaseRow`]): the values drawn, and every figure of its score.
 //!
-//! - [`StudyFile`], [`Law`], [`DesignKind`]: what is asked for.
+//! - [`StudyFile`], [`Distribution`], [`DesignKind`]: what is asked for.
 //! - [`Study`]: what was asked for, checked; makes the scenario of a case.
 //! - [`StudyPipeline`]: what is tried; built anew for every case.
 //! - [`evaluate`]: simulates, processes and scores a case.
@@ -35,23 +35,25 @@ mod findings;
 mod scale;
 mod shard;
 
-pub use campaign::{Campaign, Known};
+pub use campaign::{Campaign, CaseOutcome};
 pub use case_file::CaseFile;
-pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn, case_columns};
+pub use cases::{CaseFigure, CaseRow, CaseTable, DrawnValue, case_columns};
 pub use definition::design::DesignKind;
+pub use definition::distribution::Distribution;
 pub use definition::file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
-pub use definition::law::Law;
 pub use definition::overlay::{value_at, with_overlay};
 pub use definition::{Case, Study};
 pub use evaluate::engine::Workers;
-pub use evaluate::{Evaluated, evaluate};
+pub use evaluate::{CaseResult, evaluate};
 pub use findings::estimate::{Estimate, overall};
-pub use findings::requirement::{Limit, RequiredOf, RequirementResult, RequirementVerdict, StudyRequirement};
+pub use findings::requirement::{
+    Limit, RequiredStatistic, RequirementResult, RequirementVerdict, StudyRequirement,
+};
 pub use findings::sensitivity::{RankCorrelation, SobolIndex};
 pub use shard::record::StudyRecord;
 
-pub use evaluate::tried::{StudyPipeline, command_line};
-pub use findings::stopping::Waited;
+pub use evaluate::study_pipeline::{StudyPipeline, command_line};
+pub use findings::stopping::StoppingStatus;
 pub use findings::summary::{
     CaseError, CauseSummary, FigureSummary, Summary, SweepDifference, SweepPoint, WorstCase,
 };

@@ -7,7 +7,7 @@ use run::pipeline_choice::PipelineChoice;
 use sim::randomness::{Effect, Seed, normal, uniform};
 
 use crate::campaign::Campaign;
-use crate::cases::{CaseFigure, CaseRow, CaseTable, Drawn};
+use crate::cases::{CaseFigure, CaseRow, CaseTable, DrawnValue};
 use crate::definition::Study;
 
 const STUDY: &str = r#"
@@ -21,11 +21,11 @@ cases = CASES
 
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "uniform", min = 0.6, max = 1.0 }
+distribution = { kind = "uniform", min = 0.6, max = 1.0 }
 
 [[vary]]
 path = "sensor.read_noise_e"
-law = { kind = "uniform", min = 5.0, max = 45.0 }
+distribution = { kind = "uniform", min = 5.0, max = 45.0 }
 "#;
 
 /// A made-up case of ten frames.
@@ -33,7 +33,7 @@ fn row(table: &CaseTable, case: u64) -> CaseRow {
     let mut random = Seed { seed: 3, case }.stream(0, Effect::StudyParameter, 0);
     let drawn = [0.6 + 0.4 * uniform(&mut random), 5.0 + 40.0 * uniform(&mut random)];
     let mut figure = |name: &String| {
-        if run::figure_called(name).is_rate() {
+        if run::figure_by_name(name).is_rate() {
             let count = (0..10).filter(|_| uniform(&mut random) < 0.9 - 0.2 * drawn[0]).count() as u64;
             CaseFigure { value: Some(count as f64 / 10.0), count, of: 10 }
         } else {
@@ -49,7 +49,7 @@ fn row(table: &CaseTable, case: u64) -> CaseRow {
         has_failed: false,
         error: None,
         frames: 10,
-        drawn: drawn.map(Drawn::Number).to_vec(),
+        drawn: drawn.map(DrawnValue::Number).to_vec(),
         figures,
         causes,
     }

@@ -1,4 +1,4 @@
-//! The verification of requirements: each by the analytic law, and by simulated frames.
+//! The verification of requirements: each by the analytic detection model, and by simulated frames.
 use std::cell::RefCell;
 use std::path::Path;
 use std::rc::Rc;
@@ -12,11 +12,11 @@ use statistics::clopper_pearson;
 use crate::confirm::{Bench, StarFrame};
 use crate::design::binding::binding_of;
 use crate::design::inverse::{FoundValue, Search, search};
-use crate::design::{Design, Reached, design_with};
+use crate::design::{Design, DesignPerformance, design_with};
 use crate::report::curves;
-use crate::report::{Found, Simulated, Status, Verdict, VisibilityReport};
+use crate::report::{SearchResult, SimulatedRate, Status, Verdict, VisibilityReport};
 use crate::requirement::definition::Requirements;
-use crate::requirement::{Demand, Find, Over, Parameter, Requirement, Want};
+use crate::requirement::{Demand, Extreme, FindTable, Parameter, Requirement, SkyStatistic};
 use crate::sky::Pointing;
 
 /// Factor of a step by which a value is moved that all boresights do not agree with, and most of such steps.
@@ -82,14 +82,14 @@ struct Assessment<'a> {
     frames: RefCell<Vec<(f64, Rc<Vec<StarFrame>>)>>,
 }
 
-/// A rate as far from the law's as chance brings it in one of five hundred results is not of that law.
+/// A rate as far from the detection model's as chance brings it in one of five hundred results disagrees with it.
 const DISAGREEMENT: f64 = 0.999;
 
-/// What was simulated where the law says `law`, in words; whether the two disagree, too.
-fn told(simulated: Option<&Simulated>, law: f64) -> String {
+/// What was simulated where the detection model gives the probability `model`, in words; whether the two disagree, too.
+fn simulation_text(simulated: Option<&SimulatedRate>, model: f64) -> String {
     let Some(s) = simulated else { return "not simulated".to_owned() };
     let (low, high) = clopper_pearson(s.count, s.of, DISAGREEMENT);
-    let remark = if (low..=high).contains(&law) { "" } else { ", which DISAGREES with the law" };
+    let remark = if (low..=high).contains(&model) { "" } else { ", which DISAGREES with the law" };
     format!(
         "simulated {} of {} frames ({:.1} to {:.1} %){remark}",
         s.count,
@@ -99,32 +99,32 @@ fn told(simulated: Option<&Simulated>, law: f64) -> String {
     )
 }
 
-/// What binds where the law says met and the frames do not.
+/// What binds where the detection model says met and the frames do not.
 const REFUTED: &str = "simulation: fewer frames meet it than the analytic law says";
 /// Frames at which it is given up to say how many would decide.
-const MOST_FRAMES: u64 = 10_000;
+const MAX_FRAMES: u64 = 10_000;
 
-/// What law and simulation say together: simulation may refute or confirm the law within its confidence.
-fn status(asked: f64, reached: f64, simulated: Option<&Simulated>) -> Status {
+/// What detection model and simulation say together: simulation may refute or confirm the detection model within its confidence.
+fn status(asked: f64, reached: f64, simulated: Option<&SimulatedRate>) -> Status {
     match simulated {
         _ if reached < asked => Status::NotMet,
-        None => Status::MetLaw,
+        None => Status::MetModel,
         Some(s) if s.high < asked => Status::NotMet,
         Some(s) if s.low >= asked => Status::MetSimulated,
-        Some(s) if cannot_show(asked, s) => Status::MetLaw,
+        Some(s) if cannot_show(asked, s) => Status::MetModel,
         Some(_) => Status::NotDecided,
     }
 }
 
 /// Even if all of so few frames met it, their lower bound would be below what is asked for.
-fn cannot_show(asked: f64, simulated: &Simulated) -> bool {
+fn cannot_show(asked: f64, simulated: &SimulatedRate) -> bool {
     clopper_pearson(simulated.of, simulated.of, simulated.confidence).0 < asked
 }
 
 /// How many frames would show what these did not; empty where these are enough.
-fn frames_in_words(status: Status, asked: f64, reached: f64, simulated: Option<&Simulated>) -> String {
+fn frames_in_words(status: Status, asked: f64, reached: f64, simulated: Option<&SimulatedRate>) -> String {
     let Some(s) = simulated else { return String::new() };
-    if !(status == Status::NotDecided || status == Status::MetLaw) {
+    if !(status == Status::NotDecided || status == Status::MetModel) {
         return String::new();
     }
     let shows = |frames: u64| {
@@ -132,7 +132,7 @@ fn frames_in_words(status: Status, asked: f64, reached: f64, simulated: Option<&
         clopper_pearson(count, frames, s.confidence).0 >= asked
     };
     let enough = std::iter::successors(Some(s.of.max(1)), |frames| Some(frames + frames.div_ceil(10)))
-        .take_while(|frames| *frames <= MOST_FRAMES)
+        .take_while(|frames| *frames <= MAX_FRAMES)
         .find(|frames| shows(*frames));
     let too_few = "too few frames to show it";
     enough.map_or_else(|| format!(", {too_few}"), |frames| format!(", {too_few}: about {frames} would"))
@@ -170,7 +170,7 @@ impl<'a> Assessment<'a> {
             evidence: format!(
                 "{}; {}{}",
                 self.reached_in_words(demand, &reached, asked),
-                told(simulated.as_ref(), reached.probability),
+                simulation_text(simulated.as_ref(), reached.probability),
                 frames_in_words(status, asked, reached.probability, simulated.as_ref())
             ),
             simulated,
@@ -180,7 +180,7 @@ impl<'a> Assessment<'a> {
     }
 
     /// The value of a parameter that meets a requirement.
-    fn find(&self, requirement: &Requirement, find: &Find) -> Result<Verdict, Failure> {
+    fn find(&self, requirement: &Requirement, find: &FindTable) -> Result<Verdict, Failure> {
         let file = &self.requirements.file;
         let demand = &requirement.demand;
         let asked = demand.probability(file.probability);
@@ -234,7 +234,7 @@ impl<'a> Assessment<'a> {
             "{parameter} {} {unit}: {:.1} %, {}{}",
             digits(value),
             100.0 * reached.probability,
-            told(simulated.as_ref(), reached.probability),
+            simulation_text(simulated.as_ref(), reached.probability),
             frames_in_words(status, asked, reached.probability, simulated.as_ref())
         );
         if goal > asked {
@@ -245,8 +245,12 @@ impl<'a> Assessment<'a> {
             ));
         }
         if let (Some(value), Some(probability)) = (failing_value, failing) {
-            let told = told(failing_simulated.as_ref(), probability);
-            evidence.push_str(&format!("; {} {unit}: {:.1} %, {told}", digits(value), 100.0 * probability));
+            let evidence_text = simulation_text(failing_simulated.as_ref(), probability);
+            evidence.push_str(&format!(
+                "; {} {unit}: {:.1} %, {evidence_text}",
+                digits(value),
+                100.0 * probability
+            ));
         }
         if !is_monotone {
             evidence.push_str("; beyond, not everywhere met");
@@ -255,11 +259,11 @@ impl<'a> Assessment<'a> {
             status,
             reached: reached.probability,
             // Room of the camera as it is.
-            margin: own.map(|own| if find.want == Want::Largest { value - own } else { own - value }),
+            margin: own.map(|own| if find.want == Extreme::Largest { value - own } else { own - value }),
             evidence,
             simulated,
             binds: (status == Status::NotMet).then(|| REFUTED.to_owned()),
-            found: Some(Found {
+            found: Some(SearchResult {
                 parameter: parameter.into(),
                 unit: unit.into(),
                 value,
@@ -276,12 +280,12 @@ impl<'a> Assessment<'a> {
         })
     }
 
-    /// A value that the search found from some boresights, moved until all of them agree that the law is met; a few steps at most.
-    fn polished(&self, demand: &Demand, find: &Find, found: f64, asked: f64) -> Result<f64, Failure> {
-        let inwards = if find.want == Want::Largest { 1.0 / POLISH } else { POLISH };
+    /// A value that the search found from some boresights, moved until all of them agree that the detection model is met; a few steps at most.
+    fn polished(&self, demand: &Demand, find: &FindTable, found: f64, asked: f64) -> Result<f64, Failure> {
+        let inwards = if find.want == Extreme::Largest { 1.0 / POLISH } else { POLISH };
         let mut value = found;
         for _ in 0..POLISH_STEPS {
-            if self.law_at(demand, find.parameter, value)?.probability >= asked {
+            if self.model_at(demand, find.parameter, value)?.probability >= asked {
                 break;
             }
             value = (value * inwards).clamp(find.from, find.to);
@@ -289,8 +293,13 @@ impl<'a> Assessment<'a> {
         Ok(value)
     }
 
-    /// What a value of a parameter reaches by the law.
-    fn law_at(&self, demand: &Demand, parameter: Parameter, value: f64) -> Result<Reached, Failure> {
+    /// What a value of a parameter reaches by the detection model.
+    fn model_at(
+        &self,
+        demand: &Demand,
+        parameter: Parameter,
+        value: f64,
+    ) -> Result<DesignPerformance, Failure> {
         if parameter == Parameter::ExposureS && self.design.covers(value) {
             return Ok(self.design.reached(demand, Some(value))?);
         }
@@ -299,13 +308,13 @@ impl<'a> Assessment<'a> {
         Ok(design.reached(demand, exposure_s)?)
     }
 
-    /// What a value of a parameter reaches, by the law and by simulation.
+    /// What a value of a parameter reaches, by the detection model and by simulation.
     fn at_value(
         &self,
         demand: &Demand,
         parameter: Parameter,
         value: f64,
-    ) -> Result<(Reached, Option<Simulated>), Failure> {
+    ) -> Result<(DesignPerformance, Option<SimulatedRate>), Failure> {
         if parameter == Parameter::ExposureS && self.design.covers(value) {
             let reached = self.design.reached(demand, Some(value))?;
             let simulated = self.simulate(demand, &reached, Some(value))?;
@@ -324,9 +333,9 @@ impl<'a> Assessment<'a> {
     fn simulate(
         &self,
         demand: &Demand,
-        reached: &Reached,
+        reached: &DesignPerformance,
         exposure_s: Option<f64>,
-    ) -> Result<Option<Simulated>, Failure> {
+    ) -> Result<Option<SimulatedRate>, Failure> {
         let file = &self.requirements.file;
         let frames = file.confirm.frames;
         if frames == 0 {
@@ -339,7 +348,7 @@ impl<'a> Assessment<'a> {
                 self.enough_stars(exposure_s, n_min.unwrap_or(file.n_min), *over)?
             }
             Demand::ExposureWindow { n_min, .. } if reached.exposure_s >= file.exposure.min_s => {
-                self.enough_stars(reached.exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?
+                self.enough_stars(reached.exposure_s, n_min.unwrap_or(file.n_min), SkyStatistic::Sky)?
             }
             Demand::ExposureWindow { .. } => return Ok(None),
             Demand::TargetDetected { phase_max_deg, .. } => {
@@ -357,15 +366,15 @@ impl<'a> Assessment<'a> {
         Ok(count.map(|count| {
             let of = u64::from(frames);
             let (low, high) = clopper_pearson(count, of, confidence);
-            Simulated { count, of, low, high, confidence }
+            SimulatedRate { count, of, low, high, confidence }
         }))
     }
 
     /// How many frames have enough stars; `None` when no pointing counts.
-    fn enough_stars(&self, exposure_s: f64, n_min: u32, over: Over) -> Result<Option<u64>, Failure> {
+    fn enough_stars(&self, exposure_s: f64, n_min: u32, over: SkyStatistic) -> Result<Option<u64>, Failure> {
         let frames = match over {
-            Over::Sky => self.star_frames(exposure_s)?,
-            Over::EveryPointing => Rc::new(self.frames_of_the_worst(exposure_s, n_min)?),
+            SkyStatistic::Sky => self.star_frames(exposure_s)?,
+            SkyStatistic::EveryPointing => Rc::new(self.frames_of_the_worst(exposure_s, n_min)?),
         };
         let enough = frames.iter().filter(|frame| frame.detected >= n_min).count() as u64;
         Ok((!frames.is_empty()).then_some(enough))
@@ -377,7 +386,8 @@ impl<'a> Assessment<'a> {
             return Ok(Rc::clone(known));
         }
         let count = self.requirements.file.confirm.frames as usize;
-        let counted: Vec<&Pointing> = self.design.sky()?.counted().map(|field| &field.pointing).collect();
+        let counted: Vec<&Pointing> =
+            self.design.sky()?.usable_fields().map(|field| &field.pointing).collect();
         let places = if counted.is_empty() { 0..0 } else { 0..count };
         let pointings: Vec<Pointing> =
             places.map(|k| counted[(2 * k + 1) * counted.len() / (2 * count)].clone()).collect();
@@ -389,7 +399,7 @@ impl<'a> Assessment<'a> {
     /// Frames of stars, all at the pointing with the least chance of enough of them.
     fn frames_of_the_worst(&self, exposure_s: f64, n_min: u32) -> Result<Vec<StarFrame>, Failure> {
         let seen = self.design.stars(exposure_s, n_min)?;
-        let counted = self.design.sky()?.counted().zip(&seen);
+        let counted = self.design.sky()?.usable_fields().zip(&seen);
         let worst = counted.min_by(|(_, a), (_, b)| a.chance.total_cmp(&b.chance));
         let Some((field, _)) = worst else { return Ok(Vec::new()) };
         let pointings = vec![field.pointing.clone(); self.requirements.file.confirm.frames as usize];
@@ -410,7 +420,7 @@ impl<'a> Assessment<'a> {
     fn margin(
         &self,
         demand: &Demand,
-        reached: &Reached,
+        reached: &DesignPerformance,
         asked: f64,
     ) -> Result<(Option<f64>, &'static str), Failure> {
         Ok(match demand {
@@ -428,16 +438,16 @@ impl<'a> Assessment<'a> {
         })
     }
 
-    fn reached_in_words(&self, demand: &Demand, reached: &Reached, asked: f64) -> String {
-        let Reached { probability, exposure_s, range_km } = *reached;
+    fn reached_in_words(&self, demand: &Demand, reached: &DesignPerformance, asked: f64) -> String {
+        let DesignPerformance { probability, exposure_s, range_km } = *reached;
         let percent = format!("{:.1} % ({:.1} % asked)", 100.0 * probability, 100.0 * asked);
         let exposure = format!("{} s", digits(exposure_s));
         match (demand, range_km) {
             (Demand::Stars { n_min, over, .. }, _) => {
                 let n_min = n_min.unwrap_or(self.requirements.file.n_min);
                 let place = match over {
-                    Over::Sky => "over the sky",
-                    Over::EveryPointing => "at the worst pointing",
+                    SkyStatistic::Sky => "over the sky",
+                    SkyStatistic::EveryPointing => "at the worst pointing",
                 };
                 format!("{n_min} stars at {exposure} {place}: {percent}")
             }
@@ -481,19 +491,19 @@ fn digests(requirements: &Requirements) -> Result<FileDigests, Failure> {
 mod tests {
     use super::*;
 
-    fn simulated(count: u64, of: u64) -> Simulated {
+    fn simulated(count: u64, of: u64) -> SimulatedRate {
         let confidence = 0.95;
         let (low, high) = clopper_pearson(count, of, confidence);
-        Simulated { count, of, low, high, confidence }
+        SimulatedRate { count, of, low, high, confidence }
     }
 
     #[test]
-    fn law_and_simulation_are_told_apart() {
+    fn model_and_simulation_are_distinguished() {
         let of = |reached, count, frames| status(0.9, reached, Some(&simulated(count, frames)));
-        assert_eq!(status(0.9, 0.95, None), Status::MetLaw);
+        assert_eq!(status(0.9, 0.95, None), Status::MetModel);
         assert_eq!(status(0.9, 0.85, None), Status::NotMet);
         // 0.9^28 = 0.052, 0.9^29 = 0.047.
-        assert_eq!(of(0.95, 28, 28), Status::MetLaw);
+        assert_eq!(of(0.95, 28, 28), Status::MetModel);
         assert_eq!(of(0.95, 29, 29), Status::MetSimulated);
         assert_eq!(of(0.95, 27, 29), Status::NotDecided);
         assert_eq!(of(0.95, 15, 29), Status::NotMet);

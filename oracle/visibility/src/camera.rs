@@ -13,7 +13,7 @@ use sim::scene::{Background, BackgroundConfig};
 use sim::sensor::{Sensor, SensorConfig};
 use sim::truth::EARTH_GM_KM3_S2;
 
-use crate::law::pixel::PixelThreshold;
+use crate::detection_model::pixel::PixelThreshold;
 use crate::requirement::{MotionTable, Parameter};
 
 /// A camera as the simulator is told of it.
@@ -119,12 +119,12 @@ impl CameraModel {
         })
     }
 
-    /// The law of its pixels against a threshold, DN, whole and not negative.
+    /// The detection model of its pixels against a threshold, DN, whole and not negative.
     pub fn threshold(&self, threshold_dn: f64) -> Arc<PixelThreshold> {
         // Whoever panicked while making a law has left the others whole.
         let mut known = self.thresholds.lock().unwrap_or_else(PoisonError::into_inner);
-        let law = || Arc::new(PixelThreshold::new(&self.config.sensor, threshold_dn));
-        Arc::clone(known.entry(threshold_dn.max(0.0) as u32).or_insert_with(law))
+        let threshold = || Arc::new(PixelThreshold::new(&self.config.sensor, threshold_dn));
+        Arc::clone(known.entry(threshold_dn.max(0.0) as u32).or_insert_with(threshold))
     }
 
     /// The trail, px along x, that the orbital motion draws of what is not at rest in an exposure: at the boresight, from where it

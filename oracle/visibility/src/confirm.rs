@@ -49,7 +49,7 @@ pub struct Bench<'a> {
 pub struct StarTrial {
     /// Johnson V.
     pub magnitude: f64,
-    /// The chance that the analytic law gives it.
+    /// The chance that the analytic detection model gives it.
     pub chance: f64,
     /// Whether the detector found it.
     pub is_detected: bool,
@@ -136,7 +136,7 @@ impl Bench<'_> {
     fn expose<T: Send>(
         &self,
         flights: &[Simulation],
-        look: impl Fn(&Seen<'_>) -> T + Sync,
+        look: impl Fn(&ProcessedFrame<'_>) -> T + Sync,
     ) -> Result<Vec<T>, Failure> {
         let factory =
             FarRangeFactory::new(self.pipeline()).map_err(|error| Failure::Usage(error.to_string()))?;
@@ -160,7 +160,7 @@ impl Bench<'_> {
                 // A pipeline that has seen nothing: every frame stands for itself.
                 let mut pipeline = factory.build(&setup)?;
                 let clusters = clusters(&pipeline.process(&exposure.frame, &exposure.telemetry));
-                made.push(look(&Seen {
+                made.push(look(&ProcessedFrame {
                     frame: &exposure.frame,
                     objects: &exposure.objects,
                     background_e_per_s: exposure.truth.background_e_per_s,
@@ -200,8 +200,8 @@ impl Bench<'_> {
         let elements = circular(radial, transverse, self.motion)?;
         // The target behind the camera, or, with the Earth behind it, at right angles.
         let orbit = orbit(pointing.time, &elements, 10_000.0);
-        let unseen = TargetConfig::Beacon { magnitude_at_1_km: 30.0 };
-        Ok(self.flight(pointing.time, orbit, guidance, 0.0, unseen, exposure_s, number))
+        let invisible = TargetConfig::Beacon { magnitude_at_1_km: 30.0 };
+        Ok(self.flight(pointing.time, orbit, guidance, 0.0, invisible, exposure_s, number))
     }
 
     /// A flight that looks at the target in an aspect.
@@ -298,7 +298,7 @@ impl Bench<'_> {
 }
 
 /// What a frame shows, and what is in it.
-struct Seen<'a> {
+struct ProcessedFrame<'a> {
     frame: &'a Frame,
     objects: &'a [ObjectTruth],
     background_e_per_s: f64,

@@ -1,15 +1,15 @@
 //! Requirements: which camera sees enough stars, and the target.
 //!
 //! A file of requirements ([`RequirementFile`]) names a camera and what is demanded of it. The answer ([`VisibilityReport`]) is
-//! computed from the simulator's models of light by an analytic law of detection, and confirmed by frames of the simulator that the detector of the
-//! far-range method has looked at: so a mistake of the law is seen by the simulation, and what no number of frames could search is
-//! found by the law.
+//! computed from the simulator's models of light by an analytic detection model, and confirmed by frames of the simulator that the detector of the
+//! far-range method has looked at: so a mistake of the detection model is seen by the simulation, and what no number of frames could search is
+//! found by the detection model.
 //!
 //! - [`RequirementFile`], [`Requirements`]: what is asked; read and checked.
 //! - [`CameraModel`]: the camera, prepared by the simulator's models.
-//! - [`PixelThreshold`], [`ImageShares`], [`DetectionCurve`]: the law of detection: of a pixel, of an image, of stars.
+//! - [`PixelThreshold`], [`ImageShares`], [`DetectionCurve`]: the detection model: of a pixel, of an image, of stars.
 //! - [`Sky`], [`Curves`], [`at_least`]: stars in the field at every boresight, and how many of them are detected.
-//! - [`TargetModel`], [`Watch`]: the target by range, phase angle and attitude.
+//! - [`TargetModel`], [`TargetObservation`]: the target by range, phase angle and attitude.
 //! - [`Design`]: one camera and what it reaches of a demand; [`search`]: the parameter that reaches it; [`binding`]: why none does.
 //! - [`Bench`]: simulated frames.
 //! - [`assess`]: all of it, into a [`VisibilityReport`]; [`write_report`]: its files.
@@ -37,7 +37,7 @@ mod camera;
 )]
 mod confirm;
 mod design;
-mod law;
+mod detection_model;
 mod report;
 mod requirement;
 mod sky;
@@ -48,20 +48,23 @@ pub use camera::{CameraConfig, CameraModel, mean_motion_rad_s};
 pub use confirm::{Bench, StarFrame, StarTrial};
 pub use design::binding::{binding, binding_of};
 pub use design::inverse::{FoundValue, Search, resolvable, search};
-pub use design::{AspectGroup, Design, Reached, between};
-pub use law::detection::{DetectionCurve, FrameThresholds, ImageShares, background_e, is_flooded};
-pub use law::pixel::{PixelThreshold, readout_e};
-pub use law::poisson_binomial::at_least;
+pub use design::{AspectGroup, Design, DesignPerformance, between};
+pub use detection_model::detection::{
+    DetectionCurve, FrameThresholds, ImageShares, background_e, is_flooded,
+};
+pub use detection_model::pixel::{PixelThreshold, readout_e};
+pub use detection_model::poisson_binomial::at_least;
 pub use report::write::{read_sky, tables, write_report};
 pub use report::{
-    CameraFigures, DetectionPoint, Found, LimitPoint, PointingStars, RangeByPhase, Simulated, SimulatedPoint,
-    SkySummary, StarsLost, Status, Verdict, VisibilityReport, WindowPoint,
+    CameraFigures, DetectionPoint, LimitPoint, PointingStars, RangeByPhase, SearchResult, SimulatedPoint,
+    SimulatedRate, SkySummary, StarsLost, Status, Verdict, VisibilityReport, WindowPoint,
 };
 pub use requirement::definition::{BUILT_IN_REQUIREMENTS, Requirements};
 pub use requirement::{
-    CameraTable, ConfirmTable, Demand, DetectionRule, ExposureTable, Find, MotionGuidance, MotionTable, Over,
-    Parameter, Requirement, RequirementFile, SkyTable, SkyTime, TargetLight, TargetTable, Want,
+    CameraTable, ConfirmTable, Demand, DetectionRule, ExposureTable, Extreme, FindTable, MotionGuidance,
+    MotionTable, Parameter, Requirement, RequirementFile, SkyStatistic, SkyTable, SkyTime, TargetLight,
+    TargetTable,
 };
-pub use sky::star_count::{Curves, Seen, over_sky, star_trail_px};
-pub use sky::{Excluded, Field, Pointing, Sky, SkyStar};
-pub use target::{Aspect, Setting, Sight, TargetModel, Watch};
+pub use sky::star_count::{Curves, StarCount, over_sky, star_trail_px};
+pub use sky::{Exclusion, Field, Pointing, Sky, SkyStar};
+pub use target::{Aspect, Setting, TargetModel, TargetObservation, TargetSignal};

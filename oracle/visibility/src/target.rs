@@ -10,7 +10,7 @@ use sim::scene::{Appearance, Lighting, Spacecraft, TargetConfig};
 use sim::truth::{Observer, OrbitConfig, RelativeElements, Schedule, States, Trajectory, shadow};
 
 use crate::camera::{CameraModel, moving_point};
-use crate::law::detection::{ImageShares, background_e, is_flooded};
+use crate::detection_model::detection::{ImageShares, background_e, is_flooded};
 use crate::requirement::{DetectionRule, ExposureTable, MotionGuidance, MotionTable, TargetLight};
 
 /// Astronomical unit, km (IAU 2012 Resolution B2).
@@ -91,7 +91,7 @@ impl TargetModel {
     }
 
     /// What the camera sees of it from `range_km`.
-    pub fn sight(&self, camera: &CameraModel, aspect: &Aspect, range_km: f64) -> Sight {
+    pub fn signal(&self, camera: &CameraModel, aspect: &Aspect, range_km: f64) -> TargetSignal {
         let chaser_km = -aspect.line_of_sight * range_km;
         let sun_km = aspect.sun_km;
         let lighting = Lighting { chaser_km, sun_km, sunlit_fraction: aspect.sunlit_fraction };
@@ -100,15 +100,15 @@ impl TargetModel {
         let e_per_s = appearance
             .magnitude()
             .map_or(0.0, |m| camera.radiometry.sunlit(m) * camera.vignetting.transmission(centre));
-        let place = aspect.place(camera, range_km);
-        let peak_e_per_s = e_per_s * appearance.peak_share(&place, camera.psf.peak_share());
-        Sight { e_per_s, peak_e_per_s, centre, magnitude: appearance.magnitude(), appearance }
+        let projector = aspect.projector(camera, range_km);
+        let peak_e_per_s = e_per_s * appearance.peak_share(&projector, camera.psf.peak_share());
+        TargetSignal { e_per_s, peak_e_per_s, centre, magnitude: appearance.magnitude(), appearance }
     }
 }
 
 /// What the camera sees of the target, which it looks at.
 #[derive(Debug, Clone)]
-pub struct Sight {
+pub struct TargetSignal {
     /// Photoelectrons a second.
     pub e_per_s: f64,
     /// Those of its brightest pixel, as the shutter control knows it.
@@ -119,7 +119,7 @@ pub struct Sight {
     appearance: Appearance,
 }
 
-impl Sight {
+impl TargetSignal {
     /// The longest exposure that does not over-expose it, s; longer than any when no light comes from it.
     pub fn longest_s(&self, camera: &CameraModel, exposure: &ExposureTable) -> f64 {
         exposure.target_level * camera.config.sensor.saturation_e() / self.peak_e_per_s.max(1e-30)
@@ -128,7 +128,7 @@ impl Sight {
 
 impl Aspect {
     /// From a point of the body frame, m, to the image of a camera that looks at its origin from `range_km`.
-    fn place<'a>(
+    fn projector<'a>(
         &'a self,
         camera: &'a CameraModel,
         range_km: f64,
@@ -144,40 +144,40 @@ impl Aspect {
     /// The chance that the target is detected in one exposure, over a background of light.
     pub fn chance(
         &self,
-        sight: &Sight,
-        watch: &Watch<'_>,
+        signal: &TargetSignal,
+        watch: &TargetObservation<'_>,
         range_km: f64,
         exposure_s: f64,
-        light_e_per_s: f64,
+        background_e_per_s: f64,
     ) -> f64 {
         let camera = watch.camera;
-        let background_e = background_e(camera, exposure_s, light_e_per_s);
+        let background_e = background_e(camera, exposure_s, background_e_per_s);
         if is_flooded(camera, watch.rule, background_e) {
             return 0.0;
         }
         let threshold = camera.threshold(watch.rule.thresholds(camera, background_e).high_dn);
-        let electrons = sight.e_per_s * exposure_s;
+        let electrons = signal.e_per_s * exposure_s;
         let mut body = Vec::new();
-        sight.appearance.image(&self.place(camera, range_km), POINTS, &mut body);
+        signal.appearance.image(&self.projector(camera, range_km), POINTS, &mut body);
         let trail_px = match watch.motion.guidance {
             MotionGuidance::Inertial => camera.trail_px(watch.motion, exposure_s),
             MotionGuidance::LocalOrbital => 0.0,
         };
         let mut points = Vec::new();
-        for along in moving_point(sight.centre, trail_px) {
+        for along in moving_point(signal.centre, trail_px) {
             points.extend(body.iter().map(|point| {
-                let (dx, dy) = (along.position.x - sight.centre.x, along.position.y - sight.centre.y);
+                let (dx, dy) = (along.position.x - signal.centre.x, along.position.y - signal.centre.y);
                 let position = PixelPoint::new(point.position.x + dx, point.position.y + dy);
                 ImagePoint { position, share: point.share * along.share }
             }));
         }
-        ImageShares::of_points(camera, &points).chance(&threshold, electrons, background_e)
+        ImageShares::from_points(camera, &points).chance(&threshold, electrons, background_e)
     }
 }
 
 /// A camera that watches a target.
 #[derive(Debug, Clone, Copy)]
-pub struct Watch<'a> {
+pub struct TargetObservation<'a> {
     /// The camera.
     pub camera: &'a CameraModel,
     /// When something counts as detected.
@@ -185,15 +185,15 @@ pub struct Watch<'a> {
     /// What smears.
     pub motion: &'a MotionTable,
     /// Light of the background, electrons a second and pixel.
-    pub light_e_per_s: f64,
+    pub background_e_per_s: f64,
 }
 
-impl Watch<'_> {
+impl TargetObservation<'_> {
     /// The chance that the target is detected from a range, all aspects being equally likely; 0 of none.
     pub fn chance(&self, target: &TargetModel, aspects: &[Aspect], range_km: f64, exposure_s: f64) -> f64 {
         let of = |aspect: &Aspect| {
-            let sight = target.sight(self.camera, aspect, range_km);
-            aspect.chance(&sight, self, range_km, exposure_s, self.light_e_per_s)
+            let signal = target.signal(self.camera, aspect, range_km);
+            aspect.chance(&signal, self, range_km, exposure_s, self.background_e_per_s)
         };
         let chances: Vec<f64> = aspects.par_iter().map(of).collect();
         chances.iter().sum::<f64>() / chances.len().max(1) as f64
@@ -208,7 +208,7 @@ pub(super) fn longest_exposures_s(
     range_km: f64,
     exposure: &ExposureTable,
 ) -> Vec<f64> {
-    let longest = |aspect| target.sight(camera, aspect, range_km).longest_s(camera, exposure);
+    let longest = |aspect| target.signal(camera, aspect, range_km).longest_s(camera, exposure);
     let mut all: Vec<f64> = aspects.iter().map(longest).collect();
     all.sort_by(f64::total_cmp);
     all

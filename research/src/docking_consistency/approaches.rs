@@ -107,7 +107,7 @@ pub struct Portion {
 
 impl Portion {
     /// The motion by one of the estimators, where it has one.
-    pub fn of(&self, estimator: Estimator) -> Option<&Motion> {
+    pub fn motion(&self, estimator: Estimator) -> Option<&Motion> {
         match estimator {
             Estimator::Exact => self.report.best.as_ref(),
             Estimator::Paper => self.report.paper.as_ref(),
@@ -126,7 +126,7 @@ pub enum Estimator {
 
 /// An approach, measured.
 #[derive(Debug, Clone)]
-pub struct Flown {
+pub struct MeasuredApproach {
     /// Lens of the camera.
     pub lens: Lens,
     /// Measured portions in order.
@@ -136,7 +136,7 @@ pub struct Flown {
 }
 
 /// Flies the approach of a number: even ones with the narrow lens, odd ones with the wide.
-pub fn fly(plan: &Plan, number: u64) -> Result<Flown, Box<dyn Error + Send + Sync>> {
+pub fn simulate(plan: &Plan, number: u64) -> Result<MeasuredApproach, Box<dyn Error + Send + Sync>> {
     let lens = Lens::ALL[(number % 2) as usize];
     let (approach, sun) = draw(plan, &lens, number)?;
     let simulation = DockingSimulation {
@@ -158,7 +158,7 @@ pub fn fly(plan: &Plan, number: u64) -> Result<Flown, Box<dyn Error + Send + Syn
     let mut workspace = simulator.workspace()?;
     let mut pipeline = DockingFactory::new(DockingConfig::default())?.build(&simulator.setup())?;
     let mut digitiser = Digitiser::default();
-    let mut flown = Flown { lens, portions: Vec::new(), fields: Vec::new() };
+    let mut approaches = MeasuredApproach { lens, portions: Vec::new(), fields: Vec::new() };
     let mut last_s = 0.0;
     for field in 0..plan.fields() {
         let exposure = simulator.expose(&mut workspace, field)?;
@@ -167,15 +167,15 @@ pub fn fly(plan: &Plan, number: u64) -> Result<Flown, Box<dyn Error + Send + Syn
         let truth = simulator.moment(field)?.state;
         digitiser = outcome.digitiser.unwrap_or(digitiser);
         if let DockingSolution::Measured(measurement) = outcome.solution {
-            flown.fields.push((truth, measurement.best));
+            approaches.fields.push((truth, measurement.best));
         }
         if let Some(report) = outcome.motion {
             let interval_s = telemetry.time_s - last_s;
             last_s = telemetry.time_s;
-            flown.portions.push(Portion { number: field / PORTION_FIELDS, interval_s, truth, report });
+            approaches.portions.push(Portion { number: field / PORTION_FIELDS, interval_s, truth, report });
         }
     }
-    Ok(flown)
+    Ok(approaches)
 }
 
 /// Course and Sun of an approach, drawn again until marks and cross are in the field from beginning to end.

@@ -1,12 +1,12 @@
 //! Errors against what their covariances say.
 
-use boresight::score::docking::Shown;
+use boresight::score::docking::ApproachParameters;
 use boresight::score::docking::consistency::{nees, within_3_sigma};
 use contract::docking::{Motion, PoseEstimate};
 use nalgebra::{Matrix6, Vector3, Vector6};
 use sim::truth::approach::ApproachState;
 
-use super::approaches::{Estimator, Flown};
+use super::approaches::{Estimator, MeasuredApproach};
 
 /// The parameters of a motion, in the order of [`Errors`].
 pub const NAMES: [&str; 16] =
@@ -29,11 +29,11 @@ pub struct Errors {
 
 impl Errors {
     /// `None` where ρ, α or β have no derivatives.
-    pub fn of(motion: &Motion, truth: &ApproachState) -> Option<Self> {
-        let told = Shown::of(&motion.pose, &motion.velocity_m_s);
-        let true_values = Shown::of(&truth.pose, &truth.velocity_m_s);
-        let shown: [f64; 7] = told.minus(&true_values).into();
-        let shown_sigmas = Shown::sigmas(motion)?;
+    pub fn from_motion(motion: &Motion, truth: &ApproachState) -> Option<Self> {
+        let reported = ApproachParameters::from_motion(&motion.pose, &motion.velocity_m_s);
+        let true_values = ApproachParameters::from_motion(&truth.pose, &truth.velocity_m_s);
+        let shown: [f64; 7] = reported.difference(&true_values).into();
+        let shown_sigmas = ApproachParameters::sigmas(motion)?;
         let d = motion.pose.position_m - truth.pose.position_m;
         let d_rate = motion.velocity_m_s - truth.velocity_m_s;
         let phi = motion.pose.phi_rad - truth.pose.phi_rad;
@@ -94,7 +94,7 @@ pub struct Mean {
 
 impl Mean {
     /// Of sums and numbers, one pair an approach; `None` of nothing.
-    fn of(approaches: &[(f64, f64)]) -> Option<Self> {
+    fn from_values(approaches: &[(f64, f64)]) -> Option<Self> {
         let (sum, count) = approaches.iter().fold((0.0, 0.0), |(s, n), (a, b)| (s + a, n + b));
         if count <= 0.0 {
             return None;
@@ -122,8 +122,9 @@ pub struct Tally {
 
 impl Tally {
     /// Statistics of one estimator over these approaches.
-    pub fn of(flown: &[Flown], estimator: Estimator) -> Self {
-        let errors: Vec<Vec<Errors>> = flown.iter().map(|flown| errors(flown, estimator)).collect();
+    pub fn from_approaches(approaches: &[MeasuredApproach], estimator: Estimator) -> Self {
+        let errors: Vec<Vec<Errors>> =
+            approaches.iter().map(|approaches| errors(approaches, estimator)).collect();
         let mean = |of: &dyn Fn(&Errors) -> Option<f64>| {
             let sums: Vec<(f64, f64)> = errors
                 .iter()
@@ -131,13 +132,14 @@ impl Tally {
                     portions.iter().filter_map(of).fold((0.0, 0.0), |(s, n), value| (s + value, n + 1.0))
                 })
                 .collect();
-            Mean::of(&sums)
+            Mean::from_values(&sums)
         };
         let share = |within: Option<bool>| within.map(|within| f64::from(u8::from(within)));
-        let fields: Vec<(f64, f64)> = flown
+        let fields: Vec<(f64, f64)> = approaches
             .iter()
-            .map(|flown| {
-                let values = flown.fields.iter().filter_map(|(truth, told)| field_nees(truth, told));
+            .map(|approaches| {
+                let values =
+                    approaches.fields.iter().filter_map(|(truth, reported)| field_nees(truth, reported));
                 values.fold((0.0, 0.0), |(s, n), value| (s + value, n + 1.0))
             })
             .collect();
@@ -145,26 +147,30 @@ impl Tally {
             portions: errors.iter().map(Vec::len).sum(),
             within: std::array::from_fn(|i| mean(&|e| share(e.within[i]))),
             within_all: mean(&|e| {
-                let told: Vec<f64> = e.within.iter().filter_map(|within| share(*within)).collect();
-                (!told.is_empty()).then(|| told.iter().sum::<f64>() / told.len() as f64)
+                let reported: Vec<f64> = e.within.iter().filter_map(|within| share(*within)).collect();
+                (!reported.is_empty()).then(|| reported.iter().sum::<f64>() / reported.len() as f64)
             }),
             nees: std::array::from_fn(|i| mean(&|e| e.nees[i])),
-            field_nees: Mean::of(&fields),
+            field_nees: Mean::from_values(&fields),
         }
     }
 }
 
 /// Of the portions of an approach that are judged.
-pub fn errors(flown: &Flown, estimator: Estimator) -> Vec<Errors> {
-    flown
+pub fn errors(approaches: &MeasuredApproach, estimator: Estimator) -> Vec<Errors> {
+    approaches
         .portions
         .iter()
         .filter(|portion| portion.number >= FIRST_PORTION)
-        .filter_map(|portion| Errors::of(portion.of(estimator)?, &portion.truth))
+        .filter_map(|portion| Errors::from_motion(portion.motion(estimator)?, &portion.truth))
         .collect()
 }
 
 /// Longest time between two reports, s.
-pub fn longest_interval_s(flown: &[Flown]) -> f64 {
-    flown.iter().flat_map(|flown| &flown.portions).map(|portion| portion.interval_s).fold(0.0, f64::max)
+pub fn longest_interval_s(approaches: &[MeasuredApproach]) -> f64 {
+    approaches
+        .iter()
+        .flat_map(|approaches| &approaches.portions)
+        .map(|portion| portion.interval_s)
+        .fold(0.0, f64::max)
 }

@@ -33,14 +33,14 @@ pub(in crate::command) fn monitor(arguments: &MonitorArguments, output: &Output)
              boresight again"
         )));
     }
-    let mut told = Ok(());
+    let mut announced = Ok(());
     let ready = |address: SocketAddr| {
         let url = format!("http://{address}/");
         output.note(format!("{name}: {url} (Ctrl-C ends)"));
-        told = output.document(&json!({ "url": url, "scenario": name }));
+        announced = output.document(&json!({ "url": url, "scenario": name }));
     };
     serve(&feed, arguments.bind, ready, interrupted())?;
-    told?;
+    announced?;
     Ok(Answer::Yes)
 }
 

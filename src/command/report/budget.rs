@@ -2,10 +2,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use files::{Earlier, Failure, FileError, RunDirectory, WholeFile, toml_file};
+use files::{AtomicFile, Failure, FileError, ReplaceableFile, RunDirectory, toml_file};
 use report::{FarRangeRun, check_budget};
 use run::pipeline_choice::PipelineChoice;
-use run::{Expectation, Flight, Options, ScenarioSource};
+use run::{Expectation, FrameJobs, Options, ScenarioSource};
 use scenario::Stage;
 
 use crate::command::interrupt::clean_up_when_interrupted;
@@ -15,7 +15,7 @@ use crate::command::scratch_directory::ScratchDirectory;
 
 /// Flies what is missing of the error budget of a far-range run, and keeps of each stage `run.toml` and `score.json` in
 /// `budget/STAGE`: its frames are those of the run, and their truth is there already. Gives the directories.
-pub(super) fn fly_budget(directory: &Path, output: &Output) -> Result<Vec<PathBuf>, Failure> {
+pub(super) fn run_budget(directory: &Path, output: &Output) -> Result<Vec<PathBuf>, Failure> {
     check_budget(directory)?;
     let run = FarRangeRun::read(directory)?;
     if run.run_file.inject.is_some() {
@@ -40,14 +40,14 @@ pub(super) fn fly_budget(directory: &Path, output: &Output) -> Result<Vec<PathBu
         }
         let folder = directory.join("budget").join(stage.to_string());
         if !folder.join("score.json").is_file() {
-            fly(&source, stage, frames.clone(), &folder, output)?;
+            run_stage(&source, stage, frames.clone(), &folder, output)?;
         }
         kept.push(folder);
     }
     Ok(kept)
 }
 
-fn fly(
+fn run_stage(
     source: &ScenarioSource,
     stage: Stage,
     frames: std::ops::Range<u64>,
@@ -63,10 +63,11 @@ fn fly(
     let prepared = source.prepare(Options { inject: Some(stage), ..Options::default() })?;
     let choice = PipelineChoice { word: None, timeout_s: 0.0, memory_mb: 0, sandbox: None };
     let factory = prepared.factory(&choice, scratch.path())?;
-    let flown = RunDirectory::create(&scratch.path().join("run"))?;
+    let run = RunDirectory::create(&scratch.path().join("run"))?;
     let progress = output.progress(frames.end - frames.start, &format!("{}, true {stage}", source.name));
-    let flight = Flight { frames, jobs: default_jobs(), images: None, expectation: Expectation::Dropped };
-    let ran = prepared.run(&flown, &flight, &factory, &|| {
+    let frame_jobs =
+        FrameJobs { frames, jobs: default_jobs(), images: None, expectation: Expectation::Dropped };
+    let ran = prepared.run(&run, &frame_jobs, &factory, &|| {
         progress.inc(1);
         Ok(())
     });
@@ -74,16 +75,18 @@ fn fly(
     output.first_failure(ran?.first_failure.as_ref());
     // The score last: where it is, the stage is done.
     for name in ["run.toml", "score.json"] {
-        let path = flown.path().join(name);
+        let path = run.path().join(name);
         let text = toml_file::read_text(&path).map_err(|source| FileError::Io {
             path: path.clone(),
             doing: "read",
             source,
         })?;
         // Of a stage that was not done.
-        let earlier =
-            Earlier { what: "that of an earlier flight", is: &|beginning| beginning.starts_with(b"name = ") };
-        WholeFile::with_text(&folder.join(name), &text)?.replace(earlier)?;
+        let earlier = ReplaceableFile {
+            description: "that of an earlier flight",
+            matches: &|beginning| beginning.starts_with(b"name = "),
+        };
+        AtomicFile::with_text(&folder.join(name), &text)?.replace(earlier)?;
     }
     Ok(())
 }

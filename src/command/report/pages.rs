@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use files::Failure;
 use gate::GateReport;
 use report::{
-    FlippedFrames, Page, REPORTS, gate_page, report_of, report_of_run, report_with_budget, visibility_page,
-    write_page,
+    FlippedFrames, Page, REPORTS, gate_page, read_report, read_run_report, report_with_budget,
+    visibility_page, write_page,
 };
 use run::AnyJudgement;
 use visibility::VisibilityReport;
 
-use super::budget::fly_budget;
+use super::budget::run_budget;
 use crate::command::output::Output;
 
 /// The value of `--budget` that flies every stage.
@@ -28,8 +28,8 @@ pub(super) fn write_report(
     output: &Output,
 ) -> Result<u64, Failure> {
     let page = match budget {
-        [] => report_of(directory)?,
-        [only] if only == Path::new(ALL) => report_with_budget(directory, &fly_budget(directory, output)?)?,
+        [] => read_report(directory)?,
+        [only] if only == Path::new(ALL) => report_with_budget(directory, &run_budget(directory, output)?)?,
         several if several.iter().any(|path| path == Path::new(ALL)) => {
             return Err(Failure::Usage(
                 "--budget is `all` and a directory, expected `all` alone: it flies every stage".to_owned(),
@@ -42,12 +42,12 @@ pub(super) fn write_report(
 
 /// Writes the report of a run that has just been scored into its directory.
 pub(in crate::command) fn write_beside_run(directory: &Path, scored: &mut dyn AnyJudgement, output: &Output) {
-    write_beside(report_of_run(directory, scored), directory, output);
+    write_beside(read_run_report(directory, scored), directory, output);
 }
 
 /// Writes the report of a directory of complete results into it.
 pub(in crate::command) fn write_beside_results(directory: &Path, output: &Output) {
-    write_beside(report_of(directory), directory, output);
+    write_beside(read_report(directory), directory, output);
 }
 
 /// Writes the report of an assessment of requirements into the directory of its other files.

@@ -24,13 +24,13 @@ use sim::docking::FieldTruth;
 
 use super::far_range::{Bounds, not_stored, time_words};
 use super::source::{Source, rows_of};
-use super::{PixelSource, Shown, spoken};
+use super::{AnnotatedFrame, PixelSource, display_name};
 
 /// Videos of a directory whose telemetry names no images.
 const VIDEOS: [&str; 2] = ["fields.avi", "fields.y4m"];
 
 /// What is known of a field.
-struct Known<'a> {
+struct FieldRecord<'a> {
     name: String,
     row: &'a FieldRow,
     setup: &'a DockingSetup,
@@ -46,7 +46,7 @@ struct Known<'a> {
 ///
 /// # Errors
 /// A [`Failure`] that names the field or the file which is missing or cannot be read.
-pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Failure> {
+pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<AnnotatedFrame>, Failure> {
     let telemetry = read_field_telemetry(&source.directory.join("telemetry.csv"))?;
     let rows = source.select("field", &telemetry, numbers, |row: &FieldRow| row.field)?;
     let setup = SetupFile::read(&source.directory.join("setup.toml"))?.setup();
@@ -82,7 +82,7 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Fai
             Some(((run_file, truth), answer)) => verdict(run_file, &setup, truth, answer.as_ref())?,
             None => None,
         };
-        let known = Known {
+        let known = FieldRecord {
             name: name.clone(),
             row,
             setup: &setup,
@@ -94,7 +94,12 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Fai
         };
         let by_other = pixels == PixelSource::DrawnAgain
             && run_file.as_ref().is_some_and(|run_file| run_file.mitsuba.is_some());
-        shown.push(known.shown(field, partner.and_then(|row| fields.get(&row.field)), pixels, by_other));
+        shown.push(known.annotated_frame(
+            field,
+            partner.and_then(|row| fields.get(&row.field)),
+            pixels,
+            by_other,
+        ));
     }
     Ok(shown)
 }
@@ -211,8 +216,14 @@ fn woven(field: &Field, before: Option<&Field>) -> Vec<u16> {
     dn
 }
 
-impl Known<'_> {
-    fn shown(&self, field: &Field, before: Option<&Field>, source: PixelSource, by_other: bool) -> Shown {
+impl FieldRecord<'_> {
+    fn annotated_frame(
+        &self,
+        field: &Field,
+        before: Option<&Field>,
+        source: PixelSource,
+        by_other: bool,
+    ) -> AnnotatedFrame {
         let number = field.number();
         let (columns, rows) = (field.image().columns(), field.camera_rows());
         let full_scale_dn = field.image().full_scale_dn();
@@ -222,7 +233,7 @@ impl Known<'_> {
         let range_m = true_range_m.or_else(|| self.estimate().map(|best| best.pose.position_m.norm()));
         let lens = self.lens.as_ref().map_or_else(String::new, |lens| format!(", lens {lens}"));
         let panel = Panel {
-            view: pixels.whole(),
+            view: pixels.full_window(),
             close_up: self.close_up(columns, rows),
             pixels,
             regions: None,
@@ -240,7 +251,7 @@ impl Known<'_> {
             caption: self.caption(),
         };
         let utc = self.truth.as_ref().map(|truth| format_utc(truth.time));
-        Shown {
+        AnnotatedFrame {
             panel,
             frame: number,
             time: utc.unwrap_or_else(|| format!("{} s", self.row.telemetry.time_s)),
@@ -278,7 +289,7 @@ impl Known<'_> {
         let (centre, radius_px) =
             recognised.or_else(of_truth).filter(|(at, _)| at.is_on_detector(columns, rows))?;
         let reach = 1.8 * radius_px.filter(|radius| radius.is_finite()).unwrap_or(0.0).max(10.0);
-        let mut bounds = Bounds::of(centre);
+        let mut bounds = Bounds::from_point(centre);
         bounds.add(PixelPoint::new(centre.x - reach, centre.y - reach));
         bounds.add(PixelPoint::new(centre.x + reach, centre.y + reach));
         Some(bounds.window(columns, rows))
@@ -291,8 +302,9 @@ impl Known<'_> {
             "range_only" | "doubtful" => Tone::Partial,
             _ => Tone::Bad,
         };
-        let cause = unit.cause.as_ref().map_or_else(String::new, |cause| format!(": {}", spoken(cause)));
-        Some(Words { words: format!("{}{cause}", spoken(&unit.verdict)), tone })
+        let cause =
+            unit.cause.as_ref().map_or_else(String::new, |cause| format!(": {}", display_name(cause)));
+        Some(Words { words: format!("{}{cause}", display_name(&unit.verdict)), tone })
     }
 
     /// Why there is no pose in the answer.
@@ -300,7 +312,7 @@ impl Known<'_> {
         match self.answer.as_ref()? {
             None => Some("no row".to_owned()),
             Some(answer) => match &answer.solution {
-                DockingSolution::NoSolution(reason) => Some(spoken(&reason.to_string())),
+                DockingSolution::NoSolution(reason) => Some(display_name(&reason.to_string())),
                 _ => None,
             },
         }
@@ -330,10 +342,10 @@ impl Known<'_> {
             table.push("answer", reason);
         }
         let mut tables = vec![table];
-        let truth = self.truth.as_ref().map(|truth| Parameters::of(&truth.pose));
+        let truth = self.truth.as_ref().map(|truth| Parameters::from_pose(&truth.pose));
         let mut pose = Table::default();
         if let Some(best) = self.estimate() {
-            let (measured, sigmas) = (Parameters::of(&best.pose), Parameters::sigmas(best));
+            let (measured, sigmas) = (Parameters::from_pose(&best.pose), Parameters::sigmas(best));
             for (i, (name, value)) in NAMES.into_iter().zip(measured.0).enumerate() {
                 let sigma = sigmas.0.get(i).copied().unwrap_or(0.0);
                 let digits = decimals(sigma);
@@ -362,7 +374,7 @@ impl Known<'_> {
     }
 
     fn caption(&self) -> Vec<String> {
-        let truth = self.truth.as_ref().map(|truth| Parameters::of(&truth.pose).0);
+        let truth = self.truth.as_ref().map(|truth| Parameters::from_pose(&truth.pose).0);
         let Some(best) = self.estimate() else {
             return match (self.range_alone(), self.reason(), truth) {
                 (Some(range), _, Some(truth)) => {
@@ -377,7 +389,7 @@ impl Known<'_> {
                 (None, reason, None) => reason.into_iter().collect(),
             };
         };
-        let [range, .., pitch, yaw, roll] = Parameters::of(&best.pose).0;
+        let [range, .., pitch, yaw, roll] = Parameters::from_pose(&best.pose).0;
         let [range_sigma, .., pitch_sigma, yaw_sigma, roll_sigma] = Parameters::sigmas(best).0;
         let angle_sigma = pitch_sigma.max(yaw_sigma).max(roll_sigma);
         let digits = decimals(angle_sigma);
@@ -416,7 +428,7 @@ const D3: usize = 3;
 struct Parameters([f64; 7]);
 
 impl Parameters {
-    fn of(pose: &Pose) -> Self {
+    fn from_pose(pose: &Pose) -> Self {
         let (d, phi) = (&pose.position_m, &pose.phi_rad);
         let [pitch, yaw, roll] = [phi.x, phi.y, phi.z].map(f64::to_degrees);
         Self([d.norm(), d.x, d.y, d.z, pitch, yaw, roll])

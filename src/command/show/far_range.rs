@@ -17,17 +17,17 @@ use sim::optics::Projection;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility};
 
 use super::source::{Source, rows_of};
-use super::{PixelSource, Shown, spoken};
+use super::{AnnotatedFrame, PixelSource, display_name};
 
 /// Sides of a close-up at least, px.
 const LEAST_SIDES: (f64, f64) = (32.0, 24.0);
 /// A region or an answer so near to the target is in its close-up, px.
 const NEAR_PX: f64 = 40.0;
 /// An object that lost more of its light than this to the regions is not in the picture.
-const MOST_CUT: f64 = 0.99;
+const MAX_CUT: f64 = 0.99;
 
 /// What is known of a frame.
-struct Known {
+struct FrameRecord {
     name: String,
     telemetry: Telemetry,
     group: Option<String>,
@@ -42,7 +42,7 @@ struct Known {
 ///
 /// # Errors
 /// A [`Failure`] that names the frame or the file which is missing or cannot be read.
-pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Failure> {
+pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<AnnotatedFrame>, Failure> {
     let telemetry = read_telemetry(&source.directory.join("telemetry.csv"))?;
     let rows = source.select("frame", &telemetry, numbers, |row: &TelemetryRow| row.frame)?;
     let camera = CameraFile::read(&source.directory.join("camera.toml"))?;
@@ -67,7 +67,7 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Fai
             Some(((run_file, truth), answer)) => Some(verdict(run_file, truth, &objects, answer.as_ref())?),
             None => None,
         };
-        let known = Known {
+        let known = FrameRecord {
             name: name.clone(),
             telemetry: row.telemetry,
             group: truth.as_ref().map(|truth| truth.group.clone()),
@@ -76,7 +76,7 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Fai
             answer,
             verdict,
         };
-        shown.push(known.shown(&camera.camera, frame, pixels));
+        shown.push(known.annotated_frame(&camera.camera, frame, pixels));
     }
     Ok(shown)
 }
@@ -162,8 +162,8 @@ fn verdict(
         .map_err(|error| Failure::Usage(format!("frame {} cannot be scored: {error}", truth.frame)))
 }
 
-impl Known {
-    fn shown(&self, camera: &Camera, frame: Frame, source: PixelSource) -> Shown {
+impl FrameRecord {
+    fn annotated_frame(&self, camera: &Camera, frame: Frame, source: PixelSource) -> AnnotatedFrame {
         let number = frame.number();
         let regions = frame.windows().map(<[Window]>::to_vec);
         let (columns, rows) = (frame.columns(), frame.rows());
@@ -178,7 +178,7 @@ impl Known {
             Some(Verdict::Missed { cause }) => (Some("missed"), Some(cause.code())),
         };
         let panel = Panel {
-            view: pixels.whole(),
+            view: pixels.full_window(),
             close_up: self.close_up(regions.as_deref(), columns, rows),
             pixels,
             regions,
@@ -195,7 +195,7 @@ impl Known {
             tables: self.tables(&time, source),
             caption: self.caption(&time),
         };
-        Shown {
+        AnnotatedFrame {
             panel,
             frame: number,
             time: format_utc(self.telemetry.time),
@@ -225,7 +225,7 @@ impl Known {
         let mut objects: Vec<&ObjectTruth> = self
             .objects
             .iter()
-            .filter(|object| object.kind != ObjectKind::Target && object.cut < MOST_CUT)
+            .filter(|object| object.kind != ObjectKind::Target && object.cut < MAX_CUT)
             .filter(|object| Visibility::of_snr(object.snr) == Visibility::Detectable)
             .collect();
         objects.sort_by(|a, b| {
@@ -255,7 +255,7 @@ impl Known {
         let on_detector = |at: &PixelPoint| at.is_on_detector(columns, rows);
         let answer = self.answer_position().filter(on_detector);
         let centre = self.target_position().filter(on_detector).or(answer)?;
-        let mut bounds = Bounds::of(centre);
+        let mut bounds = Bounds::from_point(centre);
         let is_near = |at: &PixelPoint| at.distance(centre) < NEAR_PX;
         answer.filter(is_near).into_iter().for_each(|at| bounds.add(at));
         for region in regions.unwrap_or_default() {
@@ -275,10 +275,11 @@ impl Known {
     fn verdict_words(&self) -> Option<Words> {
         let (words, tone) = match self.verdict? {
             Verdict::Correct { .. } => ("correct".to_owned(), Tone::Good),
-            Verdict::Missed { cause } => (format!("missed: {}", spoken(cause.code())), Tone::Bad),
-            Verdict::Wrong { cause, taken, .. } => {
-                (format!("wrong: {}, taken: {}", spoken(cause.code()), spoken(taken.code())), Tone::Bad)
-            }
+            Verdict::Missed { cause } => (format!("missed: {}", display_name(cause.code())), Tone::Bad),
+            Verdict::Wrong { cause, taken, .. } => (
+                format!("wrong: {}, taken: {}", display_name(cause.code()), display_name(taken.code())),
+                Tone::Bad,
+            ),
         };
         Some(Words { words, tone })
     }
@@ -311,14 +312,14 @@ impl Known {
         }
         match &self.answer {
             Some(Some(answer)) => {
-                let said = self.answer_position().map_or_else(
+                let position = self.answer_position().map_or_else(
                     || match &answer.solution {
-                        contract::Solution::NoSolution(reason) => spoken(&reason.to_string()),
+                        contract::Solution::NoSolution(reason) => display_name(&reason.to_string()),
                         contract::Solution::Detected(_) => String::new(),
                     },
                     point,
                 );
-                table.push("answer", said);
+                table.push("answer", position);
                 if let Some((x, y)) = self.error_px() {
                     table.push("error", format!("{x:+.2}, {y:+.2} px"));
                 }
@@ -391,7 +392,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    pub(super) fn of(point: PixelPoint) -> Self {
+    pub(super) fn from_point(point: PixelPoint) -> Self {
         Self { low: point, high: point }
     }
 
@@ -426,7 +427,7 @@ mod tests {
             for (x, y) in [(0.0, 0.0), (0.4, 0.6), (columns as f64 - 1.0, rows as f64 - 1.0), (300.0, 200.0)]
             {
                 let point = PixelPoint::new(x.min(columns as f64 - 1.0), y.min(rows as f64 - 1.0));
-                let window = Bounds::of(point).window(columns, rows);
+                let window = Bounds::from_point(point).window(columns, rows);
                 assert!(window.x + window.columns <= columns && window.y + window.rows <= rows, "{window:?}");
                 assert!(window.contains(point.x.round() as usize, point.y.round() as usize), "{window:?}");
             }

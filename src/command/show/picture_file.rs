@@ -3,14 +3,16 @@ use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use files::{Earlier, Failure, FileError, WholeFile};
-use show::is_own_picture;
+use files::{AtomicFile, Failure, FileError, ReplaceableFile};
+use show::is_boresight_picture;
 
 /// Folder of pictures in a run directory. Not beside the images of a dataset: every image there must have a row in `telemetry.csv`.
 const FOLDER: &str = "show";
 /// What a picture may replace.
-const PICTURES: Earlier<'static> =
-    Earlier { what: "an earlier picture of `boresight show` (--out FILE.png)", is: &is_own_picture };
+const PICTURES: ReplaceableFile<'static> = ReplaceableFile {
+    description: "an earlier picture of `boresight show` (--out FILE.png)",
+    matches: &is_boresight_picture,
+};
 
 /// A file that may be written.
 pub(super) struct PictureFile {
@@ -50,7 +52,7 @@ impl PictureFile {
         {
             return Err(FileError::Io { path: folder.to_owned(), doing: "create", source }.into());
         }
-        let file = WholeFile::create(&path)?;
+        let file = AtomicFile::create(&path)?;
         file.file().write_all(bytes).map_err(|source| FileError::Io {
             path: path.clone(),
             doing: "write",

@@ -62,7 +62,7 @@ fn a_value_out_of_its_range_is_named_with_its_line() {
 }
 
 #[test]
-fn a_mistake_in_a_target_file_has_its_place_there() {
+fn a_mistake_in_a_target_file_has_its_position_there() {
     let target = TargetFile::built_in_text("progress").unwrap();
     for (old, new, parts) in [
         ("height_m = 0.30", "height_m = -0.3", ["cross.height_m", "is -0.3, expected"]),
@@ -101,7 +101,7 @@ fn options_of_the_other_world_are_refused() {
 
 /// Nothing is written: the first field is drawn before.
 #[test]
-fn a_mitsuba_that_is_not_there_is_told() {
+fn a_mitsuba_that_is_not_there_is_reported() {
     let bench = Bench::new();
     let words = ["render docking", "--frames 0..1 --renderer mitsuba --mitsuba-cache"].join(" ");
     let cache = tempfile::tempdir().unwrap();

@@ -4,7 +4,7 @@ use super::check_refused;
 use crate::support::{Bench, STUDY};
 
 /// A built-in scenario with one line changed.
-fn changed(bench: &Bench, old: &str, new: &str) {
+fn with_change(bench: &Bench, old: &str, new: &str) {
     let text = scenario::STARTING_POINT;
     assert!(text.contains(old), "`{old}`");
     bench.write("s.toml", text.replacen(old, new, 1));
@@ -66,7 +66,7 @@ fn numbers_dates_and_names_of_scenarios() {
         ("source = \"hipparcos2\"", "source = \"\"", &["catalog.source", "is empty"]),
         ("source = \"hipparcos2\"", "source = \"s.toml\"", &["s.toml", "format is not known"]),
     ] {
-        changed(&bench, old, new);
+        with_change(&bench, old, new);
         check_refused(&bench, RENDER, parts);
     }
     // Neither is a mistake.
@@ -98,7 +98,7 @@ fn texts_that_are_no_scenario() {
 #[test]
 fn tables_beside_a_scenario() {
     let bench = Bench::new();
-    changed(&bench, "source = \"hipparcos2\"", "source = \"c.csv\"");
+    with_change(&bench, "source = \"hipparcos2\"", "source = \"c.csv\"");
     let head = "id,ra_deg,dec_deg,hp_mag\n";
     for (content, part) in [
         (format!("{head}1,0,91,3\n"), "dec_deg is `91`"),
@@ -111,7 +111,7 @@ fn tables_beside_a_scenario() {
         bench.write("c.csv", content);
         check_refused(&bench, RENDER, &["c.csv", part]);
     }
-    changed(&bench, "kind = \"gaussian\"", "kind = \"sampled\"\npath = \"p.csv\"\noversampling = 4");
+    with_change(&bench, "kind = \"gaussian\"", "kind = \"sampled\"\npath = \"p.csv\"\noversampling = 4");
     bench.edit("s.toml", "\nsigma_px = 0.8", "");
     for (content, part) in [
         ("1,2,3\n1,2\n1,2,3\n", "line 2 has 2 cells"),
@@ -150,8 +150,8 @@ fn words_of_the_command_line_and_of_studies() {
             &["sweep[0].values[1]", "not finite"],
         ),
         (
-            "[[vary]]\npath = \"target.albedo\"\nlaw = { kind = \"choice\", values = [nan] }\n",
-            &["vary[2].law.values[0]", "not finite"],
+            "[[vary]]\npath = \"target.albedo\"\ndistribution = { kind = \"choice\", values = [nan] }\n",
+            &["vary[2].distribution.values[0]", "not finite"],
         ),
         ("[[sweep]]\npath = \"schedule[99].count\"\nvalues = [1]\n", &["sweep[0].path", "which has"]),
     ] {

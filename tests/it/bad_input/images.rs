@@ -65,7 +65,7 @@ fn a_fits_header_that_makes_all_pixels_the_same_is_refused() {
 
 /// The sum of the data alone, where that of header and data is missing.
 #[test]
-fn fits_data_that_changed_are_told_by_their_own_sum() {
+fn fits_data_that_changed_are_refused_by_their_own_sum() {
     let damaged = |bytes: Vec<u8>| {
         let mut bytes = with_card("SEED", "COMMENT")(bytes);
         let last = bytes.len() - 2880;
@@ -77,7 +77,7 @@ fn fits_data_that_changed_are_told_by_their_own_sum() {
 
 /// Two images of a dataset swapped: names can be wrong, what the images tell of themselves is held against the telemetry.
 #[test]
-fn an_image_of_another_frame_is_told_by_its_header() {
+fn an_image_of_another_frame_is_refused_by_its_header() {
     for (format, field) in [("fits", "`FRAMENO` is `22`"), ("exr", "`boresight.frame` is `22`")] {
         let bench = dataset_of(format);
         let path = |name: &str| bench.path(&format!("set/frames/{name}.{format}"));

@@ -23,7 +23,7 @@ fn a_file_is_no_directory_and_has_none_below_it() {
 }
 
 #[test]
-fn a_place_for_numbered_runs_that_is_a_file_is_refused() {
+fn a_path_for_numbered_runs_that_is_a_file_is_refused() {
     let bench = Bench::new();
     bench.write("runs", "mine");
     check_refused(&bench, "run argon --frames 0..2", &["runs", "cannot create"]);
@@ -60,7 +60,7 @@ fn a_report_replaces_nothing_but_a_report() {
 }
 
 #[test]
-fn standard_output_is_no_place_where_nothing_is_written_to_it() {
+fn standard_output_is_refused_where_nothing_is_written_to_it() {
     let bench = dataset();
     for words in [
         "render argon --frames 0..2 --out -",

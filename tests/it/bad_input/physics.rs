@@ -7,7 +7,7 @@ use super::check_refused;
 use crate::support::{Answer, Bench};
 
 /// A built-in scenario with a change, in `mine.toml`.
-fn changed(built_in: &str, change: impl FnOnce(&mut Table)) -> Bench {
+fn with_change(built_in: &str, change: impl FnOnce(&mut Table)) -> Bench {
     let bench = Bench::new();
     bench.scenario("mine.toml", built_in, change);
     bench
@@ -25,7 +25,7 @@ fn set(table: &mut Table, path: &str, value: impl Into<Value>) {
 
 /// The scenario is refused with its file and these parts.
 fn check_impossible(built_in: &str, parts: &[&str], change: impl FnOnce(&mut Table)) {
-    let bench = changed(built_in, change);
+    let bench = with_change(built_in, change);
     let parts: Vec<&str> = parts.iter().copied().chain(["mine.toml:"]).collect();
     check_refused(&bench, "run mine.toml --frames 0..2 --out run", &parts);
     check_refused(&bench, "render mine.toml --frames 0..2 --out set", &parts);
@@ -104,9 +104,9 @@ fn check(bench: &Bench) -> (Answer, serde_json::Value) {
 }
 
 #[test]
-fn a_distortion_beyond_sip_is_told_and_its_fits_files_have_none() {
+fn a_distortion_beyond_sip_is_reported_and_its_fits_files_have_none() {
     for (k1, from_px, to_px) in [(-4e-7, 350.0, 491.0), (2e-6, 100.0, 491.0), (5e-6, 50.0, 491.0)] {
-        let bench = changed("starting-point", |table| {
+        let bench = with_change("starting-point", |table| {
             set(table, "camera.radial", vec![Value::Float(k1), Value::Float(0.0), Value::Float(0.0)]);
         });
         let (answer, document) = check(&bench);
@@ -130,7 +130,7 @@ fn a_distortion_beyond_sip_is_told_and_its_fits_files_have_none() {
 }
 
 #[test]
-fn a_slip_of_a_thousand_is_told() {
+fn a_slip_of_a_thousand_is_reported() {
     for (built_in, path, slip, told) in [
         ("starting-point", "camera.focal_length_mm", 0.020_187, "camera.focal_length_mm is 0.020187"),
         (
@@ -140,12 +140,12 @@ fn a_slip_of_a_thousand_is_told() {
             "cameras[0].camera.focal_length_mm is 24211.2",
         ),
     ] {
-        let (answer, document) = check(&changed(built_in, |table| set(table, path, slip)));
+        let (answer, document) = check(&with_change(built_in, |table| set(table, path, slip)));
         let warning = document["warnings"][0].as_str().unwrap();
         assert!(warning.starts_with(told) && warning.ends_with("meant?"), "{warning}");
         assert!(answer.stdout.contains(&format!("warning: {warning}")), "{}", answer.stdout);
     }
-    let (_, document) = check(&changed("starting-point", |table| {
+    let (_, document) = check(&with_change("starting-point", |table| {
         set(table, "shutter.max_s", 250.0);
         set(table, "schedule.cadence_s", 300.0);
         set(table, "schedule.count", 10);

@@ -28,7 +28,7 @@ fn check_mistake(old: &str, new: &str, parts: &[&str]) {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_named_and_the_built_in_scenarios_are_told() {
+fn a_file_that_is_not_there_is_named_and_the_built_in_scenarios_are_listed() {
     let bench = Bench::new();
     check_refused(&bench, "run nowhere.toml", &["`nowhere.toml`", "argon", "starting-point"]);
 }

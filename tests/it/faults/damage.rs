@@ -10,7 +10,7 @@ use super::small;
 use crate::support::{Bench, check_same_files};
 
 /// Every place of a file that is tried: the ends, where formats have their marks, lengths and checksums, and places all over.
-fn places(length: usize, step: usize) -> Vec<usize> {
+fn byte_positions(length: usize, step: usize) -> Vec<usize> {
     let end = length.saturating_sub(16);
     (0..length.min(16)).chain((16..end).step_by(step)).chain(end.max(16)..length).collect()
 }
@@ -23,7 +23,7 @@ fn damaged(bench: &Bench, name: &str, step: usize, mut check: impl FnMut(&str)) 
         fs::write(&path, &bytes[..length]).unwrap();
         check(&format!("{name} cut to {length} of {} bytes", bytes.len()));
     }
-    for (i, place) in places(bytes.len(), step).into_iter().enumerate() {
+    for (i, place) in byte_positions(bytes.len(), step).into_iter().enumerate() {
         let mut flipped = bytes.clone();
         // Of a text, a low bit makes a digit another digit, the most dangerous damage there is.
         flipped[place] ^= 1 << (i % 8);
@@ -109,7 +109,7 @@ fn damage_in_a_baseline_or_a_study_is_found_by_the_gate() {
     bench.write(
         "study.toml",
         "title = \"two frames\"\nscenario = \"small.toml\"\nseed = 5\nframes = \"20..22\"\n[stop]\ncases = 60\n\
-         [[vary]]\npath = \"psf.sigma_px\"\nlaw = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
+         [[vary]]\npath = \"psf.sigma_px\"\ndistribution = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
     );
     bench.boresight("study run study.toml --out study --shards 2").done();
     bench.boresight("gate baseline study --out base --reason test").done();
@@ -140,7 +140,7 @@ fn a_shard_with_any_bit_flipped_is_no_shard() {
         "study.toml",
         "title = \"a frame\"\nscenario = \"small.toml\"\nseed = 5\nframes = \"20..21\"\n[stop]\ncases = 2\n\
          [record]\nfigures = [\"hit_rate\"]\nworst_by = \"hit_rate\"\n\
-         [[vary]]\npath = \"psf.sigma_px\"\nlaw = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
+         [[vary]]\npath = \"psf.sigma_px\"\ndistribution = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
     );
     bench.boresight("study run study.toml --out study --shards 1 --no-report").done();
     let study = Study::read(&bench.path("study.toml")).unwrap();

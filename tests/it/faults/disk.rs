@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use super::{shell, small, stderr, whole_files};
+use super::{complete_files, shell, small, stderr};
 use crate::support::{Bench, check_same_files};
 
 /// Runs a command whose files may not be longer than so many blocks of 512 bytes: what a write beyond it gets is an error, as on a disk
@@ -49,7 +49,7 @@ fn check_stopped_anywhere(bench: &Bench, making: &str, reader: &str) -> u32 {
         } else {
             stopped += 1;
             check_no_room(&output, "short");
-            for (path, bytes) in whole_files(bench, "short") {
+            for (path, bytes) in complete_files(bench, "short") {
                 let is_image = path.starts_with("frames");
                 assert!(
                     is_image || whole[&path] == bytes,
@@ -97,7 +97,7 @@ fn a_docking_dataset_that_has_no_room_names_the_file_and_is_no_dataset() {
 }
 
 const STUDY: &str = "title = \"two frames\"\nscenario = \"small.toml\"\nseed = 5\nframes = \"20..22\"\n[stop]\ncases = 60\n\
-                     [[vary]]\npath = \"psf.sigma_px\"\nlaw = { kind = \"uniform\", min = 0.7, max = 0.9 }\n";
+                     [[vary]]\npath = \"psf.sigma_px\"\ndistribution = { kind = \"uniform\", min = 0.7, max = 0.9 }\n";
 
 #[test]
 fn a_study_that_has_no_room_is_gone_on_with_when_there_is() {
@@ -113,7 +113,7 @@ fn a_study_that_has_no_room_is_gone_on_with_when_there_is() {
             stopped += 1;
             check_no_room(&output, "out");
         }
-        for (path, bytes) in whole_files(&bench, "out") {
+        for (path, bytes) in complete_files(&bench, "out") {
             assert!(bench.tree("whole")[&path] == bytes, "{blocks} blocks: {} is not whole", path.display());
         }
     }
@@ -164,7 +164,7 @@ fn measurements_that_have_no_room_are_not_there() {
 
 /// Below a file, and in a folder that is the kernel's: places where nobody, not even root, makes a directory.
 #[test]
-fn a_place_that_cannot_be_written_to_is_named() {
+fn a_path_that_cannot_be_written_to_is_named() {
     let bench = Bench::new();
     small(&bench);
     bench.write("study.toml", STUDY);
@@ -185,9 +185,9 @@ fn a_place_that_cannot_be_written_to_is_named() {
 }
 
 /// A file system of its own, ended with the value.
-struct Mounted(PathBuf);
+struct MountedFileSystem(PathBuf);
 
-impl Mounted {
+impl MountedFileSystem {
     /// A tmpfs of so many kilobytes; `None` where mounting is not permitted.
     fn tmpfs(place: PathBuf, kilobytes: u32) -> Option<Self> {
         std::fs::create_dir(&place).unwrap();
@@ -210,7 +210,7 @@ impl Mounted {
     }
 }
 
-impl Drop for Mounted {
+impl Drop for MountedFileSystem {
     fn drop(&mut self) {
         let _ = std::process::Command::new("umount").arg(&self.0).output();
     }
@@ -225,7 +225,7 @@ fn a_study_on_a_full_disk_is_gone_on_with_on_a_larger_one() {
     bench.write("study.toml", STUDY);
     let making = "study run study.toml --shards 6 --no-report";
     bench.boresight(&format!("{making} --out whole")).done();
-    let Some(disk) = Mounted::tmpfs(bench.path("disk"), 8) else {
+    let Some(disk) = MountedFileSystem::tmpfs(bench.path("disk"), 8) else {
         panic!("mounting is not permitted here: run as root, or leave this test out");
     };
     let mut stopped = 0;
@@ -236,12 +236,12 @@ fn a_study_on_a_full_disk_is_gone_on_with_on_a_larger_one() {
             stopped += 1;
             check_no_room(&output, "disk/out");
         }
-        for (path, bytes) in whole_files(&bench, "disk/out") {
+        for (path, bytes) in complete_files(&bench, "disk/out") {
             assert!(bench.tree("whole")[&path] == bytes, "{kilobytes} kB: {} is not whole", path.display());
         }
     }
     assert!(stopped >= 2, "{stopped}");
-    check_same_files(&bench.tree("whole"), &whole_files(&bench, "disk/out"));
+    check_same_files(&bench.tree("whole"), &complete_files(&bench, "disk/out"));
 
     bench.boresight("run small.toml --frames 20..24 --save-frames fits --no-report --out whole-run").done();
     disk.remount("size=5000k");

@@ -24,14 +24,14 @@ impl Dice {
 
 /// A moment of a process's life.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Moment {
+pub(crate) enum KillTime {
     /// So long after its start.
     After(Duration),
     /// As soon as it has begun its n-th file, from 0: its name is not its own yet.
     Writing(u64),
 }
 
-impl Moment {
+impl KillTime {
     /// By turns some time of a life, and some file of so many.
     pub(crate) fn draw(dice: &mut Dice, life: Duration, files: u64) -> Self {
         if dice.below(2) == 0 {
@@ -44,28 +44,32 @@ impl Moment {
 
 /// How a process that was to be killed ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum End {
+pub(crate) enum ProcessEnd {
     Killed,
     /// It was done before its moment came.
     Done,
 }
 
 /// Starts a process and kills it (SIGKILL) at a moment, unless it is done by then; `folders` are those in which it makes files.
-pub(crate) fn kill_at(mut command: Command, moment: Moment, folders: &[PathBuf]) -> End {
+pub(crate) fn kill_at(mut command: Command, kill_time: KillTime, folders: &[PathBuf]) -> ProcessEnd {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    let is_done = match moment {
-        Moment::After(wait) => wait_or_done(&mut child, wait),
-        Moment::Writing(count) => watch_or_done(&mut child, count, folders),
+    let is_done = match kill_time {
+        KillTime::After(wait) => wait_or_done(&mut child, wait),
+        KillTime::Writing(count) => watch_or_done(&mut child, count, folders),
     };
     if is_done {
         let status = child.wait().unwrap();
         assert!(status.success(), "it was not killed and failed: {status}");
-        return End::Done;
+        return ProcessEnd::Done;
     }
     child.kill().unwrap();
     let status = child.wait().unwrap();
     // It may have ended between the look and the kill.
-    if std::os::unix::process::ExitStatusExt::signal(&status) == Some(9) { End::Killed } else { End::Done }
+    if std::os::unix::process::ExitStatusExt::signal(&status) == Some(9) {
+        ProcessEnd::Killed
+    } else {
+        ProcessEnd::Done
+    }
 }
 
 fn wait_or_done(child: &mut Child, wait: Duration) -> bool {

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::kill::{Dice, End, Moment, kill_at};
-use super::{command, small, whole_files};
+use super::kill::{Dice, KillTime, ProcessEnd, kill_at};
+use super::{command, complete_files, small};
 use crate::support::{Answer, Bench, check_same_files};
 
 fn small_bench() -> Bench {
@@ -14,15 +14,15 @@ fn small_bench() -> Bench {
 }
 
 /// A reader of what a command leaves gives the answer that it gives of the whole, or refuses.
-fn check_answer_or_refusal(bench: &Bench, words: &str, whole: &Answer, moment: Moment) {
+fn check_answer_or_refusal(bench: &Bench, words: &str, whole: &Answer, kill_time: KillTime) {
     let answer = bench.boresight(words);
     match answer.status {
-        Some(0) => assert_eq!(answer.stdout, whole.stdout, "{words} after {moment:?}"),
+        Some(0) => assert_eq!(answer.stdout, whole.stdout, "{words} after {kill_time:?}"),
         _ => {
             let answer = answer.refused(&[]);
             assert!(
                 answer.stderr.contains("half"),
-                "{words} after {moment:?} names no file: {}",
+                "{words} after {kill_time:?} names no file: {}",
                 answer.stderr
             );
         }
@@ -42,22 +42,22 @@ fn check_directory(bench: &Bench, making: &str, files: u64, readers: &[&str], se
     let mut killed = 0;
     for round in 0..10 {
         let places: Vec<PathBuf> = ["half", "half/truth"].map(|name| bench.path(name)).to_vec();
-        let moment = Moment::draw(&mut dice, life, files);
-        let end = kill_at(command(bench, &format!("{making} --out half")), moment, &places);
-        killed += u32::from(end == End::Killed);
+        let kill_time = KillTime::draw(&mut dice, life, files);
+        let end = kill_at(command(bench, &format!("{making} --out half")), kill_time, &places);
+        killed += u32::from(end == ProcessEnd::Killed);
         if bench.path("half").exists() {
-            for (path, bytes) in whole_files(bench, "half") {
+            for (path, bytes) in complete_files(bench, "half") {
                 // An image that is being written is no matter: without telemetry no reader comes to it.
                 if !path.starts_with("frames") {
                     assert!(
                         whole[&path] == bytes,
-                        "{} after {moment:?} is there and not whole",
+                        "{} after {kill_time:?} is there and not whole",
                         path.display()
                     );
                 }
             }
             for (words, answer) in readers.iter().zip(&answers) {
-                check_answer_or_refusal(bench, words, answer, moment);
+                check_answer_or_refusal(bench, words, answer, kill_time);
             }
             // What is there is not touched, and the message says that there is something.
             let before = bench.tree("half");
@@ -125,28 +125,28 @@ fn a_process_that_is_killed_is_done_again() {
     let begun = Instant::now();
     bench.boresight("process set").done();
     let life = begun.elapsed();
-    let whole = whole_files(&bench, "set");
+    let whole = complete_files(&bench, "set");
     let mut dice = Dice::new(8);
     let mut killed = 0;
     for _ in 0..8 {
         for name in ["measurements.csv", "clusters.parquet"] {
             let _ = std::fs::remove_file(bench.path("set").join(name));
         }
-        let moment = Moment::draw(&mut dice, life, 2);
-        let end = kill_at(command(&bench, "process set"), moment, &[bench.path("set")]);
-        killed += u32::from(end == End::Killed);
-        let left = whole_files(&bench, "set");
+        let kill_time = KillTime::draw(&mut dice, life, 2);
+        let end = kill_at(command(&bench, "process set"), kill_time, &[bench.path("set")]);
+        killed += u32::from(end == ProcessEnd::Killed);
+        let left = complete_files(&bench, "set");
         let is_named = |name: &str| left.contains_key(std::path::Path::new(name));
         for name in ["measurements.csv", "clusters.parquet"] {
             let path = PathBuf::from(name);
-            assert!(left.get(&path).is_none_or(|bytes| *bytes == whole[&path]), "{name} after {moment:?}");
+            assert!(left.get(&path).is_none_or(|bytes| *bytes == whole[&path]), "{name} after {kill_time:?}");
         }
         let again = bench.boresight("process set");
         if is_named("measurements.csv") || is_named("clusters.parquet") {
             again.refused(&["exists; nothing is overwritten"]);
         } else {
             again.done();
-            check_same_files(&whole, &whole_files(&bench, "set"));
+            check_same_files(&whole, &complete_files(&bench, "set"));
         }
     }
     assert!(killed >= 2, "of eight kills {killed} came in time");
@@ -165,9 +165,9 @@ fn a_gate_that_is_killed_leaves_nothing_half_written() {
     let mut killed = 0;
     for files in 0..3 {
         let making = "gate baseline run --out base --reason first";
-        let end = kill_at(command(&bench, making), Moment::Writing(files), &[bench.path("base")]);
-        killed += u32::from(end == End::Killed);
-        for (path, bytes) in whole_files(&bench, "base") {
+        let end = kill_at(command(&bench, making), KillTime::Writing(files), &[bench.path("base")]);
+        killed += u32::from(end == ProcessEnd::Killed);
+        for (path, bytes) in complete_files(&bench, "base") {
             assert!(baseline[&path] == bytes, "{}", path.display());
         }
         let compared = bench.boresight("gate base run --json");
@@ -175,13 +175,13 @@ fn a_gate_that_is_killed_leaves_nothing_half_written() {
             compared.refused(&["base"]);
         }
         bench.boresight(&format!("{making} --replace")).done();
-        check_same_files(&baseline, &whole_files(&bench, "base"));
+        check_same_files(&baseline, &complete_files(&bench, "base"));
         std::fs::remove_dir_all(bench.path("base")).unwrap();
 
         std::fs::remove_dir_all(bench.path("out")).unwrap();
         std::fs::create_dir(bench.path("out")).unwrap();
-        kill_at(command(&bench, gate), Moment::Writing(files), &[bench.path("out")]);
-        for (path, bytes) in whole_files(&bench, "out") {
+        kill_at(command(&bench, gate), KillTime::Writing(files), &[bench.path("out")]);
+        for (path, bytes) in complete_files(&bench, "out") {
             assert!(reports[&path] == bytes, "{}", path.display());
         }
     }
@@ -283,7 +283,7 @@ fn an_unfinished_run_says_that_it_is_one() {
     let bench = small_bench();
     let places = [bench.path("out/truth")];
     let words = "run small.toml --frames 0..300 --out out";
-    assert_eq!(kill_at(command(&bench, words), Moment::Writing(1), &places), End::Killed);
+    assert_eq!(kill_at(command(&bench, words), KillTime::Writing(1), &places), ProcessEnd::Killed);
     let reason = "holds a run that was killed, failed, or still goes on; nothing is overwritten";
     bench.boresight(words).refused(&["out", reason, "--out"]);
     bench.boresight("process out").refused(&["out/telemetry.csv"]);

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use super::kill::{Dice, End, Moment, kill_at, partial_files};
-use super::{command, small, whole_files};
+use super::kill::{Dice, KillTime, ProcessEnd, kill_at, partial_files};
+use super::{command, complete_files, small};
 use crate::support::{Bench, check_same_files};
 
 const STUDY: &str = r#"
@@ -15,10 +15,10 @@ frames = "20..28"
 cases = 36
 [[vary]]
 path = "psf.sigma_px"
-law = { kind = "normal", mean = 0.8, sigma = 0.1 }
+distribution = { kind = "normal", mean = 0.8, sigma = 0.1 }
 [[vary]]
 path = "sensor.hot_pixels.count"
-law = { kind = "whole", min = 0, max = 40 }
+distribution = { kind = "integer", min = 0, max = 40 }
 "#;
 
 const RUN: &str = "study run study.toml --shards 12 --jobs 2 --out";
@@ -38,7 +38,7 @@ fn bench() -> (Bench, Duration) {
 /// Kills a study so many times at moments drawn from a seed, and goes on with it until it is done, in as many folders as that takes.
 fn check_kills(kills: u32, seed: u64) {
     let (bench, life) = bench();
-    let whole = whole_files(&bench, "whole");
+    let whole = complete_files(&bench, "whole");
     let mut dice = Dice::new(seed);
     let mut killed = 0;
     let (mut folders, mut while_writing, mut last_files) = (0, 0, 0);
@@ -47,12 +47,12 @@ fn check_kills(kills: u32, seed: u64) {
         let out = format!("out-{folders}");
         let places = [bench.path(&out), bench.path(&out).join("shards")];
         loop {
-            let moment = Moment::draw(&mut dice, life, FILES);
+            let kill_time = KillTime::draw(&mut dice, life, FILES);
             if killed == kills {
                 bench.boresight(&format!("{RUN} {out}")).done();
                 break;
             }
-            if kill_at(command(&bench, &format!("{RUN} {out}")), moment, &places) == End::Done {
+            if kill_at(command(&bench, &format!("{RUN} {out}")), kill_time, &places) == ProcessEnd::Done {
                 break;
             }
             killed += 1;
@@ -61,12 +61,12 @@ fn check_kills(kills: u32, seed: u64) {
                 (1..=12).filter(|i| places[1].join(format!("{i:02}-of-12.parquet")).exists()).count();
             while_writing += usize::from(left > 0);
             last_files += usize::from(shards == 12);
-            eprintln!("kill {killed} {moment:?}: {shards} of 12 shards there, {left} unfinished files");
+            eprintln!("kill {killed} {kill_time:?}: {shards} of 12 shards there, {left} unfinished files");
         }
-        check_same_files(&whole, &whole_files(&bench, &out));
+        check_same_files(&whole, &complete_files(&bench, &out));
         // And merging what is there once more changes nothing.
         bench.boresight(&format!("study merge study.toml --out {out}")).done();
-        check_same_files(&whole, &whole_files(&bench, &out));
+        check_same_files(&whole, &complete_files(&bench, &out));
     }
     eprintln!(
         "{killed} kills in {folders} folders, life {life:?}: {while_writing} of them with a file unfinished, {last_files} after the last shard"
@@ -75,13 +75,13 @@ fn check_kills(kills: u32, seed: u64) {
 }
 
 #[test]
-fn a_study_killed_at_eight_moments_ends_as_if_undisturbed() {
+fn a_study_killed_at_eight_times_ends_as_if_undisturbed() {
     check_kills(8, 1);
 }
 
 #[test]
 #[ignore = "minutes: fifty kills; scheduled"]
-fn a_study_killed_at_fifty_moments_ends_as_if_undisturbed() {
+fn a_study_killed_at_fifty_times_ends_as_if_undisturbed() {
     check_kills(50, 2);
 }
 
@@ -89,7 +89,7 @@ fn a_study_killed_at_fifty_moments_ends_as_if_undisturbed() {
 #[test]
 fn a_merge_that_is_killed_is_done_again() {
     let (bench, _) = bench();
-    let whole = whole_files(&bench, "whole");
+    let whole = complete_files(&bench, "whole");
     let ends = ["study.json", "cases.parquet", "summary.json", "SHA256SUMS", "report.html"];
     let mut killed = 0;
     for files in 0..5 {
@@ -98,12 +98,12 @@ fn a_merge_that_is_killed_is_done_again() {
         }
         let places = [bench.path("whole")];
         let merge = command(&bench, "study merge study.toml --out whole");
-        killed += u32::from(kill_at(merge, Moment::Writing(files), &places) == End::Killed);
-        for (path, bytes) in whole_files(&bench, "whole") {
+        killed += u32::from(kill_at(merge, KillTime::Writing(files), &places) == ProcessEnd::Killed);
+        for (path, bytes) in complete_files(&bench, "whole") {
             assert!(whole[&path] == bytes, "{} is there and not whole", path.display());
         }
         bench.boresight("study merge study.toml --out whole").done();
-        check_same_files(&whole, &whole_files(&bench, "whole"));
+        check_same_files(&whole, &complete_files(&bench, "whole"));
     }
     assert!(killed >= 3, "of five kills {killed} came in time");
 }

@@ -53,7 +53,7 @@ fn stderr(output: &Output) -> String {
 }
 
 /// The files of a directory that have their names; what a killed process left unfinished is none of them.
-fn whole_files(bench: &Bench, directory: &str) -> BTreeMap<PathBuf, Vec<u8>> {
+fn complete_files(bench: &Bench, directory: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let is_partial = |path: &Path| {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
         name.is_some_and(|name| {

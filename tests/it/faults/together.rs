@@ -2,13 +2,13 @@
 
 use std::process::{Child, Output, Stdio};
 
-use super::{command, small, stderr, whole_files};
+use super::{command, complete_files, small, stderr};
 use crate::support::{Bench, check_same_files};
 
 fn study(cases: u32, sigma_max: f64) -> String {
     format!(
         "title = \"two frames\"\nscenario = \"small.toml\"\nseed = 5\nframes = \"20..22\"\n[stop]\ncases = {cases}\n\
-         [[vary]]\npath = \"psf.sigma_px\"\nlaw = {{ kind = \"uniform\", min = 0.7, max = {sigma_max} }}\n"
+         [[vary]]\npath = \"psf.sigma_px\"\ndistribution = {{ kind = \"uniform\", min = 0.7, max = {sigma_max} }}\n"
     )
 }
 
@@ -42,7 +42,7 @@ fn workers_of_the_same_study_make_it_together() {
         assert!(outputs[0].status.success(), "{}", stderr(&outputs[0]));
         let is_early = stderr(&outputs[1]).contains("shards 3 of 8 are missing or were damaged");
         assert!(outputs[1].status.success() || is_early, "{}", stderr(&outputs[1]));
-        check_same_files(&bench.tree("whole"), &whole_files(&bench, &out));
+        check_same_files(&bench.tree("whole"), &complete_files(&bench, &out));
     }
 }
 

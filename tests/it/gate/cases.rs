@@ -2,7 +2,8 @@
 
 use boresight::gate::{Baseline, CompareOptions, Identity, Pairing, Sample, SourceKind, compare};
 use boresight::score::{
-    AnswerError, AttitudeUsed, Cause, FrameVerdict, LineOfSightError, Taken, UnitTable, Verdict, WithinLimits,
+    AnswerError, AttitudeUsed, Cause, FrameVerdict, LineOfSightError, MistakenObject, UnitTable, Verdict,
+    WithinLimits,
 };
 use contract::{Angle, AttitudeSource};
 use sim::randomness::{Effect, Seed, Stream, normal, uniform};
@@ -69,7 +70,7 @@ impl Fault {
                     Verdict::Missed { cause: Cause::NotLinked }
                 }
                 (Verdict::Correct { error }, Self::MoreWrong(share)) if u < share / correct => {
-                    Verdict::Wrong { error, taken: Taken::Nothing, cause: Cause::LostMotionTest }
+                    Verdict::Wrong { error, taken: MistakenObject::Nothing, cause: Cause::LostMotionTest }
                 }
                 (_, Self::Blackout(begin, end)) if (begin..end).contains(&place) => {
                     Verdict::Missed { cause: Cause::BelowThreshold }
@@ -96,7 +97,7 @@ fn dec_deg(error: AnswerError) -> f64 {
 }
 
 /// An error, degrees, of a pipeline that knows its attitude: all of it is the centroid's.
-fn of_degrees(ra: f64, dec: f64) -> AnswerError {
+fn error_from_degrees(ra: f64, dec: f64) -> AnswerError {
     let line_of_sight = LineOfSightError {
         ra: Angle::from_degrees(ra),
         dec: Angle::from_degrees(dec),
@@ -115,7 +116,7 @@ fn with_error(verdict: Verdict, change: impl Fn(f64, f64) -> (f64, f64)) -> Verd
     let changed = |error: AnswerError| {
         let ra_deg = error.line_of_sight.map_or(0.0, |error| error.ra.degrees());
         let (ra, dec) = change(ra_deg, dec_deg(error));
-        of_degrees(ra, dec)
+        error_from_degrees(ra, dec)
     };
     match verdict {
         Verdict::Correct { error } => Verdict::Correct { error: changed(error) },
@@ -181,14 +182,16 @@ impl Synthetic {
         };
         (0..self.frames)
             .map(|frame| {
-                let error = of_degrees(0.014 * next(&mut ra, 0.6), 0.014 * next(&mut dec, 0.6));
+                let error = error_from_degrees(0.014 * next(&mut ra, 0.6), 0.014 * next(&mut dec, 0.6));
                 // 95 % detected, 7 % of them wrong.
                 let (is_hit, is_wrong) = (next(&mut hit, 0.7) < 1.645, next(&mut right, 0.7) > 1.476);
                 let verdict = match (is_hit, is_wrong) {
                     (false, _) => Verdict::Missed { cause: Cause::BelowThreshold },
-                    (true, true) => {
-                        Verdict::Wrong { error, taken: Taken::HotPixel(3), cause: Cause::LostMotionTest }
-                    }
+                    (true, true) => Verdict::Wrong {
+                        error,
+                        taken: MistakenObject::HotPixel(3),
+                        cause: Cause::LostMotionTest,
+                    },
                     (true, false) => Verdict::Correct { error },
                 };
                 FrameVerdict {
@@ -209,7 +212,7 @@ impl Synthetic {
 pub(crate) fn sample_of(seed: u64, frames: &[FrameVerdict]) -> Sample {
     Sample::new(
         identity("far_range", seed),
-        UnitTable::of_frames(frames, &WithinLimits::of_degrees([PIXEL_DEG, 2.0 * PIXEL_DEG])),
+        UnitTable::from_frames(frames, &WithinLimits::from_degrees([PIXEL_DEG, 2.0 * PIXEL_DEG])),
     )
 }
 

@@ -9,15 +9,15 @@ use std::path::{Component, Path};
 use sha2::{Digest, Sha256};
 
 use super::sha256::hex;
-use crate::error::Place;
-use crate::{Earlier, FileError, WholeFile};
+use crate::error::FileLocation;
+use crate::{AtomicFile, FileError, ReplaceableFile};
 
 /// The file's name.
 const NAME: &str = "SHA256SUMS";
 /// Largest file that is read.
-const MOST_BYTES: u64 = 1 << 20;
+const MAX_BYTES: u64 = 1 << 20;
 /// Largest file that is hashed: the tables of a hundred million frames are shorter.
-const MOST_HASHED_BYTES: u64 = 1 << 38;
+const MAX_HASHED_BYTES: u64 = 1 << 38;
 /// Bytes hashed at a time.
 const CHUNK_BYTES: usize = 1 << 16;
 
@@ -31,7 +31,7 @@ impl Checksums {
     /// # Errors
     /// [`FileError::NotReplaced`] when it has, [`FileError::Io`].
     pub fn check_own(directory: &Path, names: &[&str]) -> Result<(), FileError> {
-        earlier(&|beginning| is_of(beginning, names)).check(&directory.join(NAME))
+        replaceable(&|beginning| are_checksums_of(beginning, names)).check(&directory.join(NAME))
     }
 
     /// Writes the checksums of those of `names` that are in a directory, in the place of earlier ones of the same names.
@@ -45,8 +45,8 @@ impl Checksums {
                 lines += &format!("{sum}  {name}\n");
             }
         }
-        let file = WholeFile::with_text(&directory.join(NAME), &lines)?;
-        file.replace(earlier(&|beginning| is_of(beginning, names)))
+        let file = AtomicFile::with_text(&directory.join(NAME), &lines)?;
+        file.replace(replaceable(&|beginning| are_checksums_of(beginning, names)))
     }
 
     /// Removes the checksums of a directory, whose files are about to change.
@@ -71,14 +71,15 @@ impl Checksums {
     /// [`FileError::Io`].
     pub fn check(directory: &Path, is_used: impl Fn(&str) -> bool) -> Result<(), FileError> {
         let path = directory.join(NAME);
-        let text = match sim::regular_file::read_text(&path, MOST_BYTES) {
+        let text = match sim::regular_file::read_text(&path, MAX_BYTES) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
             Err(source) => return Err(FileError::io(&path, "read", source)),
         };
         for (number, line) in (1..).zip(text.lines()) {
-            let wrong = |expected: &str| FileError::value(&path, Place::Line(number), "line", line, expected);
-            let (told, name) =
+            let wrong =
+                |expected: &str| FileError::value(&path, FileLocation::Line(number), "line", line, expected);
+            let (recorded, name) =
                 parse(line).ok_or_else(|| wrong("64 hexadecimal digits, two blanks, a name"))?;
             if !is_inside(name) {
                 return Err(wrong("the name of a file in this directory, without `..`"));
@@ -87,24 +88,24 @@ impl Checksums {
                 continue;
             }
             let file = directory.join(name);
-            if let Some(found) = file_sha256(&file)?.filter(|found| found != told) {
+            if let Some(found) = file_sha256(&file)?.filter(|found| found != recorded) {
                 let expected = format!(
-                    "{told}, that of {}: the file was damaged, or changed since it was written; if on purpose, take its line out of there",
+                    "{recorded}, that of {}: the file was damaged, or changed since it was written; if on purpose, take its line out of there",
                     path.display()
                 );
-                return Err(FileError::value(&file, Place::Whole, "SHA-256", found, expected));
+                return Err(FileError::value(&file, FileLocation::Whole, "SHA-256", found, expected));
             }
         }
         Ok(())
     }
 }
 
-fn earlier<'a>(is: &'a dyn Fn(&[u8]) -> bool) -> Earlier<'a> {
-    Earlier { what: "the checksums of the files that are to be written", is }
+fn replaceable<'a>(matches: &'a dyn Fn(&[u8]) -> bool) -> ReplaceableFile<'a> {
+    ReplaceableFile { description: "the checksums of the files that are to be written", matches }
 }
 
 /// Whether a text is that of checksums of some of `names` and nothing else.
-fn is_of(text: &[u8], names: &[&str]) -> bool {
+fn are_checksums_of(text: &[u8], names: &[&str]) -> bool {
     let lines = std::str::from_utf8(text).map(str::lines);
     lines.is_ok_and(|mut lines| lines.all(|line| parse(line).is_some_and(|(_, name)| names.contains(&name))))
 }
@@ -134,9 +135,9 @@ pub fn file_sha256(path: &Path) -> Result<Option<String>, FileError> {
         Err(source) => return Err(FileError::io(path, "open", source)),
     };
     let length = file.metadata().map_err(|source| FileError::io(path, "read", source))?.len();
-    if length > MOST_HASHED_BYTES {
-        let expected = format!("at most {MOST_HASHED_BYTES}");
-        return Err(FileError::value(path, Place::Whole, "length in bytes", length, expected));
+    if length > MAX_HASHED_BYTES {
+        let expected = format!("at most {MAX_HASHED_BYTES}");
+        return Err(FileError::value(path, FileLocation::Whole, "length in bytes", length, expected));
     }
     let mut hash = Sha256::new();
     let mut file = BufReader::with_capacity(CHUNK_BYTES, file.take(length));
@@ -205,7 +206,7 @@ mod tests {
     fn a_file_that_is_longer_than_any_table_is_not_hashed() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
-        std::fs::File::create(&path).unwrap().set_len(MOST_HASHED_BYTES + 1).unwrap();
+        std::fs::File::create(&path).unwrap().set_len(MAX_HASHED_BYTES + 1).unwrap();
         std::fs::write(folder.path().join(NAME), format!("{}  a.csv\n", "0".repeat(64))).unwrap();
         let message = Checksums::check(folder.path(), |_| true).unwrap_err().to_string();
         assert!(message.contains("length in bytes"), "{message}");

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use crate::{Checksums, Failure, FileError, ImageFormat, WholeFile};
+use crate::{AtomicFile, Checksums, Failure, FileError, ImageFormat};
 
 /// The files of a run that have checksums.
 const SEALED: [&str; 13] = [
@@ -103,7 +103,7 @@ impl RunDirectory {
                 _ => FileError::io(&inner, "create", source),
             })?;
         }
-        WholeFile::with_text(&path.join(UNFINISHED), UNFINISHED_TEXT)?.commit_new()?;
+        AtomicFile::with_text(&path.join(UNFINISHED), UNFINISHED_TEXT)?.commit_new()?;
         Ok(Self { path })
     }
 
@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_that_cannot_be_written_is_an_error() {
+    fn a_path_that_cannot_be_written_is_an_error() {
         assert!(RunDirectory::create(Path::new("/proc/boresight/run")).is_err());
         assert!(RunDirectory::create_numbered(Path::new("/proc/boresight"), "argon").is_err());
     }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::whole_file::{PARTIAL, taken};
-use crate::{FileError, WholeFile};
+use super::atomic_file::{PARTIAL, output_taken};
+use crate::{AtomicFile, FileError};
 
 /// Files that get their names when they are complete; until then they go by names of their own, and are removed when
 /// the value is dropped.
@@ -21,10 +21,10 @@ impl PartialFiles {
     ///
     /// # Errors
     /// [`FileError::OutputTaken`] when one does; [`FileError::Io`] when there is no folder for one.
-    pub fn of(names: &[&Path]) -> Result<Self, FileError> {
+    pub fn for_paths(names: &[&Path]) -> Result<Self, FileError> {
         for name in names {
             if name.exists() {
-                return Err(taken(name));
+                return Err(output_taken(name));
             }
             folder_of(name).metadata().map_err(|source| FileError::io(name, "create", source))?;
         }
@@ -38,7 +38,7 @@ impl PartialFiles {
         let names: Vec<PathBuf> = names.iter().map(|name| name.to_path_buf()).collect();
         let files = Self { paths: names.iter().map(partial).collect(), names };
         files.remove(); // What a process of the same number left that was killed.
-        files.names.iter().map(|name| folder_of(name)).for_each(WholeFile::remove_abandoned);
+        files.names.iter().map(|name| folder_of(name)).for_each(AtomicFile::remove_abandoned);
         Ok(files)
     }
 
@@ -60,7 +60,7 @@ impl PartialFiles {
         for (path, name) in self.paths.iter().zip(&self.names).rev() {
             // A link, unlike a renaming, never replaces a file.
             std::fs::hard_link(path, name).map_err(|source| match source.kind() {
-                ErrorKind::AlreadyExists => taken(name),
+                ErrorKind::AlreadyExists => output_taken(name),
                 _ => FileError::io(name, "create", source),
             })?;
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::lines::Lines;
 use super::table::csv_error;
 use crate::FileError;
-use crate::error::{Place, open_regular};
+use crate::error::{FileLocation, open_regular};
 
 /// The numbers of a column, by its name in the header; other columns are ignored.
 ///
@@ -29,11 +29,11 @@ pub fn read_column(path: &Path, name: &str) -> Result<Vec<f64>, FileError> {
         let line = record.position().map_or(0, csv::Position::line);
         match cell.parse::<f64>() {
             Ok(number) if number.is_finite() => numbers.push(number),
-            _ => return Err(FileError::value(path, Place::Line(line), name, cell, "a finite number")),
+            _ => return Err(FileError::value(path, FileLocation::Line(line), name, cell, "a finite number")),
         }
     }
     if numbers.is_empty() {
-        return Err(FileError::value(path, Place::Header, "number of rows", 0, "at least 1"));
+        return Err(FileError::value(path, FileLocation::Header, "number of rows", 0, "at least 1"));
     }
     Ok(numbers)
 }

@@ -12,12 +12,12 @@ pub struct Lines<R> {
     inner: R,
     /// Bytes since the last record ended.
     length: usize,
-    place: Place,
+    state: CellState,
 }
 
 /// Where in a record a byte is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum CellState {
     /// The beginning of a cell.
     Start,
     /// A cell without quotation marks; in it they are letters.
@@ -28,7 +28,7 @@ enum Place {
     Closed,
 }
 
-impl Place {
+impl CellState {
     fn after(self, byte: u8) -> Self {
         match (self, byte) {
             (Self::Start | Self::Closed, b'"') => Self::Quoted,
@@ -43,7 +43,7 @@ impl Place {
 impl<R> Lines<R> {
     /// A reader of the records of `inner`.
     pub fn new(inner: R) -> Self {
-        Self { inner, length: 0, place: Place::Start }
+        Self { inner, length: 0, state: CellState::Start }
     }
 }
 
@@ -51,13 +51,13 @@ impl<R: Read> Read for Lines<R> {
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
         let count = self.inner.read(buffer)?;
         for &byte in buffer.get(..count).unwrap_or_default() {
-            self.place = self.place.after(byte);
+            self.state = self.state.after(byte);
             self.length += 1;
             if self.length > LONGEST {
                 let message = format!("a line is longer than {LONGEST} bytes");
                 return Err(Error::new(ErrorKind::InvalidData, message));
             }
-            if matches!(byte, b'\n' | b'\r') && self.place == Place::Start {
+            if matches!(byte, b'\n' | b'\r') && self.state == CellState::Start {
                 self.length = 0;
             }
         }

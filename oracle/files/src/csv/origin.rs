@@ -6,7 +6,7 @@ use hifitime::Epoch;
 
 use super::lines::Lines;
 use super::table::csv_error;
-use crate::error::{Place, open_regular};
+use crate::error::{FileLocation, open_regular};
 use crate::{FileError, parse_utc};
 
 /// Column with the time of the frame, UTC.
@@ -61,7 +61,7 @@ pub fn read_origins(path: &Path, frame: &str) -> Result<Vec<AnswerOrigin>, FileE
         let line = record.position().map_or(0, csv::Position::line);
         let cell = |at: Option<usize>| at.and_then(|at| record.get(at)).filter(|cell| !cell.is_empty());
         let refuse = |column: &str, found: &str, expected: &str| {
-            FileError::value(path, Place::Line(line), column, found, expected)
+            FileError::value(path, FileLocation::Line(line), column, found, expected)
         };
         let text = cell(number).unwrap_or_default();
         let number = text.parse().map_err(|_| refuse(frame, text, "a number of a frame"))?;

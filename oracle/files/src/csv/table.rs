@@ -6,10 +6,10 @@ use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use super::lines::Lines;
-use crate::error::{Place, open_regular};
-use crate::table::declared::Table;
+use crate::error::{FileLocation, open_regular};
+use crate::table::declarations::Table;
 use crate::table::field::Atom;
-use crate::{FileError, WholeFile};
+use crate::{AtomicFile, FileError};
 
 /// A row of a CSV, as [`table!`](crate::table!) declares it.
 pub trait CsvLine: Table {
@@ -64,7 +64,13 @@ impl CsvReader {
                 return Err(unknown_column(path, name, &columns));
             };
             if column.position.replace(position).is_some() {
-                return Err(FileError::value(path, Place::Line(1), "header", name, "each column once"));
+                return Err(FileError::value(
+                    path,
+                    FileLocation::Line(1),
+                    "header",
+                    name,
+                    "each column once",
+                ));
             }
         }
         if let Some(missing) = columns.iter().find(|column| !column.is_optional && column.position.is_none())
@@ -107,7 +113,7 @@ impl CsvReader {
         };
         let rows = self.read_rows(with_line)?;
         if rows.is_empty() {
-            return Err(FileError::value(&path, Place::Header, "number of rows", 0, "at least 1"));
+            return Err(FileError::value(&path, FileLocation::Header, "number of rows", 0, "at least 1"));
         }
         Ok(rows)
     }
@@ -126,7 +132,7 @@ impl CsvReader {
 
 /// The columns of a kind of table, in the order in which they are written, and whether a file may lack them.
 fn layout<T: Table>() -> impl Iterator<Item = (&'static str, bool)> {
-    let fields = T::declared().into_iter();
+    let fields = T::declarations().into_iter();
     fields.flat_map(|field| field.names.into_iter().map(move |name| (name, field.is_optional)))
 }
 
@@ -140,9 +146,9 @@ pub struct CsvRow<'a> {
 impl CsvRow<'_> {
     /// The cell of a column as it stands; empty when the file has no such column.
     pub fn text(&self, column: &str) -> &str {
-        let declared = self.table.columns.iter().find(|declared| declared.name == column);
-        debug_assert!(declared.is_some(), "`{column}` is not declared");
-        let position = declared.and_then(|declared| declared.position);
+        let declarations = self.table.columns.iter().find(|declarations| declarations.name == column);
+        debug_assert!(declarations.is_some(), "`{column}` is not declared");
+        let position = declarations.and_then(|declarations| declarations.position);
         position.and_then(|i| self.table.record.get(i)).unwrap_or("")
     }
 
@@ -156,7 +162,7 @@ impl CsvRow<'_> {
 
     /// The error of a cell that is not what was `expected`.
     pub fn error(&self, column: &'static str, expected: impl Into<String>) -> FileError {
-        FileError::value(&self.table.path, Place::Line(self.line), column, self.text(column), expected)
+        FileError::value(&self.table.path, FileLocation::Line(self.line), column, self.text(column), expected)
     }
 
     /// Refuses the number of the row's frame, field or star unless it is larger than that of the row before.
@@ -204,7 +210,7 @@ pub struct CsvWriter<T> {
     path: PathBuf,
     writer: csv::Writer<Box<dyn Write>>,
     /// None of a stream.
-    file: Option<WholeFile>,
+    file: Option<AtomicFile>,
     row: PhantomData<T>,
 }
 
@@ -214,7 +220,7 @@ impl<T: CsvLine> CsvWriter<T> {
     /// # Errors
     /// [`FileError::Io`] when the file exists or cannot be created.
     pub fn create(path: &Path) -> Result<Self, FileError> {
-        let file = WholeFile::create_new(path)?;
+        let file = AtomicFile::create_new(path)?;
         let out = file.file().try_clone().map_err(|source| FileError::io(path, "create", source))?;
         Self::headed(path, Box::new(out), Some(file))
     }
@@ -227,7 +233,7 @@ impl<T: CsvLine> CsvWriter<T> {
         Self::headed(Path::new(name), Box::new(out), None)
     }
 
-    fn headed(path: &Path, out: Box<dyn Write>, file: Option<WholeFile>) -> Result<Self, FileError> {
+    fn headed(path: &Path, out: Box<dyn Write>, file: Option<AtomicFile>) -> Result<Self, FileError> {
         let writer = csv::Writer::from_writer(out);
         let mut writer = Self { path: path.to_owned(), writer, file, row: PhantomData };
         writer.record(layout::<T>().map(|(name, _)| name))?;
@@ -258,7 +264,7 @@ impl<T: CsvLine> CsvWriter<T> {
     /// [`FileError::Io`].
     pub fn finish(mut self) -> Result<(), FileError> {
         self.flush()?;
-        self.file.take().map_or(Ok(()), WholeFile::commit_new)
+        self.file.take().map_or(Ok(()), AtomicFile::commit_new)
     }
 }
 
@@ -287,8 +293,9 @@ fn unknown_column(path: &Path, column: &str, known: &[CsvColumn]) -> FileError {
 }
 
 pub(crate) fn csv_error(path: &Path, error: &csv::Error) -> FileError {
-    let line =
-        |position: &Option<csv::Position>| Place::Line(position.as_ref().map_or(0, csv::Position::line));
+    let line = |position: &Option<csv::Position>| {
+        FileLocation::Line(position.as_ref().map_or(0, csv::Position::line))
+    };
     match error.kind() {
         csv::ErrorKind::Io(source) => {
             FileError::io(path, "read or write", std::io::Error::new(source.kind(), source.to_string()))

@@ -34,7 +34,7 @@ table! {
 
 impl FeatureRow {
     /// The rows of a field.
-    pub fn of(field: u64, features: &Features) -> Vec<Self> {
+    pub fn from_features(field: u64, features: &Features) -> Vec<Self> {
         let plain = |kind: &str, index: u32, position: contract::PixelPoint| Self {
             field,
             kind: kind.to_owned(),

@@ -163,8 +163,8 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
             if range_m <= 0.0 {
                 return Err(row.error(RANGE[0], "greater than 0"));
             }
-            let told = !row.text(RANGE[1]).trim().is_empty();
-            let sigma_m = if told { row.cell(RANGE[1])? } else { 0.0 };
+            let has_sigma = !row.text(RANGE[1]).trim().is_empty();
+            let sigma_m = if has_sigma { row.cell(RANGE[1])? } else { 0.0 };
             if sigma_m < 0.0 {
                 return Err(row.error(RANGE[1], "0 or greater"));
             }
@@ -199,7 +199,7 @@ fn measurement(row: &CsvRow<'_>) -> Result<Box<FieldMeasurement>, FileError> {
 /// nothing.
 fn covariance(row: &CsvRow<'_>, line: &FieldMeasurementLine) -> Result<Matrix6<f64>, FileError> {
     row.check_sigmas(SIGMA, line.sigma)?;
-    if let Some(covariance) = covariance::of_cells(row, COVARIANCE, line.covariance, &scale())? {
+    if let Some(covariance) = covariance::from_cells(row, COVARIANCE, line.covariance, &scale())? {
         return Ok(covariance);
     }
     let sigmas = Vector6::from(line.sigma.unwrap_or_default()).component_div(&scale());
@@ -225,7 +225,7 @@ mod tests {
         DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None }
     }
 
-    fn measured() -> DockingOutcome {
+    fn measured_outcome() -> DockingOutcome {
         let pose = Pose {
             position_m: Vector3::new(0.1, -0.2, 7.0),
             phi_rad: Vector3::new(0.011, -0.013, 1.0 / 7.0),
@@ -236,8 +236,8 @@ mod tests {
         outcome(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper })))
     }
 
-    fn doubtful(doubt: Doubt) -> DockingOutcome {
-        let DockingSolution::Measured(measurement) = measured().solution else {
+    fn doubtful_outcome(doubt: Doubt) -> DockingOutcome {
+        let DockingSolution::Measured(measurement) = measured_outcome().solution else {
             unreachable!("it is measured")
         };
         outcome(DockingSolution::Doubtful { measurement, doubt })
@@ -252,11 +252,11 @@ mod tests {
     #[test]
     fn every_status_comes_back_as_filed() {
         let answers: Vec<(u64, DockingOutcome)> = [
-            measured(),
+            measured_outcome(),
             outcome(DockingSolution::RangeOnly { range_m: 312.5, sigma_m: 2.0 }),
             DockingOutcome::none(NoPose::TooFewFeatures),
-            doubtful(Doubt::Residuals),
-            doubtful(Doubt::Repeated),
+            doubtful_outcome(Doubt::Residuals),
+            doubtful_outcome(Doubt::Repeated),
             DockingOutcome::none(NoPose::Failed("out of film, twice".to_owned())),
         ]
         .into_iter()
@@ -271,7 +271,7 @@ mod tests {
         for ((_, read), (_, written)) in read.iter().zip(&answers) {
             assert_eq!(*read, outcome_as_filed(written));
         }
-        let (met, meant) = (read[0].1.measurement().unwrap(), measured());
+        let (met, meant) = (read[0].1.measurement().unwrap(), measured_outcome());
         let meant = meant.measurement().unwrap();
         assert_eq!(met.best.pose.position_m, meant.best.pose.position_m);
         assert!((met.best.pose.phi_rad - meant.best.pose.phi_rad).norm() < 1e-16);
@@ -282,7 +282,7 @@ mod tests {
     const HEADER: &str = "field,status,d1_m,d2_m,d3_m,phi1_deg,phi2_deg,phi3_deg";
 
     #[test]
-    fn eight_columns_are_enough_and_then_the_covariance_says_nothing() {
+    fn eight_columns_are_enough_and_then_the_covariance_is_zero() {
         let answers = read(&format!("{HEADER}\n3,measured,0.1,0,5,0,0,90\n9,no_target,,,,,,\n")).unwrap();
         let best = &answers[0].1.measurement().unwrap().best;
         assert_eq!(best.pose.phi_rad.z, std::f64::consts::FRAC_PI_2);
@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn a_far_range_table_is_told_by_its_columns() {
+    fn a_far_range_table_is_recognised_by_its_columns() {
         let message = read("frame,status,x_px,y_px\n1,no_target,,\n").unwrap_err().to_string();
         assert!(message.contains("unknown column `frame`"), "{message}");
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use contract::docking::{Motion, MotionReport, Pose};
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
-use score::docking::Shown;
+use score::docking::ApproachParameters;
 
 use super::covariance::{self, CELLS, upper_triangle};
 use super::pose::{self, angle_as_filed};
@@ -100,7 +100,7 @@ impl MotionWriter {
 }
 
 fn line(field: u64, estimator: &str, motion: &Motion) -> MotionLine {
-    let shown = Shown::of(&motion.pose, &motion.velocity_m_s);
+    let shown = ApproachParameters::from_motion(&motion.pose, &motion.velocity_m_s);
     let phi_deg = shown.phi_rad.map(f64::to_degrees);
     let (d, v) = (&motion.pose.position_m, &motion.velocity_m_s);
     let phi_rate = motion.phi_rate_rad_s.map(f64::to_degrees);
@@ -121,7 +121,7 @@ fn line(field: u64, estimator: &str, motion: &Motion) -> MotionLine {
             phi_deg.y,
             phi_deg.z,
         ],
-        sigma: Shown::sigmas(motion).map(|mut sigmas| {
+        sigma: ApproachParameters::sigmas(motion).map(|mut sigmas| {
             sigmas.iter_mut().skip(2).for_each(|sigma| *sigma = sigma.to_degrees());
             sigmas
         }),
@@ -203,15 +203,16 @@ fn motion(row: &CsvRow<'_>, line: &MotionLine) -> Result<Motion, FileError> {
         return Err(row.error("d3_m", "a camera that is not inside the target"));
     }
     let sigmas = line.sigma.unwrap_or_default();
-    let position = covariance::of_cells(row, POSITION, line.position_covariance, &Vector6::repeat(1.0))?;
-    let attitude = covariance::of_cells(row, ATTITUDE, line.attitude_covariance, &degrees())?;
+    let position = covariance::from_cells(row, POSITION, line.position_covariance, &Vector6::repeat(1.0))?;
+    let attitude = covariance::from_cells(row, ATTITUDE, line.attitude_covariance, &degrees())?;
     let cross = line.cross_covariance.unwrap_or_default();
     Ok(Motion {
         time_s: line.time_s,
         pose: Pose { position_m, phi_rad: Vector3::new(phi1, phi2, phi3).map(f64::to_radians) },
         velocity_m_s,
         phi_rate_rad_s,
-        position_covariance: position.unwrap_or_else(|| of_sigmas(rho, alpha, beta, &towards, &sigmas)),
+        position_covariance: position
+            .unwrap_or_else(|| covariance_from_sigmas(rho, alpha, beta, &towards, &sigmas)),
         attitude_covariance: attitude.unwrap_or_else(|| {
             let variance = |sigma: f64| sigma.to_radians() * sigma.to_radians();
             let [_, _, _, _, s1, s2, s3] = sigmas;
@@ -223,7 +224,13 @@ fn motion(row: &CsvRow<'_>, line: &MotionLine) -> Result<Motion, FileError> {
 }
 
 /// A covariance of position and velocity that gives the standard deviations of ρ, u, α and β, uncorrelated.
-fn of_sigmas(rho: f64, alpha: f64, beta: f64, towards: &Vector3<f64>, sigmas: &[f64; 7]) -> Matrix6<f64> {
+fn covariance_from_sigmas(
+    rho: f64,
+    alpha: f64,
+    beta: f64,
+    towards: &Vector3<f64>,
+    sigmas: &[f64; 7],
+) -> Matrix6<f64> {
     let (sin_a, cos_a) = (libm::sin(alpha), libm::cos(alpha));
     let (sin_b, cos_b) = (libm::sin(beta), libm::cos(beta));
     // ∂d/∂ρ, ∂d/∂α, ∂d/∂β, each times its standard deviation.
@@ -311,12 +318,12 @@ mod tests {
         );
         let reports = read(&text).unwrap();
         let best = reports[0].1.best.as_ref().unwrap();
-        let shown = Shown::of(&best.pose, &best.velocity_m_s);
+        let shown = ApproachParameters::from_motion(&best.pose, &best.velocity_m_s);
         let met = [shown.rho_m, shown.u_m_s, shown.alpha_rad.to_degrees(), shown.beta_rad.to_degrees()];
         for (met, meant) in met.iter().zip([5.0, -0.1, 3.0, -4.0]) {
             assert!((met - meant).abs() < 1e-13, "{met} and {meant}");
         }
-        let sigmas = Shown::sigmas(best).unwrap();
+        let sigmas = ApproachParameters::sigmas(best).unwrap();
         for (i, (met, meant)) in sigmas.iter().zip([0.01, 0.002, 0.1, 0.2, 0.3, 0.4, 0.5]).enumerate() {
             let in_files = if i < 2 { *met } else { met.to_degrees() };
             assert!((in_files - meant).abs() < 1e-12, "sigma {i}: {in_files} and {meant}");

@@ -11,7 +11,7 @@ use crate::toml_file::TomlError;
 
 /// Where in a file a value stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FileLocation {
     /// A line of a text file, counted from 1.
     Line(u64),
     /// A row of a table without lines, counted from 0.
@@ -30,7 +30,7 @@ pub enum Place {
 }
 
 /// As it goes on from the file's name: `, line 3`.
-impl fmt::Display for Place {
+impl fmt::Display for FileLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, ", line {line}"),
@@ -61,7 +61,7 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
         /// Where in it.
-        place: Place,
+        place: FileLocation,
         /// Column, keyword or property.
         field: String,
         /// The value met.
@@ -163,7 +163,7 @@ impl FileError {
     /// A value that is not as expected.
     pub fn value(
         path: &Path,
-        place: Place,
+        place: FileLocation,
         field: impl Into<String>,
         value: impl ToString,
         expected: impl Into<String>,

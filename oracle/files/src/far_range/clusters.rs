@@ -6,7 +6,7 @@ use crate::FileError;
 use crate::parquet::table::Row;
 use crate::table::batch::Columns;
 use crate::table::column::Column;
-use crate::{seldom_repeating, table};
+use crate::{table, without_dictionary};
 
 /// A cluster and the frame it was found in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,9 +23,9 @@ table! {
         /// number of the frame; ascending
         frame: u64,
         /// centre of the cluster
-        position: PixelPoint = seldom_repeating(["x_px", "y_px"]),
+        position: PixelPoint = without_dictionary(["x_px", "y_px"]),
         /// sum of intensities, each 0 to 1
-        size: f64 = seldom_repeating(["size"]),
+        size: f64 = without_dictionary(["size"]),
         /// number of pixels
         pixels: u32,
         /// what it was taken for: `star`, `hotspot`, `unlinked`, `candidate`, `target`

@@ -129,9 +129,9 @@ fn reason(row: &CsvRow<'_>) -> Result<Option<NoSolution>, FileError> {
 fn covariance(
     row: &CsvRow<'_>,
     [sigma_x, sigma_y, correlation]: [&'static str; 3],
-    said: Option<Result<Covariance2, OutOfRange>>,
+    stated: Option<Result<Covariance2, OutOfRange>>,
 ) -> Result<Option<Covariance2>, FileError> {
-    said.transpose().map_err(|wrong| {
+    stated.transpose().map_err(|wrong| {
         let column = match wrong.path.as_str() {
             "sigma_x" => sigma_x,
             "sigma_y" => sigma_y,
@@ -308,8 +308,8 @@ mod tests {
         let vector = || prop::array::uniform3(0.1..3.0_f64).prop_map(Vector3::from);
         let covariance = || {
             let sigma = || 1e-9..1e3_f64;
-            let said = (sigma(), sigma(), -0.999..0.999_f64);
-            prop::option::of(said.prop_map(|(x, y, rho)| Covariance2::from_sigmas(x, y, rho).unwrap()))
+            let stated = (sigma(), sigma(), -0.999..0.999_f64);
+            prop::option::of(stated.prop_map(|(x, y, rho)| Covariance2::from_sigmas(x, y, rho).unwrap()))
         };
         let detected =
             (-0.5..750.5_f64, any::<f64>(), covariance(), prop::option::of((vector(), covariance())))

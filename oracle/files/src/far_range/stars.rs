@@ -26,7 +26,7 @@ table! {
 impl StarRow {
     /// The star as a pipeline gets it. The list is *defined* by its rows, so that one read back from a file is the
     /// same to the bit.
-    pub fn listed(&self) -> ListedStar {
+    pub fn to_listed_star(&self) -> ListedStar {
         let direction =
             Direction::from_ra_dec(Angle::from_degrees(self.ra_deg), Angle::from_degrees(self.dec_deg));
         ListedStar { id: self.id, direction, magnitude: self.magnitude }

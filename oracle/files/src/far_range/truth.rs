@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
 
 use crate::table::field::words;
-use crate::{seldom_repeating, table};
+use crate::{table, without_dictionary};
 
 words!(Shadow, Visibility, ObjectKind);
 
@@ -70,19 +70,19 @@ table!(for ObjectTruth: parquet(frame) {
     id: u32,
     /// centre of its image without noise (mean by light); may be off the detector; of an interlaced frame the middle between the
     /// centres in its fields
-    position: PixelPoint = seldom_repeating(["x_px", "y_px"]),
+    position: PixelPoint = without_dictionary(["x_px", "y_px"]),
     /// astrometric direction: proper motion and parallax applied, no aberration, no deflection; of the target the line of sight, of
     /// the Moon the centre of its disk; null for a hot pixel or track
-    astrometric: Option<Direction<Icrs>> = seldom_repeating(["ra_deg", "dec_deg"]),
+    astrometric: Option<Direction<Icrs>> = without_dictionary(["ra_deg", "dec_deg"]),
     /// V; null for a hot pixel or track
     magnitude: Option<f64>,
     /// expected electrons on the detector in this exposure, before saturation
-    electrons: f64 = seldom_repeating(["electrons"]),
+    electrons: f64 = without_dictionary(["electrons"]),
     /// the same in its brightest pixel
-    peak_electrons: f64 = seldom_repeating(["peak_electrons"]),
+    peak_electrons: f64 = without_dictionary(["peak_electrons"]),
     /// √(Σ s²/(s + b + σ²)) over its pixels: s its electrons, b sky and dark current, σ² the variance of the readout: noise of pixel, row
     /// and column, and gain²/12 of the converter; that of a matched filter
-    snr: f64 = seldom_repeating(["snr"]),
+    snr: f64 = without_dictionary(["snr"]),
     /// distance from the centre to the farthest pixel centre where s exceeds √(b + σ²), before blooming; at least 0.5
     radius_px: f64,
     /// how much farther than `radius_px` s exceeds it along the columns after blooming of the object alone, up or down, whichever is

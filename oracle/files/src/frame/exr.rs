@@ -11,8 +11,8 @@ use exr::prelude::{
 };
 use sim::vector::RadianceImage;
 
-use super::raw_image::{RawImage, Size, Told, check_claim, checked_size, dn_of_all};
-use crate::error::file_error::{Place, create_new};
+use super::raw_image::{ImageMetadata, RawImage, Size, check_claim, checked_size, dn_of_all};
+use crate::error::file_error::{FileLocation, create_new};
 use crate::table::windows;
 use crate::{FileError, FrameHeader};
 
@@ -22,7 +22,7 @@ const ATTRIBUTE: &str = "boresight";
 
 /// The noise-free expectation of an exposure.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Expected {
+pub struct ExpectedImage {
     /// Columns.
     pub columns: usize,
     /// Rows.
@@ -51,11 +51,17 @@ pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
 /// # Errors
 /// [`FileError::Io`] when the file exists or cannot be written; [`FileError::Value`] when the number of values is
 /// not columns × rows.
-pub fn write_expected(path: &Path, expected: &Expected) -> Result<(), FileError> {
+pub fn write_expected(path: &Path, expected: &ExpectedImage) -> Result<(), FileError> {
     let (columns, rows) = checked_size(path, expected.columns as u64, expected.rows as u64, None)?;
     if expected.electrons.len() != columns * rows {
         let got = expected.electrons.len();
-        return Err(FileError::value(path, Place::Header, "pixels", got, format!("{}", columns * rows)));
+        return Err(FileError::value(
+            path,
+            FileLocation::Header,
+            "pixels",
+            got,
+            format!("{}", columns * rows),
+        ));
     }
     let attributes = attributes(path, "electrons", "expected")?;
     write_channel(path, (columns, rows), attributes, FlatSamples::F32(expected.electrons.clone()))
@@ -65,9 +71,9 @@ pub fn write_expected(path: &Path, expected: &Expected) -> Result<(), FileError>
 ///
 /// # Errors
 /// A [`FileError`] for a file that cannot be read or has more than one channel.
-pub fn read_expected(path: &Path) -> Result<Expected, FileError> {
+pub fn read_expected(path: &Path) -> Result<ExpectedImage, FileError> {
     let channel = read_channel(path, None)?;
-    Ok(Expected { columns: channel.columns, rows: channel.rows, electrons: channel.samples })
+    Ok(ExpectedImage { columns: channel.columns, rows: channel.rows, electrons: channel.samples })
 }
 
 /// Writes radiances as one channel `Y` of 16-bit floats: small, and within a part in 2048.
@@ -79,7 +85,13 @@ pub fn write_radiance(path: &Path, image: &RadianceImage) -> Result<(), FileErro
     let (columns, rows) = checked_size(path, image.columns as u64, image.rows as u64, None)?;
     if image.radiance.len() != columns * rows {
         let got = image.radiance.len();
-        return Err(FileError::value(path, Place::Header, "pixels", got, format!("{}", columns * rows)));
+        return Err(FileError::value(
+            path,
+            FileLocation::Header,
+            "pixels",
+            got,
+            format!("{}", columns * rows),
+        ));
     }
     let attributes = attributes(path, "radiance", "radiance")?;
     let samples = image.radiance.iter().map(|&v| f16::from_f32(v)).collect();
@@ -103,7 +115,7 @@ pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, File
         own.split('|').find_map(|field| field.split_once('=').filter(|(key, _)| *key == name)).map(|(_, v)| v)
     };
     let error = |field: &str, value: &str, expected| {
-        FileError::value(path, Place::Header, format!("{ATTRIBUTE}.{field}"), value, expected)
+        FileError::value(path, FileLocation::Header, format!("{ATTRIBUTE}.{field}"), value, expected)
     };
     let bit_depth = field("bit_depth")
         .map(|text| text.parse().map_err(|_| error("bit_depth", text, "1 to 16")))
@@ -114,13 +126,15 @@ pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, File
     };
     let frame =
         field("frame").map(|text| text.parse().map_err(|_| error("frame", text, "a number"))).transpose()?;
-    let told = Told { frame: frame.map(|frame| ("boresight.frame", frame)), ..Told::default() };
-    Ok(RawImage { columns, rows, dn, bit_depth, windows, told })
+    let metadata =
+        ImageMetadata { frame: frame.map(|frame| ("boresight.frame", frame)), ..ImageMetadata::default() };
+    Ok(RawImage { columns, rows, dn, bit_depth, windows, metadata })
 }
 
 fn attributes(path: &Path, layer: &str, own: &str) -> Result<LayerAttributes, FileError> {
     let text = |s: &str| {
-        Text::new_or_none(s).ok_or_else(|| FileError::value(path, Place::Header, ATTRIBUTE, s, "Latin text"))
+        Text::new_or_none(s)
+            .ok_or_else(|| FileError::value(path, FileLocation::Header, ATTRIBUTE, s, "Latin text"))
     };
     let mut attributes = LayerAttributes::named(text(layer)?);
     attributes.other.insert(text(ATTRIBUTE)?, AttributeValue::Text(text(own)?));
@@ -172,7 +186,7 @@ fn read_channel(path: &Path, size: Option<Size<'_>>) -> Result<Channel, FileErro
     };
     let [channel] = layer.channel_data.list.as_slice() else {
         let channels = layer.channel_data.list.len();
-        return Err(FileError::value(path, Place::Header, "number of channels", channels, "1 (grey)"));
+        return Err(FileError::value(path, FileLocation::Header, "number of channels", channels, "1 (grey)"));
     };
     let samples = channel.sample_data.values_as_f32().collect();
     Ok(Channel { columns: layer.size.0, rows: layer.size.1, samples, own })
@@ -186,7 +200,13 @@ fn check_header(path: &Path, size: Option<Size<'_>>) -> Result<(), FileError> {
             checked_size(path, header.layer_size.0 as u64, header.layer_size.1 as u64, size)?;
         let channels = header.channels.list.len();
         if channels != 1 {
-            return Err(FileError::value(path, Place::Header, "number of channels", channels, "1 (grey)"));
+            return Err(FileError::value(
+                path,
+                FileLocation::Header,
+                "number of channels",
+                channels,
+                "1 (grey)",
+            ));
         }
         check_claim(path, (columns * rows * 4) as u64)?;
     }
@@ -217,10 +237,10 @@ mod tests {
         let directory = tempdir().unwrap();
         let path = directory.path().join("expected.exr");
         let electrons = (0..12).map(|i| 0.1 * i as f32).collect();
-        let expected = Expected { columns: 4, rows: 3, electrons };
+        let expected = ExpectedImage { columns: 4, rows: 3, electrons };
         write_expected(&path, &expected).unwrap();
         assert_eq!(read_expected(&path).unwrap(), expected);
-        let short = Expected { columns: 5, ..expected };
+        let short = ExpectedImage { columns: 5, ..expected };
         assert!(write_expected(&directory.path().join("short.exr"), &short).is_err());
     }
 
@@ -250,11 +270,11 @@ mod tests {
     }
 
     #[test]
-    fn a_pixel_without_a_value_is_refused_by_place() {
+    fn a_pixel_without_a_value_is_refused_by_position() {
         let directory = tempdir().unwrap();
         let path = directory.path().join("nan.exr");
         let electrons = vec![1.0, f32::NAN];
-        write_expected(&path, &Expected { columns: 2, rows: 1, electrons }).unwrap();
+        write_expected(&path, &ExpectedImage { columns: 2, rows: 1, electrons }).unwrap();
         let message = read(&path, None).unwrap_err().to_string();
         assert!(message.contains("pixel (1, 0)"), "{message}");
     }

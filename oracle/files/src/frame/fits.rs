@@ -16,8 +16,8 @@ use fitsio_pure::primary::build_primary_header;
 use fitsio_pure::value::Value;
 
 use super::fits_cards;
-use super::raw_image::{RawImage, Size, Told, checked_size, dn_of_all};
-use crate::error::file_error::{Place, create_new, open_regular};
+use super::raw_image::{ImageMetadata, RawImage, Size, checked_size, dn_of_all};
+use crate::error::file_error::{FileLocation, create_new, open_regular};
 use crate::table::time::parse_utc;
 use crate::table::windows;
 use crate::{FileError, FrameHeader};
@@ -28,7 +28,7 @@ const MAX_HEADER_BLOCKS: usize = 1024;
 /// Writes a frame as unsigned 16-bit FITS. The first row of the frame is the first of the file, as in every
 /// array: viewers that put it at the bottom show the image upside down, and the world coordinates with it.
 pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<(), FileError> {
-    let cards = fits_cards::of_frame(path, frame, header)?;
+    let cards = fits_cards::frame_cards(path, frame, header)?;
     let error = |error: fitsio_pure::Error| match error {
         fitsio_pure::Error::Io(source) => FileError::io(path, "write", source),
         other => FileError::format(path, "FITS", other),
@@ -110,7 +110,7 @@ struct Header<'a> {
 
 impl Header<'_> {
     fn error(&self, keyword: &str, value: impl ToString, expected: impl Into<String>) -> FileError {
-        FileError::value(self.path, Place::Header, keyword, value, expected)
+        FileError::value(self.path, FileLocation::Header, keyword, value, expected)
     }
 
     fn value(&self, keyword: &str) -> Option<&Value> {
@@ -128,7 +128,7 @@ impl Header<'_> {
     }
 
     /// A whole number; `None` when the keyword is not there.
-    fn whole(&self, keyword: &str) -> Result<Option<i64>, FileError> {
+    fn integer(&self, keyword: &str) -> Result<Option<i64>, FileError> {
         match self.value(keyword) {
             None | Some(Value::Undefined) => Ok(None),
             Some(Value::Integer(number)) => Ok(Some(*number)),
@@ -138,7 +138,7 @@ impl Header<'_> {
 
     /// A count: a whole number from 0.
     fn count(&self, keyword: &str, default: Option<u64>) -> Result<u64, FileError> {
-        let number = self.whole(keyword)?;
+        let number = self.integer(keyword)?;
         match (number.map(u64::try_from), default) {
             (Some(Ok(count)), _) => Ok(count),
             (None, Some(default)) => Ok(default),
@@ -167,7 +167,7 @@ impl Header<'_> {
     }
 
     fn bytes_per_sample(&self) -> Result<u64, FileError> {
-        match self.whole("BITPIX")? {
+        match self.integer("BITPIX")? {
             Some(bits @ (8 | 16 | 32 | 64 | -32 | -64)) => Ok(bits.unsigned_abs() / 8),
             Some(other) => Err(self.error("BITPIX", other, "8, 16, 32, 64, -32 or -64")),
             None => Err(self.error("BITPIX", "missing", "8, 16, 32, 64, -32 or -64")),
@@ -218,7 +218,7 @@ impl Header<'_> {
     }
 
     fn bit_depth(&self) -> Result<Option<u8>, FileError> {
-        let depth = self.whole("BITDEPTH")?;
+        let depth = self.integer("BITDEPTH")?;
         depth
             .map(|bits| {
                 u8::try_from(bits)
@@ -230,8 +230,8 @@ impl Header<'_> {
     }
 
     /// What it tells of its frame, if times are UTC.
-    fn told(&self) -> Result<Told, FileError> {
-        let frame = self.whole("FRAMENO")?.map(|_| self.count("FRAMENO", None)).transpose()?;
+    fn metadata(&self) -> Result<ImageMetadata, FileError> {
+        let frame = self.integer("FRAMENO")?.map(|_| self.count("FRAMENO", None)).transpose()?;
         let is_utc = match self.value("TIMESYS") {
             Some(Value::String(scale)) => scale.trim() == "UTC",
             _ => true,
@@ -244,7 +244,7 @@ impl Header<'_> {
             _ => None,
         };
         let exposure_s = self.value("EXPTIME").map(|_| self.number("EXPTIME", 0.0)).transpose()?;
-        Ok(Told {
+        Ok(ImageMetadata {
             frame: frame.map(|frame| ("FRAMENO", frame)),
             time: time.map(|time| ("DATE-AVG", time)),
             exposure_s: exposure_s.map(|exposure_s| ("EXPTIME", exposure_s)),
@@ -253,7 +253,7 @@ impl Header<'_> {
 
     /// The transmitted regions, as [`write`] tells them.
     fn windows(&self) -> Result<Option<Vec<Window>>, FileError> {
-        if self.whole("NROI")?.is_none() {
+        if self.integer("NROI")?.is_none() {
             return Ok(None);
         }
         let count = self.count("NROI", None)?;
@@ -279,11 +279,11 @@ fn check_sums(
     data_at: u64,
 ) -> Result<(), FileError> {
     // Nothing is the standard's word for a sum that is not known.
-    let told = |keyword: &str| match header.value(keyword) {
+    let recorded = |keyword: &str| match header.value(keyword) {
         Some(Value::String(text)) if !text.trim().is_empty() => Some(text),
         _ => None,
     };
-    let (sum, data_sum) = (told("CHECKSUM"), told("DATASUM"));
+    let (sum, data_sum) = (recorded("CHECKSUM"), recorded("DATASUM"));
     if (sum.is_none() && data_sum.is_none()) || place.is_empty() {
         return Ok(());
     }
@@ -294,22 +294,24 @@ fn check_sums(
     reader.take(length).read_to_end(&mut unit).map_err(io)?;
     // A last block that is cut short, be it by noughts alone, is not what was written.
     let is_whole = unit.len() as u64 == length;
-    let refused = |keyword: &str, told: &str, of: &str| {
+    let refused = |keyword: &str, recorded: &str, of: &str| {
         let expected = format!(
             "the sum of {of}: the file was damaged, or changed by a program that left the keyword as it was"
         );
-        Err(header.error(keyword, told, expected))
+        Err(header.error(keyword, recorded, expected))
     };
-    if let Some(told) = sum.filter(|_| !is_whole || !matches!(checksum_blocks(&unit), 0 | u32::MAX)) {
-        return refused("CHECKSUM", told, "header and data");
+    if let Some(recorded) = sum.filter(|_| !is_whole || !matches!(checksum_blocks(&unit), 0 | u32::MAX)) {
+        return refused("CHECKSUM", recorded, "header and data");
     }
     let data = unit.get((data_at - place.start) as usize..).unwrap_or_default();
     // Nought and minus nought are the same.
     let is_sum = |text: &str| {
-        text.trim().parse::<u32>().is_ok_and(|told| told % u32::MAX == checksum_blocks(data) % u32::MAX)
+        text.trim()
+            .parse::<u32>()
+            .is_ok_and(|recorded| recorded % u32::MAX == checksum_blocks(data) % u32::MAX)
     };
-    match data_sum.filter(|told| !is_whole || !is_sum(told)) {
-        Some(told) => refused("DATASUM", told, "the data"),
+    match data_sum.filter(|recorded| !is_whole || !is_sum(recorded)) {
+        Some(recorded) => refused("DATASUM", recorded, "the data"),
         None => Ok(()),
     }
 }
@@ -342,11 +344,11 @@ fn read_image(
     let mut data = vec![0; pixel_bytes];
     reader.read_exact(&mut data).map_err(|source| FileError::io(path, "read", source))?;
 
-    let blank = header.whole("BLANK")?;
+    let blank = header.integer("BLANK")?;
     let integer = |stored: i64| if blank == Some(stored) { f64::NAN } else { zero + scale * stored as f64 };
     let float = |stored: f64| zero + scale * stored;
     let samples = data.chunks_exact(width);
-    let dn = match header.whole("BITPIX")? {
+    let dn = match header.integer("BITPIX")? {
         Some(8) => dn_of_all(path, columns, samples.map(|b| integer(i64::from(u8::from_be_bytes(fixed(b)))))),
         Some(16) => {
             dn_of_all(path, columns, samples.map(|b| integer(i64::from(i16::from_be_bytes(fixed(b))))))
@@ -360,8 +362,8 @@ fn read_image(
         }
         _ => dn_of_all(path, columns, samples.map(|b| float(f64::from_be_bytes(fixed(b))))),
     }?;
-    let (bit_depth, windows, told) = (header.bit_depth()?, header.windows()?, header.told()?);
-    Ok(RawImage { columns, rows, dn, bit_depth, windows, told })
+    let (bit_depth, windows, metadata) = (header.bit_depth()?, header.windows()?, header.metadata()?);
+    Ok(RawImage { columns, rows, dn, bit_depth, windows, metadata })
 }
 
 /// The bytes of one sample; `chunks_exact` gives exactly as many.
@@ -460,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_without_a_value_are_refused_by_place() {
+    fn pixels_without_a_value_are_refused_by_position() {
         let nan = [1.0_f32.to_be_bytes(), f32::NAN.to_be_bytes()].concat();
         check_refused(image(-32, &[], &nan), &["pixel (1, 0)", "NaN"]);
         check_refused(image(8, &["BLANK   = 9"], &[9, 1]), &["pixel (0, 0)", "NaN"]);

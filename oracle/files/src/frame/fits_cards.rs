@@ -7,7 +7,7 @@ use fitsio_pure::header::Card;
 use fitsio_pure::value::Value;
 use hifitime::Unit;
 
-use crate::error::Place;
+use crate::error::FileLocation;
 use crate::table::time::format_utc;
 use crate::table::windows;
 use crate::{FileError, FrameHeader, SipTerm, TanSip};
@@ -23,7 +23,13 @@ impl Cards<'_> {
         if let Value::Float(number) = value
             && !number.is_finite()
         {
-            return Err(FileError::value(self.path, Place::Header, keyword, number, "a finite number"));
+            return Err(FileError::value(
+                self.path,
+                FileLocation::Header,
+                keyword,
+                number,
+                "a finite number",
+            ));
         }
         let card = Card::new(keyword, value).map_err(|error| FileError::format(self.path, "FITS", error))?;
         self.cards.push(Card { comment: Some(comment.to_owned()).filter(|c| !c.is_empty()), ..card });
@@ -35,7 +41,7 @@ impl Cards<'_> {
         if text.bytes().all(|byte| (b' '..=b'~').contains(&byte)) {
             self.add(keyword, Value::String(text.to_owned()), comment)
         } else {
-            Err(FileError::value(self.path, Place::Header, keyword, text, "printable ASCII"))
+            Err(FileError::value(self.path, FileLocation::Header, keyword, text, "printable ASCII"))
         }
     }
 
@@ -43,9 +49,10 @@ impl Cards<'_> {
         self.add(keyword, Value::Float(number), comment)
     }
 
-    fn whole(&mut self, keyword: &str, number: u64, comment: &str) -> Result<(), FileError> {
-        let value = i64::try_from(number)
-            .map_err(|_| FileError::value(self.path, Place::Header, keyword, number, "less than 2^63"))?;
+    fn integer(&mut self, keyword: &str, number: u64, comment: &str) -> Result<(), FileError> {
+        let value = i64::try_from(number).map_err(|_| {
+            FileError::value(self.path, FileLocation::Header, keyword, number, "less than 2^63")
+        })?;
         self.add(keyword, Value::Integer(value), comment)
     }
 
@@ -56,13 +63,13 @@ impl Cards<'_> {
 }
 
 /// Every card of a frame but the mandatory ones.
-pub(crate) fn of_frame(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<Vec<Card>, FileError> {
+pub(crate) fn frame_cards(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<Vec<Card>, FileError> {
     let mut cards = Cards { path, cards: Vec::new() };
     cards.number("BSCALE", 1.0, "DN = BZERO + BSCALE * stored")?;
     cards.number("BZERO", 32768.0, "unsigned 16 bit")?;
     cards.text("BUNIT", "adu", "")?;
-    cards.whole("FRAMENO", frame.number(), "number of the frame")?;
-    cards.whole("BITDEPTH", u64::from(frame.bit_depth()), "bits of the converter")?;
+    cards.integer("FRAMENO", frame.number(), "number of the frame")?;
+    cards.integer("BITDEPTH", u64::from(frame.bit_depth()), "bits of the converter")?;
     times(&mut cards, header)?;
     if let Some(gain) = header.gain_e_per_dn {
         cards.number("GAIN", gain, "[electron/adu]")?;
@@ -77,7 +84,7 @@ pub(crate) fn of_frame(path: &Path, frame: &Frame, header: &FrameHeader) -> Resu
     cards.text("CREATOR", &format!("boresight {}", header.version), "")?;
     cards.text("CONFHASH", &header.configuration_hash, "")?;
     if let Some(regions) = frame.windows() {
-        cards.whole("NROI", regions.len() as u64, "transmitted regions; all else is 0")?;
+        cards.integer("NROI", regions.len() as u64, "transmitted regions; all else is 0")?;
         for (number, window) in (1..).zip(regions) {
             cards.text(&format!("ROI{number}"), &windows::format_one(window), "x y columns rows, from 0")?;
         }
@@ -106,7 +113,7 @@ fn times(cards: &mut Cards<'_>, header: &FrameHeader) -> Result<(), FileError> {
 }
 
 fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileError> {
-    cards.whole("WCSAXES", 2, "")?;
+    cards.integer("WCSAXES", 2, "")?;
     let suffix = if wcs.sip.is_some() { "-SIP" } else { "" };
     cards.text("CTYPE1", &format!("RA---TAN{suffix}"), "")?;
     cards.text("CTYPE2", &format!("DEC--TAN{suffix}"), "")?;
@@ -143,7 +150,7 @@ fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileErro
 }
 
 fn polynomial(cards: &mut Cards<'_>, name: &str, order: usize, terms: &[SipTerm]) -> Result<(), FileError> {
-    cards.whole(&format!("{name}_ORDER"), order as u64, "")?;
+    cards.integer(&format!("{name}_ORDER"), order as u64, "")?;
     for term in terms {
         cards.number(&format!("{name}_{}_{}", term.u_power, term.v_power), term.coefficient, "")?;
     }

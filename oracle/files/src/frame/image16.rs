@@ -7,9 +7,9 @@ use contract::{Camera, Frame};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageBuffer, ImageDecoder, ImageEncoder, ImageReader, Limits, Luma};
 
-use super::raw_image::{RawImage, Size, Told, check_claim, checked_size};
+use super::raw_image::{ImageMetadata, RawImage, Size, check_claim, checked_size};
 use crate::FileError;
-use crate::error::file_error::{Place, create_new, open_regular};
+use crate::error::file_error::{FileLocation, create_new, open_regular};
 
 /// Most bytes that a decoder makes of what a file says besides its pixels.
 const ABOUT_PIXELS_BYTES: u64 = 1 << 23;
@@ -18,7 +18,13 @@ const ABOUT_PIXELS_BYTES: u64 = 1 << 23;
 pub(crate) fn write_png(path: &Path, frame: &Frame) -> Result<(), FileError> {
     let (columns, rows) = (frame.columns() as u32, frame.rows() as u32);
     let Some(pixels) = ImageBuffer::<Luma<u16>, _>::from_raw(columns, rows, frame.dn()) else {
-        return Err(FileError::value(path, Place::Header, "pixels", frame.dn().len(), "columns × rows"));
+        return Err(FileError::value(
+            path,
+            FileLocation::Header,
+            "pixels",
+            frame.dn().len(),
+            "columns × rows",
+        ));
     };
     let mut file = BufWriter::new(create_new(path)?);
     pixels.write_with_encoder(PngEncoder::new(&mut file)).map_err(|error| image_error(path, error))?;
@@ -33,7 +39,7 @@ pub(crate) fn write_png_of_depth(path: &Path, frame: &Frame) -> Result<(), FileE
     let narrow = |&dn: &u16| u8::try_from(dn).ok();
     let pixels: Option<Vec<u8>> = frame.dn().iter().map(narrow).collect();
     let Some(pixels) = pixels else {
-        return Err(FileError::value(path, Place::Header, "DN", "above 255", "8 bits"));
+        return Err(FileError::value(path, FileLocation::Header, "DN", "above 255", "8 bits"));
     };
     let mut file = BufWriter::new(create_new(path)?);
     let (columns, rows) = (frame.columns() as u32, frame.rows() as u32);
@@ -57,7 +63,13 @@ pub(crate) fn read(
     let color = few_bits.unwrap_or_else(|| decoder.original_color_type());
     if !matches!(color, ExtendedColorType::L8 | ExtendedColorType::L16) {
         let expected = "grey of 8 or 16 bits (L8, L16); convert the image";
-        return Err(FileError::value(path, Place::Header, "pixel type", format!("{color:?}"), expected));
+        return Err(FileError::value(
+            path,
+            FileLocation::Header,
+            "pixel type",
+            format!("{color:?}"),
+            expected,
+        ));
     }
     check_claim(path, decoder.total_bytes())?;
     // Pixels, and as much again for the decoder's own strips.
@@ -70,10 +82,10 @@ pub(crate) fn read(
         image::DynamicImage::ImageLuma16(pixels) => pixels.into_raw(),
         other => {
             let kind = format!("{:?}", other.color());
-            return Err(FileError::value(path, Place::Header, "pixel type", kind, "L8 or L16"));
+            return Err(FileError::value(path, FileLocation::Header, "pixel type", kind, "L8 or L16"));
         }
     };
-    Ok(RawImage { columns, rows, dn, bit_depth: None, windows: None, told: Told::default() })
+    Ok(RawImage { columns, rows, dn, bit_depth: None, windows: None, metadata: ImageMetadata::default() })
 }
 
 /// What a PNG of less than 8 bits a sample is, of which its decoder says that it has the 8 that it makes of them: they stand at a fixed

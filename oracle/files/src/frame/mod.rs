@@ -9,7 +9,7 @@ pub(crate) mod image16;
 pub(crate) mod raw_image;
 pub(crate) mod wcs;
 
-pub use self::exr::{Expected, read_expected, read_radiance, write_expected, write_radiance};
+pub use self::exr::{ExpectedImage, read_expected, read_radiance, write_expected, write_radiance};
 pub use file::{ImageFormat, read_frame, write_frame};
 pub use header::FrameHeader;
 pub use wcs::{Sip, SipTerm, TanSip, WcsError};

@@ -5,7 +5,7 @@ use std::path::Path;
 use contract::{Camera, Frame, Window};
 use hifitime::Epoch;
 
-use crate::error::Place;
+use crate::error::FileLocation;
 use crate::table::time::format_utc;
 use crate::{FileError, TelemetryRow};
 
@@ -21,19 +21,19 @@ pub(crate) struct RawImage {
     /// Regions that were transmitted, if the file tells.
     pub(crate) windows: Option<Vec<Window>>,
     /// What else the file tells of its frame.
-    pub(crate) told: Told,
+    pub(crate) metadata: ImageMetadata,
 }
 
 /// What an image tells of its frame, each with the keyword that tells it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Told {
+pub(crate) struct ImageMetadata {
     pub(crate) frame: Option<(&'static str, u64)>,
     /// Middle of the exposure.
     pub(crate) time: Option<(&'static str, Epoch)>,
     pub(crate) exposure_s: Option<(&'static str, f64)>,
 }
 
-impl Told {
+impl ImageMetadata {
     /// Most by which the times may differ, s: other cameras write milliseconds.
     const TIME_S: f64 = 1e-3;
     /// Most by which the exposure times may differ, in parts of them: of a number with six digits.
@@ -43,7 +43,7 @@ impl Told {
     pub(crate) fn check(&self, path: &Path, row: &TelemetryRow) -> Result<(), FileError> {
         let refused = |field: &str, found: String, expected: String| {
             let expected = format!("{expected}, that of frame {} in the telemetry which names it", row.frame);
-            Err(FileError::value(path, Place::Header, field, found, expected))
+            Err(FileError::value(path, FileLocation::Header, field, found, expected))
         };
         let telemetry = &row.telemetry;
         if let Some((field, frame)) = self.frame.filter(|(_, frame)| *frame != row.frame) {
@@ -55,9 +55,9 @@ impl Told {
             return refused(field, format_utc(time), format_utc(telemetry.time));
         }
         let is_other =
-            |told: f64| (told - telemetry.exposure_s).abs() > Self::EXPOSURE * telemetry.exposure_s;
-        match self.exposure_s.filter(|(_, told)| is_other(*told)) {
-            Some((field, told)) => refused(field, told.to_string(), telemetry.exposure_s.to_string()),
+            |value: f64| (value - telemetry.exposure_s).abs() > Self::EXPOSURE * telemetry.exposure_s;
+        match self.exposure_s.filter(|(_, value)| is_other(*value)) {
+            Some((field, value)) => refused(field, value.to_string(), telemetry.exposure_s.to_string()),
             None => Ok(()),
         }
     }
@@ -85,7 +85,7 @@ impl RawImage {
     ) -> Result<Frame, FileError> {
         if let Some(own) = self.bit_depth.filter(|own| *own != bit_depth) {
             let expected = format!("{bit_depth}, that of the camera");
-            return Err(FileError::value(path, Place::Header, "bit depth", own, expected));
+            return Err(FileError::value(path, FileLocation::Header, "bit depth", own, expected));
         }
         let columns = self.columns.max(1);
         let frame = Frame::new(number, self.columns, self.rows, bit_depth, self.dn, windows.or(self.windows))
@@ -95,7 +95,7 @@ impl RawImage {
             None => Ok(frame),
             Some((i, dn)) => Err(FileError::value(
                 path,
-                Place::Pixel { x: i % columns, y: i / columns },
+                FileLocation::Pixel { x: i % columns, y: i / columns },
                 "DN",
                 dn,
                 format!("at most {full_scale}, the full scale of {} bits", frame.bit_depth()),
@@ -121,7 +121,7 @@ pub(crate) fn dn_of_all(
     let columns = columns.max(1);
     let convert = |(i, value)| {
         dn(value).ok_or_else(|| {
-            let place = Place::Pixel { x: i % columns, y: i / columns };
+            let place = FileLocation::Pixel { x: i % columns, y: i / columns };
             FileError::value(path, place, "DN", value, "a finite number of at most 65535")
         })
     };
@@ -145,18 +145,18 @@ pub(crate) fn checked_size(
             Some(Size { columns, rows, whose }) => format!("{columns} × {rows}, {whose}"),
             None => format!("1 to {} pixels a side", Camera::MAX_SIDE_PX),
         };
-        FileError::value(path, Place::Header, "image size", found, expected)
+        FileError::value(path, FileLocation::Header, "image size", found, expected)
     })
 }
 
 /// Refuses a compressed file that claims more than any compression of the formats read here can have packed into
 /// its length: deflate packs at most 1032 bytes into one, LZW of 12 bits 2731.
 pub(crate) fn check_claim(path: &Path, claimed_bytes: u64) -> Result<(), FileError> {
-    const MOST_FROM_ONE_BYTE: u64 = 4096;
+    const MAX_FROM_ONE_BYTE: u64 = 4096;
     let length = std::fs::metadata(path).map_err(|source| FileError::io(path, "open", source))?.len();
-    if claimed_bytes > length.saturating_mul(MOST_FROM_ONE_BYTE) {
+    if claimed_bytes > length.saturating_mul(MAX_FROM_ONE_BYTE) {
         let expected = format!("no more than a file of {length} bytes can hold");
-        Err(FileError::value(path, Place::Header, "bytes of pixels", claimed_bytes, expected))
+        Err(FileError::value(path, FileLocation::Header, "bytes of pixels", claimed_bytes, expected))
     } else {
         Ok(())
     }
@@ -183,7 +183,7 @@ mod tests {
             dn: vec![0, 0, 0, 1024],
             bit_depth: None,
             windows: None,
-            told: Told::default(),
+            metadata: ImageMetadata::default(),
         };
         let message = raw.into_frame(Path::new("a.png"), 1, 10, None).unwrap_err().to_string();
         assert_eq!(

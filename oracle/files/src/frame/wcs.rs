@@ -129,7 +129,7 @@ impl TanSip {
         pixel_from_sky: &impl Fn(&Direction<Icrs>) -> Option<PixelPoint>,
     ) -> Result<Self, WcsError> {
         let center = direction_of_pixel(principal, boresight, pixel_from_sky)?;
-        let plane = TangentPlane::at(&center);
+        let plane = TangentPlane::from_center(&center);
         let offset = |tangent: Vector2<f64>| {
             pixel_from_sky(&plane.direction(tangent))
                 .map(|p| Vector2::new(p.x - principal.x, p.y - principal.y))
@@ -196,7 +196,7 @@ struct TangentPlane {
 }
 
 impl TangentPlane {
-    fn at(center: &Direction<Icrs>) -> Self {
+    fn from_center(center: &Direction<Icrs>) -> Self {
         let (sin_ra, cos_ra) = libm::sincos(center.ra().radians());
         let (sin_dec, cos_dec) = libm::sincos(center.dec().radians());
         Self {
@@ -222,7 +222,7 @@ fn direction_of_pixel(
     let mut direction = near;
     // A few steps do; what has not converged after twenty never will.
     for _ in 0..20 {
-        let plane = TangentPlane::at(&direction);
+        let plane = TangentPlane::from_center(&direction);
         let offset = |tangent: Vector2<f64>| {
             pixel_from_sky(&plane.direction(tangent)).map(|p| Vector2::new(p.x - pixel.x, p.y - pixel.y))
         };

@@ -14,9 +14,9 @@ use super::thrift::{Compact, FieldHead, kind};
 use crate::FileError;
 
 /// Most bytes that Snappy makes of one: copies of 64 bytes are three bytes long.
-const MOST_FROM_ONE_BYTE: u64 = 22;
+const MAX_FROM_ONE_BYTE: u64 = 22;
 /// Most rows that a byte of a file may stand for. A column that ascends, which each of our tables has, needs more.
-const MOST_ROWS_A_BYTE: u64 = 64;
+const MAX_ROWS_A_BYTE: u64 = 64;
 /// Bytes that a header of a page is looked for in, first and last: texts in its statistics may make it long.
 const HEADER_BYTES: [u64; 2] = [512, 1 << 16];
 /// Encodings that reserve what the data themselves claim: DELTA_LENGTH_BYTE_ARRAY and DELTA_BYTE_ARRAY.
@@ -93,7 +93,7 @@ pub(crate) fn check_claims(
 ) -> Result<(), FileError> {
     let rows = metadata.row_groups().iter().map(|group| u64::try_from(group.num_rows()).ok());
     let rows = rows.chain([u64::try_from(metadata.file_metadata().num_rows()).ok()]);
-    let most = length.saturating_mul(MOST_ROWS_A_BYTE);
+    let most = length.saturating_mul(MAX_ROWS_A_BYTE);
     if rows.map(|rows| rows.filter(|&rows| rows <= most)).any(|rows| rows.is_none()) {
         let reason = format!("it claims more rows than a file of {length} bytes can hold");
         return Err(FileError::format(path, "Parquet", reason));
@@ -141,7 +141,7 @@ fn check_pages(path: &Path, file: &mut File, mut at: u64, end: u64) -> Result<()
                 "is of an encoding that is not supported (DELTA_BYTE_ARRAY, DELTA_LENGTH_BYTE_ARRAY)",
             );
         }
-        if unpacked > packed.saturating_mul(MOST_FROM_ONE_BYTE).saturating_add(64) {
+        if unpacked > packed.saturating_mul(MAX_FROM_ONE_BYTE).saturating_add(64) {
             return wrong(at, &format!("claims {unpacked} bytes, packed into {packed}"));
         }
         // Each value takes a byte or more, and the crate makes room for all of them.

@@ -17,7 +17,7 @@ use crate::error::open_regular;
 use crate::table::column::{Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
 
 /// Most bytes of text in a column of a batch. A page of a few kilobytes can repeat one text without end.
-const MOST_TEXT_BYTES: usize = 1 << 25;
+const MAX_TEXT_BYTES: usize = 1 << 25;
 
 /// A Parquet file whose claims were held against its length. Nothing but its headers is read yet.
 pub struct ParquetFile {
@@ -163,7 +163,11 @@ impl Batches {
     /// The columns without rows.
     pub fn header(&self) -> Vec<Column> {
         let column = |wanted: &WantedColumn| {
-            Column::of(wanted.name.clone(), wanted.is_nullable, ColumnValues::none_of(wanted.column_type))
+            Column::from_values(
+                wanted.name.clone(),
+                wanted.is_nullable,
+                ColumnValues::empty(wanted.column_type),
+            )
         };
         self.wanted.iter().map(column).collect()
     }
@@ -203,7 +207,7 @@ impl Batches {
                     let name = &wanted.name;
                     return Err(format!("column `{name}` has fewer rows than its row group").into());
                 }
-                columns.push(Column::of(wanted.name.clone(), wanted.is_nullable, values));
+                columns.push(Column::from_values(wanted.name.clone(), wanted.is_nullable, values));
             }
             group.rows_left -= rows;
             return Ok(Some((rows, columns)));
@@ -315,8 +319,8 @@ fn read_texts(
     texts.clear();
     let is_valid = read_values(reader, rows, levels, texts)?;
     let size = texts.iter().try_fold(0_usize, |size, text| size.checked_add(text.len()));
-    let size = size.filter(|&size| size <= MOST_TEXT_BYTES);
-    let size = size.ok_or_else(|| format!("more than {MOST_TEXT_BYTES} bytes of text in {rows} rows"))?;
+    let size = size.filter(|&size| size <= MAX_TEXT_BYTES);
+    let size = size.ok_or_else(|| format!("more than {MAX_TEXT_BYTES} bytes of text in {rows} rows"))?;
     let (mut bytes, mut ends) = (Vec::with_capacity(size), Vec::with_capacity(rows));
     let mut push = |text: Option<&ByteArray>| {
         bytes.extend_from_slice(text.map_or(&[], ByteArray::data));
@@ -389,7 +393,7 @@ mod tests {
             Column::nullable("flag?", rows.clone().map(|n| (n % 3 > 0).then(|| odd(n)))),
             Column::new("u32", rows.clone().map(|n| u32::MAX - n as u32)),
             Column::new("u64", rows.clone().map(|n| u64::MAX - n)),
-            Column::new("f32", rows.clone().map(|n| -(n as f32))).byte_by_byte(),
+            Column::new("f32", rows.clone().map(|n| -(n as f32))).byte_stream_split(),
             Column::nullable("f64?", rows.clone().map(|n| odd(n).then(|| 1.0 / n as f64))),
             Column::new("time", rows.clone().map(|n| Nanoseconds(-(n as i64)))),
             Column::texts("text", rows.clone().map(|n| format!("Täxt {}", n % 7))),
@@ -461,7 +465,7 @@ mod tests {
     /// A dictionary has the text once, and a run of 8192 rows is a few bytes.
     #[test]
     fn a_long_text_that_repeats_without_end_is_refused() {
-        let text = "x".repeat(MOST_TEXT_BYTES / 8192 + 1);
+        let text = "x".repeat(MAX_TEXT_BYTES / 8192 + 1);
         let (_folder, path) = written(&[Column::texts("word", (0..8192).map(|_| &text))]);
         assert!(std::fs::metadata(&path).unwrap().len() < 8192);
         let message = all(&path, &["word"], 8192).unwrap_err().to_string();

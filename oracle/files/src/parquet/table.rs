@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use super::file::{Batches, ParquetFile};
 use super::writer::{ParquetWriter, TableOptions};
-use crate::error::Place;
+use crate::error::FileLocation;
 use crate::table::batch::Columns;
 use crate::table::column::Column;
-use crate::{FileError, WholeFile};
+use crate::{AtomicFile, FileError};
 
 /// Rows held before they are encoded, and read at a time.
 const BATCH_ROWS: usize = 1024;
@@ -36,7 +36,7 @@ pub trait Row: Sized {
 
 /// Writes a table, in row groups as it goes: memory stays the same however long the table. The file has its name when it is complete.
 pub struct TableWriter<R> {
-    file: WholeFile,
+    file: AtomicFile,
     writer: ParquetWriter<File>,
     waiting: Vec<R>,
 }
@@ -48,7 +48,7 @@ impl<R: Row> TableWriter<R> {
     /// [`FileError::Io`] when the file exists or cannot be created.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let options = TableOptions { row_group_rows: ROW_GROUP_ROWS, ..TableOptions::default() };
-        let file = WholeFile::create_new(path)?;
+        let file = AtomicFile::create_new(path)?;
         let out = file.file().try_clone().map_err(|source| FileError::io(path, "create", source))?;
         let writer = ParquetWriter::new(out, path, &R::columns(&[]), options)?;
         Ok(Self { file, writer, waiting: Vec::new() })
@@ -196,7 +196,7 @@ fn check_columns(path: &Path, file: &ParquetFile, expected: &[Column]) -> Result
             Err(name) => name.clone(),
         };
         let wanted = format!("type {wanted}");
-        return Err(FileError::value(path, Place::Header, column.name(), other, wanted));
+        return Err(FileError::value(path, FileLocation::Header, column.name(), other, wanted));
     }
     Ok(())
 }

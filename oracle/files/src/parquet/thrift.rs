@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn claims_that_the_bytes_do_not_hold_are_not_believed() {
+    fn claims_beyond_the_bytes_are_refused() {
         // A list of 2^35 elements, a text of 2^35 bytes, a struct in a struct in a struct …
         let huge = [0xff, 0xff, 0xff, 0xff, 0x7f];
         assert_eq!(Compact(&[&[0xf5], &huge[..]].concat()).skip(kind::LIST), None);

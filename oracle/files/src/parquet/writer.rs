@@ -401,7 +401,7 @@ mod tests {
         let uneven = message(&[Column::new("n", [1_u64, 2]), Column::new("x", [0.5])]);
         assert!(uneven.contains("column `x` has 1 rows, expected 2"), "{uneven}");
         let values = Column::nullable("x", [Some(0.5), None]).into_values();
-        let null = message(&[Column::of("x", false, values)]);
+        let null = message(&[Column::from_values("x", false, values)]);
         assert!(null.contains("column `x` has no value in row 1"), "{null}");
         let mut writer =
             ParquetWriter::new(Vec::new(), Path::new("a"), &[Column::new("x", [0.5])], Default::default())

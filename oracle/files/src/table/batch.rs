@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::column::{Cell, Cells, Column, ColumnValues, TextCells};
 use crate::FileError;
-use crate::error::Place;
+use crate::error::FileLocation;
 
 /// The columns of a batch, by name.
 pub struct Columns<'a> {
@@ -37,7 +37,7 @@ impl<'a> Columns<'a> {
         value: impl ToString,
         expected: impl Into<String>,
     ) -> FileError {
-        FileError::value(self.path, Place::Row(self.first_row + row as u64), column, value, expected)
+        FileError::value(self.path, FileLocation::Row(self.first_row + row as u64), column, value, expected)
     }
 
     /// A column of a type.

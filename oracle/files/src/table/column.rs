@@ -102,7 +102,7 @@ impl ColumnValues {
     }
 
     /// No values of a type.
-    pub fn none_of(column_type: ColumnType) -> Self {
+    pub fn empty(column_type: ColumnType) -> Self {
         match column_type {
             ColumnType::Boolean => Self::Boolean(Cells::default()),
             ColumnType::UInt32 => Self::UInt32(Cells::default()),
@@ -366,17 +366,17 @@ pub struct Column {
 impl Column {
     /// A column in which every row has a value.
     pub fn new<T: Cell>(name: impl Into<String>, values: impl IntoIterator<Item = T>) -> Self {
-        Self::of(name, false, T::values(Cells::new(values.into_iter().collect())))
+        Self::from_values(name, false, T::values(Cells::new(values.into_iter().collect())))
     }
 
     /// A column in which rows may have no value.
     pub fn nullable<T: Cell>(name: impl Into<String>, values: impl IntoIterator<Item = Option<T>>) -> Self {
-        Self::of(name, true, T::values(values.into_iter().collect()))
+        Self::from_values(name, true, T::values(values.into_iter().collect()))
     }
 
     /// A column of texts, in which every row has one.
     pub fn texts<T: AsRef<str>>(name: impl Into<String>, texts: impl IntoIterator<Item = T>) -> Self {
-        Self::of(name, false, ColumnValues::Utf8(texts.into_iter().collect()))
+        Self::from_values(name, false, ColumnValues::Utf8(texts.into_iter().collect()))
     }
 
     /// A column of texts, in which rows may have none.
@@ -390,21 +390,21 @@ impl Column {
             is_valid.push(text.is_some());
         }
         cells.is_valid = is_valid.contains(&false).then_some(is_valid);
-        Self::of(name, true, ColumnValues::Utf8(cells))
+        Self::from_values(name, true, ColumnValues::Utf8(cells))
     }
 
     /// A column of given values. One that is not nullable must have no null among them.
-    pub fn of(name: impl Into<String>, is_nullable: bool, values: ColumnValues) -> Self {
+    pub fn from_values(name: impl Into<String>, is_nullable: bool, values: ColumnValues) -> Self {
         Self { name: name.into(), is_nullable, coding: Coding::Dictionary, values }
     }
 
     /// The column for values that seldom repeat: written without a dictionary, which would only add to the file.
-    pub fn seldom_repeating(self) -> Self {
+    pub fn without_dictionary(self) -> Self {
         Self { coding: Coding::Plain, ..self }
     }
 
     /// The column for numbers whose bytes repeat although the numbers do not: written byte by byte, without a dictionary.
-    pub fn byte_by_byte(self) -> Self {
+    pub fn byte_stream_split(self) -> Self {
         Self { coding: Coding::ByteByByte, ..self }
     }
 

@@ -2,47 +2,47 @@
 //! header of a CSV, its reading and writing, the columns of a Parquet file and the tables of `docs/formats.md` come from it.
 
 use super::column::Column;
-use super::declared::Declared;
+use super::declarations::FieldDeclaration;
 use super::field::{Atom, Field, Value};
 use crate::csv::table::CsvRow;
 use crate::{Columns, FileError};
 
 /// Columns of one field of a row.
 #[derive(Debug, Clone, Copy)]
-pub struct Names<const N: usize> {
+pub struct ColumnNames<const N: usize> {
     pub(crate) names: [&'static str; N],
     is_optional: bool,
     is_nullable: bool,
-    is_seldom_repeating: bool,
+    is_without_dictionary: bool,
 }
 
-impl<const N: usize> From<[&'static str; N]> for Names<N> {
+impl<const N: usize> From<[&'static str; N]> for ColumnNames<N> {
     fn from(names: [&'static str; N]) -> Self {
-        Self { names, is_optional: false, is_nullable: false, is_seldom_repeating: false }
+        Self { names, is_optional: false, is_nullable: false, is_without_dictionary: false }
     }
 }
 
 /// Columns that a CSV may lack.
-pub fn optional<const N: usize>(names: [&'static str; N]) -> Names<N> {
-    Names { is_optional: true, ..names.into() }
+pub fn optional<const N: usize>(names: [&'static str; N]) -> ColumnNames<N> {
+    ColumnNames { is_optional: true, ..names.into() }
 }
 
 /// Columns of a Parquet file that are declared nullable although every row has a value.
-pub fn nullable<const N: usize>(names: [&'static str; N]) -> Names<N> {
-    Names { is_nullable: true, ..names.into() }
+pub fn nullable<const N: usize>(names: [&'static str; N]) -> ColumnNames<N> {
+    ColumnNames { is_nullable: true, ..names.into() }
 }
 
-/// Columns of a Parquet file whose values seldom repeat ([`Column::seldom_repeating`]).
-pub fn seldom_repeating<const N: usize>(names: [&'static str; N]) -> Names<N> {
-    Names { is_seldom_repeating: true, ..names.into() }
+/// Columns of a Parquet file whose values seldom repeat ([`Column::without_dictionary`]).
+pub fn without_dictionary<const N: usize>(names: [&'static str; N]) -> ColumnNames<N> {
+    ColumnNames { is_without_dictionary: true, ..names.into() }
 }
 
-impl<const N: usize> Names<N> {
+impl<const N: usize> ColumnNames<N> {
     /// What the table says of the field.
-    pub fn declared<F: Field<N>>(&self, meaning: &str) -> Declared {
-        Declared {
+    pub fn declarations<F: Field<N>>(&self, meaning: &str) -> FieldDeclaration {
+        FieldDeclaration {
             names: self.names.to_vec(),
-            column_type: CellOf::<'static, F, N>::TYPE,
+            column_type: FieldCell::<'static, F, N>::TYPE,
             is_nullable: F::IS_NULLABLE || self.is_nullable,
             is_optional: self.is_optional,
             meaning: meaning.trim().to_owned(),
@@ -51,12 +51,12 @@ impl<const N: usize> Names<N> {
 
     /// The columns of a Parquet file.
     pub fn columns<'a, F: Field<N> + 'a>(&self, fields: impl Iterator<Item = &'a F>) -> Vec<Column> {
-        let cells: Vec<Option<[CellOf<'a, F, N>; N]>> =
+        let cells: Vec<Option<[FieldCell<'a, F, N>; N]>> =
             fields.map(|field| field.value().map(Value::to_cells)).collect();
         let column = |(i, name)| {
             let cells = cells.iter().map(|cells| cells.as_ref()?.get(i).copied());
-            let column = Column::of(name, F::IS_NULLABLE || self.is_nullable, Atom::values(cells));
-            if self.is_seldom_repeating { column.seldom_repeating() } else { column }
+            let column = Column::from_values(name, F::IS_NULLABLE || self.is_nullable, Atom::values(cells));
+            if self.is_without_dictionary { column.without_dictionary() } else { column }
         };
         self.names.into_iter().enumerate().map(column).collect()
     }
@@ -68,7 +68,7 @@ impl<const N: usize> Names<N> {
     pub fn read_columns<F: Field<N>>(&self, columns: &Columns<'_>) -> Result<Vec<F>, FileError> {
         let mut parts = Vec::with_capacity(N);
         for name in self.names {
-            parts.push(CellOf::<'_, F, N>::cells(columns, name)?);
+            parts.push(FieldCell::<'_, F, N>::cells(columns, name)?);
         }
         let mut fields = Vec::with_capacity(columns.len());
         for row in 0..columns.len() {
@@ -79,7 +79,7 @@ impl<const N: usize> Names<N> {
                 cell.unwrap_or_default()
             });
             let value = match null {
-                None => Some(F::Value::of_cells(cells).map_err(|expected| {
+                None => Some(F::Value::from_cells(cells).map_err(|expected| {
                     let cells = cells.map(|cell| cell.text()).join(", ");
                     let shown = if N == 1 { cells } else { format!("[{cells}]") };
                     columns.error(row, self.name(0), shown, expected)
@@ -88,7 +88,7 @@ impl<const N: usize> Names<N> {
             };
             let missing =
                 || columns.error(row, self.name(null.unwrap_or_default()), "null", "a value in every row");
-            fields.push(F::of(value).ok_or_else(missing)?);
+            fields.push(F::from_value(value).ok_or_else(missing)?);
         }
         Ok(fields)
     }
@@ -111,9 +111,9 @@ impl<const N: usize> Names<N> {
         for (cell, name) in cells.iter_mut().zip(self.names).filter(|_| !is_absent) {
             *cell = row.cell(name)?;
         }
-        let value = (!is_absent).then(|| F::Value::of_cells(cells)).transpose();
+        let value = (!is_absent).then(|| F::Value::from_cells(cells)).transpose();
         let value = value.map_err(|expected| row.error(self.name(0), expected))?;
-        F::of(value).ok_or_else(|| row.error(self.name(0), "a value"))
+        F::from_value(value).ok_or_else(|| row.error(self.name(0), "a value"))
     }
 
     /// The name of a column; errors of the whole field name the first.
@@ -123,7 +123,7 @@ impl<const N: usize> Names<N> {
 }
 
 /// What the cells of a field hold.
-type CellOf<'a, F, const N: usize> = <<F as Field<N>>::Value as Value<N>>::Cell<'a>;
+type FieldCell<'a, F, const N: usize> = <<F as Field<N>>::Value as Value<N>>::Cell<'a>;
 
 /// Declares a table: either a new struct, or one that there is (`for`). Each field has its meaning as a comment, its type, and the names
 /// of its columns, where these are not the field's own name. `csv` makes it a row of a CSV; `parquet(FIELD)` one of a Parquet
@@ -131,10 +131,10 @@ type CellOf<'a, F, const N: usize> = <<F as Field<N>>::Value as Value<N>>::Cell<
 #[macro_export]
 macro_rules! table {
     (@names $field:ident) => {
-        $crate::Names::from([stringify!($field)])
+        $crate::ColumnNames::from([stringify!($field)])
     };
     (@names $field:ident $names:expr) => {
-        $crate::Names::from($names)
+        $crate::ColumnNames::from($names)
     };
     ($(#[$meta:meta])* $vis:vis struct $row:ident: $kind:ident $(($frame:ident))? {
         $($(#[doc = $meaning:literal])+ $field:ident: $type:ty $(= $names:expr)?,)+
@@ -149,8 +149,8 @@ macro_rules! table {
         $($(#[doc = $meaning:literal])+ $field:ident: $type:ty $(= $names:expr)?,)+
     }) => {
         impl $crate::Table for $row {
-            fn declared() -> Vec<$crate::Declared> {
-                vec![$($crate::table!(@names $field $($names)?).declared::<$type>(concat!($($meaning),+))),+]
+            fn declarations() -> Vec<$crate::FieldDeclaration> {
+                vec![$($crate::table!(@names $field $($names)?).declarations::<$type>(concat!($($meaning),+))),+]
             }
         }
         $crate::table!(@$kind $row $($frame)? { $($field: $type = $crate::table!(@names $field $($names)?),)+ });
@@ -214,7 +214,7 @@ mod tests {
             /// rows of a field
             lines: Lines,
             /// a place, or none
-            place: Option<[f64; 2]> = seldom_repeating(["x_px", "y_px"]),
+            place: Option<[f64; 2]> = without_dictionary(["x_px", "y_px"]),
             /// a number
             number: f64 = nullable(["number"]),
         }
@@ -275,14 +275,14 @@ mod tests {
     }
 
     #[test]
-    fn a_place_of_which_a_part_is_null_is_none() {
+    fn a_position_of_which_a_part_is_null_is_none() {
         let rows = read(Some(Column::nullable("y_px", [None, None, Some(0.2)]))).unwrap();
         assert!(rows.iter().all(|row| row.place.is_none()), "{rows:?}");
     }
 
     #[test]
     fn a_declaration_says_what_the_columns_are() {
-        let [_, turn, _, place, _] = <[Declared; 5]>::try_from(Turn::declared()).unwrap();
+        let [_, turn, _, place, _] = <[FieldDeclaration; 5]>::try_from(Turn::declarations()).unwrap();
         assert_eq!(
             (turn.names, turn.meaning),
             (vec!["w", "x", "y", "z"], "a turn, of four columns".to_owned())

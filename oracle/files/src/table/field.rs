@@ -98,7 +98,7 @@ pub trait Value<const N: usize>: Sized {
     ///
     /// # Errors
     /// What was expected.
-    fn of_cells(cells: [Self::Cell<'_>; N]) -> Result<Self, String>;
+    fn from_cells(cells: [Self::Cell<'_>; N]) -> Result<Self, String>;
 }
 
 /// A field of a row: a value, or one that may be absent; then its cells are empty, or null.
@@ -110,7 +110,7 @@ pub trait Field<const N: usize>: Sized {
     /// The value, if there is one.
     fn value(&self) -> Option<&Self::Value>;
     /// The field that has the value; `None` where it must have one.
-    fn of(value: Option<Self::Value>) -> Option<Self>;
+    fn from_value(value: Option<Self::Value>) -> Option<Self>;
 }
 
 impl<V: Value<N>, const N: usize> Field<N> for V {
@@ -121,7 +121,7 @@ impl<V: Value<N>, const N: usize> Field<N> for V {
         Some(self)
     }
 
-    fn of(value: Option<V>) -> Option<Self> {
+    fn from_value(value: Option<V>) -> Option<Self> {
         value
     }
 }
@@ -134,7 +134,7 @@ impl<V: Value<N>, const N: usize> Field<N> for Option<V> {
         self.as_ref()
     }
 
-    fn of(value: Self) -> Option<Self> {
+    fn from_value(value: Self) -> Option<Self> {
         Some(value)
     }
 }
@@ -153,7 +153,7 @@ macro_rules! value {
                 $to
             }
 
-            fn of_cells($cells: [Self::Cell<'_>; $n]) -> Result<Self, String> {
+            fn from_cells($cells: [Self::Cell<'_>; $n]) -> Result<Self, String> {
                 $of
             }
         }
@@ -209,7 +209,7 @@ impl<const N: usize> Value<N> for [f64; N] {
         *self
     }
 
-    fn of_cells(cells: Self) -> Result<Self, String> {
+    fn from_cells(cells: Self) -> Result<Self, String> {
         Ok(cells)
     }
 }

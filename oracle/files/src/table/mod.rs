@@ -3,7 +3,7 @@
 pub(crate) mod batch;
 pub(crate) mod column;
 pub(crate) mod declaration;
-pub(crate) mod declared;
+pub(crate) mod declarations;
 pub(crate) mod field;
 pub(crate) mod time;
 pub(crate) mod unit;
@@ -11,7 +11,7 @@ pub(crate) mod windows;
 
 pub use batch::Columns;
 pub use column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
-pub use declaration::{Names, nullable, optional, seldom_repeating};
-pub use declared::{Declared, Table};
+pub use declaration::{ColumnNames, nullable, optional, without_dictionary};
+pub use declarations::{FieldDeclaration, Table};
 pub use field::{Atom, Field, Value};
 pub use time::{format_utc, parse_utc};

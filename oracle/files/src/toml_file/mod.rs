@@ -218,13 +218,21 @@ fn opencv_order(path: &str, message: &str) -> &'static str {
     }
 }
 
-/// For serde's "unknown field `x`, expected one of `a`, `b`": the nearest of the names.
+/// Keys and kinds of earlier versions, with their present names.
+const RENAMED: [(&str, &str); 2] = [("law", "distribution"), ("whole", "integer")];
+
+/// For serde's "unknown field `x`, expected one of `a`, `b`": the present name of `x`, or the nearest of the names.
 fn nearest_valid_name(message: &str) -> Option<String> {
     if !(message.starts_with("unknown field") || message.starts_with("unknown variant")) {
         return None;
     }
     let mut names = message.split('`').skip(1).step_by(2);
     let met = names.next()?;
+    let names: Vec<&str> = names.collect();
+    let renamed = |(old, new): &&(&str, &str)| *old == met && names.contains(new);
+    if let Some((old, new)) = RENAMED.iter().find(renamed) {
+        return Some(format!("`{old}` is now called `{new}`"));
+    }
     nearest(met, names).map(|name| format!("did you mean `{name}`?"))
 }
 
@@ -276,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_key_is_named_with_its_place_and_the_nearest_valid_name() {
+    fn an_unknown_key_is_named_with_its_position_and_the_nearest_valid_name() {
         let error = fail("[sensor]\ngain_e_per_dn = 2.0\ngian = 3\n");
         assert_eq!((error.line, error.column), (3, 1), "{error}");
         let error = fail("[sensor]\ngain_e_per_nd = 2.0\n");
@@ -284,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_of_the_wrong_type_is_named_with_its_place() {
+    fn a_value_of_the_wrong_type_is_named_with_its_position() {
         let error = fail("# a comment\n[sensor]\ngain_e_per_dn = \"two\"\n");
         assert_eq!((error.line, error.column), (3, 17), "{error}");
         assert!(error.to_string().contains("sensor.gain_e_per_dn"), "{error}");
@@ -292,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mistake_inside_a_tagged_table_has_a_place_too() {
+    fn a_mistake_inside_a_tagged_table_has_a_position_too() {
         let error = fail("[sensor]\ngain_e_per_dn = 2.0\n\n[mode]\nkind = \"fixed\"\nexposure = 1.0\n");
         assert!((4..=6).contains(&error.line), "{error}");
         assert_eq!(error.help.as_deref(), Some("did you mean `exposure_s`?"), "{error}");
@@ -312,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn text_that_is_not_toml_has_a_place() {
+    fn text_that_is_not_toml_has_a_position() {
         assert_eq!(fail("[sensor\n").line, 1);
     }
 

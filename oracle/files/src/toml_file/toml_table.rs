@@ -6,9 +6,9 @@ use contract::OutOfRange;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::error::Place;
+use crate::error::FileLocation;
 use crate::toml_file;
-use crate::{FileError, WholeFile};
+use crate::{AtomicFile, FileError};
 
 /// A table that is a file of its own.
 pub(crate) trait TomlTable: Serialize + DeserializeOwned {
@@ -34,8 +34,8 @@ pub(crate) fn read<T: TomlTable>(path: &Path) -> Result<T, FileError> {
 /// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
 pub(crate) fn write<T: TomlTable>(table: &T, path: &Path) -> Result<(), FileError> {
     table.check().map_err(|OutOfRange { path: key, value, expected }| {
-        FileError::value(path, Place::Whole, key, value, expected)
+        FileError::value(path, FileLocation::Whole, key, value, expected)
     })?;
     let text = toml::to_string(table).map_err(|error| FileError::format(path, "TOML", error))?;
-    WholeFile::with_text(path, &text)?.commit_new()
+    AtomicFile::with_text(path, &text)?.commit_new()
 }

@@ -11,7 +11,7 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 use super::avi_header::{self, Coding, VideoStream};
 use super::input::Input;
 use super::riff::{Chunk, Item, Walker};
-use super::whole_frame::WholeFrame;
+use super::video_frame::VideoFrame;
 use crate::FileError;
 
 /// The frames of an AVI file.
@@ -36,7 +36,7 @@ impl AviReader {
         self.stream.rate_hz
     }
 
-    fn next_frame(&mut self) -> Result<Option<WholeFrame>, FileError> {
+    fn next_frame(&mut self) -> Result<Option<VideoFrame>, FileError> {
         loop {
             let chunk = match self.walker.step()? {
                 Item::End => return Ok(None),
@@ -61,7 +61,7 @@ impl AviReader {
             self.next += 1;
             // An empty chunk stands for a frame that the recorder dropped: its number passes, and no field comes.
             if chunk.size > 0 {
-                return self.decode(&chunk).map(|dn| Some(WholeFrame { index, dn }));
+                return self.decode(&chunk).map(|dn| Some(VideoFrame { index, dn }));
             }
         }
     }
@@ -97,7 +97,7 @@ impl AviReader {
 }
 
 impl Iterator for AviReader {
-    type Item = Result<WholeFrame, FileError>;
+    type Item = Result<VideoFrame, FileError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         self.next_frame().transpose()

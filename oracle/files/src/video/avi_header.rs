@@ -1,13 +1,13 @@
 //! The header of an AVI file: which stream is the video, how large, how fast, in what pixels.
 
-use super::luma::{Layout, Uncompressed, grey_of_bgr};
+use super::luma::{Layout, UncompressedFormat, grey_of_bgr};
 use super::riff::{Chunk, FourCc, Item, Walker};
 use crate::FileError;
 
 /// How a frame is stored.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Coding {
-    Uncompressed(Uncompressed),
+    Uncompressed(UncompressedFormat),
     MotionJpeg,
 }
 
@@ -129,7 +129,7 @@ fn video_stream(
             return Err(walker.error(chunk, reason));
         }
     };
-    let coding = Coding::Uncompressed(Uncompressed { layout, columns, rows, bottom_up });
+    let coding = Coding::Uncompressed(UncompressedFormat { layout, columns, rows, bottom_up });
     Ok(VideoStream { prefix: [b'0' + index / 10, b'0' + index % 10], columns, rows, rate_hz, coding })
 }
 

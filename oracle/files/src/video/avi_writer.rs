@@ -9,7 +9,7 @@ use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 
 use super::weaver::Weaver;
-use crate::error::file_error::{Place, create_new};
+use crate::error::file_error::{FileLocation, create_new};
 use crate::{FileError, PartialFiles};
 
 /// How frames are stored.
@@ -42,13 +42,13 @@ pub struct AviWriter {
 /// The headers before the list of frames, with the kind of the list.
 const HEADERS_MOVI_KIND: u64 = 4;
 /// A file stays below this, and with its index below 4 GiB: sizes have 32 bits.
-const MOST_BYTES: u64 = 0xF000_0000;
+const MAX_BYTES: u64 = 0xF000_0000;
 
 impl AviCoding {
     /// Most whole frames of a size that one file holds; `None` for a coding whose frames differ in size.
-    pub fn most_frames(self, (columns, rows): (usize, usize)) -> Option<u64> {
+    pub fn max_frames(self, (columns, rows): (usize, usize)) -> Option<u64> {
         let frame = columns.next_multiple_of(4) as u64 * rows as u64 + 1;
-        (self == Self::Grey).then(|| MOST_BYTES / (frame + 32) - 1)
+        (self == Self::Grey).then(|| MAX_BYTES / (frame + 32) - 1)
     }
 }
 
@@ -66,7 +66,7 @@ pub(super) fn check_frames(
     if (0.001..=1000.0).contains(&frame_rate_hz) {
         return Ok(());
     }
-    Err(FileError::value(path, Place::Header, "frames a second", frame_rate_hz, "0.001 to 1000"))
+    Err(FileError::value(path, FileLocation::Header, "frames a second", frame_rate_hz, "0.001 to 1000"))
 }
 
 impl AviWriter {
@@ -87,9 +87,9 @@ impl AviWriter {
         if let AviCoding::MotionJpeg { quality } = coding
             && !(1..=100).contains(&quality)
         {
-            return Err(FileError::value(path, Place::Header, "quality", quality, "1 to 100"));
+            return Err(FileError::value(path, FileLocation::Header, "quality", quality, "1 to 100"));
         }
-        let files = PartialFiles::of(&[path])?;
+        let files = PartialFiles::for_paths(&[path])?;
         let file = BufWriter::new(create_new(files.path(0))?);
         let mut writer = Self {
             files,
@@ -177,7 +177,7 @@ impl AviWriter {
         }
         self.weaver.next();
         let size = self.chunk.len() as u32;
-        if self.position + u64::from(size) + 16 * (self.index.len() as u64 + 2) > MOST_BYTES {
+        if self.position + u64::from(size) + 16 * (self.index.len() as u64 + 2) > MAX_BYTES {
             let reason = format!(
                 "frame {} would make it larger than the 4 GB of AVI 1.0; write Motion-JPEG, images, or a part",
                 self.index.len()

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use contract::Camera;
 use contract::docking::{DockingSetup, Field, FieldTelemetry};
 
-use super::whole_frame::{Format, WholeFrame};
+use super::video_frame::{Format, VideoFrame};
 use crate::FileError;
 use crate::dataset::{locate_alone, locate_image, refuse_twice};
 use crate::docking::telemetry::FieldRow;
-use crate::error::Place;
+use crate::error::FileLocation;
 use crate::frame::file::read_image;
 use crate::frame::raw_image::Size;
 
@@ -22,7 +22,7 @@ pub(super) struct ListedField {
 }
 
 /// The fields that a folder's table lists. Every image is looked for; none is read yet.
-pub(super) fn listed(
+pub(super) fn list_fields(
     directory: &Path,
     rows: Vec<(u64, FieldRow)>,
     setup: &DockingSetup,
@@ -64,7 +64,7 @@ pub fn read_listed_field(
         let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
         let field = format!("camera of field {}", row.field);
         let table = directory.join("telemetry.csv");
-        return Err(FileError::value(&table, Place::Whole, field, row.telemetry.camera, expected));
+        return Err(FileError::value(&table, FileLocation::Whole, field, row.telemetry.camera, expected));
     };
     let listed = ListedField { path, row: row.clone(), camera: camera.clone() };
     listed.read(setup).map(|(field, _)| Some(field))
@@ -80,7 +80,7 @@ pub(super) fn camera_of<'a>(
     let camera = row.telemetry.camera;
     setup.cameras.get(camera).ok_or_else(|| {
         let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
-        FileError::value(table, Place::Line(line), "camera", camera, expected)
+        FileError::value(table, FileLocation::Line(line), "camera", camera, expected)
     })
 }
 
@@ -114,19 +114,19 @@ pub(super) fn by_name(directory: &Path) -> Result<Vec<PathBuf>, FileError> {
     }
     if images.is_empty() {
         let expected = "telemetry.csv, or images *.png";
-        return Err(FileError::value(directory, Place::Whole, "number of images", 0, expected));
+        return Err(FileError::value(directory, FileLocation::Whole, "number of images", 0, expected));
     }
     images.sort_by_cached_key(|path| natural_key(path));
     Ok(images)
 }
 
 /// Reads an image as a whole frame.
-pub(super) fn read_whole(path: &Path, index: u64, format: &Format) -> Result<WholeFrame, FileError> {
+pub(super) fn read_frame(path: &Path, index: u64, format: &Format) -> Result<VideoFrame, FileError> {
     let &Format { columns, rows, .. } = format;
     let whose = "the size of the camera; fields need a telemetry.csv";
     let image = read_image(path, Some(Size { columns, rows, whose }))?;
     let frame = image.into_frame(path, index, format.bit_depth, None)?;
-    Ok(WholeFrame { index, dn: frame.dn().to_vec() })
+    Ok(VideoFrame { index, dn: frame.dn().to_vec() })
 }
 
 /// A part of a name: text, or a number by length and digits (longer is larger once leading zeros are gone).

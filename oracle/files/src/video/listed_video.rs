@@ -6,10 +6,10 @@ use contract::Frame;
 use contract::docking::{DockingSetup, Field, FieldTelemetry, Lines};
 
 use super::folder::camera_of;
-use super::whole_frame::{WholeFrame, take_rows};
+use super::video_frame::{VideoFrame, take_rows};
 use crate::FileError;
 use crate::docking::telemetry::FieldRow;
-use crate::error::Place;
+use crate::error::FileLocation;
 
 /// What a video with telemetry may be called, in the order in which they are looked for.
 const NAMES: [&str; 2] = ["fields.avi", "fields.y4m"];
@@ -28,10 +28,10 @@ pub(super) struct ListedVideo<F> {
     rows: std::vec::IntoIter<(u64, FieldRow)>,
     frames: F,
     /// The frame of which only one field was taken.
-    frame: Option<WholeFrame>,
+    frame: Option<VideoFrame>,
 }
 
-impl<F: Iterator<Item = Result<WholeFrame, FileError>>> ListedVideo<F> {
+impl<F: Iterator<Item = Result<VideoFrame, FileError>>> ListedVideo<F> {
     pub(super) fn new(
         table: PathBuf,
         rows: Vec<(u64, FieldRow)>,
@@ -51,7 +51,13 @@ impl<F: Iterator<Item = Result<WholeFrame, FileError>>> ListedVideo<F> {
             Some(frame) => frame?,
             None => {
                 let expected = "a field of the video, which has ended";
-                return Err(FileError::value(&self.table, Place::Line(line), "field", row.field, expected));
+                return Err(FileError::value(
+                    &self.table,
+                    FileLocation::Line(line),
+                    "field",
+                    row.field,
+                    expected,
+                ));
             }
         };
         let camera = camera_of(&self.table, line, row, &self.setup)?;
@@ -65,7 +71,7 @@ impl<F: Iterator<Item = Result<WholeFrame, FileError>>> ListedVideo<F> {
     }
 }
 
-impl<F: Iterator<Item = Result<WholeFrame, FileError>>> Iterator for ListedVideo<F> {
+impl<F: Iterator<Item = Result<VideoFrame, FileError>>> Iterator for ListedVideo<F> {
     type Item = Result<(Field, FieldTelemetry), FileError>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -73,9 +79,15 @@ impl<F: Iterator<Item = Result<WholeFrame, FileError>>> Iterator for ListedVideo
             return Some(self.field(line, &row));
         }
         let more = self.frames.next()?;
-        let unlisted = |frame: WholeFrame| {
+        let unlisted = |frame: VideoFrame| {
             let expected = "a row for every field of the video";
-            Err(FileError::value(&self.table, Place::Header, "frames without a row", frame.index, expected))
+            Err(FileError::value(
+                &self.table,
+                FileLocation::Header,
+                "frames without a row",
+                frame.index,
+                expected,
+            ))
         };
         Some(more.and_then(unlisted))
     }

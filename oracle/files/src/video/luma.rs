@@ -24,14 +24,14 @@ pub(super) enum Layout {
 
 /// An uncompressed frame: its layout, its size, the order of its rows.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Uncompressed {
+pub(super) struct UncompressedFormat {
     pub(super) layout: Layout,
     pub(super) columns: usize,
     pub(super) rows: usize,
     pub(super) bottom_up: bool,
 }
 
-impl Uncompressed {
+impl UncompressedFormat {
     /// Bytes of a row of the brightness, without padding.
     fn row_bytes(&self) -> usize {
         match self.layout {
@@ -100,8 +100,8 @@ pub(super) fn grey_of_bgr(blue: u8, green: u8, red: u8) -> u8 {
 mod tests {
     use super::*;
 
-    fn frame(layout: Layout, columns: usize, rows: usize, bottom_up: bool) -> Uncompressed {
-        Uncompressed { layout, columns, rows, bottom_up }
+    fn frame(layout: Layout, columns: usize, rows: usize, bottom_up: bool) -> UncompressedFormat {
+        UncompressedFormat { layout, columns, rows, bottom_up }
     }
 
     #[test]

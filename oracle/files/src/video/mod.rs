@@ -19,14 +19,14 @@ mod source;
 mod stream;
 #[cfg(test)]
 mod tests;
+mod video_frame;
 mod weaver;
-mod whole_frame;
 mod y4m_writer;
 
 pub use avi_writer::{AviCoding, AviWriter};
 pub use folder::read_listed_field;
 pub use source::{FieldSource, FrameSize, SequenceOptions};
-pub use whole_frame::{FieldOrder, Scan};
+pub use video_frame::{FieldOrder, Scan};
 pub use y4m_writer::Y4mWriter;
 
 use std::path::Path;

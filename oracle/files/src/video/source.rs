@@ -11,10 +11,10 @@ use super::folder;
 use super::input::Input;
 use super::listed_video::{ListedVideo, video_of};
 use super::stream::StreamReader;
-use super::whole_frame::{FieldOrder, Format, Scan, WholeFrame};
+use super::video_frame::{FieldOrder, Format, Scan, VideoFrame};
 use crate::FileError;
 use crate::docking::telemetry::{FieldRow, read_with_lines};
-use crate::error::Place;
+use crate::error::FileLocation;
 
 /// Frames a second of a sequence that does not say: 625-line television.
 const DEFAULT_RATE_HZ: f64 = 25.0;
@@ -99,9 +99,15 @@ impl FieldSource {
             if rows.iter().all(|(_, row)| row.file.is_none()) {
                 let expected = "the names of images, or fields.avi or fields.y4m beside the table: a run keeps them with \
                                 --save-frames";
-                return Err(FileError::value(&table, Place::Header, "file", "empty in every row", expected));
+                return Err(FileError::value(
+                    &table,
+                    FileLocation::Header,
+                    "file",
+                    "empty in every row",
+                    expected,
+                ));
             }
-            let fields = folder::listed(path, rows, setup)?;
+            let fields = folder::list_fields(path, rows, setup)?;
             let setup = setup.clone();
             return Ok(Self::until_error(fields.into_iter().map(move |field| field.read(&setup))));
         }
@@ -109,8 +115,8 @@ impl FieldSource {
             let format = format(path, setup, options, setup.bit_depth, None)?;
             let images = folder::by_name(path)?;
             let frames =
-                iter::zip(images, 0..).map(move |(path, index)| folder::read_whole(&path, index, &format));
-            return Ok(Self::of_frames(path, format, frames));
+                iter::zip(images, 0..).map(move |(path, index)| folder::read_frame(&path, index, &format));
+            return Ok(Self::from_frames(path, format, frames));
         }
         let standard_input = path == Path::new("-");
         let open = || if standard_input { Ok(Input::standard_input()) } else { Input::file(path) };
@@ -136,7 +142,7 @@ impl FieldSource {
         let camera = setup.cameras.first().map_or((0, 0), |camera| (camera.columns, camera.rows));
         if setup.bit_depth != 8 {
             let expected = format!("{}, those of the digitiser", setup.bit_depth);
-            return Err(FileError::value(video, Place::Header, "bits of a sample", 8, expected));
+            return Err(FileError::value(video, FileLocation::Header, "bits of a sample", 8, expected));
         }
         let input = Input::file(video)?;
         let is_avi = video.extension().is_some_and(|extension| extension == "avi");
@@ -156,7 +162,7 @@ impl FieldSource {
         let path = input.path().to_owned();
         let reader = AviReader::open(input, size(&path, setup, options)?)?;
         let format = format(&path, setup, options, 8, reader.rate_hz())?;
-        Ok(Self::of_frames(&path, format, reader))
+        Ok(Self::from_frames(&path, format, reader))
     }
 
     pub(super) fn y4m(
@@ -167,7 +173,7 @@ impl FieldSource {
         let path = input.path().to_owned();
         let reader = StreamReader::y4m(input, size(&path, setup, options)?)?;
         let format = format(&path, setup, options, 8, reader.rate_hz())?;
-        Ok(Self::of_frames(&path, format, reader))
+        Ok(Self::from_frames(&path, format, reader))
     }
 
     pub(super) fn raw(
@@ -181,18 +187,18 @@ impl FieldSource {
         if let Some(given) = options.raw.filter(|given| (given.columns, given.rows) != (columns, rows)) {
             let size = format!("{} × {}", given.columns, given.rows);
             let expected = format!("{columns} × {rows}, those of the camera");
-            return Err(FileError::value(&path, Place::Whole, "size of raw frames", size, expected));
+            return Err(FileError::value(&path, FileLocation::Whole, "size of raw frames", size, expected));
         }
-        Ok(Self::of_frames(&path, format, StreamReader::raw(input, (columns, rows))))
+        Ok(Self::from_frames(&path, format, StreamReader::raw(input, (columns, rows))))
     }
 
-    fn of_frames(
+    fn from_frames(
         path: &Path,
         format: Format,
-        frames: impl Iterator<Item = Result<WholeFrame, FileError>> + Send + 'static,
+        frames: impl Iterator<Item = Result<VideoFrame, FileError>> + Send + 'static,
     ) -> Self {
         let path = path.to_owned();
-        let split = move |frame: Result<WholeFrame, FileError>| {
+        let split = move |frame: Result<VideoFrame, FileError>| {
             let fields = frame
                 .and_then(|frame| format.split(&frame).map_err(|source| FileError::contract(&path, source)));
             match fields {
@@ -227,7 +233,7 @@ impl Iterator for FieldSource {
 fn size(path: &Path, setup: &DockingSetup, options: &SequenceOptions) -> Result<(usize, usize), FileError> {
     let camera = setup.cameras.get(options.camera).ok_or_else(|| {
         let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
-        FileError::value(path, Place::Whole, "camera", options.camera, expected)
+        FileError::value(path, FileLocation::Whole, "camera", options.camera, expected)
     })?;
     camera.check().map_err(|source| FileError::contract(path, source))?;
     Ok((camera.columns, camera.rows))
@@ -243,7 +249,7 @@ fn format(
 ) -> Result<Format, FileError> {
     let (columns, rows) = size(path, setup, options)?;
     let wrong = |field: &str, value: String, expected: &str| {
-        Err(FileError::value(path, Place::Whole, field, value, expected))
+        Err(FileError::value(path, FileLocation::Whole, field, value, expected))
     };
     if bit_depth != setup.bit_depth {
         return wrong(

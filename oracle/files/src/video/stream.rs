@@ -2,7 +2,7 @@
 //! byte has arrived, and nothing beyond it is waited for.
 
 use super::input::Input;
-use super::whole_frame::WholeFrame;
+use super::video_frame::VideoFrame;
 use crate::FileError;
 
 /// The frames of a Y4M stream (8 bits, mono, 4:2:0, 4:2:2 or 4:4:4) or of raw grey bytes. Of Y4M the plane Y is
@@ -92,7 +92,7 @@ impl StreamReader {
         self.rate_hz
     }
 
-    fn next_frame(&mut self) -> Result<Option<WholeFrame>, FileError> {
+    fn next_frame(&mut self) -> Result<Option<VideoFrame>, FileError> {
         let index = self.next;
         let begin = self.input.position();
         if self.framing == Framing::FrameLine {
@@ -118,12 +118,12 @@ impl StreamReader {
             return Err(self.input.error(format, reason));
         }
         self.next += 1;
-        Ok(Some(WholeFrame { index, dn: self.grey.iter().map(|&y| u16::from(y)).collect() }))
+        Ok(Some(VideoFrame { index, dn: self.grey.iter().map(|&y| u16::from(y)).collect() }))
     }
 }
 
 impl Iterator for StreamReader {
-    type Item = Result<WholeFrame, FileError>;
+    type Item = Result<VideoFrame, FileError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         self.next_frame().transpose()

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use contract::docking::{Field, Lines};
 
-use super::whole_frame::weave;
+use super::video_frame::weave;
 use crate::FileError;
-use crate::error::Place;
+use crate::error::FileLocation;
 
 /// Weaves fields, which come in pairs of an even and an odd one in either order, into frames of 8 bits.
 pub(super) struct Weaver {
@@ -32,7 +32,7 @@ impl Weaver {
     pub(super) fn add(&mut self, field: &Field) -> Result<bool, FileError> {
         let number = field.number();
         let wrong = |what: &str, value: String, expected: &str| {
-            Err(FileError::value(&self.path, Place::Row(number), what, value, expected))
+            Err(FileError::value(&self.path, FileLocation::Row(number), what, value, expected))
         };
         let size = (field.image().columns(), field.camera_rows());
         if size != (self.columns, self.rows) {

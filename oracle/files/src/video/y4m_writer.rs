@@ -32,7 +32,7 @@ impl Y4mWriter {
     /// [`contract::Camera::MAX_SIDE_PX`] or a rate that is not 0.001 to 1000 Hz; [`FileError::Io`].
     pub fn create(path: &Path, size: (usize, usize), frame_rate_hz: f64) -> Result<Self, FileError> {
         check_frames(path, size, frame_rate_hz)?;
-        let files = PartialFiles::of(&[path])?;
+        let files = PartialFiles::for_paths(&[path])?;
         let file = BufWriter::new(create_new(files.path(0))?);
         Ok(Self::new(path, Some(files), Box::new(file), size, frame_rate_hz))
     }

@@ -11,7 +11,7 @@ pub(crate) mod tolerance;
 use std::path::{Path, PathBuf};
 
 use files::sha256::sha256_hex;
-use files::{Checksums, Earlier, Failure, FileError, WholeFile, toml_file};
+use files::{AtomicFile, Checksums, Failure, FileError, ReplaceableFile, toml_file};
 use indexmap::IndexMap;
 use score::{FigureTerms, Reduction};
 use serde::{Deserialize, Serialize};
@@ -26,21 +26,23 @@ use crate::sample::Sample;
 /// Version of the form of these files.
 const FORMAT: u32 = 2;
 /// Largest `rows.parquet` that is read, bytes.
-const MOST_BYTES: u64 = 1 << 28;
+const MAX_BYTES: u64 = 1 << 28;
 
 /// The files of a baseline.
 const NAMES: [&str; 2] = ["baseline.toml", "rows.parquet"];
 
 /// What a later one replaces.
-const HEADERS: Earlier<'static> = Earlier {
-    what: "the baseline.toml of an earlier baseline",
-    is: &|beginning| beginning.starts_with(b"format = "),
+const HEADERS: ReplaceableFile<'static> = ReplaceableFile {
+    description: "the baseline.toml of an earlier baseline",
+    matches: &|beginning| beginning.starts_with(b"format = "),
 };
-const ROWS: Earlier<'static> =
-    Earlier { what: "the rows of an earlier baseline", is: &|beginning| beginning.starts_with(b"PAR1") };
+const ROWS: ReplaceableFile<'static> = ReplaceableFile {
+    description: "the rows of an earlier baseline",
+    matches: &|beginning| beginning.starts_with(b"PAR1"),
+};
 /// What becomes of a baseline that is there already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Replace {
+pub enum Replacement {
     /// It stays, and making another in its place is an error.
     Refuse,
     /// It is replaced.
@@ -141,7 +143,8 @@ impl Baseline {
                 blocks.count()
             )));
         }
-        let figures = sample.table.figures.iter().map(|figure| (figure.name.clone(), told_of(figure)));
+        let figures =
+            sample.table.figures.iter().map(|figure| (figure.name.clone(), baseline_figure(figure)));
         let header = BaselineHeader {
             format: FORMAT,
             reason: reason.to_owned(),
@@ -190,12 +193,12 @@ impl Baseline {
     /// # Errors
     /// [`Failure`] when there is a baseline already and `replace` refuses it, when the folder has other files of these names or checksums
     /// of other files, or when a file cannot be written.
-    pub fn write(&mut self, folder: &Path, replace: Replace) -> Result<(), Failure> {
+    pub fn write(&mut self, folder: &Path, replace: Replacement) -> Result<(), Failure> {
         let [header, rows] = paths(folder);
         HEADERS.check(&header)?;
         ROWS.check(&rows)?;
         for path in [&header, &rows] {
-            if replace == Replace::Refuse && path.exists() {
+            if replace == Replacement::Refuse && path.exists() {
                 return Err(Failure::Usage(format!(
                     "{}: exists; a baseline is replaced with --replace alone",
                     path.display()
@@ -204,22 +207,22 @@ impl Baseline {
         }
         Checksums::check_own(folder, &NAMES)?;
         std::fs::create_dir_all(folder).map_err(|source| FileError::io(folder, "create", source))?;
-        let new_rows = WholeFile::create(&rows)?;
-        rows::write(new_rows.file(), &rows, &self.sample.table, |unit| self.blocks.of(unit))?;
-        self.header.rows_sha256 = file_sha256(new_rows.place())?;
+        let new_rows = AtomicFile::create(&rows)?;
+        rows::write(new_rows.file(), &rows, &self.sample.table, |unit| self.blocks.block_of(unit))?;
+        self.header.rows_sha256 = file_sha256(new_rows.temporary_path())?;
         let text = toml::to_string(&self.header)
             .map_err(|error| Failure::Usage(format!("the baseline cannot be written: {error}")))?;
-        let new_header = WholeFile::with_text(&header, &text)?;
+        let new_header = AtomicFile::with_text(&header, &text)?;
         let waiting = waiting_rows(folder, &self.header.rows_sha256);
-        new_rows.named(&waiting).replace(ROWS)?;
+        new_rows.with_path(&waiting).replace(ROWS)?;
         // Those of the earlier baseline, which would say that the new header is damaged.
         Checksums::remove(folder)?;
         match replace {
-            Replace::Allow => new_header.replace(HEADERS)?,
-            Replace::Refuse => new_header.commit_new()?,
+            Replacement::Allow => new_header.replace(HEADERS)?,
+            Replacement::Refuse => new_header.commit_new()?,
         }
         std::fs::rename(&waiting, &rows).map_err(|source| FileError::io(&rows, "create", source))?;
-        WholeFile::remove_abandoned_of(folder, is_waiting);
+        AtomicFile::remove_abandoned_of(folder, is_waiting);
         Ok(Checksums::write(folder, &NAMES)?)
     }
 
@@ -260,31 +263,31 @@ impl Baseline {
             return Err(refuse("rows_sha256", message));
         }
         let (mut table, numbers) = rows::read(&rows_path, &figures)?;
-        for (figure, told) in table.figures.iter_mut().zip(header.figures.values()) {
-            (figure.limit_deg, figure.attitude) = (told.limit_deg, told.attitude.clone());
+        for (figure, recorded) in table.figures.iter_mut().zip(header.figures.values()) {
+            (figure.limit_deg, figure.attitude) = (recorded.limit_deg, recorded.attitude.clone());
         }
-        let (told, units) = (header.units, table.units.len());
-        if told != units as u64 {
+        let (recorded, units) = (header.units, table.units.len());
+        if recorded != units as u64 {
             return Err(refuse(
                 "units",
-                format!("is {told}, expected {units}, the rows of {}", rows_path.display()),
+                format!("is {recorded}, expected {units}, the rows of {}", rows_path.display()),
             ));
         }
         let blocks = Blocks::from_numbers(numbers);
-        let (told, count) = (header.blocks.count, blocks.count());
-        if told != count as u64 || count < LEAST_BLOCKS {
+        let (recorded, count) = (header.blocks.count, blocks.count());
+        if recorded != count as u64 || count < LEAST_BLOCKS {
             let expected =
                 format!("the blocks of {} ({count}), at least {LEAST_BLOCKS}", rows_path.display());
-            return Err(refuse("blocks.count", format!("is {told}, expected {expected}")));
+            return Err(refuse("blocks.count", format!("is {recorded}, expected {expected}")));
         }
         for figure in &table.figures {
-            let Some(told) = header.figures.get(&figure.name) else { continue };
-            let known = BaselineFigure { tolerance: told.tolerance, ..told_of(figure) };
-            if !(told.tolerance.is_finite() && told.tolerance >= 0.0) {
-                let message = format!("is {}, expected a size of 0 or more", told.tolerance);
+            let Some(recorded) = header.figures.get(&figure.name) else { continue };
+            let known = BaselineFigure { tolerance: recorded.tolerance, ..baseline_figure(figure) };
+            if !(recorded.tolerance.is_finite() && recorded.tolerance >= 0.0) {
+                let message = format!("is {}, expected a size of 0 or more", recorded.tolerance);
                 return Err(refuse(&format!("figures.{}.tolerance", figure.name), message));
             }
-            if told != &known {
+            if recorded != &known {
                 let value = known.value.map_or_else(|| "none".to_owned(), |value| value.to_string());
                 return Err(refuse(
                     &format!("figures.{}", figure.name),
@@ -312,7 +315,7 @@ pub(crate) fn unknown_figure<'a>(
 }
 
 /// What is told of a figure.
-fn told_of(figure: &FigureTerms) -> BaselineFigure {
+fn baseline_figure(figure: &FigureTerms) -> BaselineFigure {
     BaselineFigure {
         by: figure.reduction.code().to_owned(),
         value: value(figure.reduction, &figure.terms),
@@ -343,7 +346,7 @@ fn is_waiting(path: &Path) -> bool {
 
 fn file_sha256(path: &Path) -> Result<String, FileError> {
     let bytes =
-        sim::regular_file::read(path, MOST_BYTES).map_err(|source| FileError::io(path, "read", source))?;
+        sim::regular_file::read(path, MAX_BYTES).map_err(|source| FileError::io(path, "read", source))?;
     Ok(sha256_hex(&bytes))
 }
 
@@ -367,7 +370,7 @@ mod tests {
     fn written(units: usize) -> (Baseline, TempDir) {
         let mut baseline = Baseline::new(run(units), "a test", Some(1)).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        baseline.write(folder.path(), Replacement::Refuse).unwrap();
         (baseline, folder)
     }
 
@@ -392,11 +395,11 @@ mod tests {
         (figure.limit_deg, figure.attitude) = (Some(0.024), Some("true".to_owned()));
         let mut baseline = Baseline::new(sample, "a test", Some(1)).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        baseline.write(folder.path(), Replace::Refuse).unwrap();
-        let told = &Baseline::read(folder.path()).unwrap();
-        assert_eq!(told, &baseline);
-        assert_eq!(told.header.figures["ra_median_deg"].limit_deg, Some(0.024));
-        assert_eq!(told.header.figures["ra_median_deg"].attitude.as_deref(), Some("true"));
+        baseline.write(folder.path(), Replacement::Refuse).unwrap();
+        let read = &Baseline::read(folder.path()).unwrap();
+        assert_eq!(read, &baseline);
+        assert_eq!(read.header.figures["ra_median_deg"].limit_deg, Some(0.024));
+        assert_eq!(read.header.figures["ra_median_deg"].attitude.as_deref(), Some("true"));
     }
 
     /// The states that a `--replace` goes through, as a kill leaves them: there is always one of the two.
@@ -413,7 +416,7 @@ mod tests {
         assert_eq!(Baseline::read(folder.path()).unwrap(), new);
         // Of what was killed here, the next one has no need; and until it has its own header, it leaves what the old one means.
         let mut third = Baseline::new(run(8), "third", Some(1)).unwrap();
-        third.write(folder.path(), Replace::Allow).unwrap();
+        third.write(folder.path(), Replacement::Allow).unwrap();
         assert_eq!(Baseline::read(folder.path()).unwrap(), third);
     }
 
@@ -423,7 +426,7 @@ mod tests {
         let parts = |name: &str, text: &str, expected: &str| {
             let other = tempfile::tempdir().unwrap();
             std::fs::write(other.path().join(name), text).unwrap();
-            for replace in [Replace::Refuse, Replace::Allow] {
+            for replace in [Replacement::Refuse, Replacement::Allow] {
                 let message = baseline.clone().write(other.path(), replace).unwrap_err().to_string();
                 assert!(message.contains(name) && message.contains(expected), "{message}");
             }
@@ -433,37 +436,37 @@ mod tests {
         parts("baseline.toml", "name = 1\n", "another file");
         parts("rows.parquet", "mine", "another file");
         parts("SHA256SUMS", &format!("{}  run.toml\n", "0".repeat(64)), "checksums of the files");
-        baseline.write(folder.path(), Replace::Allow).unwrap();
+        baseline.write(folder.path(), Replacement::Allow).unwrap();
     }
 
     #[test]
     fn a_baseline_is_replaced_when_that_is_allowed_and_not_otherwise() {
         let (_, folder) = written(6);
         let mut other = Baseline::new(run(7), "another", Some(1)).unwrap();
-        let message = other.write(folder.path(), Replace::Refuse).unwrap_err().to_string();
+        let message = other.write(folder.path(), Replacement::Refuse).unwrap_err().to_string();
         assert!(
             message.contains("baseline.toml: exists; a baseline is replaced with --replace"),
             "{message}"
         );
         assert_eq!(Baseline::read(folder.path()).unwrap().header.units, 6);
-        other.write(folder.path(), Replace::Allow).unwrap();
+        other.write(folder.path(), Replacement::Allow).unwrap();
         assert_eq!(Baseline::read(folder.path()).unwrap(), other);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
         // A folder that is not there yet, and one with the rows alone.
         let inner = folder.path().join("a/b");
-        other.write(&inner, Replace::Allow).unwrap();
+        other.write(&inner, Replacement::Allow).unwrap();
         std::fs::remove_file(inner.join("baseline.toml")).unwrap();
-        let message = other.write(&inner, Replace::Refuse).unwrap_err().to_string();
+        let message = other.write(&inner, Replacement::Refuse).unwrap_err().to_string();
         assert!(message.contains("rows.parquet: exists"), "{message}");
     }
 
     #[test]
-    fn the_header_tells_how_the_run_is_cut_and_what_came_of_it() {
+    fn the_header_states_how_the_run_is_cut_and_what_came_of_it() {
         let (baseline, _) = written(8);
         let header = &baseline.header;
         assert_eq!((header.format, header.units, header.reason.as_str()), (2, 8, "a test"));
         assert_eq!((header.blocks.count, header.blocks.length), (8, 1));
-        let told = |by: &str, value, of| BaselineFigure {
+        let read = |by: &str, value, of| BaselineFigure {
             by: by.to_owned(),
             value,
             of,
@@ -471,9 +474,9 @@ mod tests {
             limit_deg: None,
             attitude: None,
         };
-        assert_eq!(header.figures["hit_rate"], told("rate", Some(0.875), 8));
+        assert_eq!(header.figures["hit_rate"], read("rate", Some(0.875), 8));
         // 0.5, 1, … 3.5.
-        assert_eq!(header.figures["ra_median_deg"], told("median", Some(2.0), 7));
+        assert_eq!(header.figures["ra_median_deg"], read("median", Some(2.0), 7));
         assert_eq!(header.run, baseline.sample.identity);
         // Nothing said of the length: thirty units, of 200 seven blocks.
         let of_days = Baseline::new(run(200), " why ", None).unwrap();
@@ -504,9 +507,9 @@ mod tests {
         };
         let mut baseline = with("hit_rate").unwrap();
         let folder = tempfile::tempdir().unwrap();
-        baseline.write(folder.path(), Replace::Refuse).unwrap();
-        let told = Baseline::read(folder.path()).unwrap();
-        let tolerance = |name: &str| told.header.figures[name].tolerance;
+        baseline.write(folder.path(), Replacement::Refuse).unwrap();
+        let read = Baseline::read(folder.path()).unwrap();
+        let tolerance = |name: &str| read.header.figures[name].tolerance;
         assert_eq!((tolerance("hit_rate"), tolerance("ra_median_deg")), (0.25, 0.022));
         let message = with("hit_rat").unwrap_err().to_string();
         assert!(
@@ -532,14 +535,14 @@ mod tests {
         baseline.blocks = Blocks::every(8, 2);
         baseline.header.blocks.count = 4;
         let folder = tempfile::tempdir().unwrap();
-        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        baseline.write(folder.path(), Replacement::Refuse).unwrap();
         let message = Baseline::read(folder.path()).unwrap_err().to_string();
         let parts = ["blocks.count", "is 4, expected the blocks of", "(4), at least 5"];
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
 
     #[test]
-    fn a_header_that_is_not_that_of_its_rows_is_told_by_its_place() {
+    fn a_header_that_is_not_that_of_its_rows_is_refused_by_its_position() {
         let (baseline, folder) = written(6);
         let path = folder.path().join("baseline.toml");
         let header = std::fs::read_to_string(&path).unwrap();
@@ -573,7 +576,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_changed_are_told_before_they_are_read() {
+    fn rows_that_changed_are_reported_before_they_are_read() {
         let (_, folder) = written(6);
         std::fs::write(folder.path().join("rows.parquet"), "no table").unwrap();
         let message = Baseline::read(folder.path()).unwrap_err().to_string();

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::path::Path;
 
 use files::{
-    Cell, Cells, Column, ColumnValues, Columns, Declared, FileError, ParquetFile, Place, Row, Table,
-    TableOptions, table, write_table,
+    Cell, Cells, Column, ColumnValues, Columns, FieldDeclaration, FileError, FileLocation, ParquetFile, Row,
+    Table, TableOptions, table, write_table,
 };
 use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 
@@ -31,8 +31,8 @@ table! {
 }
 
 /// The columns of `rows.parquet` that every baseline has.
-pub fn row_columns() -> Vec<Declared> {
-    UnitRow::declared()
+pub fn row_columns() -> Vec<FieldDeclaration> {
+    UnitRow::declarations()
 }
 
 /// Writes the rows, with the number of each one's block, into a file that will be `path`.
@@ -55,16 +55,16 @@ pub(crate) fn write(
         let sums = figure.terms.iter().map(|term| (term.of > 0).then_some(term.sum as f32));
         let sums = Column::nullable(&figure.name, sums);
         // Amounts seldom repeat, and the last of their bytes are nought: byte by byte they are short.
-        columns.push(if figure.reduction == Reduction::Rate { sums } else { sums.byte_by_byte() });
+        columns.push(if figure.reduction == Reduction::Rate { sums } else { sums.byte_stream_split() });
         if figure.terms.iter().any(|term| term.of > 1) {
-            columns.push(Column::new(of_name(&figure.name), figure.terms.iter().map(|term| term.of)));
+            columns.push(Column::new(count_column(&figure.name), figure.terms.iter().map(|term| term.of)));
         }
     }
     write_table(file, path, &columns, TableOptions { has_statistics: false, ..TableOptions::default() })
 }
 
 /// The column that says of how many values each amount of a figure is.
-fn of_name(figure: &str) -> String {
+fn count_column(figure: &str) -> String {
     format!("{figure}{OF}")
 }
 
@@ -77,7 +77,7 @@ pub(crate) fn read(
         units: Vec::new(),
         figures: figures
             .iter()
-            .map(|(name, reduction)| FigureTerms::counted(name, *reduction, Vec::new()))
+            .map(|(name, reduction)| FigureTerms::from_terms(name, *reduction, Vec::new()))
             .collect(),
     };
     let mut blocks = Vec::new();
@@ -98,7 +98,7 @@ pub(crate) fn read(
         add(path, &batch?, &mut table, &mut blocks)?;
     }
     let refuse = |row: u64, column: &str, value: &dyn std::fmt::Display, expected: String| {
-        FileError::value(path, Place::Row(row), column, value, expected)
+        FileError::value(path, FileLocation::Row(row), column, value, expected)
     };
     for (row, (before, this)) in (1..).zip(table.units.iter().zip(table.units.iter().skip(1))) {
         if this.number <= before.number {
@@ -113,14 +113,16 @@ pub(crate) fn read(
     }
     match blocks.first() {
         Some(0) => Ok((table, blocks)),
-        Some(first) => Err(FileError::value(path, Place::Row(0), "block", first, "0 in the first row")),
-        None => Err(FileError::value(path, Place::Header, "number of rows", 0, "at least 1")),
+        Some(first) => {
+            Err(FileError::value(path, FileLocation::Row(0), "block", first, "0 in the first row"))
+        }
+        None => Err(FileError::value(path, FileLocation::Header, "number of rows", 0, "at least 1")),
     }
 }
 
 /// The columns of a table of these figures.
 fn names(figures: &[(String, Reduction)]) -> impl Iterator<Item = String> {
-    let ofs = figures.iter().flat_map(|(name, _)| [name.clone(), of_name(name)]);
+    let ofs = figures.iter().flat_map(|(name, _)| [name.clone(), count_column(name)]);
     ["number", "block", "group", "verdict", "cause"].map(str::to_owned).into_iter().chain(ofs)
 }
 
@@ -152,7 +154,7 @@ fn add(
     }
     for figure in &mut table.figures {
         let sums: &Cells<f32> = cells(path, find(&figure.name), &figure.name)?;
-        let of = of_name(&figure.name);
+        let of = count_column(&figure.name);
         let ofs: Option<&Cells<u32>> = find(&of).map(|found| cells(path, Some(found), &of)).transpose()?;
         for (row, sum) in sums.iter().enumerate() {
             let Some(sum) = sum.map(f64::from) else {
@@ -160,7 +162,7 @@ fn add(
                 continue;
             };
             if !sum.is_finite() {
-                let place = Place::Row((first_row + row) as u64);
+                let place = FileLocation::Row((first_row + row) as u64);
                 return Err(FileError::value(path, place, &figure.name, sum, "a finite number"));
             }
             let of = ofs.map_or(1, |ofs| ofs.values().get(row).copied().unwrap_or_default());
@@ -182,7 +184,7 @@ mod tests {
     fn table() -> UnitTable {
         let term = |sum, of| Term { sum, of };
         let pooled = vec![term(2.0, 3), Term::default(), term(0.0, 1), term(0.0, 2)];
-        let pooled = FigureTerms::counted("held_rate", Reduction::Rate, pooled);
+        let pooled = FigureTerms::from_terms("held_rate", Reduction::Rate, pooled);
         let rate = figure("hit_rate", Reduction::Rate, &[None, Some(1.0), Some(0.0), Some(1.0)]);
         let amount = figure("ra_rms_deg", Reduction::Rms, &[Some(0.5), Some(-0.25), None, Some(0.0)]);
         let mut table = sample(vec![pooled, rate, amount]).table;
@@ -212,14 +214,14 @@ mod tests {
         assert_eq!(there_and_back(&table, &[0, 0, 1, 2]).unwrap(), (table, vec![0, 0, 1, 2]));
         // Of two values or none, none alone.
         let terms = vec![Term { sum: 1.0, of: 2 }, Term::default()];
-        let pairs = FigureTerms::counted("held_rate", Reduction::Rate, terms);
+        let pairs = FigureTerms::from_terms("held_rate", Reduction::Rate, terms);
         let table = sample(vec![pairs]).table;
         assert_eq!(there_and_back(&table, &[0, 1]).unwrap().0, table);
     }
 
     /// Of a gate's repository, a baseline is the largest part: nothing is in a file that need not be.
     #[test]
-    fn counts_are_told_where_they_are_more_than_one_and_amounts_byte_by_byte() {
+    fn counts_are_written_where_they_are_more_than_one_and_amounts_byte_by_byte() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rows.parquet");
         write(&File::create_new(&path).unwrap(), &path, &table(), |_| 0).unwrap();
@@ -269,7 +271,7 @@ mod tests {
 
     /// Rows are counted over the whole file, and not over what is read at a time.
     #[test]
-    fn a_value_that_is_no_number_is_told_with_its_row() {
+    fn a_value_that_is_no_number_is_reported_with_its_row() {
         let row = BATCH_ROWS + 3;
         let mut values = vec![Some(0.5); row + 2];
         values[row] = Some(f64::NAN);

@@ -1,5 +1,5 @@
 //! By how much a figure may be worse and pass.
-use run::figure_called;
+use run::figure_by_name;
 use score::{Better, FigureTerms, Kind};
 
 use crate::dependence::influence::values;
@@ -13,7 +13,7 @@ const OF_AMOUNT: f64 = 0.01;
 /// The tolerance of a figure of a baseline that is given none, in its unit: of a rate a tenth of a percent, of an amount a hundredth of the
 /// root mean square of its values (about the best value of what has one), to two digits.
 pub(crate) fn default_tolerance(figure: &FigureTerms) -> f64 {
-    let sense = figure_called(&figure.name).sense;
+    let sense = figure_by_name(&figure.name).sense;
     match sense.kind {
         Kind::Rate => OF_RATE,
         Kind::Amount => {

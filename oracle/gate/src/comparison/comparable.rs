@@ -117,7 +117,7 @@ mod tests {
     use crate::hand_made::{AFTER, BEFORE, baseline, compared, figure, hits, rate, refusal, sample, unit};
     use crate::report::FigureVerdict;
     use indexmap::IndexMap;
-    use run::figure_called;
+    use run::figure_by_name;
     use score::Reduction;
 
     #[test]
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_those_that_are_asked_for_in_the_order_of_the_result() {
+    fn figures_are_those_that_are_requested_in_the_order_of_the_result() {
         let figures = |names: [&str; 3], bits: &[u8]| sample(names.map(|name| rate(name, bits)).to_vec());
         let before = figures(["wrong_rate", "hit_rate", "correct_rate"], &BEFORE);
         let after = figures(["hit_rate", "correct_rate", "wrong_rate"], &AFTER);
@@ -193,7 +193,7 @@ mod tests {
             let figure = FigureTerms { limit_deg, ..rate("ra_within_1px", &BEFORE) };
             let attitude = attitude.map(str::to_owned);
             sample(vec![
-                figure.resting_on(&figure_called("ra_within_1px"), attitude.as_ref()),
+                figure.with_attitude(&figure_by_name("ra_within_1px"), attitude.as_ref()),
                 rate("hit_rate", &BEFORE),
             ])
         };

@@ -1,13 +1,13 @@
 //! A result against a baseline.
 use files::Failure;
 use indexmap::IndexMap;
-use run::figure_called;
+use run::figure_by_name;
 use statistics::{BlockEffects, Exchanges, joint_test};
 
 use super::comparable::{check_reported, check_units, pairs};
 use super::flips::Flips;
 use super::judge::{ALPHA_OF_RUNS, Judge};
-use super::notes::{Noted, notes};
+use super::notes::{NoteInputs, notes};
 use super::options::CompareOptions;
 use crate::baseline::Baseline;
 use crate::dependence::blocks::sequences;
@@ -44,15 +44,15 @@ pub fn compare(
         Pairing::Blocks => baseline.blocks_for_other_frames(),
     };
     let exchanges = Exchanges::new(blocks.count());
-    let thirds = Thirds::of(identity.kind, &identity.world, &baseline.sample.table, blocks);
+    let thirds = Thirds::from_table(identity.kind, &identity.world, &baseline.sample.table, blocks);
     let effects: Vec<FigureEffect> = pairs
         .iter()
         .map(|(before, after)| {
             let of_baseline =
                 baseline.header.figures.get(&before.name).map_or(0.0, |figure| figure.tolerance);
             let tolerance = options.tolerances.get(&before.name).copied().unwrap_or(of_baseline);
-            let sense = figure_called(&before.name).sense;
-            let effect = FigureEffect::of_runs(sense, before, after, blocks, tolerance);
+            let sense = figure_by_name(&before.name).sense;
+            let effect = FigureEffect::from_runs(sense, before, after, blocks, tolerance);
             // On the same frames what slowly varies is in both runs; with others it is in the difference.
             match pairing {
                 Pairing::Frames => effect,
@@ -133,7 +133,7 @@ pub fn compare(
         blocks: blocks.count() as u64,
         block_length: blocks.mean_length(),
         neighbour_correlation: correlation,
-        notes: notes(&Noted {
+        notes: notes(&NoteInputs {
             baseline,
             result,
             pairing,
@@ -145,7 +145,7 @@ pub fn compare(
         }),
         figures,
         flips: (pairing == Pairing::Frames)
-            .then(|| Flips::of(&baseline.sample.table.units, &result.table.units)),
+            .then(|| Flips::from_verdicts(&baseline.sample.table.units, &result.table.units)),
     })
 }
 
@@ -170,7 +170,7 @@ mod tests {
         assert!((found.worse_by.unwrap() - 7.0 / 12.0).abs() < 1e-12, "{found:?}");
         assert!((found.difference.unwrap() + 7.0 / 12.0).abs() < 1e-12, "{found:?}");
         assert_eq!((found.better.as_str(), found.tolerance), ("more", 0.001));
-        assert_eq!(report.worse().collect::<Vec<_>>(), ["hit_rate"]);
+        assert_eq!(report.worse_figures().collect::<Vec<_>>(), ["hit_rate"]);
 
         let report = compared(hits(&AFTER), &hits(&BEFORE));
         assert_eq!(report.verdict, FigureVerdict::NoWorse);
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_report_tells_what_was_compared_and_the_frames_that_changed() {
+    fn a_report_states_what_was_compared_and_the_frames_that_changed() {
         let mut after = hits(&AFTER);
         after.identity.version = "0.2.0".to_owned();
         after.table.units[3] = unit(3, "missed", Some("not_linked"));

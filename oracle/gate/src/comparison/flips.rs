@@ -48,7 +48,7 @@ pub struct Flips {
 
 impl Flips {
     /// Of units that go together one by one.
-    pub(crate) fn of(baseline: &[UnitVerdict], result: &[UnitVerdict]) -> Self {
+    pub(crate) fn from_verdicts(baseline: &[UnitVerdict], result: &[UnitVerdict]) -> Self {
         let mut flips = Self { lost: 0, won: 0, other: 0, units: Vec::new() };
         for (before, after) in baseline.iter().zip(result) {
             if (&before.verdict, &before.cause) == (&after.verdict, &after.cause) {
@@ -107,7 +107,7 @@ mod tests {
             unit(3, "missed", Some("below_threshold")),
             unit(4, "35 of 40", None),
         ];
-        let flips = Flips::of(&baseline, &result);
+        let flips = Flips::from_verdicts(&baseline, &result);
         assert_eq!((flips.lost, flips.won, flips.other), (2, 1, 1));
         assert_eq!(flips.units.iter().map(|flip| flip.number).collect::<Vec<_>>(), [1, 2, 3, 4]);
         assert_eq!(flips.units[0].result_cause.as_deref(), Some("taken_for_star"));
@@ -129,9 +129,9 @@ mod tests {
     }
 
     #[test]
-    fn a_flip_tells_both_verdicts_and_both_causes() {
+    fn a_flip_reports_both_verdicts_and_both_causes() {
         let before = [unit(7, "wrong", Some("taken_for_star"))];
-        let flips = Flips::of(&before, &[unit(7, "missed", Some("not_linked"))]);
+        let flips = Flips::from_verdicts(&before, &[unit(7, "missed", Some("not_linked"))]);
         assert_eq!((flips.lost, flips.won, flips.other), (0, 0, 1));
         assert_eq!(
             flips.units,
@@ -145,6 +145,6 @@ mod tests {
                 result_cause: Some("not_linked".to_owned()),
             }]
         );
-        assert!(Flips::of(&before, &before).units.is_empty());
+        assert!(Flips::from_verdicts(&before, &before).units.is_empty());
     }
 }

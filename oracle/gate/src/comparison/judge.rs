@@ -1,6 +1,6 @@
 //! The verdict on one figure.
 use score::{Better, Kind, Sense};
-use statistics::{JointTest, Tested, normal_quantile};
+use statistics::{FigureTest, JointTest, normal_quantile};
 
 use crate::dependence::effects::FigureEffect;
 use crate::dependence::runs::LossRun;
@@ -30,7 +30,7 @@ impl Judge<'_> {
     pub(crate) fn report(&self, interval: Option<(f64, f64)>) -> FigureReport {
         let effect = self.effect;
         let difference = effect.result.zip(effect.baseline).map(|(result, baseline)| result - baseline);
-        let tested = self.tested();
+        let figure_test = self.figure_test();
         FigureReport {
             verdict: self.verdict(),
             better: match effect.sense.better {
@@ -48,8 +48,8 @@ impl Judge<'_> {
             high: interval.zip(difference).map(|((_, high), difference)| high.max(difference)),
             worse_by: effect.worsening(),
             tolerance: effect.tolerance,
-            p: tested.p,
-            adjusted_p: tested.adjusted_p,
+            p: figure_test.p,
+            adjusted_p: figure_test.adjusted_p,
             better_adjusted_p: self.better.figures[self.index].adjusted_p,
             smallest_visible: self.smallest_visible(),
             blocks: effect.blocks as u64,
@@ -58,11 +58,11 @@ impl Judge<'_> {
     }
 
     /// What was found for the worse; of a figure with a best value on the side of the change, its own p for both sides.
-    fn tested(&self) -> Tested {
+    fn figure_test(&self) -> FigureTest {
         let up = self.worse.figures[self.index];
         let Some(down) = self.other_side.map(|place| self.worse.figures[place]) else { return up };
         let nearer = if up.p <= down.p { up } else { down };
-        Tested { p: (2.0 * nearer.p).min(1.0), ..nearer }
+        FigureTest { p: (2.0 * nearer.p).min(1.0), ..nearer }
     }
 
     fn verdict(&self) -> FigureVerdict {
@@ -82,7 +82,7 @@ impl Judge<'_> {
             FigureVerdict::Worse
         } else if !self.can_be_seen() {
             FigureVerdict::TooLittleData
-        } else if self.tested().adjusted_p <= self.alpha && change > effect.tolerance {
+        } else if self.figure_test().adjusted_p <= self.alpha && change > effect.tolerance {
             // Farther from the best value by what counts is worse; nearer to it, or across it, is another result.
             if worsening > effect.tolerance { FigureVerdict::Worse } else { FigureVerdict::Changed }
         } else if self.better.figures[self.index].adjusted_p <= self.alpha && -worsening > effect.tolerance {
@@ -128,13 +128,13 @@ impl Judge<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use run::figure_called;
-    use statistics::{BlockEffects, Tested};
+    use run::figure_by_name;
+    use statistics::{BlockEffects, FigureTest};
 
     /// A figure best when less, of ten blocks, from 2 in the baseline to `result`.
     fn effect(result: f64) -> FigureEffect {
         FigureEffect {
-            sense: figure_called("ra_rms_deg").sense,
+            sense: figure_by_name("ra_rms_deg").sense,
             baseline: Some(2.0),
             result: Some(result),
             baseline_of: 100,
@@ -156,8 +156,8 @@ mod tests {
         figures: usize,
     ) -> FigureReport {
         let test = |adjusted_p| {
-            let tested = Tested { statistic: 1.0, p: 0.5 * adjusted_p, adjusted_p };
-            JointTest { figures: vec![tested; figures], critical }
+            let figure_test = FigureTest { statistic: 1.0, p: 0.5 * adjusted_p, adjusted_p };
+            JointTest { figures: vec![figure_test; figures], critical }
         };
         let (worse, better) = (&test(worse), &test(better));
         Judge { effect, worse, better, index: 0, other_side: None, alpha: 0.05, loss_run: None }
@@ -232,7 +232,7 @@ mod tests {
         assert_eq!((found.p, found.adjusted_p, found.better_adjusted_p), (0.25, 0.5, 0.75));
         assert_eq!((found.baseline_of, found.result_of, found.blocks), (100, 50, 10));
         assert_eq!(found.better, "less");
-        let near = FigureEffect { sense: figure_called("nees_mean").sense, ..effect(2.5) };
+        let near = FigureEffect { sense: figure_by_name("nees_mean").sense, ..effect(2.5) };
         assert_eq!(judged(&near, [1.0, 1.0], 2.0, 1).better, "near 1");
     }
 
@@ -256,7 +256,7 @@ mod tests {
     fn the_smallest_visible_loss_of_a_rate_brings_its_own_scatter() {
         for (standard_error, result_of) in [(0.25, 50), (0.01, 7), (0.0, 400)] {
             let effect = FigureEffect {
-                sense: figure_called("hit_rate").sense,
+                sense: figure_by_name("hit_rate").sense,
                 tolerance: 0.0,
                 standard_error,
                 result_of,
@@ -269,7 +269,7 @@ mod tests {
         }
         // Of nothing it is that of one.
         let none = FigureEffect {
-            sense: figure_called("hit_rate").sense,
+            sense: figure_by_name("hit_rate").sense,
             tolerance: 0.0,
             result_of: 0,
             ..effect(2.0)

@@ -1,6 +1,6 @@
 //! What a reader of a gate's report must know beside its figures.
 use indexmap::IndexMap;
-use run::figure_called;
+use run::figure_by_name;
 use score::attitude_note;
 use statistics::normal_quantile;
 
@@ -14,7 +14,7 @@ use crate::sample::Sample;
 const NAMED: usize = 3;
 
 /// What notes are made of.
-pub(crate) struct Noted<'a> {
+pub(crate) struct NoteInputs<'a> {
     pub(crate) baseline: &'a Baseline,
     pub(crate) result: &'a Sample,
     pub(crate) pairing: Pairing,
@@ -28,8 +28,8 @@ pub(crate) struct Noted<'a> {
 }
 
 /// What a reader must know.
-pub(crate) fn notes(noted: &Noted<'_>) -> Vec<String> {
-    let Noted { baseline, result, pairing, .. } = *noted;
+pub(crate) fn notes(noted: &NoteInputs<'_>) -> Vec<String> {
+    let NoteInputs { baseline, result, pairing, .. } = *noted;
     let mut notes = Vec::new();
     let attitude = result.table.figures.iter().find_map(|figure| figure.attitude.as_deref());
     notes.extend(attitude_note(attitude));
@@ -61,7 +61,7 @@ pub(crate) fn notes(noted: &Noted<'_>) -> Vec<String> {
 }
 
 /// Which units were lost, where that alone shuts the gate.
-fn loss_note(noted: &Noted<'_>) -> Option<String> {
+fn loss_note(noted: &NoteInputs<'_>) -> Option<String> {
     let found_by_run = |figure: &&FigureReport| {
         let run = figure.loss_run.as_ref();
         figure.verdict.is_worse()
@@ -77,7 +77,7 @@ fn loss_note(noted: &Noted<'_>) -> Option<String> {
     });
     Some(format!(
         "{}: {} {units} were lost and {} won{place}. That is no chance (p {:.1e}), though too few blocks have it.",
-        figure_called(name).words,
+        figure_by_name(name).words,
         run.lost,
         run.won,
         run.adjusted_p
@@ -86,7 +86,7 @@ fn loss_note(noted: &Noted<'_>) -> Option<String> {
 
 /// The labels of some figures, and how many others there are.
 fn labels(names: &[&str]) -> String {
-    let named: Vec<String> = names.iter().take(NAMED).map(|name| figure_called(name).words).collect();
+    let named: Vec<String> = names.iter().take(NAMED).map(|name| figure_by_name(name).words).collect();
     match names.len().saturating_sub(NAMED) {
         0 => named.join(", "),
         others => format!("{} and {others} other figures", named.join(", ")),
@@ -118,7 +118,7 @@ mod tests {
         let baseline = baseline(sample(vec![rate("hit_rate", &[1; 25]), rate("correct_rate", &[1; 25])]));
         let report = compared(baseline.sample.clone(), &baseline.sample);
         let notes = |correlation: f64| {
-            notes(&Noted {
+            notes(&NoteInputs {
                 baseline: &baseline,
                 result: &baseline.sample,
                 pairing: Pairing::Frames,

@@ -1,7 +1,7 @@
 //! Blocks: stretches of a sequence that are long enough to be independent of one another.
 use std::ops::Range;
 
-use run::world_called;
+use run::world_by_name;
 use score::{UnitTable, UnitVerdict};
 
 use crate::identity::SourceKind;
@@ -62,7 +62,7 @@ impl Blocks {
     }
 
     /// The block of a unit.
-    pub fn of(&self, unit: usize) -> usize {
+    pub fn block_of(&self, unit: usize) -> usize {
         self.of_units[unit]
     }
 
@@ -75,7 +75,7 @@ impl Blocks {
 /// The sequences of neighbouring units. Far range: a group (day) or a gap begins one. Docking: an approach is one sequence, but for gaps;
 /// its groups are ranges. A study: the cases of a draw.
 pub(crate) fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec<Range<usize>> {
-    let are_groups_apart = world_called(world).is_ok_and(|world| world.are_groups_apart());
+    let are_groups_apart = world_by_name(world).is_ok_and(|world| world.are_groups_apart());
     let go_together = |before: &UnitVerdict, this: &UnitVerdict| {
         let is_same_group = before.group == this.group;
         match kind {
@@ -114,14 +114,17 @@ mod tests {
     use crate::hand_made::days as table;
 
     #[test]
-    fn blocks_never_cross_a_day_and_are_about_as_long_as_asked() {
+    fn blocks_never_cross_a_day_and_are_about_as_long_as_requested() {
         let table = table(&[("day 1", 95), ("day 2", 31), ("day 3", 4)]);
         let blocks = Blocks::cut(SourceKind::Run, "far_range", &table, 30);
-        assert_eq!((blocks.count(), blocks.of(94), blocks.of(95), blocks.of(126)), (5, 2, 3, 4));
+        assert_eq!(
+            (blocks.count(), blocks.block_of(94), blocks.block_of(95), blocks.block_of(126)),
+            (5, 2, 3, 4)
+        );
         let approach = Blocks::cut(SourceKind::Run, "docking", &table, 30);
-        assert_eq!((approach.count(), approach.of(0), approach.of(129)), (4, 0, 3));
+        assert_eq!((approach.count(), approach.block_of(0), approach.block_of(129)), (4, 0, 3));
         assert_eq!(Blocks::cut(SourceKind::Study, "docking", &table, 30).count(), 3, "of three draws");
-        let numbers: Vec<usize> = (0..130).map(|unit| blocks.of(unit)).collect();
+        let numbers: Vec<usize> = (0..130).map(|unit| blocks.block_of(unit)).collect();
         assert_eq!(Blocks::from_numbers(numbers), blocks);
     }
 
@@ -141,11 +144,11 @@ mod tests {
     fn a_sequence_is_cut_into_pieces_that_differ_by_a_unit_at_most() {
         let table = table(&[("day 1", 7), ("day 2", 5), ("day 3", 1)]);
         let blocks = Blocks::cut(SourceKind::Run, "far_range", &table, 3);
-        let of: Vec<usize> = (0..13).map(|unit| blocks.of(unit)).collect();
+        let of: Vec<usize> = (0..13).map(|unit| blocks.block_of(unit)).collect();
         assert_eq!(of, [0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 4]);
         assert_eq!((blocks.count(), blocks.mean_length()), (5, 2.6));
         let single = Blocks::cut(SourceKind::Run, "docking", &table, 1);
-        assert_eq!((single.count(), single.of(12), single.mean_length()), (13, 12, 1.0));
+        assert_eq!((single.count(), single.block_of(12), single.mean_length()), (13, 12, 1.0));
         let none = Blocks::cut(SourceKind::Run, "docking", &UnitTable::default(), 30);
         assert_eq!((none.count(), none.mean_length()), (0, 0.0));
         assert_eq!(Blocks::from_numbers(vec![]), none);

@@ -38,7 +38,7 @@ pub(crate) fn value(reduction: Reduction, terms: &[Term]) -> Option<f64> {
     match reduction {
         Reduction::Median => median(&[values(terms)]),
         _ => {
-            let ratio = Sums::of_terms(terms, reduction, 0.0).ratio();
+            let ratio = Sums::from_terms(terms, reduction, 0.0).ratio();
             if reduction == Reduction::Rms { ratio.map(f64::sqrt) } else { ratio }
         }
     }
@@ -46,7 +46,7 @@ pub(crate) fn value(reduction: Reduction, terms: &[Term]) -> Option<f64> {
 
 impl FigureEffect {
     /// Of a figure of two runs whose units go together one by one.
-    pub(crate) fn of_runs(
+    pub(crate) fn from_runs(
         sense: Sense,
         baseline: &FigureTerms,
         result: &FigureTerms,
@@ -56,7 +56,7 @@ impl FigureEffect {
         let reduction = baseline.reduction;
         let pooled = [values(&baseline.terms), values(&result.terms)];
         let centre = if reduction == Reduction::Median { median(&pooled).unwrap_or(0.0) } else { 0.0 };
-        let [a, b] = [baseline, result].map(|run| Sums::of_terms(&run.terms, reduction, centre));
+        let [a, b] = [baseline, result].map(|run| Sums::from_terms(&run.terms, reduction, centre));
         let [of_baseline, of_result] = [baseline, result].map(|run| value(reduction, &run.terms));
 
         let together = Sums { units: Vec::new(), sum: a.sum + b.sum, of: a.of + b.of }.ratio().unwrap_or(0.0);
@@ -72,7 +72,7 @@ impl FigureEffect {
         let mut effects = vec![0.0; blocks.count()];
         let mut has_data = vec![false; blocks.count()];
         for (i, (of_a, of_b)) in a.units.iter().zip(&b.units).enumerate() {
-            let block = blocks.of(i);
+            let block = blocks.block_of(i);
             let difference = (of_b.0 - together * of_b.1) - (of_a.0 - together * of_a.1);
             effects[block] += scale * difference / count;
             has_data[block] |= of_a.1 + of_b.1 > 0.0;
@@ -158,7 +158,7 @@ pub(crate) fn interval(
     exchanges: &statistics::Exchanges,
 ) -> Option<Interval> {
     let reduction = baseline.reduction;
-    let sides = [baseline, result].map(|run| Side::of_run(reduction, &run.terms, blocks));
+    let sides = [baseline, result].map(|run| Side::from_run(reduction, &run.terms, blocks));
     statistics::interval_by_sets(exchanges, |taken| {
         let [baseline, result] = [&sides[0], &sides[1]].map(|side| side.value(taken));
         Some(result? - baseline?)
@@ -174,11 +174,11 @@ enum Side {
 }
 
 impl Side {
-    fn of_run(reduction: Reduction, terms: &[Term], blocks: &Blocks) -> Self {
+    fn from_run(reduction: Reduction, terms: &[Term], blocks: &Blocks) -> Self {
         if reduction == Reduction::Median {
             let with_value = terms.iter().enumerate().filter(|(_, term)| term.of > 0);
             let mut sorted: Vec<(f64, u32)> =
-                with_value.map(|(unit, term)| (term.sum, blocks.of(unit) as u32)).collect();
+                with_value.map(|(unit, term)| (term.sum, blocks.block_of(unit) as u32)).collect();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
             let mut counts = vec![0; blocks.count()];
             sorted.iter().for_each(|(_, block)| counts[*block as usize] += 1);
@@ -186,8 +186,8 @@ impl Side {
             return Self::Sorted { values, blocks, counts };
         }
         let mut sums = vec![(0.0, 0.0); blocks.count()];
-        for (unit, (sum, of)) in Sums::of_terms(terms, reduction, 0.0).units.into_iter().enumerate() {
-            let block = &mut sums[blocks.of(unit)];
+        for (unit, (sum, of)) in Sums::from_terms(terms, reduction, 0.0).units.into_iter().enumerate() {
+            let block = &mut sums[blocks.block_of(unit)];
             *block = (block.0 + sum, block.1 + of);
         }
         Self::Ratio { blocks: sums, is_root: reduction == Reduction::Rms }
@@ -244,14 +244,14 @@ pub(crate) fn neighbour_correlation(effects: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::hand_made::figure as terms;
-    use run::figure_called;
+    use run::figure_by_name;
     use score::Kind;
     use statistics::Exchanges;
 
     fn effect(name: &str, reduction: Reduction, a: &[Option<f64>], b: &[Option<f64>]) -> FigureEffect {
         let blocks = Blocks::every(a.len(), 2);
-        FigureEffect::of_runs(
-            figure_called(name).sense,
+        FigureEffect::from_runs(
+            figure_by_name(name).sense,
             &terms(name, reduction, a),
             &terms(name, reduction, b),
             &blocks,
@@ -354,7 +354,7 @@ mod tests {
         let [a, b] = [[Some(1.0), Some(2.0), None, None], [Some(1.0), None, Some(3.0), None]]
             .map(|values| terms("ra_rms_deg", Reduction::Rms, &values));
         let effect =
-            FigureEffect::of_runs(figure_called("ra_rms_deg").sense, &a, &b, &Blocks::every(4, 1), 0.0);
+            FigureEffect::from_runs(figure_by_name("ra_rms_deg").sense, &a, &b, &Blocks::every(4, 1), 0.0);
         assert_eq!((effect.blocks, effect.baseline_of, effect.result_of), (3, 2, 2));
     }
 
@@ -378,7 +378,7 @@ mod tests {
         ] {
             let [before, after] = [a, b].map(|value| terms("any", reduction, &[Some(value); 4]));
             let sense = Sense { kind: Kind::Amount, better: Better::Near(1.0) };
-            let effect = FigureEffect::of_runs(sense, &before, &after, &Blocks::every(4, 1), 0.0);
+            let effect = FigureEffect::from_runs(sense, &before, &after, &Blocks::every(4, 1), 0.0);
             let sum = effect.worse.effects.iter().sum::<f64>();
             assert!((sum - (b - a)).abs() < 1e-12 && effect.has_best_value(), "{a} {b}: {effect:?}");
         }
@@ -389,7 +389,7 @@ mod tests {
         let values = [Some(4.0), None, Some(1.0), Some(8.0), Some(-2.0), Some(5.0), None, None];
         let blocks = Blocks::every(8, 2);
         let of = |reduction, taken: [bool; 4]| {
-            Side::of_run(reduction, &terms("any", reduction, &values).terms, &blocks).value(&taken)
+            Side::from_run(reduction, &terms("any", reduction, &values).terms, &blocks).value(&taken)
         };
         let (all, some) = ([true; 4], [true, true, false, true]);
         // 4 + 1 + 8 − 2 + 5 = 16 of 5; without the third block 13 of 3.

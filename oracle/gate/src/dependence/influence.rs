@@ -12,7 +12,7 @@ pub(crate) struct Sums {
 }
 
 impl Sums {
-    pub(crate) fn of_terms(terms: &[Term], reduction: Reduction, centre: f64) -> Self {
+    pub(crate) fn from_terms(terms: &[Term], reduction: Reduction, centre: f64) -> Self {
         let linear = |term: &Term| match reduction {
             Reduction::Rate | Reduction::Mean => term.sum,
             Reduction::Rms => term.sum * term.sum,
@@ -38,7 +38,7 @@ pub(crate) fn values(terms: &[Term]) -> Vec<f64> {
 pub(crate) fn influence(figure: &FigureTerms) -> Vec<f64> {
     let own = values(&figure.terms);
     let centre = if figure.reduction == Reduction::Median { median(&[own]).unwrap_or(0.0) } else { 0.0 };
-    let sums = Sums::of_terms(&figure.terms, figure.reduction, centre);
+    let sums = Sums::from_terms(&figure.terms, figure.reduction, centre);
     let ratio = sums.ratio().unwrap_or(0.0);
     sums.units.iter().map(|(sum, of)| sum - ratio * of).collect()
 }
@@ -60,7 +60,7 @@ mod tests {
         assert_eq!(of(Reduction::Mean, &[None; 2]), [0.0, 0.0]);
         // Three of four are held: 2 − 3 · 3/4, 1 − 1 · 3/4.
         let pooled = vec![Term { sum: 2.0, of: 3 }, Term { sum: 1.0, of: 1 }];
-        let pooled = FigureTerms::counted("held", Reduction::Rate, pooled);
+        let pooled = FigureTerms::from_terms("held", Reduction::Rate, pooled);
         assert_eq!(influence(&pooled), [-0.25, 0.25]);
     }
 }

@@ -19,7 +19,7 @@ pub(crate) struct Memory {
 
 /// Where the thirds of blocks have a longer memory than this, thirds, blocks go together too much to be exchanged: of an exponential memory
 /// the means of neighbouring blocks are then correlated by 0.18. Of eight independent blocks one figure in thirty seems to have it.
-const MOST_THIRDS: f64 = 2.2;
+const MAX_THIRDS: f64 = 2.2;
 
 /// The autocorrelation time of a series over some sequences of it, units; at least 1.
 fn autocorrelation_time(series: &[f64], sequences: &[Range<usize>]) -> f64 {
@@ -48,10 +48,11 @@ pub(crate) struct Thirds {
 }
 
 impl Thirds {
-    pub(crate) fn of(kind: SourceKind, world: &str, table: &UnitTable, blocks: &Blocks) -> Self {
+    pub(crate) fn from_table(kind: SourceKind, world: &str, table: &UnitTable, blocks: &Blocks) -> Self {
         let thirds_of = |sequence: Range<usize>| {
             let units: Vec<usize> = sequence.collect();
-            let of_blocks: Vec<&[usize]> = units.chunk_by(|a, b| blocks.of(*a) == blocks.of(*b)).collect();
+            let of_blocks: Vec<&[usize]> =
+                units.chunk_by(|a, b| blocks.block_of(*a) == blocks.block_of(*b)).collect();
             let is_cut = of_blocks.len() > 1;
             let thirds = of_blocks.into_iter().flat_map(|block| {
                 let (begin, count) = (block[0], block.len());
@@ -72,7 +73,7 @@ impl Thirds {
         let before = influence(before);
         let difference: Vec<f64> =
             influence(after).iter().zip(&before).map(|(after, before)| after - before).collect();
-        self.memory_of(&difference).min(self.memory_of(&before)) > MOST_THIRDS
+        self.memory_of(&difference).min(self.memory_of(&before)) > MAX_THIRDS
     }
 
     /// The autocorrelation time of the sums over thirds, thirds.
@@ -104,7 +105,7 @@ mod tests {
                 Term { sum: slow, of: 1 }
             };
             let terms = (0..20_000).map(|_| term()).collect();
-            FigureTerms::counted(name, Reduction::Mean, terms)
+            FigureTerms::from_terms(name, Reduction::Mean, terms)
         };
         table.figures = vec![figure("white", 0.0), figure("slow", 0.9)];
         let memory = memory(SourceKind::Run, "far_range", &table);
@@ -120,7 +121,7 @@ mod tests {
         let mut table = table(&[("day 1", 100)]);
         let figure = |name: &str, value: fn(u8) -> f64| {
             let terms = (0..100).map(|i| Term { sum: value(i), of: 1 }).collect();
-            FigureTerms::counted(name, Reduction::Mean, terms)
+            FigureTerms::from_terms(name, Reduction::Mean, terms)
         };
         table.figures = vec![figure("constant", |_| 0.3), figure("alternating", |i| f64::from(i % 2))];
         let memory = memory(SourceKind::Run, "far_range", &table);
@@ -134,14 +135,14 @@ mod tests {
         let random = &mut Seed { seed: 9, case: 0 }.stream(0, Effect::PixelNoise, 0);
         let table = table(&[("day 1", 400)]);
         let blocks = Blocks::cut(SourceKind::Run, "far_range", &table, 50);
-        let thirds = Thirds::of(SourceKind::Run, "far_range", &table, &blocks);
+        let thirds = Thirds::from_table(SourceKind::Run, "far_range", &table, &blocks);
         assert_eq!(thirds.sequences.iter().map(Vec::len).collect::<Vec<_>>(), [24]);
         let mut figure = |drift: f64, phase: f64| {
             let mut term = |unit: u32| {
                 let slow = drift * libm::sin(std::f64::consts::TAU * f64::from(unit) / 400.0 + phase);
                 Term { sum: slow + normal(random), of: 1 }
             };
-            FigureTerms::counted("ra_mean_deg", Reduction::Mean, (0..400).map(&mut term).collect())
+            FigureTerms::from_terms("ra_mean_deg", Reduction::Mean, (0..400).map(&mut term).collect())
         };
         let [white, other, drifting, lasting] =
             [(0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (1.0, 2.0)].map(|(drift, phase)| figure(drift, phase));
@@ -150,7 +151,7 @@ mod tests {
         assert!(!thirds.are_remembered(&white, &lasting), "a fault is not chance");
         // Blocks that are whole sequences are apart whatever they remember.
         let days = Blocks::cut(SourceKind::Run, "far_range", &table, 400);
-        let thirds = Thirds::of(SourceKind::Run, "far_range", &table, &days);
+        let thirds = Thirds::from_table(SourceKind::Run, "far_range", &table, &days);
         assert!(!thirds.are_remembered(&drifting, &lasting));
     }
 }

@@ -7,7 +7,7 @@
 //! losses is among them.
 use std::ops::Range;
 
-use run::figure_called;
+use run::figure_by_name;
 use score::{Better, FigureTerms, Kind, UnitVerdict};
 use serde::Serialize;
 use statistics::binomial_at_least;
@@ -47,8 +47,8 @@ struct Series {
 
 impl Series {
     /// `None` of a figure that is no rate, or is best near a value.
-    fn of(before: &FigureTerms, after: &FigureTerms, sequences: &[Range<usize>]) -> Option<Self> {
-        let sense = figure_called(&before.name).sense;
+    fn from_terms(before: &FigureTerms, after: &FigureTerms, sequences: &[Range<usize>]) -> Option<Self> {
+        let sense = figure_by_name(&before.name).sense;
         let sign = match (sense.kind, sense.better) {
             (Kind::Rate, Better::More) => 1.0,
             (Kind::Rate, Better::Less) => -1.0,
@@ -95,7 +95,7 @@ pub(crate) fn loss_runs(
     alpha: f64,
 ) -> Vec<Option<LossRun>> {
     let series: Vec<Option<Series>> =
-        pairs.iter().map(|(before, after)| Series::of(before, after, sequences)).collect();
+        pairs.iter().map(|(before, after)| Series::from_terms(before, after, sequences)).collect();
     // Rates that changed in the same way in the same units are one: hits and misses, say. Which units changed is fixed under the null
     // hypothesis, so that counting what changed is no choice by the outcome.
     let mut distinct: Vec<&[(usize, bool)]> = Vec::new();
@@ -184,7 +184,7 @@ mod tests {
 
     /// Misses are hits the other way round: the two are one series, and cost nothing.
     #[test]
-    fn rates_that_tell_the_same_are_counted_once() {
+    fn rates_with_the_same_terms_are_counted_once() {
         let [before, after] = [[1u8; 60], [0u8; 60]];
         let p = |names: &[&str]| {
             let bits = |name: &str, bits: &[u8; 60]| match name {

@@ -99,14 +99,14 @@ mod tests {
                 case.classname.as_ref().map(|name| name.as_str()),
                 Some("boresight.gate.made by hand")
             );
-            let is_as_told = match &case.status {
+            let is_as_reported = match &case.status {
                 TestCaseStatus::Success { .. } => ["same", "better"].contains(&name),
                 TestCaseStatus::NonSuccess { kind, ty, .. } => {
                     *kind == NonSuccessKind::Failure && ty.as_ref().map(|ty| ty.as_str()) == Some(name)
                 }
                 TestCaseStatus::Skipped { .. } => name == "few",
             };
-            assert!(is_as_told, "{case:?}");
+            assert!(is_as_reported, "{case:?}");
         }
     }
 

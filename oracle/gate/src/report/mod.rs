@@ -140,13 +140,13 @@ impl GateReport {
     }
 
     /// Names of the figures that changed.
-    pub fn changed(&self) -> impl Iterator<Item = &str> {
+    pub fn changed_figures(&self) -> impl Iterator<Item = &str> {
         let changed = self.figures.iter().filter(|(_, figure)| figure.verdict == FigureVerdict::Changed);
         changed.map(|(name, _)| name.as_str())
     }
 
     /// Names of the figures that are worse.
-    pub fn worse(&self) -> impl Iterator<Item = &str> {
+    pub fn worse_figures(&self) -> impl Iterator<Item = &str> {
         self.figures.iter().filter(|(_, figure)| figure.verdict.is_worse()).map(|(name, _)| name.as_str())
     }
 }
@@ -172,9 +172,9 @@ mod tests {
         let mut report = report(&all.map(|(verdict, name, _)| (name, verdict)));
         assert!(report.is_shut());
         report.verdict = FigureVerdict::Changed;
-        assert!(report.is_shut() && report.changed().eq(["changed"]));
+        assert!(report.is_shut() && report.changed_figures().eq(["changed"]));
         report.accepted = Some("a new centroider".to_owned());
         assert!(!report.is_shut());
-        assert_eq!(report.worse().collect::<Vec<_>>(), ["worse", "gone"]);
+        assert_eq!(report.worse_figures().collect::<Vec<_>>(), ["worse", "gone"]);
     }
 }

@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 use sim::docking::FieldTruth;
 
 use self::report::DockingReporter;
-use crate::feed::{Measurements, Monitored, Serve, Surroundings, frames, optional};
+use crate::feed::{Measurements, MonitorContext, MonitoredWorld, Serve, frames, optional};
 use crate::ground::GroundTrack;
 use crate::plan::Plan;
 use crate::server::overview::camera;
@@ -30,9 +30,9 @@ use crate::session::picture::Stretch;
 /// Least half width of the corridor, m/s.
 const MARGIN_M_S: f64 = 0.05;
 
-impl Monitored for DockingMission {
-    fn surroundings(&self, measurements: &Measurements) -> Result<Surroundings, Failure> {
-        Ok(Surroundings {
+impl MonitoredWorld for DockingMission {
+    fn context(&self, measurements: &Measurements) -> Result<MonitorContext, Failure> {
+        Ok(MonitorContext {
             ground: GroundTrack::station(self.simulator()),
             stretch: Stretch::plain(),
             frames: frames::<FieldTruth>(measurements, Self::TRUTH_FILE)?,
@@ -43,13 +43,9 @@ impl Monitored for DockingMission {
         Some(self.simulator().moment(field).ok()?.time)
     }
 
-    fn overview(
-        &self,
-        measurements: &Measurements,
-        surroundings: &Surroundings,
-    ) -> Result<[Value; 2], Failure> {
+    fn overview(&self, measurements: &Measurements, context: &MonitorContext) -> Result<[Value; 2], Failure> {
         let (scenario, simulator) = (self.scenario(), self.simulator());
-        let plan = Plan::new("m", &surroundings.frames, MARGIN_M_S, |field| {
+        let plan = Plan::new("m", &context.frames, MARGIN_M_S, |field| {
             let state = simulator.moment(field).ok()?.state;
             Some([state.range_m(), state.range_rate_m_s()])
         });
@@ -60,7 +56,7 @@ impl Monitored for DockingMission {
         {
             notes.push("The run's pictures were Mitsuba's; these are the fast renderer's.");
         }
-        if surroundings.ground.is_some() {
+        if context.ground.is_some() {
             notes.push(
                 "The scenario names no orbit: the track is that of 51.6° and 370 km on which the Sun stands where the \
                  scene has it.",
@@ -94,19 +90,19 @@ impl Monitored for DockingMission {
     fn feed(
         &self,
         measurements: &Measurements,
-        surroundings: &Surroundings,
+        context: &MonitorContext,
         session: &Session,
     ) -> Result<(), Failure> {
         let names = self.scenario().cameras.iter().map(|camera| camera.name.clone()).collect();
-        let mut reporter = DockingReporter::new(self.setup(), names, surroundings.ground.as_ref());
+        let mut reporter = DockingReporter::new(self.setup(), names, context.ground.as_ref());
         match measurements {
             Measurements::Live { factory, frames, jobs } => {
-                self.follow(frames.clone(), *jobs, factory.of()?, |processed| {
+                self.follow(frames.clone(), *jobs, factory.downcast()?, |processed| {
                     let number = processed.image.number();
                     session.wait_for_goal(number)?;
-                    let features = FeatureRow::of(number, &processed.outcome.features);
+                    let features = FeatureRow::from_features(number, &processed.outcome.features);
                     let report = reporter.report(&processed.truth, Some(&processed.outcome), &features);
-                    let picture = surroundings.stretch.picture(processed.image.image());
+                    let picture = context.stretch.picture(processed.image.image());
                     session.publish(&report, processed.telemetry.digitiser, Some(picture))
                 })
             }
@@ -114,12 +110,12 @@ impl Monitored for DockingMission {
         }
     }
 
-    fn paint(&self, surroundings: &Surroundings, serve: Serve<'_>) -> Result<(), Failure> {
+    fn paint(&self, context: &MonitorContext, serve: Serve<'_>) -> Result<(), Failure> {
         let simulator = self.simulator();
         let mut workspace = simulator.workspace()?;
         serve(&mut |order| {
             let exposure = self.renderer().expose(simulator, self.setup(), &mut workspace, order.frame)?;
-            Ok(surroundings.stretch.picture(exposure.video.digitise(&order.digitiser).image()))
+            Ok(context.stretch.picture(exposure.video.digitise(&order.digitiser).image()))
         })
     }
 }
@@ -136,9 +132,9 @@ fn replay(directory: &Path, reporter: &mut DockingReporter<'_>, session: &Sessio
         let (number, truths) = row?;
         session.wait_for_goal(number)?;
         let features = features.as_mut().map(|table| table.rows_of(number)).transpose()?.unwrap_or_default();
-        let said = motion.next_if(|(reported, _)| *reported == number).map(|(_, report)| report);
+        let report = motion.next_if(|(reported, _)| *reported == number).map(|(_, report)| report);
         let answer = answers.next_if(|(answered, _)| *answered == number).map(|(_, mut outcome)| {
-            outcome.motion = said;
+            outcome.motion = report;
             outcome
         });
         let digitiser = telemetry

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use contract::docking::{DockingOutcome, DockingSetup, DockingSolution, Lines, Motion, Pose};
 use files::docking::FeatureRow;
 use files::format_utc;
-use score::docking::Shown;
+use score::docking::ApproachParameters;
 use sim::docking::FieldTruth;
 use sim::truth::approach::target_from_camera;
 
 use crate::ground::GroundTrack;
-use crate::report::{Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape, View};
+use crate::report::{CameraPose, Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape};
 
 /// Arm of a cross whose size in the picture is not known, px.
 const PLAIN_ARM_PX: f64 = 14.0;
@@ -26,9 +26,9 @@ pub(crate) struct DockingReporter<'a> {
 
 /// What was said at the end of the last portion, and what was true then.
 struct Portion {
-    shown: Shown,
+    shown: ApproachParameters,
     sigmas: Option<[f64; 7]>,
-    truth: Shown,
+    truth: ApproachParameters,
 }
 
 impl<'a> DockingReporter<'a> {
@@ -46,8 +46,8 @@ impl<'a> DockingReporter<'a> {
     ) -> FrameReport {
         if let Some(motion) = outcome.and_then(|outcome| outcome.motion.as_ref()?.best.as_ref()) {
             self.portion = Some(Portion {
-                shown: Shown::of(&motion.pose, &motion.velocity_m_s),
-                sigmas: Shown::sigmas(motion),
+                shown: ApproachParameters::from_motion(&motion.pose, &motion.velocity_m_s),
+                sigmas: ApproachParameters::sigmas(motion),
                 truth: true_at(truth, motion),
             });
         }
@@ -86,12 +86,12 @@ impl<'a> DockingReporter<'a> {
             parameters,
             facts: self.facts(truth, features),
             overlay: self.recognised(features),
-            truth_overlay: self.true_places(truth),
+            truth_overlay: self.true_positions(truth),
             phase: Phase {
                 measured: self.portion.as_ref().map(|portion| [portion.shown.rho_m, portion.shown.u_m_s]),
                 truth: [truth.range_m, truth.range_rate_m_s],
             },
-            ground: self.ground.and_then(|track| track.at(truth.time)),
+            ground: self.ground.and_then(|track| track.ground_at(truth.time)),
             model: Model::Docking {
                 camera: truth.camera,
                 measured: measured.map(|best| view(&best.pose)),
@@ -150,7 +150,7 @@ impl<'a> DockingReporter<'a> {
         features.iter().map(shape).collect()
     }
 
-    fn true_places(&self, truth: &FieldTruth) -> Vec<Shape> {
+    fn true_positions(&self, truth: &FieldTruth) -> Vec<Shape> {
         let cross = truth.cross_centre.map(|p| Shape::new("cross", "truth", [p.x, p.y], PLAIN_ARM_PX));
         let circle = truth
             .disk_centre
@@ -170,7 +170,7 @@ impl<'a> DockingReporter<'a> {
             ("alpha_deg", "α passive pitch", "°", 3),
             ("beta_deg", "β passive yaw", "°", 3),
         ];
-        let four = |shown: &Shown| {
+        let four = |shown: &ApproachParameters| {
             [shown.rho_m, shown.u_m_s, shown.alpha_rad.to_degrees(), shown.beta_rad.to_degrees()]
         };
         let measured = self.portion.as_ref().map(|portion| four(&portion.shown));
@@ -190,13 +190,13 @@ impl<'a> DockingReporter<'a> {
 }
 
 /// The truth at the moment of a report: that of the field it came with, as if nothing accelerated since.
-fn true_at(truth: &FieldTruth, motion: &Motion) -> Shown {
+fn true_at(truth: &FieldTruth, motion: &Motion) -> ApproachParameters {
     let seconds = motion.time_s - truth.time_s;
     let pose = Pose {
         position_m: truth.pose.position_m + truth.velocity_m_s * seconds,
         phi_rad: truth.pose.phi_rad + truth.phi_rate_rad_s * seconds,
     };
-    Shown::of(&pose, &truth.velocity_m_s)
+    ApproachParameters::from_motion(&pose, &truth.velocity_m_s)
 }
 
 /// A section of six parameters: its title, and the name and label of each.
@@ -262,9 +262,9 @@ fn status(outcome: Option<&DockingOutcome>) -> String {
     }
 }
 
-fn view(pose: &Pose) -> View {
+fn view(pose: &Pose) -> CameraPose {
     let axes = target_from_camera(pose);
-    View {
+    CameraPose {
         position: pose.position_m.into(),
         axes: [0, 1, 2].map(|axis| axes.column(axis).into_owned().into()),
     }

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use sim::truth::{FrameTruth, ObjectTruth, Trajectory};
 
 use self::report::{FarRangeReporter, range_and_rate};
-use crate::feed::{Measurements, Monitored, Serve, Surroundings, frames, optional};
+use crate::feed::{Measurements, MonitorContext, MonitoredWorld, Serve, frames, optional};
 use crate::ground::GroundTrack;
 use crate::plan::Plan;
 use crate::server::overview::camera;
@@ -26,12 +26,12 @@ const MARGIN_M_S: f64 = 0.1;
 /// Points of the relative orbit that are drawn.
 const ORBIT_POINTS: u64 = 3000;
 
-impl Monitored for FarRangeMission {
-    fn surroundings(&self, measurements: &Measurements) -> Result<Surroundings, Failure> {
+impl MonitoredWorld for FarRangeMission {
+    fn context(&self, measurements: &Measurements) -> Result<MonitorContext, Failure> {
         let scenario = self.scenario();
-        Ok(Surroundings {
+        Ok(MonitorContext {
             ground: Some(GroundTrack::Chaser(Box::new(Trajectory::new(&scenario.orbit)?))),
-            stretch: Stretch::of_sensor(&scenario.sensor),
+            stretch: Stretch::from_sensor(&scenario.sensor),
             frames: frames::<FrameTruth>(measurements, Self::TRUTH_FILE)?,
         })
     }
@@ -40,15 +40,11 @@ impl Monitored for FarRangeMission {
         self.simulator().schedule().frame(frame).map(|(_, time)| time)
     }
 
-    fn overview(
-        &self,
-        measurements: &Measurements,
-        surroundings: &Surroundings,
-    ) -> Result<[Value; 2], Failure> {
+    fn overview(&self, measurements: &Measurements, context: &MonitorContext) -> Result<[Value; 2], Failure> {
         let scenario = self.scenario();
         let schedule = self.simulator().schedule();
         let trajectory = Trajectory::new(&scenario.orbit)?;
-        let frames = &surroundings.frames;
+        let frames = &context.frames;
         let at = |frame| schedule.frame(frame).map(|(_, time)| time);
         let plan = Plan::new("km", frames, MARGIN_M_S, |frame| {
             at(frame).map(|time| range_and_rate(&trajectory, time))
@@ -81,20 +77,20 @@ impl Monitored for FarRangeMission {
     fn feed(
         &self,
         measurements: &Measurements,
-        surroundings: &Surroundings,
+        context: &MonitorContext,
         session: &Session,
     ) -> Result<(), Failure> {
-        let Some(ground) = &surroundings.ground else { return Ok(()) };
+        let Some(ground) = &context.ground else { return Ok(()) };
         let Some(start) = self.time(0) else { return Ok(()) };
         let trajectory = &Trajectory::new(&self.scenario().orbit)?;
         let reporter = FarRangeReporter { camera: &self.scenario().camera, trajectory, ground, start };
         match measurements {
             Measurements::Live { factory, frames, jobs } => {
-                self.follow(frames.clone(), *jobs, factory.of()?, |processed| {
+                self.follow(frames.clone(), *jobs, factory.downcast()?, |processed| {
                     let SceneTruth { frame: truth, objects } = &processed.truth;
                     session.wait_for_goal(truth.frame)?;
                     let report = reporter.report(truth, objects, Some(&processed.outcome));
-                    let picture = surroundings.stretch.picture(&processed.image);
+                    let picture = context.stretch.picture(&processed.image);
                     session.publish(&report, Digitiser::default(), Some(picture))
                 })
             }
@@ -102,9 +98,9 @@ impl Monitored for FarRangeMission {
         }
     }
 
-    fn paint(&self, surroundings: &Surroundings, serve: Serve<'_>) -> Result<(), Failure> {
+    fn paint(&self, context: &MonitorContext, serve: Serve<'_>) -> Result<(), Failure> {
         let mut camera = self.simulator().camera()?;
-        serve(&mut |order| Ok(surroundings.stretch.picture(&camera.expose(order.frame)?.frame)))
+        serve(&mut |order| Ok(context.stretch.picture(&camera.expose(order.frame)?.frame)))
     }
 }
 

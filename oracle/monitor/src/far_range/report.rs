@@ -6,16 +6,16 @@ use nalgebra::Vector3;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Trajectory, Visibility};
 
 use crate::ground::GroundTrack;
-use crate::report::{Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape, View};
+use crate::report::{CameraPose, Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape};
 
 /// Half side of the box about a cluster, px.
 const CLUSTER_PX: f64 = 5.0;
 /// Smallest circle about a true place, px.
 const TRUTH_PX: f64 = 9.0;
 /// Most true objects that are drawn: a picture full of particles says no more with all of them.
-const MOST_TRUTHS: usize = 300;
+const MAX_TRUTHS: usize = 300;
 /// Of an object's light, what the regions may cut away before it counts as not in the picture.
-const MOST_CUT: f64 = 0.5;
+const MAX_CUT: f64 = 0.5;
 
 /// Makes the reports of frames.
 pub(crate) struct FarRangeReporter<'a> {
@@ -45,9 +45,9 @@ impl FarRangeReporter<'_> {
             parameters: parameters(truth, objects, outcome),
             facts: facts(truth, outcome),
             overlay: recognised(outcome),
-            truth_overlay: true_places(objects),
+            truth_overlay: true_positions(objects),
             phase: Phase { measured: None, truth: range_and_rate(self.trajectory, truth.time) },
-            ground: self.ground.at(truth.time),
+            ground: self.ground.ground_at(truth.time),
             model: self.model(truth, outcome),
         }
     }
@@ -59,7 +59,7 @@ impl FarRangeReporter<'_> {
         let view = |camera_from_icrs: &contract::Rotation<contract::CameraFrame, contract::Icrs>| {
             let icrs_from_camera = camera_from_icrs.inverse();
             let axis = |axis: Vector3<f64>| rtn_from_icrs.rotate(&icrs_from_camera.rotate(&axis)).into();
-            View { position, axes: [axis(Vector3::x()), axis(Vector3::y()), axis(Vector3::z())] }
+            CameraPose { position, axes: [axis(Vector3::x()), axis(Vector3::y()), axis(Vector3::z())] }
         };
         let line_of_sight =
             outcome.and_then(Outcome::measurement).and_then(|measurement| measurement.line_of_sight);
@@ -175,11 +175,11 @@ fn recognised(outcome: Option<&Outcome>) -> Vec<Shape> {
         .collect()
 }
 
-fn true_places(objects: &[ObjectTruth]) -> Vec<Shape> {
+fn true_positions(objects: &[ObjectTruth]) -> Vec<Shape> {
     objects
         .iter()
-        .filter(|object| Visibility::of_snr(object.snr) != Visibility::Invisible && object.cut < MOST_CUT)
-        .take(MOST_TRUTHS)
+        .filter(|object| Visibility::of_snr(object.snr) != Visibility::Invisible && object.cut < MAX_CUT)
+        .take(MAX_TRUTHS)
         .map(|object| {
             let kind = format!("truth {}", object.kind.code());
             let place = [object.position.x, object.position.y];

@@ -64,18 +64,18 @@ pub fn serve(
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> Result<(), Failure> {
     let Feed { world, measurements } = monitored;
-    let surroundings = world.surroundings(measurements)?;
-    let overview = Overview::of(monitored, &surroundings)?;
-    let session = Arc::new(Session::new(surroundings.frames.clone()));
-    let shared = Arc::new(Shared {
+    let context = world.context(measurements)?;
+    let overview = Overview::from_feed(monitored, &context)?;
+    let session = Arc::new(Session::new(context.frames.clone()));
+    let shared = Arc::new(ServerState {
         overview,
-        ground: surroundings.ground.clone(),
-        times: surroundings.frames.clone().filter_map(|frame| world.time(frame)).collect(),
-        first: surroundings.frames.start,
+        ground: context.ground.clone(),
+        times: context.frames.clone().filter_map(|frame| world.time(frame)).collect(),
+        first: context.frames.start,
         session: Arc::clone(&session),
     });
     // A thread that fails tells the page, unless it only was told to stop.
-    let tell = |result: Result<(), Failure>| {
+    let publish_failure = |result: Result<(), Failure>| {
         if let Err(failure) = result
             && !session.is_closed()
         {
@@ -83,9 +83,9 @@ pub fn serve(
         }
     };
     std::thread::scope(|scope| {
-        scope.spawn(|| tell(world.feed(measurements, &surroundings, &session)));
+        scope.spawn(|| publish_failure(world.feed(measurements, &context, &session)));
         for _ in 0..PAINTERS {
-            scope.spawn(|| tell(paint(monitored, &surroundings, &session)));
+            scope.spawn(|| publish_failure(paint(monitored, &context, &session)));
         }
         let served = answer_requests(&shared, bind, ready, stop);
         session.close();
@@ -94,7 +94,7 @@ pub fn serve(
 }
 
 /// What requests look at.
-struct Shared {
+struct ServerState {
     overview: Overview,
     ground: Option<GroundTrack>,
     times: Vec<Epoch>,
@@ -103,7 +103,7 @@ struct Shared {
 }
 
 fn answer_requests(
-    shared: &Arc<Shared>,
+    shared: &Arc<ServerState>,
     bind: SocketAddr,
     ready: impl FnOnce(SocketAddr),
     stop: impl Future<Output = ()> + Send + 'static,
@@ -141,7 +141,7 @@ fn answer_requests(
     served
 }
 
-fn router(shared: Arc<Shared>, guard: Guard) -> Router {
+fn router(shared: Arc<ServerState>, guard: Guard) -> Router {
     Router::new()
         .route("/api/session.json", get(session))
         .route("/api/scene.json", get(scene))
@@ -197,24 +197,24 @@ fn document(status: StatusCode, value: &impl Serialize) -> Response {
     }
 }
 
-async fn session(State(shared): State<Arc<Shared>>) -> Response {
+async fn session(State(shared): State<Arc<ServerState>>) -> Response {
     json(shared.overview.session.clone())
 }
 
-async fn scene(State(shared): State<Arc<Shared>>) -> Response {
+async fn scene(State(shared): State<Arc<ServerState>>) -> Response {
     json(shared.overview.scene.clone())
 }
 
-async fn progress(State(shared): State<Arc<Shared>>) -> Response {
+async fn progress(State(shared): State<Arc<ServerState>>) -> Response {
     document(StatusCode::OK, &shared.session.progress())
 }
 
-async fn history(State(shared): State<Arc<Shared>>) -> Response {
+async fn history(State(shared): State<Arc<ServerState>>) -> Response {
     document(StatusCode::OK, &shared.session.history())
 }
 
 /// The track over the ground about a frame: longitude and latitude, degrees.
-async fn ground(State(shared): State<Arc<Shared>>, Path(file): Path<String>) -> Response {
+async fn ground(State(shared): State<Arc<ServerState>>, Path(file): Path<String>) -> Response {
     let number = file.strip_suffix(".json").and_then(|number| number.parse::<u64>().ok());
     let index = number.and_then(|number| usize::try_from(number.checked_sub(shared.first)?).ok());
     match index.and_then(|index| shared.times.get(index)) {
@@ -227,7 +227,7 @@ async fn ground(State(shared): State<Arc<Shared>>, Path(file): Path<String>) -> 
 }
 
 /// `N.json`, what is known of a frame, or `N.gray`, its picture: one byte a pixel, row by row.
-async fn frame(State(shared): State<Arc<Shared>>, Path(file): Path<String>) -> Response {
+async fn frame(State(shared): State<Arc<ServerState>>, Path(file): Path<String>) -> Response {
     let Some((number, kind)) = file.split_once('.') else { return not_a_frame() };
     let Some(number) = number.parse().ok().filter(|number| shared.session.contains(*number)) else {
         return not_a_frame();
@@ -265,7 +265,7 @@ async fn picture(session: &Session, frame: u64) -> Response {
 
 /// Waits for a frame, not for ever.
 async fn is_processed(session: &Session, frame: u64) -> bool {
-    session.want(frame);
+    session.request(frame);
     let mut processed = session.subscribe();
     let arrived = async {
         loop {

@@ -4,7 +4,7 @@ use contract::Camera;
 use files::Failure;
 use serde_json::{Value, json};
 
-use crate::feed::{Feed, Surroundings};
+use crate::feed::{Feed, MonitorContext};
 
 /// The documents that do not change.
 #[derive(Debug, Clone)]
@@ -14,8 +14,8 @@ pub(crate) struct Overview {
 }
 
 impl Overview {
-    pub(crate) fn of(feed: &Feed, surroundings: &Surroundings) -> Result<Self, Failure> {
-        let [session, scene] = feed.world.overview(&feed.measurements, surroundings)?;
+    pub(crate) fn from_feed(feed: &Feed, context: &MonitorContext) -> Result<Self, Failure> {
+        let [session, scene] = feed.world.overview(&feed.measurements, context)?;
         Ok(Self { session: bytes(&session)?, scene: bytes(&scene)? })
     }
 }

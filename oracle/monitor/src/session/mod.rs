@@ -19,7 +19,7 @@ const AHEAD: u64 = 120;
 /// Bytes of pictures that are kept, at most: some 290 far-range frames, some 580 fields.
 const PICTURE_BYTES: usize = 128 << 20;
 /// Pictures that may wait to be drawn, all clients together.
-const MOST_WAITING: usize = 64;
+const MAX_WAITING: usize = 64;
 /// Points of the history in the phase chart, at most about.
 const HISTORY_POINTS: usize = 1500;
 
@@ -37,10 +37,10 @@ pub(crate) struct Session {
 
 #[derive(Debug)]
 struct State {
-    entries: Vec<Entry>,
+    entries: Vec<FrameEntry>,
     pictures: VecDeque<(u64, Bytes)>,
     picture_bytes: usize,
-    orders: VecDeque<Order>,
+    orders: VecDeque<PictureOrder>,
     goal: u64,
     failure: Option<String>,
     is_closed: bool,
@@ -48,7 +48,7 @@ struct State {
 
 /// What is kept of a frame.
 #[derive(Debug)]
-struct Entry {
+struct FrameEntry {
     report: Bytes,
     phase: Phase,
     digitiser: Digitiser,
@@ -56,7 +56,7 @@ struct Entry {
 
 /// A picture to be drawn.
 #[derive(Debug)]
-pub(crate) struct Order {
+pub(crate) struct PictureOrder {
     pub(crate) frame: u64,
     pub(crate) digitiser: Digitiser,
     pub(crate) answer: oneshot::Sender<Bytes>,
@@ -139,7 +139,7 @@ impl Session {
         let json = serde_json::to_vec(report)
             .map_err(|error| Failure::Usage(format!("a frame cannot be written as JSON: {error}")))?;
         let mut state = self.state();
-        state.entries.push(Entry { report: json.into(), phase: report.phase, digitiser });
+        state.entries.push(FrameEntry { report: json.into(), phase: report.phase, digitiser });
         if let Some(picture) = picture {
             state.keep(report.frame, picture);
         }
@@ -154,7 +154,7 @@ impl Session {
     }
 
     /// Has frames processed up to this one and some more.
-    pub(crate) fn want(&self, frame: u64) {
+    pub(crate) fn request(&self, frame: u64) {
         let mut state = self.state();
         let goal = frame.saturating_add(AHEAD);
         if goal > state.goal {
@@ -181,17 +181,17 @@ impl Session {
         };
         // Those whose clients have gone make room.
         state.orders.retain(|order| !order.answer.is_closed());
-        if state.orders.len() >= MOST_WAITING || state.is_closed {
+        if state.orders.len() >= MAX_WAITING || state.is_closed {
             return PictureAnswer::Busy;
         }
         let (answer, promise) = oneshot::channel();
-        state.orders.push_back(Order { frame, digitiser, answer });
+        state.orders.push_back(PictureOrder { frame, digitiser, answer });
         self.changed.notify_all();
         PictureAnswer::Ordered(promise)
     }
 
     /// The next picture to be drawn, once there is one; `None` at the end.
-    pub(crate) fn next_order(&self) -> Option<Order> {
+    pub(crate) fn next_order(&self) -> Option<PictureOrder> {
         let mut state = self.state();
         loop {
             if state.is_closed {
@@ -206,7 +206,7 @@ impl Session {
     }
 
     /// Hands a picture to who ordered it, and keeps it.
-    pub(crate) fn deliver(&self, order: Order, picture: Bytes) {
+    pub(crate) fn deliver(&self, order: PictureOrder, picture: Bytes) {
         self.state().keep(order.frame, picture.clone());
         // Nobody is there any more: it is kept for the next one.
         let _ = order.answer.send(picture);
@@ -275,10 +275,10 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{ImageLayout, Model, View};
+    use crate::report::{CameraPose, ImageLayout, Model};
 
     fn report(frame: u64) -> FrameReport {
-        let view = View { position: [0.0; 3], axes: [[0.0; 3]; 3] };
+        let view = CameraPose { position: [0.0; 3], axes: [[0.0; 3]; 3] };
         FrameReport {
             frame,
             time_utc: String::new(),
@@ -312,20 +312,20 @@ mod tests {
     fn orders_are_bounded_and_those_of_clients_that_left_make_room() {
         let session = Session::new(0..2);
         session.publish(&report(0), Digitiser::default(), None).unwrap();
-        let promises: Vec<_> = (0..MOST_WAITING).map(|_| session.picture(0)).collect();
+        let promises: Vec<_> = (0..MAX_WAITING).map(|_| session.picture(0)).collect();
         assert!(matches!(session.picture(0), PictureAnswer::Busy));
         drop(promises);
         assert!(matches!(session.picture(0), PictureAnswer::Ordered(_)));
     }
 
     #[test]
-    fn nobody_processes_beyond_what_is_wanted_and_some_more() {
+    fn processing_stops_soon_after_the_last_requested_frame() {
         let session = Session::new(100..9000);
         session.wait_for_goal(100 + AHEAD).unwrap();
         assert_eq!(session.state().goal, 100 + AHEAD);
-        session.want(500);
+        session.request(500);
         session.wait_for_goal(500 + AHEAD).unwrap();
-        session.want(200);
+        session.request(200);
         assert_eq!(session.state().goal, 500 + AHEAD);
         session.close();
         assert!(session.wait_for_goal(8999).is_err() && session.next_order().is_none());

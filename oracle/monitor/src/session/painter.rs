@@ -2,14 +2,14 @@
 use files::Failure;
 
 use super::Session;
-use crate::feed::{Feed, Surroundings};
+use crate::feed::{Feed, MonitorContext};
 
 /// Draws what is ordered, until the monitor is closed.
 ///
 /// # Errors
 /// A [`Failure`] when a frame cannot be made.
-pub(crate) fn paint(feed: &Feed, surroundings: &Surroundings, session: &Session) -> Result<(), Failure> {
-    feed.world.paint(surroundings, &|draw| {
+pub(crate) fn paint(feed: &Feed, context: &MonitorContext, session: &Session) -> Result<(), Failure> {
+    feed.world.paint(context, &|draw| {
         while let Some(order) = session.next_order() {
             let picture = draw(&order)?;
             session.deliver(order, picture);

@@ -18,7 +18,7 @@ impl Stretch {
     }
 
     /// From the detector's bias to its full scale, by the inverse hyperbolic sine.
-    pub(crate) fn of_sensor(sensor: &SensorConfig) -> Self {
+    pub(crate) fn from_sensor(sensor: &SensorConfig) -> Self {
         let full_dn = f64::from(sensor.full_scale_dn());
         let span = (full_dn - sensor.bias_dn).max(1.0);
         let grey = |dn: u16| {
@@ -45,7 +45,7 @@ mod tests {
     fn the_stretch_rises_from_black_at_the_bias_to_white_at_full_scale() {
         let source = ScenarioSource::read("argon").unwrap();
         let sensor = &source.typed::<FarRangeScenario>("argon").unwrap().sensor;
-        let Stretch(table) = Stretch::of_sensor(sensor);
+        let Stretch(table) = Stretch::from_sensor(sensor);
         assert_eq!((table[0], table[sensor.bias_dn as usize]), (0, 0));
         assert_eq!((table.len(), table.last()), (usize::from(sensor.full_scale_dn()) + 1, Some(&255)));
         assert!(table.windows(2).all(|pair| pair[0] <= pair[1]));

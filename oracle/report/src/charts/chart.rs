@@ -186,7 +186,7 @@ pub(crate) fn axes(x_title: &str, y_title: &str) -> Layout {
 
 /// An axis in powers of ten, with whole numbers at its ticks: a lone 2 may be 20. Few of them, as those before a power are close.
 pub(crate) fn log_axis(title: &str) -> Axis {
-    Axis::titled(title).logarithmic().tick_format("~g").most_ticks(4)
+    Axis::titled(title).logarithmic().tick_format("~g").max_ticks(4)
 }
 
 /// Ticks of a low panel with an axis in powers of ten: powers, or 1 and 3, or 1, 2 and 5 of each, the fewest that are two, so that no label

@@ -353,7 +353,7 @@ impl Axis {
     }
 
     /// An axis of time; values are milliseconds of UTC since 1970-01-01.
-    pub(crate) fn of_time(self) -> Self {
+    pub(crate) fn with_time_axis(self) -> Self {
         self.with("type", "date")
     }
 
@@ -388,7 +388,7 @@ impl Axis {
     }
 
     /// Ticks at most.
-    pub(crate) fn most_ticks(self, count: u32) -> Self {
+    pub(crate) fn max_ticks(self, count: u32) -> Self {
         self.with("nticks", count)
     }
 

@@ -47,7 +47,7 @@ pub(crate) fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize>
 }
 
 /// How much is drawn of clouds of points, by what they are points of; `rings` where their extremes are drawn beside.
-pub(crate) fn drawn(clouds: &[(usize, &str)], rings: bool) -> String {
+pub(crate) fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String {
     let of = |&(count, what): &(usize, &str)| format!("{} of {count} {what}", sampled(count).len());
     let parts: Vec<String> = clouds.iter().filter(|(count, _)| *count > 0).map(of).collect();
     let mut text = format!("Drawn: {}.", parts.join(" and "));
@@ -175,8 +175,8 @@ mod tests {
 
     #[test]
     fn a_caption_says_how_many_of_how_many_are_drawn() {
-        assert_eq!(drawn(&[(12, "right"), (0, "wrong")], true), "Drawn: 12 of 12 right.");
-        let text = drawn(&[(CLOUD + 1, "right"), (3, "wrong")], true);
+        assert_eq!(thinning_caption(&[(12, "right"), (0, "wrong")], true), "Drawn: 12 of 12 right.");
+        let text = thinning_caption(&[(CLOUD + 1, "right"), (3, "wrong")], true);
         assert!(
             text.starts_with("Drawn: 2500 of 2501 right and 3 of 3 wrong. ") && text.contains("Rings"),
             "{text}"

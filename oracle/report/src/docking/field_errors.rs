@@ -2,11 +2,11 @@
 
 use contract::docking::DockingOutcome;
 
-use super::limits::{limits, outside, told_outside};
+use super::limits::{limits, note_outside, outside};
 use super::run::DockingRun;
 use crate::charts::chart::{Chart, MEASURED, Panel, WRONG, cloud, crosses, points, rounded, stacked};
 use crate::charts::plotly::Axis;
-use crate::charts::thin::{bins, drawn, sampled, summary};
+use crate::charts::thin::{bins, sampled, summary, thinning_caption};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 
@@ -69,8 +69,8 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
     section.chart(Chart::new(
         format!(
             "Measured minus true. {} {}",
-            told_outside(beyond, 6 * rows.len()),
-            drawn(&[(right.len(), "right fields"), (wrong.len(), "wrong ones")], true)
+            note_outside(beyond, 6 * rows.len()),
+            thinning_caption(&[(right.len(), "right fields"), (wrong.len(), "wrong ones")], true)
         ),
         900,
         data,

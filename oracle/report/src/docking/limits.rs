@@ -6,7 +6,7 @@ pub(super) fn outside(range: [f64; 2], values: impl Iterator<Item = f64>) -> usi
 }
 
 /// What a caption says of errors that the axes leave out.
-pub(super) fn told_outside(count: usize, of: usize) -> String {
+pub(super) fn note_outside(count: usize, of: usize) -> String {
     match count {
         0 => format!("All {of} errors lie inside of the axes."),
         _ => format!("{count} of {of} errors lie outside of the axes; zoom out (double click) for them."),

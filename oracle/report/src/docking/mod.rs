@@ -1,7 +1,7 @@
 //! The report of a docking run: the figures of the docking paper, errors against the truth, fields.
 
+mod field_detail;
 mod field_errors;
-mod field_sheet;
 mod limits;
 mod motion;
 mod run;
@@ -10,16 +10,16 @@ use std::path::Path;
 
 use indexmap::IndexMap;
 
-pub use field_sheet::FieldSheet;
+pub use field_detail::FieldDetail;
 pub use run::{DockingRun, PortionReport};
 
 use crate::charts::chart::{BESIDE, Chart, MEASURED, bars, rounded, stacked_bars};
 use crate::charts::plotly::Trace;
-use crate::figures::words::spoken;
+use crate::figures::words::display_name;
 use crate::figures::{cell, figure_table, least_to_most, percent_cell, shown_percent};
 use crate::page::colours::colour_of;
 use crate::page::data_table::DataTable;
-use crate::page::picture::Rendered;
+use crate::page::picture::RenderedPictures;
 use crate::page::{Page, Section};
 use ::run::AnyJudgement;
 use files::{Checksums, Failure};
@@ -28,16 +28,16 @@ use score::{Figure, UnitVerdict, warm_up_note};
 
 /// The page of a run directory.
 pub(crate) fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
-    let page = docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)?;
+    let page = docking_page(&DockingRun::read(directory)?, &FieldDetail::open(directory)?)?;
     Checksums::check(directory, |_| true)?;
     Ok(page)
 }
 
 /// Pictures of some fields of a run directory.
-pub(crate) fn pictures(directory: &Path, fields: &[u64]) -> Result<Rendered, Failure> {
+pub(crate) fn pictures(directory: &Path, fields: &[u64]) -> Result<RenderedPictures, Failure> {
     let run = DockingRun::read(directory)?;
     let row = |field: &u64| run.truths.binary_search_by_key(field, |truth| truth.field).ok();
-    let sheet = FieldSheet::open(directory)?;
+    let sheet = FieldDetail::open(directory)?;
     let pictures = sheet.pictures(&run, &fields.iter().filter_map(row).collect::<Vec<_>>())?;
     Ok((pictures, sheet.reason().map(str::to_owned)))
 }
@@ -46,7 +46,7 @@ pub(crate) fn pictures(directory: &Path, fields: &[u64]) -> Result<Rendered, Fai
 ///
 /// # Errors
 /// A [`Failure`] when a field cannot be drawn.
-pub fn docking_page(run: &DockingRun, sheet: &FieldSheet) -> Result<Page, Failure> {
+pub fn docking_page(run: &DockingRun, sheet: &FieldDetail) -> Result<Page, Failure> {
     let (first, last) = (&run.truths[0], &run.truths[run.truths.len() - 1]);
     let scenario = &run.run_file.scenario;
     let figure = |name: &str| run.score.figures.get(name).map_or_else(String::new, shown_percent);
@@ -150,13 +150,14 @@ fn verdicts(run: &DockingRun) -> Section {
         if all == 0 {
             return;
         }
-        let mut cells = vec![what.to_owned(), spoken(cause)];
+        let mut cells = vec![what.to_owned(), display_name(cause)];
         cells.extend(counts.iter().map(u64::to_string));
         cells.push(all.to_string());
         data.push(cells);
         let frames = score.groups.values().map(|group| group.frames.max(1) as f64);
         let percent = counts.iter().zip(frames).map(|(count, of)| rounded(100.0 * *count as f64 / of, 3));
-        let name = if cause.is_empty() { what.to_owned() } else { format!("{what}: {}", spoken(cause)) };
+        let name =
+            if cause.is_empty() { what.to_owned() } else { format!("{what}: {}", display_name(cause)) };
         let colour = match what {
             "success" => MEASURED,
             "range alone" => BESIDE,
@@ -190,7 +191,7 @@ fn verdicts(run: &DockingRun) -> Section {
 }
 
 /// A sheet of fields: a success of every range, every kind of miss and of wrong answer.
-fn fields(run: &DockingRun, sheet: &FieldSheet) -> Result<Section, Failure> {
+fn fields(run: &DockingRun, sheet: &FieldDetail) -> Result<Section, Failure> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut evenly = |count: usize, is: &dyn Fn(&UnitVerdict) -> bool| {
         let rows: Vec<usize> = (0..run.verdicts.len()).filter(|&row| is(&run.verdicts[row])).collect();

@@ -2,15 +2,15 @@
 
 use contract::docking::{Motion, Pose};
 use nalgebra::Vector3;
-use score::docking::Shown;
+use score::docking::ApproachParameters;
 
-use super::limits::{limits, outside, told_outside};
+use super::limits::{limits, note_outside, outside};
 use super::run::{DockingRun, PortionReport};
 use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, band, cloud, line, points, rounded, stacked,
 };
 use crate::charts::plotly::{Axis, Trace};
-use crate::charts::thin::{bins, drawn, summary, thinned};
+use crate::charts::thin::{bins, summary, thinned, thinning_caption};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 
@@ -32,7 +32,7 @@ const PARAMETERS: [(&str, &str, i32); 7] = [
 ];
 
 /// What an estimator said at the end of a portion, metres and degrees.
-struct Said {
+struct MotionEstimate {
     time_s: f64,
     field: u64,
     values: [f64; 7],
@@ -42,14 +42,14 @@ struct Said {
     errors: [f64; 7],
 }
 
-impl Said {
+impl MotionEstimate {
     /// All that `pick` takes of the reports of a run.
-    fn all(run: &DockingRun, pick: fn(&PortionReport) -> &Option<Motion>) -> Vec<Self> {
-        let said = |report: &PortionReport| {
+    fn from_reports(run: &DockingRun, pick: fn(&PortionReport) -> &Option<Motion>) -> Vec<Self> {
+        let estimate = |report: &PortionReport| {
             let (motion, truth) = (pick(report).as_ref()?, &run.truths[report.row]);
-            let values = shown(&motion.pose, &motion.velocity_m_s);
-            let true_values = shown(&truth.pose, &truth.velocity_m_s);
-            let sigmas = Shown::sigmas(motion).unwrap_or([f64::NAN; 7]);
+            let values = approach_parameters(&motion.pose, &motion.velocity_m_s);
+            let true_values = approach_parameters(&truth.pose, &truth.velocity_m_s);
+            let sigmas = ApproachParameters::sigmas(motion).unwrap_or([f64::NAN; 7]);
             Some(Self {
                 time_s: rounded(truth.time_s, 3),
                 field: truth.field,
@@ -58,13 +58,13 @@ impl Said {
                 errors: std::array::from_fn(|i| values[i] - true_values[i]),
             })
         };
-        run.reports.iter().filter_map(said).collect()
+        run.reports.iter().filter_map(estimate).collect()
     }
 }
 
 /// The seven parameters, metres and degrees.
-fn shown(pose: &Pose, velocity_m_s: &Vector3<f64>) -> [f64; 7] {
-    let shown = Shown::of(pose, velocity_m_s);
+fn approach_parameters(pose: &Pose, velocity_m_s: &Vector3<f64>) -> [f64; 7] {
+    let shown = ApproachParameters::from_motion(pose, velocity_m_s);
     let phi = shown.phi_rad;
     let degrees = [shown.alpha_rad, shown.beta_rad, phi.x, phi.y, phi.z].map(f64::to_degrees);
     [shown.rho_m, shown.u_m_s, degrees[0], degrees[1], degrees[2], degrees[3], degrees[4]]
@@ -74,64 +74,73 @@ fn shown(pose: &Pose, velocity_m_s: &Vector3<f64>) -> [f64; 7] {
 pub(super) fn sections(run: &DockingRun) -> [Section; 2] {
     let five = Section::new("fig-5", "Fig. 5: parameters of the motion");
     let six = Section::new("fig-6", "Fig. 6: accuracy of the motion");
-    let best = Said::all(run, |report| &report.best);
+    let best = MotionEstimate::from_reports(run, |report| &report.best);
     if best.is_empty() {
         let none = "No portion of fields ended in this run with a motion.";
         return [five.text(none), six.text(none)];
     }
-    let paper = Said::all(run, |report| &report.paper);
+    let paper = MotionEstimate::from_reports(run, |report| &report.paper);
     let about = "Errors of the best estimate";
     let six = six.chart(sigmas(&best)).chart(errors(&best, about, "best estimate", MEASURED));
     // On axes of their own: they scatter ten times as far, and not about nothing.
     let about = "Errors of the paper's formulas";
-    let is_told = !paper.is_empty();
-    let six = if is_told { six.chart(errors(&paper, about, "paper's formulas", BESIDE)) } else { six };
+    let has_paper = !paper.is_empty();
+    let six = if has_paper { six.chart(errors(&paper, about, "paper's formulas", BESIDE)) } else { six };
     [five.chart(parameters(run, &best)), six]
 }
 
 /// A number of everything that was said, as points over time.
-fn said_points(
+fn estimate_points(
     name: &str,
-    said: &[Said],
+    estimate: &[MotionEstimate],
     decimals: i32,
-    number: &dyn Fn(&Said) -> f64,
+    number: &dyn Fn(&MotionEstimate) -> f64,
     colour: &'static str,
 ) -> Vec<Trace> {
-    let all: Vec<usize> = (0..said.len()).collect();
-    cloud(name, &all, Some(&|k| number(&said[k])), colour, |kept| {
-        let (x, y) = series(said, kept, decimals, number);
+    let all: Vec<usize> = (0..estimate.len()).collect();
+    cloud(name, &all, Some(&|k| number(&estimate[k])), colour, |kept| {
+        let (x, y) = series(estimate, kept, decimals, number);
         points("", x, y, colour)
     })
 }
 
 /// Times of some of what was said, and a number of each with so many decimals.
 fn series(
-    said: &[Said],
+    estimate: &[MotionEstimate],
     kept: &[usize],
     decimals: i32,
-    number: impl Fn(&Said) -> f64,
+    number: impl Fn(&MotionEstimate) -> f64,
 ) -> (Vec<f64>, Vec<f64>) {
-    kept.iter().map(|&k| (said[k].time_s, rounded(number(&said[k]), decimals))).unzip()
+    kept.iter().map(|&k| (estimate[k].time_s, rounded(number(&estimate[k]), decimals))).unzip()
 }
 
 /// The seven parameters with three standard deviations, and the truth.
-fn parameters(run: &DockingRun, best: &[Said]) -> Chart {
+fn parameters(run: &DockingRun, best: &[MotionEstimate]) -> Chart {
     let truth: Vec<(f64, [f64; 7])> = thinned(run.truths.len(), &[])
         .into_iter()
         .map(|row| &run.truths[row])
-        .map(|truth| (rounded(truth.time_s, 3), shown(&truth.pose, &truth.velocity_m_s)))
+        .map(|truth| (rounded(truth.time_s, 3), approach_parameters(&truth.pose, &truth.velocity_m_s)))
         .collect();
     let panels = PARAMETERS.iter().enumerate().map(|(i, (name, unit, decimals))| {
         let kept = thinned(best.len(), &[&|k| best[k].values[i]]);
-        let of =
-            |sigmas: f64| series(best, &kept, *decimals, |said| said.values[i] + sigmas * said.sigmas[i]);
+        let of = |sigmas: f64| {
+            series(best, &kept, *decimals, |estimate| estimate.values[i] + sigmas * estimate.sigmas[i])
+        };
         let (x, low) = of(-3.0);
         let mut traces = Vec::from(band("3 σ", x, low, of(3.0).1, BAND));
-        traces.extend(said_points("best estimate", best, *decimals, &|said| said.values[i], MEASURED));
+        traces.extend(estimate_points(
+            "best estimate",
+            best,
+            *decimals,
+            &|estimate| estimate.values[i],
+            MEASURED,
+        ));
         let (x, y): (Vec<f64>, Vec<f64>) =
             truth.iter().map(|(time_s, values)| (*time_s, rounded(values[i], *decimals))).unzip();
         traces.push(line("true", x, y, TRUTH));
-        let of_band = |said: &Said| [-3.0, 3.0].map(|sigmas| said.values[i] + sigmas * said.sigmas[i]);
+        let of_band = |estimate: &MotionEstimate| {
+            [-3.0, 3.0].map(|sigmas| estimate.values[i] + sigmas * estimate.sigmas[i])
+        };
         let range = limits(best.iter().flat_map(of_band).chain(truth.iter().map(|row| row.1[i])));
         Panel { range: Some(range), ..Panel::new(format!("{name}, {unit}"), traces) }
     });
@@ -141,31 +150,31 @@ fn parameters(run: &DockingRun, best: &[Said]) -> Chart {
     head.extend(PARAMETERS.map(|(name, unit, _)| format!("σ of {name}, {unit}")));
     let mut data = DataTable::new(head).caption(SAMPLED);
     for bin in bins(best.len(), TABLE_BINS) {
-        let said = &best[bin.start];
-        let mut cells = vec![format!("{:.2}", said.time_s), said.field.to_string()];
-        cells.extend(said.values.iter().map(|value| format!("{value:.5}")));
-        cells.extend(said.sigmas.iter().map(|sigma| format!("{sigma:.7}")));
+        let estimate = &best[bin.start];
+        let mut cells = vec![format!("{:.2}", estimate.time_s), estimate.field.to_string()];
+        cells.extend(estimate.values.iter().map(|value| format!("{value:.5}")));
+        cells.extend(estimate.sigmas.iter().map(|sigma| format!("{sigma:.7}")));
         data.push(cells);
     }
     let caption = format!(
         "Range, range rate, passive pitch and yaw, and the three active angles at the last moment of every portion, with three \
          standard deviations as the pipeline tells them, and the truth. {}",
-        drawn(&[(best.len(), "reports")], true)
+        thinning_caption(&[(best.len(), "reports")], true)
     );
     Chart::new(caption, 1080, data, traces, layout)
 }
 
 /// Standard deviations over time, as the paper's Fig. 6 has them.
-fn sigmas(best: &[Said]) -> Chart {
+fn sigmas(best: &[MotionEstimate]) -> Chart {
     let of = |name: &str, i: usize, colour| {
         let kept = thinned(best.len(), &[&|k| best[k].sigmas[i]]);
-        let (x, y) = series(best, &kept, 7, |said| said.sigmas[i]);
+        let (x, y) = series(best, &kept, 7, |estimate| estimate.sigmas[i]);
         line(name, x, y, colour)
     };
     // From decimetres far away to micrometres at the end.
     let log = |title: &str, shown: std::ops::Range<usize>, traces| {
         let numbers =
-            || best.iter().flat_map(|said| &said.sigmas[shown.clone()]).copied().filter(|s| *s > 0.0);
+            || best.iter().flat_map(|estimate| &estimate.sigmas[shown.clone()]).copied().filter(|s| *s > 0.0);
         let limits = [numbers().fold(f64::INFINITY, f64::min), numbers().fold(0.0, f64::max)];
         let log = Some(limits).filter(|[low, high]| low.is_finite() && high.is_finite());
         Panel { log, ..Panel::new(title, traces) }
@@ -185,27 +194,29 @@ fn sigmas(best: &[Said]) -> Chart {
     head.extend(PARAMETERS.map(|(name, unit, _)| format!("σ of {name}, {unit}")));
     let mut data = DataTable::new(head).caption(SAMPLED);
     for bin in bins(best.len(), TABLE_BINS) {
-        let said = &best[bin.start];
-        let sigmas = said.sigmas.iter().map(|sigma| format!("{sigma:.7}"));
-        data.push([format!("{:.2}", said.time_s)].into_iter().chain(sigmas));
+        let estimate = &best[bin.start];
+        let sigmas = estimate.sigmas.iter().map(|sigma| format!("{sigma:.7}"));
+        data.push([format!("{:.2}", estimate.time_s)].into_iter().chain(sigmas));
     }
     let caption = "Standard deviations that the pipeline tells, at the last moment of every portion.";
     Chart::new(caption, 640, data, traces, layout)
 }
 
 /// Errors of an estimator against the truth, with bands of three standard deviations.
-fn errors(all: &[Said], about: &str, name: &str, colour: &'static str) -> Chart {
+fn errors(all: &[MotionEstimate], about: &str, name: &str, colour: &'static str) -> Chart {
     let mut beyond = 0;
     let mut panels = Vec::new();
     for (i, (title, unit, decimals)) in PARAMETERS.iter().enumerate() {
         let kept = thinned(all.len(), &[&|k| all[k].sigmas[i]]);
-        let of = |sigmas: f64| series(all, &kept, *decimals, |said| sigmas * said.sigmas[i]);
+        let of = |sigmas: f64| series(all, &kept, *decimals, |estimate| sigmas * estimate.sigmas[i]);
         let (x, low) = of(-3.0);
         let mut traces = Vec::from(band("3 σ", x, low, of(3.0).1, BAND));
-        traces.extend(said_points(name, all, *decimals, &|said| said.errors[i], colour));
-        let shown = |said: &Said| [said.errors[i], 3.0 * said.sigmas[i], -3.0 * said.sigmas[i]];
+        traces.extend(estimate_points(name, all, *decimals, &|estimate| estimate.errors[i], colour));
+        let shown = |estimate: &MotionEstimate| {
+            [estimate.errors[i], 3.0 * estimate.sigmas[i], -3.0 * estimate.sigmas[i]]
+        };
         let range = limits(all.iter().flat_map(shown));
-        beyond += outside(range, all.iter().map(|said| said.errors[i]));
+        beyond += outside(range, all.iter().map(|estimate| estimate.errors[i]));
         panels.push(Panel { range: Some(range), ..Panel::new(format!("{title}, {unit}"), traces) });
     }
     let (traces, layout) = stacked(Axis::titled("time, s"), panels);
@@ -216,15 +227,15 @@ fn errors(all: &[Said], about: &str, name: &str, colour: &'static str) -> Chart 
     let text = format!("{about}, measured minus true, by stretches of time; motion.csv has all reports.");
     let mut data = DataTable::new(head).caption(text);
     for bin in bins(all.len(), TABLE_BINS) {
-        let said = &all[bin];
-        let mut cells = vec![format!("{:.2}", said[0].time_s)];
-        (0..7).for_each(|i| cells.extend(summary(said.iter().map(|said| said.errors[i]), 6)));
+        let estimate = &all[bin];
+        let mut cells = vec![format!("{:.2}", estimate[0].time_s)];
+        (0..7).for_each(|i| cells.extend(summary(estimate.iter().map(|estimate| estimate.errors[i]), 6)));
         data.push(cells);
     }
     let caption = format!(
         "{about} against the truth, measured minus true, with bands of three standard deviations as the pipeline tells them. {} {}",
-        told_outside(beyond, 7 * all.len()),
-        drawn(&[(all.len(), "reports")], true)
+        note_outside(beyond, 7 * all.len()),
+        thinning_caption(&[(all.len(), "reports")], true)
     );
     Chart::new(caption, 1080, data, traces, layout)
 }

@@ -84,7 +84,7 @@ impl DockingRun {
         }
         let mut answers = read_field_measurements(&measurements)?.into_iter().peekable();
         let mut rows = read_field_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
-        let mut said =
+        let mut reports_by_field =
             motion.as_deref().map(read_motion).transpose()?.unwrap_or_default().into_iter().peekable();
         let (mut outcomes, mut telemetry, mut reports) = (Vec::new(), Vec::new(), Vec::new());
         for (row, truth) in truths.iter().enumerate() {
@@ -96,7 +96,7 @@ impl DockingRun {
                     truth.field
                 ))
             })?);
-            if let Some((_, report)) = said.next_if(|(field, _)| *field == truth.field) {
+            if let Some((_, report)) = reports_by_field.next_if(|(field, _)| *field == truth.field) {
                 reports.push(PortionReport { row, best: report.best, paper: report.paper });
             }
         }

@@ -8,7 +8,7 @@ use super::run::{FarRangeRun, broken, by_bins, shown_time_ms, time_axis};
 use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, cloud, line, points, rounded, stacked,
 };
-use crate::charts::thin::{bins, drawn, thinned};
+use crate::charts::thin::{bins, thinned, thinning_caption};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 
@@ -33,8 +33,8 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
         })
         .collect();
     let section = Section::new("fig-8", "Fig. 8: attitude of the camera with respect to the chaser");
-    let told: Vec<usize> = (0..count).filter(|&row| measured[row][0].is_finite()).collect();
-    if told.is_empty() {
+    let stated: Vec<usize> = (0..count).filter(|&row| measured[row][0].is_finite()).collect();
+    if stated.is_empty() {
         return section.text("The pipeline does not tell the camera's attitude.");
     }
     let truth =
@@ -42,7 +42,7 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
     let every = thinned(count, &[]);
     let panels = ["φ, °", "θ, °", "ψ, °"].into_iter().enumerate().map(|(index, title)| {
         let value = |row: usize| measured[row][index];
-        let mut traces = cloud("measured", &told, Some(&value), MEASURED, |rows| {
+        let mut traces = cloud("measured", &stated, Some(&value), MEASURED, |rows| {
             let y = rows.iter().map(|&row| rounded(value(row), 5)).collect();
             points("", run.times(rows), y, MEASURED)
         });
@@ -63,7 +63,7 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
         format!(
             "Euler angles 123 of the rotation from the chaser's body to the camera: the pipeline's attitude of the camera against \
              telemetry's of the body, so that the noise of both is in it. {}",
-            drawn(&[(told.len(), "attitudes")], true)
+            thinning_caption(&[(stated.len(), "attitudes")], true)
         ),
         600,
         data,

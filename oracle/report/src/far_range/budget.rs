@@ -1,6 +1,6 @@
 //! The error budget: the same frames with the truth in the place of one stage's result, beside the honest run.
 
-use run::figure_called;
+use run::figure_by_name;
 use score::{Score, names};
 
 use super::FarRangeRun;
@@ -36,7 +36,7 @@ pub(super) fn budget(run: &FarRangeRun) -> Section {
     let mut table = DataTable::new(
         ["true stage".to_owned()]
             .into_iter()
-            .chain(rates.into_iter().chain(amounts).map(|name| figure_called(name).words)),
+            .chain(rates.into_iter().chain(amounts).map(|name| figure_by_name(name).words)),
     )
     .caption("Rates in percent with 95 % intervals, errors of the right answers in degrees.");
     for (stage, score) in &rows {

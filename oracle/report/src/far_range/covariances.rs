@@ -1,12 +1,12 @@
 //! Whether the covariances of the answers are honest, by group, state of the image and source of the attitude.
 
 use indexmap::IndexMap;
-use run::figure_called;
+use run::figure_by_name;
 use score::{Figure, Score, names};
 
 use super::super::figures::{cell, percent_cell};
 use super::super::page::Section;
-use crate::figures::words::spoken;
+use crate::figures::words::display_name;
 use crate::page::data_table::DataTable;
 
 /// The figures of consistency, in the order of the columns.
@@ -25,13 +25,13 @@ pub(super) fn covariances(score: &Score) -> Section {
     if score.consistency.is_empty() {
         return section;
     }
-    let labels = FIGURES.map(|name| figure_called(name).words);
+    let labels = FIGURES.map(|name| figure_by_name(name).words);
     let mut table = DataTable::new([String::new(), "frames".to_owned()].into_iter().chain(labels)).caption(
         "Correct answers that state a covariance. NEES per dimension is 1 in the mean when covariances are honest, above 1 when they are too \
          small; percent of the components within 1 and 3 σ are 68.27 and 99.73 for normal errors. With 95 % intervals.",
     );
     let mut push = |label: String, frames: u64, figures: &IndexMap<String, Figure>| {
-        let cells = FIGURES.map(|name| shown(name, figures.get(name)));
+        let cells = FIGURES.map(|name| figure_text(name, figures.get(name)));
         table.push([label, frames.to_string()].into_iter().chain(cells));
     };
     let counted = |figures: &IndexMap<String, Figure>| {
@@ -43,15 +43,15 @@ pub(super) fn covariances(score: &Score) -> Section {
         push(group.clone(), counted(&of_group.figures), &of_group.figures);
     }
     for row in &score.consistency {
-        push(format!("{}: {}", row.by, spoken(&row.value)), row.frames, &row.figures);
+        push(format!("{}: {}", row.by, display_name(&row.value)), row.frames, &row.figures);
     }
     section.table(table.narrow())
 }
 
 /// A figure with its interval; a dash where it is counted over nothing.
-fn shown(name: &str, figure: Option<&Figure>) -> String {
+fn figure_text(name: &str, figure: Option<&Figure>) -> String {
     let Some(figure) = figure.filter(|figure| figure.value.is_some()) else { return cell(None) };
-    if figure_called(name).is_rate() {
+    if figure_by_name(name).is_rate() {
         return percent_cell(Some(figure));
     }
     let interval = figure.low.zip(figure.high);
@@ -66,11 +66,11 @@ mod tests {
     #[test]
     fn a_figure_has_its_interval_and_none_without_a_value() {
         let nees = Figure::mean(&[vec![0.5, 1.5, 1.0, 2.0]]);
-        let text = shown(names::CENTROID_NEES_MEAN, Some(&nees));
+        let text = figure_text(names::CENTROID_NEES_MEAN, Some(&nees));
         assert!(text.starts_with("1.250 (") && text.ends_with(')'), "{text}");
         let within = Figure::rate(&[vec![true, true, false, true]]);
-        assert!(shown(names::CENTROID_WITHIN_1SIGMA_RATE, Some(&within)).starts_with("75.00 ("));
-        assert_eq!(shown(names::CENTROID_NEES_MEAN, Some(&Figure::mean(&[]))), "–");
-        assert_eq!(shown(names::CENTROID_NEES_MEAN, None), "–");
+        assert!(figure_text(names::CENTROID_WITHIN_1SIGMA_RATE, Some(&within)).starts_with("75.00 ("));
+        assert_eq!(figure_text(names::CENTROID_NEES_MEAN, Some(&Figure::mean(&[]))), "–");
+        assert_eq!(figure_text(names::CENTROID_NEES_MEAN, None), "–");
     }
 }

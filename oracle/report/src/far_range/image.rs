@@ -8,11 +8,11 @@ use files::Failure;
 use score::{Cause, Verdict};
 use sim::truth::{Elements, State};
 
-use super::FrameSheet;
+use super::FrameDetail;
 use super::run::{FarRangeRun, by_bins};
 use crate::charts::chart::{Chart, MEASURED, TRUTH, WRONG, cloud, crosses, line, points, rounded};
 use crate::charts::plotly::{Axis, Layout, Trace};
-use crate::charts::thin::{bins, drawn, evenly, sampled};
+use crate::charts::thin::{bins, evenly, sampled, thinning_caption};
 use crate::page::Section;
 
 /// Room about the detector, so that a mark at its edge is whole, px.
@@ -26,7 +26,7 @@ const SAMPLE_RANGE_KM: f64 = 16.0;
 const OVERLAID: usize = 36;
 
 /// Fig. 2: a whole image, and images of one orbit over one another.
-pub(super) fn sample(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, Failure> {
+pub(super) fn sample(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
     let section = Section::new("fig-2", "Fig. 2: a whole image, and the images of an orbit over one another");
     if let Some(reason) = sheet.reason() {
         return Ok(section.text(format!("There are no pictures: {reason}")));
@@ -38,7 +38,7 @@ pub(super) fn sample(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, F
     let Some(row) = right.or_else(|| nearest(&mut (0..run.verdicts.len()))) else { return Ok(section) };
     let orbit = one_orbit(run, row);
     let overlaid: Vec<usize> = bins(orbit.len(), OVERLAID).map(|bin| orbit.start + bin.start).collect();
-    let pictures = [sheet.whole(run, row)?, sheet.overlaid(run, &overlaid)?];
+    let pictures = [sheet.full_frame(run, row)?, sheet.overlaid(run, &overlaid)?];
     Ok(section
         .text(format!(
             "The frame nearest to the paper's 16 km, with everything in it that can be detected, and frames of the orbit around it, of which every \
@@ -74,15 +74,15 @@ pub(super) fn track(run: &FarRangeRun) -> Section {
     let rows_of = |code: &str| (0..count).filter(|&row| is(row, code)).collect::<Vec<usize>>();
     let (right, wrong) = (rows_of("correct"), rows_of("wrong"));
     let hover = "frame %{customdata}<br>x %{x} px, y %{y} px";
-    let told = |curve: fn(&str, Vec<f64>, Vec<f64>, &str) -> Trace, rows: &[usize]| {
+    let trace_of = |curve: fn(&str, Vec<f64>, Vec<f64>, &str) -> Trace, rows: &[usize]| {
         let answers = rows.iter().map(|&row| answer(row)).map(|[x, y]| (rounded(x, 2), rounded(y, 2)));
         let (x, y): (Vec<f64>, Vec<f64>) = answers.unzip();
         let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
         curve("measured, wrong", x, y, WRONG).custom_data(frames).hover_template(hover)
     };
-    let mut traces = cloud("measured, right", &right, None, MEASURED, |rows| told(points, rows));
+    let mut traces = cloud("measured, right", &right, None, MEASURED, |rows| trace_of(points, rows));
     let kept: Vec<usize> = sampled(wrong.len()).into_iter().map(|i| wrong[i]).collect();
-    traces.push(told(crosses, &kept));
+    traces.push(trace_of(crosses, &kept));
     traces.push(true_track(run, &at).hover_template(hover));
     let (columns, rows) = (camera.columns as f64, camera.rows as f64);
     let x_axis = Axis::titled("x, px (columns)").range([-0.5 - ROOM_PX, columns - 0.5 + ROOM_PX]);
@@ -92,7 +92,7 @@ pub(super) fn track(run: &FarRangeRun) -> Section {
     Section::new("fig-3", "Fig. 3: track of the target in pixels").chart(Chart::new(
         format!(
             "Where the target is and where it was measured, whole detector. {}",
-            drawn(&[(right.len(), "right answers"), (wrong.len(), "wrong ones")], false)
+            thinning_caption(&[(right.len(), "right answers"), (wrong.len(), "wrong ones")], false)
         ),
         620,
         data,
@@ -121,7 +121,7 @@ fn true_track(run: &FarRangeRun, at: &dyn Fn(usize) -> [f64; 2]) -> Trace {
 }
 
 /// Fig. 6: a whole and a truncated region.
-pub(super) fn regions(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, Failure> {
+pub(super) fn regions(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
     let section = Section::new("fig-6", "Fig. 6: a whole and a truncated region of interest");
     if run.run_file.scenario.roi.is_none() {
         return Ok(section.text("The camera of this scenario sends whole images: nothing is cut."));
@@ -157,7 +157,7 @@ pub(super) fn regions(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, 
 }
 
 /// A sheet of frames: every kind of miss and of wrong answer, and right ones to compare with.
-pub(super) fn frames(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, Failure> {
+pub(super) fn frames(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut middle = |is: &dyn Fn(&Verdict) -> bool| {
         let rows: Vec<usize> =

@@ -4,7 +4,7 @@ mod approach;
 mod attitude;
 mod budget;
 mod covariances;
-mod frame_sheet;
+mod frame_detail;
 mod image;
 mod injected;
 mod run;
@@ -14,18 +14,18 @@ use std::path::Path;
 
 use indexmap::IndexMap;
 
-pub use frame_sheet::FrameSheet;
+pub use frame_detail::FrameDetail;
 pub use injected::{InjectedRun, kept_budget};
 pub use run::FarRangeRun;
 
 use self::run::shown_time;
 use crate::charts::chart::{Chart, bars, rounded, stacked_bars};
 use crate::charts::plotly::Trace;
-use crate::figures::words::spoken;
+use crate::figures::words::display_name;
 use crate::figures::{figure_table, least_to_most, percent_cell, shown_percent};
 use crate::page::colours::colour_of;
 use crate::page::data_table::DataTable;
-use crate::page::picture::Rendered;
+use crate::page::picture::RenderedPictures;
 use crate::page::{Page, Section};
 use ::run::AnyJudgement;
 use files::{Checksums, Failure};
@@ -43,14 +43,14 @@ pub(crate) fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> R
             run
         }
     };
-    far_range_page(&run, &FrameSheet::open(directory)?)
+    far_range_page(&run, &FrameDetail::open(directory)?)
 }
 
 /// Pictures of some frames of a run directory.
-pub(crate) fn pictures(directory: &Path, frames: &[u64]) -> Result<Rendered, Failure> {
+pub(crate) fn pictures(directory: &Path, frames: &[u64]) -> Result<RenderedPictures, Failure> {
     let run = FarRangeRun::read(directory)?;
     let row = |frame: &u64| run.truths.binary_search_by_key(frame, |truth| truth.frame).ok();
-    let sheet = FrameSheet::open(directory)?;
+    let sheet = FrameDetail::open(directory)?;
     let pictures = sheet.pictures(&run, &frames.iter().filter_map(row).collect::<Vec<_>>())?;
     Ok((pictures, sheet.reason().map(str::to_owned)))
 }
@@ -59,7 +59,7 @@ pub(crate) fn pictures(directory: &Path, frames: &[u64]) -> Result<Rendered, Fai
 ///
 /// # Errors
 /// A [`Failure`] when a frame cannot be drawn, or the truth is of no moment that there is.
-pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Failure> {
+pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Failure> {
     let scenario = &run.run_file.scenario;
     let (first, last) = (&run.truths[0], &run.truths[run.truths.len() - 1]);
     let mut warnings = Vec::new();
@@ -199,7 +199,7 @@ fn causes(run: &FarRangeRun) -> Section {
         for (cause, total) in all {
             let counts: Vec<u64> =
                 score.groups.values().map(|group| of(group).get(cause).copied().unwrap_or(0)).collect();
-            let mut cells = vec![spoken(cause)];
+            let mut cells = vec![display_name(cause)];
             cells.extend(counts.iter().map(u64::to_string));
             cells.push(total.to_string());
             data.push(cells);
@@ -208,7 +208,7 @@ fn causes(run: &FarRangeRun) -> Section {
                 .zip(score.groups.values())
                 .map(|(count, group)| rounded(100.0 * *count as f64 / group.frames.max(1) as f64, 3));
             let names: Vec<String> = groups.iter().map(|group| (*group).clone()).collect();
-            let bars = bars(&spoken(cause), &names, percent.collect(), colour_of(cause));
+            let bars = bars(&display_name(cause), &names, percent.collect(), colour_of(cause));
             traces.push(bars.hover_template("%{x}: %{y} %"));
         }
         section = section.chart(Chart::new(

@@ -171,7 +171,7 @@ pub(super) fn axis_time(time: Epoch) -> f64 {
 pub(super) fn time_axis(run: &FarRangeRun) -> Axis {
     let (first, last) = (run.truths[0].time, run.truths[run.truths.len() - 1].time);
     let room = ((last - first) * 0.02).max(1.0 * Unit::Second);
-    Axis::titled("time, UTC").of_time().range([first - room, last + room].map(axis_time))
+    Axis::titled("time, UTC").with_time_axis().range([first - room, last + room].map(axis_time))
 }
 
 /// A column of a table behind a chart: its name, its value in a row, and decimals.

@@ -7,7 +7,7 @@ use super::run::{FarRangeRun, axis_time, broken, by_bins, time_axis};
 use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, cloud, crosses, dashed, line, points, rounded, stacked,
 };
-use crate::charts::thin::{drawn, sampled, thinned};
+use crate::charts::thin::{sampled, thinned, thinning_caption};
 use crate::page::Section;
 
 /// Images that the mean of Fig. 7 is taken over.
@@ -79,7 +79,7 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
             "Angles of the line of sight in the camera system, measured minus true: RA across columns, Dec across rows. The axes \
              fit the right answers; {beyond} of {} wrong ones lie beyond them and are seen by zooming out (double click). {}",
             wrong.len(),
-            drawn(&[(right.len(), "right answers"), (wrong.len(), "wrong ones")], true)
+            thinning_caption(&[(right.len(), "right answers"), (wrong.len(), "wrong ones")], true)
         ),
         560,
         data,
@@ -92,26 +92,26 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
 pub(super) fn stars(run: &FarRangeRun) -> Section {
     let count = run.verdicts.len();
     let number = |row: usize| run.verdicts[row].n_stars.map_or(f64::NAN, f64::from);
-    let told: Vec<usize> = (0..count).filter(|&row| number(row).is_finite()).collect();
+    let stated: Vec<usize> = (0..count).filter(|&row| number(row).is_finite()).collect();
     let section = Section::new("fig-7", "Fig. 7: stars identified in each image");
-    if told.is_empty() {
+    if stated.is_empty() {
         return section.text("The pipeline does not tell how many stars it identified.");
     }
     let mut sum = 0.0;
-    let mut means = Vec::with_capacity(told.len());
-    for (place, &row) in told.iter().enumerate() {
+    let mut means = Vec::with_capacity(stated.len());
+    for (place, &row) in stated.iter().enumerate() {
         sum += number(row);
         if place >= MEAN_OF {
-            sum -= number(told[place - MEAN_OF]);
+            sum -= number(stated[place - MEAN_OF]);
         }
         means.push(sum / MEAN_OF.min(place + 1) as f64);
     }
-    let mean_rows = thinned(told.len(), &[&|i| means[i]]);
+    let mean_rows = thinned(stated.len(), &[&|i| means[i]]);
     let (mean_times, mean_values) =
-        broken(run, mean_rows.into_iter().map(|i| (told[i], rounded(means[i], 2))));
+        broken(run, mean_rows.into_iter().map(|i| (stated[i], rounded(means[i], 2))));
     let least = run.run_file.scenario.far_range.attitude.min_stars;
     let ends = [&run.truths[0], &run.truths[count - 1]].map(|truth| axis_time(truth.time));
-    let mut traces = cloud("stars", &told, Some(&number), MEASURED, |rows| {
+    let mut traces = cloud("stars", &stated, Some(&number), MEASURED, |rows| {
         let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
         points("", run.times(rows), rows.iter().map(|&row| number(row)).collect(), MEASURED)
             .custom_data(frames)
@@ -122,7 +122,10 @@ pub(super) fn stars(run: &FarRangeRun) -> Section {
     let (traces, layout) = stacked(time_axis(run), vec![Panel::new("stars", traces)]);
     let data = by_bins(run, &[("stars", &number, 1)]);
     section.chart(Chart::new(
-        format!("The mean is over the last {MEAN_OF} images. {}", drawn(&[(told.len(), "images")], true)),
+        format!(
+            "The mean is over the last {MEAN_OF} images. {}",
+            thinning_caption(&[(stated.len(), "images")], true)
+        ),
         380,
         data,
         traces,

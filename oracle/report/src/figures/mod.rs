@@ -3,7 +3,7 @@
 pub(crate) mod run_page;
 pub(crate) mod words;
 use indexmap::IndexMap;
-use run::figure_called;
+use run::figure_by_name;
 use score::Figure;
 
 use crate::page::data_table::DataTable;
@@ -70,13 +70,13 @@ pub(crate) fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
         "All figures of score.json; rates are fractions from 0 to 1. Independent: what the frames are worth, neighbours being alike.",
     );
     for (name, figure) in figures {
-        let is_rate = figure_called(name).is_rate();
+        let is_rate = figure_by_name(name).is_rate();
         let number = |value: Option<f64>| match value {
             Some(value) if is_rate => format!("{value:.4}"),
             value => cell(value),
         };
         table.push([
-            figure_called(name).words,
+            figure_by_name(name).words,
             number(figure.value),
             number(figure.low),
             number(figure.high),

@@ -8,7 +8,7 @@ use run::world_of_run;
 use serde_json::json;
 
 use super::figure_table;
-use super::words::spoken;
+use super::words::display_name;
 use crate::page::data_table::DataTable;
 use crate::page::{Page, Section};
 use crate::read::missing;
@@ -35,7 +35,7 @@ pub(crate) fn run_page(directory: &Path) -> Result<Page, Failure> {
     }
     let mut verdicts = DataTable::new(["verdict", "cause", "count"]);
     for ((verdict, cause), count) in counts {
-        verdicts.push([spoken(verdict), spoken(cause), count.to_string()]);
+        verdicts.push([display_name(verdict), display_name(cause), count.to_string()]);
     }
     Ok(Page {
         title: run.scenario.title().to_owned(),

@@ -1,7 +1,7 @@
 //! Names of files as people read them.
 
 /// A name with blanks: `cut by roi`.
-pub(crate) fn spoken(name: &str) -> String {
+pub(crate) fn display_name(name: &str) -> String {
     name.replace('_', " ")
 }
 

@@ -1,7 +1,7 @@
 //! A colour for every cause, the same in every chart.
 use contract::docking::Doubt;
 use score::Cause;
-use score::docking::{Gross, MissCause};
+use score::docking::{GrossError, MissCause};
 
 /// As many as a world has causes; those that are met most are the least alike.
 const PALETTE: [&str; 18] = [
@@ -22,7 +22,7 @@ pub(crate) fn colour_of(cause: &str) -> &'static str {
         return DOUBTS[place];
     }
     // Docking shares some causes: its others take the colours that are left.
-    let codes = || MissCause::CODES.into_iter().chain(Gross::ALL.map(Gross::code));
+    let codes = || MissCause::CODES.into_iter().chain(GrossError::ALL.map(GrossError::code));
     let shared: Vec<usize> = codes().filter_map(far_range).collect();
     let left = (0..PALETTE.len()).filter(|place| !shared.contains(place));
     let own = codes().filter(|code| far_range(code).is_none());
@@ -41,6 +41,8 @@ mod tests {
         };
         distinct(Cause::ALL.map(Cause::code).to_vec());
         let doubts = Doubt::ALL.map(Doubt::code);
-        distinct(MissCause::CODES.into_iter().chain(Gross::ALL.map(Gross::code)).chain(doubts).collect());
+        distinct(
+            MissCause::CODES.into_iter().chain(GrossError::ALL.map(GrossError::code)).chain(doubts).collect(),
+        );
     }
 }

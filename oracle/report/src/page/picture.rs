@@ -8,10 +8,10 @@ use files::Failure;
 use image::{GrayImage, ImageFormat};
 
 /// Samples of a picture at most: of more pixels, squares of them are drawn as their brightest.
-const MOST_SAMPLES: usize = 60_000;
+const MAX_SAMPLES: usize = 60_000;
 
 /// Pictures of frames; without them the reason why there are none.
-pub(crate) type Rendered = (Vec<Picture>, Option<String>);
+pub(crate) type RenderedPictures = (Vec<Picture>, Option<String>);
 
 /// A window of a frame, with what is drawn over it.
 #[derive(Debug, Clone)]
@@ -23,7 +23,7 @@ pub struct Picture {
     /// The window that it shows, columns and rows of the image.
     pub window: Window,
     /// Where the rows of the image are in the camera.
-    pub lines: RowPlace,
+    pub lines: RowMapping,
     /// The pixels, as a PNG in a `data:` URI.
     pub png: String,
     /// What is drawn over them.
@@ -73,14 +73,14 @@ impl Mark {
 
 /// Which row of the camera a row of an image is: `first` + `pitch` × row.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RowPlace {
+pub struct RowMapping {
     /// Row of the camera of the first row.
     pub first: f64,
     /// Rows of the camera from one row to the next.
     pub pitch: f64,
 }
 
-impl RowPlace {
+impl RowMapping {
     /// Of a whole frame.
     pub const WHOLE: Self = Self { first: 0.0, pitch: 1.0 };
 }
@@ -113,7 +113,7 @@ impl Picture {
     pub fn new(
         pixels: Pixels<'_>,
         window: Window,
-        lines: RowPlace,
+        lines: RowMapping,
         stretch: Stretch,
     ) -> Result<Self, Failure> {
         let png = png(pixels, window, stretch)?;
@@ -166,7 +166,7 @@ pub(crate) fn window_around(points: &[PixelPoint], margin_px: f64, columns: usiz
 /// A window of the pixels as a PNG of 8 bits.
 fn png(pixels: Pixels<'_>, window: Window, stretch: Stretch) -> Result<String, Failure> {
     let mut step = 1;
-    while (window.columns / step) * (window.rows / step) > MOST_SAMPLES {
+    while (window.columns / step) * (window.rows / step) > MAX_SAMPLES {
         step += 1;
     }
     let (columns, rows) = (window.columns.div_ceil(step), window.rows.div_ceil(step));
@@ -247,7 +247,7 @@ mod tests {
         let uri = png(pixels, whole, Stretch::Stars).unwrap();
         let bytes = STANDARD.decode(uri.strip_prefix("data:image/png;base64,").unwrap()).unwrap();
         let image = image::load_from_memory(&bytes).unwrap().to_luma8();
-        assert!((image.width() * image.height()) as usize <= 2 * MOST_SAMPLES);
+        assert!((image.width() * image.height()) as usize <= 2 * MAX_SAMPLES);
         assert_eq!(image.pixels().filter(|pixel| pixel.0[0] == 255).count(), 1);
     }
 

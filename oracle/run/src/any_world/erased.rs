@@ -24,7 +24,7 @@ use crate::any_world::{
 };
 use crate::check::slips::slips;
 use crate::choice::pipeline_choice::PipelineChoice;
-use crate::flight::Flight;
+use crate::frame_jobs::FrameJobs;
 use crate::run_result::RunResult;
 use crate::world::{Answers, Judgement, World, process};
 
@@ -52,14 +52,14 @@ impl<S: Judgement + Send + 'static> AnyJudgement for S {
 }
 
 /// The world `W`, without its types.
-pub struct Of<W>(PhantomData<fn() -> W>);
+pub struct ErasedWorld<W>(PhantomData<fn() -> W>);
 
-impl<W> Of<W> {
+impl<W> ErasedWorld<W> {
     /// It.
     pub const NEW: Self = Self(PhantomData);
 }
 
-impl<W: World> Of<W> {
+impl<W: World> ErasedWorld<W> {
     fn scenario(source: &ScenarioSource) -> Result<&W::Scenario, Failure> {
         source.typed(W::CODE)
     }
@@ -67,9 +67,9 @@ impl<W: World> Of<W> {
 
 /// A scenario with its world.
 #[derive(Clone)]
-struct ScenarioOf<W: World>(W::Scenario);
+struct ErasedScenario<W: World>(W::Scenario);
 
-impl<W: World> AnyWorld for Of<W> {
+impl<W: World> AnyWorld for ErasedWorld<W> {
     fn code(&self) -> &'static str {
         W::CODE
     }
@@ -114,7 +114,7 @@ impl<W: World> AnyWorld for Of<W> {
         W::causes()
     }
 
-    fn has_scenarios_of(&self, type_id: TypeId) -> bool {
+    fn has_scenario_type(&self, type_id: TypeId) -> bool {
         type_id == TypeId::of::<W::Scenario>()
     }
 
@@ -127,12 +127,12 @@ impl<W: World> AnyWorld for Of<W> {
     }
 
     fn parse(&self, file: &Path, text: &str) -> Result<Box<dyn AnyScenario>, Box<TomlError>> {
-        Ok(Box::new(ScenarioOf::<W>(W::Scenario::parse(file, text)?)))
+        Ok(Box::new(ErasedScenario::<W>(W::Scenario::parse(file, text)?)))
     }
 
     fn read_run(&self, file: &Path) -> Result<RunFile<Box<dyn AnyScenario>>, Failure> {
         let run = RunFile::<W::Scenario>::read(file)?;
-        Ok(run.map(|scenario| Box::new(ScenarioOf::<W>(scenario)) as Box<dyn AnyScenario>))
+        Ok(run.map(|scenario| Box::new(ErasedScenario::<W>(scenario)) as Box<dyn AnyScenario>))
     }
 
     fn prepare(&self, source: &ScenarioSource, options: Options) -> Result<Box<dyn AnyMission>, Failure> {
@@ -193,15 +193,15 @@ impl<W: World> AnyWorld for Of<W> {
     }
 }
 
-impl<W: World> Debug for ScenarioOf<W> {
+impl<W: World> Debug for ErasedScenario<W> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.0.fmt(f)
     }
 }
 
-impl<W: World> AnyScenario for ScenarioOf<W> {
+impl<W: World> AnyScenario for ErasedScenario<W> {
     fn world(&self) -> &'static dyn AnyWorld {
-        const { &Of::<W>::NEW }
+        const { &ErasedWorld::<W>::NEW }
     }
 
     fn title(&self) -> &str {
@@ -259,39 +259,39 @@ impl<W: World> AnyMission for W {
         Ok(AnyFactory::new(choice.factory::<W>(W::config(self.scenario()), scratch)?))
     }
 
-    fn check_flight(&self, flight: &Flight<String>) -> Result<(), Failure> {
-        World::check_flight(self, &flight.parse()?)
+    fn check_frame_jobs(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure> {
+        World::check_frame_jobs(self, &frame_jobs.parse()?)
     }
 
     fn render(
         &self,
         directory: &RunDirectory,
-        flight: &Flight<String>,
+        frame_jobs: &FrameJobs<String>,
         done: &dyn Fn(),
     ) -> Result<String, Failure> {
-        let flight: Flight<W::Images> = flight.parse()?;
-        let images = flight.images.unwrap_or(W::IMAGES);
-        let flight = Flight { images: Some(images), ..flight };
-        World::render(self, directory, &flight, done)?;
+        let frame_jobs: FrameJobs<W::Images> = frame_jobs.parse()?;
+        let images = frame_jobs.images.unwrap_or(W::IMAGES);
+        let frame_jobs = FrameJobs { images: Some(images), ..frame_jobs };
+        World::render(self, directory, &frame_jobs, done)?;
         Ok(W::files_for_pipelines(images))
     }
 
-    fn check_stream(&self, flight: &Flight<String>) -> Result<(), Failure> {
-        World::check_stream(self, &flight.parse()?)
+    fn check_stream(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure> {
+        World::check_stream(self, &frame_jobs.parse()?)
     }
 
-    fn stream(&self, flight: &Flight<String>) -> Result<(), Failure> {
-        World::stream(self, &flight.parse()?)
+    fn stream(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure> {
+        World::stream(self, &frame_jobs.parse()?)
     }
 
     fn run(
         &self,
         directory: &RunDirectory,
-        flight: &Flight<String>,
+        frame_jobs: &FrameJobs<String>,
         factory: &AnyFactory,
         go_on: &dyn Fn() -> Result<(), Failure>,
     ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure> {
-        Ok(World::run(self, directory, &flight.parse()?, factory.of()?, go_on)?.boxed())
+        Ok(World::run(self, directory, &frame_jobs.parse()?, factory.downcast()?, go_on)?.boxed())
     }
 
     fn score(
@@ -299,7 +299,7 @@ impl<W: World> AnyMission for W {
         frames: Range<u64>,
         factory: &AnyFactory,
     ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure> {
-        Ok(World::score(self, frames, factory.of()?)?.boxed())
+        Ok(World::score(self, frames, factory.downcast()?)?.boxed())
     }
 
     fn into_any(self: Box<Self>) -> Box<dyn Any> {
@@ -309,16 +309,16 @@ impl<W: World> AnyMission for W {
 
 impl<S: Judgement + Send + 'static> RunResult<S> {
     fn boxed(self) -> RunResult<Box<dyn AnyJudgement>> {
-        let Self { scored, first_failure, not_flown } = self;
-        RunResult { scored: Box::new(scored), first_failure, not_flown }
+        let Self { scored, first_failure, incomplete } = self;
+        RunResult { scored: Box::new(scored), first_failure, incomplete }
     }
 }
 
-impl Flight<String> {
+impl FrameJobs<String> {
     /// The flight with the format of a world's images.
-    fn parse<F: std::str::FromStr<Err = String>>(&self) -> Result<Flight<F>, Failure> {
+    fn parse<F: std::str::FromStr<Err = String>>(&self) -> Result<FrameJobs<F>, Failure> {
         let images = self.images.as_deref().map(str::parse).transpose().map_err(Failure::Usage)?;
-        Ok(Flight { frames: self.frames.clone(), jobs: self.jobs, images, expectation: self.expectation })
+        Ok(FrameJobs { frames: self.frames.clone(), jobs: self.jobs, images, expectation: self.expectation })
     }
 }
 

@@ -22,7 +22,7 @@ use sim::SimError;
 
 use crate::choice::pipeline_choice::PipelineChoice;
 use crate::choice::renderer_choice::RendererChoice;
-use crate::flight::Flight;
+use crate::frame_jobs::FrameJobs;
 use crate::run_result::{AnswerSummary, FirstFailure, RunResult};
 
 /// What a run is asked for beside its scenario. A world refuses what it does not have.
@@ -36,7 +36,7 @@ pub struct Options {
     pub renderer: RendererChoice,
 }
 
-/// A world, without its types. [`Of`](crate::Of) makes one of a [`World`](crate::World).
+/// A world, without its types. [`ErasedWorld`](crate::Of) makes one of a [`World`](crate::World).
 pub trait AnyWorld: Sync {
     /// [`World::CODE`](crate::World::CODE).
     fn code(&self) -> &'static str;
@@ -72,7 +72,7 @@ pub trait AnyWorld: Sync {
     fn causes(&self) -> Vec<(&'static str, &'static str)>;
 
     /// Whether its scenarios are of the type `type_id`.
-    fn has_scenarios_of(&self, type_id: TypeId) -> bool;
+    fn has_scenario_type(&self, type_id: TypeId) -> bool;
 
     /// The JSON Schema of its scenario files.
     fn schema(&self, generator: SchemaGenerator) -> Schema;
@@ -161,8 +161,8 @@ impl dyn AnyWorld {
     }
 
     /// Whether its scenarios have the type `S`.
-    pub fn is_of<S: 'static>(&self) -> bool {
-        self.has_scenarios_of(TypeId::of::<S>())
+    pub fn has_scenario<S: 'static>(&self) -> bool {
+        self.has_scenario_type(TypeId::of::<S>())
     }
 }
 
@@ -269,7 +269,7 @@ impl AnyFactory {
     ///
     /// # Errors
     /// [`Failure::Usage`] when it is one of another world.
-    pub fn of<I: Interface>(&self) -> Result<&dyn PipelineFactory<I>, Failure> {
+    pub fn downcast<I: Interface>(&self) -> Result<&dyn PipelineFactory<I>, Failure> {
         match self.factory.downcast_ref::<Box<dyn PipelineFactory<I> + Send>>() {
             Some(factory) => Ok(factory.as_ref()),
             None => Err(Failure::Usage("the pipeline is of another world than the scenario".to_owned())),
@@ -298,7 +298,7 @@ pub trait AnyMission: Send + Sync {
     ///
     /// # Errors
     /// A [`Failure`] that says why it cannot.
-    fn check_flight(&self, flight: &Flight<String>) -> Result<(), Failure>;
+    fn check_frame_jobs(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure>;
 
     /// [`World::render`](crate::World::render); gives what the dataset holds for a pipeline, in words.
     ///
@@ -307,7 +307,7 @@ pub trait AnyMission: Send + Sync {
     fn render(
         &self,
         directory: &RunDirectory,
-        flight: &Flight<String>,
+        frame_jobs: &FrameJobs<String>,
         done: &dyn Fn(),
     ) -> Result<String, Failure>;
 
@@ -315,13 +315,13 @@ pub trait AnyMission: Send + Sync {
     ///
     /// # Errors
     /// [`Failure::Usage`] for a format that is no stream, or a world that has none.
-    fn check_stream(&self, flight: &Flight<String>) -> Result<(), Failure>;
+    fn check_stream(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure>;
 
     /// [`World::stream`](crate::World::stream).
     ///
     /// # Errors
     /// A [`Failure`] when standard output cannot be written, or the world has no stream.
-    fn stream(&self, flight: &Flight<String>) -> Result<(), Failure>;
+    fn stream(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure>;
 
     /// [`World::run`](crate::World::run).
     ///
@@ -330,7 +330,7 @@ pub trait AnyMission: Send + Sync {
     fn run(
         &self,
         directory: &RunDirectory,
-        flight: &Flight<String>,
+        frame_jobs: &FrameJobs<String>,
         factory: &AnyFactory,
         go_on: &dyn Fn() -> Result<(), Failure>,
     ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure>;

@@ -9,7 +9,7 @@ use scenario::run_file::{FileDigests, RunFile, content};
 use serde_json::Value;
 
 use crate::any_world::{AnyScenario, AnyWorld, ScenarioSource};
-use crate::worlds::world_called;
+use crate::worlds::world_by_name;
 
 impl ScenarioSource {
     /// Reads `word`: a built-in name, the path of a TOML file, or of the `run.toml` of a run to be repeated.
@@ -156,7 +156,7 @@ fn world_in(file: &Path, text: &str, path: &str) -> Result<&'static dyn AnyWorld
     let first = steps.next().and_then(|step| table.get(step));
     match steps.try_fold(first, |value, step| Some(value?.get(step))).flatten() {
         Some(toml::Value::String(word)) => {
-            world_called(word).map_err(|message| toml_file::refuse(file, text, path, message).into())
+            world_by_name(word).map_err(|message| toml_file::refuse(file, text, path, message).into())
         }
         // Of another type: its place is told when the whole is read.
         _ => Ok(crate::worlds::FIRST),

@@ -3,15 +3,15 @@
 use sim::optics::Projection;
 
 /// Field of view and pixels of a camera.
-pub(crate) struct View {
+pub(crate) struct FieldOfView {
     /// Width and height through the principal point, degrees; `None` where that is far off the detector.
     pub(crate) field_deg: Option<[f64; 2]>,
     /// Width and height of a pixel at the principal point, arcseconds.
     pub(crate) pixel_arcsec: [f64; 2],
 }
 
-impl View {
-    pub(crate) fn of(projection: &Projection) -> Self {
+impl FieldOfView {
+    pub(crate) fn from_projection(projection: &Projection) -> Self {
         let (across, along) = projection.plate_scale_px_per_rad();
         Self {
             field_deg: projection.field().map(|field| field.map(contract::Angle::degrees)),

@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slip_of_a_thousand_is_told_and_nothing_else() {
+    fn a_slip_of_a_thousand_is_reported_and_nothing_else() {
         let scenario = json!({
             "camera": { "focal_length_mm": 0.020187, "pixel_width_um": 8.6 },
             "shutter": { "max_s": 250.0, "min_s": 0.001 },
@@ -64,10 +64,10 @@ mod tests {
             "cameras": [{ "camera": { "focal_length_mm": 1e8 } }, { "camera": { "focal_length_mm": 24211.1 } }],
             "sensor": { "cosmic_rays": { "readout_s": 0.0 } },
         });
-        let told = slips(&scenario);
-        assert_eq!(told.len(), 3, "{told:?}");
-        assert_eq!(told[0], "camera.focal_length_mm is 0.020187, usually 1 to 20000; was 20.187 meant?");
-        assert!(told[1].starts_with("cameras[1].camera.focal_length_mm is 24211.1"), "{told:?}");
-        assert_eq!(told[2], "shutter.max_s is 250, usually 0.00001 to 100; was 0.25 meant?");
+        let remarks = slips(&scenario);
+        assert_eq!(remarks.len(), 3, "{remarks:?}");
+        assert_eq!(remarks[0], "camera.focal_length_mm is 0.020187, usually 1 to 20000; was 20.187 meant?");
+        assert!(remarks[1].starts_with("cameras[1].camera.focal_length_mm is 24211.1"), "{remarks:?}");
+        assert_eq!(remarks[2], "shutter.max_s is 250, usually 0.00001 to 100; was 0.25 meant?");
     }
 }

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 const EXEC: &str = "exec:";
 
 /// A larger file among a program's words counts by its name alone.
-const MOST_BYTES: u64 = 1 << 30;
+const MAX_BYTES: u64 = 1 << 30;
 
 /// A pipeline by the word of the command line: the name of a world's built-in one, or `exec:COMMAND`.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +66,7 @@ impl PipelineChoice {
         }
         for file in words(word) {
             // A word that names no file is a program of the search path, or an option.
-            if let Ok(bytes) = sim::regular_file::read(Path::new(&file), MOST_BYTES) {
+            if let Ok(bytes) = sim::regular_file::read(Path::new(&file), MAX_BYTES) {
                 part(&bytes);
             }
         }

@@ -47,7 +47,7 @@ impl Answers<Docking> for FieldAnswers {
             if let Some(report) = &outcome.motion {
                 motion.write(field, report)?;
             }
-            features.write(FeatureRow::of(field, &outcome.features))?;
+            features.write(FeatureRow::from_features(field, &outcome.features))?;
         }
         Ok(())
     }

@@ -31,14 +31,14 @@ pub enum FieldImages {
 
 impl FieldImages {
     /// Most fields that one file holds, of images of this size; `None` where there is no limit.
-    pub fn most_fields(self, setup: &DockingSetup) -> Option<u64> {
+    pub fn max_fields(self, setup: &DockingSetup) -> Option<u64> {
         let camera = setup.cameras.first()?;
-        let frames = AviCoding::Grey.most_frames((camera.columns, camera.rows))?;
+        let frames = AviCoding::Grey.max_frames((camera.columns, camera.rows))?;
         (self == Self::Avi).then_some(2 * frames)
     }
 
     /// Where the images are, in a run directory.
-    pub fn place(self) -> &'static str {
+    pub fn file_pattern(self) -> &'static str {
         match self {
             Self::Png => "frames/",
             Self::Avi | Self::MotionJpeg => "fields.avi",
@@ -76,7 +76,7 @@ impl Video {
         rate_hz: f64,
     ) -> Result<Option<Self>, FileError> {
         let Some((images, camera)) = images.zip(setup.cameras.first()) else { return Ok(None) };
-        let (path, size) = (directory.path().join(images.place()), (camera.columns, camera.rows));
+        let (path, size) = (directory.path().join(images.file_pattern()), (camera.columns, camera.rows));
         let avi =
             |coding| AviWriter::create(&path, coding, size, rate_hz).map(|avi| Self::Avi(Box::new(avi)));
         match images {

@@ -24,7 +24,7 @@ use indexmap::IndexMap;
 use pipeline::docking::{DockingConfig, DockingFactory};
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, DOCKING, DockingScenario};
-use score::docking::{DockingContext, DockingScore, DockingScorer, Gross, MissCause, TrueField, names};
+use score::docking::{DockingContext, DockingScore, DockingScorer, GrossError, MissCause, TrueField, names};
 use score::{Figure, FigureSpec, UnitTable};
 use serde_json::{Value, json};
 use sim::docking::{CameraConfig, DockingWorkspace, FieldExposure, FieldTruth};
@@ -34,9 +34,9 @@ use self::answers::{FieldAnswers, answer_as_filed};
 use self::dataset::{FieldDataset, FieldImages};
 use self::renderer::DockingRenderer;
 use crate::any_world::{Options, ScenarioSource};
-use crate::by_number::ByNumber;
-use crate::check::derived::{View, size};
-use crate::flight::{Expectation, Flight, in_order};
+use crate::check::derived::{FieldOfView, size};
+use crate::frame_jobs::{Expectation, FrameJobs, process_in_order};
+use crate::rows_by_number::RowsByNumber;
 use crate::world::{self, OpenDataset, World, refuse_attitude, unscorable};
 
 impl World for DockingMission {
@@ -84,7 +84,7 @@ impl World for DockingMission {
             (fields as f64 / self.simulator.field_rate_hz(), self.scenario().cameras.len());
         let camera = |camera: &CameraConfig| {
             let Ok(projection) = Projection::new(&camera.camera) else { return (Value::Null, String::new()) };
-            let view = View::of(&projection);
+            let view = FieldOfView::from_projection(&projection);
             let text = format!("\ncamera {}: {}", camera.name, view.text());
             (
                 json!({ "name": camera.name, "field_deg": view.field_deg, "pixel_arcsec": view.pixel_arcsec }),
@@ -131,13 +131,13 @@ impl World for DockingMission {
         write_field(path, field).map_err(|error| error.to_string())
     }
 
-    fn check_flight(&self, flight: &Flight<FieldImages>) -> Result<(), Failure> {
-        if flight.expectation == Expectation::Kept {
+    fn check_frame_jobs(&self, frame_jobs: &FrameJobs<FieldImages>) -> Result<(), Failure> {
+        if frame_jobs.expectation == Expectation::Kept {
             let message = "--expected is given, expected with a far-range scenario alone";
             return Err(Failure::Usage(message.to_owned()));
         }
-        let count = flight.frames.end - flight.frames.start;
-        if let Some(most) = flight.images.and_then(|images| images.most_fields(&self.setup))
+        let count = frame_jobs.frames.end - frame_jobs.frames.start;
+        if let Some(most) = frame_jobs.images.and_then(|images| images.max_fields(&self.setup))
             && count > most
         {
             return Err(Failure::Usage(format!(
@@ -145,15 +145,15 @@ impl World for DockingMission {
                  png or y4m"
             )));
         }
-        self.probe(flight.frames.start)
+        self.probe(frame_jobs.frames.start)
     }
 
     fn files_for_pipelines(images: FieldImages) -> String {
-        format!("setup.toml, telemetry.csv, {}", images.place())
+        format!("setup.toml, telemetry.csv, {}", images.file_pattern())
     }
 
-    fn check_stream(&self, flight: &Flight<FieldImages>) -> Result<(), Failure> {
-        if flight.images == Some(FieldImages::Y4m) {
+    fn check_stream(&self, frame_jobs: &FrameJobs<FieldImages>) -> Result<(), Failure> {
+        if frame_jobs.images == Some(FieldImages::Y4m) {
             return Ok(());
         }
         let message = "--out is -, expected with --format y4m alone: no other format is a stream";
@@ -161,16 +161,23 @@ impl World for DockingMission {
     }
 
     /// Fields, digitised as they are by default, as Y4M.
-    fn stream(&self, flight: &Flight<FieldImages>) -> Result<(), Failure> {
-        self.check_stream(flight)?;
+    fn stream(&self, frame_jobs: &FrameJobs<FieldImages>) -> Result<(), Failure> {
+        self.check_stream(frame_jobs)?;
         let size = self.setup.cameras.first().map_or((0, 0), |camera| (camera.columns, camera.rows));
         let rate_hz = self.scenario().television.frame_rate_hz;
         let mut video = Y4mWriter::standard_output(size, rate_hz)?;
         let make = |workspace: &mut DockingWorkspace, field| {
             Ok(self.expose(workspace, field)?.video.digitise(&Digitiser::default()))
         };
-        let (fields, bytes) = (flight.frames.clone(), self.exposure_bytes() as u64);
-        in_order(fields, flight.jobs, bytes, || self.workspace(), make, |field| Ok(video.write(&field)?))?;
+        let (fields, bytes) = (frame_jobs.frames.clone(), self.exposure_bytes() as u64);
+        process_in_order(
+            fields,
+            frame_jobs.jobs,
+            bytes,
+            || self.workspace(),
+            make,
+            |field| Ok(video.write(&field)?),
+        )?;
         Ok(video.finish()?)
     }
 
@@ -199,7 +206,7 @@ impl World for DockingMission {
 
     fn causes() -> Vec<(&'static str, &'static str)> {
         let missed = MissCause::CODES.map(|cause| ("missed", cause));
-        missed.into_iter().chain(Gross::ALL.map(|gross| ("wrong", gross.code()))).collect()
+        missed.into_iter().chain(GrossError::ALL.map(|gross| ("wrong", gross.code()))).collect()
     }
 
     fn frame_count(&self) -> u64 {
@@ -236,9 +243,9 @@ impl World for DockingMission {
     fn dataset<'a>(
         &'a self,
         directory: &'a RunDirectory,
-        flight: &Flight<FieldImages>,
+        frame_jobs: &FrameJobs<FieldImages>,
     ) -> Result<FieldDataset<'a>, Failure> {
-        FieldDataset::create(&self.run_file, &self.setup, directory, flight.images)
+        FieldDataset::create(&self.run_file, &self.setup, directory, frame_jobs.images)
     }
 
     fn scorer(&self) -> Scorer {
@@ -258,12 +265,12 @@ impl World for DockingMission {
         let truth = directory.join(Self::TRUTH_FILE);
         let truths = TableReader::<FieldTruth>::open(&truth)?;
         let mut answers =
-            ByNumber::new(read_field_measurements(measurements)?, measurements, "field", &truth);
+            RowsByNumber::new(read_field_measurements(measurements)?, measurements, "field", &truth);
         let reports = motion.map(read_motion).transpose()?.unwrap_or_default();
-        let mut reports = ByNumber::new(reports, motion.unwrap_or(measurements), "field", &truth);
+        let mut reports = RowsByNumber::new(reports, motion.unwrap_or(measurements), "field", &truth);
         for field in truths {
             let (number, rows) = field?;
-            let (outcome, report) = (answers.of(number)?, reports.of(number)?);
+            let (outcome, report) = (answers.take(number)?, reports.take(number)?);
             for truth in &rows {
                 let truth = scorer.true_field(truth);
                 let judged = scorer.scorer.add_with_report(&truth, outcome.as_ref(), report.as_ref());

@@ -101,16 +101,16 @@ mod tests {
     }
 
     #[test]
-    fn the_sources_of_the_attitude_are_told_in_a_line() {
+    fn the_sources_of_the_attitude_are_reported_in_a_line() {
         use AttitudeSource::{NoMatch, NoStars, Stars, TooFewStars};
         let sources = [Stars, TooFewStars, Stars, Stars, NoMatch, Stars, TooFewStars, Stars].map(Some);
-        let told = summary(&sources).unwrap();
+        let summary_of_sources = summary(&sources).unwrap();
         assert_eq!(
-            told.text,
+            summary_of_sources.text,
             "attitude from stars in 5 of 8 frames; 2 with too few stars, 1 without a match"
         );
         assert_eq!(
-            told.counts.into_iter().collect::<Vec<_>>(),
+            summary_of_sources.counts.into_iter().collect::<Vec<_>>(),
             [("stars", 5), ("too_few_stars", 2), ("no_stars", 0), ("no_match", 1)]
         );
         assert_eq!(summary(&[Some(Stars)]).unwrap().text, "attitude from stars in 1 of 1 frames");

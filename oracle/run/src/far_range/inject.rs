@@ -3,7 +3,7 @@ use contract::{Direction, Frame, Icrs, ListedStar, Outcome, PixelPoint, Setup, T
 use files::Failure;
 use pipeline::far_range::{FarRangeConfig, FarRangePipeline, Identity, Overrides};
 use scenario::Stage;
-use score::belonging_to;
+use score::brightest_member;
 use sim::truth::{ObjectKind, Observer};
 
 use super::{FarRangeMission, SceneTruth};
@@ -38,11 +38,11 @@ impl InformedPipeline<FarRangeMission> for InjectedPipeline {
         let observer = Observer::new(truth.time, truth.position_km, truth.velocity_km_s)?;
         // A place beside the detector would be no detection: there the cluster keeps its own.
         let centroid = |centre: PixelPoint| {
-            belonging_to(centre, objects)
+            brightest_member(centre, objects)
                 .map(|object| object.position)
                 .filter(|place| place.is_on_detector(frame.columns(), frame.rows()))
         };
-        let identity = |centre: PixelPoint| match belonging_to(centre, objects) {
+        let identity = |centre: PixelPoint| match brightest_member(centre, objects) {
             Some(object) if object.kind == ObjectKind::Star => Identity::Star(object.id),
             Some(object) if object.kind == ObjectKind::HotPixel => Identity::Hotspot,
             _ => Identity::Neither,

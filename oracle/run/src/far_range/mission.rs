@@ -96,16 +96,16 @@ pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result
 }
 
 /// A star list as a file has it, and as a pipeline has it.
-type Uploaded = (Vec<StarRow>, Vec<ListedStar>);
+type StarListPair = (Vec<StarRow>, Vec<ListedStar>);
 
 /// Star lists of embedded catalogues, by magnitude limit and epoch.
-static UPLOADED: Memo<(CatalogConfig, f64, Epoch), Uploaded> = Memo::new();
+static UPLOADED: Memo<(CatalogConfig, f64, Epoch), StarListPair> = Memo::new();
 
-fn uploaded(scenario: &FarRangeScenario, simulator: &Simulator, epoch: Epoch) -> Arc<Uploaded> {
+fn uploaded(scenario: &FarRangeScenario, simulator: &Simulator, epoch: Epoch) -> Arc<StarListPair> {
     let limit = scenario.star_list.magnitude_limit;
     let list = || {
         let stars = star_list(simulator.catalog(), limit, epoch);
-        let listed = stars.iter().map(StarRow::listed).collect();
+        let listed = stars.iter().map(StarRow::to_listed_star).collect();
         (stars, listed)
     };
     match scenario.catalog.source {

@@ -15,9 +15,9 @@ use contract::{
     Body, CameraFrame, FarRange, Frame, Icrs, Outcome, PipelineFactory, Rotation, Setup, Telemetry,
 };
 use files::{
-    Dataset, Expected, Failure, FrameCluster, FrameHeader, ImageFormat, RunDirectory, StarRow, TableReader,
-    TelemetryRow, outcome_as_filed, read_measurements, read_stars, read_telemetry, write_expected,
-    write_frame,
+    Dataset, ExpectedImage, Failure, FrameCluster, FrameHeader, ImageFormat, RunDirectory, StarRow,
+    TableReader, TelemetryRow, outcome_as_filed, read_measurements, read_stars, read_telemetry,
+    write_expected, write_frame,
 };
 use indexmap::IndexMap;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory, Mode};
@@ -38,9 +38,9 @@ use self::dataset::{FrameDataset, save_image};
 use self::inject::InjectedPipeline;
 use self::star_list::star_list;
 use crate::any_world::{Options, ScenarioSource};
-use crate::by_number::ByNumber;
-use crate::check::derived::{View, size};
-use crate::flight::{Expectation, Flight};
+use crate::check::derived::{FieldOfView, size};
+use crate::frame_jobs::{Expectation, FrameJobs};
+use crate::rows_by_number::RowsByNumber;
 use crate::world::{self, InformedPipeline, OpenDataset, World, unscorable};
 
 /// The signal-to-noise ratio of the faintest star that a check tells of.
@@ -104,7 +104,7 @@ impl World for FarRangeMission {
             }
         };
         let simulator = &self.simulator;
-        let view = View::of(simulator.projection());
+        let view = FieldOfView::from_projection(simulator.projection());
         let [shortest_s, longest_s] = simulator.exposures_s();
         let limit = simulator.limiting_magnitude(longest_s, LIMITING_SNR);
         let duration_s = simulator.schedule().ends().map_or(0.0, |[first, last]| (last - first).to_seconds());
@@ -239,17 +239,17 @@ impl World for FarRangeMission {
         camera: &sim::SimulatedCamera<'_>,
         exposure: &sim::Exposure,
         directory: &RunDirectory,
-        flight: &Flight<ImageFormat>,
+        frame_jobs: &FrameJobs<ImageFormat>,
     ) -> Result<(), Failure> {
-        if let Some(format) = flight.images {
+        if let Some(format) = frame_jobs.images {
             save_image(directory, format, &self.simulator, &self.run_file, exposure)?;
         }
-        if flight.expectation == Expectation::Kept {
+        if frame_jobs.expectation == Expectation::Kept {
             let image = camera.expected();
             let (columns, rows) = image.size();
             let electrons = image.iter().map(|electrons| electrons as f32).collect();
             let path = directory.expected(exposure.frame.number());
-            write_expected(&path, &Expected { columns, rows, electrons })?;
+            write_expected(&path, &ExpectedImage { columns, rows, electrons })?;
         }
         Ok(())
     }
@@ -259,7 +259,7 @@ impl World for FarRangeMission {
     }
 
     /// The best mode beside the paper's mode on ARGON, where the paper's own figures stand beside it as well.
-    fn beside(&self) -> Result<Option<Box<dyn PipelineFactory<FarRange> + Send>>, Failure> {
+    fn comparison_pipeline(&self) -> Result<Option<Box<dyn PipelineFactory<FarRange> + Send>>, Failure> {
         let scenario = self.scenario();
         let is_papers = scenario.far_range.mode == Mode::Paper && self.run_file.inject.is_none();
         let best = FarRangeConfig { mode: Mode::Best, ..scenario.far_range.clone() };
@@ -268,7 +268,7 @@ impl World for FarRangeMission {
         (is_papers && is_argon(scenario) && is_possible).then(|| Self::built_in(&best)).transpose()
     }
 
-    fn informed(&self) -> Result<Option<Box<dyn InformedPipeline<Self>>>, Failure> {
+    fn informed_pipeline(&self) -> Result<Option<Box<dyn InformedPipeline<Self>>>, Failure> {
         let Some(stage) = self.run_file.inject else { return Ok(None) };
         let pipeline = InjectedPipeline::new(stage, &self.scenario().far_range, &self.setup)?;
         Ok(Some(Box::new(pipeline)))
@@ -277,12 +277,12 @@ impl World for FarRangeMission {
     fn dataset(
         &self,
         directory: &RunDirectory,
-        flight: &Flight<ImageFormat>,
+        frame_jobs: &FrameJobs<ImageFormat>,
     ) -> Result<FrameDataset, Failure> {
-        if flight.expectation == Expectation::Kept {
+        if frame_jobs.expectation == Expectation::Kept {
             directory.create_expected()?;
         }
-        FrameDataset::create(directory, &self.run_file, &self.stars, self.star_epoch, flight.images)
+        FrameDataset::create(directory, &self.run_file, &self.stars, self.star_epoch, frame_jobs.images)
     }
 
     fn scorer(&self) -> Scorer<'_> {
@@ -309,9 +309,9 @@ impl World for FarRangeMission {
             Some(AttitudeChoice::True) | None => Vec::new(),
         };
         let rows = rows.into_iter().map(|row| (row.frame, row.telemetry.body_from_icrs)).collect();
-        let mut measured_attitudes = ByNumber::new(rows, &telemetry, "frame", &truth);
+        let mut measured_attitudes = RowsByNumber::new(rows, &telemetry, "frame", &truth);
         let mut clusters = clusters.map(TableReader::<FrameCluster>::open).transpose()?;
-        let mut answers = ByNumber::new(
+        let mut answers = RowsByNumber::new(
             read_measurements(measurements, &run_file.scenario.camera)?,
             measurements,
             "frame",
@@ -320,11 +320,11 @@ impl World for FarRangeMission {
         for frame in frames {
             let (number, truths) = frame?;
             let objects = objects.rows_of(number)?;
-            let mut outcome = answers.of(number)?;
+            let mut outcome = answers.take(number)?;
             if let Some((outcome, table)) = outcome.as_mut().zip(clusters.as_mut()) {
                 outcome.clusters = table.rows_of(number)?.into_iter().map(|row| row.cluster).collect();
             }
-            let granted = scorer.granted(measured_attitudes.of(number)?).ok_or_else(|| {
+            let granted = scorer.granted(measured_attitudes.take(number)?).ok_or_else(|| {
                 Failure::Usage(format!(
                     "{}: there is no row of frame {number}, expected its attitude for --attitude telemetry",
                     telemetry.display()
@@ -365,7 +365,7 @@ fn setup_of(directory: &Path, dataset: &Dataset) -> Result<Setup, Failure> {
         readout: camera.readout,
         calibration: camera.calibration,
         zero_suppression_dn: camera.zero_suppression_dn,
-        stars: stars.iter().map(StarRow::listed).collect(),
+        stars: stars.iter().map(StarRow::to_listed_star).collect(),
     })
 }
 
@@ -426,18 +426,18 @@ impl world::Judgement for FarRangeJudgement {
     }
 
     fn units(&self) -> UnitTable {
-        UnitTable::of_frames(&self.verdicts, &self.limits)
+        UnitTable::from_frames(&self.verdicts, &self.limits)
     }
 
-    fn show_beside(&mut self, other: Self) {
+    fn show_comparison(&mut self, other: Self) {
         self.best_mode = Some(Box::new(other.score));
     }
 }
 
 /// What "within one pixel" and "within two" mean in a scenario.
 pub fn limits(scenario: &FarRangeScenario) -> WithinLimits {
-    let of_camera = || WithinLimits::of_pixels(&scenario.camera);
-    scenario.score.within_deg.map_or_else(of_camera, WithinLimits::of_degrees)
+    let of_camera = || WithinLimits::from_pixels(&scenario.camera);
+    scenario.score.within_deg.map_or_else(of_camera, WithinLimits::from_degrees)
 }
 
 fn context<'a>(run_file: &RunFile, projection: &'a Projection) -> ScoreContext<'a> {

@@ -61,7 +61,7 @@ fn frames_of_the_warm_up_count_in_their_own_group_alone() {
     assert_eq!((&score.figures, &score.misses), (&day.figures, &day.misses));
     assert_eq!((&score.wrong, &score.wrong_taken), (&day.wrong, &day.wrong_taken));
     assert_eq!(score.groups[WARM_UP].figures, day.figures);
-    let table = UnitTable::of_frames(&judgement.verdicts, &judgement.limits);
+    let table = UnitTable::from_frames(&judgement.verdicts, &judgement.limits);
     assert_eq!((table.units[9].group.as_str(), table.units[9].cause.is_some()), (WARM_UP, false));
     for figure in &table.figures {
         let counted: u32 = figure.terms.iter().map(|term| term.of).sum();
@@ -178,7 +178,7 @@ fn a_rate_of_errors_within_a_limit_records_the_limit() {
     assert!(
         figures.iter().all(|(name, figure)| figure.limit_deg.is_some() == within.contains(&name.as_str()))
     );
-    let table = UnitTable::of_frames(&scored.verdicts, &limits);
+    let table = UnitTable::from_frames(&scored.verdicts, &limits);
     let terms = table.figures.iter().find(|figure| figure.name == "dec_within_2px").unwrap();
     assert_eq!((terms.limit_deg, terms.attitude.as_deref()), (Some(0.75), Some("true")));
 }
@@ -411,13 +411,13 @@ fn units_are_the_frames_and_add_up_to_the_figures() {
         scorer.add(&truth, &objects, outcome.as_ref(), GrantedAttitude::True).unwrap();
     }
     let scored = scorer.finish();
-    let table = UnitTable::of_frames(&scored.verdicts, &scored.limits);
+    let table = UnitTable::from_frames(&scored.verdicts, &scored.limits);
     assert_eq!(table.units.iter().map(|unit| unit.number).collect::<Vec<_>>(), (0..10).collect::<Vec<_>>());
     assert_eq!((table.units[6].group.as_str(), table.units[6].verdict.as_str()), ("day 1", "wrong"));
     assert_eq!(table.units[8].cause.as_deref(), Some("not_reported"));
     // A start is the whole sequence's.
-    let of_frames = scored.score.figures.keys().filter(|name| *name != names::FRAMES_UNTIL_SETTLED);
-    assert!(table.figures.iter().map(|figure| &figure.name).eq(of_frames));
+    let from_frames = scored.score.figures.keys().filter(|name| *name != names::FRAMES_UNTIL_SETTLED);
+    assert!(table.figures.iter().map(|figure| &figure.name).eq(from_frames));
 }
 
 /// The pixel of the hand-made camera is the paper's.

@@ -21,20 +21,25 @@ const UNSTATED: &str = "unstated";
 pub(crate) fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
     let centroid = |frame: &FrameVerdict| right(frame)?.centroid_normalised;
     let line_of_sight = |frame: &FrameVerdict| right(frame)?.line_of_sight_normalised;
-    let mut list = of_errors(names::CENTROID, "centroid", centroid);
-    list.extend(of_errors(names::LINE_OF_SIGHT, "line of sight", line_of_sight));
+    let mut list = error_figures(names::CENTROID, "centroid", centroid);
+    list.extend(error_figures(names::LINE_OF_SIGHT, "line of sight", line_of_sight));
     list
 }
 
-fn of_errors(
+fn error_figures(
     key: &str,
     words: &str,
     pick: fn(&FrameVerdict) -> Option<NormalisedError>,
 ) -> Vec<Definition<'static, FrameVerdict>> {
     let nees = move |frame: &FrameVerdict| Some(pick(frame)?.nees);
-    let mean =
-        Definition::of(format!("{key}_nees_mean"), format!("{words} NEES mean"), None, Reduction::Mean, nees);
-    let mut list = vec![mean.best(Better::Near(1.0))];
+    let mean = Definition::amount(
+        format!("{key}_nees_mean"),
+        format!("{words} NEES mean"),
+        None,
+        Reduction::Mean,
+        nees,
+    );
+    let mut list = vec![mean.with_direction(Better::Near(1.0))];
     for (number, sigmas, honest) in HONEST {
         let within = move |frame: &FrameVerdict, values: &mut Vec<f64>| {
             let components = pick(frame).into_iter().flat_map(|error| error.over_sigma);
@@ -45,7 +50,7 @@ fn of_errors(
             format!("{words} within {number} σ"),
             within,
         );
-        list.push(rate.best(Better::Near(honest)));
+        list.push(rate.with_direction(Better::Near(honest)));
     }
     list
 }

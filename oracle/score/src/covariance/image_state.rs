@@ -3,7 +3,7 @@
 use contract::PixelPoint;
 use sim::truth::ObjectTruth;
 
-use crate::belonging::{other_electrons, target, transmitted_electrons};
+use crate::cluster_members::{other_electrons, target, transmitted_electrons};
 
 /// Share of electrons up to which an image counts as the target's alone, and as whole.
 const SMALL_SHARE: f64 = 0.02;
@@ -34,7 +34,7 @@ impl ImageState {
     }
 
     /// The state of the target in the cluster at `position`; `None` without a target.
-    pub(crate) fn of(position: PixelPoint, objects: &[ObjectTruth]) -> Option<Self> {
+    pub(crate) fn from_objects(position: PixelPoint, objects: &[ObjectTruth]) -> Option<Self> {
         let target = target(objects)?;
         let others = other_electrons(position, target, objects);
         Some(if others > SMALL_SHARE * (transmitted_electrons(target) + others) {
@@ -55,13 +55,13 @@ mod tests {
     fn state(cut: f64, others: &[ObjectTruth]) -> &'static str {
         let mut objects = others.to_vec();
         objects.push(ObjectTruth { cut, ..target_with(1000.0) });
-        ImageState::of(CENTRE, &objects).unwrap().code()
+        ImageState::from_objects(CENTRE, &objects).unwrap().code()
     }
 
     #[test]
     fn an_image_is_cut_from_two_percent_on() {
         assert_eq!((state(0.0199, &[]), state(0.02, &[]), state(0.9, &[])), ("whole", "cut", "cut"));
-        assert_eq!(ImageState::of(CENTRE, &[]), None);
+        assert_eq!(ImageState::from_objects(CENTRE, &[]), None);
     }
 
     /// Reaches of 1.5 px each touch up to 3 px; 20.4/1020.4 is 2 %.

@@ -19,7 +19,7 @@ pub struct NormalisedError {
 
 impl NormalisedError {
     /// An error and its covariance, both in one unit.
-    pub fn of(error: [f64; 2], covariance: &Covariance2) -> Self {
+    pub fn from_error(error: [f64; 2], covariance: &Covariance2) -> Self {
         let sigmas = [covariance.sigma_x(), covariance.sigma_y()];
         let over = |i: usize| match (error.get(i), sigmas.get(i)) {
             (Some(error), Some(sigma)) => (error / sigma).clamp(-LARGEST_OVER_SIGMA, LARGEST_OVER_SIGMA),
@@ -43,7 +43,7 @@ mod tests {
     #[test]
     fn the_nees_of_a_correlated_error_is_its_closed_form() {
         for (correlation, nees) in [(0.5, 2.0), (-0.5, 14.0 / 3.0)] {
-            let error = NormalisedError::of([1.0, 0.25], &sigmas(0.5, 0.25, correlation));
+            let error = NormalisedError::from_error([1.0, 0.25], &sigmas(0.5, 0.25, correlation));
             assert_eq!(error.over_sigma, [2.0, 1.0]);
             assert!((error.nees - nees).abs() < 1e-14, "{error:?}");
         }
@@ -52,9 +52,9 @@ mod tests {
     #[test]
     fn an_error_beyond_all_proportion_is_a_number() {
         for sigma in [1e-9, 1e-200, 1e-310] {
-            let error = NormalisedError::of([1.0, -1.0], &sigmas(sigma, sigma, 0.5));
+            let error = NormalisedError::from_error([1.0, -1.0], &sigmas(sigma, sigma, 0.5));
             assert_eq!((error.over_sigma, error.nees), ([1e6, -1e6], LARGEST_NEES), "{sigma}");
         }
-        assert_eq!(NormalisedError::of([0.0; 2], &sigmas(1e-310, 1e-310, 0.0)).nees, 0.0);
+        assert_eq!(NormalisedError::from_error([0.0; 2], &sigmas(1e-310, 1e-310, 0.0)).nees, 0.0);
     }
 }

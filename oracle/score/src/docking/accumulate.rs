@@ -10,11 +10,11 @@ use super::consistency::{nees, within_3_sigma};
 use super::errors::{PoseErrors, phi_error};
 use super::field_verdict::FieldVerdict;
 use super::figures::definitions;
+use super::imaging_geometry::ImagingGeometry;
 use super::portions::{MotionVerdict, PortionVerdict};
 use super::report::{DockingGroup, DockingScore, names};
-use super::sight::Sights;
-use super::truth::{TrueField, View};
-use super::verdict::{Gross, Verdict, gross};
+use super::truth::{TargetVisibility, TrueField};
+use super::verdict::{GrossError, Verdict, gross};
 use crate::accumulate::{WARM_UP, counts};
 use crate::{Better, Figure, FigureSpec, FigureTerms, ScoreError, UnitTable, UnitVerdict};
 
@@ -39,7 +39,7 @@ pub struct DockingContext {
 /// Scores the fields of a docking run one after the other.
 pub struct DockingScorer {
     context: DockingContext,
-    sights: Sights,
+    geometry: ImagingGeometry,
     verdicts: Vec<FieldVerdict>,
     last_field: Option<u64>,
     portions: PortionClock,
@@ -73,9 +73,9 @@ impl PortionClock {
 impl DockingScorer {
     /// A scorer that has seen no field.
     pub fn new(context: DockingContext) -> Self {
-        let sights = Sights::new(&context.setup);
+        let geometry = ImagingGeometry::new(&context.setup);
         let portions = PortionClock::default();
-        Self { context, sights, verdicts: Vec::new(), last_field: None, portions }
+        Self { context, geometry, verdicts: Vec::new(), last_field: None, portions }
     }
 
     /// Judges the next field; `outcome` is `None` when the measurements have no row for it.
@@ -100,7 +100,7 @@ impl DockingScorer {
             return Err(ScoreError::Order { previous, frame: truth.field });
         }
         self.last_field = Some(truth.field);
-        let verdict = Verdict::of(&self.sights, truth, outcome);
+        let verdict = Verdict::from_outcome(&self.geometry, truth, outcome);
         let measurement = outcome.and_then(DockingOutcome::measurement);
         let success = measurement.filter(|_| matches!(verdict, Verdict::Success { .. }));
         let error = success.map(|measurement| {
@@ -114,8 +114,8 @@ impl DockingScorer {
             .map(|pose| PoseErrors::new(&pose, &truth.pose));
         let range_m = truth.pose.position_m.norm();
         let portion = self.portion(truth, measurement.is_some(), report);
-        let is_resolved = self.sights.resolves(truth.camera, &truth.pose);
-        let is_clear = truth.view == View::Whole && is_resolved;
+        let is_resolved = self.geometry.resolves(truth.camera, &truth.pose);
+        let is_clear = truth.visibility == TargetVisibility::Full && is_resolved;
         let first = self.verdicts.first().map_or(truth.field, |first| first.field);
         let is_warm_up = truth.field - first < self.context.warm_up_frames;
         self.verdicts.push(FieldVerdict {
@@ -132,7 +132,7 @@ impl DockingScorer {
                 std::array::from_fn(|i| within_3_sigma(error[i], covariance[(i, i)].sqrt()))
             }),
             paper,
-            paper_is_wrong: paper.is_some_and(|errors| gross(&self.sights, truth, &errors).is_some()),
+            paper_is_wrong: paper.is_some_and(|errors| gross(&self.geometry, truth, &errors).is_some()),
             portion,
         });
         Ok(())
@@ -152,11 +152,11 @@ impl DockingScorer {
             clock.begin_s.get_or_insert(truth.time_s);
         }
         let report = report?;
-        let sights = &self.sights;
+        let geometry = &self.geometry;
         let judge = |motion: Option<&Motion>, has_one: &mut bool| {
             let is_led = *has_one;
             *has_one |= motion.is_some();
-            motion.map(|motion| MotionVerdict::of(sights, truth, motion, is_led))
+            motion.map(|motion| MotionVerdict::from_motion(geometry, truth, motion, is_led))
         };
         let verdict = PortionVerdict {
             best: judge(report.best.as_ref(), &mut clock.has_best),
@@ -181,7 +181,7 @@ impl DockingScorer {
             };
             UnitVerdict {
                 number: field.field,
-                group: name_of(field.group, &lenses),
+                group: group_key(field.group, &lenses),
                 verdict: verdict.to_owned(),
                 cause: cause.map(str::to_owned),
             }
@@ -190,7 +190,9 @@ impl DockingScorer {
             units: self.verdicts.iter().map(unit).collect(),
             figures: definitions()
                 .iter()
-                .map(|figure| FigureTerms::of_counted(figure, &self.verdicts, |field| field.group.is_some()))
+                .map(|figure| {
+                    FigureTerms::from_counted_units(figure, &self.verdicts, |field| field.group.is_some())
+                })
                 .collect(),
         }
     }
@@ -221,7 +223,7 @@ impl DockingScorer {
             figures: all.figures,
             groups: groups
                 .iter()
-                .map(|(group, fields)| (name_of(*group, &lenses), group_score(&[fields])))
+                .map(|(group, fields)| (group_key(*group, &lenses), group_score(&[fields])))
                 .collect(),
             misses: all.misses,
             wrong: all.wrong,
@@ -230,7 +232,7 @@ impl DockingScorer {
     }
 }
 
-fn name_of(group: Option<(usize, usize)>, lenses: &[String]) -> String {
+fn group_key(group: Option<(usize, usize)>, lenses: &[String]) -> String {
     let Some((bin, camera)) = group else { return WARM_UP.to_owned() };
     let lens = lenses.get(camera).cloned().unwrap_or_else(|| format!("camera {camera}"));
     group_name(bin, &lens)
@@ -272,7 +274,7 @@ fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
             .map(|definition| (definition.figure.name.clone(), definition.figure(sequences)))
             .collect(),
         misses: counts(&MissCause::CODES, misses),
-        wrong: counts(&Gross::ALL.map(Gross::code), wrong),
+        wrong: counts(&GrossError::ALL.map(GrossError::code), wrong),
         doubtful: counts(&Doubt::ALL.map(Doubt::code), doubtful),
     }
 }

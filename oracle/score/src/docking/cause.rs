@@ -2,7 +2,7 @@
 
 use contract::docking::NoPose;
 
-use super::truth::{TrueField, View};
+use super::truth::{TargetVisibility, TrueField};
 
 /// Why there is no pose and no range. When several hold, the first in this order is the cause: what is known of the answer
 /// at all, then what no pipeline could have helped, by the truth alone, then what the pipeline says.
@@ -12,7 +12,7 @@ pub enum MissCause {
     NotReported,
     /// The target is not resolved: a bar of its cross is narrower than two pixels.
     TooFar,
-    /// The target is outside the image ([`View::Outside`]), or partly so and the pipeline says it.
+    /// The target is outside the image ([`TargetVisibility::Outside`]), or partly so and the pipeline says it.
     OutsideField,
     /// At least [`MissCause::LOST_LINES`] of the image's lines were lost.
     LostLines,
@@ -21,7 +21,7 @@ pub enum MissCause {
     /// The pipeline failed.
     PipelineFailed,
     /// The pipeline's own reason, and the truth knows no better; never [`NoPose::Failed`].
-    Said(NoPose),
+    NoPose(NoPose),
 }
 
 impl MissCause {
@@ -45,22 +45,24 @@ impl MissCause {
         "inconsistent",
     ];
 
-    /// The cause of a field without a pose; `said` is the pipeline's reason, `None` when it did not answer.
-    pub(super) fn of(truth: &TrueField, is_resolved: bool, said: Option<&NoPose>) -> Self {
-        let Some(said) = said else { return Self::NotReported };
-        let view = truth.view;
+    /// The cause of a field without a pose; `reason` is the pipeline's reason, `None` when it did not answer.
+    pub(super) fn from_truth(truth: &TrueField, is_resolved: bool, reason: Option<&NoPose>) -> Self {
+        let Some(reason) = reason else { return Self::NotReported };
+        let visibility = truth.visibility;
         if !is_resolved {
             Self::TooFar
-        } else if view == View::Outside || (view == View::Part && *said == NoPose::OutOfField) {
+        } else if visibility == TargetVisibility::Outside
+            || (visibility == TargetVisibility::Partial && *reason == NoPose::OutOfField)
+        {
             Self::OutsideField
         } else if truth.lost_lines >= Self::LOST_LINES {
             Self::LostLines
         } else if truth.marks_in_shadow >= 0.5 {
             Self::InShadow
-        } else if matches!(said, NoPose::Failed(_)) {
+        } else if matches!(reason, NoPose::Failed(_)) {
             Self::PipelineFailed
         } else {
-            Self::Said(said.clone())
+            Self::NoPose(reason.clone())
         }
     }
 
@@ -73,7 +75,7 @@ impl MissCause {
             Self::LostLines => "lost_lines",
             Self::InShadow => "in_shadow",
             Self::PipelineFailed => "pipeline_failed",
-            Self::Said(reason) => reason.code(),
+            Self::NoPose(reason) => reason.code(),
         }
     }
 }
@@ -83,28 +85,28 @@ mod tests {
     use super::*;
     use crate::docking::hand_made::field;
 
-    fn cause(change: impl FnOnce(&mut TrueField, &mut bool), said: Option<NoPose>) -> &'static str {
+    fn cause(change: impl FnOnce(&mut TrueField, &mut bool), reason: Option<NoPose>) -> &'static str {
         let (mut truth, mut is_resolved) = (field(0, 10.0), true);
         change(&mut truth, &mut is_resolved);
-        let code = MissCause::of(&truth, is_resolved, said.as_ref()).code();
+        let code = MissCause::from_truth(&truth, is_resolved, reason.as_ref()).code();
         assert!(MissCause::CODES.contains(&code), "{code}");
         code
     }
 
     #[test]
     fn the_truth_comes_before_what_the_pipeline_says() {
-        let said = || Some(NoPose::NoTarget);
-        assert_eq!(cause(|_, is_resolved| *is_resolved = false, said()), "too_far");
-        assert_eq!(cause(|truth, _| truth.view = View::Outside, said()), "outside_field");
-        assert_eq!(cause(|truth, _| truth.lost_lines = 0.2, said()), "lost_lines");
-        assert_eq!(cause(|truth, _| truth.marks_in_shadow = 0.6, said()), "in_shadow");
-        assert_eq!(cause(|_, _| (), said()), "no_target");
+        let reason = || Some(NoPose::NoTarget);
+        assert_eq!(cause(|_, is_resolved| *is_resolved = false, reason()), "too_far");
+        assert_eq!(cause(|truth, _| truth.visibility = TargetVisibility::Outside, reason()), "outside_field");
+        assert_eq!(cause(|truth, _| truth.lost_lines = 0.2, reason()), "lost_lines");
+        assert_eq!(cause(|truth, _| truth.marks_in_shadow = 0.6, reason()), "in_shadow");
+        assert_eq!(cause(|_, _| (), reason()), "no_target");
         assert_eq!(cause(|_, is_resolved| *is_resolved = false, None), "not_reported");
     }
 
     #[test]
     fn a_target_partly_outside_is_the_cause_when_the_pipeline_says_so() {
-        let partly = |truth: &mut TrueField, _: &mut bool| truth.view = View::Part;
+        let partly = |truth: &mut TrueField, _: &mut bool| truth.visibility = TargetVisibility::Partial;
         assert_eq!(cause(partly, Some(NoPose::OutOfField)), "outside_field");
         assert_eq!(cause(partly, Some(NoPose::TooFewFeatures)), "too_few_features");
         assert_eq!(cause(|_, _| (), Some(NoPose::OutOfField)), "out_of_field");

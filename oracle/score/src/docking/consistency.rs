@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_that_are_said_to_go_together_exactly_say_nothing() {
+    fn errors_that_are_exactly_correlated_have_no_consistency() {
         assert_eq!(nees(&Vector2::new(1.0, -1.0), &Matrix2::new(1.0, 1.0, 1.0, 1.0)), None);
         assert_eq!(nees(&Vector2::new(1.0, 1.0), &Matrix2::new(0.0, 0.0, 0.0, 1.0)), None);
         assert_eq!(nees(&Vector1::new(1.0), &Matrix1::new(0.0)), None);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_covariance_that_is_none_says_nothing() {
+    fn an_invalid_covariance_has_no_consistency() {
         let error = Vector2::new(1.0, 1.0);
         for covariance in [
             Matrix2::zeros(),

@@ -3,7 +3,7 @@
 use contract::docking::Pose;
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::shown::Shown;
+use super::approach_parameters::ApproachParameters;
 
 /// Differences of a measured pose from the true one, measured minus true.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +23,7 @@ pub struct PoseErrors {
     /// Angle of the rotation from the true to the measured attitude, rad, 0 to π.
     pub attitude_rad: f64,
     /// Angle between the directions in which the target's origin is seen, rad, 0 to π.
-    pub place_rad: f64,
+    pub direction_rad: f64,
     /// Angle between the normals of the target's disk as the camera sees them, rad, 0 to π.
     pub tilt_rad: f64,
     /// The pose score of SPEED (Kisantal et al. 2020, Eqs. 1 to 4): ‖Δr‖/‖r‖ of the target's place in the camera frame
@@ -35,9 +35,10 @@ impl PoseErrors {
     /// The errors of a pose whose true one is not at the target's origin itself.
     pub fn new(measured: &Pose, truth: &Pose) -> Self {
         let zero = Vector3::zeros();
-        let shown = Shown::of(measured, &zero).minus(&Shown::of(truth, &zero));
+        let shown = ApproachParameters::from_motion(measured, &zero)
+            .difference(&ApproachParameters::from_motion(truth, &zero));
         let position_m = measured.position_m - truth.position_m;
-        let (is, was) = (Seen::of(measured), Seen::of(truth));
+        let (is, was) = (TargetInCamera::from_pose(measured), TargetInCamera::from_pose(truth));
         let attitude_rad = is.ideal_from_camera.angle_to(&was.ideal_from_camera);
         let r = was.from_origin_m.norm();
         Self {
@@ -48,7 +49,7 @@ impl PoseErrors {
             beta_rad: shown[3],
             lateral_m: position_m.xy().norm(),
             attitude_rad,
-            place_rad: angle(&is.from_origin_m, &was.from_origin_m),
+            direction_rad: angle(&is.from_origin_m, &was.from_origin_m),
             tilt_rad: angle(&is.normal, &was.normal),
             speed_score: if r > 0.0 { (is.from_origin_m - was.from_origin_m).norm() / r } else { 0.0 }
                 + attitude_rad,
@@ -69,7 +70,7 @@ pub(super) fn phi_error(measured: &Pose, truth: &Pose) -> Vector3<f64> {
 }
 
 /// The target as seen from a pose, in the camera frame.
-struct Seen {
+struct TargetInCamera {
     /// exp(\[φ\]×).
     ideal_from_camera: UnitQuaternion<f64>,
     /// The way from the target's origin to the camera, m.
@@ -78,8 +79,8 @@ struct Seen {
     normal: Vector3<f64>,
 }
 
-impl Seen {
-    fn of(pose: &Pose) -> Self {
+impl TargetInCamera {
+    fn from_pose(pose: &Pose) -> Self {
         let ideal_from_camera = UnitQuaternion::from_scaled_axis(pose.phi_rad);
         // x = Aᵀ (y − d), A = diag(1, −1, −1) exp([φ]×): Aᵀ d is the way from y = 0, and Aᵀ turns the direction y3.
         let flip = |v: Vector3<f64>| Vector3::new(v.x, -v.y, -v.z);
@@ -105,7 +106,7 @@ mod tests {
     fn no_difference_is_no_error() {
         let pose = pose([0.3, -0.2, 7.0], [0.02, 0.03, -0.1]);
         let errors = PoseErrors::new(&pose, &pose);
-        assert_eq!((errors.range_m, errors.lateral_m, errors.place_rad), (0.0, 0.0, 0.0));
+        assert_eq!((errors.range_m, errors.lateral_m, errors.direction_rad), (0.0, 0.0, 0.0));
         assert!(errors.attitude_rad < 1e-15 && errors.speed_score < 1e-15, "{errors:?}");
     }
 
@@ -121,7 +122,7 @@ mod tests {
         let errors =
             PoseErrors::new(&pose([0.0, 0.0, 5.0], [0.0, 0.0, 0.2]), &pose([0.0, 0.0, 5.0], [0.0; 3]));
         assert!((errors.attitude_rad - 0.2).abs() < 1e-15, "{errors:?}");
-        assert!(errors.place_rad.abs() < 1e-15 && errors.tilt_rad.abs() < 1e-15, "{errors:?}");
+        assert!(errors.direction_rad.abs() < 1e-15 && errors.tilt_rad.abs() < 1e-15, "{errors:?}");
         assert!((errors.speed_score - 0.2).abs() < 1e-15, "{errors:?}");
     }
 
@@ -130,7 +131,7 @@ mod tests {
     fn a_pitch_moves_the_target_and_tilts_its_disk_by_its_angle() {
         let errors =
             PoseErrors::new(&pose([0.0, 0.0, 5.0], [0.1, 0.0, 0.0]), &pose([0.0, 0.0, 5.0], [0.0; 3]));
-        for angle in [errors.attitude_rad, errors.place_rad, errors.tilt_rad] {
+        for angle in [errors.attitude_rad, errors.direction_rad, errors.tilt_rad] {
             assert!((angle - 0.1).abs() < 1e-15, "{errors:?}");
         }
         // ‖Δr‖/‖r‖ is the chord of the angle.
@@ -144,7 +145,7 @@ mod tests {
         // Of a camera at d1 the origin is at x1/x3 = −d1/d3 − φ2: φ2 = −turn brings it back to the middle.
         let errors =
             PoseErrors::new(&pose([0.5, 0.0, 10.0], [0.0, -turn, 0.0]), &pose([0.0, 0.0, 10.0], [0.0; 3]));
-        assert!(errors.place_rad < 1e-15 && (errors.tilt_rad - turn).abs() < 1e-15, "{errors:?}");
+        assert!(errors.direction_rad < 1e-15 && (errors.tilt_rad - turn).abs() < 1e-15, "{errors:?}");
         assert_eq!(errors.lateral_m, 0.5);
         assert!((errors.beta_rad - turn).abs() < 1e-15);
     }
@@ -155,7 +156,7 @@ mod tests {
         let turn = libm::atan2(0.5, 10.0);
         let errors =
             PoseErrors::new(&pose([0.0, 0.5, 10.0], [-turn, 0.0, 0.0]), &pose([0.0, 0.0, 10.0], [0.0; 3]));
-        assert!(errors.place_rad < 1e-15 && (errors.tilt_rad - turn).abs() < 1e-15, "{errors:?}");
+        assert!(errors.direction_rad < 1e-15 && (errors.tilt_rad - turn).abs() < 1e-15, "{errors:?}");
         assert_eq!(errors.lateral_m, 0.5);
     }
 }

@@ -64,7 +64,7 @@ impl Figures<'_> {
         holds: impl Fn(&FieldVerdict) -> Option<bool> + 'static,
     ) {
         let (name, words) = (format!("{}{name}", self.key), format!("{}{words}", self.words));
-        self.list.push(Definition::rate(name, words, holds).best(better));
+        self.list.push(Definition::rate(name, words, holds).with_direction(better));
     }
 
     /// The share of errors within three standard deviations, of which a field may have several.
@@ -75,7 +75,7 @@ impl Figures<'_> {
             values.extend(held.map(|held| f64::from(u8::from(held))));
         };
         let definition = Definition::pooled(name, format!("{}within 3 σ", self.words), values);
-        self.list.push(definition.best(HONEST_3_SIGMA));
+        self.list.push(definition.with_direction(HONEST_3_SIGMA));
     }
 
     /// The same of a parameter.
@@ -95,7 +95,7 @@ impl Figures<'_> {
     ) {
         let name = format!("{}{key}_rms_{in_key}", self.key);
         let words = format!("{}{words} RMS", self.words);
-        self.list.push(Definition::of(name, words, unit, Reduction::Rms, value));
+        self.list.push(Definition::amount(name, words, unit, Reduction::Rms, value));
     }
 
     fn mean(
@@ -106,7 +106,7 @@ impl Figures<'_> {
         value: impl Fn(&FieldVerdict) -> Option<f64> + 'static,
     ) {
         let (name, words) = (format!("{}{name}", self.key), format!("{}{words}", self.words));
-        self.list.push(Definition::of(name, words, None, Reduction::Mean, value).best(better));
+        self.list.push(Definition::amount(name, words, None, Reduction::Mean, value).with_direction(better));
     }
 }
 
@@ -186,14 +186,14 @@ fn errors(pick: fn(&FieldVerdict) -> Option<PoseErrors>, figures: &mut Figures<'
         |value: fn(&PoseErrors) -> f64| move |field: &FieldVerdict| pick(field).map(|errors| value(&errors));
     let (key, words) = (figures.key, figures.words);
     figures.rms(("range", "range", M), of(|errors| errors.range_m));
-    figures.list.push(Definition::of(
+    figures.list.push(Definition::amount(
         format!("{key}range_mean_m"),
         format!("{words}range mean"),
         "m",
         Reduction::Mean,
         of(|errors| errors.range_m),
     ));
-    figures.list.push(Definition::of(
+    figures.list.push(Definition::amount(
         format!("{key}range_rms_relative"),
         format!("{words}range RMS relative"),
         None,
@@ -230,28 +230,28 @@ fn consistency(figures: &mut Figures<'_>) {
 
 /// Ranges that are given alone.
 fn range_only(figures: &mut Figures<'_>) {
-    let told = |field: &FieldVerdict| match field.verdict {
+    let range_error = |field: &FieldVerdict| match field.verdict {
         Verdict::RangeOnly { error_m, sigma_m } => Some((error_m, sigma_m)),
         _ => None,
     };
     const RANGE_ONLY: Parameter = ("range_only", "range only", M);
-    figures.rms(RANGE_ONLY, move |field| told(field).map(|(error_m, _)| error_m));
+    figures.rms(RANGE_ONLY, move |field| range_error(field).map(|(error_m, _)| error_m));
     figures.rms(("range_only", "range only", ("percent", "%")), move |field| {
-        told(field).map(|(error_m, _)| 100.0 * error_m / field.range_m)
+        range_error(field).map(|(error_m, _)| 100.0 * error_m / field.range_m)
     });
     figures.parameter_within_3_sigma(RANGE_ONLY, move |field| {
-        told(field).and_then(|(error_m, sigma_m)| within_3_sigma(error_m, sigma_m))
+        range_error(field).and_then(|(error_m, sigma_m)| within_3_sigma(error_m, sigma_m))
     });
 }
 
 /// What is said at the end of portions. Consistency is counted from an estimator's second motion on: the first has no
 /// portion before it to lean on.
 fn motion(pick: fn(&PortionVerdict) -> Option<MotionVerdict>, mut figures: Figures<'_>) {
-    let told = move |field: &FieldVerdict| field.portion.as_ref().and_then(pick);
-    let right = move |field: &FieldVerdict| told(field).filter(|motion| !motion.is_wrong);
+    let motion_of = move |field: &FieldVerdict| field.portion.as_ref().and_then(pick);
+    let right = move |field: &FieldVerdict| motion_of(field).filter(|motion| !motion.is_wrong);
     let led = move |field: &FieldVerdict| right(field).filter(|motion| motion.is_led);
     figures.rate(names::WRONG_RATE, "wrong rate", Better::Less, move |field| {
-        told(field).map(|motion| motion.is_wrong)
+        motion_of(field).map(|motion| motion.is_wrong)
     });
     for (index, parameter) in SHOWN.into_iter().enumerate() {
         let in_files = move |error: f64| if parameter.2 == DEG { error.to_degrees() } else { error };

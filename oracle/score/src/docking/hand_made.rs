@@ -7,7 +7,7 @@ use contract::docking::{
 };
 use nalgebra::{Matrix6, Vector3};
 
-use super::truth::{TrueField, View};
+use super::truth::{TargetVisibility, TrueField};
 
 /// 768 × 576 square pixels, without distortion.
 pub(crate) fn camera(focal_px: f64) -> Camera {
@@ -66,14 +66,14 @@ pub(crate) fn field(number: u64, range_m: f64) -> TrueField {
         pose: ahead(range_m),
         velocity_m_s: Vector3::new(0.0, 0.0, -0.2),
         phi_rate_rad_s: Vector3::zeros(),
-        view: View::Whole,
+        visibility: TargetVisibility::Full,
         lost_lines: 0.0,
         marks_in_shadow: 0.0,
     }
 }
 
 /// A measurement of this pose, with 0.01 m and 0.01 rad of standard deviation in each parameter.
-pub(crate) fn measured(pose: Pose) -> DockingOutcome {
+pub(crate) fn measured_outcome(pose: Pose) -> DockingOutcome {
     let covariance = Matrix6::from_diagonal_element(1e-4);
     let best = PoseEstimate { pose, covariance };
     DockingOutcome {
@@ -85,14 +85,17 @@ pub(crate) fn measured(pose: Pose) -> DockingOutcome {
 }
 
 /// The same measurement, doubtful.
-pub(crate) fn doubtful(pose: Pose, doubt: Doubt) -> DockingOutcome {
-    let DockingSolution::Measured(measurement) = measured(pose).solution else {
+pub(crate) fn doubtful_outcome(pose: Pose, doubt: Doubt) -> DockingOutcome {
+    let DockingSolution::Measured(measurement) = measured_outcome(pose).solution else {
         unreachable!("it is measured")
     };
-    DockingOutcome { solution: DockingSolution::Doubtful { measurement, doubt }, ..measured(pose) }
+    DockingOutcome { solution: DockingSolution::Doubtful { measurement, doubt }, ..measured_outcome(pose) }
 }
 
 /// A range alone.
 pub(crate) fn range_only(range_m: f64, sigma_m: f64) -> DockingOutcome {
-    DockingOutcome { solution: DockingSolution::RangeOnly { range_m, sigma_m }, ..measured(ahead(1.0)) }
+    DockingOutcome {
+        solution: DockingSolution::RangeOnly { range_m, sigma_m },
+        ..measured_outcome(ahead(1.0))
+    }
 }

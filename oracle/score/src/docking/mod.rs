@@ -6,6 +6,7 @@
 //! long it takes has figures of its own. `docs/score.md` has the definitions in full.
 
 mod accumulate;
+mod approach_parameters;
 mod bins;
 mod cause;
 pub mod consistency;
@@ -14,18 +15,17 @@ mod field_verdict;
 mod figures;
 #[cfg(test)]
 mod hand_made;
+mod imaging_geometry;
 mod portions;
 mod report;
-mod shown;
-mod sight;
 mod truth;
 mod verdict;
 
 pub use accumulate::{DockingContext, DockingScorer, figures};
+pub use approach_parameters::ApproachParameters;
 pub use bins::{RANGE_BINS_M, group_name, lens_names};
 pub use cause::MissCause;
 pub use errors::PoseErrors;
 pub use report::{DockingGroup, DockingScore, names};
-pub use shown::Shown;
-pub use truth::{TrueField, View};
-pub use verdict::{Gross, Limits, Verdict};
+pub use truth::{TargetVisibility, TrueField};
+pub use verdict::{GrossError, Limits, Verdict};

@@ -3,10 +3,10 @@
 use contract::docking::Motion;
 use nalgebra::{Matrix6, Vector6};
 
+use super::approach_parameters::ApproachParameters;
 use super::consistency::{nees, within_3_sigma};
 use super::errors::{PoseErrors, phi_error};
-use super::shown::Shown;
-use super::sight::Sights;
+use super::imaging_geometry::ImagingGeometry;
 use super::truth::TrueField;
 use super::verdict::gross;
 
@@ -29,16 +29,21 @@ pub(super) struct MotionVerdict {
 }
 
 impl MotionVerdict {
-    pub(super) fn of(sights: &Sights, truth: &TrueField, motion: &Motion, is_led: bool) -> Self {
+    pub(super) fn from_motion(
+        geometry: &ImagingGeometry,
+        truth: &TrueField,
+        motion: &Motion,
+        is_led: bool,
+    ) -> Self {
         // A portion's last fields may not be measured: its motion is then of an earlier moment than the field that reports
         // it. A few fields back the true rates carry the truth there to micrometres.
         let since_s = motion.time_s - truth.time_s;
         let moved = TrueField { pose: truth.moved(since_s), ..truth.clone() };
         // Times of files are rounded: what is nearer than a microsecond is the same moment.
         let truth = if since_s.abs() < 1e-6 { truth } else { &moved };
-        let shown = Shown::of(&motion.pose, &motion.velocity_m_s);
-        let errors = shown.minus(&Shown::of(&truth.pose, &truth.velocity_m_s));
-        let sigmas = Shown::sigmas(motion);
+        let shown = ApproachParameters::from_motion(&motion.pose, &motion.velocity_m_s);
+        let errors = shown.difference(&ApproachParameters::from_motion(&truth.pose, &truth.velocity_m_s));
+        let sigmas = ApproachParameters::sigmas(motion);
         let within = std::array::from_fn(|i| sigmas.and_then(|sigmas| within_3_sigma(errors[i], sigmas[i])));
         let d = motion.pose.position_m - truth.pose.position_m;
         let phi = phi_error(&motion.pose, &truth.pose);
@@ -49,7 +54,7 @@ impl MotionVerdict {
         Self {
             is_led,
             is_wrong: since_s.abs() > MAX_AGE_S
-                || gross(sights, truth, &PoseErrors::new(&motion.pose, &truth.pose)).is_some(),
+                || gross(geometry, truth, &PoseErrors::new(&motion.pose, &truth.pose)).is_some(),
             errors: errors.into(),
             within,
             nees: [
@@ -92,14 +97,14 @@ mod tests {
 
     /// The same motion told of a moment 0.1 s earlier, where the camera was 20 mm farther away, is as good.
     #[test]
-    fn a_motion_is_held_against_the_truth_of_its_own_moment() {
+    fn a_motion_is_held_against_the_truth_of_its_own_time() {
         let truth = TrueField {
             time_s: 5.0,
             velocity_m_s: Vector3::new(0.0, 0.0, -0.2),
             phi_rate_rad_s: Vector3::new(0.0, 0.0, 0.03),
             ..field(0, 10.0)
         };
-        let sights = Sights::new(&setup());
+        let geometry = ImagingGeometry::new(&setup());
         let motion = |time_s: f64, d3_m: f64| Motion {
             time_s,
             pose: Pose {
@@ -113,12 +118,18 @@ mod tests {
             cross_covariance: Matrix3::zeros(),
             fields: 10,
         };
-        let verdict = MotionVerdict::of(&sights, &truth, &motion(4.9, 10.02), false);
+        let verdict = MotionVerdict::from_motion(&geometry, &truth, &motion(4.9, 10.02), false);
         assert!(!verdict.is_wrong && verdict.errors.iter().all(|error| error.abs() < 1e-12), "{verdict:?}");
-        assert!(!MotionVerdict::of(&sights, &truth, &motion(4.0, 10.2), false).is_wrong, "a second old");
-        assert!(MotionVerdict::of(&sights, &truth, &motion(3.9, 10.22), false).is_wrong, "too old");
+        assert!(
+            !MotionVerdict::from_motion(&geometry, &truth, &motion(4.0, 10.2), false).is_wrong,
+            "a second old"
+        );
+        assert!(
+            MotionVerdict::from_motion(&geometry, &truth, &motion(3.9, 10.22), false).is_wrong,
+            "too old"
+        );
         // A tenth of a microsecond is the rounding of a file, and moves nothing.
-        let rounded = MotionVerdict::of(&sights, &truth, &motion(5.0 + 1e-7, 10.0), false);
+        let rounded = MotionVerdict::from_motion(&geometry, &truth, &motion(5.0 + 1e-7, 10.0), false);
         assert_eq!(rounded.errors[..6], [0.0; 6]);
     }
 
@@ -126,7 +137,7 @@ mod tests {
     fn errors_and_their_normalised_squares_are_those_of_a_sum_by_hand() {
         let mut truth = TrueField { phi_rate_rad_s: Vector3::new(0.0, 0.0, 0.010), ..field(0, 10.0) };
         truth.pose.phi_rad.y = 0.002;
-        let sights = Sights::new(&setup());
+        let geometry = ImagingGeometry::new(&setup());
         let motion = Motion {
             time_s: 0.0,
             pose: Pose {
@@ -140,7 +151,7 @@ mod tests {
             cross_covariance: Matrix3::zeros(),
             fields: 10,
         };
-        let verdict = MotionVerdict::of(&sights, &truth, &motion, false);
+        let verdict = MotionVerdict::from_motion(&geometry, &truth, &motion, false);
         assert!(!verdict.is_wrong);
         let expected = [0.02, -0.01, 0.0, 0.0, 0.001, 0.0, -0.002];
         for (error, expected) in verdict.errors.iter().zip(expected) {

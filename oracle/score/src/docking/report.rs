@@ -79,7 +79,7 @@ pub struct DockingScore {
     pub groups: IndexMap<String, DockingGroup>,
     /// Misses by [`super::MissCause::code`]; causes that did not occur are left out.
     pub misses: IndexMap<String, u64>,
-    /// Wrong answers by [`super::Gross::code`].
+    /// Wrong answers by [`super::GrossError::code`].
     pub wrong: IndexMap<String, u64>,
     /// Doubtful poses by [`contract::docking::Doubt::code`].
     #[serde(default)]

@@ -6,11 +6,11 @@ use sim::docking::FieldTruth;
 
 /// How much of the target lies inside the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum View {
+pub enum TargetVisibility {
     /// Plate, marks and cross, all of them.
-    Whole,
+    Full,
     /// The whole cross and at least half of the marks.
-    Part,
+    Partial,
     /// Less than that.
     Outside,
 }
@@ -31,7 +31,7 @@ pub struct TrueField {
     /// dφ/dt, rad/s.
     pub phi_rate_rad_s: Vector3<f64>,
     /// How much of the target is in the picture.
-    pub view: View,
+    pub visibility: TargetVisibility,
     /// Fraction of the image's lines that were lost on the way, 0 to 1.
     pub lost_lines: f64,
     /// Fraction of the marks on which neither Sun nor lamp shines, 0 to 1.
@@ -58,12 +58,12 @@ impl TrueField {
             pose: truth.pose,
             velocity_m_s: truth.velocity_m_s,
             phi_rate_rad_s: truth.phi_rate_rad_s,
-            view: if truth.target_in_field {
-                View::Whole
+            visibility: if truth.target_in_field {
+                TargetVisibility::Full
             } else if truth.cross_in_field && share(truth.marks_in_field) >= 0.5 {
-                View::Part
+                TargetVisibility::Partial
             } else {
-                View::Outside
+                TargetVisibility::Outside
             },
             lost_lines: f64::from(truth.video.lost_lines) / rows,
             marks_in_shadow: share(truth.marks_dark),

@@ -4,16 +4,16 @@ use contract::docking::{DockingOutcome, DockingSolution, Doubt, NoPose, Pose};
 
 use super::cause::MissCause;
 use super::errors::PoseErrors;
-use super::sight::Sights;
+use super::imaging_geometry::ImagingGeometry;
 use super::truth::TrueField;
 
 /// In what a pose is grossly wrong: not measured badly, but of something else.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Gross {
+pub enum GrossError {
     /// ρ is off by more than [`Limits::RANGE`].
     Range,
     /// The target is said to be where it is not.
-    Place,
+    Direction,
     /// φ3 is off by more than [`Limits::ANGLE_RAD`].
     Roll,
     /// The disk's normal is off by more than the image allows.
@@ -22,15 +22,15 @@ pub enum Gross {
     Outline,
 }
 
-impl Gross {
+impl GrossError {
     /// Every one, in the order in which they are looked for.
-    pub const ALL: [Self; 5] = [Self::Range, Self::Place, Self::Roll, Self::Tilt, Self::Outline];
+    pub const ALL: [Self; 5] = [Self::Range, Self::Direction, Self::Roll, Self::Tilt, Self::Outline];
 
     /// The word used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Range => "range",
-            Self::Place => "place",
+            Self::Direction => "place",
             Self::Roll => "roll",
             Self::Tilt => "tilt",
             Self::Outline => "outline",
@@ -47,7 +47,7 @@ pub struct Limits {
     /// Of ρ, m.
     pub range_m: f64,
     /// Of the direction of the target's origin, rad: half of the marks' circle as seen from here.
-    pub place_rad: f64,
+    pub direction_rad: f64,
     /// Of the disk's normal, rad: [`Limits::ANGLE_RAD`], or the tilt that moves the cross over the disk by one pixel,
     /// ρ/(f b), where that is more: an image does not show less.
     pub tilt_rad: f64,
@@ -62,26 +62,26 @@ impl Limits {
     pub const ANGLE_RAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
     /// Of a true pose; `None` for a camera that is not there.
-    pub(super) fn at(sights: &Sights, camera: usize, truth: &Pose) -> Option<Self> {
+    pub(super) fn for_pose(geometry: &ImagingGeometry, camera: usize, truth: &Pose) -> Option<Self> {
         let rho = truth.position_m.norm();
-        let target = sights.target();
-        let pixel_rad = rho / (sights.focal_px(camera)? * target.cross.height_m);
+        let target = geometry.target();
+        let pixel_rad = rho / (geometry.focal_px(camera)? * target.cross.height_m);
         Some(Self {
             range_m: Self::RANGE * rho,
-            place_rad: libm::atan2(0.5 * target.mark_circle_radius_m, rho),
+            direction_rad: libm::atan2(0.5 * target.mark_circle_radius_m, rho),
             tilt_rad: Self::ANGLE_RAD.max(if pixel_rad.is_finite() { pixel_rad } else { 0.0 }),
         })
     }
 
     /// In what a pose of these errors is grossly wrong, if it is.
-    pub(super) fn gross(&self, errors: &PoseErrors) -> Option<Gross> {
+    pub(super) fn gross(&self, errors: &PoseErrors) -> Option<GrossError> {
         // Negated, so that a NaN is gross.
         let within = |error: f64, limit: f64| error.abs() <= limit;
         let held = [
-            (Gross::Range, within(errors.range_m, self.range_m)),
-            (Gross::Place, within(errors.place_rad, self.place_rad)),
-            (Gross::Roll, within(turn(errors.phi_rad.z), Self::ANGLE_RAD)),
-            (Gross::Tilt, within(errors.tilt_rad, self.tilt_rad)),
+            (GrossError::Range, within(errors.range_m, self.range_m)),
+            (GrossError::Direction, within(errors.direction_rad, self.direction_rad)),
+            (GrossError::Roll, within(turn(errors.phi_rad.z), Self::ANGLE_RAD)),
+            (GrossError::Tilt, within(errors.tilt_rad, self.tilt_rad)),
         ];
         held.into_iter().find_map(|(gross, holds)| (!holds).then_some(gross))
     }
@@ -112,12 +112,12 @@ pub enum Verdict {
         /// The test that it failed.
         doubt: Doubt,
         /// In what it is grossly wrong, if it is.
-        gross: Option<Gross>,
+        gross: Option<GrossError>,
     },
     /// An answer that is grossly wrong.
     Wrong {
         /// In what.
-        gross: Gross,
+        gross: GrossError,
     },
     /// No answer.
     Missed {
@@ -128,43 +128,51 @@ pub enum Verdict {
 
 impl Verdict {
     /// Judges an answer; `None`: there is none.
-    pub(super) fn of(sights: &Sights, truth: &TrueField, outcome: Option<&DockingOutcome>) -> Self {
+    pub(super) fn from_outcome(
+        geometry: &ImagingGeometry,
+        truth: &TrueField,
+        outcome: Option<&DockingOutcome>,
+    ) -> Self {
         match outcome.map(|outcome| &outcome.solution) {
             Some(DockingSolution::Measured(measurement)) => {
                 let errors = PoseErrors::new(&measurement.best.pose, &truth.pose);
-                match gross(sights, truth, &errors) {
+                match gross(geometry, truth, &errors) {
                     Some(gross) => Self::Wrong { gross },
                     None => Self::Success { errors },
                 }
             }
             Some(DockingSolution::Doubtful { measurement, doubt }) => {
                 let errors = PoseErrors::new(&measurement.best.pose, &truth.pose);
-                Self::Doubtful { doubt: *doubt, gross: gross(sights, truth, &errors) }
+                Self::Doubtful { doubt: *doubt, gross: gross(geometry, truth, &errors) }
             }
             Some(DockingSolution::RangeOnly { range_m, sigma_m }) => {
                 let error_m = range_m - truth.pose.position_m.z;
                 if error_m.abs() <= Limits::OUTLINE * truth.pose.position_m.norm() {
                     Self::RangeOnly { error_m, sigma_m: *sigma_m }
                 } else {
-                    Self::Wrong { gross: Gross::Outline }
+                    Self::Wrong { gross: GrossError::Outline }
                 }
             }
-            Some(DockingSolution::NoSolution(said)) => Self::missed(sights, truth, Some(said)),
-            None => Self::missed(sights, truth, None),
+            Some(DockingSolution::NoSolution(reason)) => Self::missed(geometry, truth, Some(reason)),
+            None => Self::missed(geometry, truth, None),
         }
     }
 }
 
 impl Verdict {
-    fn missed(sights: &Sights, truth: &TrueField, said: Option<&NoPose>) -> Self {
-        let is_resolved = sights.resolves(truth.camera, &truth.pose);
-        Self::Missed { cause: MissCause::of(truth, is_resolved, said) }
+    fn missed(geometry: &ImagingGeometry, truth: &TrueField, reason: Option<&NoPose>) -> Self {
+        let is_resolved = geometry.resolves(truth.camera, &truth.pose);
+        Self::Missed { cause: MissCause::from_truth(truth, is_resolved, reason) }
     }
 }
 
 /// In what a pose is grossly wrong. Of a camera that the setup does not have nothing can be said, and nothing is.
-pub(super) fn gross(sights: &Sights, truth: &TrueField, errors: &PoseErrors) -> Option<Gross> {
-    Limits::at(sights, truth.camera, &truth.pose).and_then(|limits| limits.gross(errors))
+pub(super) fn gross(
+    geometry: &ImagingGeometry,
+    truth: &TrueField,
+    errors: &PoseErrors,
+) -> Option<GrossError> {
+    Limits::for_pose(geometry, truth.camera, &truth.pose).and_then(|limits| limits.gross(errors))
 }
 
 #[cfg(test)]
@@ -172,16 +180,16 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::docking::hand_made::{ahead, doubtful, field, measured, range_only, setup};
+    use crate::docking::hand_made::{ahead, doubtful_outcome, field, measured_outcome, range_only, setup};
 
     fn verdict(range_m: f64, outcome: &DockingOutcome) -> Verdict {
-        Verdict::of(&Sights::new(&setup()), &field(0, range_m), Some(outcome))
+        Verdict::from_outcome(&ImagingGeometry::new(&setup()), &field(0, range_m), Some(outcome))
     }
 
-    fn gross_of(range_m: f64, change: impl FnOnce(&mut Pose)) -> Option<Gross> {
+    fn gross_of(range_m: f64, change: impl FnOnce(&mut Pose)) -> Option<GrossError> {
         let mut pose = ahead(range_m);
         change(&mut pose);
-        match verdict(range_m, &measured(pose)) {
+        match verdict(range_m, &measured_outcome(pose)) {
             Verdict::Wrong { gross } => Some(gross),
             Verdict::Success { .. } => None,
             other => panic!("{other:?}"),
@@ -191,22 +199,22 @@ mod tests {
     #[test]
     fn a_range_is_wrong_beyond_five_percent() {
         assert_eq!(gross_of(10.0, |pose| pose.position_m.z = 10.49), None);
-        assert_eq!(gross_of(10.0, |pose| pose.position_m.z = 10.51), Some(Gross::Range));
-        assert_eq!(gross_of(10.0, |pose| pose.position_m.z = 9.49), Some(Gross::Range));
+        assert_eq!(gross_of(10.0, |pose| pose.position_m.z = 10.51), Some(GrossError::Range));
+        assert_eq!(gross_of(10.0, |pose| pose.position_m.z = 9.49), Some(GrossError::Range));
     }
 
     #[test]
     fn an_upside_down_target_is_wrong_and_a_whole_turn_is_none() {
-        assert_eq!(gross_of(10.0, |pose| pose.phi_rad.z = 0.09), Some(Gross::Roll));
-        assert_eq!(gross_of(10.0, |pose| pose.phi_rad.z = std::f64::consts::PI), Some(Gross::Roll));
+        assert_eq!(gross_of(10.0, |pose| pose.phi_rad.z = 0.09), Some(GrossError::Roll));
+        assert_eq!(gross_of(10.0, |pose| pose.phi_rad.z = std::f64::consts::PI), Some(GrossError::Roll));
         assert_eq!(gross_of(10.0, |pose| pose.phi_rad.z = 0.08), None);
     }
 
     /// Half of the circle's radius of 0.25 m at 10 m is 12.5 mrad.
     #[test]
-    fn a_place_beyond_half_the_circle_is_of_something_else() {
+    fn a_position_beyond_half_the_circle_is_of_something_else() {
         assert_eq!(gross_of(10.0, |pose| pose.phi_rad.x = 0.0124), None);
-        assert_eq!(gross_of(10.0, |pose| pose.phi_rad.x = 0.0126), Some(Gross::Place));
+        assert_eq!(gross_of(10.0, |pose| pose.phi_rad.x = 0.0126), Some(GrossError::Direction));
     }
 
     /// With the target where it was: at 10 m the limit is 5°, at 100 m one pixel of parallax, 100/(2917 × 0.3) = 6.55°.
@@ -219,23 +227,23 @@ mod tests {
                 pose.phi_rad.y = -turn;
             })
         };
-        assert_eq!((tilted(10.0, 4.9), tilted(10.0, 5.1)), (None, Some(Gross::Tilt)));
-        assert_eq!((tilted(100.0, 6.5), tilted(100.0, 6.6)), (None, Some(Gross::Tilt)));
+        assert_eq!((tilted(10.0, 4.9), tilted(10.0, 5.1)), (None, Some(GrossError::Tilt)));
+        assert_eq!((tilted(100.0, 6.5), tilted(100.0, 6.6)), (None, Some(GrossError::Tilt)));
     }
 
     /// A doubtful pose is neither success nor wrong, and its error is looked at all the same.
     #[test]
     fn a_doubtful_pose_is_doubtful_whatever_its_error() {
-        let at = |d3_m| verdict(10.0, &doubtful(ahead(d3_m), Doubt::Motion));
+        let at = |d3_m| verdict(10.0, &doubtful_outcome(ahead(d3_m), Doubt::Motion));
         assert_eq!(at(10.0), Verdict::Doubtful { doubt: Doubt::Motion, gross: None });
-        assert_eq!(at(11.0), Verdict::Doubtful { doubt: Doubt::Motion, gross: Some(Gross::Range) });
+        assert_eq!(at(11.0), Verdict::Doubtful { doubt: Doubt::Motion, gross: Some(GrossError::Range) });
     }
 
     #[test]
     fn a_range_alone_is_right_within_twenty_percent() {
         let at = |range_m| verdict(300.0, &range_only(range_m, 5.0));
         assert_eq!(at(310.0), Verdict::RangeOnly { error_m: 10.0, sigma_m: 5.0 });
-        assert_eq!(at(361.0), Verdict::Wrong { gross: Gross::Outline });
+        assert_eq!(at(361.0), Verdict::Wrong { gross: GrossError::Outline });
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::layout::view::Placement;
 use crate::panel::{Mark, Shape};
 
 /// Most pixels of a side: more than any layout has.
-const MOST_SIDE: usize = 20_000;
+const MAX_SIDE: usize = 20_000;
 /// Width of the lines of marks, px.
 pub(crate) const LINE: f64 = 1.8;
 
@@ -67,7 +67,7 @@ impl Canvas {
     pub(crate) fn new(width: usize, height: usize, [red, green, blue]: Rgb) -> Result<Self, ShowError> {
         let error = || ShowError::Size { width, height };
         let side =
-            |length: usize| u32::try_from(length).ok().filter(|_| length <= MOST_SIDE).ok_or_else(error);
+            |length: usize| u32::try_from(length).ok().filter(|_| length <= MAX_SIDE).ok_or_else(error);
         let mut pixmap = Pixmap::new(side(width)?, side(height)?).ok_or_else(error)?;
         pixmap.fill(Color::from_rgba8(red, green, blue, u8::MAX));
         Ok(Self(pixmap))
@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn a_picture_without_pixels_or_too_large_is_refused() {
-        for (width, height) in [(0, 10), (10, 0), (MOST_SIDE + 1, 1), (usize::MAX, 1)] {
+        for (width, height) in [(0, 10), (10, 0), (MAX_SIDE + 1, 1), (usize::MAX, 1)] {
             assert!(Canvas::new(width, height, BLACK).is_err());
         }
     }

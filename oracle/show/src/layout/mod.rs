@@ -17,7 +17,7 @@ use crate::panel::class::Class;
 use crate::panel::raster::raster;
 use crate::panel::stretch::White;
 use crate::panel::{Mark, Panel, Table, Tone, Verdict};
-use crate::{MOST_PANELS, ShowError};
+use crate::{MAX_PANELS, ShowError};
 
 /// Border of the sheet, and from a panel to its neighbour, px.
 const MARGIN: usize = 16;
@@ -32,7 +32,7 @@ const CLOSE_UP: (usize, usize) = (COLUMN, 300);
 /// Width of a contact sheet without its border, px.
 const SHEET: usize = 1000;
 /// Largest enlargement of a close-up.
-const MOST_ZOOM: usize = 24;
+const MAX_ZOOM: usize = 24;
 
 /// A picture, and where its panels are.
 #[derive(Debug, Clone)]
@@ -44,12 +44,12 @@ pub struct Picture {
     /// Red, green and blue of its pixels, row by row.
     pub rgb: Vec<[u8; 3]>,
     /// The panels, in the order in which they were given.
-    pub panels: Vec<PanelPlace>,
+    pub panels: Vec<PanelLayout>,
 }
 
 /// Where the parts of a panel are.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct PanelPlace {
+pub struct PanelLayout {
     /// The frame.
     pub frame: Placement,
     /// The close-up, where there is one.
@@ -68,11 +68,11 @@ enum Part {
 /// Draws one panel with a table beside it, or several as a contact sheet.
 ///
 /// # Errors
-/// [`ShowError::PanelCount`] for no panel or more than [`MOST_PANELS`]; [`ShowError::Size`] for a view without pixels.
+/// [`ShowError::PanelCount`] for no panel or more than [`MAX_PANELS`]; [`ShowError::Size`] for a view without pixels.
 pub fn picture(panels: &[Panel]) -> Result<Picture, ShowError> {
     match panels {
         [only] => single(only),
-        several if (2..=MOST_PANELS).contains(&several.len()) => contact_sheet(several),
+        several if (2..=MAX_PANELS).contains(&several.len()) => contact_sheet(several),
         _ => Err(ShowError::PanelCount(panels.len())),
     }
 }
@@ -80,7 +80,7 @@ pub fn picture(panels: &[Panel]) -> Result<Picture, ShowError> {
 /// A frame, and beside it close-up, table and legend.
 fn single(panel: &Panel) -> Result<Picture, ShowError> {
     let most = (WANTED_COLUMNS / panel.view.columns.max(1)).max(1);
-    let frame = Placement::fit(panel.view, LARGEST, most).at(MARGIN, MARGIN);
+    let frame = Placement::fit(panel.view, LARGEST, most).moved_to(MARGIN, MARGIN);
     let left = frame.left + frame.width + MARGIN;
     let verdict = panel
         .verdict
@@ -93,7 +93,8 @@ fn single(panel: &Panel) -> Result<Picture, ShowError> {
     let mut top = MARGIN + Font::Heading.height();
     let verdict_top = top;
     top += verdict.as_ref().map_or(0, |(lines, _)| lines.len() * Font::Heading.height()) + MARGIN / 2;
-    let close_up = panel.close_up.map(|window| Placement::fit(window, CLOSE_UP, MOST_ZOOM).at(left, top));
+    let close_up =
+        panel.close_up.map(|window| Placement::fit(window, CLOSE_UP, MAX_ZOOM).moved_to(left, top));
     top += close_up.map_or(0, |close_up| close_up.height + MARGIN / 2);
     let mut table_top = top;
     top += panel.tables.iter().map(Table::height).sum::<usize>();
@@ -117,7 +118,7 @@ fn single(panel: &Panel) -> Result<Picture, ShowError> {
         table_top += table.height();
     }
     legend::draw(&mut canvas, MARGIN, legend_top, &entries);
-    Ok(finished(&canvas, vec![PanelPlace { frame, close_up }]))
+    Ok(finished(&canvas, vec![PanelLayout { frame, close_up }]))
 }
 
 /// Frames side by side, each with its close-up in a corner and a caption below.
@@ -151,8 +152,8 @@ fn contact_sheet(panels: &[Panel]) -> Result<Picture, ShowError> {
             let left = MARGIN + column * (width + MARGIN);
             let frame = fitted(panel);
             // Narrow frames stand in the middle of their cell.
-            let frame =
-                frame.at(left + (width - frame.width.min(width)) / 2, top + (row_height - frame.height) / 2);
+            let frame = frame
+                .moved_to(left + (width - frame.width.min(width)) / 2, top + (row_height - frame.height) / 2);
             let close_up = panel.close_up.map(|window| in_corner(window, &frame, &panel.marks));
             let taken: Vec<Area> = close_up
                 .iter()
@@ -183,7 +184,7 @@ fn contact_sheet(panels: &[Panel]) -> Result<Picture, ShowError> {
                 let top = top + row_height + MARGIN / 4;
                 canvas.text(from, top, &verdict.words, Font::Heading, colour_of(verdict));
             }
-            places.push(PanelPlace { frame, close_up });
+            places.push(PanelLayout { frame, close_up });
         }
         top += row_height + caption_height + MARGIN / 2;
     }
@@ -194,7 +195,7 @@ fn contact_sheet(panels: &[Panel]) -> Result<Picture, ShowError> {
 /// A close-up in that corner of a frame where it covers fewest marks. The lower right one belongs to the scale bar.
 fn in_corner(window: Window, frame: &Placement, marks: &[Mark]) -> Placement {
     let room = (frame.width * 9 / 20, frame.height * 9 / 20);
-    let fitted = Placement::fit(window, room, MOST_ZOOM);
+    let fitted = Placement::fit(window, room, MAX_ZOOM);
     let inset = MARGIN / 2;
     let (near_x, near_y) = (frame.left + inset, frame.top + inset);
     let far_x = (frame.left + frame.width).saturating_sub(fitted.width + inset);
@@ -211,7 +212,7 @@ fn in_corner(window: Window, frame: &Placement, marks: &[Mark]) -> Placement {
     };
     let corners = [(near_x, near_y), (far_x, near_y), (near_x, far_y)];
     let (left, top) = corners.into_iter().min_by_key(|corner| covered(*corner)).unwrap_or((near_x, near_y));
-    fitted.at(left, top)
+    fitted.moved_to(left, top)
 }
 
 /// Draws a window of a frame, and what lies over it, into a canvas. Names keep clear of `taken`.
@@ -293,7 +294,7 @@ fn caption(panel: &Panel, width: usize) -> Vec<Line> {
     lines
 }
 
-fn finished(canvas: &Canvas, panels: Vec<PanelPlace>) -> Picture {
+fn finished(canvas: &Canvas, panels: Vec<PanelLayout>) -> Picture {
     Picture { width: canvas.width(), height: canvas.height(), rgb: canvas.rgb(), panels }
 }
 
@@ -379,7 +380,7 @@ mod tests {
         let mark =
             |class, x: f64, y: f64, shape| Mark { at: PixelPoint::new(x, y), shape, class, label: None };
         Panel {
-            view: pixels.whole(),
+            view: pixels.full_window(),
             regions: None,
             close_up: None,
             stretch: Stretch::Asinh,
@@ -442,7 +443,7 @@ mod tests {
 
     #[test]
     fn every_part_lies_inside_of_the_picture_and_covers_no_other_panel() {
-        for count in 1..=MOST_PANELS {
+        for count in 1..=MAX_PANELS {
             let mut panels = vec![panel(300, 200); count];
             panels.iter_mut().for_each(|panel| {
                 panel.close_up = Some(Window { x: 80, y: 70, columns: 32, rows: 24 });
@@ -474,7 +475,7 @@ mod tests {
         for (x, y) in [(60.0, 60.0), (700.0, 60.0), (60.0, 500.0)] {
             panel.marks[0].at = PixelPoint::new(x, y);
             let picture = picture(&[panel.clone(), panel.clone()]).unwrap();
-            let PanelPlace { frame, close_up: Some(close_up) } = picture.panels[0] else { panic!() };
+            let PanelLayout { frame, close_up: Some(close_up) } = picture.panels[0] else { panic!() };
             let (x, y) = frame.inner(PixelPoint::new(x, y));
             let (x, y) = (x + frame.left as f64, y + frame.top as f64);
             let inside =
@@ -486,7 +487,7 @@ mod tests {
     #[test]
     fn no_panel_and_too_many_are_refused() {
         assert!(matches!(picture(&[]), Err(ShowError::PanelCount(0))));
-        assert!(matches!(picture(&vec![panel(8, 8); MOST_PANELS + 1]), Err(ShowError::PanelCount(_))));
+        assert!(matches!(picture(&vec![panel(8, 8); MAX_PANELS + 1]), Err(ShowError::PanelCount(_))));
         let mut empty = panel(8, 8);
         empty.view.columns = 0;
         assert!(picture(&[empty]).is_ok_and(|picture| picture.width > 0));

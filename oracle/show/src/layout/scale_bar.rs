@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn words_tell_the_angle_in_its_unit_and_the_length_at_the_range() {
+    fn words_state_the_angle_in_its_unit_and_the_length_at_the_range() {
         let words =
             |pixels, focal_length_px, range_m| words(pixels, &PlateScale { focal_length_px, range_m });
         // ARGON: 20.187 mm over 8.6 µm; atan(100/2347.3) is 2.4394°.

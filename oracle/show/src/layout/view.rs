@@ -43,7 +43,7 @@ impl Placement {
     }
 
     /// The same with its upper left corner at a point of the picture.
-    pub(crate) fn at(self, left: usize, top: usize) -> Self {
+    pub(crate) fn moved_to(self, left: usize, top: usize) -> Self {
         Self { left, top, ..self }
     }
 

@@ -65,7 +65,7 @@ pub struct Pixels {
 
 impl Pixels {
     /// All of the frame.
-    pub fn whole(&self) -> Window {
+    pub fn full_window(&self) -> Window {
         Window { x: 0, y: 0, columns: self.columns, rows: self.rows }
     }
 }

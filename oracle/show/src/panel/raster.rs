@@ -53,17 +53,17 @@ impl Shades {
         let greys = Greys::new(panel.stretch, white, *full_scale_dn, &mut samples);
         Self {
             columns: window.columns,
-            greys: values.into_iter().map(|dn| dn.map(|dn| greys.of(dn))).collect(),
+            greys: values.into_iter().map(|dn| dn.map(|dn| greys.grey(dn))).collect(),
         }
     }
 
     /// The grey of a pixel, counted within the window.
-    fn at(&self, x: usize, y: usize) -> Option<u8> {
+    fn grey_at(&self, x: usize, y: usize) -> Option<u8> {
         self.greys.get(y * self.columns + x).copied().flatten()
     }
 
     fn brightest(&self, columns: &Span, rows: &Span) -> Rgb {
-        let of_row = |(y, _)| columns.cells().filter_map(move |(x, _)| self.at(x, y));
+        let of_row = |(y, _)| columns.cells().filter_map(move |(x, _)| self.grey_at(x, y));
         rows.cells().flat_map(of_row).max().map_or(NO_DATA, |grey| [grey; 3])
     }
 
@@ -71,7 +71,7 @@ impl Shades {
         let (mut sum, mut weights) = (0.0, 0.0);
         for (y, high) in rows.cells() {
             for (x, wide) in columns.cells() {
-                if let Some(grey) = self.at(x, y) {
+                if let Some(grey) = self.grey_at(x, y) {
                     sum += high * wide * f64::from(grey);
                     weights += high * wide;
                 }
@@ -122,7 +122,7 @@ mod tests {
     fn panel(columns: usize, rows: usize, dn: Vec<u16>, reduction: Reduction) -> Panel {
         let pixels = Pixels { columns, rows, dn, full_scale_dn: 255 };
         Panel {
-            view: pixels.whole(),
+            view: pixels.full_window(),
             pixels,
             regions: None,
             close_up: None,
@@ -138,7 +138,7 @@ mod tests {
         }
     }
 
-    fn drawn(panel: &Panel, room: (usize, usize)) -> Vec<u8> {
+    fn rastered(panel: &Panel, room: (usize, usize)) -> Vec<u8> {
         let placement = Placement::fit(panel.view, room, 9);
         raster(panel, panel.view, &placement, White::Sky).into_iter().map(|[red, ..]| red).collect()
     }
@@ -146,21 +146,21 @@ mod tests {
     #[test]
     fn enlarged_pixels_are_squares() {
         let panel = panel(2, 1, vec![10, 20], Reduction::Mean);
-        assert_eq!(drawn(&panel, (4, 4)), [10, 10, 20, 20, 10, 10, 20, 20]);
+        assert_eq!(rastered(&panel, (4, 4)), [10, 10, 20, 20, 10, 10, 20, 20]);
     }
 
     #[test]
     fn reduced_pixels_are_the_brightest_or_the_mean_by_area() {
         let dn = vec![0, 100, 0, 40, 0, 0];
-        assert_eq!(drawn(&panel(6, 1, dn.clone(), Reduction::Brightest), (3, 1)), [100, 40, 0]);
-        assert_eq!(drawn(&panel(6, 1, dn.clone(), Reduction::Mean), (3, 1)), [50, 20, 0]);
+        assert_eq!(rastered(&panel(6, 1, dn.clone(), Reduction::Brightest), (3, 1)), [100, 40, 0]);
+        assert_eq!(rastered(&panel(6, 1, dn.clone(), Reduction::Mean), (3, 1)), [50, 20, 0]);
         // Three of two and a half: (0 + 100 + 0/2)/2.5, (0/2 + 40 + 0)/2.5.
         let five = panel(5, 1, dn.into_iter().take(5).collect(), Reduction::Mean);
-        assert_eq!(drawn(&five, (2, 1)), [40, 16]);
+        assert_eq!(rastered(&five, (2, 1)), [40, 16]);
     }
 
     #[test]
-    fn what_was_not_transmitted_has_a_colour_of_its_own_and_no_part_in_the_stretch() {
+    fn what_was_not_transmitted_has_a_separate_colour_and_no_part_in_the_stretch() {
         let regions = Some(vec![Window { x: 1, y: 0, columns: 2, rows: 1 }]);
         let mut panel = Panel { regions, ..panel(4, 1, vec![0, 50, 60, 255], Reduction::Brightest) };
         panel.stretch = Stretch::Linear;

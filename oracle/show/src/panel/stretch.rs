@@ -99,7 +99,7 @@ impl Greys {
     }
 
     /// The grey of a digital number; white above the table.
-    pub(crate) fn of(&self, dn: u16) -> u8 {
+    pub(crate) fn grey(&self, dn: u16) -> u8 {
         self.0.get(usize::from(dn)).copied().unwrap_or(u8::MAX)
     }
 }
@@ -115,8 +115,8 @@ mod tests {
         for stretch in Stretch::ALL {
             for white in [White::Sky, White::Brightest] {
                 let greys = Greys::new(stretch, white, 4095, &mut samples.clone());
-                assert!((0..4095).all(|dn| greys.of(dn) <= greys.of(dn + 1)), "{stretch} {white:?}");
-                assert!(greys.of(4095) == 255 && greys.of(u16::MAX) == 255, "{stretch} {white:?}");
+                assert!((0..4095).all(|dn| greys.grey(dn) <= greys.grey(dn + 1)), "{stretch} {white:?}");
+                assert!(greys.grey(4095) == 255 && greys.grey(u16::MAX) == 255, "{stretch} {white:?}");
             }
         }
     }
@@ -127,7 +127,8 @@ mod tests {
         let mut samples: Vec<u16> = (0..4000_u16).map(|i| 97 + i % 7).collect();
         samples.push(4095);
         let greys = Greys::new(Stretch::Asinh, White::Sky, 4095, &mut samples);
-        let (sky, grain, faint, bright) = (greys.of(100), greys.of(103), greys.of(115), greys.of(400));
+        let (sky, grain, faint, bright) =
+            (greys.grey(100), greys.grey(103), greys.grey(115), greys.grey(400));
         assert!(sky < 20 && grain < 40, "{sky} {grain}");
         assert!(faint > grain + 30 && bright > faint + 60, "{faint} {bright}");
     }
@@ -137,7 +138,7 @@ mod tests {
         for stretch in Stretch::ALL {
             for mut samples in [vec![], vec![0; 9], vec![7; 9], vec![u16::MAX; 9]] {
                 let greys = Greys::new(stretch, White::Sky, u16::MAX, &mut samples);
-                assert!(greys.of(0) <= greys.of(u16::MAX), "{stretch}");
+                assert!(greys.grey(0) <= greys.grey(u16::MAX), "{stretch}");
             }
         }
     }

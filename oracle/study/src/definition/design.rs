@@ -6,14 +6,14 @@ use sim::randomness::{Effect, Seed, uniform};
 use sobol::Sobol;
 use sobol::params::JoeKuoD6;
 
-/// How the dispersed parameters are spread over their laws.
+/// How the dispersed parameters are spread over their distributions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DesignKind {
     /// Every case is drawn by itself: the plain Monte Carlo method, whose intervals are those of independent draws.
     #[default]
     Random,
-    /// Latin hypercube (McKay, Beckman & Conover 1979): each parameter's law is cut into as many equally likely parts as there
+    /// Latin hypercube (McKay, Beckman & Conover 1979): each parameter's distribution is cut into as many equally likely parts as there
     /// are cases, and each part has one case.
     LatinHypercube,
     /// Sobol's sequence with the direction numbers of Joe & Kuo (2008), shifted digitally by the seed; best with a power of two
@@ -25,7 +25,7 @@ pub enum DesignKind {
 }
 
 /// Most dimensions of a low-discrepancy design.
-const MOST_DIMENSIONS: usize = 100;
+const MAX_DIMENSIONS: usize = 100;
 
 /// A number of 53 bits as one of the open unit interval.
 const UNIT: f64 = 1.0 / 9_007_199_254_740_992.0;
@@ -53,9 +53,9 @@ impl Design {
             DesignKind::Sobol => dimensions,
             DesignKind::Saltelli => 2 * dimensions,
         };
-        if of_sequence > MOST_DIMENSIONS {
+        if of_sequence > MAX_DIMENSIONS {
             return Err(format!(
-                "a design of at most {MOST_DIMENSIONS} dimensions, and this one has {of_sequence}"
+                "a design of at most {MAX_DIMENSIONS} dimensions, and this one has {of_sequence}"
             ));
         }
         if kind == DesignKind::Saltelli && (dimensions == 0 || !points.is_multiple_of(dimensions as u64 + 2))

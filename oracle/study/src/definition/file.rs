@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::design::DesignKind;
-use super::law::Law;
+use super::distribution::Distribution;
 use crate::findings::requirement::StudyRequirement;
 
 /// A study, as a TOML file holds it. Unknown keys are errors.
@@ -25,15 +25,15 @@ pub struct StudyFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1_u64 << 40))]
     pub warm_up_frames: Option<u64>,
-    /// How the dispersed parameters are spread over their laws.
+    /// How the dispersed parameters are spread over their distributions.
     #[serde(default)]
     pub design: DesignKind,
     /// Of a Latin hypercube or of Sobol's sequence: independent replications of a smaller design, which the cases are cut into. Their scatter
     /// gives the intervals; five are the fewest of a mean. One has no scatter, and intervals as wide as those of independent draws.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[serde(default = "default_replications", skip_serializing_if = "is_default")]
     #[schemars(range(min = 1, max = 10_000))]
     pub replications: u64,
-    /// Parameters that vary by a law.
+    /// Parameters that vary by a distribution.
     #[serde(default)]
     pub vary: Vec<Dispersion>,
     /// Parameters that take each of some values; of several, every combination is run, and each with the same draws of all other
@@ -50,12 +50,12 @@ pub struct StudyFile {
     pub require: Vec<StudyRequirement>,
 }
 
-const fn one() -> u64 {
+const fn default_replications() -> u64 {
     1
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
-const fn is_one(replications: &u64) -> bool {
+const fn is_default(replications: &u64) -> bool {
     *replications == 1
 }
 
@@ -65,8 +65,8 @@ const fn is_one(replications: &u64) -> bool {
 pub struct Dispersion {
     /// Its path in the scenario, as in `psf.sigma_px`, `attitude.control.jitter_arcsec[2]` or `cameras[0].camera.focal_length_mm`.
     pub path: String,
-    /// Its law.
-    pub law: Law,
+    /// Its distribution.
+    pub distribution: Distribution,
 }
 
 /// A parameter that is swept.

@@ -1,8 +1,8 @@
 //! A study that was read and checked, and the scenarios of its cases.
 
 pub(crate) mod design;
+pub(crate) mod distribution;
 pub(crate) mod file;
-pub(crate) mod law;
 pub(crate) mod overlay;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -18,11 +18,11 @@ use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use sim::randomness::{Effect, Seed};
 
-use crate::cases::{CaseTable, Drawn};
+use crate::cases::{CaseTable, DrawnValue};
 use crate::definition::design::Design;
 use crate::definition::design::DesignKind;
+use crate::definition::distribution::{Distribution, PreparedDistribution, boresight, euler_123};
 use crate::definition::file::StudyFile;
-use crate::definition::law::{Drawable, Law, boresight, euler_123};
 use crate::definition::overlay::ValuePath;
 
 /// What is no parameter.
@@ -41,8 +41,8 @@ pub struct Study {
     /// The scenario that the cases begin from.
     base: ScenarioSource,
     base_values: Value,
-    vary: Vec<Varied>,
-    sweep: Vec<Swept>,
+    vary: Vec<VariedParameter>,
+    sweep: Vec<SweptParameter>,
     design: Design,
     path: PathBuf,
     text: String,
@@ -50,16 +50,16 @@ pub struct Study {
     hash: String,
 }
 
-/// A parameter with its law, ready to be drawn.
-struct Varied {
+/// A parameter with its distribution, ready to be drawn.
+struct VariedParameter {
     path: ValuePath,
-    law: Drawable,
+    distribution: PreparedDistribution,
     /// Of an attitude: its angles.
     angles: Option<[ValuePath; 3]>,
     is_euler: bool,
 }
 
-struct Swept {
+struct SweptParameter {
     path: ValuePath,
     values: Vec<Value>,
 }
@@ -72,22 +72,22 @@ pub struct Case {
     /// Seed of its scenario.
     pub seed: u64,
     /// What was drawn, in the order of [`Study::drawn_columns`].
-    pub drawn: Vec<Drawn>,
+    pub drawn: Vec<DrawnValue>,
     /// Its scenario.
     pub source: ScenarioSource,
 }
 
 /// Cases that cannot be run, before any can, that end a study: none could.
-pub(crate) const MOST_FAILED_CASES: u64 = 10;
+pub(crate) const MAX_FAILED_CASES: u64 = 10;
 
 /// Most replications of a design.
-const MOST_REPLICATIONS: u64 = 10_000;
+const MAX_REPLICATIONS: u64 = 10_000;
 
 /// What was drawn for a case.
 pub(crate) struct DrawnCase {
     pub(crate) number: u64,
     pub(crate) seed: u64,
-    pub(crate) drawn: Vec<Drawn>,
+    pub(crate) drawn: Vec<DrawnValue>,
     /// The scenario with it.
     values: Value,
 }
@@ -141,14 +141,15 @@ impl Study {
         let mut taken: Vec<ValuePath> = Vec::new();
         for (i, dispersion) in file.vary.iter().enumerate() {
             let at = |field: &str| format!("vary[{i}].{field}");
-            if let Law::Choice { values, .. } = &dispersion.law {
+            if let Distribution::Choice { values, .. } = &dispersion.distribution {
                 check_finite(values)
-                    .map_err(|(k, message)| refuse(&at(&format!("law.values[{k}]")), message))?;
+                    .map_err(|(k, message)| refuse(&at(&format!("distribution.values[{k}]")), message))?;
             }
-            let checked = dispersion.law.check(&at("law"));
+            let checked = dispersion.distribution.check(&at("distribution"));
             checked.map_err(|error| toml_file::out_of_range(path, &text, &error))?;
-            let varied = Varied::new(&dispersion.path, &dispersion.law, &folder, &base_values)
-                .map_err(|(field, message)| refuse(&at(field), message))?;
+            let varied =
+                VariedParameter::new(&dispersion.path, &dispersion.distribution, &folder, &base_values)
+                    .map_err(|(field, message)| refuse(&at(field), message))?;
             check_free(&mut taken, &varied.path).map_err(|message| refuse(&at("path"), message))?;
             vary.push(varied);
         }
@@ -164,7 +165,7 @@ impl Study {
             }
             check_finite(&swept.values)
                 .map_err(|(k, message)| refuse(&at(&format!("values[{k}]")), message))?;
-            sweep.push(Swept { path: value_path, values: swept.values.clone() });
+            sweep.push(SweptParameter { path: value_path, values: swept.values.clone() });
         }
 
         let counts = sweep.iter().map(|swept| swept.values.len() as u64);
@@ -190,10 +191,10 @@ impl Study {
             return Err(refuse("design", "is saltelli, expected without a sweep".to_owned()));
         }
         let replications = file.replications;
-        if !(1..=MOST_REPLICATIONS).contains(&replications) {
+        if !(1..=MAX_REPLICATIONS).contains(&replications) {
             return Err(refuse(
                 "replications",
-                format!("is {replications}, expected 1 to {MOST_REPLICATIONS}"),
+                format!("is {replications}, expected 1 to {MAX_REPLICATIONS}"),
             ));
         }
         if replications > 1 && !matches!(file.design, DesignKind::LatinHypercube | DesignKind::Sobol) {
@@ -214,7 +215,7 @@ impl Study {
                 "is given, expected with the random design alone: of another one, all cases belong together";
             return Err(refuse("stop.until", message.to_owned()));
         }
-        let dimensions = file.vary.iter().map(|dispersion| dispersion.law.dimensions()).sum();
+        let dimensions = file.vary.iter().map(|dispersion| dispersion.distribution.dimensions()).sum();
         let design = Design::new(file.design, dimensions, cases / cells / replications, file.seed)
             .map_err(|expected| refuse("stop.cases", format!("is {cases}, expected {expected}")))?;
 
@@ -254,7 +255,7 @@ impl Study {
     fn first_frame_count(&self) -> Result<u64, Failure> {
         let count = |number| Ok(self.case(number)?.source.prepare(Options::default())?.frame_count());
         let first = count(0);
-        (1..self.cases().min(MOST_FAILED_CASES)).fold(first, |found, number| match found {
+        (1..self.cases().min(MAX_FAILED_CASES)).fold(first, |found, number| match found {
             Err(failure @ (Failure::Toml(_) | Failure::Simulation(_) | Failure::Contract(_))) => {
                 count(number).map_err(|_: Failure| failure)
             }
@@ -286,8 +287,8 @@ impl Study {
     /// # Errors
     /// A [`Failure`] with the place of the parameter by which it cannot, in the case's scenario.
     pub fn check_built_in_pipeline(&self) -> Result<(), Failure> {
-        const MOST_POINTS: u64 = 1000;
-        for number in 0..self.sweep_points().min(self.cases()).min(MOST_POINTS) {
+        const MAX_POINTS: u64 = 1000;
+        for number in 0..self.sweep_points().min(self.cases()).min(MAX_POINTS) {
             // A case that makes no scenario has a row that says so.
             if let Ok(Case { source, .. }) = self.case(number) {
                 source.world().check_built_in(&source)?;
@@ -300,10 +301,10 @@ impl Study {
     /// 100,000 draws), of a choice one of each value, at the first and the last point of the sweep; and every point of the sweep once.
     /// At most a thousand, in order.
     pub fn extremes(&self) -> BTreeSet<u64> {
-        const MOST_DRAWS: u64 = 100_000;
-        const MOST_CASES: usize = 1000;
+        const MAX_DRAWS: u64 = 100_000;
+        const MAX_CASES: usize = 1000;
         let points = self.sweep_points();
-        let draws = (self.cases() / points).min(MOST_DRAWS);
+        let draws = (self.cases() / points).min(MAX_DRAWS);
         let mut found = BTreeSet::from([0]);
         let mut ends: Vec<Option<[(f64, u64); 2]>> = Vec::new();
         let mut chosen = BTreeSet::new();
@@ -312,7 +313,7 @@ impl Study {
             ends.resize(unit.len(), None);
             for (end, &u) in ends.iter_mut().zip(&unit) {
                 let [low, high] = end.get_or_insert([(u, draw); 2]);
-                // Values grow with the place in their law, or fall with it: the ends are the same.
+                // Values increase or decrease with the quantile: the ends are the same.
                 *low = if u < low.0 { (u, draw) } else { *low };
                 *high = if u > high.0 { (u, draw) } else { *high };
             }
@@ -320,10 +321,19 @@ impl Study {
             for (place, varied) in self.vary.iter().enumerate() {
                 let u: Vec<f64> = unit
                     .by_ref()
-                    .take(self.file.vary.get(place).map_or(1, |dispersion| dispersion.law.dimensions()))
+                    .take(
+                        self.file
+                            .vary
+                            .get(place)
+                            .map_or(1, |dispersion| dispersion.distribution.dimensions()),
+                    )
                     .collect();
-                let is_choice = matches!(varied.law, Drawable::Law(Law::Choice { .. }));
-                let value = u.first().filter(|_| is_choice).map(|u| varied.law.value(*u).to_string());
+                let is_choice = matches!(
+                    varied.distribution,
+                    PreparedDistribution::Distribution(Distribution::Choice { .. })
+                );
+                let value =
+                    u.first().filter(|_| is_choice).map(|u| varied.distribution.value(*u).to_string());
                 if value.is_some_and(|value| chosen.insert((place, value))) {
                     found.insert(draw);
                 }
@@ -331,7 +341,7 @@ impl Study {
         }
         found.extend(ends.into_iter().flatten().flatten().map(|(_, draw)| draw));
         let at_ends = found.into_iter().flat_map(|draw| [draw * points, draw * points + points - 1]);
-        (0..points).chain(at_ends).take(MOST_CASES).collect()
+        (0..points).chain(at_ends).take(MAX_CASES).collect()
     }
 
     /// SHA-256 of all that the rows depend on but the pipeline: the study, its scenario, the content of the files that they read; hexadecimal.
@@ -406,11 +416,11 @@ impl Study {
             columns.insert(swept.path.text().to_owned(), swept.values.iter().all(Value::is_number));
         }
         for varied in &self.vary {
-            match (&varied.angles, &varied.law) {
+            match (&varied.angles, &varied.distribution) {
                 (Some(angles), _) => {
                     columns.extend(angles.iter().map(|angle| (angle.text().to_owned(), true)));
                 }
-                (None, Drawable::Law(Law::Choice { values, .. })) => {
+                (None, PreparedDistribution::Distribution(Distribution::Choice { values, .. })) => {
                     columns.insert(varied.path.text().to_owned(), values.iter().all(Value::is_number));
                 }
                 (None, _) => {
@@ -448,14 +458,14 @@ impl Study {
     /// # Errors
     /// A [`Failure`] when the values drawn make no scenario; the place is that of the value in the case's scenario.
     pub fn case(&self, number: u64) -> Result<Case, Failure> {
-        self.case_of(self.draw(number)?)
+        self.prepare_case(self.draw(number)?)
     }
 
     /// The scenario of a case.
     ///
     /// # Errors
     /// As [`Study::case`].
-    pub(crate) fn case_of(
+    pub(crate) fn prepare_case(
         &self,
         DrawnCase { number, seed, drawn, values }: DrawnCase,
     ) -> Result<Case, Failure> {
@@ -499,7 +509,7 @@ impl Study {
                     set(path, Value::from(angle))?;
                 }
             } else {
-                set(&varied.path, varied.law.value(u.next().unwrap_or(0.5)))?;
+                set(&varied.path, varied.distribution.value(u.next().unwrap_or(0.5)))?;
             }
         }
         // The same at every point of a sweep. TOML's whole numbers have a sign: one bit less.
@@ -565,13 +575,15 @@ fn identity(file: &StudyFile, folder: &Path, base: &mut ScenarioSource) -> Resul
         identity.scenario.clear();
     }
     for dispersion in &mut identity.vary {
-        match &mut dispersion.law {
-            Law::Table { path, .. } => {
+        match &mut dispersion.distribution {
+            Distribution::Table { path, .. } => {
                 if let Some(sha256) = file_sha256(&folder.join(&*path))? {
                     *path = content(&sha256);
                 }
             }
-            Law::Choice { values, .. } => values.iter_mut().for_each(|value| replace_paths(value, base)),
+            Distribution::Choice { values, .. } => {
+                values.iter_mut().for_each(|value| replace_paths(value, base))
+            }
             _ => {}
         }
     }
@@ -594,17 +606,19 @@ fn replace_paths(value: &mut Value, base: &mut ScenarioSource) {
     }
 }
 
-impl Varied {
-    fn new(path: &str, law: &Law, folder: &Path, base: &Value) -> Result<Self, Problem> {
+impl VariedParameter {
+    fn new(path: &str, distribution: &Distribution, folder: &Path, base: &Value) -> Result<Self, Problem> {
         let value_path = ValuePath::parse(path)
             .map_err(|expected| ("path", format!("is `{path}`, expected {expected}")))?;
         let mut varied = Self {
-            law: law.load(folder).map_err(|error| ("law.path", error.to_string()))?,
+            distribution: distribution
+                .load(folder)
+                .map_err(|error| ("distribution.path", error.to_string()))?,
             path: value_path,
             angles: None,
             is_euler: false,
         };
-        if *law == Law::IsotropicAttitude {
+        if *distribution == Distribution::IsotropicAttitude {
             let table = varied.path.get(base);
             let has = |names: [&str; 3]| names.iter().all(|name| table.and_then(|t| t.get(name)).is_some());
             let names = if has(BORESIGHT) {
@@ -658,11 +672,11 @@ fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String
 }
 
 /// As it stands in a table.
-fn recorded(value: &Value) -> Drawn {
+fn recorded(value: &Value) -> DrawnValue {
     match (value, value.as_f64()) {
-        (_, Some(number)) => Drawn::Number(number),
-        (Value::String(text), _) => Drawn::Text(text.clone()),
-        (other, _) => Drawn::Text(other.to_string()),
+        (_, Some(number)) => DrawnValue::Number(number),
+        (Value::String(text), _) => DrawnValue::Text(text.clone()),
+        (other, _) => DrawnValue::Text(other.to_string()),
     }
 }
 

@@ -7,10 +7,10 @@ use files::Failure;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
-use super::tried::StudyPipeline;
+use super::study_pipeline::StudyPipeline;
 use crate::cases::CaseRow;
 use crate::definition::Study;
-use crate::evaluate::{Evaluated, evaluate};
+use crate::evaluate::{CaseResult, evaluate};
 
 /// How the cases of a campaign are run.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +34,7 @@ pub(crate) fn run_cases(
     cases: Vec<u64>,
     pipeline: &dyn StudyPipeline,
     Workers { jobs, scratch, ended }: Workers<'_>,
-    done: impl Fn(&Evaluated) -> Result<(), Failure> + Sync,
+    done: impl Fn(&CaseResult) -> Result<(), Failure> + Sync,
 ) -> Result<Vec<CaseRow>, Failure> {
     let pool = ThreadPoolBuilder::new()
         .num_threads(jobs)

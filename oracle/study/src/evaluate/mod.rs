@@ -1,7 +1,7 @@
 //! What comes of a case.
 
 pub(crate) mod engine;
-pub(crate) mod tried;
+pub(crate) mod study_pipeline;
 
 use std::path::Path;
 
@@ -11,11 +11,11 @@ use score::WARM_UP;
 
 use crate::cases::{CaseFigure, CaseRow};
 use crate::definition::{Case, Study};
-use crate::evaluate::tried::StudyPipeline;
+use crate::evaluate::study_pipeline::StudyPipeline;
 
 /// What came of a case.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Evaluated {
+pub struct CaseResult {
     /// Its row.
     pub row: CaseRow,
     /// The first failure of the pipeline, if it failed at all.
@@ -35,7 +35,7 @@ pub fn evaluate(
     number: u64,
     pipeline: &dyn StudyPipeline,
     scratch: &Path,
-) -> Result<Evaluated, Failure> {
+) -> Result<CaseResult, Failure> {
     let case = study.draw(number)?;
     let table = study.table();
     let mut row = CaseRow {
@@ -48,12 +48,12 @@ pub fn evaluate(
         figures: vec![CaseFigure { value: None, count: 0, of: 0 }; table.figures.len()],
         causes: vec![0; table.causes.len()],
     };
-    let RunResult { scored, first_failure, not_flown } =
-        match study.case_of(case).and_then(|case| run(study, &case, pipeline, scratch)) {
+    let RunResult { scored, first_failure, incomplete } =
+        match study.prepare_case(case).and_then(|case| run(study, &case, pipeline, scratch)) {
             Ok(result) => result,
             Err(failure @ (Failure::Toml(_) | Failure::Simulation(_) | Failure::Contract(_))) => {
                 row.error = Some(failure.to_string());
-                return Ok(Evaluated { row, first_failure: None, has_started: false });
+                return Ok(CaseResult { row, first_failure: None, has_started: false });
             }
             Err(failure) => return Err(failure),
         };
@@ -72,7 +72,7 @@ pub fn evaluate(
         }
     }
     row.has_failed = first_failure.is_some();
-    Ok(Evaluated { row, first_failure, has_started: not_flown.is_none() })
+    Ok(CaseResult { row, first_failure, has_started: incomplete.is_none() })
 }
 
 fn run(

@@ -1,11 +1,12 @@
 //! Values of many cases together, with their intervals.
 
 use rand::Rng;
-use run::figure_called;
+use run::figure_by_name;
 use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed, Stream};
 use statistics::{
-    ClusterSum, Clustered, Interval, cluster_mean_interval, cluster_quantile_interval, cluster_rate_interval,
+    ClusterSum, ClusterValue, Interval, cluster_mean_interval, cluster_quantile_interval,
+    cluster_rate_interval,
 };
 
 use crate::cases::CaseFigure;
@@ -36,7 +37,7 @@ impl Estimate {
 ///
 /// [`CaseTable::draws`]: crate::CaseTable::draws
 pub fn overall(name: &str, cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
-    if figure_called(name).is_rate() {
+    if figure_by_name(name).is_rate() {
         return share(cases, draws);
     }
     let sums = sums(false, cases, draws);
@@ -76,7 +77,7 @@ pub(crate) fn quantiles<const N: usize>(
     draws: &[usize],
     at: [f64; N],
 ) -> [Option<Estimate>; N] {
-    let mut sorted: Vec<Clustered> =
+    let mut sorted: Vec<ClusterValue> =
         cases.iter().zip(draws).filter_map(|(case, draw)| Some((*draw, case.value?))).collect();
     sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
     let values: Vec<f64> = sorted.iter().map(|(_, value)| *value).collect();

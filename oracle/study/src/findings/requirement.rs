@@ -1,16 +1,16 @@
 //! Requirements over a study: is a figure on the right side of its limit, with the confidence that is asked for?
 
 use indexmap::IndexMap;
-use run::figure_called;
+use run::figure_by_name;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use statistics::{Bounds, Clustered, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
+use statistics::{Bounds, ClusterValue, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
 
 use super::estimate::{ratio, sorted_quantile, sums};
 use crate::cases::CaseFigure;
 
 /// Cases at which it is given up to say how many would decide.
-const MOST_CASES: f64 = 1e9;
+const MAX_CASES: f64 = 1e9;
 
 /// What a figure must reach. It is decided at each point of the sweep alone, and is no part of the study's hash: the rows are the same
 /// with other requirements.
@@ -29,7 +29,7 @@ pub struct StudyRequirement {
     pub at_most: Option<f64>,
     /// Of what: all cases together (a rate over all frames, another figure's mean over the cases), or a quantile of the cases.
     #[serde(default)]
-    pub of: RequiredOf,
+    pub of: RequiredStatistic,
     /// Confidence of the decision, one-sided.
     #[serde(default = "default_confidence")]
     #[schemars(range(min = 0.5, max = 0.9999))]
@@ -43,7 +43,7 @@ const fn default_confidence() -> f64 {
 /// What of a figure's cases has a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum RequiredOf {
+pub enum RequiredStatistic {
     /// All cases together.
     #[default]
     All,
@@ -55,7 +55,7 @@ pub enum RequiredOf {
     P95,
 }
 
-impl RequiredOf {
+impl RequiredStatistic {
     fn quantile(self) -> Option<f64> {
         match self {
             Self::All => None,
@@ -220,12 +220,12 @@ fn verdict(limit: Limit, bounds: Option<Bounds>, may_be_met: bool) -> Requiremen
 enum Sample {
     Rate(Vec<statistics::ClusterSum>),
     Mean(Vec<statistics::ClusterSum>),
-    Quantile { sorted: Vec<Clustered>, p: f64 },
+    Quantile { sorted: Vec<ClusterValue>, p: f64 },
 }
 
 impl Sample {
     fn new(requirement: &StudyRequirement, limit: Limit, figures: &[CaseFigure], draws: &[usize]) -> Self {
-        let is_rate = figure_called(&requirement.figure).is_rate();
+        let is_rate = figure_by_name(&requirement.figure).is_rate();
         match requirement.of.quantile() {
             None if is_rate => Self::Rate(sums(true, figures, draws)),
             None => Self::Mean(sums(false, figures, draws)),
@@ -235,7 +235,7 @@ impl Sample {
                     Limit::AtMost(_) => f64::INFINITY,
                 };
                 let value = |figure: &CaseFigure| figure.value.unwrap_or(worse);
-                let mut sorted: Vec<Clustered> =
+                let mut sorted: Vec<ClusterValue> =
                     draws.iter().copied().zip(figures.iter().map(value)).collect();
                 sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
                 Self::Quantile { sorted, p }
@@ -265,7 +265,7 @@ impl Sample {
     fn cases_needed(&self, limit: Limit, confidence: f64, cases: u64) -> Option<u64> {
         let decides =
             |size: f64| verdict(limit, self.bounds(confidence, size), true) != RequirementVerdict::NotDecided;
-        let most = MOST_CASES / cases as f64;
+        let most = MAX_CASES / cases as f64;
         let mut high = 1.0;
         while !decides(high) {
             high *= 2.0;
@@ -286,7 +286,7 @@ impl Sample {
 mod tests {
     use super::*;
 
-    fn required(figure: &str, limit: Limit, of: RequiredOf) -> StudyRequirement {
+    fn required(figure: &str, limit: Limit, of: RequiredStatistic) -> StudyRequirement {
         let (at_least, at_most) = match limit {
             Limit::AtLeast(limit) => (Some(limit), None),
             Limit::AtMost(limit) => (None, Some(limit)),
@@ -314,7 +314,7 @@ mod tests {
     /// The table of zero failures: 59 trials show 95 % at a confidence of 95 %, 58 do not (0.95⁵⁸ = 0.051); 93 with one failure.
     #[test]
     fn as_many_trials_are_needed_as_the_textbook_says() {
-        let at_least = || required("correct_rate", Limit::AtLeast(0.95), RequiredOf::All);
+        let at_least = || required("correct_rate", Limit::AtLeast(0.95), RequiredStatistic::All);
         assert_eq!(decided(at_least(), frames(59, 59)).verdict, RequirementVerdict::Met);
         let short = decided(at_least(), frames(30, 30));
         assert_eq!((short.verdict, short.cases_needed), (RequirementVerdict::NotDecided, Some(59)));
@@ -326,7 +326,7 @@ mod tests {
     #[test]
     fn a_value_at_its_limit_is_not_decided_by_any_number() {
         let at_limit =
-            decided(required("correct_rate", Limit::AtLeast(0.9), RequiredOf::All), frames(90, 100));
+            decided(required("correct_rate", Limit::AtLeast(0.9), RequiredStatistic::All), frames(90, 100));
         assert_eq!((at_limit.verdict, at_limit.cases_needed), (RequirementVerdict::NotDecided, None));
     }
 
@@ -338,15 +338,15 @@ mod tests {
                 CaseFigure { value, count: 1, of: 1 }
             })
         };
-        let quantile = || required("ra_rms_deg", Limit::AtMost(2.0), RequiredOf::P95);
+        let quantile = || required("ra_rms_deg", Limit::AtMost(2.0), RequiredStatistic::P95);
         assert_eq!(decided(quantile(), errors(0)).verdict, RequirementVerdict::Met);
         let many = decided(quantile(), errors(30));
         assert_eq!((many.verdict, many.without_value), (RequirementVerdict::NotMet, 30));
-        let mean = || required("ra_rms_deg", Limit::AtMost(2.0), RequiredOf::All);
+        let mean = || required("ra_rms_deg", Limit::AtMost(2.0), RequiredStatistic::All);
         assert_eq!(decided(mean(), errors(0)).verdict, RequirementVerdict::Met);
         assert_eq!(decided(mean(), errors(1)).verdict, RequirementVerdict::NotDecided);
         assert_eq!(
-            decided(required("ra_rms_deg", Limit::AtMost(1.0), RequiredOf::All), errors(1)).verdict,
+            decided(required("ra_rms_deg", Limit::AtMost(1.0), RequiredStatistic::All), errors(1)).verdict,
             RequirementVerdict::NotMet
         );
     }

@@ -17,7 +17,7 @@ const LEAST_OTHERS: usize = 8;
 /// What is known of the figure of a stopping rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Waited {
+pub enum StoppingStatus {
     /// Its interval is as narrow as asked.
     NarrowEnough,
     /// Its interval is wider, or it has none.
@@ -29,7 +29,7 @@ pub enum Waited {
 /// Looks whether the figure of a stopping rule is known well enough: after 16 draws, 32, 48, from 256 on after a sixteenth more each time, and
 /// after all. A draw is one case at every point of the sweep. The numbers do not depend on how the study is cut into shards, so neither
 /// does where it stops.
-pub(crate) struct Stopping<'a> {
+pub(crate) struct StoppingRule<'a> {
     until: Option<&'a Until>,
     points: u64,
     most: u64,
@@ -40,13 +40,13 @@ pub(crate) struct Stopping<'a> {
     draws: Vec<usize>,
 }
 
-impl<'a> Stopping<'a> {
+impl<'a> StoppingRule<'a> {
     /// Before the first case.
     pub(crate) fn new(study: &'a Study) -> Self {
-        Self::of(study.file.stop.until.as_ref(), study.sweep_points(), study.cases())
+        Self::from_rule(study.file.stop.until.as_ref(), study.sweep_points(), study.cases())
     }
 
-    fn of(until: Option<&'a Until>, points: u64, cases: u64) -> Self {
+    fn from_rule(until: Option<&'a Until>, points: u64, cases: u64) -> Self {
         let most = cases / points;
         Self { until, points, most, next: STEP.min(most), figures: Vec::new(), draws: Vec::new() }
     }
@@ -62,7 +62,7 @@ impl<'a> Stopping<'a> {
             let cases = draws * self.points;
             let (figures, of_cases) =
                 (self.figures.get(..cases as usize)?, self.draws.get(..cases as usize)?);
-            if waited(until, figures, of_cases) == Waited::NarrowEnough {
+            if stopping_status(until, figures, of_cases) == StoppingStatus::NarrowEnough {
                 return Some(cases);
             }
             if draws >= self.most {
@@ -75,16 +75,20 @@ impl<'a> Stopping<'a> {
 }
 
 /// What cases of the draws of these numbers say of the figure of a stopping rule.
-pub(crate) fn waited(until: &Until, figures: &[CaseFigure], draws: &[usize]) -> Waited {
+pub(crate) fn stopping_status(until: &Until, figures: &[CaseFigure], draws: &[usize]) -> StoppingStatus {
     let estimate = overall(&until.figure, figures, draws);
     let width = estimate.and_then(|estimate| Some(estimate.high? - estimate.low?));
     if !width.is_some_and(|width| width <= 2.0 * until.half_width) {
-        return Waited::TooWide;
+        return StoppingStatus::TooWide;
     }
     let others = figures.len() - most_frequent(figures.iter().filter_map(|figure| figure.value));
     // Cases of a draw that are alike are one.
     let points = figures.len() / draws.iter().max().map_or(1, |last| last + 1);
-    if others / points.max(1) < LEAST_OTHERS { Waited::NearlyConstant } else { Waited::NarrowEnough }
+    if others / points.max(1) < LEAST_OTHERS {
+        StoppingStatus::NearlyConstant
+    } else {
+        StoppingStatus::NarrowEnough
+    }
 }
 
 /// How often the most frequent value occurs.
@@ -107,14 +111,14 @@ mod tests {
         case: impl Fn(&mut Stream, &mut dyn FnMut(CaseFigure)),
     ) -> (u64, f64) {
         let until = Until { figure: figure.to_owned(), half_width };
-        let mut stopping = Stopping::of(Some(&until), points, 4000 * points);
-        let mut table = CaseTable::of(&[figure], Vec::new());
+        let mut stopping = StoppingRule::from_rule(Some(&until), points, 4000 * points);
+        let mut table = CaseTable::from_rows(&[figure], Vec::new());
         for draw in 0..4000 {
             let random = &mut Seed { seed: 5, case: study }.stream(draw, Effect::StudyParameter, 0);
             let mut of_draw = table.with_rows(Vec::new());
             case(random, &mut |figure| {
                 let case = (table.rows.len() + of_draw.rows.len()) as u64;
-                of_draw.rows.push(CaseRow::of(case, draw, vec![figure]));
+                of_draw.rows.push(CaseRow::from_figures(case, draw, vec![figure]));
             });
             table.rows.extend(of_draw.rows.iter().cloned());
             if let Some(cases) = stopping.add(&of_draw) {
@@ -166,20 +170,21 @@ mod tests {
         let row = |case: u64, others: u64| {
             let count = if case < others { 24 } else { 25 };
             let figures = vec![CaseFigure { value: Some(count as f64 / 25.0), count, of: 25 }];
-            CaseRow::of(case, case, figures)
+            CaseRow::from_figures(case, case, figures)
         };
-        let table = |others| CaseTable::of(&["hit_rate"], (0..100).map(|case| row(case, others)).collect());
+        let table =
+            |others| CaseTable::from_rows(&["hit_rate"], (0..100).map(|case| row(case, others)).collect());
         let draws: Vec<usize> = (0..100).collect();
         let after = |others, half_width| {
             let figures = table(others).figure("hit_rate").unwrap();
-            waited(&Until { half_width, ..until.clone() }, &figures, &draws)
+            stopping_status(&Until { half_width, ..until.clone() }, &figures, &draws)
         };
-        assert_eq!(after(3, 0.03), Waited::NearlyConstant);
-        assert_eq!(after(7, 0.03), Waited::NearlyConstant);
-        assert_eq!(after(8, 0.03), Waited::NarrowEnough);
-        assert_eq!(after(8, 0.0001), Waited::TooWide);
-        assert_eq!(Stopping::of(Some(&until), 1, 100).add(&table(3)), None);
+        assert_eq!(after(3, 0.03), StoppingStatus::NearlyConstant);
+        assert_eq!(after(7, 0.03), StoppingStatus::NearlyConstant);
+        assert_eq!(after(8, 0.03), StoppingStatus::NarrowEnough);
+        assert_eq!(after(8, 0.0001), StoppingStatus::TooWide);
+        assert_eq!(StoppingRule::from_rule(Some(&until), 1, 100).add(&table(3)), None);
         // The first look that knows eight of either.
-        assert_eq!(Stopping::of(Some(&until), 1, 100).add(&table(60)), Some(80));
+        assert_eq!(StoppingRule::from_rule(Some(&until), 1, 100).add(&table(60)), Some(80));
     }
 }

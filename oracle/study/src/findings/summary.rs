@@ -3,7 +3,7 @@ use std::path::Path;
 
 use files::{Failure, FileError};
 use indexmap::IndexMap;
-use run::figure_called;
+use run::figure_by_name;
 use score::Better;
 use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed};
@@ -14,12 +14,12 @@ use statistics::{
 use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, share, sorted_quantile, stream, sums};
 use super::requirement::{RequirementResult, RequirementVerdict, decide};
 use super::sensitivity::{RankCorrelation, SobolIndex, sobol_index};
-use super::stopping::{Waited, waited};
+use super::stopping::{StoppingStatus, stopping_status};
 use crate::case_file::CaseFile;
 use crate::cases::CaseFigure;
 use crate::definition::Study;
 use crate::definition::design::DesignKind;
-use crate::evaluate::tried::StudyPipeline;
+use crate::evaluate::study_pipeline::StudyPipeline;
 
 /// How many of the worst cases are named.
 const WORST: usize = 10;
@@ -142,7 +142,7 @@ pub struct Summary {
     pub is_narrow_enough: bool,
     /// What is known of the figure of the stopping rule; absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub waited: Option<Waited>,
+    pub waited: Option<StoppingStatus>,
     /// What is required, with its verdicts: at each point of the sweep, point by point.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<RequirementResult>,
@@ -205,7 +205,7 @@ impl Summary {
         let (mut figures, mut waited_for) = (IndexMap::new(), None);
         let (mut correlations, mut indices) = (Vec::new(), Vec::new());
         let mut parameters = Vec::new();
-        for name in cases.drawn() {
+        for name in cases.drawn_columns() {
             parameters.extend(cases.numbers(name)?.map(|numbers| (name, numbers)));
         }
         for (place, name) in cases.figures().iter().enumerate() {
@@ -245,7 +245,7 @@ impl Summary {
                 }
             }
             if let Some(until) = study.file.stop.until.as_ref().filter(|until| until.figure == *name) {
-                waited_for = Some(waited(until, &values, &cases.draws));
+                waited_for = Some(stopping_status(until, &values, &cases.draws));
             }
             correlations.extend(correlations_of(name, &values, &parameters, &cases.draws));
             if study.file.design == DesignKind::Saltelli {
@@ -279,7 +279,7 @@ impl Summary {
             of: study.cases(),
             failed_cases: cases.failed_cases,
             draws: cases.draws.last().map_or(0, |last| *last as u64 + 1),
-            is_narrow_enough: waited_for == Some(Waited::NarrowEnough),
+            is_narrow_enough: waited_for == Some(StoppingStatus::NarrowEnough),
             waited: waited_for,
             error_cases: cases.has_error.iter().filter(|has_error| **has_error).count() as u64,
             errors: cases
@@ -334,12 +334,12 @@ impl Points {
         let mut points: IndexMap<Vec<String>, Vec<usize>> = IndexMap::new();
         if swept > 0 {
             let first: Vec<usize> = rows.iter().copied().take(together).collect();
-            for (place, drawn) in cases.shown(&first)?.into_iter().enumerate() {
+            for (place, drawn) in cases.drawn_texts(&first)?.into_iter().enumerate() {
                 points.entry(drawn.into_iter().take(swept).collect()).or_default().push(place);
             }
         }
         let (at, of_draw): (Vec<Vec<String>>, _) = points.into_iter().unzip();
-        let at = at.into_iter().map(|at| cases.drawn().cloned().zip(at).collect()).collect();
+        let at = at.into_iter().map(|at| cases.drawn_columns().cloned().zip(at).collect()).collect();
         Ok(Self { at, of_draw, together, rows })
     }
 
@@ -370,7 +370,7 @@ impl Points {
 
 /// A figure at the second of two points less that at the first, over the draws that have it in both, and how many these are.
 fn difference(name: &str, points: [&(Vec<CaseFigure>, Vec<usize>); 2]) -> Option<(Estimate, u64)> {
-    let is_rate = figure_called(name).is_rate();
+    let is_rate = figure_by_name(name).is_rate();
     let [first, second] = points.map(|(cases, draws)| sums(is_rate, cases, draws));
     let pairs: Vec<(ClusterSum, ClusterSum)> =
         first.into_iter().zip(second).filter(|(first, second)| first.of > 0.0 && second.of > 0.0).collect();
@@ -418,7 +418,7 @@ fn indices_of(
     cases: &CaseFile,
     seed: u64,
 ) -> Vec<SobolIndex> {
-    let parameters: Vec<&String> = cases.drawn().collect();
+    let parameters: Vec<&String> = cases.drawn_columns().collect();
     let blocks: Vec<Vec<f64>> = values
         .chunks_exact(parameters.len() + 2)
         .filter_map(|cases| cases.iter().map(|case| case.value).collect())
@@ -471,7 +471,7 @@ fn worst(
     seed: u64,
     replay: impl Fn(u64) -> String,
 ) -> Result<(Vec<WorstCase>, u64), FileError> {
-    let badness = |value: f64| match figure_called(by).sense.better {
+    let badness = |value: f64| match figure_by_name(by).sense.better {
         Better::More => -value,
         Better::Less => value,
         Better::Near(best) => (value - best).abs(),
@@ -489,8 +489,8 @@ fn worst(
     let named = |((case, value), shown): ((usize, f64), Vec<String>)| WorstCase {
         case: case as u64,
         value,
-        drawn: cases.drawn().cloned().zip(shown).collect(),
+        drawn: cases.drawn_columns().cloned().zip(shown).collect(),
         replay: replay(case as u64),
     };
-    Ok((bad.into_iter().zip(cases.shown(&numbers)?).map(named).collect(), count as u64))
+    Ok((bad.into_iter().zip(cases.drawn_texts(&numbers)?).map(named).collect(), count as u64))
 }

@@ -11,7 +11,7 @@ use files::sha256::sha256_hex;
 use crate::cases::CaseRow;
 
 /// Longest journal that is read, bytes.
-const MOST_BYTES: u64 = 1 << 32;
+const MAX_BYTES: u64 = 1 << 32;
 
 /// A file that finished cases are added to. Several processes may add to one: each line is written at once.
 pub(crate) struct Journal {
@@ -28,7 +28,7 @@ impl Journal {
     /// [`FileError::Io`] for a file that cannot be read or added to.
     pub(crate) fn open(path: PathBuf, hash: &str) -> Result<(Self, Vec<CaseRow>), FileError> {
         let io = |source| FileError::io(&path, "open", source);
-        let text = match sim::regular_file::read(&path, MOST_BYTES) {
+        let text = match sim::regular_file::read(&path, MAX_BYTES) {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
             Err(error) => return Err(io(error)),
@@ -60,7 +60,7 @@ impl Journal {
 
 /// The rows of a journal, as [`Journal::open`] reads them; how many a folder keeps.
 pub(crate) fn count(path: &Path, hash: &str) -> usize {
-    let text = sim::regular_file::read_text(path, MOST_BYTES).unwrap_or_default();
+    let text = sim::regular_file::read_text(path, MAX_BYTES).unwrap_or_default();
     text.lines().filter(|line| parse(line, hash).is_some()).count()
 }
 
@@ -76,11 +76,11 @@ fn sum(hash: &str, json: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::{CaseFigure, Drawn};
+    use crate::cases::{CaseFigure, DrawnValue};
 
     fn row(case: u64) -> CaseRow {
         let figure = CaseFigure { value: Some(0.1 + 0.2), count: 3, of: 10 };
-        let drawn = vec![Drawn::Number(1.0 / 3.0), Drawn::Text("a\nb".to_owned())];
+        let drawn = vec![DrawnValue::Number(1.0 / 3.0), DrawnValue::Text("a\nb".to_owned())];
         let error = (case == 2).then(|| "no\nscenario".to_owned());
         let (figures, causes) = (vec![figure], vec![0, 7]);
         CaseRow {

@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use files::sha256::sha256_hex;
-use files::{Checksums, Earlier, Failure, FileError, WholeFile};
+use files::{AtomicFile, Checksums, Failure, FileError, ReplaceableFile};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ const CASES_PER_SHARD: u64 = 32;
 /// Extension of the journal of a shard that is not whole.
 const JOURNAL: &str = "journal";
 /// Most shards of a study, when their number is not given.
-const MOST_SHARDS: u64 = 1000;
+const MAX_SHARDS: u64 = 1000;
 
 /// How a study is cut.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,7 +74,7 @@ impl Plan {
     /// [`Failure::Usage`] for more shards than cases.
     pub fn new(study: &Study, hash: String, shards: Option<u64>) -> Result<Self, Failure> {
         let cases = study.cases();
-        let shards = shards.unwrap_or_else(|| cases.div_ceil(CASES_PER_SHARD).min(MOST_SHARDS));
+        let shards = shards.unwrap_or_else(|| cases.div_ceil(CASES_PER_SHARD).min(MAX_SHARDS));
         if !(1..=cases).contains(&shards) {
             return Err(Failure::Usage(format!(
                 "--shards is {shards}, expected 1 to the number of cases, {cases}"
@@ -82,11 +82,11 @@ impl Plan {
         }
         let (study, version) = (study.name.clone(), env!("CARGO_PKG_VERSION").to_owned());
         let mut plan = Self { study, hash, version, cases, shards, sha256: String::new() };
-        plan.sha256 = plan.own_sha256();
+        plan.sha256 = plan.computed_sha256();
         Ok(plan)
     }
 
-    fn own_sha256(&self) -> String {
+    fn computed_sha256(&self) -> String {
         let Self { study, hash, version, cases, shards, sha256: _ } = self;
         sha256_hex(format!("{study:?} {hash} {version:?} {cases} {shards}"))
     }
@@ -99,7 +99,7 @@ impl Plan {
         let text = sim::regular_file::read_text(path, 1 << 20)
             .map_err(|source| FileError::io(path, "read", source))?;
         let plan: Option<Self> = serde_json::from_str(&text).ok();
-        plan.filter(|plan| plan.sha256 == plan.own_sha256()).ok_or_else(|| {
+        plan.filter(|plan| plan.sha256 == plan.computed_sha256()).ok_or_else(|| {
             Failure::Usage(format!(
                 "{}: is damaged (its checksum `sha256` does not agree); delete it, and with it study.json, cases.parquet, summary.json and \
                  SHA256SUMS where they are there: `boresight study run` makes them anew, with the shards that are whole",
@@ -132,18 +132,21 @@ impl ShardStore {
         let store = Self { folder: folder.to_owned(), plan };
         let path = store.folder.join("plan.json");
         if !path.exists() {
-            let is_free = Earlier { what: "a folder of a study with its plan.json", is: &|_| false };
+            let is_free = ReplaceableFile {
+                description: "a folder of a study with its plan.json",
+                matches: &|_| false,
+            };
             let [_, others @ ..] = &SEALED;
             others.iter().try_for_each(|name| is_free.check(&folder.join(name)))?;
         }
         Checksums::check_own(folder, &SEALED)?;
         std::fs::create_dir_all(store.shards()).map_err(|source| FileError::io(folder, "create", source))?;
-        WholeFile::remove_abandoned(folder);
-        WholeFile::remove_abandoned(&store.shards());
+        AtomicFile::remove_abandoned(folder);
+        AtomicFile::remove_abandoned(&store.shards());
         let text = to_json(&store.plan)?;
         if !path.exists() {
             // Several processes may come to this at once: all write the same, and the first one's stays.
-            WholeFile::with_text(&path, &text)?.commit()?;
+            AtomicFile::with_text(&path, &text)?.commit()?;
         }
         store.check_plan(&path)?;
         Ok(store)
@@ -197,7 +200,7 @@ impl ShardStore {
             let is_journal = path.extension().is_some_and(|extension| extension == JOURNAL);
             let is_known =
                 known.contains(&path) || is_journal && known.contains(&path.with_extension("parquet"));
-            if !WholeFile::is_partial(&path) && !is_known {
+            if !AtomicFile::is_partial(&path) && !is_known {
                 return Err(Failure::Usage(format!(
                     "{}: is none of the {} shards of `{}`, expected nothing else there",
                     path.display(),
@@ -275,8 +278,8 @@ impl ShardStore {
         let expected = self.manifest(shard, table);
         let cases = self.plan.cases_of(shard);
         let are_its_cases = table.rows.iter().map(|row| row.case).eq(cases);
-        let says = |(key, value): &(&str, String)| metadata.get(*key) == Some(value);
-        (are_its_cases && expected.pairs().iter().all(says)).then_some(expected)
+        let agrees = |(key, value): &(&str, String)| metadata.get(*key) == Some(value);
+        (are_its_cases && expected.pairs().iter().all(agrees)).then_some(expected)
     }
 
     fn manifest(&self, shard: u64, table: &CaseTable) -> ShardManifest {
@@ -299,7 +302,7 @@ impl ShardStore {
     pub fn write(&self, shard: u64, table: &CaseTable) -> Result<ShardManifest, FileError> {
         let manifest = self.manifest(shard, table);
         let path = self.path(shard);
-        let file = WholeFile::create(&path)?;
+        let file = AtomicFile::create(&path)?;
         table.write(file.file(), &path, &manifest.pairs())?;
         if let Some(file) = file.commit()?
             && self.read(shard, &table.with_rows(Vec::new()))?.is_none()
@@ -320,7 +323,7 @@ impl ShardStore {
         fill: impl FnOnce(&mut CaseWriter<'_>) -> Result<(), Failure>,
     ) -> Result<PathBuf, Failure> {
         let path = self.folder.join("cases.parquet");
-        let file = WholeFile::create(&path)?;
+        let file = AtomicFile::create(&path)?;
         let of = [("study_hash", &self.plan.hash), ("version", &self.plan.version)];
         let notes = of.map(|(key, value)| (key.to_owned(), value.clone())).to_vec();
         let mut writer = CaseWriter::new(file.file(), &path, empty, notes)?;
@@ -336,7 +339,7 @@ impl ShardStore {
     /// [`Failure`] when it cannot be written.
     pub fn write_record(&self, record: &StudyRecord) -> Result<PathBuf, Failure> {
         let path = self.folder.join("study.json");
-        WholeFile::with_text(&path, &to_json(record)?)?.replace(OF_THE_PLAN)?;
+        AtomicFile::with_text(&path, &to_json(record)?)?.replace(OF_THE_PLAN)?;
         Ok(path)
     }
 
@@ -354,13 +357,14 @@ impl ShardStore {
     /// [`Failure`] when it cannot be written.
     pub fn write_summary(&self, summary: &impl Serialize) -> Result<PathBuf, Failure> {
         let path = self.folder.join("summary.json");
-        WholeFile::with_text(&path, &to_json(summary)?)?.replace(OF_THE_PLAN)?;
+        AtomicFile::with_text(&path, &to_json(summary)?)?.replace(OF_THE_PLAN)?;
         Ok(path)
     }
 }
 
 /// What a file of a folder replaces whose plan is that of the study: whatever it held, it is made of the same cases.
-const OF_THE_PLAN: Earlier<'static> = Earlier { what: "a file of the study", is: &|_| true };
+const OF_THE_PLAN: ReplaceableFile<'static> =
+    ReplaceableFile { description: "a file of the study", matches: &|_| true };
 
 /// The files of a study that have checksums: those of the shards stand in them.
 const SEALED: [&str; 4] = ["plan.json", "study.json", "cases.parquet", "summary.json"];

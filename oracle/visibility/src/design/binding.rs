@@ -2,9 +2,9 @@
 use files::Failure;
 
 use crate::design::{Design, design_with};
-use crate::law::detection::{background_e, is_flooded};
+use crate::detection_model::detection::{background_e, is_flooded};
 use crate::requirement::definition::Requirements;
-use crate::requirement::{Demand, DetectionRule, Over, Parameter};
+use crate::requirement::{Demand, DetectionRule, Parameter, SkyStatistic};
 
 /// Boresights that the question is looked at from.
 const POINTINGS: usize = 1000;
@@ -19,10 +19,10 @@ pub fn binding(
     demand: &Demand,
     parameter: Parameter,
     value: f64,
-    asked: f64,
+    required: f64,
 ) -> Result<String, Failure> {
     let (design, exposure_s) = design_with(requirements, parameter, value, POINTINGS)?;
-    binding_of(&design, requirements, demand, exposure_s, asked)
+    binding_of(&design, requirements, demand, exposure_s, required)
 }
 
 /// What binds a design as it is; see [`binding`].
@@ -34,13 +34,13 @@ pub fn binding_of(
     requirements: &Requirements,
     demand: &Demand,
     exposure_s: Option<f64>,
-    asked: f64,
+    required: f64,
 ) -> Result<String, Failure> {
     let file = &requirements.file;
     let again = || Design::new(requirements, &design.camera.config, POINTINGS, exposure_s.unwrap_or(0.0));
     if let Demand::ExposureWindow { n_min, .. } = demand {
         let n_min = n_min.unwrap_or(file.n_min);
-        if design.stars_chance(file.exposure.max_s, n_min, Over::Sky)? >= asked {
+        if design.stars_chance(file.exposure.max_s, n_min, SkyStatistic::Sky)? >= required {
             return Ok(
                 "saturation: the exposure that leaves the target not over-exposed is too short for the stars"
                     .to_owned(),
@@ -60,31 +60,31 @@ pub fn binding_of(
     if is_flooded(&design.camera, &design.rule, dark_e) {
         return Ok(format!("background: {dark_e:.0} electrons in a pixel lift the empty frame above I1"));
     }
-    if again()?.without_smear().reached(demand, exposure_s)?.probability >= asked {
+    if again()?.without_smear().reached(demand, exposure_s)?.probability >= required {
         return Ok("smear: the motion during the exposure spreads the light over too many pixels".to_owned());
     }
     let (Demand::Stars { n_min, .. } | Demand::ExposureWindow { n_min, .. }) = demand else {
-        return noise_or_signal(design, requirements, demand, exposure_s, asked);
+        return noise_or_signal(design, requirements, demand, exposure_s, required);
     };
     let n_min = n_min.unwrap_or(file.n_min) as usize;
     let every = crate::sky::Sky::new(&design.camera, &file.motion, &file.sky, POINTINGS, 1e-9)?;
     let (mut counted, mut enough) = (0, 0);
-    for field in every.counted() {
+    for field in every.usable_fields() {
         counted += 1;
         enough += usize::from(field.stars.len() >= n_min);
     }
     if counted == 0 {
         return Ok("exclusion: no pointing is left by the exclusion angles".to_owned());
     }
-    let everywhere = matches!(demand, Demand::Stars { over: Over::EveryPointing, .. });
+    let everywhere = matches!(demand, Demand::Stars { over: SkyStatistic::EveryPointing, .. });
     let share = enough as f64 / counted as f64;
-    if share < asked || (everywhere && enough < counted) {
+    if share < required || (everywhere && enough < counted) {
         return Ok(format!(
             "field: too small; only {:.1} % of the pointings have {n_min} stars of the catalogue in it, however faint",
             100.0 * share
         ));
     }
-    noise_or_signal(design, requirements, demand, exposure_s, asked)
+    noise_or_signal(design, requirements, demand, exposure_s, required)
 }
 
 fn noise_or_signal(
@@ -92,14 +92,14 @@ fn noise_or_signal(
     requirements: &Requirements,
     demand: &Demand,
     exposure_s: Option<f64>,
-    asked: f64,
+    required: f64,
 ) -> Result<String, Failure> {
     let mut quiet = design.camera.config.clone();
     (quiet.sensor.read_noise_e, quiet.sensor.dark_current_e_per_s) = (0.0, 0.0);
     quiet.sensor.line_noise = Default::default();
     quiet.background = Default::default();
     let quiet = Design::new(requirements, &quiet, POINTINGS, exposure_s.unwrap_or(0.0))?;
-    if quiet.reached(demand, exposure_s)?.probability >= asked {
+    if quiet.reached(demand, exposure_s)?.probability >= required {
         return Ok("noise: without dark current, read noise and background it would be met".to_owned());
     }
     Ok(match design.rule {

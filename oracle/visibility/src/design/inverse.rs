@@ -8,7 +8,7 @@ use statistics::{binomial_at_least, clopper_pearson};
 use super::binding::binding;
 use crate::design::{Design, between, design_with};
 use crate::requirement::definition::Requirements;
-use crate::requirement::{Demand, Find, Parameter, Want};
+use crate::requirement::{Demand, Extreme, FindTable, Parameter};
 
 /// Values of the grid.
 const GRID: usize = 13;
@@ -52,13 +52,13 @@ pub struct FoundValue {
 
 /// The probabilities that a number of frames can tell from the one that is asked for, with power 0.95 each: at the greater
 /// the lower bound of their rate is above it, at the smaller the upper bound below. `None` where no rate of so few frames shows it.
-pub fn resolvable(asked: f64, frames: u32, confidence: f64) -> (Option<f64>, Option<f64>) {
+pub fn resolvable(required: f64, frames: u32, confidence: f64) -> (Option<f64>, Option<f64>) {
     let n = u64::from(frames);
     if n == 0 {
         return (None, None);
     }
-    let enough = (0..=n).find(|k| clopper_pearson(*k, n, confidence).0 >= asked);
-    let few = (0..=n).rev().find(|k| clopper_pearson(*k, n, confidence).1 < asked);
+    let enough = (0..=n).find(|k| clopper_pearson(*k, n, confidence).0 >= required);
+    let few = (0..=n).rev().find(|k| clopper_pearson(*k, n, confidence).1 < required);
     let root = |holds: &dyn Fn(f64) -> bool| {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..50 {
@@ -81,12 +81,12 @@ pub fn search(
     requirements: &Requirements,
     own: &Design<'_>,
     demand: &Demand,
-    find: &Find,
+    find: &FindTable,
 ) -> Result<Search, Failure> {
     let file = &requirements.file;
-    let asked = demand.probability(file.probability);
-    let (above, below) = resolvable(asked, file.confirm.frames, file.confirm.confidence);
-    let mut goal = above.unwrap_or(asked);
+    let required = demand.probability(file.probability);
+    let (above, below) = resolvable(required, file.confirm.frames, file.confirm.confidence);
+    let mut goal = above.unwrap_or(required);
     let pointings = SEARCH_POINTINGS.min(file.sky.pointings as usize);
     let fixed = match find.parameter {
         Parameter::ExposureS if own.covers(find.to) => Some(own.thinned(pointings)?),
@@ -96,20 +96,20 @@ pub fn search(
     let curve = Curve { requirements, demand, parameter: find.parameter, pointings, fixed };
     let mut grid: Vec<(f64, f64)> = Vec::new();
     for value in between(find.from, find.to, GRID) {
-        grid.push((value, curve.at(value)?));
+        grid.push((value, curve.probability(value)?));
     }
     // From here on the wanted end is the first.
-    if find.want == Want::Largest {
+    if find.want == Extreme::Largest {
         grid.reverse();
     }
     if grid.iter().all(|(_, probability)| *probability < goal) {
-        // What the frames could show is nowhere reached: then what is asked for, by the law alone.
-        goal = asked;
+        // What the frames could show is nowhere reached: then what is asked for, by the detection model alone.
+        goal = required;
     }
     let Some(met) = grid.iter().position(|(_, probability)| *probability >= goal) else {
         let best = grid.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
         let (best_value, best_probability) = best.unwrap_or((find.from, 0.0));
-        let binds = binding(requirements, demand, find.parameter, best_value, asked)?;
+        let binds = binding(requirements, demand, find.parameter, best_value, required)?;
         return Ok(Search::Impossible { best_value, best_probability, binds });
     };
     let crossing = |level: f64, side: usize| -> Result<f64, Failure> {
@@ -117,7 +117,7 @@ pub fn search(
         let (mut meets, mut fails) = (libm::log(inner.0), libm::log(outer.0));
         for _ in 0..STEPS {
             let middle = 0.5 * (meets + fails);
-            if curve.at(libm::exp(middle))? >= level { meets = middle } else { fails = middle }
+            if curve.probability(libm::exp(middle))? >= level { meets = middle } else { fails = middle }
         }
         Ok(libm::exp(meets))
     };
@@ -125,7 +125,7 @@ pub fn search(
     // The threshold may lie a step of the grid farther out, the failing value still farther.
     let outward = |level: f64| grid[..=met].iter().rposition(|(_, probability)| *probability < level);
     let at_level = |level: f64| outward(level).map(|outer| crossing(level, outer + 1)).transpose();
-    let threshold_value = at_level(asked)?.unwrap_or(value);
+    let threshold_value = at_level(required)?.unwrap_or(value);
     let failing_value = match below {
         // The first value that is surely below: the crossing ends on the side that still reaches the level.
         Some(level) => outward(level)
@@ -133,7 +133,7 @@ pub fn search(
             .transpose()?,
         None => None,
     };
-    let is_monotone = grid[met..].iter().all(|(_, probability)| *probability >= asked);
+    let is_monotone = grid[met..].iter().all(|(_, probability)| *probability >= required);
     Ok(Search::Found(FoundValue { value, goal, threshold_value, failing_value, is_monotone }))
 }
 
@@ -154,7 +154,7 @@ struct Curve<'a> {
 }
 
 impl Curve<'_> {
-    fn at(&self, value: f64) -> Result<f64, Failure> {
+    fn probability(&self, value: f64) -> Result<f64, Failure> {
         if let Some(design) = &self.fixed {
             return Ok(design.reached(self.demand, Some(value))?.probability);
         }
@@ -167,10 +167,10 @@ impl Curve<'_> {
 mod tests {
     use super::*;
 
-    /// 300 frames, 0.9, 95 %: 279 and more have a lower bound above it, 260 and fewer an upper bound below; binomial laws
+    /// 300 frames, 0.9, 95 %: 279 and more have a lower bound above it, 260 and fewer an upper bound below; binomial distributions
     /// of 0.9507 and 0.8371 have these with 95 % (scipy.stats.binom, brentq).
     #[test]
-    fn what_frames_can_tell_is_what_the_binomial_law_says() {
+    fn what_frames_can_resolve_follows_the_binomial_distribution() {
         let (above, below) = resolvable(0.9, 300, 0.95);
         let (above, below) = (above.unwrap(), below.unwrap());
         assert!((binomial_at_least(279, 300, above) - 0.95).abs() < 1e-6, "{above}");

@@ -1,4 +1,4 @@
-//! One camera design, and the probability with which it meets a demand, by the analytic law.
+//! One camera design, and the probability with which it meets a demand, by the analytic detection model.
 
 pub(crate) mod binding;
 #[allow(
@@ -13,12 +13,14 @@ use files::Failure;
 use sim::SimError;
 
 use crate::camera::{CameraConfig, CameraModel};
-use crate::law::detection::DetectionCurve;
+use crate::detection_model::detection::DetectionCurve;
 use crate::requirement::definition::Requirements;
-use crate::requirement::{Demand, DetectionRule, MotionGuidance, MotionTable, Over, Parameter, TargetLight};
+use crate::requirement::{
+    Demand, DetectionRule, MotionGuidance, MotionTable, Parameter, SkyStatistic, TargetLight,
+};
 use crate::sky::Sky;
-use crate::sky::star_count::{Curves, Seen, over_sky, star_trail_px};
-use crate::target::{Aspect, TargetModel, Watch, longest_exposures_s, longest_with};
+use crate::sky::star_count::{Curves, StarCount, over_sky, star_trail_px};
+use crate::target::{Aspect, TargetModel, TargetObservation, longest_exposures_s, longest_with};
 
 /// Ranges that are looked at within an interval, both ends included.
 const RANGES: usize = 7;
@@ -45,7 +47,7 @@ pub struct Design<'a> {
 
 /// What a design reaches of a demand.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reached {
+pub struct DesignPerformance {
     /// Probability at the worst of what is demanded.
     pub probability: f64,
     /// Exposure at which it is reached, s.
@@ -150,7 +152,7 @@ impl<'a> Design<'a> {
         if let Some(known) = self.background_e_per_s.get() {
             return Ok(*known);
         }
-        let mut all: Vec<f64> = self.sky()?.counted().map(|field| field.background_e_per_s).collect();
+        let mut all: Vec<f64> = self.sky()?.usable_fields().map(|field| field.background_e_per_s).collect();
         all.sort_by(f64::total_cmp);
         Ok(*self.background_e_per_s.get_or_init(|| all.get(all.len() / 2).copied().unwrap_or(0.0)))
     }
@@ -159,17 +161,17 @@ impl<'a> Design<'a> {
     ///
     /// # Errors
     /// As [`Design::sky`].
-    pub fn stars(&self, exposure_s: f64, n_min: u32) -> Result<Vec<Seen>, SimError> {
+    pub fn stars(&self, exposure_s: f64, n_min: u32) -> Result<Vec<StarCount>, SimError> {
         let sky = self.sky()?;
-        let curves = Curves::of_sky(&self.camera, &self.rule, &self.motion, exposure_s, sky);
-        Ok(curves.seen_over(sky, n_min as usize))
+        let curves = Curves::from_sky(&self.camera, &self.rule, &self.motion, exposure_s, sky);
+        Ok(curves.count_stars_over_sky(sky, n_min as usize))
     }
 
     /// P(N ≥ n_min) over the sky.
     ///
     /// # Errors
     /// As [`Design::sky`].
-    pub fn stars_chance(&self, exposure_s: f64, n_min: u32, over: Over) -> Result<f64, SimError> {
+    pub fn stars_chance(&self, exposure_s: f64, n_min: u32, over: SkyStatistic) -> Result<f64, SimError> {
         Ok(over_sky(&self.stars(exposure_s, n_min)?, over))
     }
 
@@ -179,8 +181,8 @@ impl<'a> Design<'a> {
     /// As [`Design::sky`].
     pub fn curve(&self, exposure_s: f64) -> Result<DetectionCurve, SimError> {
         let trail_px = star_trail_px(&self.camera, &self.motion, exposure_s);
-        let light_e_per_s = self.background_e_per_s()?;
-        Ok(DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, light_e_per_s))
+        let background_e_per_s = self.background_e_per_s()?;
+        Ok(DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, background_e_per_s))
     }
 
     /// V of a star of the mean colour, on the boresight, that is detected with a probability; `None` when none is.
@@ -236,11 +238,11 @@ impl<'a> Design<'a> {
         exposure_s: f64,
     ) -> Result<(f64, usize), SimError> {
         let Some(target) = &self.target else { return Ok((0.0, 0)) };
-        let watch = Watch {
+        let watch = TargetObservation {
             camera: &self.camera,
             rule: &self.rule,
             motion: &self.motion,
-            light_e_per_s: self.background_e_per_s()?,
+            background_e_per_s: self.background_e_per_s()?,
         };
         let chances = groups.iter().map(|group| watch.chance(target, &group.aspects, range_km, exposure_s));
         let least = chances.enumerate().map(|(i, chance)| (chance, i)).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -263,49 +265,61 @@ impl<'a> Design<'a> {
     ///
     /// # Errors
     /// As [`Design::sky`].
-    pub fn reached(&self, demand: &Demand, exposure_s: Option<f64>) -> Result<Reached, SimError> {
+    pub fn reached(&self, demand: &Demand, exposure_s: Option<f64>) -> Result<DesignPerformance, SimError> {
         let file = &self.requirements.file;
         let exposure_of = |own: &Option<f64>| exposure_s.or(*own).unwrap_or(file.exposure.nominal_s);
         match demand {
             Demand::Stars { n_min, exposure_s: own, over, .. } => {
                 let exposure_s = exposure_of(own);
                 let probability = self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), *over)?;
-                Ok(Reached { probability, exposure_s, range_km: None })
+                Ok(DesignPerformance { probability, exposure_s, range_km: None })
             }
             Demand::LimitingMagnitude { magnitude, exposure_s: own, .. } => {
                 let exposure_s = exposure_of(own);
                 let electrons = self.camera.radiometry.star(*magnitude, None, None) * exposure_s;
-                Ok(Reached { probability: self.curve(exposure_s)?.at(electrons), exposure_s, range_km: None })
+                Ok(DesignPerformance {
+                    probability: self.curve(exposure_s)?.probability(electrons),
+                    exposure_s,
+                    range_km: None,
+                })
             }
             Demand::TargetDetected { from_km, to_km, phase_max_deg, exposure_s: own, .. } => {
                 let (exposure_s, groups) = (exposure_of(own), self.groups(*phase_max_deg));
-                let mut worst = Reached { probability: 2.0, exposure_s, range_km: None };
+                let mut worst = DesignPerformance { probability: 2.0, exposure_s, range_km: None };
                 for range_km in between(*from_km, *to_km, RANGES) {
                     let (probability, _) = self.target_chance(&groups, range_km, exposure_s)?;
                     if probability < worst.probability {
-                        worst = Reached { probability, exposure_s, range_km: Some(range_km) };
+                        worst = DesignPerformance { probability, exposure_s, range_km: Some(range_km) };
                     }
                 }
                 Ok(worst)
             }
             Demand::ExposureWindow { from_km, to_km, phase_max_deg, n_min, probability } => {
                 let groups = self.groups(*phase_max_deg);
-                let asked = probability.unwrap_or(file.probability);
+                let required = probability.unwrap_or(file.probability);
                 let ranges =
-                    between(*from_km, *to_km, RANGES).map(|r| (self.longest_s(&groups, r, asked), r));
+                    between(*from_km, *to_km, RANGES).map(|r| (self.longest_s(&groups, r, required), r));
                 let (longest_s, range_km) =
                     ranges.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, *from_km));
                 if longest_s < file.exposure.min_s {
-                    return Ok(Reached { probability: 0.0, exposure_s: longest_s, range_km: Some(range_km) });
+                    return Ok(DesignPerformance {
+                        probability: 0.0,
+                        exposure_s: longest_s,
+                        range_km: Some(range_km),
+                    });
                 }
                 // Longer is better for stars, unless smear takes what it gives: half and a quarter of it may do as well.
-                let mut best =
-                    Reached { probability: 0.0, exposure_s: file.exposure.min_s, range_km: Some(range_km) };
+                let mut best = DesignPerformance {
+                    probability: 0.0,
+                    exposure_s: file.exposure.min_s,
+                    range_km: Some(range_km),
+                };
                 for part in [1.0, 0.5, 0.25] {
                     let exposure_s = (part * longest_s.min(file.exposure.max_s)).max(file.exposure.min_s);
-                    let chance = self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?;
+                    let chance =
+                        self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), SkyStatistic::Sky)?;
                     if chance > best.probability {
-                        best = Reached { probability: chance, exposure_s, ..best };
+                        best = DesignPerformance { probability: chance, exposure_s, ..best };
                     }
                     if self.motion.guidance == MotionGuidance::Inertial {
                         break;

@@ -5,13 +5,13 @@ use statistics::{Interval, wilson};
 
 use crate::confirm::StarFrame;
 use crate::design::{AspectGroup, Design, between};
-use crate::law::detection::background_e;
+use crate::detection_model::detection::background_e;
 use crate::report::{
     CameraFigures, DetectionPoint, LimitPoint, PointingStars, RangeByPhase, SimulatedPoint, SkySummary,
     StarsLost, WindowPoint,
 };
 use crate::requirement::definition::Requirements;
-use crate::requirement::{Over, TargetLight};
+use crate::requirement::{SkyStatistic, TargetLight};
 use crate::sky::star_count::star_trail_px;
 
 /// Points of the curves over exposures and ranges.
@@ -35,14 +35,14 @@ pub(crate) fn camera_figures(
 ) -> Result<CameraFigures, SimError> {
     let file = &requirements.file;
     let (camera, nominal_s) = (&design.camera, file.exposure.nominal_s);
-    let light_e_per_s = design.background_e_per_s()?;
-    let in_a_pixel = background_e(camera, nominal_s, light_e_per_s);
+    let background_e_per_s = design.background_e_per_s()?;
+    let in_a_pixel = background_e(camera, nominal_s, background_e_per_s);
     Ok(CameraFigures {
         field_deg: camera.projection.field().map(|field| field.map(contract::Angle::degrees)),
         zero_point_e_per_s: camera.radiometry.star(0.0, None, None),
         saturation_e: camera.config.sensor.saturation_e(),
         threshold_dn: design.rule.thresholds(camera, in_a_pixel).high_dn,
-        background_e_per_s: light_e_per_s,
+        background_e_per_s,
         star_trail_px: star_trail_px(camera, &design.motion, nominal_s),
         n_min: file.n_min,
         probability: file.probability,
@@ -65,7 +65,7 @@ pub(crate) fn detection(
     let points = (-30..=30).map(|i| {
         let magnitude = middle + 0.1 * f64::from(i);
         let electrons = design.camera.radiometry.star(magnitude, None, None) * exposure_s;
-        DetectionPoint { magnitude, electrons, probability: curve.at(electrons) }
+        DetectionPoint { magnitude, electrons, probability: curve.probability(electrons) }
     });
     Ok(points.filter(|point| point.probability > 1e-4 && point.probability < 0.9999).collect())
 }
@@ -173,7 +173,7 @@ pub(crate) fn shortest_for_stars(
     probability: f64,
 ) -> Result<Option<f64>, SimError> {
     let file = &requirements.file;
-    let chance = |exposure_s| design.stars_chance(exposure_s, file.n_min, Over::Sky);
+    let chance = |exposure_s| design.stars_chance(exposure_s, file.n_min, SkyStatistic::Sky);
     let mut fails = None;
     for exposure_s in between(file.exposure.min_s, file.exposure.max_s, 13) {
         if chance(exposure_s)? < probability {

@@ -72,29 +72,30 @@ pub struct CameraFigures {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// The analytic law says so, and the lower bound of the simulated rate too.
+    /// The analytic detection model says so, and the lower bound of the simulated rate too.
     MetSimulated,
-    /// The analytic law says so alone: nothing was simulated, or too few frames to show it even if all of them met it.
-    MetLaw,
-    /// The law or the upper bound of the simulated rate says that it is not.
+    /// The analytic detection model says so alone: nothing was simulated, or too few frames to show it even if all of them met it.
+    #[serde(rename = "met_law")]
+    MetModel,
+    /// The detection model or the upper bound of the simulated rate says that it is not.
     NotMet,
-    /// The law says so, and the bounds of the simulated rate are on either side of what is asked for.
+    /// The detection model says so, and the bounds of the simulated rate are on either side of what is asked for.
     NotDecided,
     /// No value that was to be looked at meets it.
     Impossible,
 }
 
 impl Status {
-    /// Whether it is met, by the law at least.
+    /// Whether it is met, by the detection model at least.
     pub fn is_met(self) -> bool {
-        matches!(self, Self::MetSimulated | Self::MetLaw)
+        matches!(self, Self::MetSimulated | Self::MetModel)
     }
 
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
             Self::MetSimulated => "met (simulated)",
-            Self::MetLaw => "met (law)",
+            Self::MetModel => "met (law)",
             Self::NotMet => "not met",
             Self::NotDecided => "not decided",
             Self::Impossible => "impossible",
@@ -113,7 +114,7 @@ pub struct Verdict {
     pub status: Status,
     /// Probability that is asked for.
     pub asked: f64,
-    /// Probability by the analytic law, at the worst of what is demanded.
+    /// Probability by the analytic detection model, at the worst of what is demanded.
     pub reached: f64,
     /// Room, in the unit beside it; negative where it is not met.
     pub margin: Option<f64>,
@@ -122,16 +123,16 @@ pub struct Verdict {
     /// In words: what was looked at, and what was simulated.
     pub evidence: String,
     /// What was simulated.
-    pub simulated: Option<Simulated>,
+    pub simulated: Option<SimulatedRate>,
     /// What was looked for, and found.
-    pub found: Option<Found>,
+    pub found: Option<SearchResult>,
     /// What binds, where it is not met.
     pub binds: Option<String>,
 }
 
 /// A simulated rate with the one-sided bounds of Clopper & Pearson.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Simulated {
+pub struct SimulatedRate {
     /// Frames of which it is true.
     pub count: u64,
     /// Frames.
@@ -146,27 +147,27 @@ pub struct Simulated {
 
 /// A value that meets a requirement, and one that does not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct SearchResult {
     /// Name of the parameter.
     pub parameter: Cow<'static, str>,
     /// Its unit.
     pub unit: Cow<'static, str>,
     /// The value that meets the requirement, with room enough for the simulation to show it.
     pub value: f64,
-    /// Probability by the analytic law there.
+    /// Probability by the analytic detection model there.
     pub probability: f64,
     /// The probability that the search aimed at: what is asked for, or as much more as the simulated frames need to show that.
     pub aimed: f64,
     /// Where the analytic probability is just what is asked for.
     pub threshold_value: f64,
     /// What was simulated at the value.
-    pub simulated: Option<Simulated>,
+    pub simulated: Option<SimulatedRate>,
     /// The value a step beyond the threshold; `None` when all that was looked at meets the requirement.
     pub failing_value: Option<f64>,
-    /// Probability by the analytic law there.
+    /// Probability by the analytic detection model there.
     pub failing_probability: Option<f64>,
     /// What was simulated there.
-    pub failing_simulated: Option<Simulated>,
+    pub failing_simulated: Option<SimulatedRate>,
     /// Whether all values beyond the found one, to the other end, meet the requirement.
     pub is_monotone: bool,
 }
@@ -195,7 +196,7 @@ pub struct SimulatedPoint {
     pub low: f64,
     /// Upper limit.
     pub high: f64,
-    /// Mean probability of the very same stars by the analytic law.
+    /// Mean probability of the very same stars by the analytic detection model.
     pub analytic: f64,
 }
 

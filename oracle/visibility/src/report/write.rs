@@ -1,7 +1,7 @@
 //! The files of a report: `visibility.json`, `visibility.md`, and a CSV a curve.
 use std::path::{Path, PathBuf};
 
-use files::{CsvLine, Declared, Failure, FileError, Table, WholeFile, read_csv, table, write_csv};
+use files::{AtomicFile, CsvLine, Failure, FieldDeclaration, FileError, Table, read_csv, table, write_csv};
 
 use crate::report::{DetectionPoint, LimitPoint, PointingStars, RangeByPhase, VisibilityReport, WindowPoint};
 
@@ -12,7 +12,7 @@ table! {
         magnitude: f64,
         /// its electrons at the nominal exposure
         electrons: f64,
-        /// probability of detection by the analytic law
+        /// probability of detection by the analytic detection model
         probability: f64,
         /// stars of simulated frames about the magnitude that the detector found
         simulated_count: Option<u64>,
@@ -22,19 +22,19 @@ table! {
         simulated_low: Option<f64>,
         /// upper limit
         simulated_high: Option<f64>,
-        /// mean probability of those stars by the analytic law
+        /// mean probability of those stars by the analytic detection model
         simulated_analytic: Option<f64>,
     }
 }
 
 /// The tables of a report, by name: their columns.
-pub fn tables() -> [(&'static str, Vec<Declared>); 5] {
+pub fn tables() -> [(&'static str, Vec<FieldDeclaration>); 5] {
     [
-        ("detection.csv", DetectionRow::declared()),
-        ("limiting_magnitude.csv", LimitPoint::declared()),
-        ("sky.csv", PointingStars::declared()),
-        ("exposure_window.csv", WindowPoint::declared()),
-        ("target_range.csv", RangeByPhase::declared()),
+        ("detection.csv", DetectionRow::declarations()),
+        ("limiting_magnitude.csv", LimitPoint::declarations()),
+        ("sky.csv", PointingStars::declarations()),
+        ("exposure_window.csv", WindowPoint::declarations()),
+        ("target_range.csv", RangeByPhase::declarations()),
     ]
 }
 
@@ -71,7 +71,7 @@ fn write<T: CsvLine>(folder: &Path, name: &str, rows: &[T]) -> Result<PathBuf, F
 
 fn write_text(folder: &Path, name: &str, text: &str) -> Result<PathBuf, FileError> {
     let path = folder.join(name);
-    WholeFile::with_text(&path, text)?.commit_new()?;
+    AtomicFile::with_text(&path, text)?.commit_new()?;
     Ok(path)
 }
 

@@ -111,12 +111,12 @@ pub struct ExposureTable {
     #[schemars(range(min = 1e-6, max = 1000))]
     pub max_s: f64,
     /// Level that the target's brightest pixel may expect, as a fraction of saturation, above 0, at most 1000: 1 is just not over-exposed.
-    #[serde(default = "one")]
+    #[serde(default = "default_level")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub target_level: f64,
 }
 
-fn one() -> f64 {
+fn default_level() -> f64 {
     1.0
 }
 
@@ -260,7 +260,7 @@ pub struct Requirement {
     /// What it demands.
     pub demand: Demand,
     /// What is to be found so that it is met; absent: whether the camera as it is meets it.
-    pub find: Option<Find>,
+    pub find: Option<FindTable>,
 }
 
 /// What is demanded.
@@ -280,7 +280,7 @@ pub enum Demand {
         exposure_s: Option<f64>,
         /// Whether the probability is that of all the sky together, or of each pointing.
         #[serde(default)]
-        over: Over,
+        over: SkyStatistic,
     },
     /// A star of a magnitude, of the mean colour of the catalogue, is detected with a probability.
     LimitingMagnitude {
@@ -336,7 +336,7 @@ pub enum Demand {
 /// Of what a probability over the sky is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Over {
+pub enum SkyStatistic {
     /// Of a boresight that is equally likely anywhere.
     #[default]
     Sky,
@@ -347,13 +347,13 @@ pub enum Over {
 /// What is to be found.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Find {
+pub struct FindTable {
     /// The parameter.
     pub parameter: Parameter,
     /// Which of the values that meet the requirement; absent: the smallest exposure and aperture, and the shortest focal length
     /// (the widest field).
     #[serde(default)]
-    pub want: Want,
+    pub want: Extreme,
     /// Smallest value that is looked at, in the parameter's unit.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub from: f64,
@@ -388,7 +388,7 @@ impl Parameter {
 /// Which end of the values that meet a requirement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Want {
+pub enum Extreme {
     /// The smallest.
     #[default]
     Smallest,
@@ -434,7 +434,7 @@ impl RequirementFile {
             }
             Demand::ExposureWindow { from_km, to_km, .. } => self.check_ranges(at, from_km, to_km)?,
         }
-        let Some(Find { parameter, from, to, want: _ }) = requirement.find else { return Ok(()) };
+        let Some(FindTable { parameter, from, to, want: _ }) = requirement.find else { return Ok(()) };
         let path = |field: &str| format!("{at}.find.{field}");
         let (limit, expected) = match parameter {
             Parameter::ExposureS => ([1e-6, 1000.0], "1e-6 to 1000 s"),

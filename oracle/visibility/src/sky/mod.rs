@@ -28,7 +28,7 @@ const SQRT_3: f64 = 0.732_050_807_568_877_2;
 
 /// Why a pointing does not count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Excluded {
+pub enum Exclusion {
     /// The Sun is too near.
     Sun,
     /// The Moon is too near.
@@ -37,7 +37,7 @@ pub enum Excluded {
     Earth,
 }
 
-impl Excluded {
+impl Exclusion {
     /// The word used in files.
     pub fn code(self) -> &'static str {
         match self {
@@ -60,13 +60,13 @@ pub struct Pointing {
     /// Where the camera is, from the centre of the Earth.
     pub position_km: Vector3<f64>,
     /// Why it does not count; `None` when it does.
-    pub excluded: Option<Excluded>,
+    pub excluded: Option<Exclusion>,
 }
 
 impl Pointing {
     /// Number `index` of `count` boresights of a spherical Fibonacci lattice, each of which stands for an equal area (Swinbank &
     /// Purser 2006, Q. J. R. Meteorol. Soc. 132, 1769): z = 1 − (2 i + 1)/n, right ascension i golden turns.
-    pub fn of_lattice(
+    pub fn from_lattice(
         index: usize,
         count: usize,
         motion: &MotionTable,
@@ -81,7 +81,7 @@ impl Pointing {
         let (sin_roll, cos_roll) = libm::sincos(std::f64::consts::TAU * (i * SQRT_3).fract());
         // Across the boresight, at any roll; columns of the image run along it.
         let x = east * cos_roll + boresight.cross(&east) * sin_roll;
-        let time = moment(&sky.when, (i * SQRT_2).fract())?;
+        let time = observation_time(&sky.when, (i * SQRT_2).fract())?;
         Self::new(boresight, x, time, motion, sky)
     }
 
@@ -130,20 +130,20 @@ impl Pointing {
         Observer::new(self.time, self.position_km, along * speed_km_s)
     }
 
-    fn exclusion(&self, observer: &Observer, sky: &SkyTable) -> Option<Excluded> {
+    fn exclusion(&self, observer: &Observer, sky: &SkyTable) -> Option<Exclusion> {
         let degrees_from = |other: &Vector3<f64>| {
             let boresight = self.boresight.vector();
             libm::atan2(boresight.cross(other).norm(), boresight.dot(other)).to_degrees()
         };
         if degrees_from(observer.sun().vector()) < sky.sun_exclusion_deg {
-            return Some(Excluded::Sun);
+            return Some(Exclusion::Sun);
         }
         let moon_km = moon::moon_position_km(clock::tdb_j2000_s(self.time)) - self.position_km;
         if degrees_from(&moon_km) < sky.moon_exclusion_deg {
-            return Some(Excluded::Moon);
+            return Some(Exclusion::Moon);
         }
         let limb_deg = libm::asin((EARTH_RADIUS_KM / self.position_km.norm()).min(1.0)).to_degrees();
-        (degrees_from(&-self.position_km) - limb_deg < sky.earth_exclusion_deg).then_some(Excluded::Earth)
+        (degrees_from(&-self.position_km) - limb_deg < sky.earth_exclusion_deg).then_some(Exclusion::Earth)
     }
 
     /// The mean of the background's light over the detector, electrons a second and pixel.
@@ -156,7 +156,7 @@ impl Pointing {
 }
 
 /// A moment of the time that is looked at, `share` of the way through it.
-fn moment(when: &SkyTime, share: f64) -> Result<Epoch, OutOfRange> {
+fn observation_time(when: &SkyTime, share: f64) -> Result<Epoch, OutOfRange> {
     match when {
         SkyTime::Epoch { utc } => clock::parse_utc(utc),
         SkyTime::Year { year } => {
@@ -210,7 +210,7 @@ impl Sky {
         let fields = (0..count)
             .into_par_iter()
             .map(|index| {
-                let pointing = Pointing::of_lattice(index, count, motion, sky)?;
+                let pointing = Pointing::from_lattice(index, count, motion, sky)?;
                 if pointing.excluded.is_some() {
                     return Ok(Field { pointing, background_e_per_s: 0.0, stars: Vec::new() });
                 }
@@ -235,7 +235,7 @@ impl Sky {
     }
 
     /// The boresights that count.
-    pub fn counted(&self) -> impl Iterator<Item = &Field> {
+    pub fn usable_fields(&self) -> impl Iterator<Item = &Field> {
         self.fields.iter().filter(|field| field.pointing.excluded.is_none())
     }
 }
@@ -266,7 +266,7 @@ mod tests {
         MotionTable { guidance: MotionGuidance::Inertial, semi_major_axis_km: 7130.0 };
 
     fn lattice(count: usize, sky: &SkyTable) -> Vec<Pointing> {
-        (0..count).map(|i| Pointing::of_lattice(i, count, &MOTION, sky).unwrap()).collect()
+        (0..count).map(|i| Pointing::from_lattice(i, count, &MOTION, sky).unwrap()).collect()
     }
 
     /// A cap of radius r holds (1 − cos r)/2 of an equal-area lattice, wherever it is.
@@ -292,7 +292,7 @@ mod tests {
         let when = SkyTime::Epoch { utc: "2012-04-26T12:00:00Z".to_owned() };
         for when in [when, SkyTime::Year { year: 2012 }] {
             let sky = SkyTable { sun_exclusion_deg: 40.0, when, ..SkyTable::default() };
-            let out = lattice(4000, &sky).iter().filter(|p| p.excluded == Some(Excluded::Sun)).count();
+            let out = lattice(4000, &sky).iter().filter(|p| p.excluded == Some(Exclusion::Sun)).count();
             assert!((out as f64 / 4000.0 - 0.11698).abs() < 0.004, "{out}");
         }
     }
@@ -301,9 +301,9 @@ mod tests {
     #[test]
     fn the_earth_excludes_a_camera_along_the_orbit_by_its_limb() {
         let motion = MotionTable { guidance: MotionGuidance::LocalOrbital, ..MOTION };
-        for (earth_exclusion_deg, excluded) in [(26.5, None), (26.6, Some(Excluded::Earth))] {
+        for (earth_exclusion_deg, excluded) in [(26.5, None), (26.6, Some(Exclusion::Earth))] {
             let sky = SkyTable { earth_exclusion_deg, ..SkyTable::default() };
-            assert_eq!(Pointing::of_lattice(17, 1000, &motion, &sky).unwrap().excluded, excluded);
+            assert_eq!(Pointing::from_lattice(17, 1000, &motion, &sky).unwrap().excluded, excluded);
         }
     }
 }

@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use crate::camera::CameraModel;
-use crate::law::detection::{DetectionCurve, background_e};
-use crate::law::pixel::readout_e;
-use crate::law::poisson_binomial::at_least;
-use crate::requirement::{DetectionRule, MotionGuidance, MotionTable, Over};
+use crate::detection_model::detection::{DetectionCurve, background_e};
+use crate::detection_model::pixel::readout_e;
+use crate::detection_model::poisson_binomial::at_least;
+use crate::requirement::{DetectionRule, MotionGuidance, MotionTable, SkyStatistic};
 use crate::sky::{Field, Sky};
 
 /// Chances below this are left out of sums over stars.
@@ -15,7 +15,7 @@ const LEAST_CHANCE: f64 = 1e-9;
 /// background is then interpolated to 0.002.
 const LEVEL_STEP: f64 = 0.25;
 /// Most levels; beyond, as near the Sun, they are farther apart.
-const MOST_LEVELS: usize = 24;
+const MAX_LEVELS: usize = 24;
 
 /// Detection curves of one exposure at several levels of the background.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Curves {
 
 /// What is detected at one boresight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct StarCount {
     /// Stars, expected number.
     pub expected: f64,
     /// P(N ≥ n_min).
@@ -46,10 +46,10 @@ impl Curves {
         let trail_px = star_trail_px(camera, motion, exposure_s);
         let read_e = readout_e(&camera.config.sensor);
         let variance =
-            |light_e_per_s| background_e(camera, exposure_s, light_e_per_s) + read_e * read_e + 1.0;
+            |background_e_per_s| background_e(camera, exposure_s, background_e_per_s) + read_e * read_e + 1.0;
         let ratio = variance(high_e_per_s) / variance(low_e_per_s);
         let growth = LEVEL_STEP / variance(low_e_per_s).sqrt();
-        let steps = ((libm::log(ratio.max(1.0)) / growth).ceil() as usize).min(MOST_LEVELS - 1);
+        let steps = ((libm::log(ratio.max(1.0)) / growth).ceil() as usize).min(MAX_LEVELS - 1);
         let levels_e_per_s: Vec<f64> = (0..=steps)
             .map(|i| {
                 let grown = variance(low_e_per_s) * libm::pow(ratio, i as f64 / steps.max(1) as f64);
@@ -62,7 +62,7 @@ impl Curves {
     }
 
     /// Those of a sky's boresights that count.
-    pub fn of_sky(
+    pub fn from_sky(
         camera: &CameraModel,
         rule: &DetectionRule,
         motion: &MotionTable,
@@ -70,7 +70,7 @@ impl Curves {
         sky: &Sky,
     ) -> Self {
         let nothing = [f64::INFINITY, 0.0_f64];
-        let [low, high] = sky.counted().fold(nothing, |[low, high], field| {
+        let [low, high] = sky.usable_fields().fold(nothing, |[low, high], field| {
             [low.min(field.background_e_per_s), high.max(field.background_e_per_s)]
         });
         Self::new(camera, rule, motion, exposure_s, [low.min(high), high])
@@ -78,36 +78,39 @@ impl Curves {
 
     /// The chance that a star of exp(`ln_e_per_s`) electrons a second is detected over a background.
     pub fn chance(&self, ln_e_per_s: f64, background_e_per_s: f64) -> f64 {
-        let (below, part) = self.place(background_e_per_s);
+        let (below, part) = self.bracket(background_e_per_s);
         self.between(below, part, ln_e_per_s + self.ln_exposure)
     }
 
     /// What is detected of the stars of a field.
-    pub fn seen(&self, field: &Field, n_min: usize, law: &mut Vec<f64>) -> Seen {
-        let (below, part) = self.place(field.background_e_per_s);
+    pub fn count_stars(&self, field: &Field, n_min: usize, distribution: &mut Vec<f64>) -> StarCount {
+        let (below, part) = self.bracket(field.background_e_per_s);
         let mut expected = 0.0;
         let chances =
             field.stars.iter().map(|star| self.between(below, part, star.ln_e_per_s + self.ln_exposure));
         let chances = chances.take_while(|p| *p > LEAST_CHANCE).inspect(|p| expected += p);
-        let chance = at_least(n_min, chances, law);
-        Seen { expected, chance }
+        let chance = at_least(n_min, chances, distribution);
+        StarCount { expected, chance }
     }
 
     /// What is detected at each boresight of the sky that counts, in their order.
-    pub fn seen_over(&self, sky: &Sky, n_min: usize) -> Vec<Seen> {
-        let counted: Vec<&Field> = sky.counted().collect();
-        counted.par_iter().map_init(Vec::new, |law, field| self.seen(field, n_min, law)).collect()
+    pub fn count_stars_over_sky(&self, sky: &Sky, n_min: usize) -> Vec<StarCount> {
+        let counted: Vec<&Field> = sky.usable_fields().collect();
+        counted
+            .par_iter()
+            .map_init(Vec::new, |distribution, field| self.count_stars(field, n_min, distribution))
+            .collect()
     }
 
     fn between(&self, below: usize, part: f64, ln_electrons: f64) -> f64 {
-        let low = self.curves[below].at_ln(ln_electrons);
+        let low = self.curves[below].probability_at_ln(ln_electrons);
         match self.curves.get(below + 1).filter(|_| part > 0.0) {
-            Some(above) => low + part * (above.at_ln(ln_electrons) - low),
+            Some(above) => low + part * (above.probability_at_ln(ln_electrons) - low),
             None => low,
         }
     }
 
-    fn place(&self, background_e_per_s: f64) -> (usize, f64) {
+    fn bracket(&self, background_e_per_s: f64) -> (usize, f64) {
         let levels = &self.levels_e_per_s;
         let above = levels.partition_point(|level| *level <= background_e_per_s);
         match (above.checked_sub(1), levels.get(above)) {
@@ -129,12 +132,12 @@ pub fn star_trail_px(camera: &CameraModel, motion: &MotionTable, exposure_s: f64
 }
 
 /// The probability over a sky: the mean, or the smallest; 0 where no boresight counts.
-pub fn over_sky(seen: &[Seen], over: Over) -> f64 {
+pub fn over_sky(seen: &[StarCount], over: SkyStatistic) -> f64 {
     if seen.is_empty() {
         return 0.0;
     }
     match over {
-        Over::Sky => seen.iter().map(|seen| seen.chance).sum::<f64>() / seen.len() as f64,
-        Over::EveryPointing => seen.iter().map(|seen| seen.chance).fold(1.0, f64::min),
+        SkyStatistic::Sky => seen.iter().map(|seen| seen.chance).sum::<f64>() / seen.len() as f64,
+        SkyStatistic::EveryPointing => seen.iter().map(|seen| seen.chance).fold(1.0, f64::min),
     }
 }

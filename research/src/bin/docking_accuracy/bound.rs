@@ -41,7 +41,7 @@ const ENDLESS: f64 = 1000.0;
 const BLUR_STEP_PX: f64 = 0.01;
 
 /// The three bounds of a pose in a scene under a light, from the least to the greatest.
-pub(crate) fn of(
+pub(crate) fn bounds_of_pose(
     camera: &Camera,
     scene: &DockingScene,
     lighting: &Lighting,
@@ -63,11 +63,11 @@ pub(crate) fn of(
     columns.extend(drawing.by_levels(&target_alone));
     columns.push(drawing.by_blur(&target_alone));
     let posed = covariance(pose, &columns)?;
-    Ok([known[0], known[1], posed].map(|covariance| Bound::of(pose, &covariance)))
+    Ok([known[0], known[1], posed].map(|covariance| Bound::from_covariance(pose, &covariance)))
 }
 
 impl Bound {
-    fn of(pose: &Pose, covariance: &Matrix6<f64>) -> Self {
+    fn from_covariance(pose: &Pose, covariance: &Matrix6<f64>) -> Self {
         let towards = pose.position_m.normalize();
         let range_m2 = (towards.transpose() * covariance.fixed_view::<3, 3>(0, 0) * towards)[0];
         Self {

@@ -92,7 +92,7 @@ impl Case {
     /// The Cramér–Rao bounds of its pose.
     pub(crate) fn bounds(&self) -> Result<[Bound; 3], SimError> {
         let lighting = self.simulator.moment(0)?.lighting;
-        bound::of(&self.camera, self.simulator.scene(), &lighting, &self.pose)
+        bound::bounds_of_pose(&self.camera, self.simulator.scene(), &lighting, &self.pose)
     }
 
     /// The image's file in its folder.

@@ -57,7 +57,7 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
 }
 
 /// What the estimators and the bounds say of one frame.
-struct Measured {
+struct FrameResult {
     truth: Pose,
     /// The pipeline from the frame alone: its best estimator, and the paper's formulas.
     best: Option<PoseEstimate>,
@@ -67,7 +67,12 @@ struct Measured {
     bounds: [Bound; 3],
 }
 
-fn measure(row: &Row, arguments: &Arguments, number: u64, folder: &Path) -> Result<(Case, Measured), String> {
+fn measure(
+    row: &Row,
+    arguments: &Arguments,
+    number: u64,
+    folder: &Path,
+) -> Result<(Case, FrameResult), String> {
     let text = |error: &dyn std::fmt::Display| format!("{}, pose {number}: {error}", row.name);
     let case = Case::random(row, arguments.seed, number, arguments.noise_dn).map_err(|e| text(&e))?;
     let field = case.field().map_err(|e| text(&e))?;
@@ -86,19 +91,19 @@ fn measure(row: &Row, arguments: &Arguments, number: u64, folder: &Path) -> Resu
     let near = ModelFit::new().fit_near(&field, &camera, &setup.target, case.prior());
     let near = near.ok().map(|fitted| fitted.estimate);
     let bounds = case.bounds().map_err(|e| text(&e))?;
-    Ok((case.clone(), Measured { truth: *case.pose(), best, paper, near, bounds }))
+    Ok((case.clone(), FrameResult { truth: *case.pose(), best, paper, near, bounds }))
 }
 
 fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>> {
     let folder = arguments.out.join(row.name);
     std::fs::create_dir_all(&folder)?;
-    let results: Vec<(Case, Measured)> = (0..arguments.poses)
+    let results: Vec<(Case, FrameResult)> = (0..arguments.poses)
         .into_par_iter()
         .map(|number| measure(row, arguments, number, &folder))
         .collect::<Result<_, _>>()?;
-    let (cases, measured): (Vec<Case>, Vec<Measured>) = results.into_iter().unzip();
+    let (cases, measured): (Vec<Case>, Vec<FrameResult>) = results.into_iter().unzip();
     frames::write_tables(&folder, &cases)?;
-    let estimates = |of: &dyn Fn(&Measured) -> Option<PoseEstimate>| -> Vec<Answer> {
+    let estimates = |of: &dyn Fn(&FrameResult) -> Option<PoseEstimate>| -> Vec<Answer> {
         let answer = |m| {
             let estimate = of(m);
             Answer {
@@ -123,9 +128,9 @@ fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>
         &measured_bounds(&measured),
     )?;
     let mut lines = vec![
-        Line::of_answers(row.name, "best", &best),
-        Line::of_answers(row.name, "near", &near),
-        Line::of_answers(row.name, "paper", &poses(measured.iter().map(|m| m.paper).collect())),
+        Line::from_answers(row.name, "best", &best),
+        Line::from_answers(row.name, "near", &near),
+        Line::from_answers(row.name, "paper", &poses(measured.iter().map(|m| m.paper).collect())),
     ];
     if let Some(python) = &arguments.python {
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/python/docking_pnp.py");
@@ -134,18 +139,18 @@ fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>
             return Err(format!("{python}: docking_pnp.py failed: {status}").into());
         }
         let opencv = table::read_poses(&folder.join("opencv.csv"), measured.len())?;
-        lines.push(Line::of_answers(row.name, "OpenCV", &poses(opencv)));
+        lines.push(Line::from_answers(row.name, "OpenCV", &poses(opencv)));
     }
     for (i, name) in ["bound 1", "bound 2", "bound 3"].into_iter().enumerate() {
         let bounds: Vec<Bound> = measured.iter().map(|m| m.bounds[i]).collect();
-        lines.push(Line::of_bounds(row.name, name, &bounds));
+        lines.push(Line::from_bounds(row.name, name, &bounds));
     }
     lines.extend(lines.last().map(|bound| lines[0].over(bound)));
     Ok(lines)
 }
 
 /// The yardstick of every frame.
-fn measured_bounds(measured: &[Measured]) -> Vec<Bound> {
+fn measured_bounds(measured: &[FrameResult]) -> Vec<Bound> {
     measured.iter().map(|m| m.bounds[2]).collect()
 }
 

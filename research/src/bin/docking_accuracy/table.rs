@@ -94,7 +94,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    pub(crate) fn of_answers(row: &'static str, method: &'static str, answers: &[Answer]) -> Self {
+    pub(crate) fn from_answers(row: &'static str, method: &'static str, answers: &[Answer]) -> Self {
         let mut errors: [Vec<f64>; 3] = Default::default();
         for answer in answers {
             let (Some(error), Some(range)) = (answer.error(), answer.range_error()) else { continue };
@@ -115,7 +115,7 @@ impl Line {
         }
     }
 
-    pub(crate) fn of_bounds(row: &'static str, method: &'static str, bounds: &[Bound]) -> Self {
+    pub(crate) fn from_bounds(row: &'static str, method: &'static str, bounds: &[Bound]) -> Self {
         let mean =
             |of: &dyn Fn(&Bound) -> f64| (bounds.iter().map(of).sum::<f64>() / bounds.len() as f64).sqrt();
         let rms =

@@ -12,7 +12,9 @@ use std::error::Error;
 use rayon::prelude::*;
 use sim::television::TelevisionConfig;
 
-use boresight_research::docking_consistency::approaches::{Course, Estimator, Flown, Lens, Plan, fly};
+use boresight_research::docking_consistency::approaches::{
+    Course, Estimator, Lens, MeasuredApproach, Plan, simulate,
+};
 use boresight_research::docking_consistency::tally::{self, GROUPS, Mean, NAMES, Tally};
 
 /// Noise of the television, DN.
@@ -45,8 +47,11 @@ fn arguments() -> Result<Arguments, Box<dyn Error + Send + Sync>> {
     Ok(arguments)
 }
 
-fn fly_all(plan: &Plan, approaches: u64) -> Result<Vec<Flown>, Box<dyn Error + Send + Sync>> {
-    (0..approaches).into_par_iter().map(|number| fly(plan, number)).collect()
+fn simulate_approaches(
+    plan: &Plan,
+    approaches: u64,
+) -> Result<Vec<MeasuredApproach>, Box<dyn Error + Send + Sync>> {
+    (0..approaches).into_par_iter().map(|number| simulate(plan, number)).collect()
 }
 
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
@@ -54,30 +59,31 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let is_asked = |name: &str| arguments.only.as_ref().is_none_or(|only| only == name);
     let plan = Plan::noise_only(arguments.seed, arguments.portions, NOISE_DN);
     if is_asked("steady") {
-        let flown = fly_all(&plan, arguments.approaches)?;
-        consistency("Constant velocity", &flown);
-        println!("longest time between reports: {:.2} s\n", tally::longest_interval_s(&flown));
-        sigma_by_range(&flown);
+        let approaches = simulate_approaches(&plan, arguments.approaches)?;
+        consistency("Constant velocity", &approaches);
+        println!("longest time between reports: {:.2} s\n", tally::longest_interval_s(&approaches));
+        sigma_by_range(&approaches);
     }
     if is_asked("doubled") {
         doubled_noise(&arguments)?;
     }
     if is_asked("swinging") {
         let plan = Plan { course: Course::Swinging, ..plan.clone() };
-        consistency("Swinging", &fly_all(&plan, arguments.approaches)?);
+        consistency("Swinging", &simulate_approaches(&plan, arguments.approaches)?);
     }
     if is_asked("artefacts") {
         let plan = Plan { television: TelevisionConfig::all(), ..plan };
-        consistency("Constant velocity, every artefact", &fly_all(&plan, arguments.approaches)?);
+        consistency("Constant velocity, every artefact", &simulate_approaches(&plan, arguments.approaches)?);
     }
     Ok(())
 }
 
 /// Shares within 3σ and NEES of both estimators.
-fn consistency(title: &str, flown: &[Flown]) {
-    let fields: usize = flown.iter().map(|flown| flown.fields.len()).sum();
-    println!("{title}: {} approaches, {fields} fields measured", flown.len());
-    let tallies = [Estimator::Exact, Estimator::Paper].map(|estimator| Tally::of(flown, estimator));
+fn consistency(title: &str, approaches: &[MeasuredApproach]) {
+    let fields: usize = approaches.iter().map(|approaches| approaches.fields.len()).sum();
+    println!("{title}: {} approaches, {fields} fields measured", approaches.len());
+    let tallies =
+        [Estimator::Exact, Estimator::Paper].map(|estimator| Tally::from_approaches(approaches, estimator));
     println!("{:<20} {:>16} {:>16}", "", "exact geometry", "paper");
     println!("{:<20} {:>16} {:>16}", "portions judged", tallies[0].portions, tallies[1].portions);
     let line = |name: &str, scale: f64, of: &dyn Fn(&Tally) -> Option<Mean>| {
@@ -93,8 +99,9 @@ fn consistency(title: &str, flown: &[Flown]) {
     }
     println!("{:<20} {:>16}", "NEES/6, one field", cell(tallies[0].field_nees, 1.0));
     for lens in Lens::ALL {
-        let of_lens: Vec<Flown> = flown.iter().filter(|flown| flown.lens == lens).cloned().collect();
-        let tally = Tally::of(&of_lens, Estimator::Exact);
+        let of_lens: Vec<MeasuredApproach> =
+            approaches.iter().filter(|approaches| approaches.lens == lens).cloned().collect();
+        let tally = Tally::from_approaches(&of_lens, Estimator::Exact);
         let [position, attitude, joint] = tally.nees.map(|nees| cell(nees, 1.0));
         println!(
             "{:<8} exact NEES/6: {position}, {attitude}, {joint}; of a field {}",
@@ -110,7 +117,7 @@ fn cell(mean: Option<Mean>, scale: f64) -> String {
 }
 
 /// Medians of σ of ρ, u, α, β in bins of range.
-fn sigma_by_range(flown: &[Flown]) {
+fn sigma_by_range(approaches: &[MeasuredApproach]) {
     println!("σ by range, medians, exact geometry (paper)");
     println!(
         "{:<7} {:>11} {:>6} {:>18} {:>18} {:>20} {:>20}",
@@ -119,13 +126,17 @@ fn sigma_by_range(flown: &[Flown]) {
     for lens in Lens::ALL {
         for bin in RANGES_M.windows(2) {
             let sigmas = |estimator: Estimator| -> Vec<[f64; 16]> {
-                let portions =
-                    flown.iter().filter(|flown| flown.lens == lens).flat_map(|flown| &flown.portions);
+                let portions = approaches
+                    .iter()
+                    .filter(|approaches| approaches.lens == lens)
+                    .flat_map(|approaches| &approaches.portions);
                 portions
                     .filter(|portion| {
                         portion.number > 0 && (bin[0]..bin[1]).contains(&portion.truth.range_m())
                     })
-                    .filter_map(|portion| tally::Errors::of(portion.of(estimator)?, &portion.truth))
+                    .filter_map(|portion| {
+                        tally::Errors::from_motion(portion.motion(estimator)?, &portion.truth)
+                    })
                     .map(|errors| errors.sigmas)
                     .collect()
             };
@@ -162,10 +173,10 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 /// σ of the same approaches with twice the noise, over σ.
 fn doubled_noise(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
-    let fly = |noise_dn: f64| {
-        fly_all(&Plan::noise_only(arguments.seed, 2, noise_dn), arguments.approaches.min(DOUBLED))
+    let simulate = |noise_dn: f64| {
+        simulate_approaches(&Plan::noise_only(arguments.seed, 2, noise_dn), arguments.approaches.min(DOUBLED))
     };
-    let (once, twice) = (fly(NOISE_DN)?, fly(2.0 * NOISE_DN)?);
+    let (once, twice) = (simulate(NOISE_DN)?, simulate(2.0 * NOISE_DN)?);
     println!(
         "σ at {} DN over σ at {} DN, second portion, medians of {} approaches",
         2.0 * NOISE_DN,

@@ -3,7 +3,7 @@ use indexmap::IndexMap;
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
 use super::*;
-use crate::docking::hand_made::{ahead, field, measured, range_only, setup};
+use crate::docking::hand_made::{ahead, field, measured_outcome, range_only, setup};
 
 fn score(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScore {
     scored(fields).score()
@@ -29,8 +29,8 @@ fn scored_after(warm_up_frames: u64, fields: &[(TrueField, Option<DockingOutcome
     scorer
 }
 
-fn at(d: [f64; 3], phi: [f64; 3]) -> Option<DockingOutcome> {
-    Some(measured(Pose { position_m: d.into(), phi_rad: phi.into() }))
+fn measured_at(d: [f64; 3], phi: [f64; 3]) -> Option<DockingOutcome> {
+    Some(measured_outcome(Pose { position_m: d.into(), phi_rad: phi.into() }))
 }
 
 fn value(score: &DockingScore, name: &str) -> f64 {
@@ -42,11 +42,11 @@ fn mixed() -> Vec<(TrueField, Option<DockingOutcome>)> {
     let none = |reason| Some(DockingOutcome::none(reason));
     let answers = [
         none(NoPose::NoTarget),
-        at([0.0, 0.0, 10.0], [0.0; 3]),
-        at([0.03, 0.04, 10.0], [0.0; 3]),
-        at([0.0, 0.0, 10.03], [0.0, 0.0, 0.02]),
-        at([0.0, 0.0, 11.0], [0.0; 3]),
-        at([0.0, 0.0, 10.0], [0.0, 0.0, 3.0]),
+        measured_at([0.0, 0.0, 10.0], [0.0; 3]),
+        measured_at([0.03, 0.04, 10.0], [0.0; 3]),
+        measured_at([0.0, 0.0, 10.03], [0.0, 0.0, 0.02]),
+        measured_at([0.0, 0.0, 11.0], [0.0; 3]),
+        measured_at([0.0, 0.0, 10.0], [0.0, 0.0, 3.0]),
         Some(range_only(10.4, 0.2)),
         Some(range_only(20.0, 0.2)),
         none(NoPose::Failed("out of film".to_owned())),
@@ -139,8 +139,8 @@ fn errors_of_the_right_fields_have_their_closed_forms() {
 #[test]
 fn shares_within_three_sigma_are_counted_by_parameter() {
     let mut fields = mixed();
-    fields[3].1 = at([0.0, 0.0, 10.029], [0.0; 3]);
-    fields[2].1 = at([0.029, 0.04, 10.0], [0.0; 3]);
+    fields[3].1 = measured_at([0.0, 0.0, 10.029], [0.0; 3]);
+    fields[2].1 = measured_at([0.029, 0.04, 10.0], [0.0; 3]);
     let score = score(&fields);
     assert_eq!(
         (score.figures[names::WITHIN_3_SIGMA].count, score.figures[names::WITHIN_3_SIGMA].of),
@@ -183,9 +183,11 @@ fn report(time_s: f64, range_m: f64) -> MotionReport {
 /// Fields 0.1 s apart, all measured, a report at 0.9 s and then none: from 1.1 s on it is asked for, until 1.9 s it is a
 /// second old at most.
 #[test]
-fn silence_after_a_report_is_told() {
+fn silence_after_a_report_is_reported() {
     let mut fields: Vec<_> = (0..40)
-        .map(|i| (TrueField { time_s: 0.1 * i as f64, ..field(i, 10.0) }, at([0.0, 0.0, 10.0], [0.0; 3])))
+        .map(|i| {
+            (TrueField { time_s: 0.1 * i as f64, ..field(i, 10.0) }, measured_at([0.0, 0.0, 10.0], [0.0; 3]))
+        })
         .collect();
     let time_s = fields[9].0.time_s;
     fields[9].1.as_mut().unwrap().motion = Some(report(time_s, 10.0));
@@ -195,12 +197,12 @@ fn silence_after_a_report_is_told() {
 
 /// Ranges and their rates are in metres, angles in degrees.
 #[test]
-fn a_motion_to_the_side_is_told_in_degrees() {
-    let mut outcome = at([0.0, 0.0, 10.0], [0.0; 3]);
+fn a_motion_to_the_side_is_reported_in_degrees() {
+    let mut outcome = measured_at([0.0, 0.0, 10.0], [0.0; 3]);
     let truth = field(0, 10.0);
-    let mut told = report(truth.time_s, 10.0);
-    told.best.as_mut().unwrap().pose.position_m = Vector3::new(0.0, 0.1, 10.0);
-    outcome.as_mut().unwrap().motion = Some(told);
+    let mut reported = report(truth.time_s, 10.0);
+    reported.best.as_mut().unwrap().pose.position_m = Vector3::new(0.0, 0.1, 10.0);
+    outcome.as_mut().unwrap().motion = Some(reported);
     let score = score(&[(truth, outcome)]);
     assert!((value(&score, "motion_alpha_rms_deg") - 0.572_938_7).abs() < 1e-6);
     assert!(
@@ -211,7 +213,8 @@ fn a_motion_to_the_side_is_told_in_degrees() {
 /// A field between the measured ones is part of the portion that they make.
 #[test]
 fn a_portion_counts_the_fields_that_were_missed_in_it() {
-    let mut fields: Vec<_> = (0..8).map(|i| (field(i, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]))).collect();
+    let mut fields: Vec<_> =
+        (0..8).map(|i| (field(i, 10.0), measured_at([0.0, 0.0, 10.0], [0.0; 3]))).collect();
     for missed in [0, 3, 4] {
         fields[missed].1 = None;
     }
@@ -222,9 +225,9 @@ fn a_portion_counts_the_fields_that_were_missed_in_it() {
 #[test]
 fn the_latency_is_from_the_first_clear_field_to_the_first_success() {
     let missed = |number| (field(number, 10.0), None);
-    let right = |number| (field(number, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]));
+    let right = |number| (field(number, 10.0), measured_at([0.0, 0.0, 10.0], [0.0; 3]));
     let of = |fields: &[_]| score(fields).figures[names::LATENCY_FIELDS].value;
-    let hidden = (TrueField { view: View::Part, ..field(0, 10.0) }, None);
+    let hidden = (TrueField { visibility: TargetVisibility::Partial, ..field(0, 10.0) }, None);
     assert_eq!(of(&[hidden, missed(1), missed(2), missed(3), right(4)]), Some(3.0));
     assert_eq!(of(&[right(0), missed(1)]), Some(0.0));
     assert_eq!(of(&[missed(0), missed(1)]), None);
@@ -233,10 +236,15 @@ fn the_latency_is_from_the_first_clear_field_to_the_first_success() {
 /// A bar of 3 cm is resolved at 10 m, and not at 300 m.
 #[test]
 fn a_field_is_clear_when_the_target_is_whole_and_resolved() {
-    let fields = [(View::Whole, 10.0), (View::Part, 10.0), (View::Whole, 300.0), (View::Outside, 300.0)];
+    let fields = [
+        (TargetVisibility::Full, 10.0),
+        (TargetVisibility::Partial, 10.0),
+        (TargetVisibility::Full, 300.0),
+        (TargetVisibility::Outside, 300.0),
+    ];
     let fields: Vec<_> = (0..)
         .zip(fields)
-        .map(|(number, (view, range_m))| (TrueField { view, ..field(number, range_m) }, None))
+        .map(|(number, (visibility, range_m))| (TrueField { visibility, ..field(number, range_m) }, None))
         .collect();
     assert_eq!(score(&fields).figures[names::CLEAR_SUCCESS_RATE].of, 1);
 }
@@ -244,10 +252,10 @@ fn a_field_is_clear_when_the_target_is_whole_and_resolved() {
 #[test]
 fn units_are_the_fields_with_their_verdicts_and_causes() {
     let table = scored(&mixed()).units();
-    let told: Vec<_> =
+    let reported: Vec<_> =
         table.units.iter().map(|unit| (unit.verdict.as_str(), unit.cause.as_deref())).collect();
-    assert_eq!(told[..2], [("missed", Some("no_target")), ("success", None)]);
-    assert_eq!(told[4..7], [("wrong", Some("range")), ("wrong", Some("roll")), ("range_only", None)]);
+    assert_eq!(reported[..2], [("missed", Some("no_target")), ("success", None)]);
+    assert_eq!(reported[4..7], [("wrong", Some("range")), ("wrong", Some("roll")), ("range_only", None)]);
     assert!(table.units.iter().map(|unit| unit.number).eq(0..10));
     assert!(table.units.iter().all(|unit| unit.group == "10–5 m, 15.0°"), "{:?}", table.units[0].group);
     let names: Vec<_> = table.figures.iter().map(|figure| figure.name.clone()).collect();
@@ -259,7 +267,8 @@ fn units_are_the_fields_with_their_verdicts_and_causes() {
 /// Two misses, then portions of ten fields at 50 fields a second, the tenth of each with a report.
 #[test]
 fn portions_are_timed_from_their_first_measured_field() {
-    let mut fields: Vec<_> = (0..32).map(|i| (field(i, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]))).collect();
+    let mut fields: Vec<_> =
+        (0..32).map(|i| (field(i, 10.0), measured_at([0.0, 0.0, 10.0], [0.0; 3]))).collect();
     fields[0].1 = None;
     fields[1].1 = None;
     for (end, range_m) in [(11, 10.05), (21, 10.01), (31, 9.97)] {
@@ -281,7 +290,7 @@ fn portions_are_timed_from_their_first_measured_field() {
 #[test]
 fn a_score_of_nothing_and_of_nothing_right_has_no_nan() {
     let misses: Vec<_> = (0..5).map(|i| (field(i, 100.0), None)).collect();
-    let silent = at([0.0, 0.0, 10.0], [0.0; 3]).map(|mut outcome| {
+    let silent = measured_at([0.0, 0.0, 10.0], [0.0; 3]).map(|mut outcome| {
         if let DockingSolution::Measured(measurement) = &mut outcome.solution {
             measurement.best.covariance = Matrix6::zeros();
             measurement.paper = None;
@@ -319,7 +328,7 @@ fn a_report_of_the_papers_motion_alone_counts_as_the_papers() {
     let fields: Vec<_> = (0..30)
         .map(|i| {
             let truth = TrueField { time_s: 0.1 * i as f64, ..field(i, 10.0) };
-            let mut outcome = at([0.0, 0.0, 10.0], [0.0; 3]);
+            let mut outcome = measured_at([0.0, 0.0, 10.0], [0.0; 3]);
             if let Some(outcome) = outcome.as_mut().filter(|_| i % 10 == 9) {
                 let both = report(truth.time_s, 10.0);
                 let best = both.best.filter(|_| i > 10);
@@ -338,11 +347,11 @@ fn a_report_of_the_papers_motion_alone_counts_as_the_papers() {
 
 /// A saboteur among pipelines: the same errors, and a covariance that claims ten times as little.
 #[test]
-fn a_pipeline_that_claims_too_much_is_told_by_its_consistency() {
+fn a_pipeline_that_claims_too_much_is_refused_by_its_consistency() {
     let fields: Vec<_> = (0..50)
         .map(|i| {
             let error = if i % 2 == 0 { 0.008 } else { -0.008 };
-            let mut outcome = at([error, error, 10.0 + error], [error, error, error]);
+            let mut outcome = measured_at([error, error, 10.0 + error], [error, error, error]);
             if let Some(DockingSolution::Measured(m)) = outcome.as_mut().map(|outcome| &mut outcome.solution)
             {
                 m.best.covariance *= 0.01;
@@ -360,7 +369,7 @@ fn a_pipeline_that_claims_too_much_is_told_by_its_consistency() {
 #[test]
 fn a_range_alone_where_nothing_else_can_be_had_is_no_failure() {
     let far = |number| (field(number, 300.0), Some(range_only(306.0, 3.0)));
-    let near = (field(2, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]));
+    let near = (field(2, 10.0), measured_at([0.0, 0.0, 10.0], [0.0; 3]));
     let score = score(&[far(0), far(1), near]);
     assert_eq!(value(&score, names::SUCCESS_RATE), 1.0);
     assert_eq!(score.figures[names::SUCCESS_RATE].of, 1);

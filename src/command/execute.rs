@@ -1,10 +1,10 @@
 //! What `run` and `study replay` do alike: run, report, show.
 
 use files::{Failure, FileError, RunDirectory, toml_file};
-use run::{AnyFactory, AnyMission, Flight};
+use run::{AnyFactory, AnyMission, FrameJobs};
 
 use super::Answer;
-use super::interrupt::tell_when_interrupted;
+use super::interrupt::report_interruption;
 use super::output::Output;
 use super::report::write_beside_run;
 use crate::table::score_table;
@@ -20,9 +20,9 @@ pub(super) struct Presentation<'a> {
 }
 
 /// Has an interrupt tell what it leaves of a run directory.
-pub(super) fn tell_of_unfinished(directory: &RunDirectory) {
+pub(super) fn note_unfinished_run(directory: &RunDirectory) {
     let path = directory.path().display().to_string();
-    tell_when_interrupted(move || {
+    report_interruption(move || {
         format!(
             "{path} holds an unfinished run, which is not continued: remove it, and run the command again"
         )
@@ -30,19 +30,19 @@ pub(super) fn tell_of_unfinished(directory: &RunDirectory) {
 }
 
 /// Runs a scenario into a directory, writes the report if it is wanted, and shows the score.
-pub(super) fn fly(
+pub(super) fn execute(
     prepared: &dyn AnyMission,
-    flight: &Flight<String>,
+    frame_jobs: &FrameJobs<String>,
     factory: &AnyFactory,
     directory: &RunDirectory,
     shown: Presentation<'_>,
     output: &Output,
 ) -> Result<Answer, Failure> {
     output.warn(&prepared.warnings());
-    let frames = flight.frames.end - flight.frames.start;
-    tell_of_unfinished(directory);
+    let frames = frame_jobs.frames.end - frame_jobs.frames.start;
+    note_unfinished_run(directory);
     let progress = output.progress(frames, &format!("{}, {}", shown.name, factory.name));
-    let ran = prepared.run(directory, flight, factory, &|| {
+    let ran = prepared.run(directory, frame_jobs, factory, &|| {
         progress.inc(1);
         Ok(())
     });
@@ -58,10 +58,10 @@ pub(super) fn fly(
         write_beside_run(directory.path(), ran.scored.as_mut(), output);
     }
     output.answer_json(json.trim_end(), text)?;
-    Ok(match ran.not_flown {
+    Ok(match ran.incomplete {
         None => Answer::Yes,
-        Some(not_flown) => {
-            output.note(format!("error: {not_flown}"));
+        Some(incomplete) => {
+            output.note(format!("error: {incomplete}"));
             Answer::Part
         }
     })

@@ -1,11 +1,11 @@
 //! The chance that a pixel rises above a threshold, as a function of the electrons it expects.
 //!
-//! The digital number of a pixel is floor((e (1 − β e/w) + n)/g + b + ½), with e electrons of a Poisson law cut at the full well w,
-//! n of a normal law, the gain g and the bias b. It is above the threshold T when e (1 − β e/w) + n ≥ L = (T + ½ − b) g, so that
+//! The digital number of a pixel is floor((e (1 − β e/w) + n)/g + b + ½), with e electrons of a Poisson distribution cut at the full well w,
+//! n of a normal distribution, the gain g and the bias b. It is above the threshold T when e (1 − β e/w) + n ≥ L = (T + ½ − b) g, so that
 //!
 //! P(DN > T | μ) = Σ_k Pois(k; μ) Q((L − k (1 − β k/w))/σ),
 //!
-//! Q the upper tail of the normal law (a sum over k as in Janesick, *Photon Transfer*, 2007, chapter 3, without its normal approximation). The simulator *draws* from this law;
+//! Q the upper tail of the normal distribution (a sum over k as in Janesick, *Photon Transfer*, 2007, chapter 3, without its normal approximation). The simulator *draws* from this law;
 //! here it is added up, because nothing in the simulator tells a probability.
 
 use sim::sensor::{SensorConfig, Switch};
@@ -15,11 +15,11 @@ const NODES_PER_SIGMA: f64 = 32.0;
 /// How far above the threshold the table goes, in those standard deviations.
 const SIGMAS_ABOVE: f64 = 12.0;
 /// Most nodes; the table is then coarser, or ends earlier.
-const MOST_NODES: usize = 1 << 15;
+const MAX_NODES: usize = 1 << 15;
 /// The logarithm of a probability that no draw will ever meet.
 const NEVER: f64 = -700.0;
 
-/// The law of one pixel against one threshold, tabulated.
+/// The detection model of one pixel against one threshold, tabulated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PixelThreshold {
     /// ln P(DN ≤ T) at equal steps of μ from 0.
@@ -28,19 +28,19 @@ pub struct PixelThreshold {
 }
 
 impl PixelThreshold {
-    /// The law of a pixel of `sensor` against the digital number `threshold_dn`.
+    /// The detection model of a pixel of `sensor` against the digital number `threshold_dn`.
     pub fn new(sensor: &SensorConfig, threshold_dn: f64) -> Self {
         let limit_e = (threshold_dn.floor() + 0.5 - sensor.bias_dn) * sensor.gain_e_per_dn;
-        let law = Law { sensor, limit_e, sigma_e: readout_e(sensor) };
-        if !law.can_be_reached(threshold_dn) {
+        let model = PixelModel { sensor, limit_e, sigma_e: readout_e(sensor) };
+        if !model.can_be_reached(threshold_dn) {
             return Self { ln_below: vec![0.0], step_e: 1.0 };
         }
         let level_e = limit_e.max(0.0);
-        let sigma_e = (level_e + law.sigma_e * law.sigma_e + 1.0).sqrt();
+        let sigma_e = (level_e + model.sigma_e * model.sigma_e + 1.0).sqrt();
         let top_e = level_e + SIGMAS_ABOVE * sigma_e;
-        let nodes = ((top_e * NODES_PER_SIGMA / sigma_e).ceil() as usize).clamp(64, MOST_NODES);
+        let nodes = ((top_e * NODES_PER_SIGMA / sigma_e).ceil() as usize).clamp(64, MAX_NODES);
         let step_e = top_e / nodes as f64;
-        Self { ln_below: (0..=nodes).map(|i| law.ln_below(i as f64 * step_e)).collect(), step_e }
+        Self { ln_below: (0..=nodes).map(|i| model.ln_below(i as f64 * step_e)).collect(), step_e }
     }
 
     /// ln P(DN ≤ T) of a pixel that expects `electrons`.
@@ -68,13 +68,13 @@ pub fn readout_e(sensor: &SensorConfig) -> f64 {
     sensor.noise.read.of(variance_e2).sqrt()
 }
 
-struct Law<'a> {
+struct PixelModel<'a> {
     sensor: &'a SensorConfig,
     limit_e: f64,
     sigma_e: f64,
 }
 
-impl Law<'_> {
+impl PixelModel<'_> {
     /// Whether a full pixel can be above the threshold at all.
     fn can_be_reached(&self, threshold_dn: f64) -> bool {
         let full_e = self.collected_e(self.sensor.full_well_e);
@@ -88,7 +88,7 @@ impl Law<'_> {
     }
 
     /// P(above) of a pixel that holds exactly so many electrons.
-    fn above_of(&self, electrons: f64) -> f64 {
+    fn probability_above(&self, electrons: f64) -> f64 {
         let distance_e = self.limit_e - self.collected_e(electrons);
         if self.sigma_e == 0.0 {
             return if distance_e <= 0.0 { 1.0 } else { 0.0 };
@@ -99,10 +99,10 @@ impl Law<'_> {
     fn ln_below(&self, mean_e: f64) -> f64 {
         let (mut above, mut below) = (0.0, 0.0);
         if self.sensor.noise.shot == Switch::Off || mean_e == 0.0 {
-            above = self.above_of(mean_e);
+            above = self.probability_above(mean_e);
             below = 1.0 - above;
         } else {
-            // The terms of the Poisson law; of a wide one only every so many, for it is smooth.
+            // The terms of the Poisson distribution; of a wide one only every so many, for it is smooth.
             let width_e = mean_e.sqrt();
             let stride = (width_e / 20.0).floor().max(1.0);
             let reach = ((9.0 * width_e + 20.0) / stride).ceil() as i64;
@@ -115,7 +115,7 @@ impl Law<'_> {
                     continue;
                 }
                 let share = libm::exp(electrons * ln_mean - mean_e - libm::lgamma(electrons + 1.0));
-                let over = self.above_of(electrons);
+                let over = self.probability_above(electrons);
                 all += share;
                 above += share * over;
                 below += share * (1.0 - over);
@@ -144,10 +144,10 @@ mod tests {
 
     /// scipy 1.17: sum(poisson.pmf(k, mu) * norm.sf((275 - k)/15) for k in range(4000)).
     #[test]
-    fn the_law_agrees_with_a_plain_sum() {
-        let law = PixelThreshold::new(&sensor(), 67.0);
+    fn the_model_agrees_with_a_plain_sum() {
+        let model = PixelThreshold::new(&sensor(), 67.0);
         for (mean_e, expected) in SCIPY {
-            let got = law.above(mean_e);
+            let got = model.above(mean_e);
             // Linear between nodes, a thirty-second of a standard deviation apart: an eighth of (z/32)² of a tail at z of them.
             let tolerance = if expected < 1e-3 { 2e-2 } else { 2e-3 };
             assert!((got / expected - 1.0).abs() < tolerance, "{mean_e}: {got} {expected}");
@@ -167,9 +167,9 @@ mod tests {
         let mut sensor = sensor();
         sensor.noise.shot = Switch::Off;
         sensor.noise.read = Switch::Off;
-        let law = PixelThreshold::new(&sensor, 67.0);
+        let model = PixelThreshold::new(&sensor, 67.0);
         // floor(e/10 + 40.5) > 67 from 275 electrons on; a node is at most a thirty-second of 17 electrons wide.
-        assert_eq!((law.above(273.0), law.above(277.0)), (0.0, 1.0));
+        assert_eq!((model.above(273.0), model.above(277.0)), (0.0, 1.0));
     }
 
     #[test]
@@ -183,10 +183,10 @@ mod tests {
     }
 
     #[test]
-    fn more_light_is_never_less_likely_seen() {
+    fn more_electrons_are_never_less_likely_detected() {
         for threshold_dn in [0.0, 41.0, 67.0, 500.0, 4000.0] {
-            let law = PixelThreshold::new(&sensor(), threshold_dn);
-            let chances: Vec<f64> = (0..2000).map(|i| law.above(f64::from(i) * 25.0)).collect();
+            let model = PixelThreshold::new(&sensor(), threshold_dn);
+            let chances: Vec<f64> = (0..2000).map(|i| model.above(f64::from(i) * 25.0)).collect();
             assert!(chances.is_sorted() && chances[1999] == 1.0, "{threshold_dn}");
         }
     }

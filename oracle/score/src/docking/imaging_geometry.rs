@@ -4,13 +4,13 @@ use contract::docking::{DockingSetup, Pose, TargetModel};
 
 /// The cameras and the target, as far as they decide what an image can show.
 #[derive(Debug, Clone)]
-pub(super) struct Sights {
+pub(super) struct ImagingGeometry {
     /// Focal length of each camera, px, the shorter of both.
     focal_px: Vec<f64>,
     target: TargetModel,
 }
 
-impl Sights {
+impl ImagingGeometry {
     /// Narrowest bar of the cross that is resolved, px: one line of a field is two rows of the camera.
     pub(super) const RESOLVED_BAR_PX: f64 = 2.0;
 
@@ -49,11 +49,11 @@ mod tests {
     /// f w/(d3 − b) = 2917 × 0.03/43.755 = 2 px with the narrow lens, 1055 × 0.03/15.825 with the wide one.
     #[test]
     fn the_target_is_resolved_from_two_pixels_a_bar_on() {
-        let sights = Sights::new(&setup());
-        assert!(!sights.resolves(0, &ahead(44.1)) && sights.resolves(0, &ahead(44.0)));
-        assert!(!sights.resolves(1, &ahead(16.2)) && sights.resolves(1, &ahead(16.1)));
-        assert!(!sights.resolves(2, &ahead(5.0)), "a camera that is not there");
+        let geometry = ImagingGeometry::new(&setup());
+        assert!(!geometry.resolves(0, &ahead(44.1)) && geometry.resolves(0, &ahead(44.0)));
+        assert!(!geometry.resolves(1, &ahead(16.2)) && geometry.resolves(1, &ahead(16.1)));
+        assert!(!geometry.resolves(2, &ahead(5.0)), "a camera that is not there");
         // The cross stands out 0.3 m: who is at it or behind it sees no bar.
-        assert!(sights.resolves(0, &ahead(0.31)) && !sights.resolves(0, &ahead(0.3)));
+        assert!(geometry.resolves(0, &ahead(0.31)) && !geometry.resolves(0, &ahead(0.3)));
     }
 }

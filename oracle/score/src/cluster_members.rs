@@ -48,7 +48,7 @@ pub(super) fn covers(position: PixelPoint, object: &ObjectTruth) -> bool {
 
 /// The object that a cluster with its centre at `position` belongs to: of those that it holds, the one with the most
 /// transmitted electrons; `None` when it holds none.
-pub fn belonging_to(position: PixelPoint, objects: &[ObjectTruth]) -> Option<&ObjectTruth> {
+pub fn brightest_member(position: PixelPoint, objects: &[ObjectTruth]) -> Option<&ObjectTruth> {
     brightest(members(position, objects))
 }
 
@@ -102,9 +102,9 @@ mod tests {
     }
 
     #[test]
-    fn what_regions_cut_away_entirely_is_nobodys() {
+    fn what_regions_cut_away_entirely_belongs_to_no_cluster() {
         let cut = ObjectTruth { cut: 1.0, ..star_at(1, CENTRE, 1000.0) };
-        assert_eq!(belonging_to(CENTRE, std::slice::from_ref(&cut)), None);
+        assert_eq!(brightest_member(CENTRE, std::slice::from_ref(&cut)), None);
         assert_eq!(merged_with(&target_with(100.0), &[cut]), None);
     }
 
@@ -125,10 +125,10 @@ mod tests {
             [(0.0, 19.9, true), (2.9, -17.0, true), (0.0, 20.1, false), (3.1, 0.0, false), (8.0, 10.0, false)]
         {
             let place = beside(x_px, y_px);
-            assert_eq!(belonging_to(place, &[bleeding()]).is_some(), belongs, "{x_px}, {y_px}");
+            assert_eq!(brightest_member(place, &[bleeding()]).is_some(), belongs, "{x_px}, {y_px}");
             let neighbour = star_at(4, place, 500.0);
             assert_eq!(
-                belonging_to(place, &[bleeding(), neighbour]).unwrap().id,
+                brightest_member(place, &[bleeding(), neighbour]).unwrap().id,
                 if belongs { 3 } else { 4 }
             );
         }

@@ -5,7 +5,7 @@ use nalgebra::{SVector, Vector3, Vector6};
 
 /// Range, range rate, passive pitch and yaw, and the three active angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
+pub struct ApproachParameters {
     /// ρ = |d|, m.
     pub rho_m: f64,
     /// u = dρ/dt, m/s; negative while approaching.
@@ -18,9 +18,9 @@ pub struct Shown {
     pub phi_rad: Vector3<f64>,
 }
 
-impl Shown {
+impl ApproachParameters {
     /// The parameters of a pose that changes at `velocity_m_s`.
-    pub fn of(pose: &Pose, velocity_m_s: &Vector3<f64>) -> Self {
+    pub fn from_motion(pose: &Pose, velocity_m_s: &Vector3<f64>) -> Self {
         let d = &pose.position_m;
         let rho_m = d.norm();
         // At the target's very centre the range has no direction to change in.
@@ -69,7 +69,7 @@ impl Shown {
     }
 
     /// The seven in the order of the fields, less those of `truth`.
-    pub fn minus(&self, truth: &Self) -> SVector<f64, 7> {
+    pub fn difference(&self, truth: &Self) -> SVector<f64, 7> {
         let phi = self.phi_rad - truth.phi_rad;
         SVector::from([
             self.rho_m - truth.rho_m,
@@ -110,14 +110,14 @@ mod tests {
     #[test]
     fn an_approach_along_the_axis_has_its_speed_as_range_rate() {
         let pose = Pose { position_m: Vector3::new(0.0, 0.0, 5.0), phi_rad: Vector3::zeros() };
-        let shown = Shown::of(&pose, &Vector3::new(0.1, 0.0, -0.2));
+        let shown = ApproachParameters::from_motion(&pose, &Vector3::new(0.1, 0.0, -0.2));
         assert_eq!((shown.rho_m, shown.u_m_s, shown.alpha_rad, shown.beta_rad), (5.0, -0.2, 0.0, 0.0));
     }
 
     #[test]
     fn at_the_targets_centre_the_range_changes_in_no_direction() {
         let pose = Pose { position_m: Vector3::zeros(), phi_rad: Vector3::zeros() };
-        let shown = Shown::of(&pose, &Vector3::new(0.1, 0.0, -0.2));
+        let shown = ApproachParameters::from_motion(&pose, &Vector3::new(0.1, 0.0, -0.2));
         assert_eq!((shown.rho_m, shown.u_m_s), (0.0, 0.0));
     }
 
@@ -125,17 +125,17 @@ mod tests {
     #[test]
     fn sigmas_are_those_of_differences_of_the_parameters() {
         let motion = motion();
-        let sigmas = Shown::sigmas(&motion).unwrap();
+        let sigmas = ApproachParameters::sigmas(&motion).unwrap();
         let at = |step: &Vector6<f64>| {
             let position_m = motion.pose.position_m + step.fixed_rows::<3>(0);
             let velocity = motion.velocity_m_s + step.fixed_rows::<3>(3);
-            Shown::of(&Pose { position_m, ..motion.pose }, &velocity)
+            ApproachParameters::from_motion(&Pose { position_m, ..motion.pose }, &velocity)
         };
         let h = 1e-5;
         let gradients: Vec<SVector<f64, 7>> = (0..6)
             .map(|i| {
                 let step = Vector6::from_fn(|j, _| if i == j { h } else { 0.0 });
-                at(&step).minus(&at(&-step)) / (2.0 * h)
+                at(&step).difference(&at(&-step)) / (2.0 * h)
             })
             .collect();
         for (k, sigma) in sigmas.iter().take(4).enumerate() {

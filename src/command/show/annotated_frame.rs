@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use contract::Window;
 use serde_json::{Value, json};
-use show::{Class, Panel, PanelPlace};
+use show::{Class, Panel, PanelLayout};
 
 /// A panel, and what `--json` tells of it.
-pub(super) struct Shown {
+pub(super) struct AnnotatedFrame {
     pub(super) panel: Panel,
     pub(super) frame: u64,
     pub(super) time: String,
@@ -41,8 +41,8 @@ impl PixelSource {
     }
 }
 
-impl Shown {
-    pub(super) fn document(&self, place: &PanelPlace) -> Value {
+impl AnnotatedFrame {
+    pub(super) fn document(&self, place: &PanelLayout) -> Value {
         let mut drawn: BTreeMap<&str, usize> = BTreeMap::new();
         for mark in self.panel.marks.iter().filter(|mark| place.frame.shows(mark.at)) {
             *drawn.entry(mark.class.code()).or_default() += 1;
@@ -71,6 +71,6 @@ impl Shown {
 }
 
 /// A word of a file as people read it: `cut by roi`.
-pub(super) fn spoken(word: &str) -> String {
+pub(super) fn display_name(word: &str) -> String {
     word.replace('_', " ")
 }

@@ -1,4 +1,4 @@
-//! The analytic law of detection: of a pixel, of an image, of several.
+//! The analytic detection model: of a pixel, of an image, of several.
 
 #[allow(
     clippy::indexing_slicing,

@@ -3,17 +3,17 @@
 use boresight::failure::Failure;
 use boresight::run::{Options, ScenarioSource};
 
-use crate::worlds::{AnyPythonWorld, in_python};
+use crate::worlds::{AnyPythonWorld, prepare_for_python};
 
 /// A scenario with what makes its frames.
-pub(crate) struct Ready {
+pub(crate) struct PreparedScenario {
     pub(crate) source: ScenarioSource,
     pub(crate) world: Box<dyn AnyPythonWorld>,
 }
 
-impl Ready {
+impl PreparedScenario {
     pub(crate) fn new(source: ScenarioSource) -> Result<Self, Failure> {
-        let world = in_python(source.world(), source.prepare(Options::default())?)?;
+        let world = prepare_for_python(source.world(), source.prepare(Options::default())?)?;
         Ok(Self { source, world })
     }
 

@@ -7,7 +7,7 @@ use contract::{ContractError, Frame};
 
 /// A frame of a sequence, of the camera's size.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct WholeFrame {
+pub(super) struct VideoFrame {
     /// Its place in the sequence, dropped frames counted.
     pub(super) index: u64,
     /// Digital numbers, row by row from the top.
@@ -69,7 +69,7 @@ pub(super) struct Format {
 
 impl Format {
     /// The fields of a frame, in the order of time: field k of the sequence is at the time k/(fields a second).
-    pub(super) fn split(&self, frame: &WholeFrame) -> Result<Vec<(Field, FieldTelemetry)>, ContractError> {
+    pub(super) fn split(&self, frame: &VideoFrame) -> Result<Vec<(Field, FieldTelemetry)>, ContractError> {
         let fields = self.scan.fields();
         let field = |(nth, &lines): (usize, &Lines)| {
             let number = frame.index * fields.len() as u64 + nth as u64;
@@ -122,8 +122,8 @@ mod tests {
         }
     }
 
-    fn ramp(rows: usize, index: u64) -> WholeFrame {
-        WholeFrame { index, dn: (0..2 * rows as u16).collect() }
+    fn ramp(rows: usize, index: u64) -> VideoFrame {
+        VideoFrame { index, dn: (0..2 * rows as u16).collect() }
     }
 
     #[test]

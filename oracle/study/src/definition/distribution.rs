@@ -1,4 +1,4 @@
-//! Laws of dispersed parameters.
+//! Distributions of dispersed parameters.
 use std::path::Path;
 
 use contract::{OutOfRange, bounds};
@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use statistics::normal_quantile;
 
-/// The law of a parameter. Every law is drawn by its quantile function from numbers of the unit interval, so that a design (Sobol,
+/// The distribution of a parameter. Every distribution is drawn by its quantile function from numbers of the unit interval, so that a design (Sobol,
 /// Latin hypercube) spreads any of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Law {
-    /// Normal, cut off where limits are given (what is beyond is drawn again, in law).
+pub enum Distribution {
+    /// Normal, truncated where limits are given.
     Normal {
         /// Mean, before any cutting.
         #[schemars(range(min = -1e18, max = 1e18))]
@@ -37,8 +37,8 @@ pub enum Law {
         #[schemars(range(min = -1e18, max = 1e18))]
         max: f64,
     },
-    /// Uniform over the whole numbers from `min` to `max`, both included: for counts and seeds.
-    Whole {
+    /// Uniform over the integers from `min` to `max`, both included: for counts and seeds.
+    Integer {
         /// Smallest number, from 0.
         #[schemars(range(max = 1_u64 << 53))]
         min: u64,
@@ -89,16 +89,16 @@ pub enum Law {
     },
 }
 
-/// A law that is ready to be drawn from.
+/// A distribution that is ready to be drawn from.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Drawable {
-    /// A law with its parameters.
-    Law(Law),
+pub(crate) enum PreparedDistribution {
+    /// A distribution with its parameters.
+    Distribution(Distribution),
     /// The column of a table.
     Column(Vec<f64>),
 }
 
-impl Law {
+impl Distribution {
     /// Checks the parameters.
     pub(crate) fn check(&self, path: &str) -> Result<(), OutOfRange> {
         bounds::check(self, path)?;
@@ -111,13 +111,13 @@ impl Law {
                 let (low, high) = (min.unwrap_or(f64::MIN), max.unwrap_or(f64::MAX));
                 require(low < high, "max", &high, "more than min")?;
                 let inside = standard_normal((high - mean) / sigma) - standard_normal((low - mean) / sigma);
-                let expected = "limits between which a millionth of the law lies at least";
+                let expected = "limits between which a millionth of the distribution lies at least";
                 require(inside > 1e-6, "sigma", sigma, expected)
             }
             Self::Uniform { min, max } => {
                 require(min < max && (max - min).is_finite(), "max", max, "more than min")
             }
-            Self::Whole { min, max } => require(min <= max, "max", max, "min or more"),
+            Self::Integer { min, max } => require(min <= max, "max", max, "min or more"),
             Self::LogNormal { .. } | Self::IsotropicAttitude | Self::Table { .. } => Ok(()),
             Self::Triangular { min, mode, max } => {
                 require(min < max, "max", max, "more than min")?;
@@ -137,24 +137,26 @@ impl Law {
         if matches!(self, Self::IsotropicAttitude) { 3 } else { 1 }
     }
 
-    /// Reads what the law needs from files; paths start from `folder`.
-    pub(crate) fn load(&self, folder: &Path) -> Result<Drawable, files::FileError> {
+    /// Reads what the distribution needs from files; paths start from `folder`.
+    pub(crate) fn load(&self, folder: &Path) -> Result<PreparedDistribution, files::FileError> {
         match self {
-            Self::Table { path, column } => Ok(Drawable::Column(read_column(&folder.join(path), column)?)),
-            law => Ok(Drawable::Law(law.clone())),
+            Self::Table { path, column } => {
+                Ok(PreparedDistribution::Column(read_column(&folder.join(path), column)?))
+            }
+            distribution => Ok(PreparedDistribution::Distribution(distribution.clone())),
         }
     }
 }
 
-impl Drawable {
-    /// The value at numbers of the open unit interval, as many as the law has dimensions. Attitudes are not drawn here
+impl PreparedDistribution {
+    /// The value at numbers of the open unit interval, as many as the distribution has dimensions. Attitudes are not drawn here
     /// ([`euler_123`], [`boresight`]): null.
     pub(crate) fn value(&self, u: f64) -> Value {
         let number = |value: f64| serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number);
         match self {
-            Self::Column(values) => values.get(place(u, values.len())).map_or(Value::Null, |v| number(*v)),
-            Self::Law(law) => match law {
-                Law::Normal { mean, sigma, min, max } => {
+            Self::Column(values) => values.get(index_at(u, values.len())).map_or(Value::Null, |v| number(*v)),
+            Self::Distribution(distribution) => match distribution {
+                Distribution::Normal { mean, sigma, min, max } => {
                     let at = |limit: Option<f64>, else_p: f64| {
                         limit.map_or(else_p, |limit| standard_normal((limit - mean) / sigma))
                     };
@@ -163,15 +165,15 @@ impl Drawable {
                     // Rounding of the probabilities may lead beyond a limit by a unit in the last place.
                     number(value.clamp(min.unwrap_or(f64::MIN), max.unwrap_or(f64::MAX)))
                 }
-                Law::Uniform { min, max } => number(min + u * (max - min)),
-                Law::Whole { min, max } => {
+                Distribution::Uniform { min, max } => number(min + u * (max - min)),
+                Distribution::Integer { min, max } => {
                     let count = (max - min + 1) as f64;
                     Value::from(min + ((u * count) as u64).min(max - min))
                 }
-                Law::LogNormal { median, sigma_ln } => {
+                Distribution::LogNormal { median, sigma_ln } => {
                     number(median * libm::exp(sigma_ln * normal_quantile(u)))
                 }
-                Law::Triangular { min, mode, max } => {
+                Distribution::Triangular { min, mode, max } => {
                     let (width, rising) = (max - min, mode - min);
                     let value = if u * width < rising {
                         min + (u * width * rising).sqrt()
@@ -180,25 +182,25 @@ impl Drawable {
                     };
                     number(value)
                 }
-                Law::Choice { values, weights } => {
+                Distribution::Choice { values, weights } => {
                     let index = match weights {
-                        None => place(u, values.len()),
-                        Some(weights) => weighted_place(u, weights),
+                        None => index_at(u, values.len()),
+                        Some(weights) => weighted_index_at(u, weights),
                     };
                     values.get(index).cloned().unwrap_or(Value::Null)
                 }
-                Law::IsotropicAttitude | Law::Table { .. } => Value::Null,
+                Distribution::IsotropicAttitude | Distribution::Table { .. } => Value::Null,
             },
         }
     }
 }
 
 /// Which of `count` equal parts of the unit interval a number lies in.
-fn place(u: f64, count: usize) -> usize {
+fn index_at(u: f64, count: usize) -> usize {
     ((u * count as f64) as usize).min(count.saturating_sub(1))
 }
 
-fn weighted_place(u: f64, weights: &[f64]) -> usize {
+fn weighted_index_at(u: f64, weights: &[f64]) -> usize {
     let mut left = u * weights.iter().sum::<f64>();
     for (index, weight) in weights.iter().enumerate() {
         if left < *weight {
@@ -231,10 +233,10 @@ mod tests {
     use proptest::prelude::*;
 
     /// Values at the middles of so many equal parts of the unit interval.
-    fn values(law: Law, n: usize) -> Vec<f64> {
-        assert_eq!(law.check("law"), Ok(()));
-        let law = Drawable::Law(law);
-        (0..n).map(|i| law.value((i as f64 + 0.5) / n as f64).as_f64().unwrap()).collect()
+    fn values(distribution: Distribution, n: usize) -> Vec<f64> {
+        assert_eq!(distribution.check("distribution"), Ok(()));
+        let distribution = PreparedDistribution::Distribution(distribution);
+        (0..n).map(|i| distribution.value((i as f64 + 0.5) / n as f64).as_f64().unwrap()).collect()
     }
 
     fn moments(values: &[f64]) -> (f64, f64) {
@@ -243,38 +245,38 @@ mod tests {
         (mean, (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt())
     }
 
-    /// Mean and standard deviation of each law in closed form; the sum over 100,000 middles is good to a few parts in 10⁵.
+    /// Mean and standard deviation of each distribution in closed form; the sum over 100,000 middles is good to a few parts in 10⁵.
     #[test]
-    fn the_moments_are_those_of_the_laws() {
-        let near = |law: Law, mean: f64, sigma: f64| {
-            let (got_mean, got_sigma) = moments(&values(law.clone(), 100_000));
-            assert!((got_mean - mean).abs() < 1e-4 * sigma, "{law:?}: mean {got_mean}, {mean}");
-            assert!((got_sigma / sigma - 1.0).abs() < 1e-3, "{law:?}: sigma {got_sigma}, {sigma}");
+    fn the_moments_are_those_of_the_distributions() {
+        let near = |distribution: Distribution, mean: f64, sigma: f64| {
+            let (got_mean, got_sigma) = moments(&values(distribution.clone(), 100_000));
+            assert!((got_mean - mean).abs() < 1e-4 * sigma, "{distribution:?}: mean {got_mean}, {mean}");
+            assert!((got_sigma / sigma - 1.0).abs() < 1e-3, "{distribution:?}: sigma {got_sigma}, {sigma}");
         };
-        near(Law::Normal { mean: 3.0, sigma: 2.0, min: None, max: None }, 3.0, 2.0);
-        // Half a normal law: mean σ√(2/π), variance σ²(1 − 2/π).
+        near(Distribution::Normal { mean: 3.0, sigma: 2.0, min: None, max: None }, 3.0, 2.0);
+        // Half a normal distribution: mean σ√(2/π), variance σ²(1 − 2/π).
         let two_over_pi = 2.0 / std::f64::consts::PI;
         near(
-            Law::Normal { mean: 0.0, sigma: 1.0, min: Some(0.0), max: None },
+            Distribution::Normal { mean: 0.0, sigma: 1.0, min: Some(0.0), max: None },
             two_over_pi.sqrt(),
             (1.0 - two_over_pi).sqrt(),
         );
-        near(Law::Uniform { min: -1.0, max: 5.0 }, 2.0, 6.0 / 12f64.sqrt());
-        near(Law::Whole { min: 1, max: 6 }, 3.5, (35.0f64 / 12.0).sqrt());
+        near(Distribution::Uniform { min: -1.0, max: 5.0 }, 2.0, 6.0 / 12f64.sqrt());
+        near(Distribution::Integer { min: 1, max: 6 }, 3.5, (35.0f64 / 12.0).sqrt());
         let s2 = 0.25f64;
         let mean = 2.0 * libm::exp(0.5 * s2);
-        near(Law::LogNormal { median: 2.0, sigma_ln: 0.5 }, mean, mean * libm::expm1(s2).sqrt());
+        near(Distribution::LogNormal { median: 2.0, sigma_ln: 0.5 }, mean, mean * libm::expm1(s2).sqrt());
         // (a² + b² + c² − ab − ac − bc)/18.
-        near(Law::Triangular { min: 0.0, mode: 1.0, max: 4.0 }, 5.0 / 3.0, (13.0f64 / 18.0).sqrt());
+        near(Distribution::Triangular { min: 0.0, mode: 1.0, max: 4.0 }, 5.0 / 3.0, (13.0f64 / 18.0).sqrt());
     }
 
     #[test]
     fn a_choice_comes_as_often_as_its_weight() {
-        let law = Law::Choice {
+        let distribution = Distribution::Choice {
             values: [1.0, 2.0, 3.0].map(Value::from).to_vec(),
             weights: Some(vec![1.0, 0.0, 3.0]),
         };
-        let values = values(law, 1000);
+        let values = values(distribution, 1000);
         let count = |value: f64| values.iter().filter(|v| **v == value).count();
         assert_eq!([count(1.0), count(2.0), count(3.0)], [250, 0, 750]);
     }
@@ -310,12 +312,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_cut_law_stays_within_its_limits(
+        fn a_truncated_distribution_stays_within_its_limits(
             u in 1e-12..1.0f64, mean in -5.0..5.0f64, sigma in 0.1..10.0f64, min in -5.0..0.0f64, width in 0.5..5.0f64,
         ) {
-            let law = Law::Normal { mean, sigma, min: Some(min), max: Some(min + width) };
-            prop_assume!(law.check("law").is_ok());
-            let value = Drawable::Law(law).value(u).as_f64().unwrap();
+            let distribution = Distribution::Normal { mean, sigma, min: Some(min), max: Some(min + width) };
+            prop_assume!(distribution.check("distribution").is_ok());
+            let value = PreparedDistribution::Distribution(distribution).value(u).as_f64().unwrap();
             prop_assert!((min..=min + width).contains(&value), "{value}");
         }
     }

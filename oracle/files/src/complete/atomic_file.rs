@@ -20,21 +20,21 @@ const BEGINNING_BYTES: u64 = 1 << 16;
 
 /// A kind of files, of which a later one may take the place of an earlier one.
 #[derive(Clone, Copy)]
-pub struct Earlier<'a> {
+pub struct ReplaceableFile<'a> {
     /// What it is: `an earlier report`.
-    pub what: &'a str,
+    pub description: &'a str,
     /// Whether a file that begins so is one.
-    pub is: &'a dyn Fn(&[u8]) -> bool,
+    pub matches: &'a dyn Fn(&[u8]) -> bool,
 }
 
-impl Earlier<'_> {
+impl ReplaceableFile<'_> {
     /// Refuses a path where something else is: a folder, a link, a device, a file of another kind, or one that may not be written.
     ///
     /// # Errors
     /// [`FileError::NotReplaced`]; [`FileError::Io`] when it cannot be read.
     pub fn check(&self, path: &Path) -> Result<(), FileError> {
         let refused = |reason: &str| {
-            let (path, expected) = (path.to_owned(), format!("a free name, or that of {}", self.what));
+            let (path, expected) = (path.to_owned(), format!("a free name, or that of {}", self.description));
             Err(FileError::NotReplaced { path, reason: reason.to_owned(), expected })
         };
         let error = |source| FileError::io(path, "open", source);
@@ -52,7 +52,7 @@ impl Earlier<'_> {
         let mut beginning = Vec::new();
         let file = sim::regular_file::open(path).map_err(error)?;
         file.take(BEGINNING_BYTES).read_to_end(&mut beginning).map_err(error)?;
-        if !(self.is)(&beginning) {
+        if !(self.matches)(&beginning) {
             return refused("exists and is another file");
         }
         if metadata.permissions().readonly() { refused("exists and may not be written") } else { Ok(()) }
@@ -61,12 +61,12 @@ impl Earlier<'_> {
 
 /// A file that is being written; gone unless it is given its name.
 #[derive(Debug)]
-pub struct WholeFile {
+pub struct AtomicFile {
     file: NamedTempFile,
     path: PathBuf,
 }
 
-impl WholeFile {
+impl AtomicFile {
     /// A file that will be `path`, empty so far, which all may read.
     ///
     /// # Errors
@@ -84,13 +84,13 @@ impl WholeFile {
         Ok(Self { file, path: path.to_owned() })
     }
 
-    /// [`WholeFile::create`], of a path that is not there yet.
+    /// [`AtomicFile::create`], of a path that is not there yet.
     ///
     /// # Errors
     /// [`FileError::OutputTaken`] when it is; [`FileError::Io`] when the file cannot be made.
     pub fn create_new(path: &Path) -> Result<Self, FileError> {
         if path.symlink_metadata().is_ok() {
-            return Err(taken(path));
+            return Err(output_taken(path));
         }
         Self::create(path)
     }
@@ -106,7 +106,7 @@ impl WholeFile {
     }
 
     /// The same file, which will be another path of the same folder.
-    pub fn named(self, path: &Path) -> Self {
+    pub fn with_path(self, path: &Path) -> Self {
         Self { path: path.to_owned(), ..self }
     }
 
@@ -116,7 +116,7 @@ impl WholeFile {
     }
 
     /// Where it is meanwhile.
-    pub fn place(&self) -> &Path {
+    pub fn temporary_path(&self) -> &Path {
         self.file.path()
     }
 
@@ -148,15 +148,15 @@ impl WholeFile {
     pub fn commit_new(self) -> Result<(), FileError> {
         match self.commit()? {
             None => Ok(()),
-            Some(Self { path, .. }) => Err(taken(&path)),
+            Some(Self { path, .. }) => Err(output_taken(&path)),
         }
     }
 
     /// Gives the file its name, in the place of an earlier one of its kind.
     ///
     /// # Errors
-    /// Those of [`Earlier::check`]; [`FileError::Io`] when it cannot be synced or named.
-    pub fn replace(self, earlier: Earlier<'_>) -> Result<(), FileError> {
+    /// Those of [`ReplaceableFile::check`]; [`FileError::Io`] when it cannot be synced or named.
+    pub fn replace(self, earlier: ReplaceableFile<'_>) -> Result<(), FileError> {
         earlier.check(&self.path)?;
         self.sync()?;
         let Self { file, path } = self;
@@ -169,7 +169,7 @@ impl WholeFile {
         Self::remove_abandoned_of(folder, Self::is_partial);
     }
 
-    /// [`WholeFile::remove_abandoned`], of files with other names.
+    /// [`AtomicFile::remove_abandoned`], of files with other names.
     pub fn remove_abandoned_of(folder: &Path, is: impl Fn(&Path) -> bool) {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         for path in entries.map(|entry| entry.path()).filter(|path| is(path)) {
@@ -187,7 +187,7 @@ impl WholeFile {
 }
 
 /// That a file stands where another one should be.
-pub(crate) fn taken(path: &Path) -> FileError {
+pub(crate) fn output_taken(path: &Path) -> FileError {
     FileError::OutputTaken { path: path.to_owned(), reason: "exists; nothing is overwritten" }
 }
 
@@ -199,20 +199,20 @@ mod tests {
     fn a_file_is_there_when_it_is_committed_and_replaces_none_unasked() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
-        drop(WholeFile::with_text(&path, "lost").unwrap());
+        drop(AtomicFile::with_text(&path, "lost").unwrap());
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
-        assert!(WholeFile::with_text(&path, "first").unwrap().commit().unwrap().is_none());
-        let second = WholeFile::with_text(&path, "second").unwrap().commit().unwrap().unwrap();
+        assert!(AtomicFile::with_text(&path, "first").unwrap().commit().unwrap().is_none());
+        let second = AtomicFile::with_text(&path, "second").unwrap().commit().unwrap().unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "first");
         let earlier = |beginning: &'static [u8]| move |bytes: &[u8]| bytes == beginning;
-        let foreign = Earlier { what: "an earlier one", is: &earlier(b"zeroth") };
+        let foreign = ReplaceableFile { description: "an earlier one", matches: &earlier(b"zeroth") };
         let refused = foreign.check(&path).unwrap_err().to_string();
         assert!(
             refused.contains("another file, expected a free name, or that of an earlier one"),
             "{refused}"
         );
         assert!(foreign.check(folder.path()).unwrap_err().to_string().contains("not a regular file"));
-        let first = Earlier { what: "an earlier one", is: &earlier(b"first") };
+        let first = ReplaceableFile { description: "an earlier one", matches: &earlier(b"first") };
         let set_readonly = |readonly| {
             let mut permissions = std::fs::metadata(&path).unwrap().permissions();
             permissions.set_readonly(readonly);
@@ -224,7 +224,7 @@ mod tests {
         set_readonly(false);
         second.replace(first).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "second");
-        let taken = WholeFile::with_text(&path, "third").unwrap().commit_new().unwrap_err();
+        let taken = AtomicFile::with_text(&path, "third").unwrap().commit_new().unwrap_err();
         assert!(taken.to_string().contains("nothing is overwritten"), "{taken}");
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
     }
@@ -234,12 +234,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
         std::fs::write(&path, "whole").unwrap();
-        let [old, new] = [(); 2].map(|()| WholeFile::with_text(&path, "part").unwrap());
+        let [old, new] = [(); 2].map(|()| AtomicFile::with_text(&path, "part").unwrap());
         for file in [old.file(), &File::options().append(true).open(&path).unwrap()] {
             file.set_modified(SystemTime::now() - ABANDONED - Duration::from_secs(1)).unwrap();
         }
-        WholeFile::remove_abandoned(folder.path());
-        assert_eq!([old.place().exists(), new.place().exists(), path.exists()], [false, true, true]);
+        AtomicFile::remove_abandoned(folder.path());
+        assert_eq!(
+            [old.temporary_path().exists(), new.temporary_path().exists(), path.exists()],
+            [false, true, true]
+        );
     }
 
     #[cfg(unix)]
@@ -248,7 +251,7 @@ mod tests {
         use std::os::unix::fs::PermissionsExt;
         let folder = tempfile::tempdir().unwrap();
         let [whole, plain] = ["whole", "plain"].map(|name| folder.path().join(name));
-        WholeFile::with_text(&whole, "").unwrap().commit_new().unwrap();
+        AtomicFile::with_text(&whole, "").unwrap().commit_new().unwrap();
         std::fs::write(&plain, "").unwrap();
         let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode();
         assert_eq!(mode(&whole), mode(&plain));

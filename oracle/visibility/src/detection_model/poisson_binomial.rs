@@ -1,22 +1,26 @@
-//! How many of several independent events come true, each with a probability of its own: the Poisson-binomial law.
+//! How many of several independent events come true, each with a probability of its own: the Poisson-binomial distribution.
 
-/// P(N ≥ `n_min`), exact: the law of N, cut at `n_min`, event by event (Chen & Liu 1997, Statistica Sinica 7, 875, Sec. 2, the
-/// direct recursion). `law` is a buffer that can be used again.
-pub fn at_least(n_min: usize, probabilities: impl IntoIterator<Item = f64>, law: &mut Vec<f64>) -> f64 {
-    law.clear();
-    law.resize(n_min, 0.0);
-    let Some(none) = law.first_mut() else { return 1.0 };
+/// P(N ≥ `n_min`), exact: the distribution of N, cut at `n_min`, event by event (Chen & Liu 1997, Statistica Sinica 7, 875, Sec. 2, the
+/// direct recursion). `distribution` is a buffer that can be used again.
+pub fn at_least(
+    n_min: usize,
+    probabilities: impl IntoIterator<Item = f64>,
+    distribution: &mut Vec<f64>,
+) -> f64 {
+    distribution.clear();
+    distribution.resize(n_min, 0.0);
+    let Some(none) = distribution.first_mut() else { return 1.0 };
     *none = 1.0;
     // No more events than so many have come true so far.
     let mut seen = 0;
     for p in probabilities {
         seen = (seen + 1).min(n_min - 1);
         for n in (1..=seen).rev() {
-            law[n] = law[n] * (1.0 - p) + law[n - 1] * p;
+            distribution[n] = distribution[n] * (1.0 - p) + distribution[n - 1] * p;
         }
-        law[0] *= 1.0 - p;
+        distribution[0] *= 1.0 - p;
     }
-    (1.0 - law.iter().sum::<f64>()).clamp(0.0, 1.0)
+    (1.0 - distribution.iter().sum::<f64>()).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -27,9 +31,9 @@ mod tests {
         at_least(n_min, probabilities.iter().copied(), &mut Vec::new())
     }
 
-    /// All alike: the binomial law. 1 − Σ_{k<n} C(20, k) 0.3^k 0.7^(20 − k), added up in rational numbers (Python's `fractions`).
+    /// All alike: the binomial distribution. 1 − Σ_{k<n} C(20, k) 0.3^k 0.7^(20 − k), added up in rational numbers (Python's `fractions`).
     #[test]
-    fn equal_probabilities_give_the_binomial_law() {
+    fn equal_probabilities_give_the_binomial_distribution() {
         for (n_min, expected) in
             [(1, 0.999_202_077_337_023_9), (5, 0.762_492_221_122_398_3), (10, 0.047_961_897_331_343_48)]
         {

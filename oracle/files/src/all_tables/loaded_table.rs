@@ -7,17 +7,17 @@ use super::list::csv_tables;
 use crate::FileError;
 use crate::csv::lines::Lines;
 use crate::csv::table::csv_error;
-use crate::error::{Place, open_regular};
+use crate::error::{FileLocation, open_regular};
 use crate::parquet::file::ParquetFile;
 use crate::table::column::{Column, ColumnType};
-use crate::table::declared::Declared;
+use crate::table::declarations::FieldDeclaration;
 
 /// Rows of a part of a table that is handed on.
 const PART_ROWS: usize = 8192;
 
 /// A table in memory.
 #[derive(Debug, Clone)]
-pub struct WholeTable {
+pub struct LoadedTable {
     /// The columns without rows.
     pub header: Vec<Column>,
     /// The rows, in parts, each with the columns of the header.
@@ -28,12 +28,12 @@ pub struct WholeTable {
 ///
 /// # Errors
 /// [`FileError`] for a file that cannot be read, is none or is damaged, or has a column of a type that no table of ours has.
-pub fn read_parquet_table(path: &Path) -> Result<WholeTable, FileError> {
+pub fn read_parquet_table(path: &Path) -> Result<LoadedTable, FileError> {
     let file = ParquetFile::open(path)?;
     let names: Vec<String> = file.columns().iter().map(|column| column.name.clone()).collect();
     let batches = file.batches(&names, PART_ROWS)?;
     let header = batches.header();
-    Ok(WholeTable { header, parts: batches.collect::<Result<_, _>>()? })
+    Ok(LoadedTable { header, parts: batches.collect::<Result<_, _>>()? })
 }
 
 /// Reads one of our CSV tables, each column of the type that its name has in them: 64-bit counts, texts, or floating-point numbers, as
@@ -47,10 +47,10 @@ pub fn read_csv_table(path: &Path) -> Result<Vec<Column>, FileError> {
     let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
     let rows: Result<Vec<csv::StringRecord>, _> = reader.records().collect();
     let rows = rows.map_err(|error| csv_error(path, &error))?;
-    let fields: Vec<Declared> = csv_tables().into_iter().flat_map(|(_, fields)| fields).collect();
+    let fields: Vec<FieldDeclaration> = csv_tables().into_iter().flat_map(|(_, fields)| fields).collect();
     let column = |(index, name): (usize, &str)| {
         let cells = rows.iter().map(|row| row.get(index).filter(|cell| !cell.is_empty()));
-        let is_of_name = |field: &&Declared| field.names.contains(&name);
+        let is_of_name = |field: &&FieldDeclaration| field.names.contains(&name);
         Ok(match fields.iter().find(is_of_name).map(|field| field.column_type) {
             Some(ColumnType::UInt32 | ColumnType::UInt64) => {
                 Column::nullable(name, numbers::<u64>(path, name, cells)?)
@@ -70,7 +70,8 @@ fn numbers<'a, T: FromStr>(
 ) -> Result<Vec<Option<T>>, FileError> {
     let number = |(row, cell): (usize, Option<&str>)| {
         cell.map(|cell| {
-            let wrong = || FileError::value(path, Place::Row(row as u64), name, cell, "a number or nothing");
+            let wrong =
+                || FileError::value(path, FileLocation::Row(row as u64), name, cell, "a number or nothing");
             cell.trim().parse().map_err(|_| wrong())
         })
         .transpose()

@@ -7,7 +7,7 @@ use std::vec::IntoIter;
 use files::{Failure, line_of};
 
 /// Rows in ascending order of their numbers, which must all be numbers of the truth.
-pub struct ByNumber<'a, T> {
+pub struct RowsByNumber<'a, T> {
     rows: Peekable<IntoIter<(u64, T)>>,
     path: &'a Path,
     /// Column of the numbers.
@@ -15,7 +15,7 @@ pub struct ByNumber<'a, T> {
     truth: &'a Path,
 }
 
-impl<'a, T> ByNumber<'a, T> {
+impl<'a, T> RowsByNumber<'a, T> {
     /// The rows of the file `path`, which belong to the frames of the table `truth`.
     pub fn new(rows: Vec<(u64, T)>, path: &'a Path, key: &'static str, truth: &'a Path) -> Self {
         Self { rows: rows.into_iter().peekable(), path, key, truth }
@@ -25,10 +25,10 @@ impl<'a, T> ByNumber<'a, T> {
     ///
     /// # Errors
     /// [`Failure::Usage`] for a row of an earlier frame, which the truth does not have.
-    pub fn of(&mut self, number: u64) -> Result<Option<T>, Failure> {
+    pub fn take(&mut self, number: u64) -> Result<Option<T>, Failure> {
         let next = self.rows.peek().map(|(next, _)| *next);
         match next.filter(|next| *next < number) {
-            Some(earlier) => Err(self.foreign(earlier)),
+            Some(earlier) => Err(self.unknown_frame(earlier)),
             None => Ok(self.rows.next_if(|(found, _)| *found == number).map(|(_, row)| row)),
         }
     }
@@ -38,10 +38,10 @@ impl<'a, T> ByNumber<'a, T> {
     /// # Errors
     /// [`Failure::Usage`] for a row of a frame that the truth does not have.
     pub fn end(mut self) -> Result<(), Failure> {
-        self.rows.next().map_or(Ok(()), |(number, _)| Err(self.foreign(number)))
+        self.rows.next().map_or(Ok(()), |(number, _)| Err(self.unknown_frame(number)))
     }
 
-    fn foreign(&self, number: u64) -> Failure {
+    fn unknown_frame(&self, number: u64) -> Failure {
         let line =
             line_of(self.path, self.key, number).map(|line| format!(", line {line}")).unwrap_or_default();
         Failure::Usage(format!(

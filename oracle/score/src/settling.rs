@@ -28,7 +28,7 @@ pub(super) fn figure(sequences: &[&[&FrameVerdict]]) -> Figure {
 /// Whether each frame was answered correctly, of those that count.
 fn answers(frames: &[&FrameVerdict]) -> Vec<bool> {
     let is_correct = |frame: &&FrameVerdict| match frame.verdict {
-        Verdict::Missed { cause } if cause.is_beyond_help() => None,
+        Verdict::Missed { cause } if cause.is_undetectable() => None,
         Verdict::Correct { .. } => Some(true),
         Verdict::Missed { .. } | Verdict::Wrong { .. } => Some(false),
     };
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_in_which_nobody_could_find_the_target_neither_count_nor_interrupt() {
+    fn frames_without_a_detectable_target_neither_count_nor_interrupt() {
         assert_eq!(
             value(&[&[(30, ECLIPSE), (3, LOST), (10, CORRECT), (30, ECLIPSE), (10, CORRECT)]]),
             Some(3.0)
@@ -103,12 +103,12 @@ mod tests {
 
     #[test]
     fn the_mean_is_over_sequences_and_there_is_none_when_one_never_settles() {
-        let settled: &[(usize, Verdict)] = &[(10, LOST), (40, CORRECT)];
+        let settling: &[(usize, Verdict)] = &[(10, LOST), (40, CORRECT)];
         let at_once: &[(usize, Verdict)] = &[(40, CORRECT)];
         let never: &[(usize, Verdict)] = &[(40, LOST)];
         let short: &[(usize, Verdict)] = &[(5, LOST)];
-        assert_eq!(value(&[settled, at_once, short]), Some(5.0));
-        assert_eq!(value(&[settled, at_once, never]), None);
+        assert_eq!(value(&[settling, at_once, short]), Some(5.0));
+        assert_eq!(value(&[settling, at_once, never]), None);
         assert_eq!(value(&[]), None);
     }
 }

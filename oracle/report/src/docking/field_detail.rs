@@ -12,22 +12,22 @@ use run::docking::simulator;
 use sim::docking::{DockingSimulator, FieldTruth};
 
 use super::DockingRun;
-use crate::figures::words::{capital, spoken};
-use crate::page::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
+use crate::figures::words::{capital, display_name};
+use crate::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
 use crate::read::rows_of_each;
 
 /// Smallest side of a picture across columns, px.
 const LEAST_COLUMNS: f64 = 160.0;
 
 /// The simulator of a run, and what the pipeline recognised.
-pub struct FieldSheet {
+pub struct FieldDetail {
     simulator: Result<(DockingSimulator, DockingSetup), String>,
     features: Option<PathBuf>,
 }
 
-impl FieldSheet {
+impl FieldDetail {
     /// The fields of a run directory. Where its scenario cannot be simulated any more, there are no pictures, and
-    /// [`FieldSheet::reason`] says why.
+    /// [`FieldDetail::reason`] says why.
     ///
     /// # Errors
     /// A [`Failure`] when `run.toml` cannot be read.
@@ -67,14 +67,14 @@ impl FieldSheet {
             let field = exposure.video.digitise(&run.telemetry[row].telemetry.digitiser);
             let image = field.image();
             let lines =
-                RowPlace { first: field.lines().camera_row(0) as f64, pitch: field.lines().step() as f64 };
+                RowMapping { first: field.lines().camera_row(0) as f64, pitch: field.lines().step() as f64 };
             let window = window(truth, &features, (image.columns(), image.rows()), lines);
             let pixels = Pixels { columns: image.columns(), rows: image.rows(), dn: image.dn() };
             let mut picture = Picture::new(pixels, window, lines, Stretch::Linear)?;
             picture.title = match (unit.verdict.as_str(), &unit.cause) {
                 ("success", _) => "Measured.".to_owned(),
                 ("range_only", _) => "Range alone.".to_owned(),
-                (verdict, Some(cause)) => format!("{}: {}.", capital(verdict), spoken(cause)),
+                (verdict, Some(cause)) => format!("{}: {}.", capital(verdict), display_name(cause)),
                 (verdict, None) => format!("{}.", capital(verdict)),
             };
             picture.caption = format!(
@@ -98,7 +98,7 @@ fn window(
     truth: &FieldTruth,
     features: &[FeatureRow],
     (columns, rows): (usize, usize),
-    lines: RowPlace,
+    lines: RowMapping,
 ) -> Window {
     let circle = features.iter().find(|row| row.kind == "circle");
     let recognised = circle.map(|row| (row.position, row.radius_px.unwrap_or(0.0)));
@@ -145,12 +145,12 @@ fn feature_mark(row: &FeatureRow) -> Mark {
         "cross" => (Shape::Cross(9.0), "measured", format!("cross, recognised: {place}")),
         "mark" => {
             let class = if row.usage == "used" { "measured" } else { "other" };
-            (Shape::Circle(3.0), class, format!("mark {}, {}: {place}", row.index, spoken(&row.usage)))
+            (Shape::Circle(3.0), class, format!("mark {}, {}: {place}", row.index, display_name(&row.usage)))
         }
         kind => {
             let radius = row.radius_px.filter(|radius| radius.is_finite()).unwrap_or(3.0);
             let class = if kind == "circle" { "measured" } else { "cluster" };
-            let title = format!("{}, recognised: {place}, radius {radius:.2} px", spoken(kind));
+            let title = format!("{}, recognised: {place}, radius {radius:.2} px", display_name(kind));
             (Shape::Circle(radius.max(0.5)), class, title)
         }
     };
@@ -171,7 +171,7 @@ fn answer_words(outcome: Option<&DockingOutcome>) -> String {
         Some(DockingSolution::NoSolution(reason)) => match reason.to_string() {
             // Words of the pipeline's own.
             text if text.contains(' ') => format!("the pipeline says: {text}"),
-            code => format!("the pipeline says: {}", spoken(&code)),
+            code => format!("the pipeline says: {}", display_name(&code)),
         },
     }
 }

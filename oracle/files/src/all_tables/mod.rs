@@ -1,7 +1,7 @@
 //! All tables that are declared, for whoever describes them, and tables as columns in memory.
 
 mod list;
-mod whole_table;
+mod loaded_table;
 
 pub use list::{csv_tables, parquet_tables};
-pub use whole_table::{WholeTable, read_csv_table, read_parquet_table};
+pub use loaded_table::{LoadedTable, read_csv_table, read_parquet_table};

@@ -12,19 +12,19 @@ use sim::{Exposure, Simulator};
 
 use super::run::{FarRangeRun, shown_time};
 use crate::figures::least_to_most;
-use crate::figures::words::spoken;
-use crate::page::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch, window_around};
+use crate::figures::words::display_name;
+use crate::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch, window_around};
 use crate::read::rows_of_each;
 
 /// The simulator of a run, and what the pipeline told of its clusters.
-pub struct FrameSheet {
+pub struct FrameDetail {
     simulator: Result<Simulator, String>,
     clusters: Option<std::path::PathBuf>,
 }
 
-impl FrameSheet {
+impl FrameDetail {
     /// The frames of a run directory. Where its scenario cannot be simulated any more (a file that it names is gone), there are no
-    /// pictures, and [`FrameSheet::reason`] says why.
+    /// pictures, and [`FrameDetail::reason`] says why.
     ///
     /// # Errors
     /// A [`Failure`] when `run.toml` cannot be read.
@@ -64,8 +64,8 @@ impl FrameSheet {
     /// A row of a run as a picture of the whole detector.
     ///
     /// # Errors
-    /// As [`FrameSheet::pictures`].
-    pub fn whole(&self, run: &FarRangeRun, row: usize) -> Result<Option<Picture>, Failure> {
+    /// As [`FrameDetail::pictures`].
+    pub fn full_frame(&self, run: &FarRangeRun, row: usize) -> Result<Option<Picture>, Failure> {
         let Ok(simulator) = &self.simulator else { return Ok(None) };
         let exposure = simulator.camera()?.expose(run.truths[row].frame)?;
         let clusters = self.clusters_of(run, &[row])?.remove(0);
@@ -100,7 +100,7 @@ impl FrameSheet {
         let (columns, rows_px) = (size.columns, size.rows);
         let whole = Window { x: 0, y: 0, columns, rows: rows_px };
         let pixels = Pixels { columns, rows: rows_px, dn: &brightest };
-        let mut picture = Picture::new(pixels, whole, RowPlace::WHOLE, Stretch::Stars)?;
+        let mut picture = Picture::new(pixels, whole, RowMapping::WHOLE, Stretch::Stars)?;
         picture.title = format!("{} images over one another.", rows.len());
         picture.caption = format!(
             "Frames {} to {}, {} to {} (UTC), {}.",
@@ -168,9 +168,9 @@ impl FrameSheet {
 fn title(verdict: &FrameVerdict) -> String {
     match verdict.verdict {
         Verdict::Correct { .. } => "Right.".to_owned(),
-        Verdict::Missed { cause } => format!("Missed: {}.", spoken(cause.code())),
+        Verdict::Missed { cause } => format!("Missed: {}.", display_name(cause.code())),
         Verdict::Wrong { cause, taken, .. } => {
-            format!("Wrong: {}; taken: {}.", spoken(cause.code()), spoken(taken.code()))
+            format!("Wrong: {}; taken: {}.", display_name(cause.code()), display_name(taken.code()))
         }
     }
 }
@@ -238,7 +238,7 @@ fn picture_of(exposure: &Exposure, points: &[PixelPoint], margin_px: f64) -> Res
     let frame = &exposure.frame;
     let (columns, rows) = (frame.columns(), frame.rows());
     let window = window_around(points, margin_px, columns, rows);
-    Picture::new(Pixels { columns, rows, dn: frame.dn() }, window, RowPlace::WHOLE, Stretch::Stars)
+    Picture::new(Pixels { columns, rows, dn: frame.dn() }, window, RowMapping::WHOLE, Stretch::Stars)
 }
 
 fn regions(exposure: &Exposure) -> Vec<Mark> {
@@ -275,7 +275,12 @@ fn other_mark(object: &ObjectTruth) -> Mark {
         at: object.position,
         shape: Shape::Circle(object.radius_px.clamp(2.5, 12.0)),
         class: if is_star { "star" } else { "other" },
-        title: format!("{} {}{magnitude}, SNR {:.1}", spoken(object.kind.code()), object.id, object.snr),
+        title: format!(
+            "{} {}{magnitude}, SNR {:.1}",
+            display_name(object.kind.code()),
+            object.id,
+            object.snr
+        ),
     }
 }
 

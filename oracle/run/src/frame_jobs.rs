@@ -7,7 +7,7 @@ use files::Failure;
 
 /// Which frames are made, on how many threads, and what is kept of their images.
 #[derive(Debug, Clone)]
-pub struct Flight<F> {
+pub struct FrameJobs<F> {
     /// The frames.
     pub frames: Range<u64>,
     /// Threads that make frames; what is made does not depend on it.
@@ -44,7 +44,7 @@ fn frames_per_job(frame_bytes: u64) -> u64 {
 ///
 /// # Errors
 /// The first failure in the order of the frames; nothing after it is taken.
-pub fn in_order<W, T: Send>(
+pub fn process_in_order<W, T: Send>(
     frames: Range<u64>,
     jobs: usize,
     frame_bytes: u64,
@@ -60,20 +60,20 @@ pub fn in_order<W, T: Send>(
     let queue =
         Queue { progress: Mutex::new(Progress { left: frames.clone(), ahead }), moved: Condvar::new() };
     let work = |made: mpsc::Sender<(u64, Result<T, Failure>)>| {
-        let _end = EndOf(&queue);
-        let mut own = None;
-        let mut make_one = |frame| match &mut own {
-            Some(own) => make(own, frame),
-            None => make(own.insert(workspace()?), frame),
+        let _end = QueueCloser(&queue);
+        let mut opened = None;
+        let mut make_frame = |frame| match &mut opened {
+            Some(opened) => make(opened, frame),
+            None => make(opened.insert(workspace()?), frame),
         };
         while let Some(frame) = queue.next() {
-            if made.send((frame, make_one(frame))).is_err() {
+            if made.send((frame, make_frame(frame))).is_err() {
                 return; // Something failed, and nobody listens any more.
             }
         }
     };
     std::thread::scope(|scope| {
-        let _end = EndOf(&queue);
+        let _end = QueueCloser(&queue);
         let (made, waiting) = mpsc::channel();
         for _ in frames.clone().take(jobs) {
             let (made, work) = (made.clone(), &work);
@@ -93,7 +93,7 @@ pub fn in_order<W, T: Send>(
                 early.insert(number, result);
             };
             take(result?)?;
-            queue.one_taken();
+            queue.frame_taken();
         }
         Ok(())
     })
@@ -127,7 +127,7 @@ impl Queue {
     }
 
     /// Lets one frame more be begun.
-    fn one_taken(&self) {
+    fn frame_taken(&self) {
         self.progress().ahead += 1;
         self.moved.notify_one();
     }
@@ -138,9 +138,9 @@ impl Queue {
 }
 
 /// Leaves no frame to be made when it is dropped: when something failed or panicked, no thread waits for what will not come.
-struct EndOf<'a>(&'a Queue);
+struct QueueCloser<'a>(&'a Queue);
 
-impl Drop for EndOf<'_> {
+impl Drop for QueueCloser<'_> {
     fn drop(&mut self) {
         let mut progress = self.0.progress();
         progress.left.start = progress.left.end;
@@ -171,7 +171,7 @@ mod tests {
             std::thread::sleep(std::time::Duration::from_micros(frame * 7919 % 300));
             make(frame)
         };
-        in_order(frames, jobs, frame_bytes, || Ok(0), make, take)
+        process_in_order(frames, jobs, frame_bytes, || Ok(0), make, take)
     }
 
     fn failure(text: &str) -> Failure {
@@ -222,24 +222,25 @@ mod tests {
                 taken += 1;
                 Ok(())
             };
-            let told = numbers(0..1000, jobs, 0, make, take).unwrap_err().to_string();
-            assert_eq!((told.as_str(), taken), ("49", 49));
+            let error = numbers(0..1000, jobs, 0, make, take).unwrap_err().to_string();
+            assert_eq!((error.as_str(), taken), ("49", 49));
             let take = |frame| if frame == 20 { Err(failure("taken")) } else { Ok(()) };
             assert_eq!(numbers(0..1000, jobs, 0, make, take).unwrap_err().to_string(), "taken");
         }
     }
 
     #[test]
-    fn a_workspace_that_cannot_be_made_is_told() {
+    fn a_workspace_that_cannot_be_made_is_reported() {
         for jobs in [1, 3] {
             let make = |(): &mut (), frame| Ok(frame);
-            let told = in_order(0..100, jobs, 0, || Err(failure("no camera")), make, |_: u64| Ok(()));
-            assert_eq!(told.unwrap_err().to_string(), "no camera");
+            let error =
+                process_in_order(0..100, jobs, 0, || Err(failure("no camera")), make, |_: u64| Ok(()));
+            assert_eq!(error.unwrap_err().to_string(), "no camera");
         }
     }
 
     #[test]
-    fn a_panic_is_passed_on_and_nobody_waits_for_its_frame() {
+    fn a_panic_is_passed_on_and_no_thread_waits_for_its_frame() {
         for jobs in [1, 3] {
             let run = || {
                 numbers(

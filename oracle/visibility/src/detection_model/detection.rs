@@ -70,7 +70,7 @@ pub struct ImageShares {
 impl ImageShares {
     /// A star's, moving by `trail_px` along x. Where the point-spread function grows over the field, a third of the places each have
     /// the width of an equal part of the field's area.
-    pub fn of_star(camera: &CameraModel, trail_px: f64) -> Self {
+    pub fn from_star(camera: &CameraModel, trail_px: f64) -> Self {
         let (columns, rows) = camera.projection.detector();
         let growth = camera.config.optics.psf_growth;
         // Of the distance to the corner: the middles of three rings of equal area.
@@ -80,13 +80,13 @@ impl ImageShares {
         for radius in radii {
             let ring = PixelPoint::new(middle.x * (1.0 + 0.9 * radius), middle.y * (1.0 + 0.9 * radius));
             let points = moving_point(PixelPoint::new(ring.x.floor(), ring.y.floor()), trail_px);
-            places.extend(Self::of_points(camera, &points).places);
+            places.extend(Self::from_points(camera, &points).places);
         }
         Self { places }
     }
 
     /// Those of an image made of `points`, moved over the places within a pixel.
-    pub fn of_points(camera: &CameraModel, points: &[ImagePoint]) -> Self {
+    pub fn from_points(camera: &CameraModel, points: &[ImagePoint]) -> Self {
         let mut psf = camera.psf.clone();
         let mut stamp = Stamp::new();
         let mut moved = points.to_vec();
@@ -143,10 +143,10 @@ impl DetectionCurve {
             return Self { chances: vec![0.0] };
         }
         let threshold = camera.threshold(rule.thresholds(camera, background_e).high_dn);
-        Self::of_shares(&ImageShares::of_star(camera, trail_px), &threshold, background_e)
+        Self::from_shares(&ImageShares::from_star(camera, trail_px), &threshold, background_e)
     }
 
-    fn of_shares(shares: &ImageShares, threshold: &PixelThreshold, background_e: f64) -> Self {
+    fn from_shares(shares: &ImageShares, threshold: &PixelThreshold, background_e: f64) -> Self {
         // From a star of an electron on; the table ends where brighter ones are seen no better.
         let surest = shares.chance(threshold, f64::MAX.sqrt(), background_e);
         let mut chances = Vec::new();
@@ -162,7 +162,7 @@ impl DetectionCurve {
 
     /// The chance that a star of exp(`ln_electrons`) electrons is detected.
     #[inline]
-    pub fn at_ln(&self, ln_electrons: f64) -> f64 {
+    pub fn probability_at_ln(&self, ln_electrons: f64) -> f64 {
         let at = ln_electrons * NODES_PER_E;
         if at.is_nan() || at <= 0.0 {
             return self.chances.first().copied().unwrap_or(0.0);
@@ -175,8 +175,8 @@ impl DetectionCurve {
     }
 
     /// The chance that a star of `electrons` is detected.
-    pub fn at(&self, electrons: f64) -> f64 {
-        self.at_ln(libm::log(electrons.max(1e-30)))
+    pub fn probability(&self, electrons: f64) -> f64 {
+        self.probability_at_ln(libm::log(electrons.max(1e-30)))
     }
 
     /// The electrons from which on a star is detected with `probability`; `None` when none is.
@@ -189,6 +189,6 @@ impl DetectionCurve {
 }
 
 /// Electrons of the background in a pixel: light, the flat sky of the detector's description, dark current.
-pub fn background_e(camera: &CameraModel, exposure_s: f64, light_e_per_s: f64) -> f64 {
-    (light_e_per_s + camera.config.sensor.background_e_per_s + camera.dark_e_per_s) * exposure_s
+pub fn background_e(camera: &CameraModel, exposure_s: f64, background_e_per_s: f64) -> f64 {
+    (background_e_per_s + camera.config.sensor.background_e_per_s + camera.dark_e_per_s) * exposure_s
 }

@@ -4,7 +4,7 @@ use super::column::ColumnType;
 
 /// What a table says of one field of its row.
 #[derive(Debug, Clone)]
-pub struct Declared {
+pub struct FieldDeclaration {
     /// Names of its columns.
     pub names: Vec<&'static str>,
     /// Their type.
@@ -20,5 +20,5 @@ pub struct Declared {
 /// A row of a table.
 pub trait Table: Sized {
     /// What the table says of its fields, in the order of the columns.
-    fn declared() -> Vec<Declared>;
+    fn declarations() -> Vec<FieldDeclaration>;
 }

@@ -1,0 +1,55 @@
+//! All tables that are declared, for whoever describes them or hands their columns on.
+
+use sim::truth::{FrameTruth, ObjectTruth};
+
+use crate::docking::telemetry::FieldTelemetryLine;
+use crate::docking::{FeatureRow, FieldMeasurementLine, FieldTruthRow, MotionLine};
+use crate::far_range::clusters::ClusterRow;
+use crate::far_range::measurements::MeasurementLine;
+use crate::far_range::stars::StarRow;
+use crate::far_range::telemetry::TelemetryLine;
+use crate::table::declarations::{FieldDeclaration, Table};
+
+/// The fields of each CSV table, by its name in `docs/formats.md`.
+pub fn csv_tables() -> [(&'static str, Vec<FieldDeclaration>); 6] {
+    [
+        ("stars.csv", StarRow::declarations()),
+        ("telemetry.csv", TelemetryLine::declarations()),
+        ("measurements.csv", MeasurementLine::declarations()),
+        ("telemetry.csv of docking", FieldTelemetryLine::declarations()),
+        ("measurements.csv of docking", FieldMeasurementLine::declarations()),
+        ("motion.csv", MotionLine::declarations()),
+    ]
+}
+
+/// The fields of each Parquet table whose columns are always the same, by its name in `docs/formats.md`.
+pub fn parquet_tables() -> [(&'static str, Vec<FieldDeclaration>); 5] {
+    [
+        ("truth/frames.parquet", FrameTruth::declarations()),
+        ("truth/objects.parquet", ObjectTruth::declarations()),
+        ("clusters.parquet", ClusterRow::declarations()),
+        ("truth/fields.parquet", FieldTruthRow::declarations()),
+        ("features.parquet", FeatureRow::declarations()),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ColumnType;
+
+    /// [`crate::read_csv_table`] knows a column by its name alone.
+    #[test]
+    fn a_name_is_a_text_in_all_csv_tables_or_in_none() {
+        let fields: Vec<FieldDeclaration> = csv_tables().into_iter().flat_map(|(_, fields)| fields).collect();
+        for field in &fields {
+            let same_name =
+                |other: &&FieldDeclaration| other.names.iter().any(|name| field.names.contains(name));
+            let is_text = |field: &FieldDeclaration| field.column_type == ColumnType::Utf8;
+            assert!(
+                fields.iter().filter(same_name).all(|other| is_text(other) == is_text(field)),
+                "{field:?}"
+            );
+        }
+    }
+}
