@@ -200,7 +200,11 @@ fn alternatives(schema: &Value) -> &[Value] {
 /// A bound without trailing zeros.
 fn number(value: &Value) -> String {
     let number = value.as_f64().unwrap_or_default();
-    if number != 0.0 && !(1e-3..1e5).contains(&number.abs()) { format!("{number:e}") } else { format!("{number}") }
+    if number != 0.0 && !(1e-3..1e5).contains(&number.abs()) {
+        format!("{number:e}")
+    } else {
+        format!("{number}")
+    }
 }
 
 /// Prefix of the keys within a titled table.
@@ -218,10 +222,10 @@ fn the_page_of_scenario_keys_is_the_schema() {
                     Unknown keys are refused. `REMAKE=1 cargo test --test it reference_pages::` writes this page.\n"
         .to_owned();
     for (world, title) in [("far_range", "Far range"), ("docking", "Docking")] {
-        let schema: Value =
-            serde_json::from_str(&output(&["scenario", "schema", "--world", world])).unwrap();
+        let schema: Value = serde_json::from_str(&output(&["scenario", "schema", "--world", world])).unwrap();
         let Value::Object(definitions) = &schema["$defs"] else { panic!("no definitions") };
-        let mut section = SchemaPage { definitions, written: BTreeSet::new(), page: format!("\n## {title}\n") };
+        let mut section =
+            SchemaPage { definitions, written: BTreeSet::new(), page: format!("\n## {title}\n") };
         section.write_object("Top level", &schema, None);
         page.push_str(&section.page);
     }

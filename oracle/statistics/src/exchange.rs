@@ -173,29 +173,40 @@ fn reaches(statistic: f64, observed: f64) -> bool {
     statistic >= observed - TIE * (1.0 + observed.abs())
 }
 
-/// An interval of 95 % for the difference of two runs: the 2.5 % and 97.5 % quantiles of the difference over sets of blocks, each block in
-/// a set with probability ½ (Hartigan 1969, Journal of the American Statistical Association 64, 1303–1317, whose typical values these
-/// are): what a bootstrap with weights 0 and 2 gives, and what inverting the test by exchanges gives. Exact for a mean of symmetric
-/// independent differences of any number of blocks from six on; of fewer, the whole range of the sets, which says less than 95 %.
+/// Number of sets of blocks that [`interval_by_sets`] passes to its function at a time.
+pub const SETS: usize = 8;
+
+/// Returns the 95 % interval for the difference of two runs: the 2.5 % and 97.5 % quantiles of the difference over sets of
+/// blocks, each block in a set with probability ½ (typical values; Hartigan 1969, Journal of the American Statistical
+/// Association 64, 1303–1317).
 ///
-/// `difference` is given whether each block is taken; it may have no value for a set. `None` when it has none for most.
+/// A bootstrap with weights 0 and 2 gives the same interval, as does the inversion of the test by exchanges. It is exact for
+/// the mean of at least six symmetric independent differences; with fewer blocks it is the whole range of the sets, whose
+/// confidence is below 95 %.
+///
+/// `differences` receives for each block its weight, 0 or 1, in each of [`SETS`] sets, and returns the difference of each
+/// set, if it has one. Returns `None` if most sets have none.
 pub fn interval_by_sets(
     exchanges: &Exchanges,
-    difference: impl Fn(&[bool]) -> Option<f64>,
+    differences: impl Fn(&[[f64; SETS]]) -> [Option<f64>; SETS],
 ) -> Option<super::Interval> {
     let count = exchanges.for_an_interval();
-    let sets = exchanges.sets().skip(1).take(count);
-    let mut taken = vec![false; exchanges.blocks];
+    let sets: Vec<ExchangeSet<'_>> = exchanges.sets().skip(1).take(count).collect();
+    let mut weights = vec![[0.0; SETS]; exchanges.blocks];
     let mut values: Vec<f64> = Vec::with_capacity(count);
-    for set in sets {
-        taken.iter_mut().enumerate().for_each(|(block, taken)| *taken = set.has(block));
-        values.extend(difference(&taken));
+    for sets in sets.chunks(SETS) {
+        for (block, weights) in weights.iter_mut().enumerate() {
+            for (weight, set) in weights.iter_mut().zip(sets) {
+                *weight = f64::from(u8::from(set.has(block)));
+            }
+        }
+        values.extend(differences(&weights).into_iter().take(sets.len()).flatten());
     }
     if values.is_empty() || values.len() * 2 < count {
         return None;
     }
     values.sort_by(f64::total_cmp);
-    // n values cut the line into n + 1 parts, each as likely to hold the truth.
+    // n values cut the line into n + 1 parts, each equally likely to contain the truth.
     let part = 0.025 * (values.len() + 1) as f64;
     let low = (part.floor() as usize).clamp(1, values.len()) - 1;
     Some(super::Interval { low: values[low], high: values[values.len() - 1 - low] })
@@ -215,6 +226,18 @@ mod tests {
         joint_test(figures, &Exchanges::new(figures[0].effects.len()), alpha)
     }
 
+    /// The interval of a difference that is given for one set at a time, by the blocks in it.
+    fn interval(
+        exchanges: &Exchanges,
+        difference: impl Fn(&[bool]) -> Option<f64>,
+    ) -> Option<crate::Interval> {
+        interval_by_sets(exchanges, |weights| {
+            std::array::from_fn(|set| {
+                difference(&weights.iter().map(|weights| weights[set] > 0.0).collect::<Vec<bool>>())
+            })
+        })
+    }
+
     /// Of seven powers of two every set has a sum of its own, 1 to 127: the third from either end is left as limit.
     #[test]
     fn an_interval_by_sets_leaves_a_fortieth_at_either_end() {
@@ -226,14 +249,14 @@ mod tests {
                 .map(|(block, _)| f64::from(1 << block))
                 .sum::<f64>()
         };
-        let interval = interval_by_sets(&Exchanges::new(7), |taken| Some(sum(taken))).unwrap();
+        let interval = interval_one_by_one(&Exchanges::new(7), |taken| Some(sum(taken))).unwrap();
         assert_eq!((interval.low, interval.high), (3.0, 125.0));
         // Of fewer than six blocks the whole range.
-        let interval = interval_by_sets(&Exchanges::new(5), |taken| Some(sum(taken))).unwrap();
+        let interval = interval_one_by_one(&Exchanges::new(5), |taken| Some(sum(taken))).unwrap();
         assert_eq!((interval.low, interval.high), (1.0, 31.0));
         // A difference that most sets do not have is none: 63 of 127 are too few, 64 are enough.
         let below = |limit: f64| {
-            interval_by_sets(&Exchanges::new(7), |taken| Some(sum(taken)).filter(|sum| *sum < limit))
+            interval_one_by_one(&Exchanges::new(7), |taken| Some(sum(taken)).filter(|sum| *sum < limit))
         };
         assert!(below(64.0).is_none() && below(65.0).is_some());
     }
@@ -242,7 +265,7 @@ mod tests {
     #[test]
     fn an_interval_by_drawn_sets_leaves_fifty_less_one_at_either_end() {
         let calls = std::cell::Cell::new(0.0);
-        let interval = interval_by_sets(&Exchanges::new(14), |_| {
+        let interval = interval_one_by_one(&Exchanges::new(14), |_| {
             calls.set(calls.get() + 1.0);
             Some(calls.get())
         });
@@ -400,7 +423,7 @@ mod tests {
                         let (n, sum) = chosen.fold((0.0, 0.0), |(n, sum), (x, _)| (n + 1.0, sum + x));
                         (n > 0.0).then(|| sum / n)
                     };
-                    let interval = interval_by_sets(&exchanges, mean).unwrap();
+                    let interval = interval_one_by_one(&exchanges, mean).unwrap();
                     (interval.low..=interval.high).contains(&0.3)
                 })
                 .count();
@@ -412,6 +435,6 @@ mod tests {
     fn zero_blocks_have_no_result() {
         let test = joint_test(&[effects(&[])], &Exchanges::new(0), 0.05);
         assert_eq!((test.figures[0].p, test.critical), (1.0, 0.0));
-        assert_eq!(interval_by_sets(&Exchanges::new(0), |_| Some(1.0)), None);
+        assert_eq!(interval_one_by_one(&Exchanges::new(0), |_| Some(1.0)), None);
     }
 }

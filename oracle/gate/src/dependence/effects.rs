@@ -5,7 +5,7 @@
 //! the harmonic mean of their counts. Exchanging a block of the two changes the sign of its term and nothing else. A root mean square is
 //! the root of the mean square, and a median counts on which side of the median of both runs together values lie.
 use score::{Better, FigureTerms, Reduction, Sense, Term};
-use statistics::{BlockEffects, Interval, median};
+use statistics::{BlockEffects, Interval, SETS, median};
 
 use super::blocks::Blocks;
 use super::influence::{Sums, values};
@@ -159,9 +159,9 @@ pub(crate) fn interval(
 ) -> Option<Interval> {
     let reduction = baseline.reduction;
     let sides = [baseline, result].map(|run| Side::from_run(reduction, &run.terms, blocks));
-    statistics::interval_by_sets(exchanges, |taken| {
-        let [baseline, result] = [&sides[0], &sides[1]].map(|side| side.value(taken));
-        Some(result? - baseline?)
+    statistics::interval_by_sets(exchanges, |weights| {
+        let [baseline, result] = [&sides[0], &sides[1]].map(|side| side.values(weights));
+        std::array::from_fn(|set| Some(result[set]? - baseline[set]?))
     })
 }
 
@@ -193,21 +193,27 @@ impl Side {
         Self::Ratio { blocks: sums, is_root: reduction == Reduction::Rms }
     }
 
-    fn value(&self, taken: &[bool]) -> Option<f64> {
+    /// Returns the figure over the blocks of each set, if it has a value there.
+    fn values(&self, weights: &[[f64; SETS]]) -> [Option<f64>; SETS] {
         match self {
             Self::Ratio { blocks, is_root } => {
-                let (mut sum, mut of) = (0.0, 0.0);
-                // Without a branch: half of the blocks are taken, at random.
-                for (block, taken) in blocks.iter().zip(taken) {
-                    sum += if *taken { block.0 } else { 0.0 };
-                    of += if *taken { block.1 } else { 0.0 };
+                // All sets side by side: their sums do not wait for each other.
+                let (mut sums, mut counts) = ([0.0; SETS], [0.0; SETS]);
+                for (block, weights) in blocks.iter().zip(weights) {
+                    for set in 0..SETS {
+                        sums[set] += weights[set] * block.0;
+                        counts[set] += weights[set] * block.1;
+                    }
                 }
-                let ratio = (of > 0.0).then(|| sum / of)?;
-                Some(if *is_root { ratio.max(0.0).sqrt() } else { ratio })
+                std::array::from_fn(|set| {
+                    let ratio = (counts[set] > 0.0).then(|| sums[set] / counts[set])?;
+                    Some(if *is_root { ratio.max(0.0).sqrt() } else { ratio })
+                })
             }
-            Self::Sorted { values, blocks, counts } => {
+            Self::Sorted { values, blocks, counts } => std::array::from_fn(|set| {
+                let taken: Vec<bool> = weights.iter().map(|weights| weights[set] > 0.0).collect();
                 let count: usize =
-                    counts.iter().zip(taken).map(|(count, taken)| count * usize::from(*taken)).sum();
+                    counts.iter().zip(&taken).map(|(count, taken)| count * usize::from(*taken)).sum();
                 let mut before = count.checked_sub(1)? / 2;
                 let is_taken = |block: &u32| taken[*block as usize];
                 // Whole parts before the middle are counted without a branch.
@@ -225,7 +231,7 @@ impl Side {
                     rest.filter(|(_, block)| is_taken(block)).map(|(value, _)| *value).skip(before);
                 let lower = middle.next()?;
                 Some(if count % 2 == 1 { lower } else { f64::midpoint(lower, middle.next()?) })
-            }
+            }),
         }
     }
 }
