@@ -19,7 +19,6 @@ pub mod docking;
 pub mod far_range;
 pub mod flight;
 pub mod plain;
-mod provenance;
 mod run_result;
 pub mod world;
 pub mod worlds;
