@@ -18,7 +18,6 @@ pub mod docking;
 pub mod far_range;
 pub mod frame_jobs;
 pub mod plain;
-mod provenance;
 mod rows_by_number;
 mod run_result;
 pub mod world;

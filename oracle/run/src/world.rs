@@ -147,7 +147,7 @@ pub trait World: Sized + Send + Sync + 'static {
 
     /// What a rendered dataset holds for a pipeline, in words.
     fn files_for_pipelines(_: Self::Images) -> String {
-        format!("{}, telemetry.csv, frames/", Self::SETUP_FILE)
+        format!("{} and the {}s", Self::SETUP_FILE, Self::Interface::IMAGE)
     }
 
     /// Refuses a flight whose images cannot be written to standard output.

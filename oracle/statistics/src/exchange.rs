@@ -227,7 +227,7 @@ mod tests {
     }
 
     /// The interval of a difference that is given for one set at a time, by the blocks in it.
-    fn interval(
+    fn interval_one_by_one(
         exchanges: &Exchanges,
         difference: impl Fn(&[bool]) -> Option<f64>,
     ) -> Option<crate::Interval> {

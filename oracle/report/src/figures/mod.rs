@@ -76,7 +76,7 @@ pub(crate) fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
             value => cell(value),
         };
         table.push([
-            figure_by_name(name).words,
+            figure_by_name(name).beside_percent(),
             number(figure.value),
             number(figure.low),
             number(figure.high),
@@ -103,6 +103,15 @@ mod tests {
     fn a_probability_is_certain_only_where_it_is() {
         let shown = [0.0, 0.000_02, 0.9, 0.999_9, 1.0].map(|p| probability(p).replace('\u{a0}', " "));
         assert_eq!(shown, ["0.0 %", "< 0.1 %", "90.0 %", "> 99.9 %", "100.0 %"]);
+    }
+
+    #[test]
+    fn every_figure_is_read_with_its_unit() {
+        let figures = ["ra_rms_deg", "hit_rate", "stars_mean"];
+        let figures = figures.map(|name| (name.to_owned(), Figure::mean(&[vec![0.5, 1.0]])));
+        let labels: Vec<String> =
+            figure_table(&figures.into()).rows.into_iter().filter_map(|row| row.into_iter().next()).collect();
+        assert_eq!(labels, ["RA RMS, °", "hit rate", "stars mean"]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Worlds behind one face: all that commands, studies and gates need of any of them.
 
 pub(crate) mod erased;
+mod provenance;
 pub(crate) mod source;
 
 use std::any::{Any, TypeId};

@@ -151,13 +151,16 @@ mod tests {
     #[test]
     fn it_lies_inside_its_picture_or_is_left_out() {
         let scale = PlateScale { focal_length_px: 2917.0, range_m: Some(20.0) };
+        let mut drawn = 0;
         for (columns, rows) in [(768, 576), (300, 200), (40, 30), (1, 1), (3000, 8)] {
             let window = Window { x: 0, y: 0, columns, rows };
             let placement = Placement::fit(window, (1280, 960), 9);
             if let Some(bar) = ScaleBar::new(&placement, &scale, &[]) {
                 assert!(bar.area.is_inside(placement.width, placement.height), "{columns} × {rows}");
                 assert!(bar.length < 0.21 * placement.width as f64);
+                drawn += 1;
             }
         }
+        assert!(drawn >= 2, "{drawn} bars");
     }
 }
