@@ -73,7 +73,7 @@ pub fn check<T: Serialize + JsonSchema + 'static>(value: &T, path: &str) -> Resu
     let text = toml::to_string(value).map_err(|error| unreadable(&error))?;
     let table = DeTable::parse(&text).map_err(|error| unreadable(&error))?;
     let root = schema::<T>();
-    Walk { root: &root }.value(&[&root], &DeValue::Table(table.into_inner()), path)
+    SchemaWalk { root: &root }.value(&[&root], &DeValue::Table(table.into_inner()), path)
 }
 
 /// The schema of a type, made once.
@@ -84,12 +84,12 @@ fn schema<T: JsonSchema + 'static>() -> Arc<Value> {
 }
 
 /// A walk over a value and its schema together.
-struct Walk<'a> {
+struct SchemaWalk<'a> {
     /// The whole schema, where references begin.
     root: &'a Value,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> SchemaWalk<'a> {
     fn value(&self, schemas: &[&'a Value], value: &DeValue<'_>, path: &str) -> Result<(), OutOfRange> {
         let mut parts = Vec::new();
         schemas.iter().for_each(|schema| self.collect(schema, value, &mut parts));
@@ -104,10 +104,14 @@ impl<'a> Walk<'a> {
             }
             DeValue::Array(items) => {
                 for part in &parts {
-                    let range = Range::of(part, ["minItems", "maxItems", "", ""]);
+                    let range = Range::from_schema_keys(part, ["minItems", "maxItems", "", ""]);
                     if !range.contains(items.len() as f64) {
                         let value = format!("a list of {}", items.len());
-                        return Err(OutOfRange::new(path, value, format!("a list of {}", range.words())));
+                        return Err(OutOfRange::new(
+                            path,
+                            value,
+                            format!("a list of {}", range.description()),
+                        ));
                     }
                 }
                 items.iter().enumerate().try_for_each(|(i, item)| {
@@ -140,7 +144,7 @@ impl<'a> Walk<'a> {
         }
         let alternatives =
             ["oneOf", "anyOf", "allOf"].into_iter().filter_map(|key| schema.get(key)?.as_array());
-        for alternative in alternatives.flatten().filter(|schema| self.may_be(schema, value)) {
+        for alternative in alternatives.flatten().filter(|schema| self.could_match(schema, value)) {
             self.collect(alternative, value, parts);
         }
     }
@@ -151,7 +155,7 @@ impl<'a> Walk<'a> {
 
     /// Whether `value` may be what an alternative describes: by its type, and for a table by the keys that it must have and the
     /// words that say its kind.
-    fn may_be(&self, schema: &Value, value: &DeValue<'_>) -> bool {
+    fn could_match(&self, schema: &Value, value: &DeValue<'_>) -> bool {
         let is_type = |name: &Value| match value {
             DeValue::Integer(_) => name == "integer" || name == "number",
             DeValue::Float(_) => name == "number",
@@ -170,18 +174,18 @@ impl<'a> Walk<'a> {
             let properties = schema.get("properties").and_then(Value::as_object).into_iter().flatten();
             required.filter_map(Value::as_str).all(|key| table.contains_key(key))
                 && properties.filter(|(_, schema)| schema.get("const").is_some()).all(|(key, schema)| {
-                    table.get(key.as_str()).is_none_or(|value| self.may_be(schema, value.get_ref()))
+                    table.get(key.as_str()).is_none_or(|value| self.could_match(schema, value.get_ref()))
                 })
         });
-        types && word && keys && self.target(schema).is_none_or(|target| self.may_be(target, value))
+        types && word && keys && self.target(schema).is_none_or(|target| self.could_match(target, value))
     }
 }
 
 fn check_number(parts: &[&Value], number: f64, value: impl ToString, path: &str) -> Result<(), OutOfRange> {
     // A number that no schema speaks of is finite too.
-    let mut ranges = parts.iter().copied().chain([&Value::Null]).map(Range::of_number);
+    let mut ranges = parts.iter().copied().chain([&Value::Null]).map(Range::from_schema);
     let refusing = ranges.find(|range| !(number.is_finite() && range.contains(number)));
-    refusing.map_or(Ok(()), |range| Err(OutOfRange::new(path, value, range.words())))
+    refusing.map_or(Ok(()), |range| Err(OutOfRange::new(path, value, range.description())))
 }
 
 /// What a schema allows of a number.
@@ -194,14 +198,14 @@ struct Range {
 }
 
 impl Range {
-    fn of(schema: &Value, keys: [&str; 4]) -> Self {
+    fn from_schema_keys(schema: &Value, keys: [&str; 4]) -> Self {
         let [at_least, at_most, more_than, less_than] =
             keys.map(|key| schema.get(key).and_then(Value::as_f64));
         Self { at_least, at_most, more_than, less_than }
     }
 
-    fn of_number(schema: &Value) -> Self {
-        Self::of(schema, ["minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum"])
+    fn from_schema(schema: &Value) -> Self {
+        Self::from_schema_keys(schema, ["minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum"])
     }
 
     fn contains(&self, number: f64) -> bool {
@@ -212,7 +216,7 @@ impl Range {
     }
 
     /// As messages say it: "0.05 to 1e5", "above 0 to 5", "at least 1".
-    fn words(&self) -> String {
+    fn description(&self) -> String {
         // The narrower of two lower limits is the exclusive one: an unsigned integer is at least 0 by its type.
         let low = match (self.more_than, self.at_least) {
             (Some(limit), _) => Some(("above ", "above ", limit)),
@@ -271,7 +275,7 @@ mod tests {
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(rename_all = "snake_case")]
-    enum Outside {
+    enum ExternallyTagged {
         None,
         Some {
             #[schemars(range(max = 5))]
@@ -300,7 +304,7 @@ mod tests {
         #[schemars(length(min = 1, max = 2))]
         cones: Vec<Cone>,
         law: Option<Law>,
-        outside: Outside,
+        outside: ExternallyTagged,
         named: BTreeMap<String, Cone>,
     }
 
@@ -317,7 +321,7 @@ mod tests {
             pair: (1, 2.0),
             cones: vec![Cone { radius_deg: 0.0 }],
             law: None,
-            outside: Outside::None,
+            outside: ExternallyTagged::None,
             named: BTreeMap::new(),
         }
     }
@@ -366,7 +370,7 @@ mod tests {
         assert_eq!(message(law(Law::Other { index: 10.0 })), "table.law.index is 10, expected 100 to 200");
         let cone = law(Law::Cone(Cone { radius_deg: -1.0 }));
         assert_eq!(message(cone), "table.law.radius_deg is -1, expected 0 to 180");
-        let outside = message(|t| t.outside = Outside::Some { count: 6 });
+        let outside = message(|t| t.outside = ExternallyTagged::Some { count: 6 });
         assert_eq!(outside, "table.outside.some.count is 6, expected 0 to 5");
         let named = message(|t| {
             t.named.insert("a".to_owned(), Cone { radius_deg: 200.0 });
@@ -383,7 +387,7 @@ mod tests {
     #[test]
     fn a_range_is_told_in_few_words() {
         let words = |at_least, at_most, more_than, less_than| {
-            Range { at_least, at_most, more_than, less_than }.words()
+            Range { at_least, at_most, more_than, less_than }.description()
         };
         assert_eq!(words(Some(-1e5), Some(0.001), None, None), "-1e5 to 0.001");
         assert_eq!(words(Some(1e-6), Some(20_000.0), None, None), "1e-6 to 20000");

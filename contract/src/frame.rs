@@ -116,7 +116,7 @@ impl Frame {
     /// # Panics
     /// For a pixel that the frame does not have.
     #[allow(clippy::indexing_slicing, reason = "as of a slice, the caller keeps to the size of the frame")]
-    pub fn at(&self, x: usize, y: usize) -> u16 {
+    pub fn dn_at(&self, x: usize, y: usize) -> u16 {
         self.dn[y * self.columns + x]
     }
 

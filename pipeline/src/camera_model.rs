@@ -58,7 +58,7 @@ impl CameraModel {
         if r.z.is_nan() || r.z <= 0.0 {
             return None;
         }
-        self.place_of_ideal(self.focal_x_px * (r.x / r.z), self.focal_y_px * (r.y / r.z))
+        self.pixel_from_ideal(self.focal_x_px * (r.x / r.z), self.focal_y_px * (r.y / r.z))
     }
 
     /// The direction seen at a pixel, h⁻¹; `None` when the distortion has no inverse there.
@@ -80,7 +80,7 @@ impl CameraModel {
     }
 
     /// The inverse of [`CameraModel::to_ideal`]; `None` beyond the fold of the distortion.
-    pub(crate) fn place_of_ideal(&self, u: f64, v: f64) -> Option<PixelPoint> {
+    pub(crate) fn pixel_from_ideal(&self, u: f64, v: f64) -> Option<PixelPoint> {
         if u * u + v * v > self.fold_radius_px * self.fold_radius_px {
             return None;
         }
@@ -250,7 +250,9 @@ pub(crate) mod tests {
         let beyond = Vector3::new(1000.0 / camera.focal_length_px().0, 0.0, 1.0);
         assert_eq!(model.project_vector(&beyond), None);
         // The fold is a circle: on its diagonal it is 408 px away in either direction.
-        assert!(model.place_of_ideal(400.0, 400.0).is_some() && model.place_of_ideal(420.0, 420.0).is_none());
+        assert!(
+            model.pixel_from_ideal(400.0, 400.0).is_some() && model.pixel_from_ideal(420.0, 420.0).is_none()
+        );
         // And 385 px is the largest radius that anything is seen at.
         assert!(model.back_project(PixelPoint::new(395.0 - 384.0, 288.0)).is_some());
         assert!(model.back_project(PixelPoint::new(395.0 - 386.0, 288.0)).is_none());
@@ -315,8 +317,8 @@ pub(crate) mod tests {
 
     #[test]
     fn a_place_that_overflows_in_one_coordinate_is_none() {
-        assert!(argon().place_of_ideal(1e3, 1.0).is_some());
-        assert_eq!(argon().place_of_ideal(1e110, 1.0), None);
+        assert!(argon().pixel_from_ideal(1e3, 1.0).is_some());
+        assert_eq!(argon().pixel_from_ideal(1e110, 1.0), None);
     }
 
     /// x = u s + 2 p1 u v + p2 (r² + 2 u²), y = v s + p1 (r² + 2 v²) + 2 p2 u v with s = 1 + k1 r² + k2 r⁴ + k3 r⁶, worked out apart
@@ -329,13 +331,13 @@ pub(crate) mod tests {
             ((300.0, -200.0), (695.111_640_000_000, 87.921_240_000_000)),
             ((-250.0, 120.0), (144.481_934_839_100, 408.257_591_677_232)),
         ] {
-            let place = model.place_of_ideal(u, v).unwrap();
-            assert!(place.distance(PixelPoint::new(x, y)) < 1e-9, "{place:?}");
-            let ideal = model.to_ideal(place).unwrap();
+            let pixel = model.pixel_from_ideal(u, v).unwrap();
+            assert!(pixel.distance(PixelPoint::new(x, y)) < 1e-9, "{pixel:?}");
+            let ideal = model.to_ideal(pixel).unwrap();
             assert!((ideal.0 - u).abs() < 1e-8 && (ideal.1 - v).abs() < 1e-8, "{ideal:?}");
             let (fx, fy) = model.focal_px();
             let direction = Direction::from_vector(Vector3::new(u / fx, v / fy, 1.0)).unwrap();
-            assert!(model.project(&direction).unwrap().distance(place) < 1e-9);
+            assert!(model.project(&direction).unwrap().distance(pixel) < 1e-9);
         }
         assert_eq!(model.focal_px(), camera.focal_length_px());
     }

@@ -18,9 +18,9 @@ use boresight_sim::draw::ExpectedImage;
 use boresight_sim::optics::{Psf, PsfConfig, Stamp};
 use boresight_sim::randomness::{Effect, Seed};
 use boresight_sim::sensor::{
-    FixedPatternConfig, FlatLaws, LineNoiseConfig, Opening, RawImage, Sensor, SensorConfig,
+    ExposureInterval, FixedPatternConfig, FlatSamplers, LineNoiseConfig, RawImage, Sensor, SensorConfig,
 };
-use boresight_sim::{Drawing, Simulation, Simulator};
+use boresight_sim::{PixelSelection, Simulation, Simulator};
 use contract::PixelPoint;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use processor_time::ProcessorTime;
@@ -29,7 +29,7 @@ use rand::Rng;
 const SEED: Seed = Seed { seed: 1, case: 0 };
 /// Sizes of frames in thousands of pixels; 436 is that of the scenario `argon`.
 const KILOPIXELS: [usize; 5] = [250, 436, 1000, 4000, 25_000];
-const OPENING: Opening = Opening { seed: SEED, middle_s: 0.0, exposure_s: 0.25 };
+const OPENING: ExposureInterval = ExposureInterval { seed: SEED, middle_s: 0.0, exposure_s: 0.25 };
 /// Stars of the frames of all sizes.
 const STARS: u64 = 160;
 
@@ -81,7 +81,7 @@ struct Camera {
     stamp: Stamp,
     image: ExpectedImage,
     raw: RawImage,
-    laws: FlatLaws,
+    samplers: FlatSamplers,
     frame: u64,
 }
 
@@ -94,7 +94,7 @@ impl Camera {
             stamp: Stamp::new(),
             image: sensor.new_expected(),
             raw: sensor.new_raw(),
-            laws: FlatLaws::new(),
+            samplers: FlatSamplers::new(),
             frame: 0,
             sensor,
         })
@@ -116,7 +116,7 @@ impl Camera {
     fn collect_and_read_out(&mut self) {
         self.frame += 1;
         let charge = self.sensor.collect(&mut self.image, &OPENING);
-        self.sensor.read_out(&charge, &SEED, self.frame, &mut self.laws, &mut self.raw).unwrap();
+        self.sensor.read_out(&charge, &SEED, self.frame, &mut self.samplers, &mut self.raw).unwrap();
     }
 }
 
@@ -141,10 +141,11 @@ fn floors(c: &mut Criterion<ProcessorTime>) {
 fn argon_frames(c: &mut Criterion<ProcessorTime>) {
     let simulator = LazyCell::new(|| Simulator::new(&argon::simulation(), Path::new("")).unwrap());
     let mut group = c.benchmark_group("argon");
-    for (drawing, name) in [(Drawing::Seen, "40 regions"), (Drawing::All, "all pixels drawn")] {
+    for (drawing, name) in [(PixelSelection::Needed, "40 regions"), (PixelSelection::All, "all pixels drawn")]
+    {
         for day_start in [0_u64, 1700, 5000, 9000, 14_000] {
             group.bench_function(BenchmarkId::new(name, day_start), |b| {
-                let mut camera = simulator.camera().unwrap().drawing(drawing);
+                let mut camera = simulator.camera().unwrap().with_pixel_selection(drawing);
                 let mut number = 0;
                 b.iter(|| {
                     number += 1;
@@ -180,12 +181,12 @@ fn stages(c: &mut Criterion<ProcessorTime>) {
             });
         });
         group.bench_function(BenchmarkId::new("reading out", name), |b| {
-            let Camera { sensor, image, raw, laws, .. } = &mut *camera.borrow_mut();
+            let Camera { sensor, image, raw, samplers, .. } = &mut *camera.borrow_mut();
             let charge = sensor.collect(image, &OPENING);
             let mut number = 0;
             b.iter(|| {
                 number += 1;
-                sensor.read_out(&charge, &SEED, number, laws, raw).unwrap();
+                sensor.read_out(&charge, &SEED, number, samplers, raw).unwrap();
             });
         });
     }

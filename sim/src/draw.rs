@@ -11,8 +11,8 @@ use pulp::Simd;
 
 use crate::optics::Stamp;
 use crate::pixel_factors::PixelFactors;
+use crate::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
 use crate::smooth_field::SmoothField;
-use crate::widest::{Eight, LANES, Work, widest};
 
 /// Pixels of a piece of a row, the unit in which images are looked at: of each there is one word of bits.
 pub(crate) const PIECE: usize = u64::BITS as usize;
@@ -69,7 +69,7 @@ impl ExpectedImage {
     }
 
     /// The same on pixels that respond differently: each collects the light that falls on it times its factor.
-    pub(crate) fn responding(mut self, response: &PixelFactors) -> Self {
+    pub(crate) fn with_response(mut self, response: &PixelFactors) -> Self {
         self.response = (!response.is_empty()).then(|| response.clone());
         self.background.response = self.response.clone();
         self
@@ -144,19 +144,19 @@ impl ExpectedImage {
     /// Adds to every pixel `share` of the light of all other pixels of its column; tells what a pixel gains, the mean over
     /// all pixels.
     pub(crate) fn smear(&mut self, share: f64) -> f64 {
-        let (mut sums, mut own) = (vec![0.0; self.columns], vec![0.0; self.columns]);
+        let (mut sums, mut row_e) = (vec![0.0; self.columns], vec![0.0; self.columns]);
         for y in 0..self.rows {
-            self.row(y, &mut own);
-            for (sum, own) in sums.iter_mut().zip(&own) {
-                *sum += own;
+            self.row(y, &mut row_e);
+            for (sum, row_e) in sums.iter_mut().zip(&row_e) {
+                *sum += row_e;
             }
         }
         self.flatten();
         for y in 0..self.rows {
-            self.row(y, &mut own);
+            self.row(y, &mut row_e);
             let field = self.background.field.iter_mut().skip(y * self.columns);
-            for ((field, own), sum) in field.zip(&own).zip(&sums) {
-                *field += share * (sum - own);
+            for ((field, row_e), sum) in field.zip(&row_e).zip(&sums) {
+                *field += share * (sum - row_e);
             }
         }
         // Each pixel gives to all others of its column, and there are as many of them as pixels that it is one of.
@@ -179,13 +179,13 @@ impl ExpectedImage {
 
     /// Expected electrons of the background in a pixel.
     pub fn background_at(&self, x: usize, y: usize) -> f64 {
-        self.background.at(x, y, self.columns)
+        self.background.electrons_at(x, y, self.columns)
     }
 
     /// Expected electrons of the background about a pixel: without what this pixel has more or less than those around it, its response
     /// and its dark current.
     pub(crate) fn background_near(&self, x: usize, y: usize) -> f64 {
-        self.background.near(x, y, self.columns)
+        self.background.uniform_response_electrons_at(x, y, self.columns)
     }
 
     /// Raises the flat level of every pixel, electrons; no response changes them.
@@ -201,9 +201,9 @@ impl ExpectedImage {
 
     /// Adds the image of an object as [`ExpectedImage::add`] does: `paint` makes it.
     pub(crate) fn add_painted(&mut self, paint: impl FnOnce(&mut Stamp)) -> &Stamp {
-        let mut stamp = self.objects.take();
+        let mut stamp = self.objects.reuse_stamp();
         paint(&mut stamp);
-        widest(Respond { image: self, stamp: &mut stamp });
+        run_widest(Respond { image: self, stamp: &mut stamp });
         self.objects.push(stamp)
     }
 
@@ -236,7 +236,7 @@ impl ExpectedImage {
     }
 
     /// Expected electrons of a pixel, background included.
-    pub fn at(&self, x: usize, y: usize) -> f64 {
+    pub fn electrons_at(&self, x: usize, y: usize) -> f64 {
         let mut signal_e = [0.0];
         self.add_signal(x, y, &mut signal_e);
         self.background_at(x, y) + signal_e[0]
@@ -288,7 +288,7 @@ impl ExpectedImage {
     /// Of each `N` pixels of row `y`, whether something was drawn in any of them.
     pub(crate) fn lit_parts<const N: usize>(&self, y: usize, is_lit: &mut [bool]) {
         is_lit.fill(false);
-        self.objects.parts_of(y, |from, to| is_lit[from / N..to.div_ceil(N)].fill(true));
+        self.objects.for_each_span(y, |from, to| is_lit[from / N..to.div_ceil(N)].fill(true));
         let words = &self.is_single[y * self.words_per_row..(y + 1) * self.words_per_row];
         for (word, is_lit) in words.iter().zip(is_lit.chunks_mut(PIECE / N)).filter(|(word, _)| **word != 0) {
             for (i, is_lit) in is_lit.iter_mut().enumerate() {
@@ -350,8 +350,8 @@ impl ExpectedImage {
         let mut signal_e = [0.0; PIECE];
         self.add_signal(p * PIECE, y, &mut signal_e[..self.piece_pixels(y, p).len()]);
         signal_e.as_chunks::<PART>().0.iter().enumerate().fold(0, |parts, (i, part)| {
-            let eights = part.as_chunks::<LANES>().0.iter().map(|eight| Eight::of(simd, eight));
-            let peak_e = eights.fold(Eight::splat(simd, 0.0), Eight::or_larger).largest();
+            let eights = part.as_chunks::<LANES>().0.iter().map(|eight| F64x8::from_array(simd, eight));
+            let peak_e = eights.fold(F64x8::splat(simd, 0.0), F64x8::max).largest();
             parts | u64::from(bound_e + peak_e > limit_e) << i
         })
     }
@@ -379,7 +379,9 @@ impl ExpectedImage {
             let may_rise = |&p: &usize| self.parts_that_may_rise_above(simd, y, p, bound_e, limit_e) != 0;
             for p in (0..self.words_per_row).filter(may_rise) {
                 let piece = columns.iter_mut().enumerate().skip(p * PIECE).take(PIECE);
-                piece.filter(|(x, _)| self.at(*x, y) > limit_e).for_each(|(_, rows)| extend(rows, y));
+                piece
+                    .filter(|(x, _)| self.electrons_at(*x, y) > limit_e)
+                    .for_each(|(_, rows)| extend(rows, y));
             }
         }
         columns
@@ -387,7 +389,7 @@ impl ExpectedImage {
 
     /// Index (row by row) and electrons above the background of every pixel where something was drawn, in the order
     /// of the image.
-    pub fn drawn(&self) -> impl Iterator<Item = (usize, f64)> {
+    pub fn object_pixels(&self) -> impl Iterator<Item = (usize, f64)> {
         let pieces = (0..self.rows).flat_map(|y| (0..self.words_per_row).map(move |p| (y, p)));
         pieces
             .filter(|(y, p)| {
@@ -414,7 +416,7 @@ struct Respond<'a> {
     stamp: &'a mut Stamp,
 }
 
-impl Work for Respond<'_> {
+impl SimdKernel for Respond<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -429,16 +431,16 @@ impl Work for Respond<'_> {
             let row = row.as_chunks_mut::<LANES>().0;
             if let Some(response) = &image.response {
                 for (i, electrons) in row.iter_mut().enumerate() {
-                    let factors = Eight::of_narrow(simd, response.eight(x + i * LANES, y));
-                    Eight::of(simd, electrons).times(factors).store(electrons);
+                    let factors = F64x8::from_f32(simd, response.eight(x + i * LANES, y));
+                    F64x8::from_array(simd, electrons).times(factors).store(electrons);
                 }
             }
-            let peaks = row.iter().fold(Eight::splat(simd, 0.0), |peaks, electrons| {
-                peaks.or_larger(Eight::of(simd, electrons))
+            let peaks = row.iter().fold(F64x8::splat(simd, 0.0), |peaks, electrons| {
+                peaks.max(F64x8::from_array(simd, electrons))
             });
             let peak_e = peaks.largest();
             if peak_e > 0.0 {
-                image.objects.cover(y, x, to);
+                image.objects.add_span(y, x, to);
                 for p in x / PIECE..to.div_ceil(PIECE) {
                     image.peaks[y * image.words_per_row + p] += peak_e;
                 }
@@ -476,12 +478,12 @@ mod tests {
             star(&mut image, x, y);
         }
         image.add_pixel(63, 60, 7.0);
-        let told: Vec<usize> = image.drawn().map(|(index, _)| index).collect();
-        assert!(told.windows(2).all(|pair| pair[0] < pair[1]));
+        let indices: Vec<usize> = image.object_pixels().map(|(index, _)| index).collect();
+        assert!(indices.windows(2).all(|pair| pair[0] < pair[1]));
         let differ: Vec<usize> =
             image.iter().enumerate().filter(|(_, e)| *e != 5.0).map(|(i, _)| i).collect();
-        assert_eq!(told, differ);
-        assert_eq!(image.at(63, 60), 12.0);
+        assert_eq!(indices, differ);
+        assert_eq!(image.electrons_at(63, 60), 12.0);
     }
 
     #[test]
@@ -500,9 +502,9 @@ mod tests {
         image.set_field(Some(&[0.0, 1.0, 2.0, 3.0]), 10.0);
         image.add_pixel(1, 1, 7.0);
         assert_eq!(image.iter().collect::<Vec<_>>(), [5.0, 15.0, 25.0, 35.0, 12.0, 5.0]);
-        assert_eq!((image.at(0, 1), image.background_at(1, 1)), (35.0, 5.0));
+        assert_eq!((image.electrons_at(0, 1), image.background_at(1, 1)), (35.0, 5.0));
         image.set_field(None, 1.0);
-        assert_eq!(image.at(2, 0), 5.0);
+        assert_eq!(image.electrons_at(2, 0), 5.0);
         image.set_field(Some(&[1.0; 6]), 1.0);
         image.clear(0.0);
         assert_eq!(image, ExpectedImage::new(3, 2));

@@ -13,13 +13,13 @@ use serde::de::{
 /// # Errors
 /// Those of [`toml::from_str`], and for what it would drop or take for a table.
 pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, toml::de::Error> {
-    T::deserialize(Exact(toml::Deserializer::parse(text)?))
+    T::deserialize(StrictReader(toml::Deserializer::parse(text)?))
 }
 
 /// A part of the reading, around that of `toml` or of a type.
-struct Exact<X>(X);
+struct StrictReader<X>(X);
 
-impl<'de, D: Deserializer<'de>> Deserializer<'de> for Exact<D> {
+impl<'de, D: Deserializer<'de>> Deserializer<'de> for StrictReader<D> {
     type Error = D::Error;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
@@ -87,7 +87,7 @@ enum Shape {
 /// A type's visitor, whose values are read exactly.
 struct ShapeVisitor<V>(V, Shape);
 
-macro_rules! hand_on {
+macro_rules! delegate {
     ($($method:ident: $value:ty),*) => {
         $(fn $method<E: Error>(self, value: $value) -> Result<V::Value, E> {
             self.0.$method(value)
@@ -102,25 +102,25 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for ShapeVisitor<V> {
         self.0.expecting(f)
     }
 
-    hand_on! {
+    delegate! {
         visit_bool: bool, visit_i64: i64, visit_i128: i128, visit_u64: u64, visit_u128: u128, visit_f64: f64,
         visit_str: &str, visit_borrowed_str: &'de str, visit_string: String
     }
 
     fn visit_some<D: Deserializer<'de>>(self, value: D) -> Result<V::Value, D::Error> {
-        self.0.visit_some(Exact(value))
+        self.0.visit_some(StrictReader(value))
     }
 
     fn visit_newtype_struct<D: Deserializer<'de>>(self, value: D) -> Result<V::Value, D::Error> {
-        self.0.visit_newtype_struct(Exact(value))
+        self.0.visit_newtype_struct(StrictReader(value))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut values: A) -> Result<V::Value, A::Error> {
         match self.1 {
-            Shape::Any => self.0.visit_seq(Exact(values)),
+            Shape::Any => self.0.visit_seq(StrictReader(values)),
             Shape::Table => Err(A::Error::invalid_type(Unexpected::Other("array"), &"a table")),
             Shape::Array(expected) => {
-                let read = self.0.visit_seq(Exact(&mut values))?;
+                let read = self.0.visit_seq(StrictReader(&mut values))?;
                 let mut found = expected;
                 while values.next_element::<IgnoredAny>()?.is_some() {
                     found += 1;
@@ -135,11 +135,11 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for ShapeVisitor<V> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, values: A) -> Result<V::Value, A::Error> {
-        self.0.visit_map(Exact(values))
+        self.0.visit_map(StrictReader(values))
     }
 
     fn visit_enum<A: EnumAccess<'de>>(self, value: A) -> Result<V::Value, A::Error> {
-        self.0.visit_enum(Exact(value))
+        self.0.visit_enum(StrictReader(value))
     }
 }
 
@@ -152,19 +152,19 @@ impl Expected for Values {
     }
 }
 
-impl<'de, S: DeserializeSeed<'de>> DeserializeSeed<'de> for Exact<S> {
+impl<'de, S: DeserializeSeed<'de>> DeserializeSeed<'de> for StrictReader<S> {
     type Value = S::Value;
 
     fn deserialize<D: Deserializer<'de>>(self, value: D) -> Result<S::Value, D::Error> {
-        self.0.deserialize(Exact(value))
+        self.0.deserialize(StrictReader(value))
     }
 }
 
-impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Exact<A> {
+impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for StrictReader<A> {
     type Error = A::Error;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, A::Error> {
-        self.0.next_element_seed(Exact(seed))
+        self.0.next_element_seed(StrictReader(seed))
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -172,7 +172,7 @@ impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Exact<A> {
     }
 }
 
-impl<'de, A: MapAccess<'de>> MapAccess<'de> for Exact<A> {
+impl<'de, A: MapAccess<'de>> MapAccess<'de> for StrictReader<A> {
     type Error = A::Error;
 
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, A::Error> {
@@ -180,7 +180,7 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for Exact<A> {
     }
 
     fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, A::Error> {
-        self.0.next_value_seed(Exact(seed))
+        self.0.next_value_seed(StrictReader(seed))
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -188,16 +188,16 @@ impl<'de, A: MapAccess<'de>> MapAccess<'de> for Exact<A> {
     }
 }
 
-impl<'de, A: EnumAccess<'de>> EnumAccess<'de> for Exact<A> {
+impl<'de, A: EnumAccess<'de>> EnumAccess<'de> for StrictReader<A> {
     type Error = A::Error;
-    type Variant = Exact<A::Variant>;
+    type Variant = StrictReader<A::Variant>;
 
     fn variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<(T::Value, Self::Variant), A::Error> {
-        self.0.variant_seed(seed).map(|(name, value)| (name, Exact(value)))
+        self.0.variant_seed(seed).map(|(name, value)| (name, StrictReader(value)))
     }
 }
 
-impl<'de, A: VariantAccess<'de>> VariantAccess<'de> for Exact<A> {
+impl<'de, A: VariantAccess<'de>> VariantAccess<'de> for StrictReader<A> {
     type Error = A::Error;
 
     fn unit_variant(self) -> Result<(), A::Error> {
@@ -205,7 +205,7 @@ impl<'de, A: VariantAccess<'de>> VariantAccess<'de> for Exact<A> {
     }
 
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, A::Error> {
-        self.0.newtype_variant_seed(Exact(seed))
+        self.0.newtype_variant_seed(StrictReader(seed))
     }
 
     fn tuple_variant<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, A::Error> {

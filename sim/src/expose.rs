@@ -5,16 +5,16 @@ use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 
 use crate::draw::ExpectedImage;
-use crate::moment::Moment;
+use crate::foreground::ForegroundBodies;
 use crate::onboard::{RoiExtractor, downlink_in};
 use crate::optics::{ImagePoint, Stamp};
 use crate::painter::Painter;
 use crate::scene::{CameraMotion, Source, planets};
-use crate::screens::Screens;
-use crate::sensor::{Collected, FlatLaws, Opening, Sensor, SparseImage, Track};
+use crate::scene_state::SceneState;
+use crate::scene_view::{FrameViews, SceneView};
+use crate::sensor::{CosmicRayHit, ExposureInterval, FlatSamplers, FrameCharge, Sensor, SparseImage};
 use crate::switch::Switch;
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility, clock, shadow};
-use crate::view::{Drawn, View};
 use crate::{SimError, Simulator};
 
 /// Points that the image of a source is made of, at most: its body's and those of its trail, multiplied.
@@ -42,10 +42,10 @@ pub struct Exposure {
 /// Which pixels of a frame are drawn of which a camera keeps regions, or only what is above a floor. What it keeps is the same, bit for
 /// bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Drawing {
+pub enum PixelSelection {
     /// Those that the camera looks at: all above the threshold of its regions or its floor, and all in its regions.
     #[default]
-    Seen,
+    Needed,
     /// All of them.
     All,
 }
@@ -56,16 +56,16 @@ pub struct SimulatedCamera<'a> {
     simulator: &'a Simulator,
     painter: Painter,
     image: ExpectedImage,
-    laws: FlatLaws,
+    samplers: FlatSamplers,
     raw: SparseImage,
-    drawing: Drawing,
+    pixel_selection: PixelSelection,
     regions: Option<RoiExtractor>,
     /// Background of an interlaced scene, electrons a second, pixel by pixel: of the first field, and of the second.
     backgrounds: [Vec<f64>; 2],
     /// Its hot pixels.
     hot: Vec<Stamp>,
     /// The track of a particle: drawn when it strikes and again when it is described, as there may be many.
-    struck: Stamp,
+    hit_stamp: Stamp,
     /// The image of an object as the scene was in the first and in the second field.
     halves: [Stamp; 2],
     /// The image of an object whose wells overflow.
@@ -92,13 +92,13 @@ impl<'a> SimulatedCamera<'a> {
             simulator,
             painter: Painter::new(simulator.psf.clone()),
             image: simulator.sensor.new_expected(),
-            laws: FlatLaws::new(),
+            samplers: FlatSamplers::new(),
             raw: simulator.sensor.new_sparse(),
-            drawing: Drawing::Seen,
+            pixel_selection: PixelSelection::Needed,
             regions,
             backgrounds: [Vec::new(), Vec::new()],
             hot: Vec::new(),
-            struck: Stamp::new(),
+            hit_stamp: Stamp::new(),
             halves: [Stamp::new(), Stamp::new()],
             bloomed: Stamp::new(),
             spare: None,
@@ -106,8 +106,8 @@ impl<'a> SimulatedCamera<'a> {
     }
 
     /// The same camera, with other pixels drawn of the frames of which it keeps regions.
-    pub fn drawing(self, drawing: Drawing) -> Self {
-        Self { drawing, ..self }
+    pub fn with_pixel_selection(self, pixel_selection: PixelSelection) -> Self {
+        Self { pixel_selection, ..self }
     }
 
     /// Makes the next frame in the memory of one that nobody needs any more: the same bits, without the time that fresh memory takes.
@@ -126,41 +126,42 @@ impl<'a> SimulatedCamera<'a> {
             .frame(number)
             .ok_or_else(|| OutOfRange::new("frame", number, "a frame of the schedule"))?;
         let lag_s = simulator.shutter.lag_s();
-        let watched = Moment::at(simulator, time - lag_s * Unit::Second, number)?;
+        let watched = SceneState::compute_at(simulator, time - lag_s * Unit::Second, number)?;
         let exposure_s = self.exposure_s(&watched, time - lag_s * Unit::Second);
         // A control without lag looks at the frame's own moment.
-        let moment = if lag_s == 0.0 { watched } else { Moment::at(simulator, time, number)? };
+        let state = if lag_s == 0.0 { watched } else { SceneState::compute_at(simulator, time, number)? };
         let (mut view, drawn) =
-            View::of_frame(simulator, self.painter.psf(), time, moment, exposure_s, number)?;
-        let opening = Opening { seed: simulator.seed, middle_s: clock::tt_j2000_s(time), exposure_s };
-        let tracks = simulator.cosmic_rays.as_ref().map_or_else(Vec::new, |rays| {
-            let rate = rays.rate_per_cm2_s(time, &view.moment.states.chaser.position_km);
-            rays.tracks(&simulator.seed, number, exposure_s, rate)
+            SceneView::for_frame(simulator, self.painter.psf(), time, state, exposure_s, number)?;
+        let interval =
+            ExposureInterval { seed: simulator.seed, middle_s: clock::tt_j2000_s(time), exposure_s };
+        let hits = simulator.cosmic_rays.as_ref().map_or_else(Vec::new, |rays| {
+            let rate = rays.rate_per_cm2_s(time, &view.state.states.chaser.position_km);
+            rays.hits(&simulator.seed, number, exposure_s, rate)
         });
-        let Seen { objects, smear_e_per_px, windows } =
-            self.draw(&mut view, &drawn, number, &opening, &tracks)?;
+        let FrameContents { objects, smear_e_per_px, windows } =
+            self.draw(&mut view, &drawn, number, &interval, &hits)?;
 
-        let moment = view.moment;
+        let state = view.state;
         let truth = FrameTruth {
             frame: number,
             group: group.to_owned(),
             time,
             exposure_s,
-            body_from_icrs: moment.body_from_icrs,
-            camera_from_icrs: moment.camera_from_icrs,
-            position_km: moment.states.chaser.position_km,
-            velocity_km_s: moment.states.chaser.velocity_km_s,
-            line_of_sight: moment.line_of_sight,
-            range_km: moment.states.range_km(),
-            sun: moment.observer.sun(),
-            phase_deg: moment.phase_rad.to_degrees(),
-            shadow: shadow::classify(moment.sunlit_fraction),
-            sunlit_fraction: moment.sunlit_fraction,
+            body_from_icrs: state.body_from_icrs,
+            camera_from_icrs: state.camera_from_icrs,
+            position_km: state.states.chaser.position_km,
+            velocity_km_s: state.states.chaser.velocity_km_s,
+            line_of_sight: state.line_of_sight,
+            range_km: state.states.range_km(),
+            sun: state.observer.sun(),
+            phase_deg: state.phase_rad.to_degrees(),
+            shadow: shadow::classify(state.sunlit_fraction),
+            sunlit_fraction: state.sunlit_fraction,
             background_e_per_s: view.background.map_or(0.0, |field| field.mean_e_per_s()),
             smear_e_per_px,
-            target_from_icrs: moment.target_from_icrs,
-            target_position: moment.target_position,
-            target_visibility: Visibility::of_snr(
+            target_from_icrs: state.target_from_icrs,
+            target_position: state.target_position,
+            target_visibility: Visibility::from_snr(
                 objects
                     .first()
                     .filter(|object| object.kind == ObjectKind::Target)
@@ -186,43 +187,43 @@ impl<'a> SimulatedCamera<'a> {
 
     /// The exposure time that the shutter control chooses: it follows the brightest object on the detector, as it
     /// is at a moment, a lag before the exposure.
-    fn exposure_s(&self, moment: &Moment, time: Epoch) -> f64 {
+    fn exposure_s(&self, state: &SceneState, time: Epoch) -> f64 {
         let simulator = self.simulator;
         let (columns, rows) = simulator.projection.detector();
-        let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
+        let target = state.target_position.filter(|position| position.is_on_detector(columns, rows));
         // A body that spans pixels has a lower peak than a point of its light.
         let peak_share = self.painter.psf().peak_share();
-        let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
-        let spread = moment.appearance.peak_share(&place, peak_share) / peak_share;
-        let screens = Screens::at(simulator, moment);
+        let project = |point_m: &Vector3<f64>| state.project(point_m, &simulator.projection);
+        let spread = state.appearance.peak_share(&project, peak_share) / peak_share;
+        let screens = ForegroundBodies::from_state(simulator, state);
         let mut brightest = simulator.stars.brightest(
-            &moment.observer,
-            moment.camera_from_icrs,
+            &state.observer,
+            state.camera_from_icrs,
             &simulator.projection,
-            target.map_or(0.0, |_| moment.target.electrons_per_s * spread),
+            target.map_or(0.0, |_| state.target.electrons_per_s * spread),
             |astrometric| screens.hide(astrometric),
         );
         if simulator.solar_system == Switch::On {
             brightest = planets::brightest(
                 clock::tdb_j2000_s(time),
-                &moment.observer,
-                moment.camera_from_icrs,
+                &state.observer,
+                state.camera_from_icrs,
                 &simulator.projection,
                 &simulator.radiometry,
                 brightest,
                 |astrometric| screens.hide(astrometric),
             );
         }
-        let peak = (brightest * peak_share).max(self.moon_peak_e_per_s(moment));
+        let peak = (brightest * peak_share).max(self.moon_peak_e_per_s(state));
         simulator.shutter.exposure_s((peak > 0.0).then_some(peak))
     }
 
     /// Electrons a second in the brightest pixel of the Moon, from its image without the camera's motion; 0 when it is not
     /// in the field.
-    fn moon_peak_e_per_s(&self, moment: &Moment) -> f64 {
+    fn moon_peak_e_per_s(&self, state: &SceneState) -> f64 {
         let simulator = self.simulator;
-        let Some(moon) = &moment.moon else { return 0.0 };
-        let still = CameraMotion::still(moment.camera_from_icrs);
+        let Some(moon) = &state.moon else { return 0.0 };
+        let still = CameraMotion::still(state.camera_from_icrs);
         let Some(source) = moon.source(&still, &simulator.projection, &simulator.radiometry, |_| 0.0) else {
             return 0.0;
         };
@@ -236,52 +237,52 @@ impl<'a> SimulatedCamera<'a> {
     /// Draws the expected image and the digital numbers, and tells the truth of every object that has light on the detector.
     fn draw(
         &mut self,
-        view: &mut View,
-        drawn: &Drawn,
+        view: &mut SceneView,
+        drawn: &FrameViews,
         number: u64,
-        opening: &Opening,
-        tracks: &[Track],
-    ) -> Result<Seen, SimError> {
-        let Self { simulator, painter, image, backgrounds, hot, struck, halves, bloomed, .. } = self;
+        interval: &ExposureInterval,
+        hits: &[CosmicRayHit],
+    ) -> Result<FrameContents, SimError> {
+        let Self { simulator, painter, image, backgrounds, hot, hit_stamp, halves, bloomed, .. } = self;
         let sensor = &simulator.sensor;
         let (columns, rows) = image.size();
         let hot_pixels = sensor.hot_pixels();
         hot.resize_with(hot_pixels.len(), Stamp::new);
-        let draw_track = |track: &Track, stamp: &mut Stamp| {
+        let draw_hit = |hit: &CosmicRayHit, stamp: &mut Stamp| {
             if let Some(rays) = &simulator.cosmic_rays {
-                rays.stamp(track, stamp);
-                sensor.blind(stamp);
+                rays.stamp(hit, stamp);
+                sensor.mask_dead_pixels(stamp);
             }
         };
 
-        image.clear(sensor.sky_electrons(opening.exposure_s));
+        image.clear(sensor.sky_electrons(interval.exposure_s));
         let [background, later] = backgrounds;
         match drawn {
-            Drawn::Whole => {
+            FrameViews::Single => {
                 if let Some(background) = &view.background {
-                    image.set_smooth(background.smooth(), opening.exposure_s);
+                    image.set_smooth(background.smooth(), interval.exposure_s);
                 }
             }
-            Drawn::Fields(interlace, fields) => {
+            FrameViews::Fields(interlace, fields) => {
                 let [first, second] = &**fields;
                 if first.background_e_per_s(background) && second.background_e_per_s(later) {
                     interlace.weave(background, later, columns);
-                    image.set_field(Some(background), opening.exposure_s);
+                    image.set_field(Some(background), interval.exposure_s);
                 }
             }
         }
-        let mut paint = |view: &View, index: usize, stamp: &mut Stamp| {
+        let mut paint = |view: &SceneView, index: usize, stamp: &mut Stamp| {
             let source = &view.sources[index];
             let transmission = simulator.vignetting.transmission(source.position);
-            let electrons = source.electrons_per_s * opening.exposure_s * transmission;
-            let resolve = |along: usize, body: &mut Vec<ImagePoint>| match (source.kind, &view.moment.moon) {
+            let electrons = source.electrons_per_s * interval.exposure_s * transmission;
+            let resolve = |along: usize, body: &mut Vec<ImagePoint>| match (source.kind, &view.state.moon) {
                 (ObjectKind::Target, _) => {
-                    let place = |point_m: &Vector3<f64>| view.moment.place_of(point_m, &simulator.projection);
-                    view.moment.appearance.image(&place, POINTS / along, body);
+                    let project = |point_m: &Vector3<f64>| view.state.project(point_m, &simulator.projection);
+                    view.state.appearance.image(&project, POINTS / along, body);
                 }
                 (ObjectKind::Moon, Some(moon)) => {
                     let limit = MOON_POINTS / along;
-                    moon.image(view.moment.camera_from_icrs, &simulator.projection, limit, body);
+                    moon.image(view.state.camera_from_icrs, &simulator.projection, limit, body);
                 }
                 _ => body.push(ImagePoint { position: source.position, share: 1.0 }),
             };
@@ -289,8 +290,8 @@ impl<'a> SimulatedCamera<'a> {
         };
         for index in 0..view.sources.len() {
             let drawn = image.add_painted(|stamp| match drawn {
-                Drawn::Whole => paint(view, index, stamp),
-                Drawn::Fields(interlace, fields) => {
+                FrameViews::Single => paint(view, index, stamp),
+                FrameViews::Fields(interlace, fields) => {
                     let [first, second] = &**fields;
                     paint(first, index, &mut halves[0]);
                     paint(second, index, &mut halves[1]);
@@ -300,29 +301,31 @@ impl<'a> SimulatedCamera<'a> {
             view.sources[index].position = drawn.centre();
         }
         let sources = &mut view.sources;
-        let mut charge = sensor.collect(image, opening);
+        let mut charge = sensor.collect(image, interval);
         for (pixel, stamp) in hot_pixels.iter().zip(&mut *hot) {
             // The sensor itself collects it; here it is only described.
-            stamp.set_pixel(pixel.x, pixel.y, sensor.hot_electrons(pixel, opening));
-            sources.push(of_the_detector(ObjectKind::HotPixel, pixel.y * columns + pixel.x, stamp));
+            stamp.set_pixel(pixel.x, pixel.y, sensor.hot_electrons(pixel, interval));
+            sources.push(detector_source(ObjectKind::HotPixel, pixel.y * columns + pixel.x, stamp));
         }
-        for (id, track) in tracks.iter().enumerate() {
-            draw_track(track, struck);
-            charge.strike(struck);
-            sources.push(of_the_detector(ObjectKind::CosmicRay, id, struck));
+        for (id, hit) in hits.iter().enumerate() {
+            draw_hit(hit, hit_stamp);
+            charge.add_cosmic_ray_hit(hit_stamp);
+            sources.push(detector_source(ObjectKind::CosmicRay, id, hit_stamp));
         }
 
-        let Self { laws, raw, regions, drawing, .. } = self;
-        let collected = Collected { charge: &charge, seed: simulator.seed, frame: number };
+        let Self { samplers, raw, regions, pixel_selection, .. } = self;
+        let frame_charge = FrameCharge { charge: &charge, seed: simulator.seed, frame: number };
         let windows = match regions {
-            Some(regions) => Some(keep_regions(sensor, &collected, regions, *drawing, laws, raw)?),
+            Some(regions) => {
+                Some(extract_regions(sensor, &frame_charge, regions, *pixel_selection, samplers, raw)?)
+            }
             None => {
                 match simulator.zero_suppression_dn {
                     Some(floor_dn) => {
-                        read_out_above(sensor, floor_dn, &collected, *drawing, laws, raw)?;
+                        read_out_above(sensor, floor_dn, &frame_charge, *pixel_selection, samplers, raw)?;
                         raw.suppress(floor_dn);
                     }
-                    None => sensor.read_out(&charge, &simulator.seed, number, laws, raw.whole())?,
+                    None => sensor.read_out(&charge, &simulator.seed, number, samplers, raw.full_image())?,
                 }
                 None
             }
@@ -332,11 +335,11 @@ impl<'a> SimulatedCamera<'a> {
         let saturation_e = sensor.config().saturation_e();
         let mut objects = Vec::with_capacity(sources.len());
         let drawn = charge.expected().objects().iter().chain(&*hot);
-        let drawn = drawn.map(Ok).chain(tracks.iter().map(Err));
+        let drawn = drawn.map(Ok).chain(hits.iter().map(Err));
         for (source, stamp) in sources.iter().zip(drawn) {
-            let stamp = stamp.unwrap_or_else(|track| {
-                draw_track(track, struck);
-                &*struck
+            let stamp = stamp.unwrap_or_else(|hit| {
+                draw_hit(hit, hit_stamp);
+                &*hit_stamp
             });
             let pixel = |at: f64, size: usize| (at.round().max(0.0) as usize).min(size.saturating_sub(1));
             let (x, y) = (pixel(source.position.x, columns), pixel(source.position.y, rows));
@@ -368,12 +371,12 @@ impl<'a> SimulatedCamera<'a> {
                 cut: windows.as_ref().map_or(0.0, |windows| stamp.cut(windows)),
             });
         }
-        Ok(Seen { objects, smear_e_per_px: charge.smear_e_per_px(), windows })
+        Ok(FrameContents { objects, smear_e_per_px: charge.smear_e_per_px(), windows })
     }
 }
 
 /// What the camera has seen of a frame.
-struct Seen {
+struct FrameContents {
     objects: Vec<ObjectTruth>,
     /// Electrons that the frame transfer adds to a pixel, the mean over all.
     smear_e_per_px: f64,
@@ -382,17 +385,17 @@ struct Seen {
 }
 
 /// Reads out a frame as far as the camera looks at it, and finds the regions that it keeps.
-fn keep_regions(
+fn extract_regions(
     sensor: &Sensor,
-    collected: &Collected<'_>,
+    frame_charge: &FrameCharge<'_>,
     regions: &mut RoiExtractor,
-    drawing: Drawing,
-    laws: &mut FlatLaws,
+    selection: PixelSelection,
+    samplers: &mut FlatSamplers,
     raw: &mut SparseImage,
 ) -> Result<Vec<Window>, SimError> {
-    read_out_above(sensor, regions.threshold_dn(), collected, drawing, laws, raw)?;
+    read_out_above(sensor, regions.threshold_dn(), frame_charge, selection, samplers, raw)?;
     let windows = regions.extract_from(raw.raw(), raw.runs());
-    sensor.read_out_windows(&windows, collected, laws, raw);
+    sensor.read_out_windows(&windows, frame_charge, samplers, raw);
     Ok(windows)
 }
 
@@ -400,21 +403,21 @@ fn keep_regions(
 fn read_out_above(
     sensor: &Sensor,
     floor_dn: u16,
-    collected: &Collected<'_>,
-    drawing: Drawing,
-    laws: &mut FlatLaws,
+    frame_charge: &FrameCharge<'_>,
+    selection: PixelSelection,
+    samplers: &mut FlatSamplers,
     raw: &mut SparseImage,
 ) -> Result<(), SimError> {
-    sensor.read_out_above(floor_dn, collected, laws, raw)?;
-    if drawing == Drawing::All {
+    sensor.read_out_above(floor_dn, frame_charge, samplers, raw)?;
+    if selection == PixelSelection::All {
         let (columns, rows) = raw.raw().size();
-        sensor.read_out_windows(&[Window { x: 0, y: 0, columns, rows }], collected, laws, raw);
+        sensor.read_out_windows(&[Window { x: 0, y: 0, columns, rows }], frame_charge, samplers, raw);
     }
     Ok(())
 }
 
 /// What the detector makes by itself, as a source that is described by its stamp.
-fn of_the_detector(kind: ObjectKind, id: usize, stamp: &Stamp) -> Source {
+fn detector_source(kind: ObjectKind, id: usize, stamp: &Stamp) -> Source {
     Source {
         kind,
         id: id as u32,

@@ -33,11 +33,12 @@ pub mod exact_toml;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod expose;
+mod foreground;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
-mod lanes;
+mod generator_lanes;
 mod limit;
 pub mod memo;
 #[allow(
@@ -45,11 +46,6 @@ pub mod memo;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 pub mod mitsuba;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod moment;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
@@ -73,12 +69,22 @@ pub mod regular_file;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 pub mod scene;
-mod screens;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod scene_state;
+mod scene_view;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 pub mod sensor;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod simd_kernel;
 mod simulator;
 #[allow(
     clippy::indexing_slicing,
@@ -101,13 +107,7 @@ pub mod truth;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 pub mod vector;
-mod view;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod widest;
 
 pub use error::SimError;
-pub use expose::{Drawing, Exposure, SimulatedCamera};
+pub use expose::{Exposure, PixelSelection, SimulatedCamera};
 pub use simulator::{Simulation, Simulator};

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::widest::LANES;
+use crate::simd_kernel::LANES;
 
 /// Columns that lie together.
 const STRIP: usize = 64;
@@ -39,10 +39,10 @@ impl PixelFactors {
         let mut values: Arc<[f32]> = vec![1.0; columns.div_ceil(STRIP) * rows * STRIDE + LINE].into();
         // From the beginning of a line of memory, if that can be had: it changes no factor.
         let first = values.as_ptr().align_offset(size_of::<[f32; LINE]>()).min(LINE);
-        let places = Arc::get_mut(&mut values).unwrap_or_default()[first..].chunks_exact_mut(STRIDE);
+        let slots = Arc::get_mut(&mut values).unwrap_or_default()[first..].chunks_exact_mut(STRIDE);
         let strips = (0..columns).step_by(STRIP);
         let all = strips.flat_map(|from| by_rows.chunks_exact(columns).map(move |row| &row[from..]));
-        for (place, factors) in places.zip(all) {
+        for (place, factors) in slots.zip(all) {
             let together = factors.len().min(STRIDE);
             place[..together].copy_from_slice(&factors[..together]);
         }
@@ -67,9 +67,9 @@ impl PixelFactors {
     }
 
     /// That of a pixel; `None` off the detector.
-    pub(crate) fn at(&self, x: usize, y: usize) -> Option<f32> {
+    pub(crate) fn factor_at(&self, x: usize, y: usize) -> Option<f32> {
         let is_inside = x < self.columns && y < self.rows;
-        is_inside.then(|| self.values.get(self.place(x, y)).copied()).flatten()
+        is_inside.then(|| self.values.get(self.index(x, y)).copied()).flatten()
     }
 
     /// Those of `length` pixels of a row from column `x` on, part by part: which of the pixels, and their factors.
@@ -83,7 +83,7 @@ impl PixelFactors {
         let end = x + length;
         (x / STRIP..end.div_ceil(STRIP)).map(move |strip| {
             let (from, to) = (x.max(strip * STRIP), end.min((strip + 1) * STRIP));
-            let first = self.place(from, y);
+            let first = self.index(from, y);
             (from - x..to - x, self.values.get(first..first + (to - from)).unwrap_or_default())
         })
     }
@@ -91,18 +91,18 @@ impl PixelFactors {
     /// Those of eight pixels of a row from column `x` on; 1 off the detector.
     #[inline(always)]
     pub(crate) fn eight(&self, x: usize, y: usize) -> &[f32; LANES] {
-        let from = if y < self.rows { self.values.get(self.place(x, y)..) } else { None };
+        let from = if y < self.rows { self.values.get(self.index(x, y)..) } else { None };
         from.and_then(<[f32]>::first_chunk).unwrap_or(&[1.0; LANES])
     }
 
     /// Row by row.
     #[cfg(test)]
     pub(crate) fn iter(&self) -> impl Iterator<Item = f32> {
-        (0..self.rows).flat_map(move |y| (0..self.columns).filter_map(move |x| self.at(x, y)))
+        (0..self.rows).flat_map(move |y| (0..self.columns).filter_map(move |x| self.factor_at(x, y)))
     }
 
     #[inline(always)]
-    fn place(&self, x: usize, y: usize) -> usize {
+    fn index(&self, x: usize, y: usize) -> usize {
         self.first + (x / STRIP * self.rows + y) * STRIDE + x % STRIP
     }
 }
@@ -136,11 +136,11 @@ mod tests {
                         "{x} {y} {lane}"
                     );
                 }
-                let told: Vec<_> = factors.span(x, y, columns - x).collect();
-                assert!(told.iter().flat_map(|(_, part)| *part).copied().eq((x..columns).map(|x| of(x, y))));
-                assert!(told.iter().flat_map(|(pixels, _)| pixels.clone()).eq(0..columns - x));
+                let spans: Vec<_> = factors.span(x, y, columns - x).collect();
+                assert!(spans.iter().flat_map(|(_, part)| *part).copied().eq((x..columns).map(|x| of(x, y))));
+                assert!(spans.iter().flat_map(|(pixels, _)| pixels.clone()).eq(0..columns - x));
             }
-            assert_eq!((factors.at(columns, 0), factors.at(0, rows)), (None, None));
+            assert_eq!((factors.factor_at(columns, 0), factors.factor_at(0, rows)), (None, None));
             assert_eq!(factors.eight(0, rows), &[1.0; LANES]);
             assert!(factors.has_row(rows - 1, columns));
             assert!(!factors.has_row(rows, columns) && !factors.has_row(0, columns + 1));

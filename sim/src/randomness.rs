@@ -83,9 +83,9 @@ pub struct Seed {
 }
 
 impl Seed {
-    /// The stream at an address. `place` is a row, a pixel, a component: whatever the effect counts by.
-    pub fn stream(&self, frame: u64, effect: Effect, place: u64) -> Stream {
-        self.streams(frame, effect).at(place)
+    /// The stream at an address. `index` is a row, a pixel, a component: whatever the effect counts by.
+    pub fn stream(&self, frame: u64, effect: Effect, index: u64) -> Stream {
+        self.streams(frame, effect).stream_at(index)
     }
 
     /// All streams of an effect in a frame: for loops over many places.
@@ -106,14 +106,14 @@ pub struct Streams {
 
 impl Streams {
     /// The stream at a place, the same as [`Seed::stream`].
-    pub fn at(&self, place: u64) -> Stream {
-        Stream::seed_from_u64(self.key_of(place))
+    pub fn stream_at(&self, index: u64) -> Stream {
+        Stream::seed_from_u64(self.key_at(index))
     }
 
     /// The first uniform number of the stream at a place, without the cost of the stream.
     #[inline(always)]
-    pub(crate) fn first_uniform(&self, place: u64) -> f64 {
-        let key = self.key_of(place);
+    pub(crate) fn first_uniform(&self, index: u64) -> f64 {
+        let key = self.key_at(index);
         // The first word of xoshiro256++ is made of the first and the fourth of the numbers that key it.
         let [first, fourth] =
             [0, 3].map(|number| split_mix(key.wrapping_add(GOLDEN_GAMMA.wrapping_mul(number))));
@@ -121,15 +121,15 @@ impl Streams {
     }
 
     /// What keys the generators at a place.
-    pub(crate) fn key_of(&self, place: u64) -> u64 {
-        split_mix(self.key ^ place)
+    pub(crate) fn key_at(&self, index: u64) -> u64 {
+        split_mix(self.key ^ index)
     }
 
     /// A single word of 64 random bits at a place, without the cost of a generator. Not a number of the stream
     /// there; a place uses either its stream or its word.
-    pub fn word(&self, place: u64) -> u64 {
+    pub fn word(&self, index: u64) -> u64 {
         // Twice: once would give neighbouring places inputs that differ in a bit or two only.
-        split_mix(split_mix(self.key ^ place))
+        split_mix(split_mix(self.key ^ index))
     }
 }
 
@@ -185,15 +185,15 @@ mod tests {
 
     #[test]
     fn the_first_uniform_number_is_that_of_the_stream() {
-        for place in 0..1000 {
-            let streams = SEED.streams(place, Effect::Exceedance);
-            assert_eq!(streams.first_uniform(place), uniform(&mut streams.at(place)));
+        for index in 0..1000 {
+            let streams = SEED.streams(index, Effect::Exceedance);
+            assert_eq!(streams.first_uniform(index), uniform(&mut streams.stream_at(index)));
         }
     }
 
     #[test]
     fn every_word_of_the_address_matters() {
-        let first = |seed: Seed, frame, effect, place| seed.stream(frame, effect, place).next_u64();
+        let first = |seed: Seed, frame, effect, index| seed.stream(frame, effect, index).next_u64();
         let draws = [
             first(SEED, 0, Effect::PixelNoise, 0),
             first(Seed { seed: 43, case: 0 }, 0, Effect::PixelNoise, 0),
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn a_stream_is_the_same_by_either_way() {
         let streams = SEED.streams(7, Effect::PixelNoise);
-        assert_eq!(streams.at(99).next_u64(), SEED.stream(7, Effect::PixelNoise, 99).next_u64());
+        assert_eq!(streams.stream_at(99).next_u64(), SEED.stream(7, Effect::PixelNoise, 99).next_u64());
     }
 
     /// Bits of words at neighbouring places, and at the same place in neighbouring frames, differ in half the cases.
@@ -218,11 +218,11 @@ mod tests {
     fn neighbouring_words_share_no_bits_but_by_chance() {
         let n = 20_000;
         let mut differ = [[0_u32; 64]; 2];
-        for place in 0..n {
-            let word = SEED.streams(1, Effect::PixelNoise).word(place);
+        for index in 0..n {
+            let word = SEED.streams(1, Effect::PixelNoise).word(index);
             let others = [
-                SEED.streams(1, Effect::PixelNoise).word(place + 1),
-                SEED.streams(2, Effect::PixelNoise).word(place),
+                SEED.streams(1, Effect::PixelNoise).word(index + 1),
+                SEED.streams(2, Effect::PixelNoise).word(index),
             ];
             for (counts, other) in differ.iter_mut().zip(others) {
                 for (bit, count) in counts.iter_mut().enumerate() {
@@ -241,7 +241,7 @@ mod tests {
         let n = 20_000;
         let rows: Vec<(f64, f64)> = (0..n)
             .map(|row| {
-                let at = |place| normal(&mut SEED.stream(1, Effect::PixelNoise, place));
+                let at = |index| normal(&mut SEED.stream(1, Effect::PixelNoise, index));
                 (at(row), at(row + 1))
             })
             .collect();

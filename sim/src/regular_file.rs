@@ -11,16 +11,16 @@ use std::path::Path;
 pub fn open(path: &Path) -> Result<File> {
     // Asked before: opening a pipe waits for whoever writes into it.
     let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() || (metadata.len() == 0 && is_of_the_kernel(path)) {
+    if !metadata.is_file() || (metadata.len() == 0 && is_kernel_file(path)) {
         return Err(Error::other("it is not a regular file"));
     }
     File::open(path)
 }
 
 /// Whether a file is one that the kernel makes up as it is read: it calls itself regular and empty, and may have no end.
-fn is_of_the_kernel(path: &Path) -> bool {
-    let place = std::fs::canonicalize(path);
-    place.is_ok_and(|place| place.starts_with("/proc") || place.starts_with("/sys"))
+fn is_kernel_file(path: &Path) -> bool {
+    let resolved = std::fs::canonicalize(path);
+    resolved.is_ok_and(|resolved| resolved.starts_with("/proc") || resolved.starts_with("/sys"))
 }
 
 /// The bytes of a file of at most `max_bytes`. A pipe or a device, which may have no end, is refused.
@@ -60,9 +60,9 @@ mod tests {
         #[cfg(target_os = "linux")]
         assert!(read(Path::new("/proc/kmsg"), 10).is_err() && read(Path::new("/proc/cpuinfo"), 10).is_err());
         assert!(read_text(Path::new("/dev/zero"), 10).is_err());
-        let own = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
-        let bytes = read(own, 1 << 20).unwrap();
-        assert!(read(own, bytes.len() as u64 - 1).unwrap_err().to_string().contains("expected at most"));
-        assert_eq!(read_text(own, bytes.len() as u64).unwrap().as_bytes(), bytes);
+        let manifest = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
+        let bytes = read(manifest, 1 << 20).unwrap();
+        assert!(read(manifest, bytes.len() as u64 - 1).unwrap_err().to_string().contains("expected at most"));
+        assert_eq!(read_text(manifest, bytes.len() as u64).unwrap().as_bytes(), bytes);
     }
 }

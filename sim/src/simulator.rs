@@ -136,7 +136,7 @@ impl Simulator {
             projection,
             vignetting,
             psf: Psf::load(&simulation.psf, folder)?
-                .growing(simulation.optics.psf_growth, &simulation.camera),
+                .with_growth(simulation.optics.psf_growth, &simulation.camera),
             sensor: Sensor::new(&simulation.sensor, columns, rows)?,
             cosmic_rays,
             shutter,
@@ -236,7 +236,7 @@ fn check_times(
     let last = schedule.frame_count().saturating_sub(1);
     for (number, earlier_s) in [(0, lag_s), (0, half_interval_s), (last, -half_interval_s)] {
         let Some((_, time)) = schedule.frame(number) else { continue };
-        let states = trajectory.at(time - earlier_s * Unit::Second);
+        let states = trajectory.states_at(time - earlier_s * Unit::Second);
         let chaser = states.chaser;
         Observer::new(time - earlier_s * Unit::Second, chaser.position_km, chaser.velocity_km_s)
             .map_err(|error| OutOfRange { path: "schedule".to_owned(), ..error })?;
@@ -261,7 +261,7 @@ fn check_separation(
     let step = (schedule.frame_count() / SEPARATIONS as u64) as usize + 1;
     for frame in (0..last).step_by(step).chain([last]) {
         let Some((_, time)) = schedule.frame(frame) else { continue };
-        target.check_separation(&trajectory.at(time), frame)?;
+        target.check_separation(&trajectory.states_at(time), frame)?;
     }
     Ok(())
 }

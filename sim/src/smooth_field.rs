@@ -35,8 +35,8 @@ impl NodeGrid {
     }
 
     /// The place of node `i` of the grid, counted row by row: column and row, px.
-    pub(crate) fn place(&self, i: usize) -> (f64, f64) {
-        (place(i % NODES, self.columns), place(i / NODES, self.rows))
+    pub(crate) fn node_position(&self, i: usize) -> (f64, f64) {
+        (node_coordinate(i % NODES, self.columns), node_coordinate(i / NODES, self.rows))
     }
 }
 
@@ -73,11 +73,12 @@ impl SmoothField {
     }
 
     /// The field at a pixel; 0 outside the detector.
-    pub(crate) fn at(&self, x: usize, y: usize) -> f64 {
+    pub(crate) fn value_at(&self, x: usize, y: usize) -> f64 {
         let Some(&across) = self.grid.across.get(x).filter(|_| y < self.grid.rows) else { return 0.0 };
         let (before, _) = between_nodes(x, self.grid.columns);
         let (row, down) = between_nodes(y, self.grid.rows);
-        let (from, to) = (self.in_line(row, down, before), self.in_line(row, down, before + 1));
+        let (from, to) =
+            (self.value_between_rows(row, down, before), self.value_between_rows(row, down, before + 1));
         from + across * (to - from)
     }
 
@@ -91,7 +92,8 @@ impl SmoothField {
             if first >= last {
                 continue;
             }
-            let (from, to) = (self.in_line(row, down, node), self.in_line(row, down, node + 1));
+            let (from, to) =
+                (self.value_between_rows(row, down, node), self.value_between_rows(row, down, node + 1));
             let step = to - from;
             let Some(across) = self.grid.across.get(first..last) else { return };
             for (out, across) in out[first - x..last - x].iter_mut().zip(across) {
@@ -103,19 +105,19 @@ impl SmoothField {
     /// The largest value of a row of pixels, or a little more: that of one of its ends or of a node's column.
     pub(crate) fn largest_of_row(&self, y: usize) -> f64 {
         let (row, down) = between_nodes(y, self.grid.rows);
-        (0..NODES).map(|i| self.in_line(row, down, i)).fold(0.0, f64::max)
+        (0..NODES).map(|i| self.value_between_rows(row, down, i)).fold(0.0, f64::max)
     }
 
     /// The field at the column of node `i`, `down` of the way from a row of nodes to the next.
     #[inline(always)]
-    fn in_line(&self, row: usize, down: f64, i: usize) -> f64 {
+    fn value_between_rows(&self, row: usize, down: f64, i: usize) -> f64 {
         let (above, below) = (self.values[row * NODES + i], self.values[(row + 1) * NODES + i]);
         above + down * (below - above)
     }
 }
 
 /// The pixel on which node `i` lies, of `n` pixels.
-fn place(i: usize, n: usize) -> f64 {
+fn node_coordinate(i: usize, n: usize) -> f64 {
     i as f64 * (n as f64 - 1.0) / (NODES - 1) as f64
 }
 
@@ -145,7 +147,7 @@ mod tests {
     fn field(columns: usize, rows: usize) -> SmoothField {
         let grid = Arc::new(NodeGrid::new(columns, rows));
         let values = std::array::from_fn(|i| {
-            let (x, y) = grid.place(i);
+            let (x, y) = grid.node_position(i);
             x * x + 3.0 * y
         });
         SmoothField::new(grid, values)
@@ -160,7 +162,7 @@ mod tests {
             for y in 0..rows {
                 field.span(0, y, &mut row);
                 for (x, value) in row.iter().enumerate() {
-                    assert_eq!(*value, field.at(x, y), "({x}, {y}) of {columns} × {rows}");
+                    assert_eq!(*value, field.value_at(x, y), "({x}, {y}) of {columns} × {rows}");
                 }
                 let largest = row.iter().copied().fold(0.0, f64::max);
                 assert!(field.largest_of_row(y) >= largest * (1.0 - 1e-15), "row {y} of {columns} × {rows}");
@@ -182,9 +184,9 @@ mod tests {
         let field = field(161, 81);
         for (x, y) in [(0, 0), (10, 5), (7, 33), (160, 80)] {
             let exact = (x * x + 3 * y) as f64;
-            assert!((0.0..=25.0 + 1e-9).contains(&(field.at(x, y) - exact)), "({x}, {y})");
+            assert!((0.0..=25.0 + 1e-9).contains(&(field.value_at(x, y) - exact)), "({x}, {y})");
         }
-        assert!((field.at(7, 33) - (70.0 + 99.0)).abs() < 1e-9);
-        assert_eq!((field.at(161, 0), field.at(0, 81)), (0.0, 0.0));
+        assert!((field.value_at(7, 33) - (70.0 + 99.0)).abs() < 1e-9);
+        assert_eq!((field.value_at(161, 0), field.value_at(0, 81)), (0.0, 0.0));
     }
 }

@@ -16,7 +16,7 @@ pub enum Switch {
 
 impl Switch {
     /// `value` when on, 0 when off.
-    pub fn of(self, value: f64) -> f64 {
+    pub fn apply(self, value: f64) -> f64 {
         match self {
             Self::On => value,
             Self::Off => 0.0,

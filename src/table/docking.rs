@@ -1,7 +1,7 @@
 //! The table of a docking score that a person reads: a row a bin of range and lens, the paper's formulas beside the
 //! pipeline's own best estimator.
 use comfy_table::{Attribute, Cell};
-use contract::docking::Doubt;
+use contract::docking::FailedCheck;
 use indexmap::IndexMap;
 use score::docking::{DockingGroup, DockingScore, GrossError, MissCause, names};
 use score::{Figure, warm_up_note};
@@ -36,7 +36,7 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
     text.push_str(&causes(
         "Doubtful poses by failed test",
         &rows,
-        &Doubt::ALL.map(Doubt::code),
+        &FailedCheck::ALL.map(FailedCheck::code),
         |row| row.doubtful.clone(),
         styled,
     ));

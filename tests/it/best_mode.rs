@@ -11,7 +11,7 @@ use pipeline::far_range::{AberrationConfig, BestConfig, FarRangeConfig, FarRange
 use sim::onboard::{RoiConfig, RoiExtractor, ScanOrder, downlink};
 use sim::optics::{Psf, PsfConfig, Stamp};
 use sim::randomness::Seed;
-use sim::sensor::{BloomingConfig, FlatLaws, Opening, RawImage, Sensor, SensorConfig};
+use sim::sensor::{BloomingConfig, ExposureInterval, FlatSamplers, RawImage, Sensor, SensorConfig};
 
 const SIGMA_PX: f64 = 0.8;
 const BACKGROUND_E: f64 = 20.0;
@@ -53,8 +53,8 @@ fn draw(sensor: &Sensor, psf: &PsfConfig, points: &[(PixelPoint, f64)], number: 
     }
     let mut raw = sensor.new_raw();
     let seed = Seed { seed: 20_120_423, case: 0 };
-    let charge = sensor.collect(&mut image, &Opening { seed, middle_s: 0.0, exposure_s: 0.25 });
-    sensor.read_out(&charge, &seed, number, &mut FlatLaws::new(), &mut raw).unwrap();
+    let charge = sensor.collect(&mut image, &ExposureInterval { seed, middle_s: 0.0, exposure_s: 0.25 });
+    sensor.read_out(&charge, &seed, number, &mut FlatSamplers::new(), &mut raw).unwrap();
     raw
 }
 

@@ -38,7 +38,7 @@ fn frame(i: u64) -> FrameTruth {
         target_from_icrs: i.is_multiple_of(2).then(|| Rotation::from_rotation_vector(vector(23))),
         target_position: (!i.is_multiple_of(4))
             .then(|| PixelPoint::new(-fraction(i), 752.0 * fraction(i + 5))),
-        target_visibility: Visibility::of_snr(10.0 * fraction(i)),
+        target_visibility: Visibility::from_snr(10.0 * fraction(i)),
     }
 }
 

@@ -114,7 +114,7 @@ fn truth_and_answer_are_drawn_where_the_files_have_them() {
     // A star with nothing near it.
     let panel = PanelLocation(frame["panel"].clone());
     let shown = |o: &&sim::truth::ObjectTruth| {
-        o.frame == 10201 && o.cut < 0.99 && Visibility::of_snr(o.snr) == Visibility::Detectable
+        o.frame == 10201 && o.cut < 0.99 && Visibility::from_snr(o.snr) == Visibility::Detectable
     };
     let alone = objects.iter().filter(shown).find(|star| {
         let near = objects.iter().filter(shown).filter(|o| o.position.distance(star.position) < 30.0).count();

@@ -11,7 +11,7 @@ the tree, the tests are compiled once, and run for each fault with BORESIGHT_SAB
     python3 tests/saboteurs/run.py --suites all       slow tests too
     python3 tests/saboteurs/run.py --write            and write the table into docs/saboteurs.md
 
-A suite is the unit tests of a crate (`sim/src`) or a module of its integration tests (`sim/tests/pixel_law`). One that was run once
+A suite is the unit tests of a crate (`sim/src`) or a module of its integration tests (`sim/tests/pixel_distribution`). One that was run once
 with a fault is not run again as long as its executable is the same: a run that was interrupted goes on.
 """
 

@@ -64,7 +64,7 @@ impl Conformance for Docking {
         fields.collect()
     }
 
-    fn unsound(outcome: &DockingOutcome, _: &DockingSetup) -> Option<String> {
+    fn violation(outcome: &DockingOutcome, _: &DockingSetup) -> Option<String> {
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
         match &outcome.solution {
             DockingSolution::Measured(measurement) | DockingSolution::Doubtful { measurement, .. } => {

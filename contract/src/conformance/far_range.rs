@@ -50,14 +50,14 @@ impl Conformance for FarRange {
             .collect()
     }
 
-    fn unsound(outcome: &Outcome, setup: &Setup) -> Option<String> {
+    fn violation(outcome: &Outcome, setup: &Setup) -> Option<String> {
         if let Solution::Detected(measurement) = &outcome.solution {
             let position = measurement.position;
             if !position.is_on_detector(setup.camera.columns, setup.camera.rows) {
                 return Some(format!("the target is not on the detector: ({}, {})", position.x, position.y));
             }
             if let Some(los) = &measurement.line_of_sight
-                && !is_one(los.vector().norm())
+                && !is_unit_norm(los.vector().norm())
             {
                 return Some(format!("the line of sight is not a unit vector: {los:?}"));
             }
@@ -68,7 +68,7 @@ impl Conformance for FarRange {
             }
         }
         if let Some(attitude) = &outcome.camera_from_icrs
-            && !is_one(attitude.quaternion().norm())
+            && !is_unit_norm(attitude.quaternion().norm())
         {
             return Some(format!("the camera's attitude is not a unit quaternion: {attitude:?}"));
         }
@@ -85,6 +85,6 @@ impl Conformance for FarRange {
 }
 
 /// Whether a norm is that of a unit; never so for a NaN.
-fn is_one(norm: f64) -> bool {
+fn is_unit_norm(norm: f64) -> bool {
     (norm - 1.0).abs() < 1e-6
 }

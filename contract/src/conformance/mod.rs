@@ -23,7 +23,7 @@ pub trait Conformance: Interface {
     fn inputs(setup: &Self::Setup) -> Vec<Input<Self>>;
 
     /// What makes an answer unusable, if anything does.
-    fn unsound(outcome: &Self::Outcome, setup: &Self::Setup) -> Option<String>;
+    fn violation(outcome: &Self::Outcome, setup: &Self::Setup) -> Option<String>;
 }
 
 /// Runs the checks: every kind of image is answered without a panic, no answer holds a NaN or what cannot be (a place off the detector,
@@ -49,7 +49,7 @@ pub fn check<I: Conformance>(
     let mut violations = Vec::new();
     for ((input, _, _), (outcome, again)) in inputs.iter().zip(first.iter().zip(&second)) {
         let mut broke = |broken: String| violations.push(Violation { input, broken });
-        if let Some(broken) = I::unsound(outcome, setup) {
+        if let Some(broken) = I::violation(outcome, setup) {
             broke(broken);
         }
         if outcome != again {

@@ -17,6 +17,6 @@ pub use features::{Circle, Cross, Features, Mark, MarkUse};
 pub use field::{Field, FieldTelemetry, Lines};
 pub use interface::{Docking, DockingSetup};
 pub use motion::{Motion, MotionReport};
-pub use outcome::{DockingOutcome, DockingSolution, Doubt, FieldMeasurement, NoPose};
+pub use outcome::{DockingOutcome, DockingSolution, FailedCheck, FieldMeasurement, NoPose};
 pub use pose::{Pose, PoseEstimate};
 pub use target::{Outline, StandOffCross, TargetModel};

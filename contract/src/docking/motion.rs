@@ -36,7 +36,7 @@ pub struct MotionReport {
 
 impl MotionReport {
     /// The report of these two; `None` when neither gave a motion.
-    pub fn of(best: Option<Motion>, paper: Option<Motion>) -> Option<Self> {
+    pub fn from_estimates(best: Option<Motion>, paper: Option<Motion>) -> Option<Self> {
         (best.is_some() || paper.is_some()).then_some(Self { best, paper })
     }
 

@@ -78,7 +78,7 @@ impl fmt::Display for NoPose {
 
 /// The test that a measured pose has failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Doubt {
+pub enum FailedCheck {
     /// What the measurement leaves of the image is not noise.
     Residuals,
     /// Cross, ring of marks, docking unit and station's outline do not belong to one scene.
@@ -89,7 +89,7 @@ pub enum Doubt {
     Repeated,
 }
 
-impl Doubt {
+impl FailedCheck {
     /// Every one, in the order in which they are tested.
     pub const ALL: [Self; 4] = [Self::Repeated, Self::Residuals, Self::Features, Self::Motion];
 
@@ -104,14 +104,14 @@ impl Doubt {
     }
 }
 
-impl fmt::Display for Doubt {
-    /// The status of a row in files: `doubtful: ` and [`Doubt::code`].
+impl fmt::Display for FailedCheck {
+    /// The status of a row in files: `doubtful: ` and [`FailedCheck::code`].
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "doubtful: {}", self.code())
     }
 }
 
-impl std::str::FromStr for Doubt {
+impl std::str::FromStr for FailedCheck {
     type Err = ();
 
     /// Reads what [`fmt::Display`] writes.
@@ -131,7 +131,7 @@ pub enum DockingSolution {
         /// What was measured.
         measurement: Box<FieldMeasurement>,
         /// The test that it failed.
-        doubt: Doubt,
+        doubt: FailedCheck,
     },
     /// The target is not resolved yet: the range alone, from the outline of the station.
     RangeOnly {

@@ -106,7 +106,7 @@ impl MitsubaRenderer {
             rows: crop.rows,
             radiance: vec![0.0; crop.columns * crop.rows],
         };
-        for layer in Layer::of(lighting)? {
+        for layer in Layer::from_lighting(lighting)? {
             let files = SceneFiles::new(scene, &layer, pose, camera, &self.options.settings)?;
             let image = self.layer(&files, layer.name())?;
             for (total, part) in sum.radiance.iter_mut().zip(&image.radiance) {

@@ -42,7 +42,7 @@ impl GroundTrack {
     /// y2 to the zenith. Of the two nodes that do, the earlier one in right ascension is taken.
     /// `None` on the night side, whose scene has no Sun, and where no such orbit has it there.
     pub(super) fn station(simulator: &DockingSimulator) -> Option<Self> {
-        let moment = simulator.moment(0).ok()?;
+        let moment = simulator.field_state(0).ok()?;
         let towards = moment.lighting.sun?.towards.normalize();
         let sun = sun_direction(moment.time)?;
         let (sin_i, cos_i) = libm::sincos(STATION_INCLINATION_DEG.to_radians());
@@ -93,7 +93,7 @@ impl GroundTrack {
     /// Where it is, from the centre of the Earth, ICRS axes; of a circular orbit only the direction counts.
     fn position_km(&self, time: Epoch) -> Vector3<f64> {
         match self {
-            Self::Chaser(trajectory) => trajectory.at(time).chaser.position_km,
+            Self::Chaser(trajectory) => trajectory.states_at(time).chaser.position_km,
             Self::Circular(orbit) => {
                 let (sin, cos) = libm::sincos(orbit.rate_rad_s * (time - orbit.epoch).to_seconds());
                 (orbit.radial * cos + orbit.ahead * sin) * STATION_RADIUS_KM
@@ -125,12 +125,12 @@ mod tests {
         let simulator = prepared.simulator();
         let track = GroundTrack::station(simulator).unwrap();
         let elevation = |time| track.position_km(time).normalize().dot(&sun_direction(time).unwrap());
-        let moment = simulator.moment(0).unwrap();
+        let moment = simulator.field_state(0).unwrap();
         let towards = moment.lighting.sun.unwrap().towards.normalize();
         // Rounding of some ten products.
         assert!((elevation(moment.time) - towards.y).abs() < 1e-12);
         // 370 km up, the Sun is seen down to 19° below the horizontal: the scene is lit to its end, and so is the orbit.
-        let end = simulator.moment(simulator.field_count() - 1).unwrap().time;
+        let end = simulator.field_state(simulator.field_count() - 1).unwrap().time;
         assert!(elevation(end) > -0.32, "{}", elevation(end));
         let GroundTrack::Circular(orbit) = &track else { panic!("a circular orbit") };
         assert!((orbit.ahead.dot(&sun_direction(moment.time).unwrap()) + towards.z).abs() < 1e-12);

@@ -18,7 +18,7 @@ mod tests {
     use contract::Camera;
     use serde::Deserialize;
     use sim::randomness::Seed;
-    use sim::sensor::{FlatLaws, Opening, Sensor, SensorConfig};
+    use sim::sensor::{ExposureInterval, FlatSamplers, Sensor, SensorConfig};
 
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
@@ -51,13 +51,14 @@ mod tests {
             (sensor.bit_depth, sensor.gain_e_per_dn, sensor.bias_dn) = (16, 0.5, 1000.0);
             let (columns, rows) = (400, 400);
             let device = Sensor::new(&sensor, columns, rows).unwrap();
-            let (mut image, mut laws) = (device.new_expected(), FlatLaws::new());
+            let (mut image, mut samplers) = (device.new_expected(), FlatSamplers::new());
             let frames: Vec<Vec<f64>> = (0..2)
                 .map(|frame| {
                     let mut raw = device.new_raw();
                     image.clear(0.0);
-                    let charge = device.collect(&mut image, &Opening { seed, middle_s: 0.0, exposure_s });
-                    device.read_out(&charge, &seed, frame, &mut laws, &mut raw).unwrap();
+                    let charge =
+                        device.collect(&mut image, &ExposureInterval { seed, middle_s: 0.0, exposure_s });
+                    device.read_out(&charge, &seed, frame, &mut samplers, &mut raw).unwrap();
                     raw.dn().iter().map(|dn| f64::from(*dn)).collect()
                 })
                 .collect();

@@ -67,7 +67,7 @@ pub(super) fn target(objects: &[ObjectTruth]) -> Option<&ObjectTruth> {
 pub(super) fn merged_with<'a>(target: &ObjectTruth, objects: &'a [ObjectTruth]) -> Option<&'a ObjectTruth> {
     brightest(objects.iter().filter(|other| {
         other.kind != ObjectKind::Target
-            && Visibility::of_snr(other.snr) != Visibility::Invisible
+            && Visibility::from_snr(other.snr) != Visibility::Invisible
             && transmitted_electrons(other) > 0.0
             && touch(target, other)
     }))

@@ -109,7 +109,7 @@ impl CameraModel {
         .dark_electrons(1.0);
         Ok(Self {
             projection,
-            psf: Psf::new(&config.psf)?.growing(config.optics.psf_growth, &config.camera),
+            psf: Psf::new(&config.psf)?.with_growth(config.optics.psf_growth, &config.camera),
             vignetting,
             radiometry,
             background,

@@ -230,7 +230,7 @@ impl Bench<'_> {
         let guidance = match self.motion.guidance {
             MotionGuidance::LocalOrbital => Guidance::TargetPointing {},
             MotionGuidance::Inertial => {
-                let states = sim::truth::Trajectory::new(&orbit)?.at(time);
+                let states = sim::truth::Trajectory::new(&orbit)?.states_at(time);
                 let towards = contract::Direction::from_vector(states.line_of_sight_km())?;
                 Guidance::Inertial {
                     ra_deg: towards.ra().degrees(),

@@ -272,7 +272,7 @@ fn along_orbit(
     for i in 0..u64::from(moments) {
         let number = u128::from(frames) * (2 * u128::from(i) + 1) / (2 * u128::from(moments));
         let Some((_, time)) = schedule.frame(number as u64) else { continue };
-        let states: States = trajectory.at(time + 0.0 * Unit::Second);
+        let states: States = trajectory.states_at(time + 0.0 * Unit::Second);
         let observer = Observer::new(time, states.chaser.position_km, states.chaser.velocity_km_s)?;
         let earth_to_sun_km = states.chaser.position_km + observer.sun_km();
         let sunlit_fraction = shadow::sunlit_fraction(&states.target.position_km, &earth_to_sun_km);

@@ -2,8 +2,8 @@
 
 use contract::bounds::require;
 use contract::docking::{
-    DockingSetup, DockingSolution, Doubt, Features, Field, FieldMeasurement, FieldTelemetry, NoPose, Pose,
-    TargetModel,
+    DockingSetup, DockingSolution, FailedCheck, Features, Field, FieldMeasurement, FieldTelemetry, NoPose,
+    Pose, TargetModel,
 };
 use contract::{Camera, ContractError};
 use nalgebra::Matrix6;
@@ -16,14 +16,14 @@ use super::extraction::evidence;
 use super::extraction::orientation::{self, Orientation, Uprightness};
 use super::extraction::outline::{self, OutlineTrack, RESOLVED_CIRCLE_PX, SMALLEST_CIRCLE_PX};
 use super::extraction::range_memory::RangeMemory;
-use super::extraction::recognise::{Recognition, Sight};
+use super::extraction::recognise::{Recognition, TargetFeatures};
 use super::extraction::self_check;
 use super::portions::OutlineRange;
-use super::pose::model_fit::{Fitted, ModelFit};
+use super::pose::model_fit::{FitResult, ModelFit};
 use super::pose::paper_pose::{PaperMeasurement, PaperTarget};
 use super::pose::paper_sigma;
 use super::preprocessing::histogram::Histogram;
-use super::preprocessing::region::{Prediction, Rectangle, Sighting, Track};
+use super::preprocessing::region::{FeaturePositions, Prediction, Rectangle, Track};
 use super::preprocessing::view::{Lens, View};
 use crate::PipelineError;
 
@@ -43,7 +43,7 @@ pub(crate) struct Observer {
 }
 
 /// What a field gave.
-pub(crate) struct Observed {
+pub(crate) struct FieldObservation {
     pub(crate) solution: DockingSolution,
     /// What the paper's formulas are made of, where cross and circle were measured.
     pub(crate) paper: Option<PaperMeasurement>,
@@ -60,8 +60,8 @@ pub(crate) struct Observed {
     pub(crate) region: Rectangle,
 }
 
-impl Observed {
-    fn nothing(reason: NoPose) -> Self {
+impl FieldObservation {
+    fn without_solution(reason: NoPose) -> Self {
         Self {
             solution: DockingSolution::NoSolution(reason),
             paper: None,
@@ -76,7 +76,7 @@ impl Observed {
 }
 
 /// A field and what it was taken with.
-struct Sheet<'a> {
+struct FieldInput<'a> {
     field: &'a Field,
     view: &'a View<'a>,
     time_s: f64,
@@ -111,28 +111,33 @@ impl Observer {
     }
 
     /// Measures a field, or says why not.
-    pub(crate) fn observe(&mut self, field: &Field, view: &View<'_>, telemetry: &FieldTelemetry) -> Observed {
+    pub(crate) fn observe(
+        &mut self,
+        field: &Field,
+        view: &View<'_>,
+        telemetry: &FieldTelemetry,
+    ) -> FieldObservation {
         let Some((camera, lens)) = self.cameras.get(telemetry.camera).cloned() else {
             let text = format!("the field is of camera {}, which is not known", telemetry.camera);
-            return Observed::nothing(NoPose::Failed(text));
+            return FieldObservation::without_solution(NoPose::Failed(text));
         };
         if view.columns() != camera.columns {
             let text = format!("the field has {} columns, expected {}", view.columns(), camera.columns);
-            return Observed::nothing(NoPose::Failed(text));
+            return FieldObservation::without_solution(NoPose::Failed(text));
         }
-        let whole = Histogram::of(view, &Rectangle::ALL);
+        let whole = Histogram::from_region(view, &Rectangle::ALL);
         if whole.saturated_share() > MAX_SATURATED_SHARE {
             self.track.reset();
-            return Observed::nothing(NoPose::SaturatedField);
+            return FieldObservation::without_solution(NoPose::SaturatedField);
         }
-        let sheet = Sheet { field, view, time_s: telemetry.time_s, camera: telemetry.camera };
-        let mut observed = self.look(&sheet, &lens);
-        let told_m = match &observed.solution {
+        let input = FieldInput { field, view, time_s: telemetry.time_s, camera: telemetry.camera };
+        let mut observed = self.acquire(&input, &lens);
+        let measured_m = match &observed.solution {
             DockingSolution::Measured(measurement) => Some(measurement.best.pose.position_m.z),
             DockingSolution::RangeOnly { range_m, .. } => Some(*range_m),
             DockingSolution::Doubtful { .. } | DockingSolution::NoSolution(_) => None,
         };
-        if told_m.is_some_and(|range_m| !self.ranges.admit(sheet.time_s, range_m)) {
+        if measured_m.is_some_and(|range_m| !self.ranges.admit(input.time_s, range_m)) {
             self.track.reset();
             observed.solution = DockingSolution::NoSolution(NoPose::Inconsistent);
             observed.paper = None;
@@ -142,55 +147,60 @@ impl Observer {
     }
 
     /// About where the target is predicted; else within the outline of a station that is followed; else in the whole field.
-    fn look(&mut self, sheet: &Sheet, lens: &Lens) -> Observed {
+    fn acquire(&mut self, input: &FieldInput, lens: &Lens) -> FieldObservation {
         let max_gap_s = self.config.region.max_gap_s;
-        let predicted = self.track.predict(sheet.time_s, sheet.camera, lens.focal_px(), max_gap_s);
+        let predicted = self.track.predict(input.time_s, input.camera, lens.focal_px(), max_gap_s);
         let mut lost = None;
         if let Some(prediction) = &predicted {
-            match self.follow(sheet, lens, prediction) {
+            match self.track_target(input, lens, prediction) {
                 Ok(observed) => return observed,
                 Err(reason) => lost = Some(reason),
             }
         }
-        if let Some(observed) = self.within_outline(sheet, lens, max_gap_s) {
+        if let Some(observed) = self.within_outline(input, lens, max_gap_s) {
             return observed;
         }
-        let overview = sheet.view.overview();
-        let found = self.recognition(sheet.view, lens).search(&overview, predicted.as_ref());
-        let reason = match found.and_then(|sight| self.measure(sheet, lens, &sight)) {
+        let overview = input.view.overview();
+        let found = self.recognition(input.view, lens).search(&overview, predicted.as_ref());
+        let reason = match found.and_then(|target_features| self.measure(input, lens, &target_features)) {
             Ok(observed) => return observed,
             Err(NoPose::NoTarget) => lost.unwrap_or(NoPose::NoTarget),
             Err(reason) => reason,
         };
         self.track.reset();
-        match contour::find(sheet.view, &overview, lens) {
+        match contour::find(input.view, &overview, lens) {
             Some(outline) => {
-                self.outlines.found((sheet.time_s, sheet.camera), &outline);
-                self.range_alone(sheet.view, lens, &outline, reason)
+                self.outlines.restart((input.time_s, input.camera), &outline);
+                self.range_alone(input.view, lens, &outline, reason)
             }
-            None => Observed::nothing(outline::nothing(sheet.view, reason)),
+            None => FieldObservation::without_solution(outline::no_outline_reason(input.view, reason)),
         }
     }
 
     /// The answer while the station's outline is followed and its target not yet resolved.
-    fn within_outline(&mut self, sheet: &Sheet, lens: &Lens, max_gap_s: f64) -> Option<Observed> {
-        let outline = self.outlines.follow(sheet.view, lens, (sheet.time_s, sheet.camera), max_gap_s)?;
+    fn within_outline(
+        &mut self,
+        input: &FieldInput,
+        lens: &Lens,
+        max_gap_s: f64,
+    ) -> Option<FieldObservation> {
+        let outline = self.outlines.follow(input.view, lens, (input.time_s, input.camera), max_gap_s)?;
         let mark_circle_px = outline::mark_circle_px(&self.target, lens, &outline.circle)?;
         if mark_circle_px >= RESOLVED_CIRCLE_PX {
             return None;
         }
         let mut reason = NoPose::NoTarget;
         if mark_circle_px >= SMALLEST_CIRCLE_PX {
-            let overview = sheet.view.overview();
-            let recognition = self.recognition(sheet.view, lens);
+            let overview = input.view.overview();
+            let recognition = self.recognition(input.view, lens);
             let found = recognition.search_within(&overview, &outline.circle, mark_circle_px);
-            match found.and_then(|sight| self.measure(sheet, lens, &sight)) {
+            match found.and_then(|target_features| self.measure(input, lens, &target_features)) {
                 Ok(observed) => return Some(observed),
                 Err(why) => reason = why,
             }
         }
         self.track.reset();
-        Some(self.range_alone(sheet.view, lens, &outline, reason))
+        Some(self.range_alone(input.view, lens, &outline, reason))
     }
 
     fn range_alone(
@@ -199,14 +209,14 @@ impl Observer {
         lens: &Lens,
         outline: &StationOutline,
         reason: NoPose,
-    ) -> Observed {
+    ) -> FieldObservation {
         if !contour::stands_before_sky(view, lens, &outline.circle) {
             self.outlines = OutlineTrack::default();
             let reason = if reason == NoPose::NoTarget { NoPose::Inconsistent } else { reason };
-            return Observed::nothing(reason);
+            return FieldObservation::without_solution(reason);
         }
-        let mut observed = Observed::nothing(reason.clone());
-        let Observed { features, region, .. } = &mut observed;
+        let mut observed = FieldObservation::without_solution(reason.clone());
+        let FieldObservation { features, region, .. } = &mut observed;
         observed.solution = outline::range(lens, &self.target, outline, features, region, reason)
             .unwrap_or_else(DockingSolution::NoSolution);
         if let DockingSolution::RangeOnly { .. } = observed.solution {
@@ -220,46 +230,56 @@ impl Observer {
     }
 
     /// The target about where the fields before have it: cross and marks, or what is left of them about the predicted pose.
-    fn follow(&mut self, sheet: &Sheet, lens: &Lens, prediction: &Prediction) -> Result<Observed, NoPose> {
-        let tracked = self.recognition(sheet.view, lens).track(&prediction.cross, &prediction.plane);
-        let lost = match tracked.and_then(|sight| self.measure(sheet, lens, &sight)) {
+    fn track_target(
+        &mut self,
+        input: &FieldInput,
+        lens: &Lens,
+        prediction: &Prediction,
+    ) -> Result<FieldObservation, NoPose> {
+        let tracked = self.recognition(input.view, lens).track(&prediction.cross, &prediction.plane);
+        let lost = match tracked.and_then(|target_features| self.measure(input, lens, &target_features)) {
             Ok(observed) => return Ok(observed),
             Err(reason) => reason,
         };
-        let near_edge = self_check::leaves_field(sheet.view, lens, &self.target, prediction);
-        let fitted = self.fit.fit(sheet.field, lens.model(), &self.target, &prediction.pose);
+        let near_edge = self_check::leaves_field(input.view, lens, &self.target, prediction);
+        let fitted = self.fit.fit(input.field, lens.model(), &self.target, &prediction.pose);
         match fitted {
-            Ok(fitted) => Ok(self.remaining(sheet, lens, &fitted, near_edge)),
+            Ok(fitted) => Ok(self.observation_from_fit(input, lens, &fitted, near_edge)),
             Err(_) if near_edge => Err(NoPose::OutOfField),
             Err(_) => Err(lost),
         }
     }
 
     /// The answer from cross and marks.
-    fn measure(&mut self, sheet: &Sheet, lens: &Lens, sight: &Sight) -> Result<Observed, NoPose> {
-        let (cross, plane) = (&sight.cross, &sight.marks.plane);
-        let unit = self_check::docking_unit(sheet.view, lens, &self.target, cross, plane, Side::Nominal);
+    fn measure(
+        &mut self,
+        input: &FieldInput,
+        lens: &Lens,
+        target_features: &TargetFeatures,
+    ) -> Result<FieldObservation, NoPose> {
+        let (cross, plane) = (&target_features.cross, &target_features.marks.plane);
+        let unit = self_check::docking_unit(input.view, lens, &self.target, cross, plane, Side::Nominal);
         let measurement = PaperMeasurement {
             focal_px: lens.focal_px(),
             cross: cross.seed.centre.into(),
             slope: cross.seed.slope,
-            circle: sight.circle.centre.into(),
-            radius_px: sight.circle.radius_px,
+            circle: target_features.circle.centre.into(),
+            radius_px: target_features.circle.radius_px,
         };
-        let target = PaperTarget::of(&self.target);
+        let target = PaperTarget::from_model(&self.target);
         let paper = measurement.pose(&target)?;
-        let seen = orientation::look(sheet.view, lens, &self.target, cross, plane, &unit);
-        if self.orientation.is_turned(sheet.time_s, seen) {
+        let seen = orientation::assess(input.view, lens, &self.target, cross, plane, &unit);
+        if self.orientation.is_turned(input.time_s, seen) {
             // It is followed, so that nearer, where nothing in the field tells, it is known.
-            self.remember(sheet, lens, paper);
-            return Ok(Observed::nothing(NoPose::Inconsistent));
+            self.remember(input, lens, paper);
+            return Ok(FieldObservation::without_solution(NoPose::Inconsistent));
         }
-        let mut features = evidence::evidence(lens, sight, &unit);
-        features.station = evidence::station(sheet.view, lens, &self.target, sight);
-        let mut fitted = self.fit.fit(sheet.field, lens.model(), &self.target, &paper);
+        let mut features = evidence::evidence(lens, target_features, &unit);
+        features.station = evidence::station(input.view, lens, &self.target, target_features);
+        let mut fitted = self.fit.fit(input.field, lens.model(), &self.target, &paper);
         if fitted.is_err() {
             // At large angles the paper's pose is farther off than a fit finds back from.
-            fitted = self.fit.fit(sheet.field, lens.model(), &self.target, &measurement.aimed_pose(&target)?);
+            fitted = self.fit.fit(input.field, lens.model(), &self.target, &measurement.aimed_pose(&target)?);
         }
         let by_features = paper_sigma::estimate(&measurement, &target, cross.seed.half_length_px)?;
         let (best, common, mut doubt, is_backup, blur_px) = match fitted {
@@ -271,18 +291,18 @@ impl Observer {
             // Cross and marks are there and of one target: the paper's pose is worse than the best one, and better than none.
             Err(_) => (by_features, Matrix6::zeros(), None, true, 0.0),
         };
-        let outline = self_check::outline(sheet.view, lens, &self.target, cross, plane);
+        let outline = self_check::outline(input.view, lens, &self.target, cross, plane);
         match self_check::range(lens, &self.target, plane, outline.as_ref(), &best) {
             Ok(()) => {}
-            Err(NoPose::Inconsistent) => doubt = doubt.or(Some(Doubt::Features)),
+            Err(NoPose::Inconsistent) => doubt = doubt.or(Some(FailedCheck::Features)),
             Err(reason) => return Err(reason),
         }
         doubt = doubt.or_else(|| self_check::tilt(&best));
         if doubt.is_none() {
-            self.remember(sheet, lens, best.pose);
+            self.remember(input, lens, best.pose);
         }
         let field = Box::new(FieldMeasurement { best, paper: Some(paper) });
-        Ok(Observed {
+        Ok(FieldObservation {
             solution: match doubt {
                 Some(doubt) => DockingSolution::Doubtful { measurement: field, doubt },
                 None => DockingSolution::Measured(field),
@@ -298,14 +318,20 @@ impl Observer {
     }
 
     /// The answer from what the best estimator found about the predicted pose.
-    fn remaining(&mut self, sheet: &Sheet, lens: &Lens, fitted: &Fitted, near_edge: bool) -> Observed {
+    fn observation_from_fit(
+        &mut self,
+        input: &FieldInput,
+        lens: &Lens,
+        fitted: &FitResult,
+        near_edge: bool,
+    ) -> FieldObservation {
         let best = fitted.estimate;
-        self.remember(sheet, lens, best.pose);
-        if self.orientation.is_turned(sheet.time_s, Uprightness::Unknown) {
-            return Observed::nothing(NoPose::Inconsistent);
+        self.remember(input, lens, best.pose);
+        if self.orientation.is_turned(input.time_s, Uprightness::Unknown) {
+            return FieldObservation::without_solution(NoPose::Inconsistent);
         }
         let plane = self.track.last().map(|sighting| sighting.plane);
-        Observed {
+        FieldObservation {
             solution: DockingSolution::Measured(Box::new(FieldMeasurement { best, paper: None })),
             paper: None,
             features: Features { marks: fitted.marks.clone(), ..Features::default() },
@@ -318,8 +344,10 @@ impl Observer {
         }
     }
 
-    fn remember(&mut self, sheet: &Sheet, lens: &Lens, pose: Pose) {
-        if let Some(sighting) = Sighting::of(sheet.time_s, sheet.camera, lens, &self.target, pose) {
+    fn remember(&mut self, input: &FieldInput, lens: &Lens, pose: Pose) {
+        if let Some(sighting) =
+            FeaturePositions::from_pose(input.time_s, input.camera, lens, &self.target, pose)
+        {
             self.track.push(sighting);
         }
     }

@@ -1,17 +1,17 @@
 //! The steps tied together: a field in, pose and motion out.
 
 use contract::docking::{
-    Docking, DockingOutcome, DockingSetup, DockingSolution, Doubt, Field, FieldTelemetry, MotionReport,
+    Docking, DockingOutcome, DockingSetup, DockingSolution, FailedCheck, Field, FieldTelemetry, MotionReport,
 };
 use contract::{ContractError, Pipeline, PipelineFactory};
 
 use super::config::DockingConfig;
-use super::observer::{Observed, Observer};
+use super::observer::{FieldObservation, Observer};
 use super::portions::{Continuity, MotionTracker, PaperPortions};
 use super::pose::paper_pose::{PaperMeasurement, PaperTarget};
 use super::preprocessing::histogram::Histogram;
 use super::preprocessing::view::View;
-use super::repeats::Repeats;
+use super::repeats::RepeatDetector;
 use crate::PipelineError;
 
 /// Builds pipelines by the docking method.
@@ -52,7 +52,7 @@ pub struct DockingPipeline {
     observer: Observer,
     portion: Portion,
     motion: MotionTracker,
-    repeats: Repeats,
+    repeats: RepeatDetector,
     paper: PaperPortions,
 }
 
@@ -71,11 +71,11 @@ impl DockingPipeline {
     /// [`PipelineError`] when the configuration, a camera or the target's dimensions are not allowed.
     pub fn new(config: DockingConfig, setup: &DockingSetup) -> Result<Self, PipelineError> {
         config.check()?;
-        let target = PaperTarget::of(&setup.target);
+        let target = PaperTarget::from_model(&setup.target);
         Ok(Self {
             observer: Observer::new(&config, setup)?,
             motion: MotionTracker::new(config.motion)?,
-            repeats: Repeats::default(),
+            repeats: RepeatDetector::default(),
             paper: PaperPortions::new(config.paper_portions, target)?,
             target,
             config,
@@ -103,11 +103,11 @@ impl DockingPipeline {
         let ended = std::mem::take(&mut self.portion);
         self.portion.last_time_s = ended.last_time_s;
         let paper = self.paper.end(&ended.paper);
-        MotionReport::of(self.motion.report(), paper)
+        MotionReport::from_estimates(self.motion.report(), paper)
     }
 
     /// Tests a pose against the fields before, and brings its covariance to their scatter.
-    fn test(&mut self, field: &Field, time_s: f64, observed: Observed) -> Observed {
+    fn test(&mut self, field: &Field, time_s: f64, observed: FieldObservation) -> FieldObservation {
         let is_repeated = self.repeats.is_repeated(field);
         let outline = observed.outline.filter(|_| !is_repeated);
         let tested = self.test_pose(is_repeated, time_s, observed);
@@ -117,30 +117,34 @@ impl DockingPipeline {
         tested
     }
 
-    fn test_pose(&mut self, is_repeated: bool, time_s: f64, observed: Observed) -> Observed {
-        let Observed {
-            solution: DockingSolution::Measured(mut measurement), common, is_backup, blur_px, ..
+    fn test_pose(&mut self, is_repeated: bool, time_s: f64, observed: FieldObservation) -> FieldObservation {
+        let FieldObservation {
+            solution: DockingSolution::Measured(mut measurement),
+            common,
+            is_backup,
+            blur_px,
+            ..
         } = observed
         else {
             return observed;
         };
         if blur_px > MIXING_BLUR_PX {
-            measurement.best.covariance += self.motion.by_moment(time_s, MIXED_S);
+            measurement.best.covariance += self.motion.timing_covariance(time_s, MIXED_S);
         }
         let doubt = if is_repeated {
-            Some(Doubt::Repeated)
+            Some(FailedCheck::Repeated)
         } else if is_backup && !self.motion.confirms(time_s, &measurement.best) {
-            Some(Doubt::Residuals)
+            Some(FailedCheck::Residuals)
         } else {
             let (continuity, factor) = self.motion.add(time_s, &measurement.best, &common);
             measurement.best.covariance *= factor;
-            (continuity == Continuity::Breaks).then_some(Doubt::Motion)
+            (continuity == Continuity::Breaks).then_some(FailedCheck::Motion)
         };
         let solution = match doubt {
             Some(doubt) => DockingSolution::Doubtful { measurement, doubt },
             None => DockingSolution::Measured(measurement),
         };
-        Observed { solution, ..observed }
+        FieldObservation { solution, ..observed }
     }
 }
 
@@ -148,10 +152,11 @@ impl Pipeline<Docking> for DockingPipeline {
     fn process(&mut self, field: &Field, telemetry: &FieldTelemetry) -> DockingOutcome {
         let view = View::new(field);
         let observed = self.observer.observe(field, &view, telemetry);
-        let Observed { solution, paper, features, region, .. } = self.test(field, telemetry.time_s, observed);
+        let FieldObservation { solution, paper, features, region, .. } =
+            self.test(field, telemetry.time_s, observed);
         let motion = self.add(telemetry.time_s, paper);
-        let histogram = Histogram::of(&view, &region);
-        let digitiser = self.config.auto_contrast.wish(&histogram, &telemetry.digitiser);
+        let histogram = Histogram::from_region(&view, &region);
+        let digitiser = self.config.auto_contrast.recommend(&histogram, &telemetry.digitiser);
         DockingOutcome { solution, features, motion, digitiser }
     }
 }
@@ -213,7 +218,7 @@ mod tests {
         let scene = Scene::default();
         let first = pipeline.process(&scene.field(Lines::Even), &synthetic::telemetry(0.0));
         let again = pipeline.process(&scene.field(Lines::Even), &synthetic::telemetry(0.02));
-        assert!(matches!(again.solution, DockingSolution::Doubtful { doubt: Doubt::Repeated, .. }));
+        assert!(matches!(again.solution, DockingSolution::Doubtful { doubt: FailedCheck::Repeated, .. }));
         let pose = |outcome: &DockingOutcome| outcome.any_measurement().unwrap().paper.unwrap().position_m;
         // The same pixels from another start: within the pairs that change sides.
         assert!((pose(&first) - pose(&again)).norm() < 0.02, "{} {}", pose(&first), pose(&again));

@@ -9,11 +9,11 @@ const MEMORY: usize = 50;
 
 /// The last fields.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Repeats {
+pub(crate) struct RepeatDetector {
     last: VecDeque<(Lines, u64)>,
 }
 
-impl Repeats {
+impl RepeatDetector {
     /// Takes a field; whether it was there before. Noise makes no two fields alike by chance: of a field's pixels 64 bits of a sum are kept.
     pub(crate) fn is_repeated(&mut self, field: &Field) -> bool {
         let seen = (field.lines(), digest(field.image().dn()));
@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn a_field_that_comes_again_is_recognised_until_it_is_forgotten() {
         let field = |value: u16| synthetic::drawn(Lines::Even, |x, _| if x == 7 { value } else { 20 });
-        let mut repeats = Repeats::default();
+        let mut repeats = RepeatDetector::default();
         assert!(!repeats.is_repeated(&field(0)) && !repeats.is_repeated(&field(1)));
         assert!(repeats.is_repeated(&field(0)));
         assert!((2..52).all(|value| !repeats.is_repeated(&field(value))));
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn one_pixel_or_the_other_parity_makes_another_field() {
-        let mut repeats = Repeats::default();
+        let mut repeats = RepeatDetector::default();
         assert!(!repeats.is_repeated(&synthetic::drawn(Lines::Even, |_, _| 90)));
         assert!(!repeats.is_repeated(&synthetic::drawn(Lines::Odd, |_, _| 90)));
         let one = synthetic::drawn(Lines::Even, |x, y| if (x, y) == (0, 0) { 91 } else { 90 });

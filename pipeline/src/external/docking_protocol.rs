@@ -28,7 +28,7 @@ use std::path::Path;
 
 use contract::Camera;
 use contract::docking::{
-    Digitiser, Docking, DockingOutcome, DockingSetup, DockingSolution, Doubt, Features, Field,
+    Digitiser, Docking, DockingOutcome, DockingSetup, DockingSolution, FailedCheck, Features, Field,
     FieldMeasurement, FieldTelemetry, NoPose, Pose, PoseEstimate, TargetModel,
 };
 use nalgebra::{Matrix6, Vector3, Vector6};
@@ -119,7 +119,7 @@ pub fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
     let solution = match answer.status.as_str() {
         "measured" => DockingSolution::Measured(Box::new(measurement(&answer)?)),
         "range_only" => range_only(&answer)?,
-        text if let Ok(doubt) = text.parse::<Doubt>() => {
+        text if let Ok(doubt) = text.parse::<FailedCheck>() => {
             DockingSolution::Doubtful { measurement: Box::new(measurement(&answer)?), doubt }
         }
         status => match NoPose::parse(status) {
@@ -210,7 +210,7 @@ mod tests {
         let doubtful =
             read(r#"{"field": 7, "status": "doubtful: features", "d_m": [0, 0, 9], "phi_deg": [0, 0, 0]}"#)
                 .unwrap();
-        assert!(matches!(doubtful.solution, DockingSolution::Doubtful { doubt: Doubt::Features, .. }));
+        assert!(matches!(doubtful.solution, DockingSolution::Doubtful { doubt: FailedCheck::Features, .. }));
         assert_eq!((doubtful.measurement(), doubtful.any_measurement().is_some()), (None, true));
         for (status, expected) in [
             ("no_target", NoPose::NoTarget),

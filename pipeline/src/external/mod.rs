@@ -88,9 +88,12 @@ impl<I: Protocol> ExternalFactory<I> {
         self.sandbox.as_ref().map_or(Ok(()), |_| Sandbox::check().map_err(cannot_build))
     }
 
-    fn plan(&self) -> Result<Plan, ContractError> {
-        let plan = Plan::new(&self.command, self.start_timeout_s, self.timeout_s, self.memory_mb)?;
-        Ok(Plan { sandbox: self.sandbox.clone().map(|sandbox| (sandbox, self.scratch_dir.clone())), ..plan })
+    fn plan(&self) -> Result<ProcessPlan, ContractError> {
+        let plan = ProcessPlan::new(&self.command, self.start_timeout_s, self.timeout_s, self.memory_mb)?;
+        Ok(ProcessPlan {
+            sandbox: self.sandbox.clone().map(|sandbox| (sandbox, self.scratch_dir.clone())),
+            ..plan
+        })
     }
 }
 
@@ -108,7 +111,7 @@ impl<I: Protocol> fmt::Debug for ExternalFactory<I> {
 }
 
 /// What a factory's command and limits come to.
-struct Plan {
+struct ProcessPlan {
     program: String,
     arguments: Vec<String>,
     start_limit: Duration,
@@ -118,7 +121,7 @@ struct Plan {
     sandbox: Option<(Sandbox, PathBuf)>,
 }
 
-impl Plan {
+impl ProcessPlan {
     /// Splits a command and checks the limits.
     fn new(
         command: &str,
@@ -196,7 +199,7 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
     /// command or a limit that cannot be meant is refused.
     fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
         let plan = self.plan()?;
-        Ok(Box::new(External::<I> {
+        Ok(Box::new(ExternalPipeline::<I> {
             first_start: Some(plan.start(I::greeting(setup))),
             process: None,
             failed_starts: None,
@@ -210,20 +213,20 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
 }
 
 /// One sequence with one process.
-struct External<I: Protocol> {
+struct ExternalPipeline<I: Protocol> {
     /// Until the first image comes.
     first_start: Option<Result<Process, String>>,
     /// Once it has greeted; or why it was ended since.
     process: Option<Result<Process, String>>,
     failed_starts: Option<FailedStarts>,
     setup: I::Setup,
-    plan: Plan,
+    plan: ProcessPlan,
     images: Images,
     write_image: Arc<WriteImage<I>>,
     write_time: WriteTime,
 }
 
-impl<I: Protocol> Pipeline<I> for External<I> {
+impl<I: Protocol> Pipeline<I> for ExternalPipeline<I> {
     fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome {
         self.answer(image, telemetry).unwrap_or_else(I::failed)
     }
@@ -233,7 +236,7 @@ impl<I: Protocol> Pipeline<I> for External<I> {
     }
 }
 
-impl<I: Protocol> External<I> {
+impl<I: Protocol> ExternalPipeline<I> {
     fn answer(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> Result<I::Outcome, String> {
         let state = match &mut self.process {
             Some(state) => state,
@@ -253,7 +256,7 @@ impl<I: Protocol> External<I> {
         };
         let process = state.as_mut().map_err(|reason| reason.clone())?;
         let number = I::number(image);
-        let file = self.images.place(number);
+        let file = self.images.image_file(number);
         (self.write_image)(image, telemetry, &file.path)
             .map_err(|error| format!("the image cannot be written: {error}"))?;
         let request = I::request(image, telemetry, self.write_time, &file.path)?;
@@ -286,7 +289,7 @@ impl Images {
         Self { directory: directory.to_owned(), sequence: next_sequence(), extension }
     }
 
-    fn place(&self, frame: u64) -> Image {
+    fn image_file(&self, frame: u64) -> Image {
         let (sequence, extension) = (self.sequence, self.extension);
         let name = format!("boresight-{}-{sequence}-{frame}.{extension}", std::process::id());
         Image { path: self.directory.join(name) }

@@ -197,9 +197,9 @@ mod landlocked {
         path: &Path,
         access: landlock::BitFlags<AccessFs>,
     ) -> std::io::Result<RulesetCreated> {
-        let Ok(place) = PathFd::new(path) else { return Ok(rules) };
+        let Ok(path_fd) = PathFd::new(path) else { return Ok(rules) };
         let access = if path.is_dir() { access } else { access & AccessFs::from_file(NEWEST) };
-        rules.add_rule(PathBeneath::new(place, access)).map_err(std::io::Error::other)
+        rules.add_rule(PathBeneath::new(path_fd, access)).map_err(std::io::Error::other)
     }
 
     /// What the programs of a folder need: its parent where the folder is called as those of programs are, unless that is a home or the root.

@@ -143,7 +143,7 @@ const FEW: usize = 8;
 
 impl Detector {
     /// Looks over a frame, the next one of [`Detector::detect`] with these thresholds; tells how many pixels are of full scale.
-    pub(super) fn look(&mut self, frame: &Frame, thresholds: Thresholds) -> usize {
+    pub(super) fn find_bright(&mut self, frame: &Frame, thresholds: Thresholds) -> usize {
         self.bright.find(frame, thresholds.high_dn);
         self.bright.saturated
     }
@@ -299,7 +299,7 @@ mod tests {
     }
 
     fn detect_with(detector: &mut Detector, frame: &Frame, base_dn: f64, max_clusters: usize) -> Vec<Blob> {
-        detector.look(frame, THRESHOLDS);
+        detector.find_bright(frame, THRESHOLDS);
         detector.detect(frame, THRESHOLDS, base_dn, max_clusters).to_vec()
     }
 
@@ -392,7 +392,7 @@ mod tests {
         // With every threshold, full scale itself included.
         for high_dn in [0, 400, 4094, 4095, u16::MAX] {
             let thresholds = Thresholds { low_dn: 0, high_dn };
-            assert_eq!(Detector::default().look(&frame, thresholds), 3);
+            assert_eq!(Detector::default().find_bright(&frame, thresholds), 3);
         }
     }
 
@@ -413,10 +413,10 @@ mod tests {
         let windowed = Frame::new(0, 150, 40, 12, dn, Some(windows)).unwrap();
         let mut detector = Detector::default();
         let blobs = detect_with(&mut detector, &whole, 0.0, 1000);
-        let saturated = detector.look(&whole, THRESHOLDS);
+        let saturated = detector.find_bright(&whole, THRESHOLDS);
         assert!(blobs.len() > 10 && saturated > 0);
         assert_eq!(detect_with(&mut detector, &windowed, 0.0, 1000), blobs);
-        assert_eq!(detector.look(&windowed, THRESHOLDS), saturated);
+        assert_eq!(detector.find_bright(&windowed, THRESHOLDS), saturated);
     }
 
     proptest! {

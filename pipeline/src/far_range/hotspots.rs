@@ -141,7 +141,7 @@ impl Hotspots {
 
     /// Whether a track is a hotspot by its history: N > N_min and ‖v‖ < v_min. Marks its pixel when pixels are
     /// kept.
-    pub(super) fn judge(&mut self, track: &Track) -> bool {
+    pub(super) fn is_hotspot(&mut self, track: &Track) -> bool {
         let HotspotConfig::Automatic { n_min, v_min_px_per_s, keep_pixels, .. } = self.config else {
             return false;
         };
@@ -179,16 +179,16 @@ mod tests {
     #[test]
     fn a_hotspot_is_old_and_still() {
         let mut hotspots = automatic(false);
-        assert!(hotspots.judge(&track(6, 0.0009)));
-        assert!(!hotspots.judge(&track(5, 0.0009)), "N must be greater than N_min");
-        assert!(!hotspots.judge(&track(6, 0.001)), "the velocity must be smaller than v_min");
+        assert!(hotspots.is_hotspot(&track(6, 0.0009)));
+        assert!(!hotspots.is_hotspot(&track(5, 0.0009)), "N must be greater than N_min");
+        assert!(!hotspots.is_hotspot(&track(6, 0.001)), "the velocity must be smaller than v_min");
     }
 
     #[test]
     fn the_pixel_of_a_hotspot_stays_marked_when_asked() {
         for keep in [true, false] {
             let mut hotspots = automatic(keep);
-            hotspots.judge(&track(6, 0.0));
+            hotspots.is_hotspot(&track(6, 0.0));
             assert_eq!(hotspots.is_marked(&blob(10.0, 20.0, 1)), keep);
         }
     }
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn off_and_a_list_judge_no_track() {
         for config in [HotspotConfig::Off, HotspotConfig::List { pixels: Vec::new() }] {
-            assert!(!Hotspots::new(config).judge(&track(1000, 0.0)));
+            assert!(!Hotspots::new(config).is_hotspot(&track(1000, 0.0)));
         }
     }
 

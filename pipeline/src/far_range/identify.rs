@@ -99,7 +99,7 @@ impl StarList {
         // The z component in the camera is the cosine of the angle to the boresight: one product rejects most stars.
         let boresight = matrix.row(2).transpose();
         let mut near: Vec<_> = self
-            .about(boresight.z)
+            .in_declination_band(boresight.z)
             .iter()
             .filter_map(|&(_, place)| Some((place, self.stars.get(place as usize)?)))
             .filter(|(_, star)| boresight.dot(star.direction.vector()) >= self.cos_cone)
@@ -114,7 +114,7 @@ impl StarList {
     }
 
     /// The stars of the declinations that the cone about a direction of the declination with the sine `z` has.
-    fn about(&self, z: f64) -> &[(f64, u32)] {
+    fn in_declination_band(&self, z: f64) -> &[(f64, u32)] {
         let (cos_cone, sin_cone) = (self.cos_cone, (1.0 - self.cos_cone * self.cos_cone).max(0.0).sqrt());
         let (middle, half) = (z * cos_cone, (1.0 - z * z).max(0.0).sqrt() * sin_cone + ROUNDING);
         // A cone with a pole in it has all declinations up to that pole.

@@ -4,7 +4,7 @@ use contract::PixelPoint;
 
 /// A cluster as motion segmentation sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Mover {
+pub(super) struct ClusterMotion {
     /// Centre now, c_i.
     pub(super) centre: PixelPoint,
     /// Centre in the previous frame, c_prev(i); `None` when the cluster is not linked.
@@ -16,8 +16,8 @@ pub(super) struct Mover {
 /// The target (an index into `movers`): of the linked candidates the one whose displacement Δp_i (Eq. 11) differs
 /// most from the average over all linked clusters, stars and hotspots included (Eqs. 12 and 13); the first one
 /// when several differ alike. `None` without a linked candidate.
-pub(super) fn select_target(movers: &[Mover]) -> Option<usize> {
-    let displacement = |mover: &Mover| mover.previous.map(|previous| mover.centre.distance(previous));
+pub(super) fn select_target(movers: &[ClusterMotion]) -> Option<usize> {
+    let displacement = |mover: &ClusterMotion| mover.previous.map(|previous| mover.centre.distance(previous));
     let linked: Vec<f64> = movers.iter().filter_map(displacement).collect();
     let average = linked.iter().sum::<f64>() / linked.len().max(1) as f64;
     let mut best: Option<(usize, f64)> = None;
@@ -36,9 +36,9 @@ pub(super) fn select_target(movers: &[Mover]) -> Option<usize> {
 mod tests {
     use super::*;
 
-    fn mover(displacement: f64, is_candidate: bool) -> Mover {
+    fn mover(displacement: f64, is_candidate: bool) -> ClusterMotion {
         let previous = Some(PixelPoint::new(100.0, 50.0));
-        Mover { centre: PixelPoint::new(100.0 + displacement, 50.0), previous, is_candidate }
+        ClusterMotion { centre: PixelPoint::new(100.0 + displacement, 50.0), previous, is_candidate }
     }
 
     #[test]
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn stars_hotspots_and_unlinked_clusters_are_no_targets() {
-        let unlinked = Mover { previous: None, ..mover(50.0, true) };
+        let unlinked = ClusterMotion { previous: None, ..mover(50.0, true) };
         assert_eq!(select_target(&[mover(50.0, false), unlinked, mover(1.0, true)]), Some(2));
         assert_eq!(select_target(&[mover(50.0, false), unlinked]), None);
         assert_eq!(select_target(&[]), None);

@@ -14,7 +14,7 @@ use super::detect::{Blob, Detector, Weights, transmitted_pixels};
 use super::hotspots::Hotspots;
 use super::identify::{StarList, identify};
 use super::line_of_sight::line_of_sight;
-use super::motion::{Mover, select_target};
+use super::motion::{ClusterMotion, select_target};
 use super::overrides::{Identity, Overrides};
 use super::track::{Track, expected_position, link};
 use super::usable::unusable;
@@ -31,14 +31,14 @@ pub(super) struct PaperPipeline {
     stars: StarList,
     mounting: MountingFilter,
     hotspots: Hotspots,
-    previous: Option<Previous>,
+    previous: Option<PreviousFrame>,
     background: BackgroundEstimator,
     detector: Detector,
 }
 
 /// What is remembered of the previous frame.
 #[derive(Debug)]
-struct Previous {
+struct PreviousFrame {
     time: Epoch,
     body_from_icrs: Rotation<Body, Icrs>,
     /// The camera's attitude where it was given from outside.
@@ -76,8 +76,8 @@ impl PaperPipeline {
         } else {
             None
         };
-        let thresholds = self.config.thresholds.of(frame, background);
-        if 2 * self.detector.look(frame, thresholds) > transmitted_pixels(frame) {
+        let thresholds = self.config.thresholds.for_frame(frame, background);
+        if 2 * self.detector.find_bright(frame, thresholds) > transmitted_pixels(frame) {
             return Err(NoSolution::SaturatedFrame);
         }
         let base_dn = background.filter(|_| above_background).map_or(0.0, |b| b.median_dn);
@@ -129,14 +129,14 @@ impl PaperPipeline {
         blobs: &[Blob],
         camera_from_icrs: &Rotation<CameraFrame, Icrs>,
         overrides: &Overrides<'_>,
-    ) -> Vec<Known> {
+    ) -> Vec<PriorIdentity> {
         if let Some(identity) = overrides.identity {
-            let known = |blob: &Blob| match identity(blob.centre) {
-                Identity::Star(id) => Known::Star { id, listed: self.stars.by_id(id) },
-                Identity::Hotspot => Known::Hotspot,
-                Identity::Neither => Known::NoStarNorHotspot,
+            let identities = |blob: &Blob| match identity(blob.centre) {
+                Identity::Star(id) => PriorIdentity::Star { id, listed: self.stars.by_id(id) },
+                Identity::Hotspot => PriorIdentity::Hotspot,
+                Identity::Neither => PriorIdentity::NoStarNorHotspot,
             };
-            return blobs.iter().map(known).collect();
+            return blobs.iter().map(identities).collect();
         }
         // A marked hotspot near a star would be taken for it and spoil the attitude.
         let is_marked: Vec<bool> = blobs.iter().map(|blob| self.hotspots.is_marked(blob)).collect();
@@ -145,9 +145,9 @@ impl PaperPipeline {
             .into_iter()
             .zip(is_marked)
             .map(|(star, is_marked)| match star.map(|i| predicted[i].star) {
-                Some(star) => Known::Star { id: star.id, listed: Some(star) },
-                None if is_marked => Known::Hotspot,
-                None => Known::Nothing,
+                Some(star) => PriorIdentity::Star { id: star.id, listed: Some(star) },
+                None if is_marked => PriorIdentity::Hotspot,
+                None => PriorIdentity::Nothing,
             })
             .collect()
     }
@@ -159,7 +159,7 @@ impl PaperPipeline {
         blobs: &[Blob],
         telemetry: &Telemetry,
         camera_from_icrs_now: &Rotation<CameraFrame, Icrs>,
-    ) -> Option<Linked> {
+    ) -> Option<ClusterLinks> {
         let mut previous = self.previous.take()?;
         let dt_s = (telemetry.time - previous.time).to_seconds();
         if !(dt_s > 0.0 && dt_s <= self.config.max_gap_s) {
@@ -180,17 +180,17 @@ impl PaperPipeline {
         // Each goes on in one cluster at most.
         let before =
             links.into_iter().map(|link| link.map(|i| std::mem::take(&mut previous.tracks[i]))).collect();
-        Some(Linked { dt_s, before })
+        Some(ClusterLinks { dt_s, before })
     }
 }
 
 /// The previous track of each cluster, `dt_s` seconds ago.
-struct Linked {
+struct ClusterLinks {
     dt_s: f64,
     before: Vec<Option<Track>>,
 }
 
-impl Linked {
+impl ClusterLinks {
     /// That of so many clusters which are all new.
     fn none(clusters: usize) -> Self {
         Self { dt_s: 0.0, before: vec![None; clusters] }
@@ -199,7 +199,7 @@ impl Linked {
 
 /// What a cluster is known to be before its motion is looked at.
 #[derive(Debug, Clone, Copy)]
-enum Known {
+enum PriorIdentity {
     /// A star; `listed` unless the list does not hold it.
     Star { id: u32, listed: Option<ListedStar> },
     /// A hotspot.
@@ -244,12 +244,12 @@ impl PaperPipeline {
             }
         }
 
-        let known = self.identify(&blobs, &attitude(&self.mounting), overrides);
+        let identities = self.identify(&blobs, &attitude(&self.mounting), overrides);
         let seen: Vec<(Blob, ListedStar)> = blobs
             .iter()
-            .zip(&known)
-            .filter_map(|(blob, known)| match *known {
-                Known::Star { listed: Some(star), .. } => Some((*blob, star)),
+            .zip(&identities)
+            .filter_map(|(blob, identities)| match *identities {
+                PriorIdentity::Star { listed: Some(star), .. } => Some((*blob, star)),
                 _ => None,
             })
             .collect();
@@ -258,15 +258,15 @@ impl PaperPipeline {
 
         let linked = self.link(&blobs, telemetry, &camera_from_icrs);
         let has_previous = linked.is_some();
-        let Linked { dt_s, before } = linked.unwrap_or_else(|| Linked::none(blobs.len()));
+        let ClusterLinks { dt_s, before } = linked.unwrap_or_else(|| ClusterLinks::none(blobs.len()));
         let centres_before: Vec<_> = before.iter().map(|before| Some(before.as_ref()?.centre)).collect();
         let n_max = self.config.hotspots.n_max();
         let tracks: Vec<Track> = blobs
             .iter()
-            .zip(&known)
+            .zip(&identities)
             .zip(before)
-            .map(|((blob, known), before)| {
-                let is_star = matches!(known, Known::Star { .. });
+            .map(|((blob, identities), before)| {
+                let is_star = matches!(identities, PriorIdentity::Star { .. });
                 match before {
                     Some(track) => track.extended(blob, is_star, dt_s, n_max),
                     None => Track::new(blob, is_star),
@@ -275,19 +275,19 @@ impl PaperPipeline {
             .collect();
 
         let labels: Vec<Label> = (0..blobs.len())
-            .map(|i| match known[i] {
-                Known::Star { id, .. } => Label::Star(id),
-                Known::Hotspot => Label::Hotspot,
-                Known::Nothing if self.hotspots.judge(&tracks[i]) => Label::Hotspot,
+            .map(|i| match identities[i] {
+                PriorIdentity::Star { id, .. } => Label::Star(id),
+                PriorIdentity::Hotspot => Label::Hotspot,
+                PriorIdentity::Nothing if self.hotspots.is_hotspot(&tracks[i]) => Label::Hotspot,
                 _ if centres_before[i].is_some() => Label::Candidate,
                 _ => Label::Unlinked,
             })
             .collect();
-        let movers: Vec<Mover> = blobs
+        let movers: Vec<ClusterMotion> = blobs
             .iter()
             .zip(&centres_before)
             .zip(&labels)
-            .map(|((blob, &previous), label)| Mover {
+            .map(|((blob, &previous), label)| ClusterMotion {
                 centre: blob.centre,
                 previous,
                 is_candidate: *label == Label::Candidate,
@@ -314,7 +314,7 @@ impl PaperPipeline {
                 label: if target == Some(i) { Label::Target } else { label },
             })
             .collect();
-        self.previous = Some(Previous {
+        self.previous = Some(PreviousFrame {
             time: telemetry.time,
             body_from_icrs: telemetry.body_from_icrs,
             camera_from_icrs: overrides.camera_from_icrs,

@@ -95,7 +95,7 @@ impl ThresholdConfig {
     }
 
     /// The thresholds of a frame. A background that is needed and missing counts as zero.
-    pub(super) fn of(&self, frame: &Frame, background: Option<Background>) -> Thresholds {
+    pub(super) fn for_frame(&self, frame: &Frame, background: Option<Background>) -> Thresholds {
         let full_scale = f64::from(frame.full_scale_dn());
         let (low, high) = match *self {
             Self::Constant { low, high } => (low * full_scale, high * full_scale),
@@ -139,25 +139,25 @@ mod tests {
 
     #[test]
     fn constants_are_fractions_of_full_scale() {
-        let got = ThresholdConfig::Constant { low: 0.1, high: 0.5 }.of(&frame(0), None);
+        let got = ThresholdConfig::Constant { low: 0.1, high: 0.5 }.for_frame(&frame(0), None);
         assert_eq!(got, Thresholds { low_dn: 409, high_dn: 2047 });
     }
 
     #[test]
     fn automatic_thresholds_stand_on_the_background() {
-        let got = automatic(0.0).of(&frame(4000), background(100.0, 2.0));
+        let got = automatic(0.0).for_frame(&frame(4000), background(100.0, 2.0));
         assert_eq!(got, Thresholds { low_dn: 106, high_dn: 112 });
     }
 
     #[test]
     fn bright_stars_raise_the_second_threshold_only() {
-        let got = automatic(0.1).of(&frame(1100), background(100.0, 2.0));
+        let got = automatic(0.1).for_frame(&frame(1100), background(100.0, 2.0));
         assert_eq!(got, Thresholds { low_dn: 106, high_dn: 200 });
     }
 
     #[test]
     fn a_noisy_frame_lets_bright_stars_through() {
-        let got = automatic(0.0).of(&frame(4095), background(2095.0, 900.0));
+        let got = automatic(0.0).for_frame(&frame(4095), background(2095.0, 900.0));
         assert_eq!(got, Thresholds { low_dn: 3095, high_dn: 3095 });
     }
 

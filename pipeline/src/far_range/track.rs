@@ -154,17 +154,17 @@ pub(super) fn link(
     config: &TrackingConfig,
 ) -> Vec<Option<usize>> {
     // By columns of the image: most pairs are far apart, and are never met.
-    let mut places: Vec<(usize, PixelPoint)> =
-        expected.iter().enumerate().filter_map(|(column, place)| Some((column, (*place)?))).collect();
-    places.sort_unstable_by(|(_, a), (_, b)| a.x.total_cmp(&b.x));
+    let mut positions: Vec<(usize, PixelPoint)> =
+        expected.iter().enumerate().filter_map(|(column, position)| Some((column, (*position)?))).collect();
+    positions.sort_unstable_by(|(_, a), (_, b)| a.x.total_cmp(&b.x));
     let mut pairs = Vec::new();
     for (row, blob) in blobs.iter().enumerate() {
         let (left, right) =
             (blob.centre.x - config.max_displacement_px, blob.centre.x + config.max_displacement_px);
-        let first = places.partition_point(|(_, place)| place.x < left);
-        let near = places[first..].iter().take_while(|(_, place)| place.x <= right);
-        pairs.extend(near.filter_map(|&(column, place)| {
-            let cost = similarity(place, tracks.get(column)?.size, blob, config)?;
+        let first = positions.partition_point(|(_, position)| position.x < left);
+        let near = positions[first..].iter().take_while(|(_, position)| position.x <= right);
+        pairs.extend(near.filter_map(|&(column, position)| {
+            let cost = similarity(position, tracks.get(column)?.size, blob, config)?;
             Some(AllowedPair { row, column, cost })
         }));
     }

@@ -11,7 +11,7 @@
 use std::path::Path;
 
 use contract::docking::Digitiser;
-use sim::docking::{DockingSimulation, DockingSimulator, FieldMoment, FloodlightConfig};
+use sim::docking::{DockingSimulation, DockingSimulator, FieldState, FloodlightConfig};
 use sim::optics::ImageBlur;
 use sim::scene::docking::DockingScene;
 use sim::television::TelevisionConfig;
@@ -30,7 +30,7 @@ fn processor_ms() -> f64 {
 }
 
 /// The least time of a field over the rounds, ms.
-fn least_ms(fields: &[FieldMoment], mut work: impl FnMut(&FieldMoment)) -> f64 {
+fn least_ms(fields: &[FieldState], mut work: impl FnMut(&FieldState)) -> f64 {
     let round = || {
         let start = processor_ms();
         fields.iter().for_each(&mut work);
@@ -49,21 +49,21 @@ fn simulation() -> DockingSimulation {
     scenario.try_into().unwrap()
 }
 
-fn fields_at(simulator: &DockingSimulator, range_m: f64) -> Vec<FieldMoment> {
-    let nearer = |field: &u64| simulator.moment(*field).unwrap().state.range_m() <= range_m;
+fn fields_at(simulator: &DockingSimulator, range_m: f64) -> Vec<FieldState> {
+    let nearer = |field: &u64| simulator.field_state(*field).unwrap().state.range_m() <= range_m;
     let first = (0..simulator.field_count() - FIELDS).find(nearer).unwrap_or(0);
-    (first..first + FIELDS).map(|field| simulator.moment(field).unwrap()).collect()
+    (first..first + FIELDS).map(|field| simulator.field_state(field).unwrap()).collect()
 }
 
 /// The time to draw a scene, ms, and the last image.
-fn drawing_ms(drawer: &mut Drawer, scene: &DockingScene, fields: &[FieldMoment]) -> (f64, RadianceImage) {
+fn drawing_ms(drawer: &mut Drawer, scene: &DockingScene, fields: &[FieldState]) -> (f64, RadianceImage) {
     let mut image = RadianceImage::default();
     let ms = least_ms(fields, |field| drawer.draw(scene, &field.lighting, &field.state.pose, &mut image));
     (ms, image)
 }
 
 /// The time of all that follows the drawing, without the digitiser, ms.
-fn chain_ms(simulation: &DockingSimulation, fields: &[FieldMoment], image: &RadianceImage) -> f64 {
+fn chain_ms(simulation: &DockingSimulation, fields: &[FieldState], image: &RadianceImage) -> f64 {
     let simulator = DockingSimulator::new(simulation, Path::new(".")).unwrap();
     let mut workspace = simulator.workspace().unwrap();
     least_ms(fields, |field| {

@@ -164,7 +164,7 @@ pub fn simulate(plan: &Plan, number: u64) -> Result<MeasuredApproach, Box<dyn Er
         let exposure = simulator.expose(&mut workspace, field)?;
         let telemetry = exposure.telemetry(digitiser);
         let outcome = pipeline.process(&exposure.video.digitise(&digitiser), &telemetry);
-        let truth = simulator.moment(field)?.state;
+        let truth = simulator.field_state(field)?.state;
         digitiser = outcome.digitiser.unwrap_or(digitiser);
         if let DockingSolution::Measured(measurement) = outcome.solution {
             approaches.fields.push((truth, measurement.best));
@@ -194,7 +194,7 @@ fn draw(plan: &Plan, lens: &Lens, number: u64) -> Result<(ApproachConfig, SunCon
             Course::Swinging => swinging(lens, &mut stream),
         };
         let Ok(approach) = Approach::new(&config, target.contact.camera_to_disk_m) else { continue };
-        let is_in_field = |at_s: f64| are_inside(&camera, &approach.at(at_s).pose, &corners, MARGIN_PX);
+        let is_in_field = |at_s: f64| are_inside(&camera, &approach.state_at(at_s).pose, &corners, MARGIN_PX);
         if [0.0, 0.5, 1.0].iter().all(|part| is_in_field(part * plan.duration_s())) {
             break config;
         }

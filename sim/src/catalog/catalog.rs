@@ -9,8 +9,8 @@ use sha2::{Digest, Sha256};
 
 use super::cone::{ConeIndex, within_cone};
 use super::config::{CatalogConfig, CatalogSource};
+use super::contents::Exclusion;
 use super::hex::hex;
-use super::parsed::Exclusion;
 use super::{CatalogError, CatalogStar, hipparcos, read};
 use crate::memo::Memo;
 use crate::regular_file;
@@ -131,7 +131,7 @@ impl Catalog {
 #[cfg(test)]
 impl Catalog {
     /// A catalogue of these stars, in ascending order of id.
-    pub(crate) fn of(stars: Vec<CatalogStar>) -> Self {
+    pub(crate) fn from_stars(stars: Vec<CatalogStar>) -> Self {
         Self::new(stars, String::new(), Vec::new())
     }
 }

@@ -75,10 +75,10 @@ impl ConeIndex {
         let mut scan = |first: usize, last: usize| {
             let entries = &self.entries[self.starts[first] as usize..self.starts[last + 1] as usize];
             found.extend(
-                entries.iter().filter(|(star, _)| inside.holds(star)).map(|(_, index)| *index as usize),
+                entries.iter().filter(|(star, _)| inside.contains(star)).map(|(_, index)| *index as usize),
             );
         };
-        let Candidates { bands, cells } = Candidates::of(centre, radius);
+        let Candidates { bands, cells } = Candidates::from_centre(centre, radius);
         for first in bands.map(|band| band * CELLS) {
             let (from, to) = cells;
             if from <= to {
@@ -94,7 +94,7 @@ impl ConeIndex {
 
 /// Whether a star lies in the cone: the definition that the index must reproduce.
 pub(super) fn within_cone(centre: &Direction<Icrs>, star: &Direction<Icrs>, radius: Angle) -> bool {
-    radius.radians() >= 0.0 && Cone::new(centre, radius).holds(star)
+    radius.radians() >= 0.0 && Cone::new(centre, radius).contains(star)
 }
 
 /// A cone, ready to be compared with many stars.
@@ -123,7 +123,7 @@ impl Cone {
         }
     }
 
-    fn holds(&self, star: &Direction<Icrs>) -> bool {
+    fn contains(&self, star: &Direction<Icrs>) -> bool {
         let chord_squared = |[x, y, z]: &[f64; 3]| {
             let v = star.vector();
             let (dx, dy, dz) = (v.x - x, v.y - y, v.z - z);
@@ -145,7 +145,7 @@ struct Candidates {
 }
 
 impl Candidates {
-    fn of(centre: &Direction<Icrs>, radius: Angle) -> Self {
+    fn from_centre(centre: &Direction<Icrs>, radius: Angle) -> Self {
         let (dec, radius) = (centre.dec().radians(), (radius.radians() + MARGIN_RAD).min(PI));
         let (low, high) = (dec - radius, dec + radius);
         // The sine is flat at the poles, where a declination says little about z: the ends are exact there.
@@ -202,7 +202,7 @@ mod tests {
     use super::super::Catalog;
     use super::*;
 
-    fn at(ra_deg: f64, dec_deg: f64) -> Direction<Icrs> {
+    fn direction(ra_deg: f64, dec_deg: f64) -> Direction<Icrs> {
         Direction::from_ra_dec(Angle::from_degrees(ra_deg), Angle::from_degrees(dec_deg))
     }
 
@@ -227,7 +227,7 @@ mod tests {
 
     /// Places where an index goes wrong: poles and their neighbourhood, the seam of right ascension, a cell's
     /// edge.
-    fn places() -> impl Strategy<Value = Direction<Icrs>> {
+    fn directions() -> impl Strategy<Value = Direction<Icrs>> {
         let ra =
             prop_oneof![Just(0.0), Just(180.0), 359.999..360.0_f64, 179.999..180.001_f64, 0.0..360.0_f64];
         let dec = prop_oneof![
@@ -238,7 +238,7 @@ mod tests {
             -90.0..-89.9999_f64,
             -90.0..90.0_f64
         ];
-        (ra, dec).prop_map(|(ra, dec)| at(ra, dec))
+        (ra, dec).prop_map(|(ra, dec)| direction(ra, dec))
     }
 
     fn radii() -> impl Strategy<Value = Angle> {
@@ -260,8 +260,8 @@ mod tests {
 
         #[test]
         fn the_index_finds_what_brute_force_finds(
-            stars in prop::collection::vec(places(), 0..60),
-            centre in places(),
+            stars in prop::collection::vec(directions(), 0..60),
+            centre in directions(),
             radius in radii(),
         ) {
             check(&stars, &centre, radius);
@@ -269,12 +269,12 @@ mod tests {
 
         /// The radius is the exact separation of a star, where rounding decides.
         #[test]
-        fn a_star_on_the_boundary_is_treated_alike(stars in prop::collection::vec(places(), 1..40), centre in places()) {
+        fn a_star_on_the_boundary_is_treated_alike(stars in prop::collection::vec(directions(), 1..40), centre in directions()) {
             check(&stars, &centre, centre.separation(&stars[0]));
         }
 
         #[test]
-        fn the_whole_catalogue_agrees_with_brute_force(centre in places(), radius in radii()) {
+        fn the_whole_catalogue_agrees_with_brute_force(centre in directions(), radius in radii()) {
             let (stars, index) = sky();
             prop_assert_eq!(index.within(&centre, radius), brute_force(stars, &centre, radius));
         }
@@ -285,13 +285,17 @@ mod tests {
     fn a_cone_holds_what_is_nearer_than_its_radius() {
         for (separation, inside) in [(9.999999, true), (10.000001, false)] {
             for ra in [0.0, 90.0, 359.0] {
-                let (centre, star) = (at(ra, 85.0), at(ra + 180.0, 95.0 - separation));
+                let (centre, star) = (direction(ra, 85.0), direction(ra + 180.0, 95.0 - separation));
                 assert_eq!(within_cone(&centre, &star, Angle::from_degrees(10.0)), inside, "{separation}");
             }
         }
         for (separation, inside) in [(169.999999, true), (170.000001, false)] {
-            let star = at(separation, 0.0);
-            assert_eq!(within_cone(&at(0.0, 0.0), &star, Angle::from_degrees(170.0)), inside, "{separation}");
+            let star = direction(separation, 0.0);
+            assert_eq!(
+                within_cone(&direction(0.0, 0.0), &star, Angle::from_degrees(170.0)),
+                inside,
+                "{separation}"
+            );
         }
     }
 
@@ -306,7 +310,7 @@ mod tests {
     #[test]
     fn half_a_turn_holds_everything_and_a_negative_radius_nothing() {
         let (stars, index) = sky();
-        let centre = at(12.0, 34.0);
+        let centre = direction(12.0, 34.0);
         assert_eq!(index.within(&centre, Angle::from_radians(PI)).len(), stars.len());
         assert_eq!(index.within(&centre, Angle::from_degrees(500.0)).len(), stars.len());
         assert!(index.within(&centre, Angle::from_degrees(-1e-9)).is_empty());
@@ -315,14 +319,14 @@ mod tests {
 
     #[test]
     fn an_index_of_nothing_finds_nothing() {
-        assert!(ConeIndex::new(&[]).within(&at(0.0, 0.0), Angle::from_degrees(180.0)).is_empty());
+        assert!(ConeIndex::new(&[]).within(&direction(0.0, 0.0), Angle::from_degrees(180.0)).is_empty());
     }
 
     #[test]
     fn a_buffer_is_cleared_before_it_is_filled() {
         let index = ConeIndex::from_directions([Direction::from_unit(Vector3::x())]);
         let mut found = vec![7, 8, 9];
-        index.within_into(&at(0.0, 0.0), Angle::from_degrees(1.0), &mut found);
+        index.within_into(&direction(0.0, 0.0), Angle::from_degrees(1.0), &mut found);
         assert_eq!(found, [0]);
     }
 }

@@ -35,7 +35,7 @@ fn star(record: &[u8; RECORD]) -> CatalogStar {
         parallax_mas: scaled(signed::<13, 3>(record), 1e2),
         pm_ra_mas_per_yr: scaled(signed::<16, 3>(record), 1e2),
         pm_dec_mas_per_yr: scaled(signed::<19, 3>(record), 1e2),
-        radial_velocity_km_s: radial_velocity::of(id).unwrap_or(0.0),
+        radial_velocity_km_s: radial_velocity::radial_velocity_km_s(id).unwrap_or(0.0),
         hp_mag: scaled(signed::<22, 3>(record), 1e4),
         b_v: colour(signed::<25, 2>(record)),
         v_i: colour(signed::<27, 2>(record)),

@@ -8,6 +8,7 @@ mod catalog;
 )]
 mod cone;
 mod config;
+mod contents;
 mod error;
 mod hex;
 #[allow(
@@ -15,7 +16,6 @@ mod hex;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod hipparcos;
-mod parsed;
 pub mod photometry;
 #[allow(
     clippy::indexing_slicing,
@@ -28,6 +28,6 @@ mod star;
 pub use catalog::Catalog;
 pub use cone::ConeIndex;
 pub use config::{CatalogConfig, CatalogSource, ConeConfig};
+pub use contents::Exclusion;
 pub use error::CatalogError;
-pub use parsed::Exclusion;
 pub use star::CatalogStar;

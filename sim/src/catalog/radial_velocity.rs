@@ -29,7 +29,7 @@ enum Source {
 }
 
 /// The radial velocity of a star by its HIP number, km/s, positive away.
-pub(super) fn of(hip: u32) -> Option<f64> {
+pub(super) fn radial_velocity_km_s(hip: u32) -> Option<f64> {
     TABLE.binary_search_by_key(&hip, |(hip, ..)| *hip).ok().map(|row| TABLE[row].1)
 }
 
@@ -167,7 +167,7 @@ mod tests {
         let mut gaps: Vec<(f64, u32)> = catalog
             .stars()
             .iter()
-            .filter(|star| of(star.id).is_none())
+            .filter(|star| radial_velocity_km_s(star.id).is_none())
             .map(|star| (effect_mas(star, 30.0), star.id))
             .filter(|(effect, _)| *effect >= 1.0)
             .collect();

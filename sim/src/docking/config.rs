@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::lighting::LightingConfig;
 use crate::television::{TelevisionConfig, can_be_written};
 use crate::truth::approach::ApproachConfig;
-use crate::truth::clock::parse_utc_of;
+use crate::truth::clock::parse_utc_field;
 
 /// Longest name of a camera.
 const MAX_NAME: usize = 16;
@@ -76,7 +76,7 @@ impl DockingSimulation {
     /// [`OutOfRange`] for the first one that is not allowed.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "")?;
-        parse_utc_of("start_utc", &self.start_utc)?;
+        parse_utc_field("start_utc", &self.start_utc)?;
         self.cameras.iter().enumerate().try_for_each(|(index, camera)| {
             let before = index.checked_sub(1).and_then(|before| self.cameras.get(before));
             let last = index + 1 == self.cameras.len();

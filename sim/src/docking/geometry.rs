@@ -7,7 +7,7 @@ use contract::{Camera, Direction, PixelPoint};
 use nalgebra::Vector3;
 
 use super::glint::{GlintConfig, GlintImage};
-use super::occlusion::{Nearby, Occluders, Region};
+use super::occlusion::{NearbyOccluders, Occluders, Region};
 use crate::SimError;
 use crate::optics::Projection;
 use crate::scene::docking::{DockingScene, Floodlight, Lighting, Sun};
@@ -19,9 +19,9 @@ const SUN_RADIUS_RAD: f64 = 959.63 / 3600.0 * PI / 180.0;
 /// Points on the rim of a circle that are projected.
 const RIM_POINTS: u32 = 32;
 /// Places on each side of a mark at which its light is looked at.
-const MARK_PLACES: u32 = 5;
+const MARK_SAMPLES: u32 = 5;
 /// Points across the Sun's disk at which it is looked whether something hides it.
-const SUN_PLACES: i32 = 7;
+const SUN_SAMPLES: i32 = 7;
 
 /// A camera with its exact projection.
 #[derive(Debug, Clone)]
@@ -59,22 +59,22 @@ impl Eye {
     pub(super) fn glints(&self, glints: &[GlintConfig], sun: &Sun, pose: &Pose) -> Vec<GlintImage> {
         let of = |(index, glint): (usize, &GlintConfig)| {
             let centre = self.image_of(pose, &Vector3::from(glint.position_m));
-            let light = glint.light(sun, &pose.position_m) * self.focal_px * self.focal_px;
-            let centre = centre.filter(|_| light > 0.0 && self.holds(centre, 0.0))?;
+            let light = glint.intensity_at(sun, &pose.position_m) * self.focal_px * self.focal_px;
+            let centre = centre.filter(|_| light > 0.0 && self.is_in_field(centre, 0.0))?;
             Some(GlintImage { index, centre, light })
         };
         glints.iter().enumerate().filter_map(of).collect()
     }
 
-    fn holds(&self, point: Option<PixelPoint>, margin_px: f64) -> bool {
+    fn is_in_field(&self, point: Option<PixelPoint>, margin_px: f64) -> bool {
         point.is_some_and(|p| {
             (-0.5 - margin_px..=self.columns - 0.5 + margin_px).contains(&p.x)
                 && (-0.5 - margin_px..=self.rows - 0.5 + margin_px).contains(&p.y)
         })
     }
 
-    fn sees_all(&self, pose: &Pose, points: &[Vector3<f64>]) -> bool {
-        points.iter().all(|point| self.holds(self.image_of(pose, point), 0.0))
+    fn are_all_in_field(&self, pose: &Pose, points: &[Vector3<f64>]) -> bool {
+        points.iter().all(|point| self.is_in_field(self.image_of(pose, point), 0.0))
     }
 }
 
@@ -86,7 +86,7 @@ pub(super) struct TargetGeometry {
     marks: Vec<[Vector3<f64>; 4]>,
     cross_ends: Vec<Vector3<f64>>,
     plate_rim: Vec<Vector3<f64>>,
-    plate_places: Vec<Vector3<f64>>,
+    plate_points_m: Vec<Vector3<f64>>,
     /// About the marks and the plate.
     region: Region,
     shading: Occluders,
@@ -120,7 +120,7 @@ impl TargetGeometry {
             marks,
             cross_ends,
             plate_rim: circle(radius, RIM_POINTS),
-            plate_places: rings.into_iter().flatten().collect(),
+            plate_points_m: rings.into_iter().flatten().collect(),
             region: Region { centre: Vector3::zeros(), radius_m: farthest },
             // What lies in or behind the plate's plane cannot shade it.
             shading: Occluders::new(scene.parts.iter().filter(|part| part.casts_shadow), |facet| {
@@ -137,9 +137,10 @@ impl TargetGeometry {
 
     /// Whether a camera at a place, target frame, is in front of all that is drawn: a front between it and the open is that of a body
     /// that it is in, or behind.
-    pub(super) fn leaves_free(&self, place: &Vector3<f64>) -> bool {
-        let (camera, ahead) = (Region { centre: *place, radius_m: 0.0 }, Vector3::z());
-        place.z > self.front_m || !self.fronts.along(&camera, &ahead).hide(place, &ahead)
+    pub(super) fn is_unobstructed(&self, plate_point_m: &Vector3<f64>) -> bool {
+        let (camera, ahead) = (Region { centre: *plate_point_m, radius_m: 0.0 }, Vector3::z());
+        plate_point_m.z > self.front_m
+            || !self.fronts.along_direction(&camera, &ahead).hide(plate_point_m, &ahead)
     }
 
     /// Image of the centre of the cross, of the disk, and f r/x3.
@@ -155,52 +156,55 @@ impl TargetGeometry {
 
     /// Bit i: mark i is wholly in the picture.
     pub(super) fn marks_in_field(&self, eye: &Eye, pose: &Pose) -> u64 {
-        self.bits(|mark| eye.sees_all(pose, mark))
+        self.bits(|mark| eye.are_all_in_field(pose, mark))
     }
 
     pub(super) fn cross_in_field(&self, eye: &Eye, pose: &Pose) -> bool {
-        eye.sees_all(pose, &self.cross_ends)
+        eye.are_all_in_field(pose, &self.cross_ends)
     }
 
     /// Whether plate, marks and cross are in the picture.
     pub(super) fn target_in_field(&self, eye: &Eye, pose: &Pose) -> bool {
         self.cross_in_field(eye, pose)
-            && eye.sees_all(pose, &self.plate_rim)
-            && self.marks.iter().all(|mark| eye.sees_all(pose, mark))
+            && eye.are_all_in_field(pose, &self.plate_rim)
+            && self.marks.iter().all(|mark| eye.are_all_in_field(pose, mark))
     }
 
     /// Bit i: some of mark i lacks the light of a source that shines on the target's side.
     pub(super) fn marks_shadowed(&self, lighting: &Lighting) -> u64 {
-        let light = self.light(lighting);
-        self.bits(|mark| places(mark).any(|place| light.lacks_some(&place)))
+        let light = self.plate_lighting(lighting);
+        self.bits(|mark| sample_points(mark).any(|plate_point_m| light.is_partly_shadowed(&plate_point_m)))
     }
 
     /// Bit i: neither the Sun nor the lamp shines on any of mark i.
     pub(super) fn marks_dark(&self, lighting: &Lighting) -> u64 {
-        let light = self.light(lighting);
-        self.bits(|mark| !places(mark).any(|place| light.shines_on(&place)))
+        let light = self.plate_lighting(lighting);
+        self.bits(|mark| !sample_points(mark).any(|plate_point_m| light.is_lit(&plate_point_m)))
     }
 
     /// Bit i: something stands between the camera and some of mark i.
     pub(super) fn marks_hidden(&self, pose: &Pose) -> u64 {
-        let hiding = self.hiding.before(&self.region, &pose.position_m);
-        self.bits(|mark| places(mark).any(|place| hiding.separate(&place, &pose.position_m)))
+        let hiding = self.hiding.between_region_and_point(&self.region, &pose.position_m);
+        self.bits(|mark| {
+            sample_points(mark).any(|plate_point_m| hiding.separate(&plate_point_m, &pose.position_m))
+        })
     }
 
     /// Share of the plate that the Sun or the lamp shines on.
     pub(super) fn plate_lit(&self, lighting: &Lighting) -> f64 {
-        let light = self.light(lighting);
-        let lit = self.plate_places.iter().filter(|place| light.shines_on(place)).count();
-        lit as f64 / self.plate_places.len().max(1) as f64
+        let light = self.plate_lighting(lighting);
+        let lit = self.plate_points_m.iter().filter(|plate_point_m| light.is_lit(plate_point_m)).count();
+        lit as f64 / self.plate_points_m.len().max(1) as f64
     }
 
     /// The light on the plate's front, and what may stand in its way.
-    fn light(&self, lighting: &Lighting) -> LightOnPlate<'_> {
+    fn plate_lighting(&self, lighting: &Lighting) -> PlateLighting<'_> {
         let sun = lighting.sun.map(|sun| sun.towards).filter(|towards| towards.z > 0.0);
         let lamp = lighting.floodlight.filter(|lamp| lamp.position_m.z > 0.0 && lamp.intensity > 0.0);
-        LightOnPlate {
-            sun: sun.map(|towards| (towards, self.shading.along(&self.region, &towards))),
-            lamp: lamp.map(|lamp| (lamp, self.shading.before(&self.region, &lamp.position_m))),
+        PlateLighting {
+            sun: sun.map(|towards| (towards, self.shading.along_direction(&self.region, &towards))),
+            lamp: lamp
+                .map(|lamp| (lamp, self.shading.between_region_and_point(&self.region, &lamp.position_m))),
         }
     }
 
@@ -212,55 +216,55 @@ impl TargetGeometry {
     pub(super) fn sun_image(&self, eye: &Eye, pose: &Pose, sun: &Vector3<f64>) -> Option<SunImage> {
         let centre = eye.image_of_direction(pose, sun)?;
         let radius_px = SUN_RADIUS_RAD * eye.focal_px;
-        if !eye.holds(Some(centre), radius_px) {
+        if !eye.is_in_field(Some(centre), radius_px) {
             return None;
         }
         let aside = sun.cross(&if sun.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() }).normalize();
         let above = sun.cross(&aside);
         let camera = Region { centre: pose.position_m, radius_m: 0.0 };
-        let (mut places, mut seen) = (0_u32, 0_u32);
-        let middle = SUN_PLACES / 2;
-        for (i, j) in (0..SUN_PLACES).flat_map(|i| (0..SUN_PLACES).map(move |j| (i - middle, j - middle))) {
+        let (mut samples, mut seen) = (0_u32, 0_u32);
+        let middle = SUN_SAMPLES / 2;
+        for (i, j) in (0..SUN_SAMPLES).flat_map(|i| (0..SUN_SAMPLES).map(move |j| (i - middle, j - middle))) {
             let (u, v) = (f64::from(i) / f64::from(middle), f64::from(j) / f64::from(middle));
             if u * u + v * v <= 1.0 {
-                places += 1;
+                samples += 1;
                 let towards = (sun + (aside * u + above * v) * SUN_RADIUS_RAD).normalize();
-                let hiding = self.hiding.along(&camera, &towards);
+                let hiding = self.hiding.along_direction(&camera, &towards);
                 seen += u32::from(!hiding.hide(&pose.position_m, &towards));
             }
         }
         let ghost = PixelPoint::new(2.0 * eye.principal.x - centre.x, 2.0 * eye.principal.y - centre.y);
-        let visible = f64::from(seen) / f64::from(places);
+        let visible = f64::from(seen) / f64::from(samples);
         (seen > 0).then_some(SunImage { centre, ghost, radius_px, focal_px: eye.focal_px, visible })
     }
 }
 
 /// The Sun and the lamp, where they shine on the plate's front, each with what may stand in its way.
-struct LightOnPlate<'a> {
-    sun: Option<(Vector3<f64>, Nearby<'a>)>,
-    lamp: Option<(Floodlight, Nearby<'a>)>,
+struct PlateLighting<'a> {
+    sun: Option<(Vector3<f64>, NearbyOccluders<'a>)>,
+    lamp: Option<(Floodlight, NearbyOccluders<'a>)>,
 }
 
-impl LightOnPlate<'_> {
+impl PlateLighting<'_> {
     /// Whether one of them shines on a place.
-    fn shines_on(&self, place: &Vector3<f64>) -> bool {
-        self.sunlit(place) == Some(true) || self.lamplit(place) == Some(true)
+    fn is_lit(&self, plate_point_m: &Vector3<f64>) -> bool {
+        self.sunlit(plate_point_m) == Some(true) || self.lamplit(plate_point_m) == Some(true)
     }
 
     /// Whether one of them does not.
-    fn lacks_some(&self, place: &Vector3<f64>) -> bool {
-        self.sunlit(place) == Some(false) || self.lamplit(place) == Some(false)
+    fn is_partly_shadowed(&self, plate_point_m: &Vector3<f64>) -> bool {
+        self.sunlit(plate_point_m) == Some(false) || self.lamplit(plate_point_m) == Some(false)
     }
 
-    fn sunlit(&self, place: &Vector3<f64>) -> Option<bool> {
-        self.sun.as_ref().map(|(towards, shading)| !shading.hide(place, towards))
+    fn sunlit(&self, plate_point_m: &Vector3<f64>) -> Option<bool> {
+        self.sun.as_ref().map(|(towards, shading)| !shading.hide(plate_point_m, towards))
     }
 
-    fn lamplit(&self, place: &Vector3<f64>) -> Option<bool> {
+    fn lamplit(&self, plate_point_m: &Vector3<f64>) -> Option<bool> {
         self.lamp.as_ref().map(|(lamp, shading)| {
-            let from_lamp = place - lamp.position_m;
+            let from_lamp = plate_point_m - lamp.position_m;
             let in_beam = from_lamp.dot(&lamp.axis) > from_lamp.norm() * libm::cos(lamp.outer_half_angle_rad);
-            in_beam && !shading.separate(place, &lamp.position_m)
+            in_beam && !shading.separate(plate_point_m, &lamp.position_m)
         })
     }
 }
@@ -275,11 +279,11 @@ fn circle(radius_m: f64, points: u32) -> Vec<Vector3<f64>> {
 }
 
 /// Places spread over a mark, its border included.
-fn places(mark: &[Vector3<f64>; 4]) -> impl Iterator<Item = Vector3<f64>> {
+fn sample_points(mark: &[Vector3<f64>; 4]) -> impl Iterator<Item = Vector3<f64>> {
     let [a, b, c, d] = *mark;
-    let share = |i: u32| f64::from(i) / f64::from(MARK_PLACES - 1);
-    (0..MARK_PLACES * MARK_PLACES).map(move |i| {
-        let (u, v) = (share(i % MARK_PLACES), share(i / MARK_PLACES));
+    let share = |i: u32| f64::from(i) / f64::from(MARK_SAMPLES - 1);
+    (0..MARK_SAMPLES * MARK_SAMPLES).map(move |i| {
+        let (u, v) = (share(i % MARK_SAMPLES), share(i / MARK_SAMPLES));
         (a * (1.0 - u) + b * u) * (1.0 - v) + (d * (1.0 - u) + c * u) * v
     })
 }

@@ -50,7 +50,7 @@ impl GlintConfig {
     }
 
     /// Light that reaches a camera at `camera_m`, per solid angle of a pixel seen at the distance 1: irradiance × m²/m².
-    pub(super) fn light(&self, sun: &Sun, camera_m: &Vector3<f64>) -> f64 {
+    pub(super) fn intensity_at(&self, sun: &Sun, camera_m: &Vector3<f64>) -> f64 {
         let to_camera = camera_m - Vector3::from(self.position_m);
         let distance2 = to_camera.norm_squared();
         let normal = Vector3::from(self.normal).normalize();
@@ -95,14 +95,14 @@ mod tests {
             GlintConfig { position_m: [0.0; 3], normal: [0.0, 0.0, 2.0], strength_m2: 1e-3, lobe_deg: 2.0 };
         let sun = Sun { towards: Vector3::new(0.6, 0.0, 0.8), irradiance: 3.0 };
         let mirror = Vector3::new(-0.6, 0.0, 0.8);
-        assert!((glint.light(&sun, &(mirror * 5.0)) - 3e-3 / 25.0).abs() < 1e-15);
-        assert!((glint.light(&sun, &(mirror * 10.0)) - 3e-3 / 100.0).abs() < 1e-15);
+        assert!((glint.intensity_at(&sun, &(mirror * 5.0)) - 3e-3 / 25.0).abs() < 1e-15);
+        assert!((glint.intensity_at(&sun, &(mirror * 10.0)) - 3e-3 / 100.0).abs() < 1e-15);
         // A camera 4° off the mirror direction: the bisector is 2° off, one standard deviation.
         let (sin, cos) = libm::sincos(4.0_f64.to_radians());
         let aside = Vector3::new(-0.6 * cos - 0.8 * sin, 0.0, 0.8 * cos - 0.6 * sin);
-        assert!((glint.light(&sun, &aside) / 3e-3 - libm::exp(-0.5)).abs() < 1e-12);
-        assert_eq!(glint.light(&sun, &-mirror), 0.0);
-        assert_eq!(glint.light(&Sun { towards: -sun.towards, ..sun }, &mirror), 0.0);
+        assert!((glint.intensity_at(&sun, &aside) / 3e-3 - libm::exp(-0.5)).abs() < 1e-12);
+        assert_eq!(glint.intensity_at(&sun, &-mirror), 0.0);
+        assert_eq!(glint.intensity_at(&Sun { towards: -sun.towards, ..sun }, &mirror), 0.0);
     }
 
     #[test]

@@ -177,10 +177,10 @@ impl LightingConfig {
     }
 
     /// The light at a moment, for a camera at `pose`.
-    pub fn at(&self, time_s: f64, pose: &Pose) -> Lighting {
+    pub fn lighting_at(&self, time_s: f64, pose: &Pose) -> Lighting {
         Lighting {
             sun: self.sun.map(|sun| Sun { towards: sun.towards(time_s), irradiance: sun.irradiance }),
-            floodlight: self.floodlight.map(|lamp| lamp.at(pose)),
+            floodlight: self.floodlight.map(|lamp| lamp.floodlight_at(pose)),
             fill_radiance: self.fill_radiance,
             sky_radiance: self.sky_radiance,
         }
@@ -200,7 +200,7 @@ impl SunConfig {
 }
 
 impl FloodlightConfig {
-    fn at(&self, pose: &Pose) -> Floodlight {
+    fn floodlight_at(&self, pose: &Pose) -> Floodlight {
         let target_from_camera = target_from_camera(pose);
         Floodlight {
             position_m: pose.position_m + target_from_camera * Vector3::from(self.offset_m),
@@ -238,12 +238,12 @@ mod tests {
     fn the_lamp_goes_with_the_camera() {
         let lamp = FloodlightConfig { offset_m: [0.2, 0.1, 0.3], ..FloodlightConfig::default() };
         let pose = Pose { position_m: Vector3::new(1.0, 2.0, 8.0), phi_rad: Vector3::zeros() };
-        let at = lamp.at(&pose);
+        let at = lamp.floodlight_at(&pose);
         // Columns run along y1, rows against y2, the axis against y3.
         assert!((at.position_m - Vector3::new(1.2, 1.9, 7.7)).norm() < 1e-15);
         assert_eq!(at.axis, -Vector3::z());
         // A positive yaw φ2 turns the axis towards +y1: A's third column is (φ2, φ1, −1) to first order.
-        let turned = lamp.at(&Pose { phi_rad: Vector3::new(0.0, 1e-3, 0.0), ..pose });
+        let turned = lamp.floodlight_at(&Pose { phi_rad: Vector3::new(0.0, 1e-3, 0.0), ..pose });
         assert!((turned.axis - Vector3::new(1e-3, 0.0, -1.0)).norm() < 1e-6);
     }
 

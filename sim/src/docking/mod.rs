@@ -13,7 +13,7 @@ mod truth;
 pub use config::{CameraConfig, DockingSimulation, LensConfig};
 pub use glint::{GlintConfig, GlintImage};
 pub use lighting::{FloodlightConfig, LightingConfig, ShadeConfig, SunConfig};
-pub use simulator::{DockingSimulator, DockingWorkspace, FieldExposure, FieldMoment};
+pub use simulator::{DockingSimulator, DockingWorkspace, FieldExposure, FieldState};
 pub use truth::FieldTruth;
 
 pub use crate::television::VideoField;

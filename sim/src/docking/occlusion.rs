@@ -22,7 +22,7 @@ pub(super) struct Region {
 
 /// Those of the occluders that can meet a ray from a region.
 #[derive(Debug, Clone)]
-pub(super) struct Nearby<'a> {
+pub(super) struct NearbyOccluders<'a> {
     plates: Vec<&'a Plate>,
 }
 
@@ -48,40 +48,44 @@ impl Occluders {
     }
 
     /// Those that can meet a ray from a region along the unit vector `towards`.
-    pub(super) fn along(&self, region: &Region, towards: &Vector3<f64>) -> Nearby<'_> {
-        self.about(region, towards, f64::INFINITY)
+    pub(super) fn along_direction(&self, region: &Region, towards: &Vector3<f64>) -> NearbyOccluders<'_> {
+        self.in_capsule(region, towards, f64::INFINITY)
     }
 
     /// Those that can stand between a region and a point.
-    pub(super) fn before(&self, region: &Region, point: &Vector3<f64>) -> Nearby<'_> {
+    pub(super) fn between_region_and_point(
+        &self,
+        region: &Region,
+        point: &Vector3<f64>,
+    ) -> NearbyOccluders<'_> {
         let way = point - region.centre;
         let length = way.norm();
-        self.about(region, &(way / length.max(f64::MIN_POSITIVE)), length)
+        self.in_capsule(region, &(way / length.max(f64::MIN_POSITIVE)), length)
     }
 
     /// Those that meet the capsule about the way of the region's centre.
-    fn about(&self, region: &Region, towards: &Vector3<f64>, length: f64) -> Nearby<'_> {
+    fn in_capsule(&self, region: &Region, towards: &Vector3<f64>, length: f64) -> NearbyOccluders<'_> {
         let meets = |plate: &&Plate| {
             let from_region = plate.centre - region.centre;
             let along = from_region.dot(towards).clamp(0.0, length);
             let reach = region.radius_m + plate.radius_m + CLEARANCE_M;
             (from_region - towards * along).norm_squared() <= reach * reach
         };
-        Nearby { plates: self.plates.iter().filter(meets).collect() }
+        NearbyOccluders { plates: self.plates.iter().filter(meets).collect() }
     }
 }
 
-impl Nearby<'_> {
+impl NearbyOccluders<'_> {
     /// Whether the ray from `from` along the unit vector `towards` meets one of them.
     pub(super) fn hide(&self, from: &Vector3<f64>, towards: &Vector3<f64>) -> bool {
-        self.plates.iter().any(|plate| plate.meets(from, towards, f64::INFINITY))
+        self.plates.iter().any(|plate| plate.is_hit_by(from, towards, f64::INFINITY))
     }
 
     /// Whether one of them stands between two points.
     pub(super) fn separate(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> bool {
         let way = to - from;
         let length = way.norm();
-        length > 0.0 && self.plates.iter().any(|plate| plate.meets(from, &(way / length), length))
+        length > 0.0 && self.plates.iter().any(|plate| plate.is_hit_by(from, &(way / length), length))
     }
 }
 
@@ -118,7 +122,7 @@ impl Plate {
     }
 
     /// Whether the ray from `from` along the unit vector `towards` meets the facet nearer than `reach_m`.
-    fn meets(&self, from: &Vector3<f64>, towards: &Vector3<f64>, reach_m: f64) -> bool {
+    fn is_hit_by(&self, from: &Vector3<f64>, towards: &Vector3<f64>, reach_m: f64) -> bool {
         let along = self.normal.dot(towards);
         let distance = (self.distance_m - self.normal.dot(from)) / along;
         // An infinite or undefined distance is a ray in the plane: it meets nothing.
@@ -168,7 +172,7 @@ mod tests {
         let occluders = framed();
         let region = Region { centre: Vector3::zeros(), radius_m: 3.0 };
         // With the whole frame within the region's reach nothing is left out.
-        let frame = occluders.along(&region, &Vector3::z());
+        let frame = occluders.along_direction(&region, &Vector3::z());
         let up = Vector3::z();
         for (x, y, hidden) in [(0.75, 0.0, true), (0.0, -0.9, true), (0.2, 0.3, false), (1.1, 0.0, false)] {
             assert_eq!(frame.hide(&Vector3::new(x, y, 0.0), &up), hidden, "{x} {y}");
@@ -198,12 +202,20 @@ mod tests {
             let towards = Vector3::new(cos, 0.1, sin).normalize();
             let point = region.centre + towards * 6.0;
             for (dx, dy) in [(0.0, 0.0), (0.5, 0.0), (-0.35, 0.35), (0.0, -0.5)] {
-                let place = region.centre + Vector3::new(dx, dy, 0.0);
-                let all = frame.plates[0].meets(&place, &towards, f64::INFINITY);
-                assert_eq!(frame.along(&region, &towards).hide(&place, &towards), all, "{towards}");
-                let way = point - place;
-                let between = frame.plates[0].meets(&place, &way.normalize(), way.norm());
-                assert_eq!(frame.before(&region, &point).separate(&place, &point), between, "{towards}");
+                let plate_point = region.centre + Vector3::new(dx, dy, 0.0);
+                let all = frame.plates[0].is_hit_by(&plate_point, &towards, f64::INFINITY);
+                assert_eq!(
+                    frame.along_direction(&region, &towards).hide(&plate_point, &towards),
+                    all,
+                    "{towards}"
+                );
+                let way = point - plate_point;
+                let between = frame.plates[0].is_hit_by(&plate_point, &way.normalize(), way.norm());
+                assert_eq!(
+                    frame.between_region_and_point(&region, &point).separate(&plate_point, &point),
+                    between,
+                    "{towards}"
+                );
                 met += usize::from(all);
             }
         }

@@ -19,7 +19,7 @@ use crate::randomness::Seed;
 use crate::scene::docking::{DockingScene, Lighting, TargetFile};
 use crate::television::{BIT_DEPTH, Caption, FieldLabel, Television, TelevisionConfig, VideoField};
 use crate::truth::approach::{Approach, ApproachState};
-use crate::truth::clock::{format_utc, parse_utc_of};
+use crate::truth::clock::{format_utc, parse_utc_field};
 use crate::vector::{Drawer, RadianceImage};
 use crate::{exact_toml, regular_file};
 
@@ -49,7 +49,7 @@ pub struct DockingSimulator {
 
 /// The moment of a field: what there is to be drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FieldMoment {
+pub struct FieldState {
     /// Number of the field.
     pub field: u64,
     /// Its moment, s since the beginning.
@@ -129,7 +129,7 @@ impl DockingSimulator {
             .collect::<Result<Vec<_>, SimError>>()?;
         let simulator = Self {
             seed: Seed { seed: simulation.seed, case: 0 },
-            start: parse_utc_of("start_utc", &simulation.start_utc)?,
+            start: parse_utc_field("start_utc", &simulation.start_utc)?,
             approach,
             cameras: simulation.cameras.clone(),
             eyes,
@@ -153,9 +153,9 @@ impl DockingSimulator {
     /// [`OutOfRange`] for a camera that is inside of the target.
     fn state(&self, field: u64) -> Result<(f64, ApproachState), OutOfRange> {
         let time_s = field as f64 / self.television.field_rate_hz();
-        let state = self.approach.at(time_s);
+        let state = self.approach.state_at(time_s);
         let place_m = &state.pose.position_m;
-        if self.geometry.leaves_free(place_m) {
+        if self.geometry.is_unobstructed(place_m) {
             return Ok((time_s, state));
         }
         let value = format!("({:.3}, {:.3}, {:.3}) m at field {field}", place_m.x, place_m.y, place_m.z);
@@ -207,7 +207,7 @@ impl DockingSimulator {
     ///
     /// # Errors
     /// [`SimError::OutOfRange`] when there is no such field.
-    pub fn moment(&self, field: u64) -> Result<FieldMoment, SimError> {
+    pub fn field_state(&self, field: u64) -> Result<FieldState, SimError> {
         if field >= self.field_count {
             return Err(OutOfRange::new("field", field, "a field of the approach").into());
         }
@@ -215,14 +215,14 @@ impl DockingSimulator {
         let range_m = state.range_m();
         // The last one is in use down to 0.
         let camera = self.cameras.iter().position(|camera| range_m >= camera.until_range_m).unwrap_or(0);
-        Ok(FieldMoment {
+        Ok(FieldState {
             field,
             time_s,
             // Through whole nanoseconds: the product of hifitime cuts them.
             time: self.start + Duration::from_total_nanoseconds((time_s * 1e9).round() as i128),
             lines: self.television.interlace.lines(field),
             camera,
-            lighting: self.lighting.at(time_s, &state.pose),
+            lighting: self.lighting.lighting_at(time_s, &state.pose),
             state,
         })
     }
@@ -232,17 +232,17 @@ impl DockingSimulator {
     /// # Errors
     /// [`SimError::OutOfRange`] when there is no such field.
     pub fn expose(&self, workspace: &mut DockingWorkspace, field: u64) -> Result<FieldExposure, SimError> {
-        let moment = self.moment(field)?;
-        workspace.drawers[moment.camera].draw(
+        let field_state = self.field_state(field)?;
+        workspace.drawers[field_state.camera].draw(
             &self.scene,
-            &moment.lighting,
-            &moment.state.pose,
+            &field_state.lighting,
+            &field_state.state.pose,
             &mut workspace.radiance,
         );
-        Ok(self.transmit(workspace, &moment))
+        Ok(self.transmit(workspace, &field_state))
     }
 
-    /// Makes the video signal of a field from an image that somebody else drew, as of [`DockingSimulator::moment`].
+    /// Makes the video signal of a field from an image that somebody else drew, as of [`DockingSimulator::field_state`].
     ///
     /// # Errors
     /// [`SimError::OutOfRange`] when there is no such field; [`SimError::Contract`] when the image has not the camera's size.
@@ -252,69 +252,71 @@ impl DockingSimulator {
         field: u64,
         image: &RadianceImage,
     ) -> Result<FieldExposure, SimError> {
-        let moment = self.moment(field)?;
+        let field_state = self.field_state(field)?;
         let (columns, rows) = (workspace.radiance.columns, workspace.radiance.rows);
         if (image.columns, image.rows, image.radiance.len()) != (columns, rows, columns * rows) {
             let got = image.radiance.len();
             return Err(contract::ContractError::ImageSize { columns, rows, got }.into());
         }
         workspace.radiance.radiance.copy_from_slice(&image.radiance);
-        Ok(self.transmit(workspace, &moment))
+        Ok(self.transmit(workspace, &field_state))
     }
 
     /// From the light in the workspace to the field and its truth.
     #[allow(clippy::expect_used, reason = "the blur keeps the rows of the field")]
-    fn transmit(&self, workspace: &mut DockingWorkspace, moment: &FieldMoment) -> FieldExposure {
-        let (eye, pose) = (&self.eyes[moment.camera], &moment.state.pose);
-        let sun = moment.lighting.sun.map(|sun| sun.towards);
+    fn transmit(&self, workspace: &mut DockingWorkspace, field_state: &FieldState) -> FieldExposure {
+        let (eye, pose) = (&self.eyes[field_state.camera], &field_state.state.pose);
+        let sun = field_state.lighting.sun.map(|sun| sun.towards);
         let sun_image = sun.and_then(|sun| self.geometry.sun_image(eye, pose, &sun));
-        let utc = format_utc(moment.time);
-        let (range_m, range_rate_m_s) = (moment.state.range_m(), moment.state.range_rate_m_s());
+        let utc = format_utc(field_state.time);
+        let (range_m, range_rate_m_s) = (field_state.state.range_m(), field_state.state.range_rate_m_s());
         let label = FieldLabel {
-            number: moment.field,
-            time_s: moment.time_s,
-            lines: moment.lines,
+            number: field_state.field,
+            time_s: field_state.time_s,
+            lines: field_state.lines,
             sun: sun_image,
             caption: Caption {
                 clock: utc.get(11..19).unwrap_or(""),
-                camera: &self.cameras[moment.camera].name,
+                camera: &self.cameras[field_state.camera].name,
                 range_m,
                 range_rate_m_s,
             },
         };
         let RadianceImage { columns, rows, radiance } = &workspace.radiance;
         let mut signal = Vec::new();
-        workspace.blur.blur(radiance, *columns, moment.lines, &mut signal);
-        let glints =
-            moment.lighting.sun.map_or_else(Vec::new, |sun| eye.glints(&self.lighting.glints, &sun, pose));
+        workspace.blur.blur(radiance, *columns, field_state.lines, &mut signal);
+        let glints = field_state
+            .lighting
+            .sun
+            .map_or_else(Vec::new, |sun| eye.glints(&self.lighting.glints, &sun, pose));
         for image in &glints {
-            glint::add(image, self.blur_sigma_px, &mut signal, *columns, moment.lines);
+            glint::add(image, self.blur_sigma_px, &mut signal, *columns, field_state.lines);
         }
         let video_truth = workspace.television.transmit(&label, &mut signal);
         let (cross_centre, disk_centre, circle_radius_px) = self.geometry.centres(eye, pose);
         let truth = FieldTruth {
-            field: moment.field,
-            time_s: moment.time_s,
-            time: moment.time,
-            lines: moment.lines,
-            camera: moment.camera,
+            field: field_state.field,
+            time_s: field_state.time_s,
+            time: field_state.time,
+            lines: field_state.lines,
+            camera: field_state.camera,
             pose: *pose,
-            velocity_m_s: moment.state.velocity_m_s,
-            phi_rate_rad_s: moment.state.phi_rate_rad_s,
+            velocity_m_s: field_state.state.velocity_m_s,
+            phi_rate_rad_s: field_state.state.phi_rate_rad_s,
             range_m,
             range_rate_m_s,
-            passive_pitch_rad: moment.state.passive_pitch_rad(),
-            passive_yaw_rad: moment.state.passive_yaw_rad(),
+            passive_pitch_rad: field_state.state.passive_pitch_rad(),
+            passive_yaw_rad: field_state.state.passive_yaw_rad(),
             sun,
-            floodlight: moment.lighting.floodlight.is_some(),
+            floodlight: field_state.lighting.floodlight.is_some(),
             cross_centre,
             disk_centre,
             circle_radius_px,
             marks_in_field: self.geometry.marks_in_field(eye, pose),
-            marks_shadowed: self.geometry.marks_shadowed(&moment.lighting),
-            marks_dark: self.geometry.marks_dark(&moment.lighting),
+            marks_shadowed: self.geometry.marks_shadowed(&field_state.lighting),
+            marks_dark: self.geometry.marks_dark(&field_state.lighting),
             marks_hidden: self.geometry.marks_hidden(pose),
-            plate_lit: self.geometry.plate_lit(&moment.lighting),
+            plate_lit: self.geometry.plate_lit(&field_state.lighting),
             cross_in_field: self.geometry.cross_in_field(eye, pose),
             target_in_field: self.geometry.target_in_field(eye, pose),
             sun_image: sun_image.map(|sun| sun.centre),
@@ -324,7 +326,7 @@ impl DockingSimulator {
             video: video_truth,
         };
         FieldExposure {
-            video: VideoField::new(moment.field, *columns, *rows, moment.lines, signal)
+            video: VideoField::new(field_state.field, *columns, *rows, field_state.lines, signal)
                 .expect("the blur keeps the rows of the field"),
             truth,
         }

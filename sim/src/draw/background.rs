@@ -64,17 +64,18 @@ impl Background {
     }
 
     /// [`Background::span`] of one pixel of an image of `columns`, by the same steps.
-    pub(super) fn at(&self, x: usize, y: usize, columns: usize) -> f64 {
+    pub(super) fn electrons_at(&self, x: usize, y: usize, columns: usize) -> f64 {
         let index = y * columns + x;
         let mut electrons = match &self.smooth {
-            Some((smooth, scale)) => self.light_e + scale * smooth.at(x, y),
+            Some((smooth, scale)) => self.light_e + scale * smooth.value_at(x, y),
             None => self.light_e,
         };
         if let Some(field) = self.field.get(index).filter(|_| self.field.len() >= (y + 1) * columns) {
             electrons += field;
         }
-        let of_pixel =
-            |factors: &PixelFactors| factors.at(x, y).filter(|_| factors.has_row(y, columns)).map(f64::from);
+        let of_pixel = |factors: &PixelFactors| {
+            factors.factor_at(x, y).filter(|_| factors.has_row(y, columns)).map(f64::from)
+        };
         if let Some(response) = self.response.as_ref().and_then(of_pixel) {
             electrons *= response;
         }
@@ -85,8 +86,8 @@ impl Background {
     }
 
     /// The background of pixels that all respond alike and have the same dark current, in one pixel of an image of `columns`.
-    pub(super) fn near(&self, x: usize, y: usize, columns: usize) -> f64 {
-        let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.at(x, y));
+    pub(super) fn uniform_response_electrons_at(&self, x: usize, y: usize, columns: usize) -> f64 {
+        let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.value_at(x, y));
         let field_e = self.field.get(y * columns + x).copied().unwrap_or(0.0);
         let pattern_e = self.pattern.as_ref().map_or(0.0, |(electrons, _)| *electrons);
         self.light_e + smooth_e + field_e + (self.dark_e + pattern_e)

@@ -9,12 +9,12 @@ pub(super) struct Objects {
     stamps: Vec<Stamp>,
     count: usize,
     /// Of each row, the objects that cover some of it, by number.
-    in_row: Vec<Vec<Part>>,
+    in_row: Vec<Vec<RowSpan>>,
 }
 
 /// The part of a row that an object covers.
 #[derive(Debug, Clone, Copy)]
-struct Part {
+struct RowSpan {
     object: usize,
     from: usize,
     to: usize,
@@ -35,7 +35,7 @@ impl Objects {
     }
 
     /// An old stamp, to be made the image of the next object.
-    pub(super) fn take(&mut self) -> Stamp {
+    pub(super) fn reuse_stamp(&mut self) -> Stamp {
         self.stamps.get_mut(self.count).map(std::mem::take).unwrap_or_default()
     }
 
@@ -43,7 +43,7 @@ impl Objects {
     pub(super) fn push(&mut self, stamp: Stamp) -> &Stamp {
         let object = self.count;
         match self.stamps.get_mut(object) {
-            Some(place) => *place = stamp,
+            Some(slot) => *slot = stamp,
             None => self.stamps.push(stamp),
         }
         self.count += 1;
@@ -52,8 +52,8 @@ impl Objects {
 
     /// Tells that the next object covers columns `from..to` of a row.
     #[inline(always)]
-    pub(super) fn cover(&mut self, y: usize, from: usize, to: usize) {
-        self.in_row[y].push(Part { object: self.count, from, to });
+    pub(super) fn add_span(&mut self, y: usize, from: usize, to: usize) {
+        self.in_row[y].push(RowSpan { object: self.count, from, to });
     }
 
     /// Whether objects cover some of row `y`.
@@ -63,8 +63,8 @@ impl Objects {
     }
 
     /// Tells the parts of a row that objects cover, each by its first column and the one after its last.
-    pub(super) fn parts_of(&self, y: usize, mut tell: impl FnMut(usize, usize)) {
-        self.in_row[y].iter().for_each(|part| tell(part.from, part.to));
+    pub(super) fn for_each_span(&self, y: usize, mut visit: impl FnMut(usize, usize)) {
+        self.in_row[y].iter().for_each(|part| visit(part.from, part.to));
     }
 
     /// Adds the light of all objects to the pixels of row `y` from column `x` on.

@@ -30,7 +30,7 @@ impl Layer {
     /// # Errors
     /// [`SimError::OutOfRange`] for a number that is not finite or negative, a direction without length, and a cone
     /// whose angles are not 0 ≤ inner < outer < π/2.
-    pub fn of(lighting: &Lighting) -> Result<Vec<Self>, SimError> {
+    pub fn from_lighting(lighting: &Lighting) -> Result<Vec<Self>, SimError> {
         let light = |v: f64| v >= 0.0;
         require("lighting.fill_radiance", lighting.fill_radiance, "0 or more", light)?;
         require("lighting.sky_radiance", lighting.sky_radiance, "0 or more", light)?;
@@ -135,19 +135,20 @@ mod tests {
 
     #[test]
     fn layers_without_light_are_left_out() {
-        assert_eq!(Layer::of(&night()).unwrap(), []);
+        assert_eq!(Layer::from_lighting(&night()).unwrap(), []);
         let sun = Sun { towards: Vector3::z(), irradiance: 1.0 };
         let day = Lighting { sun: Some(sun), fill_radiance: 0.1, ..night() };
-        let names: Vec<_> = Layer::of(&day).unwrap().iter().map(Layer::name).collect();
+        let names: Vec<_> = Layer::from_lighting(&day).unwrap().iter().map(Layer::name).collect();
         assert_eq!(names, ["sun", "fill"]);
     }
 
     #[test]
     fn light_that_is_no_light_is_refused_by_name() {
         let sun = Sun { towards: Vector3::zeros(), irradiance: 1.0 };
-        let error = Layer::of(&Lighting { sun: Some(sun), ..night() }).unwrap_err().to_string();
+        let error = Layer::from_lighting(&Lighting { sun: Some(sun), ..night() }).unwrap_err().to_string();
         assert!(error.contains("lighting.sun.towards"), "{error}");
-        let error = Layer::of(&Lighting { fill_radiance: f64::NAN, ..night() }).unwrap_err().to_string();
+        let error =
+            Layer::from_lighting(&Lighting { fill_radiance: f64::NAN, ..night() }).unwrap_err().to_string();
         assert!(error.contains("lighting.fill_radiance"), "{error}");
         let lamp = Floodlight {
             position_m: Vector3::zeros(),
@@ -156,7 +157,8 @@ mod tests {
             inner_half_angle_rad: 0.3,
             outer_half_angle_rad: 0.3,
         };
-        let error = Layer::of(&Lighting { floodlight: Some(lamp), ..night() }).unwrap_err().to_string();
+        let error =
+            Layer::from_lighting(&Lighting { floodlight: Some(lamp), ..night() }).unwrap_err().to_string();
         assert!(error.contains("outer_half_angle_rad is 0.3"), "{error}");
     }
 

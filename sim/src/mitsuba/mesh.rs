@@ -44,7 +44,7 @@ pub(super) fn meshes(scene: &DockingScene, layer: &Layer, pose: &Pose) -> Result
             None if part.visible => part,
             None => continue,
         };
-        for (number, (reflectance, triangles)) in by_reflectance(part)?.into_iter().enumerate() {
+        for (number, (reflectance, triangles)) in group_by_reflectance(part)?.into_iter().enumerate() {
             let name: String =
                 part.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
             meshes.push(Mesh {
@@ -82,7 +82,7 @@ fn moved_behind(part: &Part, sun: &Sun, pose: &Pose) -> Option<Part> {
     Some(moved)
 }
 
-fn by_reflectance(part: &Part) -> Result<Vec<(f64, Triangles)>, SimError> {
+fn group_by_reflectance(part: &Part) -> Result<Vec<(f64, Triangles)>, SimError> {
     // Numbers of 0 or more are ordered as their bits are.
     let mut groups: BTreeMap<u64, Triangles> = BTreeMap::new();
     for facet in &part.facets {
@@ -222,8 +222,8 @@ mod tests {
         let facets = vec![square(1.0, 0.5), square(2.0, 0.04), square(3.0, 0.5)];
         let scene = DockingScene { parts: vec![part(facets.clone(), false), part(facets, true)] };
         let meshes = meshes(&scene, &FILL, &pose()).unwrap();
-        let told: Vec<_> = meshes.iter().map(|m| (m.id.as_str(), m.file.as_str(), m.reflectance)).collect();
-        assert_eq!(told, [("p1_a__b__0", "mesh-0000.ply", 0.04), ("p1_a__b__1", "mesh-0001.ply", 0.5)]);
+        let files: Vec<_> = meshes.iter().map(|m| (m.id.as_str(), m.file.as_str(), m.reflectance)).collect();
+        assert_eq!(files, [("p1_a__b__0", "mesh-0000.ply", 0.04), ("p1_a__b__1", "mesh-0001.ply", 0.5)]);
         let text = String::from_utf8_lossy(&meshes[1].ply).into_owned();
         assert!(text.starts_with("ply\nformat binary_little_endian 1.0\nelement vertex 8\n"), "{text}");
         let end = "end_header\n";

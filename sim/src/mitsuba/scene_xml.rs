@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn fill_is_light_of_the_surfaces_themselves() {
         let lighting = Lighting { sun: None, floodlight: None, fill_radiance: 0.25, sky_radiance: 0.125 };
-        let layers = Layer::of(&lighting).unwrap();
+        let layers = Layer::from_lighting(&lighting).unwrap();
         let xml = files(&layers[0], &camera(), &Settings::default()).unwrap().xml;
         assert!(
             xml.contains("<emitter type=\"area\"><rgb name=\"radiance\" value=\"0.125, 0.125, 0.125\"/>"),

@@ -17,7 +17,7 @@ pub struct Crop {
 
 impl Crop {
     /// The whole image of a camera.
-    pub fn whole(camera: &Camera) -> Self {
+    pub fn full_frame(camera: &Camera) -> Self {
         Self { x: 0, y: 0, columns: camera.columns, rows: camera.rows }
     }
 }
@@ -49,7 +49,7 @@ impl Settings {
             let expected = "the square of a number from 1 to 64: 16, 64, 256, …";
             return Err(OutOfRange::new("samples", self.samples, expected));
         }
-        let crop = self.crop.unwrap_or_else(|| Crop::whole(camera));
+        let crop = self.crop.unwrap_or_else(|| Crop::full_frame(camera));
         let fits = |from: usize, length: usize, side: usize| {
             length > 0 && from.checked_add(length).is_some_and(|end| end <= side)
         };

@@ -103,7 +103,7 @@ mod tests {
         for y in 0..5 {
             for x in 0..10 {
                 let sent = windows.iter().any(|window| window.contains(x, y));
-                assert_eq!(frame.at(x, y), if sent { (y * 10 + x + 1) as u16 } else { 0 });
+                assert_eq!(frame.dn_at(x, y), if sent { (y * 10 + x + 1) as u16 } else { 0 });
             }
         }
         // 6 pixels of 12 bits are 9 bytes, 18 are 27; two headers of 8.

@@ -42,7 +42,7 @@ impl OpticsConfig {
         bounds::check(self, "optics")?;
         let transmission = |i: u32| {
             let rho = f64::from(i) / f64::from(Self::STEPS);
-            self.mechanical(rho * rho)
+            self.mechanical_transmission(rho * rho)
         };
         if (0..=Self::STEPS).map(transmission).all(|transmission| transmission > 0.0 && transmission <= 1.0) {
             return Ok(());
@@ -52,7 +52,7 @@ impl OpticsConfig {
     }
 
     /// The transmission that mechanical vignetting leaves at ρ².
-    pub(super) fn mechanical(&self, rho2: f64) -> f64 {
+    pub(super) fn mechanical_transmission(&self, rho2: f64) -> f64 {
         let [v1, v2, v3] = self.vignetting;
         1.0 - rho2 * (v1 + rho2 * (v2 + rho2 * v3))
     }
@@ -81,7 +81,7 @@ impl FieldRadius {
     }
 
     /// ρ² of a point; that of the corner for what lies farther out, where no pixel is.
-    pub(super) fn squared(&self, point: PixelPoint) -> f64 {
+    pub(super) fn normalised_radius_squared(&self, point: PixelPoint) -> f64 {
         let x_um = (point.x - self.principal.x) * self.pixel_um[0];
         let y_um = (point.y - self.principal.y) * self.pixel_um[1];
         ((x_um * x_um + y_um * y_um) / self.corner2_um2).min(1.0)

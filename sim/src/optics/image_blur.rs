@@ -2,7 +2,7 @@
 
 use contract::docking::Lines;
 
-use crate::widest::arch;
+use crate::simd_kernel::arch;
 
 /// How far a kernel reaches, in its standard deviations: 6e-5 of a Gaussian's light lies beyond on one axis.
 const REACH_SIGMAS: f64 = 4.0;
@@ -116,7 +116,7 @@ impl ImageBlur {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::widest::tests::same_on_all_registers;
+    use crate::simd_kernel::tests::same_on_all_registers;
 
     fn blurred(sigma_px: f64, image: &[f32], columns: usize, lines: Lines) -> Vec<f32> {
         let mut kept = Vec::new();

@@ -77,7 +77,7 @@ impl Projection {
                 format!("{:?}, {:?}", camera.radial, camera.tangential),
                 format!(
                     "a distortion that does not fold inside the detector: it does {:.0} px from the principal point",
-                    projection.distortion.apply(Offset { u: projection.domain_px, v: 0.0 }).length()
+                    projection.distortion.distort(Offset { u: projection.domain_px, v: 0.0 }).length()
                 ),
             )
         })?;
@@ -99,7 +99,7 @@ impl Projection {
         if !self.is_one_to_one_at(offset) {
             return None;
         }
-        let distorted = self.distortion.apply(offset);
+        let distorted = self.distortion.distort(offset);
         Some(PixelPoint::new(self.principal.x + distorted.u, self.principal.y + distorted.v))
     }
 
@@ -107,7 +107,7 @@ impl Projection {
     /// of the coordinates. `None` where no direction does; never so on the detector.
     pub fn unproject(&self, point: PixelPoint) -> Option<Direction<CameraFrame>> {
         let distorted = Offset { u: point.x - self.principal.x, v: point.y - self.principal.y };
-        let offset = self.distortion.remove(distorted)?;
+        let offset = self.distortion.undistort(distorted)?;
         if !self.is_one_to_one_at(offset) {
             return None;
         }
@@ -119,10 +119,10 @@ impl Projection {
     ///
     /// Beyond the radius within which the distortion is known to be one-to-one it is continued in proportion along the
     /// ray, so that nothing from there comes back into the image.
-    pub(crate) fn place(&self, u: f64, v: f64) -> PixelPoint {
+    pub(crate) fn pixel_position(&self, u: f64, v: f64) -> PixelPoint {
         let radius = Offset { u, v }.length();
         let scale = if radius > self.domain_px { self.domain_px / radius } else { 1.0 };
-        let distorted = self.distortion.apply(Offset { u: u * scale, v: v * scale });
+        let distorted = self.distortion.distort(Offset { u: u * scale, v: v * scale });
         PixelPoint::new(self.principal.x + distorted.u / scale, self.principal.y + distorted.v / scale)
     }
 
@@ -235,7 +235,7 @@ impl Distortion {
     /// Newton's method doubles its digits; with the halved steps of a bad start it stays far below this.
     const MAX_STEPS: usize = 100;
 
-    fn apply(&self, Offset { u, v }: Offset) -> Offset {
+    fn distort(&self, Offset { u, v }: Offset) -> Offset {
         let [k1, k2, k3] = self.radial;
         let [p1, p2] = self.tangential;
         let r2 = u * u + v * v;
@@ -261,9 +261,9 @@ impl Distortion {
     }
 
     /// The undistorted offset, by Newton's method with halved steps; `None` when it does not converge.
-    fn remove(&self, distorted: Offset) -> Option<Offset> {
+    fn undistort(&self, distorted: Offset) -> Option<Offset> {
         let residual_at = |at: Offset| {
-            let image = self.apply(at);
+            let image = self.distort(at);
             Offset { u: distorted.u - image.u, v: distorted.v - image.v }
         };
         let mut at = distorted;
@@ -384,9 +384,9 @@ mod tests {
         for (u, v, x, y) in
             [(300.0, -200.0, 299.901_895_5, -199.934_597), (-1200.0, 700.0, -1_241.006_742, 724.403_099_5)]
         {
-            let bent = BENT.apply(Offset { u, v });
+            let bent = BENT.distort(Offset { u, v });
             assert!((bent.u - x).abs() < 1e-9 && (bent.v - y).abs() < 1e-9, "{bent:?}");
-            let back = BENT.remove(Offset { u: x, v: y }).unwrap();
+            let back = BENT.undistort(Offset { u: x, v: y }).unwrap();
             assert!((back.u - u).abs() < 1e-9 && (back.v - v).abs() < 1e-9, "{back:?}");
         }
     }
@@ -398,8 +398,8 @@ mod tests {
         for (u, v) in [(310.0, -200.0), (-250.0, 120.0), (40.0, 390.0)] {
             let h = 1e-3;
             let difference = |du: f64, dv: f64| {
-                let above = strong.apply(Offset { u: u + du, v: v + dv });
-                let below = strong.apply(Offset { u: u - du, v: v - dv });
+                let above = strong.distort(Offset { u: u + du, v: v + dv });
+                let below = strong.distort(Offset { u: u - du, v: v - dv });
                 ((above.u - below.u) / (2.0 * h), (above.v - below.v) / (2.0 * h))
             };
             let ((uu, vu), (uv, vv)) = (difference(h, 0.0), difference(0.0, h));
@@ -438,7 +438,7 @@ mod tests {
     #[test]
     fn steps_that_go_too_far_are_halved() {
         let distortion = Distortion { radial: [1e-6, 3.6e-12, -1.25e-17], tangential: [0.0; 2] };
-        let back = distortion.remove(distortion.apply(Offset { u: 462.0, v: 0.0 })).unwrap();
+        let back = distortion.undistort(distortion.distort(Offset { u: 462.0, v: 0.0 })).unwrap();
         assert!((back.u - 462.0).abs() < 1e-9 && back.v == 0.0, "{back:?}");
     }
 
@@ -446,8 +446,8 @@ mod tests {
     #[test]
     fn what_nothing_falls_on_has_no_inverse() {
         let folded = Distortion { radial: [-1e-6, 0.0, 0.0], tangential: [0.0; 2] };
-        assert!(folded.remove(Offset { u: 384.5, v: 0.0 }).is_some());
-        assert_eq!(folded.remove(Offset { u: 385.5, v: 0.0 }), None);
+        assert!(folded.undistort(Offset { u: 384.5, v: 0.0 }).is_some());
+        assert_eq!(folded.undistort(Offset { u: 385.5, v: 0.0 }), None);
         // 1e-12 px and 1.776e-15 of 1000 px.
         assert!((Distortion::tolerance_px(Offset { u: 600.0, v: -800.0 }) - 2.776e-12).abs() < 1e-15);
     }
@@ -477,9 +477,9 @@ mod tests {
             assert_eq!(projection.project(&along(1.001 * limit * u, 1.001 * limit * v)), None, "{u} {v}");
         }
         // What comes back from a point so far away is none either.
-        let place = projection.place(0.999 * limit, 0.0);
-        assert!(projection.unproject(place).is_some());
-        assert_eq!(projection.unproject(PixelPoint::new(place.x + 10.0, place.y)), None);
+        let pixel = projection.pixel_position(0.999 * limit, 0.0);
+        assert!(projection.unproject(pixel).is_some());
+        assert_eq!(projection.unproject(PixelPoint::new(pixel.x + 10.0, pixel.y)), None);
     }
 
     #[test]
@@ -487,18 +487,19 @@ mod tests {
         let camera = Camera { radial: [-1e-7, 0.0, 0.0], ..table_1() };
         let projection = Projection::new(&camera).unwrap();
         let (fx, fy) = camera.focal_length_px();
-        let offset = |place: PixelPoint| (place.x - 395.0, place.y - 288.0);
+        let offset = |pixel: PixelPoint| (pixel.x - 395.0, pixel.y - 288.0);
         for (u, v) in [(300.0, 100.0), (-0.6, 0.8), (-200.0, -120.0)] {
             let seen = projection.project(&direction(u / fx, v / fy, 1.0)).unwrap();
-            assert!(projection.place(u, v).distance(seen) < 1e-9);
+            assert!(projection.pixel_position(u, v).distance(seen) < 1e-9);
         }
-        let (x, y) = offset(projection.place(-0.6 * projection.domain_px, 0.8 * projection.domain_px));
-        let far = projection.place(-1.8 * projection.domain_px, 2.4 * projection.domain_px);
+        let (x, y) =
+            offset(projection.pixel_position(-0.6 * projection.domain_px, 0.8 * projection.domain_px));
+        let far = projection.pixel_position(-1.8 * projection.domain_px, 2.4 * projection.domain_px);
         assert!((offset(far).0 - 3.0 * x).abs() < 1e-6 && (offset(far).1 - 3.0 * y).abs() < 1e-6, "{far:?}");
         assert!(projection.is_distorted());
         let straight = Projection::new(&Camera { radial: [0.0; 3], ..camera }).unwrap();
         assert!(!straight.is_distorted());
-        assert_eq!(offset(straight.place(1e6, -2e6)), (1e6, -2e6));
+        assert_eq!(offset(straight.pixel_position(1e6, -2e6)), (1e6, -2e6));
     }
 
     #[test]
@@ -566,8 +567,8 @@ mod tests {
             let camera = Camera { principal_x_px: x, principal_y_px: y, radial: [0.0; 3], ..table_1() };
             let (fx, fy) = camera.focal_length_px();
             let expected = libm::atan(libm::hypot((corner.0 - x) / fx, (corner.1 - y) / fy));
-            let told = Projection::new(&camera).unwrap().half_diagonal().radians();
-            assert!((told - expected).abs() < 1e-12, "{x} {y}: {told}, expected {expected}");
+            let actual = Projection::new(&camera).unwrap().half_diagonal().radians();
+            assert!((actual - expected).abs() < 1e-12, "{x} {y}: {actual}, expected {expected}");
         }
     }
 

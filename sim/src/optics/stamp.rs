@@ -3,7 +3,7 @@
 use contract::{PixelPoint, Window};
 use pulp::Simd;
 
-use crate::widest::{Eight, LANES, Work, widest};
+use crate::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
 
 /// Expected electrons of one object, in a rectangle of the detector. Reused from object to object.
 ///
@@ -145,7 +145,7 @@ impl Stamp {
     /// current), a readout that adds a noise of `readout_noise_e` to a pixel, and pixels that tell no more than
     /// `saturation_e` electrons.
     pub fn truth(&self, background_e: f64, readout_noise_e: f64, saturation_e: f64) -> StampTruth {
-        widest(Truth { stamp: self, background_e, readout_noise_e, saturation_e })
+        run_widest(Truth { stamp: self, background_e, readout_noise_e, saturation_e })
     }
 
     /// Distance from the centre to the farthest pixel centre with more than `electrons`, px; at least 0.5.
@@ -235,7 +235,7 @@ struct Truth<'a> {
     saturation_e: f64,
 }
 
-impl Work for Truth<'_> {
+impl SimdKernel for Truth<'_> {
     type Output = StampTruth;
 
     #[inline(always)]
@@ -243,17 +243,17 @@ impl Work for Truth<'_> {
         let Self { stamp, background_e, readout_noise_e, saturation_e } = self;
         let variance = background_e + readout_noise_e * readout_noise_e;
         let noise_e = variance.sqrt();
-        let none = Eight::splat(simd, 0.0);
+        let none = F64x8::splat(simd, 0.0);
         // Where there is neither light nor noise the quotient is 0, not no number.
-        let noise2 = Eight::splat(simd, variance.max(f64::MIN_POSITIVE));
-        let room = Eight::splat(simd, (saturation_e - background_e).max(0.0));
+        let noise2 = F64x8::splat(simd, variance.max(f64::MIN_POSITIVE));
+        let room = F64x8::splat(simd, (saturation_e - background_e).max(0.0));
         let [mut electrons, mut snr2, mut peaks] = [none; 3];
         for signals in stamp.electrons.as_chunks::<LANES>().0 {
-            let lit = Eight::of(simd, signals).or_larger(none);
+            let lit = F64x8::from_array(simd, signals).max(none);
             electrons = electrons.plus(lit);
-            let told = lit.or_smaller(room);
-            snr2 = snr2.plus(told.times(told.over(told.plus(noise2))));
-            peaks = peaks.or_larger(lit);
+            let signal_e = lit.min(room);
+            snr2 = snr2.plus(signal_e.times(signal_e.over(signal_e.plus(noise2))));
+            peaks = peaks.max(lit);
         }
         let peak_electrons = peaks.largest();
         StampTruth {

@@ -54,7 +54,7 @@ impl Vignetting {
             Switch::Off => 1.0,
             Switch::On => self.projection.unproject(point).map_or(0.0, |direction| direction.vector().z),
         };
-        natural * self.config.mechanical(self.radius.squared(point))
+        natural * self.config.mechanical_transmission(self.radius.normalised_radius_squared(point))
     }
 }
 

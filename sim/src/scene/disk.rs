@@ -17,7 +17,7 @@ const ALL_SAMPLES: f64 = (1 << 22) as f64;
 /// The disk of a sphere on a plane through its centre, across the line of sight.
 pub(super) struct Disk<P> {
     /// From that plane, the centre at its origin, to the image; `None` where there is no image.
-    pub place: P,
+    pub to_image: P,
     /// Radius of the disk on the plane.
     pub radius: f64,
     /// Share of its diameter that is in sunlight, 0 to 1.
@@ -52,7 +52,7 @@ impl<P: Fn(Vector2<f64>) -> Option<PixelPoint>> Disk<P> {
         points: &mut Vec<ImagePoint>,
     ) {
         let Some(scale) = self.scale() else { return };
-        let (Some(centre), Some(to_plane)) = ((self.place)(Vector2::zeros()), scale.try_inverse()) else {
+        let (Some(centre), Some(to_plane)) = ((self.to_image)(Vector2::zeros()), scale.try_inverse()) else {
             return;
         };
         let sides_px = self.half_sides_by(&scale);
@@ -83,7 +83,7 @@ impl<P: Fn(Vector2<f64>) -> Option<PixelPoint>> Disk<P> {
                     let share = sum / (samples * samples) as f64;
                     total += share;
                     // The grid is laid by a linear map; its distortion over the disk is in the place of each point.
-                    points.extend((self.place)(mean / sum).map(|position| ImagePoint { position, share }));
+                    points.extend((self.to_image)(mean / sum).map(|position| ImagePoint { position, share }));
                 }
             }
         }
@@ -112,7 +112,7 @@ impl<P: Fn(Vector2<f64>) -> Option<PixelPoint>> Disk<P> {
     fn scale(&self) -> Option<Matrix2<f64>> {
         let step = 0.01 * self.radius;
         let derivative = |along: Vector2<f64>| {
-            let (before, after) = ((self.place)(-step * along)?, (self.place)(step * along)?);
+            let (before, after) = ((self.to_image)(-step * along)?, (self.to_image)(step * along)?);
             Some(Vector2::new(after.x - before.x, after.y - before.y) / (2.0 * step))
         };
         Some(Matrix2::from_columns(&[derivative(Vector2::x())?, derivative(Vector2::y())?]))

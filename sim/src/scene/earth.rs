@@ -17,7 +17,7 @@ pub(crate) struct EarthDisk {
 
 impl EarthDisk {
     /// The disk as it is seen from `position_km` (from its centre, ICRS axes).
-    pub(crate) fn seen_from(position_km: &Vector3<f64>) -> Self {
+    pub(crate) fn from_observer(position_km: &Vector3<f64>) -> Self {
         let sine = (EARTH_RADIUS_KM / position_km.norm()).min(1.0);
         Self {
             nadir: -position_km.normalize(),
@@ -45,7 +45,7 @@ mod tests {
     #[test]
     fn it_reaches_to_the_horizon_and_no_farther() {
         // From one radius above the surface the disk has a radius of 30°.
-        let disk = EarthDisk::seen_from(&Vector3::new(0.0, 2.0 * EARTH_RADIUS_KM, 0.0));
+        let disk = EarthDisk::from_observer(&Vector3::new(0.0, 2.0 * EARTH_RADIUS_KM, 0.0));
         for (off_nadir_deg, hidden) in [(0.0, true), (29.999, true), (30.001, false), (180.0, false)] {
             let (sin, cos) = libm::sincos(f64::to_radians(off_nadir_deg));
             let direction = Direction::from_vector(Vector3::new(sin, -cos, 0.0)).unwrap();

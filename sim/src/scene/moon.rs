@@ -104,7 +104,7 @@ impl LitMoon {
 
     /// Of what of it is seen; infinite when that is nothing.
     fn magnitude(&self) -> f64 {
-        self.bare_magnitude - 2.5 * libm::log10(self.seen_fraction())
+        self.bare_magnitude - 2.5 * libm::log10(self.visible_fraction())
     }
 
     /// The Moon as a source of light at the place of its disk's centre; `None` when no light comes from it, and when its image,
@@ -161,7 +161,7 @@ impl LitMoon {
         count_limit: usize,
         points: &mut Vec<ImagePoint>,
     ) {
-        self.disk(camera_from_icrs, projection).image(|at| self.seen_radiance(at), count_limit, points);
+        self.disk(camera_from_icrs, projection).image(|at| self.visible_radiance(at), count_limit, points);
     }
 
     /// Its disk on the plane tangent to the sky at its centre, aberration included: its difference over the disk, 0.1″, is
@@ -171,16 +171,16 @@ impl LitMoon {
         camera_from_icrs: Rotation<CameraFrame, Icrs>,
         projection: &'a Projection,
     ) -> Disk<impl Fn(Vector2<f64>) -> Option<PixelPoint> + 'a> {
-        let place = move |at: Vector2<f64>| {
+        let to_image = move |at: Vector2<f64>| {
             let direction = self.apparent.vector() + self.across[0] * at.x + self.across[1] * at.y;
             projection.project(&(camera_from_icrs * Direction::from_vector(direction).ok()?))
         };
         let lit = 0.5 * (1.0 + libm::cos(self.phase_rad));
-        Disk { place, radius: self.tan_radius, lit, samples_across: SAMPLES_ACROSS }
+        Disk { to_image, radius: self.tan_radius, lit, samples_across: SAMPLES_ACROSS }
     }
 
     /// The fraction of the light of its disk that neither the Earth nor its shadow takes away.
-    fn seen_fraction(&self) -> f64 {
+    fn visible_fraction(&self) -> f64 {
         let separation = angle(&self.towards, &-self.observer_km);
         let apart = self
             .earth_cos
@@ -188,20 +188,20 @@ impl LitMoon {
         if apart && !self.near_shadow {
             return 1.0;
         }
-        let place = |i: usize| self.tan_radius * (2.0 * (i as f64 + 0.5) / FRACTION_CELLS as f64 - 1.0);
+        let coordinate = |i: usize| self.tan_radius * (2.0 * (i as f64 + 0.5) / FRACTION_CELLS as f64 - 1.0);
         let (mut seen, mut all) = (0.0, 0.0);
         for j in 0..FRACTION_CELLS {
             for i in 0..FRACTION_CELLS {
-                let at = Vector2::new(place(i), place(j));
+                let at = Vector2::new(coordinate(i), coordinate(j));
                 all += self.radiance(&at).map_or(0.0, |(radiance, _)| radiance);
-                seen += self.seen_radiance(&at);
+                seen += self.visible_radiance(&at);
             }
         }
         if all > 0.0 { seen / all } else { 0.0 }
     }
 
     /// The radiance at a place of the tangent plane, less what Earth and shadow take.
-    fn seen_radiance(&self, at: &Vector2<f64>) -> f64 {
+    fn visible_radiance(&self, at: &Vector2<f64>) -> f64 {
         let Some((radiance, point_km)) = self.radiance(at) else { return 0.0 };
         let nadir = point_km.dot(&-self.observer_km) / (point_km.norm() * self.observer_km.norm());
         if self.earth_cos.is_some_and(|cos| nadir > cos) {
@@ -303,9 +303,9 @@ mod tests {
     fn the_disk_is_a_lommel_seeliger_sphere() {
         let light = |moon: &LitMoon| {
             let n = 1000;
-            let place = |i: i32| moon.tan_radius * (2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0);
+            let coordinate = |i: i32| moon.tan_radius * (2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0);
             (0..n * n)
-                .filter_map(|i| moon.radiance(&Vector2::new(place(i % n), place(i / n))))
+                .filter_map(|i| moon.radiance(&Vector2::new(coordinate(i % n), coordinate(i / n))))
                 .map(|(radiance, _)| radiance)
                 .sum::<f64>()
         };
@@ -360,7 +360,7 @@ mod tests {
     #[test]
     fn behind_the_earth_it_gives_no_light_and_at_its_limb_half() {
         let full = seen_from("2020-01-01T00:00:00Z", 90.0);
-        assert_eq!(full.seen_fraction(), 1.0);
+        assert_eq!(full.visible_fraction(), 1.0);
         assert_eq!(seen_from("2020-01-01T00:00:00Z", 180.0).magnitude(), f64::INFINITY);
         let limb_deg = 180.0 - libm::asin(shadow::EARTH_RADIUS_KM / 7_000.0).to_degrees();
         // The parallax of 7000 km brings it back to the limb.
@@ -369,7 +369,7 @@ mod tests {
         let disk =
             shadow::visible_fraction(&moon.observer_km, &(moon.observer_km + moon.centre_km), MOON_RADIUS_KM);
         assert!((0.02..0.98).contains(&disk), "{disk}");
-        assert!((moon.seen_fraction() - disk).abs() < 0.01, "{} {disk}", moon.seen_fraction());
+        assert!((moon.visible_fraction() - disk).abs() < 0.01, "{} {disk}", moon.visible_fraction());
     }
 
     /// Espenak & Meeus, Five Millennium Catalog of Lunar Eclipses: total at 2018-07-27 20:21:44 UTC; 2019-07-16 21:30:44 UTC partial, umbral
@@ -387,7 +387,7 @@ mod tests {
         ) / partial.centre_km.norm();
         let along = (axis - parallax).normalize() * partial.tan_radius;
         let dark = (0..1000)
-            .filter(|i| partial.seen_radiance(&(along * (f64::from(*i) / 499.5 - 1.0) * 0.9999)) == 0.0)
+            .filter(|i| partial.visible_radiance(&(along * (f64::from(*i) / 499.5 - 1.0) * 0.9999)) == 0.0)
             .count();
         // The catalogue's shadow is 1 to 2 % larger, for the atmosphere: 0.03 of the Moon's diameter; 0.02° of the ephemeris is 0.04.
         assert!((dark as f64 / 1000.0 - 0.653).abs() < 0.08, "{dark}");

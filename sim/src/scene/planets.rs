@@ -10,7 +10,7 @@ use crate::truth::{ObjectKind, Observer, Planet};
 /// Appends the planets whose image comes onto the detector during the exposure, from the Sun outwards, as points: the
 /// largest, Venus near conjunction, spans 1′. `tdb_j2000_s` is the time of the observer, `reach_px` tells how far an image
 /// reaches, px, for photo-electrons a second.
-pub(crate) fn look(
+pub(crate) fn add_visible(
     tdb_j2000_s: f64,
     observer: &Observer,
     camera: &CameraMotion,
@@ -20,9 +20,9 @@ pub(crate) fn look(
     sources: &mut Vec<Source>,
 ) {
     for planet in Planet::ALL {
-        let Some(sight) = planet.seen(tdb_j2000_s, observer) else { continue };
-        let apparent = observer.apparent_of(sight.astrometric);
-        let electrons_per_s = radiometry.star(sight.magnitude, Some(planet.b_v()), None);
+        let Some(apparent_planet) = planet.apparent(tdb_j2000_s, observer) else { continue };
+        let apparent = observer.apparent_from_astrometric(apparent_planet.astrometric);
+        let electrons_per_s = radiometry.star(apparent_planet.magnitude, Some(planet.b_v()), None);
         if let Some(position) = projection.project(&(camera.middle * apparent))
             && is_within(position, projection, reach_px(electrons_per_s) + camera.reach_px(projection))
         {
@@ -31,8 +31,8 @@ pub(crate) fn look(
                 id: planet.number(),
                 position,
                 ends: camera.ends.map(|end| projection.project(&(end * apparent)).unwrap_or(position)),
-                astrometric: Some(sight.astrometric),
-                magnitude: Some(sight.magnitude),
+                astrometric: Some(apparent_planet.astrometric),
+                magnitude: Some(apparent_planet.magnitude),
                 electrons_per_s,
             });
         }
@@ -51,7 +51,7 @@ pub(crate) fn brightest(
 ) -> f64 {
     let mut seen = Vec::new();
     let camera = CameraMotion::still(camera_from_icrs);
-    look(tdb_j2000_s, observer, &camera, projection, radiometry, |_| 0.0, &mut seen);
+    add_visible(tdb_j2000_s, observer, &camera, projection, radiometry, |_| 0.0, &mut seen);
     let seen = seen.iter().filter(|planet| !planet.astrometric.is_some_and(&is_hidden));
     seen.map(|planet| planet.electrons_per_s).fold(at_least, f64::max)
 }

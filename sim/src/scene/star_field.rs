@@ -48,7 +48,7 @@ impl StarField {
 
     /// Appends the stars whose image comes onto the detector during the exposure, by number: `reach_px` tells how far an
     /// image reaches, px, for photo-electrons a second.
-    pub fn look(
+    pub fn add_visible(
         &self,
         observer: &Observer,
         camera: &CameraMotion,
@@ -58,9 +58,9 @@ impl StarField {
     ) {
         let motion_px = camera.reach_px(projection);
         let margin_px = reach_px(self.brightest_e_per_s) + motion_px;
-        for star in self.around(camera.middle, projection, margin_px) {
+        for star in self.stars_around(camera.middle, projection, margin_px) {
             let astrometric = observer.astrometric(&star.motion);
-            let apparent = observer.apparent_of(astrometric);
+            let apparent = observer.apparent_from_astrometric(astrometric);
             if let Some(position) = projection.project(&(camera.middle * apparent))
                 && (is_within(position, projection, 0.0)
                     || is_within(position, projection, reach_px(star.electrons_per_s) + motion_px))
@@ -88,11 +88,11 @@ impl StarField {
         is_hidden: impl Fn(Direction<Icrs>) -> bool,
     ) -> f64 {
         let mut brightest = at_least;
-        for star in self.around(camera_from_icrs, projection, 0.0) {
+        for star in self.stars_around(camera_from_icrs, projection, 0.0) {
             // Most stars are fainter than the best so far and need no place.
             if star.electrons_per_s > brightest {
                 let astrometric = observer.astrometric(&star.motion);
-                let apparent = observer.apparent_of(astrometric);
+                let apparent = observer.apparent_from_astrometric(astrometric);
                 if let Some(position) = projection.project(&(camera_from_icrs * apparent))
                     && is_within(position, projection, 0.0)
                     && !is_hidden(astrometric)
@@ -105,7 +105,7 @@ impl StarField {
     }
 
     /// The stars that can be within `margin_px` of the detector, and some more, by number.
-    fn around(
+    fn stars_around(
         &self,
         camera_from_icrs: Rotation<CameraFrame, Icrs>,
         projection: &Projection,
@@ -168,7 +168,7 @@ mod tests {
 
     fn seen(field: &StarField, camera_from_icrs: Rotation<CameraFrame, Icrs>, margin_px: f64) -> Vec<Source> {
         let mut sources = Vec::new();
-        field.look(
+        field.add_visible(
             &observer(),
             &CameraMotion::still(camera_from_icrs),
             &projection(),
@@ -239,7 +239,7 @@ mod tests {
             let at = projection().project(&(camera_from_icrs * observer().apparent(&motion))).unwrap();
             assert!(at.is_on_detector(300, 200), "{at:?}");
             let prepared = PreparedStar { id: 1, motion, magnitude: 5.0, electrons_per_s: 1e4 };
-            let catalog = Catalog::of(vec![star]);
+            let catalog = Catalog::from_stars(vec![star]);
             let field = StarField { catalog, stars: vec![prepared], brightest_e_per_s: 1e4 };
             seen(&field, camera_from_icrs, 0.0).len()
         };

@@ -14,9 +14,9 @@ pub(super) struct AliasTable {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
-    /// Sides below this give `own`, the others `other`.
+    /// Sides below this give `primary`, the others `other`.
     threshold: u32,
-    own: u16,
+    primary: u16,
     other: u16,
 }
 
@@ -38,7 +38,7 @@ impl AliasTable {
         // A full cell needs no other side. The weights are whole and add up to a whole number of cells, so that
         // whatever is not paired below is exactly full.
         let mut cells: Vec<Cell> = (0..count)
-            .map(|i| Cell { threshold: cell_weight as u32, own: number(i), other: number(i) })
+            .map(|i| Cell { threshold: cell_weight as u32, primary: number(i), other: number(i) })
             .collect();
         let (mut small, mut large): (Vec<usize>, Vec<usize>) =
             (0..count).partition(|&i| weights[i] < cell_weight);
@@ -58,9 +58,12 @@ impl AliasTable {
     /// cell whose threshold is 0 is told with its sides exchanged.
     pub(super) fn packed(&self) -> impl ExactSizeIterator<Item = u64> {
         self.cells.iter().map(|cell| {
-            let (threshold, own) =
-                if cell.threshold > 0 { (cell.threshold, cell.own) } else { (self.side_mask, cell.other) };
-            u64::from(threshold) | u64::from(own) << 32 | u64::from(cell.other) << 48
+            let (threshold, primary) = if cell.threshold > 0 {
+                (cell.threshold, cell.primary)
+            } else {
+                (self.side_mask, cell.other)
+            };
+            u64::from(threshold) | u64::from(primary) << 32 | u64::from(cell.other) << 48
         })
     }
 
@@ -68,7 +71,7 @@ impl AliasTable {
     #[inline(always)]
     pub(super) fn draw(&self, word: u32) -> u16 {
         let cell = self.cells[(word >> self.shift) as usize];
-        if word & self.side_mask < cell.threshold { cell.own } else { cell.other }
+        if word & self.side_mask < cell.threshold { cell.primary } else { cell.other }
     }
 }
 
@@ -103,12 +106,13 @@ mod tests {
 
     /// The exact probability, in multiples of 2^-32, that a table gives each number.
     fn law_of(table: &AliasTable, numbers: usize) -> Vec<u64> {
-        let mut law = vec![0; numbers];
+        let mut distribution = vec![0; numbers];
         for cell in &table.cells {
-            law[usize::from(cell.own)] += u64::from(cell.threshold);
-            law[usize::from(cell.other)] += u64::from(table.side_mask) + 1 - u64::from(cell.threshold);
+            distribution[usize::from(cell.primary)] += u64::from(cell.threshold);
+            distribution[usize::from(cell.other)] +=
+                u64::from(table.side_mask) + 1 - u64::from(cell.threshold);
         }
-        law
+        distribution
     }
 
     #[test]
@@ -117,11 +121,11 @@ mod tests {
             let probabilities: Vec<f64> = (0..count).map(|i| libm::exp(-((i * i) as f64) / 50.0)).collect();
             let total: f64 = probabilities.iter().sum();
             let table = AliasTable::new(5, &probabilities);
-            let law = law_of(&table, 5 + count.next_power_of_two().max(2));
-            assert_eq!(law.iter().sum::<u64>(), 1 << 32);
+            let distribution = law_of(&table, 5 + count.next_power_of_two().max(2));
+            assert_eq!(distribution.iter().sum::<u64>(), 1 << 32);
             for (i, probability) in probabilities.iter().enumerate() {
                 let expected = probability / total * libm::pow(2.0, 32.0);
-                assert!((law[5 + i] as f64 - expected).abs() <= 1.0, "{count}, {i}");
+                assert!((distribution[5 + i] as f64 - expected).abs() <= 1.0, "{count}, {i}");
             }
         }
     }

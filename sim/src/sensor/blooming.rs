@@ -26,16 +26,16 @@ impl Sensor {
     /// rows + index, where a pixel with signal was drawn already: what neither overflows nor receives is left as it is.
     pub(super) fn bloom(&self, overflow: &Overflow<'_>, mut put: impl FnMut(usize, u16)) {
         let Overflow { blooming, expected, offsets, streams } = *overflow;
-        let threshold_e = self.law.may_overflow_from_e();
+        let threshold_e = self.distribution.may_overflow_from_e();
         let above = expected.rows_above(threshold_e);
         let mut part = ColumnPart::default();
         for (x, above) in above.into_iter().enumerate().filter(|(_, above)| above.start < above.end) {
-            let stream = |y: usize| streams.at((self.rows + y * self.columns + x) as u64);
+            let stream = |y: usize| streams.stream_at((self.rows + y * self.columns + x) as u64);
             let mut margin = MARGIN;
             loop {
                 part.rows = above.start.saturating_sub(margin)..(above.end + margin).min(self.rows);
                 part.fill(self, x, expected, stream);
-                blooming.spill(&mut part.held, self.law.full_well_e());
+                blooming.spill(&mut part.held, self.distribution.full_well_e());
                 if !part.leaves(self) {
                     break;
                 }
@@ -46,9 +46,9 @@ impl Sensor {
                 if part.held[i] != part.collected[i] || part.means_e[i] > threshold_e {
                     let mut stream = stream(y);
                     // What was collected is drawn again only to leave the stream where the read noise begins.
-                    self.law.collect(part.means_e[i], &mut stream);
-                    let offset_e = offsets.map_or(0.0, |offsets| offsets.at(x, y));
-                    put(y * self.columns + x, self.law.convert(part.held[i], offset_e, &mut stream));
+                    self.distribution.collect(part.means_e[i], &mut stream);
+                    let offset_e = offsets.map_or(0.0, |offsets| offsets.offset_at(x, y));
+                    put(y * self.columns + x, self.distribution.convert(part.held[i], offset_e, &mut stream));
                 }
             }
         }
@@ -79,10 +79,12 @@ impl ColumnPart {
     ) {
         let Self { rows, means_e, collected, held } = self;
         means_e.clear();
-        means_e.extend(rows.clone().map(|y| expected.at(x, y).max(0.0)));
+        means_e.extend(rows.clone().map(|y| expected.electrons_at(x, y).max(0.0)));
         collected.clear();
-        let drawn =
-            rows.clone().zip(&*means_e).map(|(y, &mean_e)| sensor.law.collect(mean_e, &mut stream(y)));
+        let drawn = rows
+            .clone()
+            .zip(&*means_e)
+            .map(|(y, &mean_e)| sensor.distribution.collect(mean_e, &mut stream(y)));
         collected.extend(drawn);
         held.clone_from(collected);
     }
@@ -90,7 +92,7 @@ impl ColumnPart {
     /// Whether anything spills to an end of the rows that is no end of the column.
     fn leaves(&self, sensor: &Sensor) -> bool {
         let reached =
-            |i: usize| self.held[i] != self.collected[i] || self.held[i] >= sensor.law.full_well_e();
+            |i: usize| self.held[i] != self.collected[i] || self.held[i] >= sensor.distribution.full_well_e();
         (self.rows.start > 0 && reached(0))
             || (self.rows.end < sensor.rows && reached(self.rows.len().saturating_sub(1)))
     }
@@ -98,8 +100,8 @@ impl ColumnPart {
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::{opening, twelve_bit};
-    use super::super::{FlatLaws, SensorConfig};
+    use super::super::config::tests::{interval, twelve_bit};
+    use super::super::{FlatSamplers, SensorConfig};
     use super::*;
     use crate::randomness::Seed;
 
@@ -119,9 +121,9 @@ mod tests {
             let (mut image, mut raw) = (sensor.new_expected(), sensor.new_raw());
             // Half of it goes up and half down, a full well a pixel; what leaves at an end is lost.
             image.add_pixel(2, row, 5000.0 * 399.0);
-            let charge = sensor.collect(&mut image, &opening(1.0));
+            let charge = sensor.collect(&mut image, &interval(1.0));
             let seed = Seed { seed: 61, case: 0 };
-            sensor.read_out(&charge, &seed, 0, &mut FlatLaws::new(), &mut raw).unwrap();
+            sensor.read_out(&charge, &seed, 0, &mut FlatSamplers::new(), &mut raw).unwrap();
             let full: Vec<usize> = (0..600).filter(|y| raw.dn()[y * 5 + 2] > 400).collect();
             assert!(full.first().unwrap().abs_diff(first) <= 1, "{full:?}");
             assert!(full.is_sorted_by(|a, b| a + 1 == *b), "{full:?}");

@@ -8,7 +8,7 @@ use crate::randomness::Seed;
 
 /// One opening of the shutter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Opening {
+pub struct ExposureInterval {
     /// Seed of what switches in time.
     pub seed: Seed,
     /// Middle of the exposure, s of TT since J2000.0; of an interlaced frame the middle between its two fields.
@@ -32,8 +32,8 @@ impl Charge<'_> {
     }
 
     /// Adds the charge of a particle's track, as the pixels collect it.
-    pub(crate) fn strike(&mut self, track: &Stamp) {
-        self.expected.add_collected(track);
+    pub(crate) fn add_cosmic_ray_hit(&mut self, hit: &Stamp) {
+        self.expected.add_collected(hit);
     }
 
     /// Electrons that the frame transfer adds to a pixel of an even detector, the mean over all pixels.
@@ -45,8 +45,12 @@ impl Charge<'_> {
 impl Sensor {
     /// Turns the photo-electrons of every pixel, which an image of [`Sensor::new_expected`] holds as the pixels have responded to
     /// their light, into its charge: smear of the frame transfer, dark current, hot pixels; dead pixels stay empty.
-    pub fn collect<'a>(&self, photo_electrons: &'a mut ExpectedImage, opening: &Opening) -> Charge<'a> {
-        let Opening { exposure_s, .. } = *opening;
+    pub fn collect<'a>(
+        &self,
+        photo_electrons: &'a mut ExpectedImage,
+        interval: &ExposureInterval,
+    ) -> Charge<'a> {
+        let ExposureInterval { exposure_s, .. } = *interval;
         let (columns, rows) = photo_electrons.size();
         let smear_e_per_px = if self.config().frame_transfer_s > 0.0 && exposure_s > 0.0 {
             // A row stops in front of every other row for 1/rows of the transfer.
@@ -61,7 +65,7 @@ impl Sensor {
             photo_electrons.add_pattern(dark_e, &self.pattern().dark);
         }
         for pixel in self.hot_pixels() {
-            photo_electrons.add_pixel(pixel.x, pixel.y, self.hot_electrons(pixel, opening));
+            photo_electrons.add_pixel(pixel.x, pixel.y, self.hot_electrons(pixel, interval));
         }
         for &(x, y) in self.pattern().dead.iter().filter(|(x, y)| *x < columns && *y < rows) {
             photo_electrons.empty_pixel(x, y);
@@ -70,26 +74,26 @@ impl Sensor {
     }
 
     /// Takes from the image of a particle's track what dead pixels do not collect.
-    pub(crate) fn blind(&self, track: &mut Stamp) {
+    pub(crate) fn mask_dead_pixels(&self, hit: &mut Stamp) {
         for &(x, y) in &self.pattern().dead {
-            track.empty(x, y);
+            hit.empty(x, y);
         }
     }
 
     /// Expected electrons of a hot pixel in an exposure, above those of an ordinary one; 0 when it is dead.
-    pub(crate) fn hot_electrons(&self, pixel: &HotPixel, opening: &Opening) -> f64 {
+    pub(crate) fn hot_electrons(&self, pixel: &HotPixel, interval: &ExposureInterval) -> f64 {
         if self.pattern().is_dead(pixel.x, pixel.y) {
             return 0.0;
         }
-        let electrons = pixel.rate_e_per_s * opening.exposure_s;
+        let electrons = pixel.rate_e_per_s * interval.exposure_s;
         match self.config().hot_pixels.telegraph.filter(|_| pixel.switches) {
             Some(telegraph) => {
-                let place = (pixel.y * self.size().0 + pixel.x) as u64;
-                let half_s = 0.5 * opening.exposure_s;
+                let stream_index = (pixel.y * self.size().0 + pixel.x) as u64;
+                let half_s = 0.5 * interval.exposure_s;
                 let middle_s =
-                    opening.middle_s + self.config().interlace.map_or(0.0, |i| i.offset_s(pixel.y));
+                    interval.middle_s + self.config().interlace.map_or(0.0, |i| i.offset_s(pixel.y));
                 let (from_s, to_s) = (middle_s - half_s, middle_s + half_s);
-                electrons * telegraph.level(&opening.seed, place, from_s, to_s)
+                electrons * telegraph.mean_level(&interval.seed, stream_index, from_s, to_s)
             }
             None => electrons,
         }
@@ -129,7 +133,7 @@ impl Sensor {
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::{opening, twelve_bit};
+    use super::super::config::tests::{interval, twelve_bit};
     use super::super::fixed_pattern::FixedPatternConfig;
     use super::super::{BloomingConfig, SensorConfig, TemperatureConfig};
     use super::*;
@@ -172,11 +176,12 @@ mod tests {
             before[y * 65 + x..][..row.len()].iter_mut().zip(row).for_each(|(e, s)| *e += s)
         });
         image.add(&object);
-        let charge = sensor.collect(&mut image, &opening(2.0));
+        let charge = sensor.collect(&mut image, &interval(2.0));
         for (index, electrons) in charge.expected().iter().enumerate() {
             let (x, y) = (index % 65, index / 65);
             let pattern = sensor.pattern();
-            let (response, dark) = (pattern.response.at(x, y).unwrap(), pattern.dark.at(x, y).unwrap());
+            let (response, dark) =
+                (pattern.response.factor_at(x, y).unwrap(), pattern.dark.factor_at(x, y).unwrap());
             let hot = sensor.hot_pixels().iter().find(|hot| (hot.x, hot.y) == (x, y));
             let expected = if sensor.pattern().is_dead(x, y) {
                 0.0
@@ -191,7 +196,7 @@ mod tests {
         let with: f64 = charge.expected().iter().sum();
         let object = sum(&charge.expected().objects()[0]);
         image.clear(100.0);
-        let without: f64 = sensor.collect(&mut image, &opening(2.0)).expected().iter().sum();
+        let without: f64 = sensor.collect(&mut image, &interval(2.0)).expected().iter().sum();
         assert!((with - without - object).abs() < 1e-6);
         assert!((object - 1e5).abs() > 100.0);
     }
@@ -206,15 +211,15 @@ mod tests {
             let mut image = sensor.new_expected();
             image.clear(0.0);
             image.add(&stamp);
-            sensor.collect(&mut image, &opening(0.5)).expected().clone()
+            sensor.collect(&mut image, &interval(0.5)).expected().clone()
         };
         let (with, without) = (charge(&sensor), charge(&still));
         // 0.1 ms a row, of 0.5 s; 47 other rows. Dark current and hot pixels are not smeared here.
         let gained = with.iter().sum::<f64>() - without.iter().sum::<f64>();
         assert!((gained - 1e5 * 2e-4 * 47.0).abs() < 0.1, "{gained}");
         let column: f64 = stamp.rows().map(|(x, _, row)| row[20 - x]).sum();
-        assert!((with.at(20, 2) - without.at(20, 2) - 2e-4 * column).abs() < 1e-9);
-        assert_eq!(with.at(60, 2), without.at(60, 2));
+        assert!((with.electrons_at(20, 2) - without.electrons_at(20, 2) - 2e-4 * column).abs() < 1e-9);
+        assert_eq!(with.electrons_at(60, 2), without.electrons_at(60, 2));
     }
 
     #[test]

@@ -71,7 +71,7 @@ pub struct LineNoiseConfig {
 /// The law of the dark currents of hot pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum HotLaw {
+pub enum HotPixelDistribution {
     /// Log-normal, by `median_e_per_s` and `spread`.
     #[default]
     LogNormal,
@@ -103,7 +103,7 @@ pub struct HotPixelConfig {
     pub spread: f64,
     /// The law of the dark currents; none exceeds 1e9 electrons a second.
     #[serde(default)]
-    pub law: HotLaw,
+    pub law: HotPixelDistribution,
     /// Random telegraph switching; without the table it is off.
     #[serde(default)]
     pub telegraph: Option<TelegraphConfig>,
@@ -235,7 +235,7 @@ impl SensorConfig {
 pub(super) mod tests {
     use super::*;
     use crate::randomness::Seed;
-    use crate::sensor::Opening;
+    use crate::sensor::ExposureInterval;
 
     /// A twelve-bit sensor like that of a star tracker.
     pub(in crate::sensor) fn twelve_bit() -> SensorConfig {
@@ -260,8 +260,8 @@ pub(super) mod tests {
     }
 
     /// An exposure at J2000.0.
-    pub(in crate::sensor) fn opening(exposure_s: f64) -> Opening {
-        Opening { seed: Seed { seed: 42, case: 0 }, middle_s: 0.0, exposure_s }
+    pub(in crate::sensor) fn interval(exposure_s: f64) -> ExposureInterval {
+        ExposureInterval { seed: Seed { seed: 42, case: 0 }, middle_s: 0.0, exposure_s }
     }
 
     #[test]

@@ -125,7 +125,7 @@ pub(crate) struct CosmicRays {
 /// The track of one particle: where it enters, how far it goes across the detector, how much charge it leaves. It may
 /// leave the detector.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Track {
+pub(crate) struct CosmicRayHit {
     start: PixelPoint,
     /// Columns and rows from the entry to the exit.
     across: (f64, f64),
@@ -173,17 +173,23 @@ impl CosmicRays {
     }
 
     /// The tracks of a frame. The first `n` of them are the same whatever the rate.
-    pub(crate) fn tracks(&self, seed: &Seed, frame: u64, exposure_s: f64, rate_per_cm2_s: f64) -> Vec<Track> {
+    pub(crate) fn hits(
+        &self,
+        seed: &Seed,
+        frame: u64,
+        exposure_s: f64,
+        rate_per_cm2_s: f64,
+    ) -> Vec<CosmicRayHit> {
         let mean = self.mean_hits(exposure_s, rate_per_cm2_s);
         let streams = seed.streams(frame, Effect::CosmicRays);
-        let count = poisson(mean, &mut streams.at(0)) as u64;
-        (1..=count).map(|number| self.track(&mut streams.at(number))).collect()
+        let count = poisson(mean, &mut streams.stream_at(0)) as u64;
+        (1..=count).map(|number| self.draw_hit(&mut streams.stream_at(number))).collect()
     }
 
     /// A particle of an isotropic flux: it crosses the face anywhere, with cos θ from the normal of density 2 cos θ (the
     /// face seen from θ is smaller by cos θ). Its charge per µm follows Moyal's law (Phil. Mag. 46, 1955), an
     /// approximation of Landau's: the mean plus ξ (m − γ − ln 2), where m = −ln z² of a normal z has Moyal's density.
-    fn track(&self, stream: &mut Stream) -> Track {
+    fn draw_hit(&self, stream: &mut Stream) -> CosmicRayHit {
         const MOYAL_MEAN: f64 = 1.270_362_845_461_478;
         let x = self.columns as f64 * uniform(stream) - 0.5;
         let y = self.rows as f64 * uniform(stream) - 0.5;
@@ -194,7 +200,7 @@ impl CosmicRays {
         let z = normal(stream);
         let moyal = -libm::log((z * z).max(f64::MIN_POSITIVE));
         let e_per_um = self.config.mean_e_per_um + self.config.landau_e_per_um * (moyal - MOYAL_MEAN);
-        Track {
+        CosmicRayHit {
             start: PixelPoint::new(x, y),
             across: (across_um * cos / self.pixel_width_um, across_um * sin / self.pixel_height_um),
             electrons: e_per_um.max(0.0) * depth_um / cos2.sqrt(),
@@ -203,20 +209,20 @@ impl CosmicRays {
 
     /// Makes `stamp` the image of a track: its charge evenly along its length, to each pixel by the length in it. What
     /// lies off the detector is left out.
-    pub(crate) fn stamp(&self, track: &Track, stamp: &mut Stamp) {
-        let (dx, dy) = track.across;
+    pub(crate) fn stamp(&self, hit: &CosmicRayHit, stamp: &mut Stamp) {
+        let (dx, dy) = hit.across;
         // Where it leaves the detector, as a part of its length; it starts inside.
         let leaves = |at: f64, by: f64, size: usize| {
             let edge = if by > 0.0 { size as f64 - 0.5 } else { -0.5 };
             if by == 0.0 { 1.0 } else { ((edge - at) / by).clamp(0.0, 1.0) }
         };
-        let inside = leaves(track.start.x, dx, self.columns).min(leaves(track.start.y, dy, self.rows));
-        let (dx, dy, electrons) = (dx * inside, dy * inside, track.electrons * inside);
+        let inside = leaves(hit.start.x, dx, self.columns).min(leaves(hit.start.y, dy, self.rows));
+        let (dx, dy, electrons) = (dx * inside, dy * inside, hit.electrons * inside);
         let (columns, rows) = (self.columns.saturating_sub(1), self.rows.saturating_sub(1));
         let pixel = |at: f64, last: usize| (at.round().max(0.0) as usize).min(last);
-        let (x0, x1) = (pixel(track.start.x, columns), pixel(track.start.x + dx, columns));
-        let (y0, y1) = (pixel(track.start.y, rows), pixel(track.start.y + dy, rows));
-        let centre = PixelPoint::new(track.start.x + 0.5 * dx, track.start.y + 0.5 * dy);
+        let (x0, x1) = (pixel(hit.start.x, columns), pixel(hit.start.x + dx, columns));
+        let (y0, y1) = (pixel(hit.start.y, rows), pixel(hit.start.y + dy, rows));
+        let centre = PixelPoint::new(hit.start.x + 0.5 * dx, hit.start.y + 0.5 * dy);
         stamp.reset(centre, (x0.min(x1), x0.max(x1) + 1), (y0.min(y1), y0.max(y1) + 1));
         // From one border of pixels to the next.
         let border = |pixel: usize, at: f64, by: f64| match by {
@@ -226,7 +232,7 @@ impl CosmicRays {
         };
         let (mut x, mut y, mut done) = (x0, y0, 0.0);
         while (x, y) != (x1, y1) {
-            let (to_x, to_y) = (border(x, track.start.x, dx), border(y, track.start.y, dy));
+            let (to_x, to_y) = (border(x, hit.start.x, dx), border(y, hit.start.y, dy));
             // Rounding must not lead past the last pixel.
             let along_x = if x == x1 { false } else { y == y1 || to_x <= to_y };
             let next = if along_x { to_x } else { to_y }.clamp(done, 1.0);
@@ -244,7 +250,7 @@ impl CosmicRays {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sensor::pixel_law::tests::{chi_square_p, counts_of};
+    use crate::sensor::pixel_distribution::tests::{chi_square_p, histogram};
     use statrs::distribution::{Discrete, Poisson};
 
     const SEED: Seed = Seed { seed: 3, case: 0 };
@@ -273,39 +279,39 @@ mod tests {
     #[test]
     fn hits_are_poisson_with_the_rate_times_area_times_time() {
         let rays = rays();
-        let counts = counts_of((0..20_000).map(|frame| rays.tracks(&SEED, frame, 9.5, 1.0).len()));
+        let counts = histogram((0..20_000).map(|frame| rays.hits(&SEED, frame, 9.5, 1.0).len()));
         // 10 s on 0.6467 cm × 0.4814 cm.
         let law = Poisson::new(10.0 * 0.064672 * 10.0 * 0.04814 * 10.0).unwrap();
         let expected: Vec<f64> = (0..counts.len() as u64 + 10).map(|k| law.pmf(k)).collect();
         assert!(chi_square_p(&counts, &expected) > 1e-4);
     }
 
-    fn many() -> Vec<Track> {
-        (0..40_000).map(|place| rays().track(&mut SEED.stream(1, Effect::CosmicRays, place))).collect()
+    fn many() -> Vec<CosmicRayHit> {
+        (0..40_000).map(|index| rays().draw_hit(&mut SEED.stream(1, Effect::CosmicRays, index))).collect()
     }
 
     #[test]
     fn lengths_follow_from_isotropy() {
         // P(tan θ > t) = 1/(1 + t²); twenty bins of equal probability.
-        let bin = |track: &Track| {
-            let tangent = libm::hypot(track.across.0 * 8.6, track.across.1 * 8.3) / 20.0;
+        let bin = |hit: &CosmicRayHit| {
+            let tangent = libm::hypot(hit.across.0 * 8.6, hit.across.1 * 8.3) / 20.0;
             ((20.0 / (1.0 + tangent * tangent)) as usize).min(19)
         };
-        let counts = counts_of(many().iter().map(bin));
+        let counts = histogram(many().iter().map(bin));
         assert!(chi_square_p(&counts, &[0.05; 20]) > 1e-4);
     }
 
     #[test]
     fn charge_follows_moyals_law_and_grows_with_the_path() {
-        let bin = |track: &Track| {
-            let across_um = libm::hypot(track.across.0 * 8.6, track.across.1 * 8.3);
-            let e_per_um = track.electrons / libm::hypot(across_um, 20.0);
+        let bin = |hit: &CosmicRayHit| {
+            let across_um = libm::hypot(hit.across.0 * 8.6, hit.across.1 * 8.3);
+            let e_per_um = hit.electrons / libm::hypot(across_um, 20.0);
             // Moyal's distribution function is erfc(exp(−m/2)/√2).
             let moyal = (e_per_um - 80.0) / 4.9 + 1.270362845;
             let below = libm::erfc(libm::exp(-0.5 * moyal) * std::f64::consts::FRAC_1_SQRT_2);
             ((20.0 * below) as usize).min(19)
         };
-        let counts = counts_of(many().iter().map(bin));
+        let counts = histogram(many().iter().map(bin));
         assert!(chi_square_p(&counts, &[0.05; 20]) > 1e-4);
     }
 
@@ -320,9 +326,9 @@ mod tests {
             ((100.5, 50.5), (3.0, -3.0)),
             ((0.0, 0.0), (0.1, 300.0)),
         ] {
-            let track = Track { start: PixelPoint::new(start.0, start.1), across, electrons: 1000.0 };
-            rays.stamp(&track, &mut stamp);
-            assert!((sum(&stamp) - 1000.0).abs() < 1e-9, "{track:?}");
+            let hit = CosmicRayHit { start: PixelPoint::new(start.0, start.1), across, electrons: 1000.0 };
+            rays.stamp(&hit, &mut stamp);
+            assert!((sum(&stamp) - 1000.0).abs() < 1e-9, "{hit:?}");
             // The centre of charge is the middle of the track, to the half pixel that a pixel hides.
             let (mut x, mut y) = (0.0, 0.0);
             for (column, row, electrons) in stamp.rows() {
@@ -331,11 +337,11 @@ mod tests {
                     y += row as f64 * e / 1000.0;
                 }
             }
-            assert!(PixelPoint::new(x, y).distance(stamp.centre()) < 0.71, "{track:?}: {x}, {y}");
+            assert!(PixelPoint::new(x, y).distance(stamp.centre()) < 0.71, "{hit:?}: {x}, {y}");
         }
         // Four pixels and two halves along a row.
-        let track = Track { start: PixelPoint::new(10.0, 10.0), across: (5.0, 0.0), electrons: 1000.0 };
-        rays.stamp(&track, &mut stamp);
+        let hit = CosmicRayHit { start: PixelPoint::new(10.0, 10.0), across: (5.0, 0.0), electrons: 1000.0 };
+        rays.stamp(&hit, &mut stamp);
         let row: Vec<f64> = stamp.rows().next().unwrap().2.to_vec();
         assert_eq!(row.len(), 6);
         assert!(
@@ -346,12 +352,12 @@ mod tests {
     #[test]
     fn a_track_that_leaves_the_detector_leaves_its_charge_there() {
         let mut stamp = Stamp::new();
-        let track = Track { start: PixelPoint::new(749.5, 10.0), across: (8.0, 0.0), electrons: 800.0 };
-        rays().stamp(&track, &mut stamp);
+        let hit = CosmicRayHit { start: PixelPoint::new(749.5, 10.0), across: (8.0, 0.0), electrons: 800.0 };
+        rays().stamp(&hit, &mut stamp);
         assert!((sum(&stamp) - 200.0).abs() < 1e-9);
-        for track in many() {
-            rays().stamp(&track, &mut stamp);
-            assert!(sum(&stamp) <= track.electrons * (1.0 + 1e-12));
+        for hit in many() {
+            rays().stamp(&hit, &mut stamp);
+            assert!(sum(&stamp) <= hit.electrons * (1.0 + 1e-12));
         }
     }
 

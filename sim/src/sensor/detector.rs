@@ -3,7 +3,7 @@
 use super::config::SensorConfig;
 use super::fixed_pattern::FixedPattern;
 use super::hot_pixels::{HotPixel, hot_pixels};
-use super::pixel_law::PixelLaw;
+use super::pixel_distribution::PixelDistribution;
 use super::raw_image::RawImage;
 use crate::SimError;
 use crate::draw::ExpectedImage;
@@ -12,7 +12,7 @@ use crate::draw::ExpectedImage;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensor {
     config: SensorConfig,
-    pub(super) law: PixelLaw,
+    pub(super) distribution: PixelDistribution,
     pub(super) columns: usize,
     pub(super) rows: usize,
     /// Factor of all dark currents by the temperature.
@@ -30,10 +30,10 @@ impl Sensor {
         config.check()?;
         let warmth = config.temperature.factor();
         Ok(Self {
-            law: PixelLaw::new(config),
+            distribution: PixelDistribution::new(config),
             warmth,
             hot_pixels: hot_pixels(&config.hot_pixels, columns, rows, warmth)?,
-            pattern: FixedPattern::of(&config.fixed_pattern, columns, rows)?,
+            pattern: FixedPattern::from_config(&config.fixed_pattern, columns, rows)?,
             config: config.clone(),
             columns,
             rows,
@@ -67,7 +67,7 @@ impl Sensor {
 
     /// Dark current of an ordinary pixel in an exposure, electrons; 0 when it is off.
     pub fn dark_electrons(&self, exposure_s: f64) -> f64 {
-        self.config.noise.dark.of(self.config.dark_current_e_per_s * self.warmth) * exposure_s
+        self.config.noise.dark.apply(self.config.dark_current_e_per_s * self.warmth) * exposure_s
     }
 
     /// Standard deviation of what the readout adds to a pixel, electrons: read noise with what rows and columns share, as
@@ -77,12 +77,12 @@ impl Sensor {
         let (pixel_e, lines) = (self.config.read_noise_e, self.config.line_noise);
         let read_e2 = pixel_e * pixel_e + lines.row_e * lines.row_e + lines.column_e * lines.column_e;
         let gain_e = self.config.gain_e_per_dn;
-        (self.config.noise.read.of(read_e2) + gain_e * gain_e / 12.0).sqrt()
+        (self.config.noise.read.apply(read_e2) + gain_e * gain_e / 12.0).sqrt()
     }
 
     /// An image that [`Sensor::collect`] and [`Sensor::read_out`] take.
     pub fn new_expected(&self) -> ExpectedImage {
-        ExpectedImage::new(self.columns, self.rows).responding(&self.pattern.response)
+        ExpectedImage::new(self.columns, self.rows).with_response(&self.pattern.response)
     }
 
     /// A raw image for [`Sensor::read_out`].

@@ -7,12 +7,12 @@
 
 use std::collections::BTreeMap;
 
-use super::pixel_law::PixelLaw;
+use super::pixel_distribution::PixelDistribution;
 
 /// The law of the digital numbers above a floor. Tables are made when first met, and are the same whatever was met before.
 #[derive(Debug, Clone)]
 pub(super) struct Exceedance {
-    law: PixelLaw,
+    distribution: PixelDistribution,
     floor_dn: u16,
     /// The means, in quarters of an electron, from and up to which the limit of dark pixels follows the background; `None` where
     /// the darkest pixel exceeds the floor too often.
@@ -56,8 +56,14 @@ const MOST_MORE: u32 = 8;
 
 impl Exceedance {
     /// Of a law with shot noise.
-    pub(super) fn new(law: &PixelLaw, floor_dn: u16) -> Self {
-        let mut new = Self { law: *law, floor_dn, limits: None, last_limit: None, tails: BTreeMap::new() };
+    pub(super) fn new(distribution: &PixelDistribution, floor_dn: u16) -> Self {
+        let mut new = Self {
+            distribution: *distribution,
+            floor_dn,
+            limits: None,
+            last_limit: None,
+            tails: BTreeMap::new(),
+        };
         new.limits = new.last_below(MOST_FREQUENT).map(|high| (new.last_below(RAREST).unwrap_or(0), high));
         new
     }
@@ -74,8 +80,8 @@ impl Exceedance {
     }
 
     /// Whether it is the law of these.
-    pub(super) fn is_of(&self, law: &PixelLaw, floor_dn: u16) -> bool {
-        self.law == *law && self.floor_dn == floor_dn
+    pub(super) fn is_valid_for(&self, distribution: &PixelDistribution, floor_dn: u16) -> bool {
+        self.distribution == *distribution && self.floor_dn == floor_dn
     }
 
     /// The limit of dark pixels over a background of at most `bound_e` electrons a pixel.
@@ -132,14 +138,16 @@ impl Exceedance {
 
     /// The tail of the mean of so many quarters of an electron, with `more` electrons for certain.
     fn tail(&mut self, quarters: u32, more: u32) -> &Tail {
-        let (law, floor_dn) = (&self.law, self.floor_dn);
-        self.tails.entry((quarters, more)).or_insert_with(|| Tail::new(law, floor_dn, quarters, more))
+        let (distribution, floor_dn) = (&self.distribution, self.floor_dn);
+        self.tails
+            .entry((quarters, more))
+            .or_insert_with(|| Tail::new(distribution, floor_dn, quarters, more))
     }
 }
 
 impl Tail {
-    fn new(law: &PixelLaw, floor_dn: u16, quarters: u32, more: u32) -> Self {
-        let whole = law.probabilities(0.25 * f64::from(quarters), more);
+    fn new(distribution: &PixelDistribution, floor_dn: u16, quarters: u32, more: u32) -> Self {
+        let whole = distribution.probabilities(0.25 * f64::from(quarters), more);
         let below = (usize::from(floor_dn) + 1).saturating_sub(usize::from(whole.first_dn));
         let below = below.min(whole.probabilities.len());
         let mut sum = 0.0;
@@ -169,53 +177,55 @@ impl Tail {
 mod tests {
     use super::super::SensorConfig;
     use super::super::config::tests::twelve_bit;
-    use super::super::pixel_law::tests::{chi_square_p, counts_of, from_zero};
+    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram};
     use super::*;
     use crate::randomness::{Effect, Seed, uniform};
 
     /// A gain of 1 e⁻/DN and a low read noise, so that single electrons are seen.
-    fn law() -> PixelLaw {
-        PixelLaw::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() })
+    fn distribution() -> PixelDistribution {
+        PixelDistribution::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() })
     }
 
-    fn above(law: &PixelLaw, mean_e: f64, floor_dn: u16) -> f64 {
-        from_zero(&law.probabilities(mean_e, 0))[usize::from(floor_dn) + 1..].iter().sum()
+    fn above(distribution: &PixelDistribution, mean_e: f64, floor_dn: u16) -> f64 {
+        from_zero(&distribution.probabilities(mean_e, 0))[usize::from(floor_dn) + 1..].iter().sum()
     }
 
     #[test]
     fn the_limit_follows_the_background_between_the_rarest_and_the_most_frequent() {
-        let (law, floor_dn) = (law(), 70);
-        let mut exceedance = Exceedance::new(&law, floor_dn);
+        let (distribution, floor_dn) = (distribution(), 70);
+        let mut exceedance = Exceedance::new(&distribution, floor_dn);
         for bound_e in [0.0, 3.1, 8.2, 9.0, 12.0, 14.1, 40.0, 1e9] {
             let limit = exceedance.dark_limit(bound_e);
-            assert!((limit.probability - above(&law, limit.mean_e, floor_dn)).abs() < 1e-12);
+            assert!((limit.probability - above(&distribution, limit.mean_e, floor_dn)).abs() < 1e-12);
             assert!(limit.probability <= MOST_FREQUENT);
             let follows = limit.mean_e >= bound_e && limit.mean_e < bound_e + 0.25;
-            let rarest = limit.mean_e > bound_e && above(&law, limit.mean_e + 0.25, floor_dn) > RAREST;
-            let most = limit.mean_e < bound_e && above(&law, limit.mean_e + 0.25, floor_dn) > MOST_FREQUENT;
+            let rarest =
+                limit.mean_e > bound_e && above(&distribution, limit.mean_e + 0.25, floor_dn) > RAREST;
+            let most =
+                limit.mean_e < bound_e && above(&distribution, limit.mean_e + 0.25, floor_dn) > MOST_FREQUENT;
             assert!(follows || (rarest && limit.probability <= RAREST) || most, "{bound_e}: {limit:?}");
         }
         // The bias alone is above this floor: nothing is dark.
-        assert_eq!(Exceedance::new(&law, 40).dark_limit(0.0), DarkLimit::NOWHERE);
+        assert_eq!(Exceedance::new(&distribution, 40).dark_limit(0.0), DarkLimit::NOWHERE);
         // Nothing is above full scale.
-        assert_eq!(Exceedance::new(&law, 4095).dark_limit(3.0).probability, 0.0);
+        assert_eq!(Exceedance::new(&distribution, 4095).dark_limit(3.0).probability, 0.0);
     }
 
     #[test]
     fn what_is_kept_of_the_candidates_follows_the_law_above_the_floor() {
-        let law = law();
+        let distribution = distribution();
         for (frame, (mean_e, floor_dn)) in
             [(0.0, 53), (0.13, 54), (7.37, 65), (7.49, 67), (30.01, 95)].into_iter().enumerate()
         {
-            let mut exceedance = Exceedance::new(&law, floor_dn);
+            let mut exceedance = Exceedance::new(&distribution, floor_dn);
             let limit = exceedance.dark_limit(mean_e + 1.0);
             let mut stream = Seed { seed: 51, case: 0 }.stream(frame as u64, Effect::Exceedance, 0);
             let n = 200_000;
-            let kept = counts_of((0..n).map(|_| {
+            let kept = histogram((0..n).map(|_| {
                 let levels = std::array::from_fn(|_| uniform(&mut stream));
                 usize::from(exceedance.thin(mean_e, limit, levels).unwrap_or(0))
             }));
-            let mut expected = from_zero(&law.probabilities(mean_e, 0));
+            let mut expected = from_zero(&distribution.probabilities(mean_e, 0));
             expected[..=usize::from(floor_dn)].fill(0.0);
             expected.iter_mut().for_each(|probability| *probability /= limit.probability);
             expected[0] = 1.0 - expected.iter().sum::<f64>();
@@ -227,14 +237,17 @@ mod tests {
 
     #[test]
     fn what_is_kept_changes_nothing() {
-        let mut kept = Exceedance::new(&law(), 65);
+        let mut kept = Exceedance::new(&distribution(), 65);
         let limit = kept.dark_limit(9.0);
         let levels = |i: u32| [0.03 * f64::from(i % 31), 0.07 * f64::from(i % 13), 0.2 * f64::from(i % 5)];
         let mean_e = |i: u32| 0.029 * f64::from(i);
         let all: Vec<_> = (0..300).map(|i| kept.thin(mean_e(i), limit, levels(i))).collect();
         assert!(all.iter().flatten().count() > 20);
         for i in (0..300).step_by(17) {
-            assert_eq!(Exceedance::new(&law(), 65).thin(mean_e(i), limit, levels(i)), all[i as usize]);
+            assert_eq!(
+                Exceedance::new(&distribution(), 65).thin(mean_e(i), limit, levels(i)),
+                all[i as usize]
+            );
         }
     }
 }

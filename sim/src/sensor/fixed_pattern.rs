@@ -13,7 +13,7 @@ use crate::randomness::{Effect, Seed, Streams, normal};
 /// The law of the dark currents of ordinary pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum DarkLaw {
+pub enum DarkCurrentDistribution {
     /// Log-normal about the same mean: never negative, with a tail to high currents.
     #[default]
     LogNormal,
@@ -37,7 +37,7 @@ pub struct FixedPatternConfig {
     #[schemars(range(min = 0, max = 5))]
     pub dsnu_fraction: f64,
     /// Law of the dark currents.
-    pub dsnu_law: DarkLaw,
+    pub dsnu_law: DarkCurrentDistribution,
     /// Standard deviation of the columns' offsets, which are added to every frame, electrons, 0 to 500. Normal.
     #[schemars(range(min = 0, max = 500))]
     pub column_offset_e: f64,
@@ -73,7 +73,11 @@ impl FixedPattern {
     ///
     /// # Errors
     /// As [`FixedPattern::new`].
-    pub(super) fn of(config: &FixedPatternConfig, columns: usize, rows: usize) -> Result<Self, OutOfRange> {
+    pub(super) fn from_config(
+        config: &FixedPatternConfig,
+        columns: usize,
+        rows: usize,
+    ) -> Result<Self, OutOfRange> {
         // A thread that panicked while it held the pattern cannot have left half of one.
         let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
         let size = [columns, rows];
@@ -99,8 +103,8 @@ impl FixedPattern {
         let dark = |index| {
             let z = standard(Effect::DarkPattern, index);
             match config.dsnu_law {
-                DarkLaw::LogNormal => libm::exp(variance.sqrt() * z - 0.5 * variance),
-                DarkLaw::Normal => (1.0 + config.dsnu_fraction * z).max(0.0),
+                DarkCurrentDistribution::LogNormal => libm::exp(variance.sqrt() * z - 0.5 * variance),
+                DarkCurrentDistribution::Normal => (1.0 + config.dsnu_fraction * z).max(0.0),
             }
         };
         let offset = |x| config.column_offset_e * standard(Effect::ColumnOffset, x);
@@ -157,7 +161,7 @@ fn distinct(count: usize, of: usize, streams: Streams) -> Vec<usize> {
     let mut taken = vec![false; if count > 0 { of } else { 0 }];
     (0..count)
         .map(|number| {
-            let mut stream = streams.at(number as u64);
+            let mut stream = streams.stream_at(number as u64);
             loop {
                 // The highest bits of a product: uniform but for of/2^64.
                 let index = ((u128::from(stream.next_u64()) * of as u128) >> 64) as usize;
@@ -179,7 +183,7 @@ mod tests {
             |seed| FixedPatternConfig { seed, prnu_fraction: 0.1, dead_pixels: 3, ..Default::default() };
         for (seed, columns) in [(1, 40), (1, 40), (2, 40), (1, 41), (1, 40)] {
             let made = FixedPattern::new(&config(seed), columns, 30).unwrap();
-            assert_eq!(FixedPattern::of(&config(seed), columns, 30).unwrap(), made);
+            assert_eq!(FixedPattern::from_config(&config(seed), columns, 30).unwrap(), made);
         }
     }
     use statrs::distribution::{ContinuousCDF, LogNormal, Normal};
@@ -211,14 +215,15 @@ mod tests {
         let log_normal = LogNormal::new(-0.5 * sigma * sigma, sigma).unwrap();
         assert!(distance(widened(&pattern.dark), &log_normal) < 2.23);
         assert!(distance(pattern.column_offsets_e, &Normal::new(0.0, 3.0).unwrap()) < 2.23);
-        let config = FixedPatternConfig { dsnu_law: DarkLaw::Normal, dsnu_fraction: 0.1, ..config };
+        let config =
+            FixedPatternConfig { dsnu_law: DarkCurrentDistribution::Normal, dsnu_fraction: 0.1, ..config };
         let pattern = FixedPattern::new(&config, 300, 100).unwrap();
         assert!(distance(widened(&pattern.dark), &Normal::new(1.0, 0.1).unwrap()) < 2.23);
     }
 
     #[test]
     fn nothing_is_negative() {
-        for dsnu_law in [DarkLaw::LogNormal, DarkLaw::Normal] {
+        for dsnu_law in [DarkCurrentDistribution::LogNormal, DarkCurrentDistribution::Normal] {
             let config =
                 FixedPatternConfig { prnu_fraction: 0.3, dsnu_fraction: 2.0, dsnu_law, ..Default::default() };
             let pattern = FixedPattern::new(&config, 100, 100).unwrap();

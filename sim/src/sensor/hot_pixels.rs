@@ -3,7 +3,7 @@
 use contract::OutOfRange;
 use rand::Rng;
 
-use super::config::{HotLaw, HotPixelConfig};
+use super::config::{HotPixelConfig, HotPixelDistribution};
 use super::telegraph::switches;
 use crate::randomness::{Effect, Seed, Stream, normal, uniform};
 
@@ -44,7 +44,7 @@ pub(super) fn hot_pixels(
     let mut taken = vec![false; if config.count > 0 { pixels } else { 0 }];
     let mut hot: Vec<HotPixel> = (0..config.count)
         .map(|number| {
-            let mut stream = streams.at(number as u64);
+            let mut stream = streams.stream_at(number as u64);
             let rate_e_per_s = warmth * current(config, &mut stream);
             let index = loop {
                 // The highest bits of a product: uniform but for pixels/2^64.
@@ -66,8 +66,8 @@ fn current(config: &HotPixelConfig, stream: &mut Stream) -> f64 {
     // A tail without a mean has no end.
     const MOST_E_PER_S: f64 = 1e9;
     let factor = match config.law {
-        HotLaw::LogNormal => libm::exp(config.spread * normal(stream)),
-        HotLaw::Pareto { index } => libm::pow(2.0 * uniform(stream), -1.0 / index),
+        HotPixelDistribution::LogNormal => libm::exp(config.spread * normal(stream)),
+        HotPixelDistribution::Pareto { index } => libm::pow(2.0 * uniform(stream), -1.0 / index),
     };
     (config.median_e_per_s * factor).min(MOST_E_PER_S)
 }
@@ -94,7 +94,7 @@ mod tests {
     fn their_currents_follow_their_law() {
         use statrs::distribution::{LogNormal, Pareto};
         follow(&config(10_000), &LogNormal::new(libm::log(100.0), 1.5).unwrap());
-        let pareto = HotPixelConfig { law: HotLaw::Pareto { index: 1.2 }, ..config(10_000) };
+        let pareto = HotPixelConfig { law: HotPixelDistribution::Pareto { index: 1.2 }, ..config(10_000) };
         follow(&pareto, &Pareto::new(100.0 / libm::pow(2.0, 1.0 / 1.2), 1.2).unwrap());
     }
 

@@ -6,20 +6,20 @@
 //! ```
 //! use boresight_sim::draw::ExpectedImage;
 //! use boresight_sim::randomness::Seed;
-//! use boresight_sim::sensor::{FlatLaws, Opening, RawImage, Sensor};
-//! fn right(sensor: &Sensor, image: &mut ExpectedImage, laws: &mut FlatLaws, raw: &mut RawImage) {
+//! use boresight_sim::sensor::{FlatSamplers, ExposureInterval, RawImage, Sensor};
+//! fn right(sensor: &Sensor, image: &mut ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
 //!     let seed = Seed { seed: 1, case: 0 };
-//!     let charge = sensor.collect(image, &Opening { seed, middle_s: 0.0, exposure_s: 0.5 });
-//!     let _ = sensor.read_out(&charge, &seed, 0, laws, raw);
+//!     let charge = sensor.collect(image, &ExposureInterval { seed, middle_s: 0.0, exposure_s: 0.5 });
+//!     let _ = sensor.read_out(&charge, &seed, 0, samplers, raw);
 //! }
 //! ```
 //! A readout of photo-electrons does not compile:
 //! ```compile_fail,E0308
 //! use boresight_sim::draw::ExpectedImage;
 //! use boresight_sim::randomness::Seed;
-//! use boresight_sim::sensor::{FlatLaws, RawImage, Sensor};
-//! fn wrong(sensor: &Sensor, image: &ExpectedImage, laws: &mut FlatLaws, raw: &mut RawImage) {
-//!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, laws, raw);
+//! use boresight_sim::sensor::{FlatSamplers, RawImage, Sensor};
+//! fn wrong(sensor: &Sensor, image: &ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
+//!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, samplers, raw);
 //! }
 //! ```
 
@@ -31,11 +31,11 @@ mod cosmic_rays;
 mod detector;
 mod exceedance;
 mod fixed_pattern;
-mod flat_laws;
+mod flat_samplers;
 mod hot_pixels;
 mod interlace;
-mod own_means;
-mod pixel_law;
+mod mean_tables;
+mod pixel_distribution;
 mod pixels;
 mod poisson;
 mod poisson_digits;
@@ -47,18 +47,20 @@ mod spill;
 mod telegraph;
 mod ziggurat;
 
-pub use charge::{Charge, Opening};
-pub use config::{HotLaw, HotPixelConfig, LineNoiseConfig, NoiseConfig, SensorConfig, TemperatureConfig};
+pub use charge::{Charge, ExposureInterval};
+pub use config::{
+    HotPixelConfig, HotPixelDistribution, LineNoiseConfig, NoiseConfig, SensorConfig, TemperatureConfig,
+};
 pub use cosmic_rays::{CosmicRayConfig, SouthAtlanticConfig};
-pub(crate) use cosmic_rays::{CosmicRays, Track};
+pub(crate) use cosmic_rays::{CosmicRayHit, CosmicRays};
 pub use detector::Sensor;
-pub use fixed_pattern::{DarkLaw, FixedPatternConfig};
-pub use flat_laws::FlatLaws;
+pub use fixed_pattern::{DarkCurrentDistribution, FixedPatternConfig};
+pub use flat_samplers::FlatSamplers;
 pub use hot_pixels::HotPixel;
 pub use interlace::{InterlaceConfig, RowParity};
 pub use poisson::poisson;
 pub use raw_image::RawImage;
-pub(crate) use sparse::Collected;
+pub(crate) use sparse::FrameCharge;
 pub(crate) use sparse_image::SparseImage;
 pub use spill::BloomingConfig;
 pub use telegraph::TelegraphConfig;

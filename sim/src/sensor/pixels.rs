@@ -3,15 +3,15 @@
 use rand::Rng;
 
 use super::detector::Sensor;
-use super::flat_laws::FlatLaws;
-use super::own_means::{EvenMean, OwnMeans, Words};
+use super::flat_samplers::FlatSamplers;
+use super::mean_tables::{MeanTables, UniformMean, Words};
 use super::poisson_digits::PoissonDigits;
 use super::raw_image::RawImage;
 use crate::draw::{ExpectedImage, PART, PIECE};
-use crate::lanes::Lanes;
+use crate::generator_lanes::GeneratorLanes;
 use crate::randomness::Streams;
+use crate::simd_kernel::arch;
 use crate::switch::Switch;
-use crate::widest::arch;
 
 /// Electrons that the readout adds to each row and each column of a frame.
 pub(super) struct LineOffsets {
@@ -21,7 +21,7 @@ pub(super) struct LineOffsets {
 
 impl LineOffsets {
     /// Of one pixel.
-    pub(super) fn at(&self, x: usize, y: usize) -> f64 {
+    pub(super) fn offset_at(&self, x: usize, y: usize) -> f64 {
         self.rows[y] + self.columns[x]
     }
 }
@@ -32,34 +32,34 @@ impl Sensor {
         &self,
         expected: &ExpectedImage,
         streams: &Streams,
-        laws: &mut FlatLaws,
+        samplers: &mut FlatSamplers,
         raw: &mut RawImage,
     ) {
-        let flat = laws.of(&self.law, expected.flat_e());
+        let flat = samplers.sampler_for(&self.distribution, expected.flat_e());
         for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            flat.draw_row(row, &mut streams.at(y as u64));
+            flat.draw_row(row, &mut streams.stream_at(y as u64));
         }
-        for (index, signal_e) in expected.drawn() {
+        for (index, signal_e) in expected.object_pixels() {
             raw.dn[index] = flat.draw_lit(signal_e, streams, (self.rows + index) as u64);
         }
     }
 
     /// Whether there are tables for the means of nearly all pixels.
     pub(super) fn has_tables_for(&self, expected: &ExpectedImage) -> bool {
-        self.law.shot == Switch::On && expected.flat_e() < OwnMeans::end_e(&self.law)
+        self.distribution.shot == Switch::On && expected.flat_e() < MeanTables::end_e(&self.distribution)
     }
 
     /// The frame in which every pixel has a mean of its own.
-    pub(super) fn draw_own_means(
+    pub(super) fn draw_with_mean_tables(
         &self,
         expected: &ExpectedImage,
         streams: &Streams,
-        laws: &mut FlatLaws,
+        samplers: &mut FlatSamplers,
         raw: &mut RawImage,
     ) {
-        let tables = laws.own_means(&self.law);
+        let tables = samplers.mean_tables(&self.distribution);
         // The same steps on every machine, on the widest registers that it has.
-        arch().dispatch(OwnMeansFrame { expected, streams, tables, raw });
+        arch().dispatch(MeanTableFrame { expected, streams, tables, raw });
     }
 
     /// The frame in which no table holds the law of a pixel, because rows and columns have offsets or the flat level is high:
@@ -69,17 +69,17 @@ impl Sensor {
         expected: &ExpectedImage,
         offsets: Option<&LineOffsets>,
         streams: &Streams,
-        laws: &mut FlatLaws,
+        samplers: &mut FlatSamplers,
         raw: &mut RawImage,
     ) {
-        let (digits, normal) = laws.in_parts();
+        let (digits, normal) = samplers.in_parts();
         let [mut means, mut collected, mut noise, mut offsets_e] = [(); 4].map(|()| vec![0.0; self.columns]);
         for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            let own = |x: usize| streams.at((self.rows + y * self.columns + x) as u64);
-            let mut stream = streams.at(y as u64);
+            let pixel_stream = |x: usize| streams.stream_at((self.rows + y * self.columns + x) as u64);
+            let mut stream = streams.stream_at(y as u64);
             expected.row(y, &mut means);
             // One step after the other over the row, each a short loop.
-            match self.law.shot {
+            match self.distribution.shot {
                 Switch::On => {
                     for (collected, &mean_e) in collected.iter_mut().zip(&means) {
                         let words = [stream.next_u64(), stream.next_u64()];
@@ -101,17 +101,17 @@ impl Sensor {
                 None => offsets_e.fill(0.0),
             }
             for (x, noise) in noise.iter_mut().enumerate() {
-                *noise = normal.draw(stream.next_u64(), || own(x));
+                *noise = normal.draw(stream.next_u64(), || pixel_stream(x));
             }
             for (((dn, &collected_e), &noise), &offset_e) in
                 row.iter_mut().zip(&collected).zip(&noise).zip(&offsets_e)
             {
-                *dn = self.law.read(collected_e, noise, offset_e);
+                *dn = self.distribution.read(collected_e, noise, offset_e);
             }
-            if self.law.shot == Switch::On {
+            if self.distribution.shot == Switch::On {
                 for (x, (dn, &mean_e)) in row.iter_mut().zip(&means).enumerate() {
                     if mean_e >= PoissonDigits::END_E {
-                        *dn = self.law.sample(mean_e, offsets_e[x], &mut own(x));
+                        *dn = self.distribution.sample(mean_e, offsets_e[x], &mut pixel_stream(x));
                     }
                 }
             }
@@ -120,14 +120,14 @@ impl Sensor {
 }
 
 /// The drawing of a frame by the tables of own means; where the background is even and nothing was drawn, by its one mean.
-struct OwnMeansFrame<'a> {
+struct MeanTableFrame<'a> {
     expected: &'a ExpectedImage,
     streams: &'a Streams,
-    tables: &'a mut OwnMeans,
+    tables: &'a mut MeanTables,
     raw: &'a mut RawImage,
 }
 
-impl pulp::WithSimd for OwnMeansFrame<'_> {
+impl pulp::WithSimd for MeanTableFrame<'_> {
     type Output = ();
 
     // Inline, all of it: only so is it compiled for the registers of the machine.
@@ -135,17 +135,17 @@ impl pulp::WithSimd for OwnMeansFrame<'_> {
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { expected, streams, tables, raw } = self;
         let (columns, rows) = (raw.columns, raw.rows);
-        let even = (!expected.has_field()).then(|| EvenMean::new(expected.flat_e()));
+        let even = (!expected.has_field()).then(|| UniformMean::new(expected.flat_e()));
         // Of an even background, always those of a row on which nothing was drawn.
         let mut means = vec![expected.flat_e(); columns];
         let mut is_lit = vec![true; columns.div_ceil(PART)];
         let mut words = Words::new();
         for (y, row) in raw.dn.chunks_exact_mut(columns.max(1)).enumerate() {
-            let own = |x: usize| streams.at((rows + y * columns + x) as u64);
-            let mut lanes = Lanes::at(streams, y as u64);
+            let pixel_stream = |x: usize| streams.stream_at((rows + y * columns + x) as u64);
+            let mut lanes = GeneratorLanes::from_streams(streams, y as u64);
             let Some(even) = &even else {
                 expected.row(y, &mut means);
-                tables.draw_row(simd, &means, lanes, row, own);
+                tables.draw_row(simd, &means, lanes, row, pixel_stream);
                 continue;
             };
             expected.lit_parts::<PART>(y, &mut is_lit);
@@ -155,8 +155,8 @@ impl pulp::WithSimd for OwnMeansFrame<'_> {
             let pieces = row.chunks_mut(PIECE).zip(means.chunks(PIECE)).zip(is_lit.chunks(PIECE / PART));
             for (p, ((row, means_e), is_lit)) in pieces.enumerate() {
                 words.draw(simd, &mut lanes);
-                let own = |i: usize| own(p * PIECE + i);
-                tables.draw_mostly_even_piece(even, is_lit, means_e, &words, row, own);
+                let pixel_stream = |i: usize| pixel_stream(p * PIECE + i);
+                tables.draw_mostly_even_piece(even, is_lit, means_e, &words, row, pixel_stream);
             }
             lit(&is_lit, &mut means).for_each(|(_, means_e)| means_e.fill(expected.flat_e()));
         }
@@ -172,8 +172,8 @@ fn lit<'a>(is_lit: &'a [bool], means_e: &'a mut [f64]) -> impl Iterator<Item = (
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::{opening, twelve_bit};
-    use super::super::pixel_law::tests::{chi_square_p, counts_of, from_zero};
+    use super::super::config::tests::{interval, twelve_bit};
+    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram};
     use super::super::{FixedPatternConfig, LineNoiseConfig, NoiseConfig, SensorConfig};
     use super::*;
     use crate::optics::{Psf, PsfConfig, Stamp};
@@ -183,7 +183,7 @@ mod tests {
 
     const SEED: Seed = Seed { seed: 43, case: 0 };
 
-    fn frame(config: &SensorConfig, number: u64, laws: &mut FlatLaws, stars_e: &[f64]) -> Vec<u16> {
+    fn frame(config: &SensorConfig, number: u64, samplers: &mut FlatSamplers, stars_e: &[f64]) -> Vec<u16> {
         let sensor = Sensor::new(config, 128, 128).unwrap();
         let (mut image, mut raw) = (sensor.new_expected(), sensor.new_raw());
         image.clear(sensor.sky_electrons(1.0));
@@ -193,8 +193,8 @@ mod tests {
             psf.stamp(centre, *electrons, Psf::FLOOR_E, image.size(), &mut stamp);
             image.add(&stamp);
         }
-        let charge = sensor.collect(&mut image, &opening(1.0));
-        sensor.read_out(&charge, &SEED, number, laws, &mut raw).unwrap();
+        let charge = sensor.collect(&mut image, &interval(1.0));
+        sensor.read_out(&charge, &SEED, number, samplers, &mut raw).unwrap();
         raw.dn
     }
 
@@ -216,15 +216,16 @@ mod tests {
 
     #[test]
     fn frames_in_parts_and_frames_by_tables_follow_the_law_of_a_pixel() {
-        let mut laws = FlatLaws::new();
+        let mut samplers = FlatSamplers::new();
         for sky_e in [0.0, 0.4, 20.3, 150.7, 300.0, 5000.0, 70_000.0] {
             for (row_e, prnu_fraction) in [(1e-9, 0.0), (0.0, 1e-9)] {
                 // The mean of a pixel is a float of 32 bits times the sky: 3e-8 of it.
                 let config = even(sky_e, row_e, prnu_fraction);
-                let dn: Vec<u16> = (0..8).flat_map(|number| frame(&config, number, &mut laws, &[])).collect();
-                let law = super::super::pixel_law::PixelLaw::new(&config);
-                let law = from_zero(&law.probabilities(config.background_e_per_s, 0));
-                let p = chi_square_p(&counts_of(dn.iter().map(|&dn| usize::from(dn))), &law);
+                let dn: Vec<u16> =
+                    (0..8).flat_map(|number| frame(&config, number, &mut samplers, &[])).collect();
+                let distribution = super::super::pixel_distribution::PixelDistribution::new(&config);
+                let distribution = from_zero(&distribution.probabilities(config.background_e_per_s, 0));
+                let p = chi_square_p(&histogram(dn.iter().map(|&dn| usize::from(dn))), &distribution);
                 // Fourteen tests of 131,072 pixels.
                 assert!(p > 1e-4, "{sky_e} e⁻, rows {row_e} e⁻: p = {p}");
             }
@@ -237,19 +238,20 @@ mod tests {
             noise: NoiseConfig { shot: Switch::Off, ..NoiseConfig::default() },
             ..even(1234.5, 1e-9, 0.0)
         };
-        let dn = frame(&config, 0, &mut FlatLaws::new(), &[]);
-        let law = super::super::pixel_law::PixelLaw::new(&config).probabilities(1234.5, 0);
-        let p = chi_square_p(&counts_of(dn.iter().map(|&dn| usize::from(dn))), &from_zero(&law));
+        let dn = frame(&config, 0, &mut FlatSamplers::new(), &[]);
+        let distribution =
+            super::super::pixel_distribution::PixelDistribution::new(&config).probabilities(1234.5, 0);
+        let p = chi_square_p(&histogram(dn.iter().map(|&dn| usize::from(dn))), &from_zero(&distribution));
         assert!(p > 1e-4, "p = {p}");
     }
 
     #[test]
     fn a_star_changes_no_pixel_but_its_own_whatever_the_detector() {
         for config in [even(20.0, 5.0, 0.0), even(20.0, 0.0, 0.02), even(2000.0, 0.0, 0.02)] {
-            let mut laws = FlatLaws::new();
-            let without = frame(&config, 1, &mut laws, &[]);
+            let mut samplers = FlatSamplers::new();
+            let without = frame(&config, 1, &mut samplers, &[]);
             // With other tables kept than those of the frame without it.
-            let with = frame(&config, 1, &mut FlatLaws::new(), &[1e6]);
+            let with = frame(&config, 1, &mut FlatSamplers::new(), &[1e6]);
             assert_ne!(with, without);
             for (index, _) in with.iter().zip(&without).enumerate().filter(|(_, (a, b))| a != b) {
                 let pixel = PixelPoint::new((index % 128) as f64, (index / 128) as f64);
@@ -266,16 +268,16 @@ mod tests {
         let mut image = sensor.new_expected();
         image.clear(sensor.sky_electrons(1.0));
         (0..40).for_each(|y| image.add_pixel(7 * y, y, libm::exp(0.3 * y as f64)));
-        let charge = sensor.collect(&mut image, &opening(1.0));
+        let charge = sensor.collect(&mut image, &interval(1.0));
         let streams = SEED.streams(3, crate::randomness::Effect::PixelNoise);
         let draw = |registers: pulp::Arch| {
-            let (mut raw, mut laws) = (sensor.new_raw(), FlatLaws::new());
-            let tables = laws.own_means(&sensor.law);
+            let (mut raw, mut samplers) = (sensor.new_raw(), FlatSamplers::new());
+            let tables = samplers.mean_tables(&sensor.distribution);
             let expected = charge.expected();
-            registers.dispatch(OwnMeansFrame { expected, streams: &streams, tables, raw: &mut raw });
+            registers.dispatch(MeanTableFrame { expected, streams: &streams, tables, raw: &mut raw });
             raw.dn
         };
-        for registers in crate::widest::tests::registers() {
+        for registers in crate::simd_kernel::tests::registers() {
             assert!(draw(registers) == draw(pulp::Arch::Scalar), "{registers:?}");
         }
     }
@@ -285,7 +287,7 @@ mod tests {
     #[test]
     fn the_pixels_of_uneven_detectors_are_frozen() {
         let hashes = [even(20.0, 5.0, 0.0), even(20.0, 0.0, 0.02), even(2000.0, 3.0, 0.02)].map(|config| {
-            let dn = frame(&config, 7, &mut FlatLaws::new(), &[500.0, 5e3, 5e4, 5e5]);
+            let dn = frame(&config, 7, &mut FlatSamplers::new(), &[500.0, 5e3, 5e4, 5e5]);
             let bytes: Vec<u8> = dn.iter().flat_map(|dn| dn.to_le_bytes()).collect();
             let hash = Sha256::digest(&bytes);
             hash.iter().take(8).map(|byte| format!("{byte:02x}")).collect::<String>()

@@ -59,19 +59,19 @@ fn by_rejection(mean: f64, stream: &mut Stream) -> f64 {
 mod tests {
     use super::*;
     use crate::randomness::{Effect, Seed};
-    use crate::sensor::pixel_law::tests::{chi_square_p, counts_of};
+    use crate::sensor::pixel_distribution::tests::{chi_square_p, histogram};
     use statrs::distribution::{Discrete, Poisson};
 
-    fn stream(place: u64) -> Stream {
-        Seed { seed: 11, case: 0 }.stream(0, Effect::PixelNoise, place)
+    fn stream(index: u64) -> Stream {
+        Seed { seed: 11, case: 0 }.stream(0, Effect::PixelNoise, index)
     }
 
     #[test]
     fn its_numbers_follow_the_probability_mass() {
         let n = 200_000;
-        for (place, mean) in [0.1, 1.0, 4.0, 9.99, 10.0, 30.0, 200.0, 5000.0].into_iter().enumerate() {
-            let mut stream = stream(place as u64);
-            let counts = counts_of((0..n).map(|_| poisson(mean, &mut stream) as usize));
+        for (index, mean) in [0.1, 1.0, 4.0, 9.99, 10.0, 30.0, 200.0, 5000.0].into_iter().enumerate() {
+            let mut stream = stream(index as u64);
+            let counts = histogram((0..n).map(|_| poisson(mean, &mut stream) as usize));
             let law = Poisson::new(mean).unwrap();
             let expected: Vec<f64> = (0..counts.len() + 100).map(|k| law.pmf(k as u64)).collect();
             let p = chi_square_p(&counts, &expected);
@@ -85,11 +85,11 @@ mod tests {
     fn its_numbers_are_like_those_of_rand_distr() {
         use rand_distr::Distribution;
         let n = 200_000;
-        for (place, mean) in [0.5, 7.0, 15.0, 400.0].into_iter().enumerate() {
-            let (mut own, mut other) = (stream(100 + place as u64), stream(200 + place as u64));
+        for (index, mean) in [0.5, 7.0, 15.0, 400.0].into_iter().enumerate() {
+            let (mut own, mut other) = (stream(100 + index as u64), stream(200 + index as u64));
             let witness = rand_distr::Poisson::new(mean).unwrap();
-            let ours = counts_of((0..n).map(|_| poisson(mean, &mut own) as usize));
-            let theirs = counts_of((0..n).map(|_| {
+            let ours = histogram((0..n).map(|_| poisson(mean, &mut own) as usize));
+            let theirs = histogram((0..n).map(|_| {
                 let number: f64 = witness.sample(&mut other);
                 number as usize
             }));
@@ -104,7 +104,7 @@ mod tests {
                     (a, b) = (0.0, 0.0);
                 }
             }
-            let p = crate::sensor::pixel_law::tests::chi_square_tail(chi2, bins - 1.0);
+            let p = crate::sensor::pixel_distribution::tests::chi_square_tail(chi2, bins - 1.0);
             assert!(p > 1e-5, "mean {mean}: p = {p}");
         }
     }

@@ -1,7 +1,7 @@
 //! Poisson numbers of any mean from a few tables.
 
 use super::alias::AliasTable;
-use super::pixel_law::poisson_table;
+use super::pixel_distribution::poisson_table;
 
 /// Poisson numbers of means from 0 to [`PoissonDigits::END_E`].
 ///
@@ -35,7 +35,7 @@ impl PoissonDigits {
             number += digit(&mut self.sixty_fours, quarters / 256 % 64, 64.0, words[1] as u32);
             number += digit(&mut self.four_thousands, quarters / 16_384, 4096.0, (words[1] >> 32) as u32);
         }
-        number + few(rest_e, (words[0] >> 32) as u32) as u32
+        number + small_poisson(rest_e, (words[0] >> 32) as u32) as u32
     }
 }
 
@@ -53,7 +53,7 @@ pub(super) const FEW: usize = 24;
 /// A Poisson number of a mean of at most 4, and itself at most [`FEW`], from a uniform word: the smallest n with
 /// P(N ≤ n) ≥ u.
 #[inline(always)]
-pub(super) fn few(mean: f64, word: u32) -> usize {
+pub(super) fn small_poisson(mean: f64, word: u32) -> usize {
     let u = (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0);
     // Bounds from Taylor's series, whose terms alternate and fall up to 1, decide nearly always when the mean is small,
     // without an exponential and without a branch between 0 and 1: exp(−s) lies between 1 − s + s²/2 and s³/6 less, and
@@ -81,7 +81,7 @@ pub(super) fn by_inversion(mean: f64, u: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::pixel_law::tests::{chi_square_p, counts_of};
+    use super::super::pixel_distribution::tests::{chi_square_p, histogram};
     use super::*;
     use crate::randomness::{Effect, Seed};
     use rand::Rng;
@@ -96,7 +96,7 @@ mod tests {
                 .enumerate()
         {
             let mut stream = Seed { seed: 32, case: 0 }.stream(0, Effect::PixelNoise, place as u64);
-            let counts = counts_of((0..300_000).map(|_| {
+            let counts = histogram((0..300_000).map(|_| {
                 let words = [stream.next_u64(), stream.next_u64()];
                 digits.draw(mean_e, words) as usize
             }));
@@ -123,10 +123,10 @@ mod tests {
                     n += 1;
                     up_to += poisson.pmf(n);
                 }
-                assert_eq!(few(mean, word) as u64, n, "{mean}, {u}");
+                assert_eq!(small_poisson(mean, word) as u64, n, "{mean}, {u}");
             }
         }
-        assert_eq!((few(0.0, 0), few(0.0, u32::MAX)), (0, 0));
-        assert!(few(4.0, u32::MAX) <= FEW);
+        assert_eq!((small_poisson(0.0, 0), small_poisson(0.0, u32::MAX)), (0, 0));
+        assert!(small_poisson(4.0, u32::MAX) <= FEW);
     }
 }

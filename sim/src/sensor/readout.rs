@@ -5,7 +5,7 @@ use contract::OutOfRange;
 use super::blooming::Overflow;
 use super::charge::Charge;
 use super::detector::Sensor;
-use super::flat_laws::FlatLaws;
+use super::flat_samplers::FlatSamplers;
 use super::pixels::LineOffsets;
 use super::raw_image::RawImage;
 use crate::SimError;
@@ -27,7 +27,7 @@ impl Sensor {
         charge: &Charge<'_>,
         seed: &Seed,
         frame: u64,
-        laws: &mut FlatLaws,
+        samplers: &mut FlatSamplers,
         raw: &mut RawImage,
     ) -> Result<(), SimError> {
         let expected = charge.expected();
@@ -37,9 +37,11 @@ impl Sensor {
         let streams = seed.streams(frame, Effect::PixelNoise);
         let offsets = self.line_offsets(seed, frame);
         match &offsets {
-            None if self.has_tables_for(expected) => self.draw_own_means(expected, &streams, laws, raw),
-            None if !expected.has_field() => self.draw_flat(expected, &streams, laws, raw),
-            _ => self.draw_in_parts(expected, offsets.as_ref(), &streams, laws, raw),
+            None if self.has_tables_for(expected) => {
+                self.draw_with_mean_tables(expected, &streams, samplers, raw)
+            }
+            None if !expected.has_field() => self.draw_flat(expected, &streams, samplers, raw),
+            _ => self.draw_in_parts(expected, offsets.as_ref(), &streams, samplers, raw),
         }
         if let Some(blooming) = &self.config().blooming {
             let overflow = Overflow { blooming, expected, offsets: offsets.as_ref(), streams: &streams };
@@ -79,7 +81,7 @@ impl Sensor {
     /// Noise of rows and of columns, standard deviations, as far as it is simulated.
     fn line_noise_e(&self) -> (f64, f64) {
         let read = self.config().noise.read;
-        (read.of(self.config().line_noise.row_e), read.of(self.config().line_noise.column_e))
+        (read.apply(self.config().line_noise.row_e), read.apply(self.config().line_noise.column_e))
     }
 
     /// Whether the readout adds anything to rows or columns.
@@ -91,7 +93,7 @@ impl Sensor {
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::{opening, twelve_bit};
+    use super::super::config::tests::{interval, twelve_bit};
     use super::super::{BloomingConfig, LineNoiseConfig, SensorConfig};
     use super::*;
     use crate::optics::{Psf, PsfConfig, Stamp};
@@ -114,8 +116,8 @@ mod tests {
             image.add(&stamp);
         }
         let mut raw = sensor.new_raw();
-        let charge = sensor.collect(&mut image, &opening(0.5));
-        sensor.read_out(&charge, &SEED, number, &mut FlatLaws::new(), &mut raw).unwrap();
+        let charge = sensor.collect(&mut image, &interval(0.5));
+        sensor.read_out(&charge, &SEED, number, &mut FlatSamplers::new(), &mut raw).unwrap();
         raw
     }
 
@@ -179,13 +181,14 @@ mod tests {
             ..twelve_bit()
         };
         let sensor = Sensor::new(&config, 512, 512).unwrap();
-        let (mut image, mut raw, mut laws) = (sensor.new_expected(), sensor.new_raw(), FlatLaws::new());
+        let (mut image, mut raw, mut samplers) =
+            (sensor.new_expected(), sensor.new_raw(), FlatSamplers::new());
         let mut moments = |exposure_s: f64| {
             let (mut sum, mut squares, mut n) = (0.0, 0.0, 0.0);
             for number in 0..4 {
                 image.clear(sensor.sky_electrons(exposure_s));
-                let charge = sensor.collect(&mut image, &opening(exposure_s));
-                sensor.read_out(&charge, &SEED, number + 1000, &mut laws, &mut raw).unwrap();
+                let charge = sensor.collect(&mut image, &interval(exposure_s));
+                sensor.read_out(&charge, &SEED, number + 1000, &mut samplers, &mut raw).unwrap();
                 for dn in &raw.dn {
                     let dn = f64::from(*dn) - 50.0;
                     (sum, squares, n) = (sum + dn, squares + dn * dn, n + 1.0);
@@ -307,8 +310,8 @@ mod tests {
     fn an_image_of_another_size_is_refused() {
         let sensor = Sensor::new(&twelve_bit(), 65, 48).unwrap();
         let mut image = ExpectedImage::new(64, 48);
-        let charge = sensor.collect(&mut image, &opening(1.0));
+        let charge = sensor.collect(&mut image, &interval(1.0));
         let mut raw = sensor.new_raw();
-        assert!(sensor.read_out(&charge, &SEED, 0, &mut FlatLaws::new(), &mut raw).is_err());
+        assert!(sensor.read_out(&charge, &SEED, 0, &mut FlatSamplers::new(), &mut raw).is_err());
     }
 }

@@ -30,18 +30,18 @@ use super::blooming::Overflow;
 use super::charge::Charge;
 use super::detector::Sensor;
 use super::exceedance::{DarkLimit, Exceedance};
-use super::flat_laws::FlatLaws;
-use super::own_means::{OwnMeans, Words};
-use super::pixel_law::PixelLaw;
+use super::flat_samplers::FlatSamplers;
+use super::mean_tables::{MeanTables, Words};
+use super::pixel_distribution::PixelDistribution;
 use super::sparse_image::{Parts, Pixel, SparseImage, pixels};
 use crate::SimError;
 use crate::draw::{ExpectedImage, PART, PARTS, set_bits};
-use crate::lanes::{LANES, Lanes};
+use crate::generator_lanes::{GeneratorLanes, LANES};
 use crate::randomness::{Effect, Seed, Streams, uniform};
-use crate::widest::{Work, arch, widest};
+use crate::simd_kernel::{SimdKernel, arch, run_widest};
 
 /// What a frame is read out from.
-pub(crate) struct Collected<'a> {
+pub(crate) struct FrameCharge<'a> {
     pub(crate) charge: &'a Charge<'a>,
     pub(crate) seed: Seed,
     pub(crate) frame: u64,
@@ -60,22 +60,22 @@ impl Sensor {
     pub(crate) fn read_out_above(
         &self,
         floor_dn: u16,
-        collected: &Collected<'_>,
-        laws: &mut FlatLaws,
+        collected: &FrameCharge<'_>,
+        samplers: &mut FlatSamplers,
         image: &mut SparseImage,
     ) -> Result<(), SimError> {
-        let &Collected { charge, seed, frame } = collected;
+        let &FrameCharge { charge, seed, frame } = collected;
         let expected = charge.expected();
         image.clear();
         image.floor_dn = floor_dn;
         if !self.has_tables_for(expected) || self.has_line_offsets() {
-            return self.read_out(charge, &seed, frame, laws, image.whole());
+            return self.read_out(charge, &seed, frame, samplers, image.full_image());
         }
         self.check_size(expected)?;
         let streams = &seed.streams(frame, Effect::Exceedance);
-        let exceedance = laws.exceedance(&self.law, floor_dn);
-        widest(Look { expected, exceedance, streams, rows: self.rows, image });
-        self.draw_wanted(collected, laws, image);
+        let exceedance = samplers.exceedance(&self.distribution, floor_dn);
+        run_widest(CandidateScan { expected, exceedance, streams, rows: self.rows, image });
+        self.draw_requested(collected, samplers, image);
         if let Some(blooming) = &self.config().blooming {
             let streams = seed.streams(frame, Effect::PixelNoise);
             self.bloom(&Overflow { blooming, expected, offsets: None, streams: &streams }, |index, dn| {
@@ -90,36 +90,41 @@ impl Sensor {
     pub(crate) fn read_out_windows(
         &self,
         windows: &[Window],
-        collected: &Collected<'_>,
-        laws: &mut FlatLaws,
+        collected: &FrameCharge<'_>,
+        samplers: &mut FlatSamplers,
         image: &mut SparseImage,
     ) {
         for window in windows {
             let right = window.x + window.columns;
             for y in window.y..window.y + window.rows {
-                image.wanted.add_columns(y, window.x, right);
+                image.requested.add_columns(y, window.x, right);
             }
         }
-        self.draw_wanted(collected, laws, image);
+        self.draw_requested(collected, samplers, image);
         image.set_single_pixels();
     }
 
     /// Draws the parts that are wanted and not yet drawn.
-    fn draw_wanted(&self, collected: &Collected<'_>, laws: &mut FlatLaws, image: &mut SparseImage) {
-        let &Collected { charge, seed, frame } = collected;
+    fn draw_requested(
+        &self,
+        collected: &FrameCharge<'_>,
+        samplers: &mut FlatSamplers,
+        image: &mut SparseImage,
+    ) {
+        let &FrameCharge { charge, seed, frame } = collected;
         let expected = charge.expected();
         let (words, again) =
             (seed.streams(frame, Effect::PixelNoise), seed.streams(frame, Effect::Exceedance));
-        let (law, columns, rows) = (&self.law, self.columns, self.rows);
-        let task = Task { law, expected, words: &words, again: &again, columns, rows };
-        let tables = laws.own_means(law);
+        let (distribution, columns, rows) = (&self.distribution, self.columns, self.rows);
+        let task = Task { distribution, expected, words: &words, again: &again, columns, rows };
+        let tables = samplers.mean_tables(distribution);
         // The same steps on every machine, on the widest registers that it has.
-        arch().dispatch(OwnMeansParts { task, tables, image });
+        arch().dispatch(MeanTableParts { task, tables, image });
     }
 }
 
 /// The first step, and a look at which parts the second is for.
-struct Look<'a> {
+struct CandidateScan<'a> {
     expected: &'a ExpectedImage,
     exceedance: &'a mut Exceedance,
     streams: &'a Streams,
@@ -127,7 +132,7 @@ struct Look<'a> {
     image: &'a mut SparseImage,
 }
 
-impl Work for Look<'_> {
+impl SimdKernel for CandidateScan<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -139,7 +144,7 @@ impl Work for Look<'_> {
             image.limits.push(limit);
             thin_row(expected, y, limit, exceedance, streams, &mut image.exceeding);
             if bound_e > limit.mean_e {
-                image.wanted.add_columns(y, 0, expected.size().0);
+                image.requested.add_columns(y, 0, expected.size().0);
                 continue;
             }
             if !expected.is_row_lit(y) {
@@ -147,7 +152,7 @@ impl Work for Look<'_> {
             }
             for p in 0..expected.size().0.div_ceil(PARTS * PART) {
                 let parts = expected.parts_that_may_rise_above(simd, y, p, bound_e, limit.mean_e);
-                image.wanted.add(y, p * PARTS, parts);
+                image.requested.add(y, p * PARTS, parts);
             }
         }
     }
@@ -171,7 +176,7 @@ fn thin_row(
     if streams.first_uniform(y as u64) <= 1.0 - columns as f64 * limit.probability {
         return;
     }
-    let mut stream = streams.at(y as u64);
+    let mut stream = streams.stream_at(y as u64);
     let mut level = uniform(&mut stream);
     let per_pixel = libm::log1p(-limit.probability);
     let mut x = 0.0;
@@ -180,7 +185,7 @@ fn thin_row(
         if x >= columns as f64 {
             return;
         }
-        let mean_e = expected.at(x as usize, y);
+        let mean_e = expected.electrons_at(x as usize, y);
         let levels = std::array::from_fn(|_| uniform(&mut stream));
         if mean_e <= limit.mean_e
             && let Some(dn) = exceedance.thin(mean_e, limit, levels)
@@ -195,7 +200,7 @@ fn thin_row(
 /// What the parts of a frame are drawn from.
 #[derive(Clone, Copy)]
 struct Task<'a> {
-    law: &'a PixelLaw,
+    distribution: &'a PixelDistribution,
     expected: &'a ExpectedImage,
     /// The words of rows and pixels.
     words: &'a Streams,
@@ -208,7 +213,7 @@ struct Task<'a> {
 impl Task<'_> {
     /// The place of a pixel of its own: rows have the places before.
     #[inline(always)]
-    fn place(&self, index: usize) -> u64 {
+    fn stream_index(&self, index: usize) -> u64 {
         (self.rows + index) as u64
     }
 
@@ -227,10 +232,10 @@ impl Task<'_> {
         }
         for (i, (dn, &mean_e)) in dn.iter_mut().zip(means_e).enumerate() {
             if *dn > floor_dn && mean_e <= limit.mean_e {
-                let mut stream = self.again.at(self.place(first + i));
+                let mut stream = self.again.stream_at(self.stream_index(first + i));
                 // A dark pixel exceeds the floor once in 64 times or less.
                 while *dn > floor_dn {
-                    *dn = self.law.sample(mean_e.max(0.0), 0.0, &mut stream);
+                    *dn = self.distribution.sample(mean_e.max(0.0), 0.0, &mut stream);
                 }
             }
         }
@@ -242,34 +247,34 @@ impl Task<'_> {
 const BATCH: usize = 32;
 
 /// The wanted parts of a detector in which every pixel has a mean of its own.
-struct OwnMeansParts<'a> {
+struct MeanTableParts<'a> {
     task: Task<'a>,
-    tables: &'a mut OwnMeans,
+    tables: &'a mut MeanTables,
     image: &'a mut SparseImage,
 }
 
-impl pulp::WithSimd for OwnMeansParts<'_> {
+impl pulp::WithSimd for MeanTableParts<'_> {
     type Output = ();
 
     // Inline, all of it: only so is it compiled for the registers of the machine.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { task, tables, image } = self;
-        let SparseImage { raw, drawn, wanted, to_draw, limits, floor_dn, .. } = image;
+        let SparseImage { raw, drawn, requested, to_draw, limits, floor_dn, .. } = image;
         to_draw.clear();
         // Where there are no limits, all pixels are drawn.
         for y in 0..limits.len() {
-            let rows = wanted.row(y).iter().zip(drawn.row_mut(y));
-            for (i, (wanted, drawn)) in
-                rows.enumerate().filter(|(_, (wanted, drawn))| **wanted & !**drawn != 0)
+            let rows = requested.row(y).iter().zip(drawn.row_mut(y));
+            for (i, (requested, drawn)) in
+                rows.enumerate().filter(|(_, (requested, drawn))| **requested & !**drawn != 0)
             {
-                to_draw.extend(set_bits(wanted & !*drawn).map(|bit| (y, i * Parts::OF_A_WORD + bit)));
-                *drawn |= *wanted;
+                to_draw.extend(set_bits(requested & !*drawn).map(|bit| (y, i * Parts::OF_A_WORD + bit)));
+                *drawn |= *requested;
             }
         }
         let mut means_e = [[0.0; PART]; BATCH];
         let mut words: [Words<PART>; BATCH] = std::array::from_fn(|_| Words::new());
-        let (mut lanes, mut of_row, mut next) = (Lanes::at(task.words, 0), 0, 0);
+        let (mut lanes, mut of_row, mut next) = (GeneratorLanes::from_streams(task.words, 0), 0, 0);
         for parts in to_draw.chunks(BATCH) {
             for (&(y, part), means_e) in parts.iter().zip(&mut means_e) {
                 let length = pixels(task.columns, y, part).len();
@@ -277,7 +282,7 @@ impl pulp::WithSimd for OwnMeansParts<'_> {
             }
             for (&(y, part), words) in parts.iter().zip(&mut words) {
                 if y != of_row {
-                    (lanes, of_row, next) = (Lanes::at(task.words, y as u64), y, 0);
+                    (lanes, of_row, next) = (GeneratorLanes::from_streams(task.words, y as u64), y, 0);
                 }
                 lanes.skip(simd, (part - next) * PART / LANES);
                 next = part + 1;
@@ -287,8 +292,8 @@ impl pulp::WithSimd for OwnMeansParts<'_> {
                 let pixels = pixels(task.columns, y, part);
                 let (first, means_e) = (pixels.start, &means_e[..pixels.len()]);
                 let row = &mut raw.dn[pixels];
-                let own = |i: usize| task.words.at(task.place(first + i));
-                tables.draw_piece(means_e, words, row, own);
+                let pixel_stream = |i: usize| task.words.stream_at(task.stream_index(first + i));
+                tables.draw_piece(means_e, words, row, pixel_stream);
                 task.keep_dark_pixels_below(*floor_dn, limits[y], first, means_e, row);
             }
         }
@@ -297,8 +302,8 @@ impl pulp::WithSimd for OwnMeansParts<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::{opening, twelve_bit};
-    use super::super::pixel_law::tests::{chi_square_p, from_zero};
+    use super::super::config::tests::{interval, twelve_bit};
+    use super::super::pixel_distribution::tests::{chi_square_p, from_zero};
     use super::super::{BloomingConfig, FixedPatternConfig, LineNoiseConfig, SensorConfig};
     use super::*;
 
@@ -326,15 +331,15 @@ mod tests {
         let mut image = sensor.new_expected();
         image.clear(sensor.sky_electrons(1.0));
         (0..60).for_each(|y| image.add_pixel(5 * y, y, libm::exp(0.16 * y as f64)));
-        let charge = sensor.collect(&mut image, &opening(1.0));
-        let collected = Collected { charge: &charge, seed: SEED, frame: number };
-        let mut laws = FlatLaws::new();
+        let charge = sensor.collect(&mut image, &interval(1.0));
+        let collected = FrameCharge { charge: &charge, seed: SEED, frame: number };
+        let mut samplers = FlatSamplers::new();
         let mut draw = |windows: &[Window]| {
             let mut sparse = sensor.new_sparse();
             // Left over from the frame before.
-            sparse.whole().dn.fill(4095);
-            sensor.read_out_above(floor_dn, &collected, &mut laws, &mut sparse).unwrap();
-            sensor.read_out_windows(windows, &collected, &mut laws, &mut sparse);
+            sparse.full_image().dn.fill(4095);
+            sensor.read_out_above(floor_dn, &collected, &mut samplers, &mut sparse).unwrap();
+            sensor.read_out_windows(windows, &collected, &mut samplers, &mut sparse);
             let mut from_runs = vec![0; sparse.raw.dn.len()];
             sparse.runs().for_each(|(first, run)| from_runs[first..first + run.len()].copy_from_slice(run));
             assert_eq!(from_runs, sparse.raw.dn);
@@ -373,25 +378,25 @@ mod tests {
     fn assert_the_law_over_floors(frames: u64) {
         for (config, means) in [(detector(0.0), [20.0, 28.0]), (detector(1e-9), [20.0, 28.0])] {
             let sensor = Sensor::new(&config, 128, 64).unwrap();
-            let (mut laws, mut image, mut sparse) =
-                (FlatLaws::new(), sensor.new_expected(), sensor.new_sparse());
+            let (mut samplers, mut image, mut sparse) =
+                (FlatSamplers::new(), sensor.new_expected(), sensor.new_sparse());
             for floor_dn in [62, 64, 66, 70] {
                 let mut drawn = [[0_usize; 4096]; 2];
                 for number in 0..frames {
                     image.clear(sensor.sky_electrons(1.0));
                     // Every third pixel brighter than the background.
                     (0..64).for_each(|y| (0..128).step_by(3).for_each(|x| image.add_pixel(x, y, 8.0)));
-                    let charge = sensor.collect(&mut image, &opening(1.0));
-                    let collected = Collected { charge: &charge, seed: SEED, frame: number };
-                    sensor.read_out_above(floor_dn, &collected, &mut laws, &mut sparse).unwrap();
+                    let charge = sensor.collect(&mut image, &interval(1.0));
+                    let collected = FrameCharge { charge: &charge, seed: SEED, frame: number };
+                    sensor.read_out_above(floor_dn, &collected, &mut samplers, &mut sparse).unwrap();
                     let whole = Window { x: 0, y: 0, columns: 128, rows: 64 };
-                    sensor.read_out_windows(&[whole], &collected, &mut laws, &mut sparse);
+                    sensor.read_out_windows(&[whole], &collected, &mut samplers, &mut sparse);
                     for (index, &dn) in sparse.raw.dn.iter().enumerate() {
                         drawn[usize::from(index % 128 % 3 == 0)][usize::from(dn)] += 1;
                     }
                 }
                 for (drawn, mean_e) in drawn.into_iter().zip(means) {
-                    let p = chi_square_p(&drawn, &from_zero(&sensor.law.probabilities(mean_e, 0)));
+                    let p = chi_square_p(&drawn, &from_zero(&sensor.distribution.probabilities(mean_e, 0)));
                     // Sixteen tests.
                     assert!(p > 1e-4, "{mean_e} e⁻ over {floor_dn}: p = {p}");
                 }
@@ -418,9 +423,9 @@ mod tests {
             let mut image = sensor.new_expected();
             image.clear(sensor.sky_electrons(1.0));
             (0..60).for_each(|y| image.add_pixel(5 * y, y, libm::exp(0.16 * y as f64)));
-            let charge = sensor.collect(&mut image, &opening(1.0));
+            let charge = sensor.collect(&mut image, &interval(1.0));
             let mut raw = sensor.new_raw();
-            sensor.read_out(&charge, &SEED, 3, &mut FlatLaws::new(), &mut raw).unwrap();
+            sensor.read_out(&charge, &SEED, 3, &mut FlatSamplers::new(), &mut raw).unwrap();
             assert_eq!(frames(&config, 3, 100, &[])[2], raw.dn);
         }
     }
@@ -439,22 +444,28 @@ mod tests {
         let mut image = sensor.new_expected();
         image.clear(sensor.sky_electrons(1.0));
         (0..40).for_each(|y| image.add_pixel(7 * y, y, libm::exp(0.2 * y as f64)));
-        let charge = sensor.collect(&mut image, &opening(1.0));
+        let charge = sensor.collect(&mut image, &interval(1.0));
         let expected = charge.expected();
         let (words, again) = (SEED.streams(3, Effect::PixelNoise), SEED.streams(3, Effect::Exceedance));
         let draw = |registers: pulp::Arch| {
-            let (mut image, mut laws) = (sensor.new_sparse(), FlatLaws::new());
+            let (mut image, mut samplers) = (sensor.new_sparse(), FlatSamplers::new());
             image.floor_dn = 65;
-            let limit = laws.exceedance(&sensor.law, 65).dark_limit(22.0);
+            let limit = samplers.exceedance(&sensor.distribution, 65).dark_limit(22.0);
             image.limits.resize(40, limit);
-            (0..40).for_each(|y| image.wanted.add(y, y % 2, 0x2_5555));
-            let task =
-                Task { law: &sensor.law, expected, words: &words, again: &again, columns: 301, rows: 40 };
-            let tables = laws.own_means(&sensor.law);
-            registers.dispatch(OwnMeansParts { task, tables, image: &mut image });
+            (0..40).for_each(|y| image.requested.add(y, y % 2, 0x2_5555));
+            let task = Task {
+                distribution: &sensor.distribution,
+                expected,
+                words: &words,
+                again: &again,
+                columns: 301,
+                rows: 40,
+            };
+            let tables = samplers.mean_tables(&sensor.distribution);
+            registers.dispatch(MeanTableParts { task, tables, image: &mut image });
             image.raw.dn
         };
-        for registers in crate::widest::tests::registers() {
+        for registers in crate::simd_kernel::tests::registers() {
             assert!(draw(registers) == draw(pulp::Arch::Scalar), "{registers:?}");
         }
     }

@@ -12,7 +12,7 @@ pub(crate) struct SparseImage {
     /// Which parts are drawn, all of their pixels.
     pub(super) drawn: Parts,
     /// Which parts are to be drawn.
-    pub(super) wanted: Parts,
+    pub(super) requested: Parts,
     /// Row and number of the parts that are drawn together.
     pub(super) to_draw: Vec<(usize, usize)>,
     /// In which parts pixels were set one by one.
@@ -45,7 +45,7 @@ impl Parts {
     pub(super) const OF_A_WORD: usize = u64::BITS as usize;
 
     /// None of an image of `columns` × `rows`.
-    fn none(columns: usize, rows: usize) -> Self {
+    fn empty(columns: usize, rows: usize) -> Self {
         let words_per_row = columns.div_ceil(PART).div_ceil(Self::OF_A_WORD);
         Self { words: vec![0; words_per_row * rows], words_per_row }
     }
@@ -78,11 +78,11 @@ impl Parts {
 impl SparseImage {
     /// One of which nothing is drawn, in `raw`.
     pub(super) fn new(raw: RawImage) -> Self {
-        let none = Parts::none(raw.columns, raw.dn.len() / raw.columns.max(1));
+        let none = Parts::empty(raw.columns, raw.dn.len() / raw.columns.max(1));
         Self {
             raw,
             drawn: none.clone(),
-            wanted: none.clone(),
+            requested: none.clone(),
             to_draw: Vec::new(),
             touched: none,
             limits: Vec::new(),
@@ -98,7 +98,7 @@ impl SparseImage {
     }
 
     /// The image, to be drawn as a whole.
-    pub(crate) fn whole(&mut self) -> &mut RawImage {
+    pub(crate) fn full_image(&mut self) -> &mut RawImage {
         for y in 0..self.raw.rows {
             self.drawn.add_columns(y, 0, self.raw.columns);
         }
@@ -126,11 +126,11 @@ impl SparseImage {
 
     /// Nothing drawn.
     pub(super) fn clear(&mut self) {
-        let Self { raw, drawn, wanted, touched, .. } = self;
+        let Self { raw, drawn, requested, touched, .. } = self;
         for (y, part) in parts_in(drawn, touched) {
             raw.dn[pixels(raw.columns, y, part)].fill(0);
         }
-        for parts in [drawn, wanted, touched] {
+        for parts in [drawn, requested, touched] {
             parts.words.fill(0);
         }
         self.limits.clear();
@@ -185,19 +185,19 @@ mod tests {
         image.exceeding.push(Pixel { index: 2 * columns, dn: 9 });
         image.bloomed.push(Pixel { index: columns + (Parts::OF_A_WORD - 1) * PART, dn: 70 });
         image.set_single_pixels();
-        let told: Vec<_> =
+        let found: Vec<_> =
             image.runs().map(|(first, run)| (first % columns / PART, first / columns, run.len())).collect();
         let last = 2 * Parts::OF_A_WORD;
         let middle = Parts::OF_A_WORD;
         assert_eq!(
-            told,
+            found,
             [(last - 1, 0, PART), (last, 0, 5), (middle - 4, 1, PART), (middle - 1, 1, PART), (0, 2, PART)]
         );
         image.suppress(50);
         assert_eq!(image.raw().dn().iter().map(|&dn| usize::from(dn)).sum::<usize>(), 70);
         image.clear();
         assert!(image.runs().count() == 0 && image.raw().dn().iter().all(|&dn| dn == 0));
-        image.whole().dn.fill(1);
+        image.full_image().dn.fill(1);
         assert_eq!(image.runs().map(|(_, run)| run.len()).sum::<usize>(), columns * rows);
     }
 }

@@ -162,8 +162,8 @@ mod tests {
 
     /// Columns of random charge with some bright rows, whole electrons, an integer full well.
     fn columns() -> impl Iterator<Item = Vec<f64>> {
-        (0..300).map(|place| {
-            let mut stream = Seed { seed: 9, case: 0 }.stream(0, Effect::PixelNoise, place);
+        (0..300).map(|index| {
+            let mut stream = Seed { seed: 9, case: 0 }.stream(0, Effect::PixelNoise, index);
             let mut column: Vec<f64> = (0..400).map(|_| (60.0 * uniform(&mut stream)).floor()).collect();
             for _ in 0..1 + stream.next_u32() % 6 {
                 let row = 150 + (stream.next_u32() % 100) as usize;

@@ -32,7 +32,7 @@ impl TelegraphConfig {
     /// 1/`high_s` + 1/`low_s` the state is drawn anew, high with probability `high_s`/(`high_s` + `low_s`), whatever it
     /// was: this is the telegraph process itself, with its exponential dwell times. Time is cut into cells; the events of
     /// a cell are drawn from its address, and the state at a time is that of the last event before it.
-    pub(super) fn level(&self, seed: &Seed, pixel: u64, from_s: f64, to_s: f64) -> f64 {
+    pub(super) fn mean_level(&self, seed: &Seed, pixel: u64, from_s: f64, to_s: f64) -> f64 {
         let cell_s = EVENTS_A_CELL * self.high_s * self.low_s / (self.high_s + self.low_s);
         let first = (from_s / cell_s).floor();
         let events = |cell: f64| {
@@ -99,7 +99,7 @@ mod tests {
         TelegraphConfig { fraction: 1.0, low_level: 0.0, high_s: 30.0, low_s: 90.0 };
 
     fn high(pixel: u64, time_s: f64) -> bool {
-        SLOW.level(&SEED, pixel, time_s, time_s) > 0.5
+        SLOW.mean_level(&SEED, pixel, time_s, time_s) > 0.5
     }
 
     #[test]
@@ -144,8 +144,8 @@ mod tests {
     fn the_mean_over_an_exposure_is_the_mean_of_the_moments() {
         for pixel in 0..20 {
             let moments =
-                (0..20_000).map(|i| SLOW.level(&SEED, pixel, 0.01 * f64::from(i), 0.0)).sum::<f64>();
-            let whole = SLOW.level(&SEED, pixel, 0.0, 200.0);
+                (0..20_000).map(|i| SLOW.mean_level(&SEED, pixel, 0.01 * f64::from(i), 0.0)).sum::<f64>();
+            let whole = SLOW.mean_level(&SEED, pixel, 0.0, 200.0);
             // Each of some ten switches is placed to half a step of 20,000.
             assert!((moments / 20_000.0 - whole).abs() < 1e-3, "{whole}");
         }

@@ -137,15 +137,15 @@ fn tail(stream: &mut Stream) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::pixel_law::tests::{chi_square_p, counts_of};
+    use super::super::pixel_distribution::tests::{chi_square_p, histogram};
     use super::*;
     use crate::randomness::{Effect, Seed};
 
     /// Numbers as the readout draws them: a word of a row, and more from another place.
     fn numbers(frame: u64, n: u64) -> impl Iterator<Item = f64> {
         let streams = Seed { seed: 31, case: 0 }.streams(frame, Effect::PixelNoise);
-        let (ziggurat, mut row) = (Ziggurat::default(), streams.at(0));
-        (1..=n).map(move |place| ziggurat.draw(row.next_u64(), || streams.at(place)))
+        let (ziggurat, mut row) = (Ziggurat::default(), streams.stream_at(0));
+        (1..=n).map(move |row_index| ziggurat.draw(row.next_u64(), || streams.stream_at(row_index)))
     }
 
     fn cdf(x: f64) -> f64 {
@@ -167,7 +167,7 @@ mod tests {
     fn its_numbers_follow_the_normal_law_in_fine_bins() {
         // From −5 to 5 in steps of 1/50, far narrower than most layers.
         let bin = |x: f64| ((x + 5.0) * 50.0).floor().clamp(0.0, 499.0) as usize;
-        let counts = counts_of(numbers(0, 4_000_000).map(bin));
+        let counts = histogram(numbers(0, 4_000_000).map(bin));
         let edge = |i: usize| cdf(i as f64 / 50.0 - 5.0);
         let law: Vec<f64> = (0..500).map(|i| edge(i + 1) - edge(i)).collect();
         let p = chi_square_p(&counts, &law);
@@ -182,7 +182,7 @@ mod tests {
         let tail = |x: f64| 2.0 * cdf(-x);
         let expected = n as f64 * tail(TAIL_FROM);
         assert!((beyond.len() as f64 - expected).abs() < 5.0 * expected.sqrt(), "{}", beyond.len());
-        let counts = counts_of(beyond.iter().map(|x| ((x - TAIL_FROM) * 40.0) as usize));
+        let counts = histogram(beyond.iter().map(|x| ((x - TAIL_FROM) * 40.0) as usize));
         let edge = |i: usize| tail(TAIL_FROM + i as f64 / 40.0) / tail(TAIL_FROM);
         let law: Vec<f64> = (0..80).map(|i| edge(i) - edge(i + 1)).collect();
         assert!(chi_square_p(&counts, &law) > 1e-4);
@@ -211,14 +211,14 @@ mod tests {
     fn a_word_that_decides_asks_for_no_more() {
         let ziggurat = Ziggurat::default();
         let mut row = Seed { seed: 31, case: 0 }.stream(3, Effect::PixelNoise, 0);
-        let mut asked = 0;
+        let mut extra_words = 0;
         for _ in 0..100_000 {
             ziggurat.draw(row.next_u64(), || {
-                asked += 1;
+                extra_words += 1;
                 Seed { seed: 31, case: 0 }.stream(3, Effect::PixelNoise, 1)
             });
         }
         // 1.2 % for 256 layers.
-        assert!((1000..1500).contains(&asked), "{asked}");
+        assert!((1000..1500).contains(&extra_words), "{extra_words}");
     }
 }

@@ -116,9 +116,9 @@ fn dark_pad(row: &[f32], reach: usize, padded: &mut Vec<f32>) {
 
 /// The two cells whose centres a row lies between, and how far.
 fn between(row: usize, side: usize, cells: usize) -> (usize, usize, f32) {
-    let place = ((row as f32 + 0.5) / side as f32 - 0.5).clamp(0.0, (cells - 1) as f32);
-    let first = place as usize;
-    (first, (first + 1).min(cells - 1), place - first as f32)
+    let position = ((row as f32 + 0.5) / side as f32 - 0.5).clamp(0.0, (cells - 1) as f32);
+    let first = position as usize;
+    (first, (first + 1).min(cells - 1), position - first as f32)
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ impl DriftConfig {
     }
 
     /// Contrast (about 1) and brightness (about 0) at a time.
-    pub(super) fn at(&self, seed: &Seed, time_s: f64) -> (f64, f64) {
+    pub(super) fn contrast_and_brightness_at(&self, seed: &Seed, time_s: f64) -> (f64, f64) {
         // A sinusoid of amplitude a has the mean square a²/2.
         let amplitude = (2.0 / self.periods_s.len().max(1) as f64).sqrt();
         let mut sums = [0.0; 2];
@@ -69,8 +69,8 @@ mod tests {
         let n = 2000;
         let mut squares = [0.0; 2];
         for i in 0..n {
-            let (contrast, brightness) =
-                config.at(&Seed { seed: 1, case: 0 }, 20.0 * f64::from(i) / f64::from(n));
+            let (contrast, brightness) = config
+                .contrast_and_brightness_at(&Seed { seed: 1, case: 0 }, 20.0 * f64::from(i) / f64::from(n));
             squares[0] += (contrast - 1.0) * (contrast - 1.0) / f64::from(n);
             squares[1] += brightness * brightness / f64::from(n);
         }

@@ -53,7 +53,7 @@ const STROKES: [(char, &str); 42] = [
 ];
 
 /// Whether the font has a character.
-pub(super) fn has(character: char) -> bool {
+pub(super) fn supports(character: char) -> bool {
     STROKES.iter().any(|(known, _)| *known == character)
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::optics::pad;
 use crate::randomness::{Effect, Seed, normal};
-use crate::widest::arch;
+use crate::simd_kernel::arch;
 
 /// Pixels of margin on each side of a line, and the largest shift: eight times the largest standard deviation.
 const MARGIN: usize = 10;
@@ -96,7 +96,7 @@ impl pulp::WithSimd for Cubic<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::widest::tests::same_on_all_registers;
+    use crate::simd_kernel::tests::same_on_all_registers;
 
     #[test]
     fn a_line_is_shifted_to_the_right_by_its_shift() {

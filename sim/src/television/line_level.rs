@@ -36,8 +36,8 @@ impl LineLevelConfig {
     /// Level of a row of the camera in a field exposed at a time.
     pub(super) fn level(&self, seed: &Seed, field: u64, row: usize, time_s: f64) -> f64 {
         let turns = row as f64 / self.hum_period_rows - self.hum_beat_hz * time_s;
-        let own = normal(&mut seed.stream(field, Effect::LineLevel, row as u64));
-        self.hum_amplitude * libm::sin(2.0 * PI * turns) + self.line_sigma * own
+        let line_noise = normal(&mut seed.stream(field, Effect::LineLevel, row as u64));
+        self.hum_amplitude * libm::sin(2.0 * PI * turns) + self.line_sigma * line_noise
     }
 
     /// Adds the levels to the lines of a field.
@@ -74,9 +74,9 @@ mod tests {
         let (mut band, mut square) = (0.0, 0.0);
         for field in 0..n {
             // A row at the crest of the hum: a quarter of a period, and whole turns of the beat.
-            let own = config.level(&seed, field, 25, 0.5 * field as f64) - 0.1;
-            band += own / n as f64;
-            square += own * own / n as f64;
+            let line_noise = config.level(&seed, field, 25, 0.5 * field as f64) - 0.1;
+            band += line_noise / n as f64;
+            square += line_noise * line_noise / n as f64;
         }
         // Standard errors 0.01/√n and 0.01²√(2/n); four of them.
         assert!(band.abs() < 2.9e-4, "{band}");

@@ -34,7 +34,7 @@ impl LostLinesConfig {
         let streams = seed.streams(field, Effect::LostLines);
         let mut lost = 0;
         for k in 0..signal.len() / columns {
-            let mut stream = streams.at(lines.camera_row(k) as u64);
+            let mut stream = streams.stream_at(lines.camera_row(k) as u64);
             if uniform(&mut stream) >= self.probability {
                 continue;
             }

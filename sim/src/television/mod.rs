@@ -189,7 +189,7 @@ impl TelevisionConfig {
 
 /// Whether the overlay can write a text.
 pub(crate) fn can_be_written(text: &str) -> bool {
-    text.chars().all(glyphs::has)
+    text.chars().all(glyphs::supports)
 }
 
 /// What the chain is told of a field besides its light.
@@ -253,7 +253,8 @@ impl Television {
         if let Some(bloom) = &config.bloom {
             self.bloom.add(bloom, signal, columns, lines.step());
         }
-        let (contrast, brightness) = config.drift.as_ref().map_or((1.0, 0.0), |drift| drift.at(seed, time_s));
+        let (contrast, brightness) =
+            config.drift.as_ref().map_or((1.0, 0.0), |drift| drift.contrast_and_brightness_at(seed, time_s));
         let gain = config.auto_gain.map_or(1.0, |auto| auto.gain(metered_mean(signal, columns)));
         let truth =
             VideoTruth { contrast: gain * contrast, brightness: config.pedestal + brightness, lost_lines: 0 };

@@ -42,9 +42,9 @@ impl VideoNoiseConfig {
         let streams = seed.streams(field, Effect::VideoNoise);
         for (k, row) in signal.chunks_exact_mut(columns).enumerate() {
             let y = lines.camera_row(k) as u64;
-            let mut stream = streams.at(y);
+            let mut stream = streams.stream_at(y);
             let add = |x: usize, value: &mut f32, half: u32| {
-                let more = || streams.at(contract::Camera::MAX_SIDE_PX as u64 * (y + 1) + x as u64);
+                let more = || streams.stream_at(contract::Camera::MAX_SIDE_PX as u64 * (y + 1) + x as u64);
                 *value += sigma * ziggurat.draw_short(half, more);
             };
             let mut pairs = row.chunks_exact_mut(2);

@@ -3,7 +3,7 @@
 use contract::Frame;
 use contract::docking::{Digitiser, Field, Lines};
 
-use crate::widest::arch;
+use crate::simd_kernel::arch;
 
 /// Bits of the frame grabber.
 pub const BIT_DEPTH: u8 = 8;
@@ -108,7 +108,7 @@ fn whole_part(value: f32) -> u16 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::widest::tests::same_on_all_registers;
+    use crate::simd_kernel::tests::same_on_all_registers;
 
     fn digits(signal: &[f32], contrast: f64, brightness: f64) -> Vec<u16> {
         let video = VideoField::new(3, signal.len(), 1, Lines::All, signal.to_vec()).unwrap();

@@ -34,7 +34,7 @@ const FASTEST_KM_S: f64 = 1e3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StarMotion {
     /// Unit vector at the epoch.
-    place: Vector3<f64>,
+    unit_vector: Vector3<f64>,
     /// Space velocity over distance at the epoch, rad per Julian year: across, the proper motion; along, the
     /// change of distance.
     motion_per_yr: Vector3<f64>,
@@ -47,7 +47,7 @@ impl StarMotion {
     pub fn new(star: &CatalogStar) -> Self {
         let (sin_ra, cos_ra) = libm::sincos(star.ra_rad);
         let (sin_dec, cos_dec) = libm::sincos(star.dec_rad);
-        let place = Vector3::new(cos_ra * cos_dec, sin_ra * cos_dec, sin_dec);
+        let unit_vector = Vector3::new(cos_ra * cos_dec, sin_ra * cos_dec, sin_dec);
         let east = Vector3::new(-sin_ra, cos_ra, 0.0);
         let north = Vector3::new(-cos_ra * sin_dec, -sin_ra * sin_dec, cos_dec);
         let parallax = star.parallax_mas.max(0.0) * RADIANS_PER_MAS;
@@ -55,8 +55,8 @@ impl StarMotion {
         let radial = star.radial_velocity_km_s * (YEAR_S / AU_KM) * parallax;
         let motion_per_yr = east * (star.pm_ra_mas_per_yr * RADIANS_PER_MAS)
             + north * (star.pm_dec_mas_per_yr * RADIANS_PER_MAS)
-            + place * radial;
-        Self { place, motion_per_yr, parallax }
+            + unit_vector * radial;
+        Self { unit_vector, motion_per_yr, parallax }
     }
 }
 
@@ -158,20 +158,20 @@ impl Observer {
     /// The direction in which an ideal camera sees a star: [`Observer::astrometric`], bent by the Sun
     /// ([`deflect`]), aberrated ([`aberrate`], with the Sun's potential added: 0.4 µas, Klioner 2003, Eq. 7).
     pub fn apparent(&self, star: &StarMotion) -> Direction<Icrs> {
-        self.apparent_of(self.astrometric(star))
+        self.apparent_from_astrometric(self.astrometric(star))
     }
 
     /// The direction in which an ideal camera sees a distant source that stands at `astrometric`; see
     /// [`Observer::apparent`].
-    pub fn apparent_of(&self, astrometric: Direction<Icrs>) -> Direction<Icrs> {
+    pub fn apparent_from_astrometric(&self, astrometric: Direction<Icrs>) -> Direction<Icrs> {
         let natural = bend(astrometric.vector(), &self.from_sun, self.sun_distance_au);
         let potential = SUN_SCHWARZSCHILD_AU / self.sun_distance_au;
         Direction::from_unit(boost(&natural, &self.beta, self.inverse_gamma, potential))
     }
 
     fn coordinate_direction(&self, star: &StarMotion) -> Vector3<f64> {
-        let years = self.years + star.place.dot(&self.position_au) * AU_LIGHT_YEARS;
-        (star.place + star.motion_per_yr * years - self.position_au * star.parallax).normalize()
+        let years = self.years + star.unit_vector.dot(&self.position_au) * AU_LIGHT_YEARS;
+        (star.unit_vector + star.motion_per_yr * years - self.position_au * star.parallax).normalize()
     }
 }
 

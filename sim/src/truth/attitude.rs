@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::drift::{Drift, DriftConfig, radians, turned_by, white};
+use super::drift::{Drift, DriftConfig, radians_from_arcsec, turned_by, white};
 use super::guidance::Guidance;
 use super::mounting::MountingConfig;
 use super::trajectory::States;
@@ -81,7 +81,7 @@ impl Attitude {
             guidance: config.guidance.clone(),
             body_from_camera: mounting.nominal.camera_from_body().inverse(),
             drift: Drift::new(&config.control.drift, seed, Effect::AttitudeControl),
-            jitter_rad: radians(config.control.jitter_arcsec),
+            jitter_rad: radians_from_arcsec(config.control.jitter_arcsec),
             motion_smear: config.motion_smear,
             seed,
         })
@@ -95,7 +95,7 @@ impl Attitude {
     /// The true attitude in `frame`, taken when chaser and target are at `states`.
     pub fn truth(&self, states: &States, frame: u64) -> Rotation<Body, Icrs> {
         let jitter = white(self.seed, frame, Effect::AttitudeControl, 0, self.jitter_rad);
-        turned_by(self.drift.at(states.time_s) + jitter) * self.guided(states)
+        turned_by(self.drift.error_rad_at(states.time_s) + jitter) * self.guided(states)
     }
 
     /// The attitude that guidance asks for.
@@ -156,13 +156,13 @@ pub(crate) mod tests {
     #[test]
     fn without_errors_the_nominal_camera_is_where_guidance_wants_it() {
         let attitude = Attitude::new(&quiet(), &mounting(), SEED).unwrap();
-        let states = trajectory().at_seconds(4321.0);
+        let states = trajectory().states_at_seconds(4321.0);
         let camera_from_icrs = mounting().nominal.camera_from_body() * attitude.truth(&states, 0);
-        let asked = quiet().guidance.camera_from_icrs(&states);
-        assert!(camera_from_icrs.angle_to(&asked).radians() < 1e-15);
+        let expected = quiet().guidance.camera_from_icrs(&states);
+        assert!(camera_from_icrs.angle_to(&expected).radians() < 1e-15);
         // The actual camera is off by the 0.2° of its mounting.
         let actual = mounting().actual.camera_from_body() * attitude.truth(&states, 0);
-        assert!((actual.angle_to(&asked).degrees() - 0.2).abs() < 1e-9);
+        assert!((actual.angle_to(&expected).degrees() - 0.2).abs() < 1e-9);
     }
 
     #[test]
@@ -170,7 +170,7 @@ pub(crate) mod tests {
         let attitude = Attitude::new(&restless(), &MountingConfig::default(), SEED).unwrap();
         let trajectory = trajectory();
         for frame in 0..400 {
-            let states = trajectory.at_seconds(15.0 * frame as f64);
+            let states = trajectory.states_at_seconds(15.0 * frame as f64);
             let body_from_icrs = attitude.truth(&states, frame);
             let seen = body_from_icrs * Direction::from_vector(states.line_of_sight_km()).unwrap();
             // 300 m and the 600 m/20 km foreshortening at 20 km are 0.87°; control adds a few arcmin.
@@ -184,7 +184,7 @@ pub(crate) mod tests {
         let make = || Attitude::new(&restless(), &mounting(), SEED).unwrap();
         let run = make();
         let of = |attitude: &Attitude, frame: u64| {
-            attitude.truth(&trajectory.at_seconds(15.0 * frame as f64), frame)
+            attitude.truth(&trajectory.states_at_seconds(15.0 * frame as f64), frame)
         };
         let in_run: Vec<_> = (0..700).map(|frame| of(&run, frame)).collect();
         for frame in [699, 0, 350] {
@@ -198,12 +198,13 @@ pub(crate) mod tests {
         config.control.drift = DriftConfig::default();
         let attitude = Attitude::new(&config, &MountingConfig::default(), SEED).unwrap();
         let still = Attitude::new(&quiet(), &MountingConfig::default(), SEED).unwrap();
-        let states = trajectory().at_seconds(100.0);
+        let states = trajectory().states_at_seconds(100.0);
         let n = 5000;
         let mut chi2 = Vector3::zeros();
         for frame in 0..n {
             let off = attitude.truth(&states, frame) * still.truth(&states, frame).inverse();
-            let scaled = off.quaternion().scaled_axis().component_div(&radians([5.0, 10.0, 20.0]));
+            let scaled =
+                off.quaternion().scaled_axis().component_div(&radians_from_arcsec([5.0, 10.0, 20.0]));
             chi2 += scaled.component_mul(&scaled);
         }
         // χ² of n degrees: standard deviation √(2n) = 100; four of them.

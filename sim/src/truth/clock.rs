@@ -53,7 +53,7 @@ pub fn parse_utc(text: &str) -> Result<Epoch, OutOfRange> {
 ///
 /// # Errors
 /// Those of [`parse_utc`].
-pub(crate) fn parse_utc_of(path: &str, text: &str) -> Result<Epoch, OutOfRange> {
+pub(crate) fn parse_utc_field(path: &str, text: &str) -> Result<Epoch, OutOfRange> {
     parse_utc(text).map_err(|error| OutOfRange { path: path.to_owned(), ..error })
 }
 

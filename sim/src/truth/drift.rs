@@ -83,7 +83,7 @@ impl Drift {
     }
 
     /// The error about the body axes, rad, at a time in seconds since the orbit's epoch.
-    pub(crate) fn at(&self, time_s: f64) -> Vector3<f64> {
+    pub(crate) fn error_rad_at(&self, time_s: f64) -> Vector3<f64> {
         self.terms.iter().fold(Vector3::zeros(), |sum, term| {
             let (sin, cos) = libm::sincos(term.rate_rad_s * time_s);
             sum + term.cosine_rad * cos + term.sine_rad * sin
@@ -104,7 +104,7 @@ pub(crate) fn white(
 }
 
 /// Angles about three axes, in radians.
-pub(crate) fn radians(arcsec: [f64; 3]) -> Vector3<f64> {
+pub(crate) fn radians_from_arcsec(arcsec: [f64; 3]) -> Vector3<f64> {
     Vector3::from(arcsec.map(|a| Angle::from_arcsec(a).radians()))
 }
 
@@ -128,13 +128,13 @@ mod tests {
         let mut sum = Vector3::zeros();
         for case in 0..n {
             let seed = Seed { seed: 5, case };
-            let value = Drift::new(&config(), seed, Effect::AttitudeControl).at(1234.5);
+            let value = Drift::new(&config(), seed, Effect::AttitudeControl).error_rad_at(1234.5);
             sum += value.component_mul(&value);
         }
         let rms = (sum / n as f64).map(f64::sqrt);
         // χ² with n degrees: relative standard error of the rms 1/√(2n) = 1.1 %; four of them.
-        assert!((rms.x / radians([10.0; 3]).x - 1.0).abs() < 0.045, "{rms}");
-        assert!((rms.y / radians([20.0; 3]).y - 1.0).abs() < 0.045, "{rms}");
+        assert!((rms.x / radians_from_arcsec([10.0; 3]).x - 1.0).abs() < 0.045, "{rms}");
+        assert!((rms.y / radians_from_arcsec([20.0; 3]).y - 1.0).abs() < 0.045, "{rms}");
         assert_eq!(rms.z, 0.0);
     }
 
@@ -143,16 +143,16 @@ mod tests {
         let config = DriftConfig { periods_s: vec![100.0], ..config() };
         let drift = Drift::new(&config, Seed { seed: 1, case: 0 }, Effect::AttitudeControl);
         // A phase of some 2π·3 turns, rounded: 1e-15 of an amplitude of 1e-4 rad.
-        assert!((drift.at(20.0) - drift.at(320.0)).norm() < 1e-18);
-        assert!((drift.at(20.0) + drift.at(370.0)).norm() < 1e-18);
+        assert!((drift.error_rad_at(20.0) - drift.error_rad_at(320.0)).norm() < 1e-18);
+        assert!((drift.error_rad_at(20.0) + drift.error_rad_at(370.0)).norm() < 1e-18);
     }
 
     #[test]
     fn one_axis_off_leaves_the_others_as_they_were() {
         let seed = Seed { seed: 1, case: 0 };
-        let all = Drift::new(&config(), seed, Effect::AttitudeControl).at(77.0);
+        let all = Drift::new(&config(), seed, Effect::AttitudeControl).error_rad_at(77.0);
         let less = DriftConfig { rms_arcsec: [0.0, 20.0, 0.0], ..config() };
-        assert_eq!(Drift::new(&less, seed, Effect::AttitudeControl).at(77.0).y, all.y);
+        assert_eq!(Drift::new(&less, seed, Effect::AttitudeControl).error_rad_at(77.0).y, all.y);
     }
 
     #[test]

@@ -111,7 +111,7 @@ mod tests {
             mean_anomaly_rad: 0.4,
         };
         let chaser = relative.chaser(&target);
-        States { time_s, chaser: chaser.after(time_s).state(), target: target.after(time_s).state() }
+        States { time_s, chaser: chaser.propagate(time_s).state(), target: target.propagate(time_s).state() }
     }
 
     fn behind() -> RelativeElements {

@@ -7,12 +7,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::attitude::Attitude;
-use super::drift::{Drift, DriftConfig, radians, turned_by, white};
+use super::drift::{Drift, DriftConfig, radians_from_arcsec, turned_by, white};
 use super::trajectory::Trajectory;
 use crate::randomness::{Effect, Seed};
 
 /// First place of the velocity's noise in an address; the attitude's noise has places 0 to 2.
-const VELOCITY_PLACE: u64 = 3;
+const VELOCITY_INDEX: u64 = 3;
 
 /// Errors of the telemetry. A positive error about a body axis: telemetry tells an attitude that is turned by the
 /// right-hand rule from the true one.
@@ -70,9 +70,9 @@ impl Knowledge {
     pub fn new(config: &KnowledgeConfig, seed: Seed) -> Result<Self, OutOfRange> {
         config.check()?;
         Ok(Self {
-            bias_rad: radians(config.bias_arcsec),
+            bias_rad: radians_from_arcsec(config.bias_arcsec),
             drift: Drift::new(&config.drift, seed, Effect::AttitudeKnowledge),
-            noise_rad: radians(config.noise_arcsec),
+            noise_rad: radians_from_arcsec(config.noise_arcsec),
             latency_s: config.latency_s,
             velocity_noise_km_s: config.velocity_noise_m_s * 1e-3,
             seed,
@@ -92,16 +92,16 @@ impl Knowledge {
         exposure_s: f64,
     ) -> Telemetry {
         let time_s = trajectory.seconds(time);
-        let sensed = attitude.truth(&trajectory.at_seconds(time_s - self.latency_s), frame);
+        let sensed = attitude.truth(&trajectory.states_at_seconds(time_s - self.latency_s), frame);
         let noise = white(self.seed, frame, Effect::AttitudeKnowledge, 0, self.noise_rad);
-        let error = self.bias_rad + self.drift.at(time_s) + noise;
+        let error = self.bias_rad + self.drift.error_rad_at(time_s) + noise;
         let sigma = Vector3::repeat(self.velocity_noise_km_s);
-        let velocity_noise = white(self.seed, frame, Effect::AttitudeKnowledge, VELOCITY_PLACE, sigma);
+        let velocity_noise = white(self.seed, frame, Effect::AttitudeKnowledge, VELOCITY_INDEX, sigma);
         Telemetry {
             time,
             exposure_s,
             body_from_icrs: turned_by(error) * sensed,
-            velocity_km_s: Some(trajectory.at_seconds(time_s).chaser.velocity_km_s + velocity_noise),
+            velocity_km_s: Some(trajectory.states_at_seconds(time_s).chaser.velocity_km_s + velocity_noise),
         }
     }
 }
@@ -120,7 +120,7 @@ mod tests {
         Attitude::new(&config, &MountingConfig::default(), SEED).unwrap()
     }
 
-    fn told(config: &KnowledgeConfig, attitude: &Attitude, frame: u64) -> Telemetry {
+    fn telemetry_of(config: &KnowledgeConfig, attitude: &Attitude, frame: u64) -> Telemetry {
         let trajectory = trajectory();
         let time = trajectory.epoch() + Duration::from_seconds(DT_S * frame as f64);
         Knowledge::new(config, SEED).unwrap().telemetry(attitude, &trajectory, time, frame, 0.1)
@@ -128,30 +128,32 @@ mod tests {
 
     /// By how much the told body axes are turned from the true ones, rad.
     fn error(config: &KnowledgeConfig, attitude: &Attitude, frame: u64) -> Vector3<f64> {
-        let truth = attitude.truth(&trajectory().at_seconds(DT_S * frame as f64), frame);
-        let told_from_true = told(config, attitude, frame).body_from_icrs * truth.inverse();
-        -told_from_true.quaternion().scaled_axis()
+        let truth = attitude.truth(&trajectory().states_at_seconds(DT_S * frame as f64), frame);
+        let measured_from_true = telemetry_of(config, attitude, frame).body_from_icrs * truth.inverse();
+        -measured_from_true.quaternion().scaled_axis()
     }
 
     #[test]
     fn perfect_knowledge_tells_the_truth() {
         let config = KnowledgeConfig::default();
         assert!(error(&config, &attitude(true), 17).norm() < 1e-15);
-        let velocity = told(&config, &attitude(true), 17).velocity_km_s.unwrap();
-        assert_eq!(velocity, trajectory().at_seconds(DT_S * 17.0).chaser.velocity_km_s);
+        let velocity = telemetry_of(&config, &attitude(true), 17).velocity_km_s.unwrap();
+        assert_eq!(velocity, trajectory().states_at_seconds(DT_S * 17.0).chaser.velocity_km_s);
     }
 
     #[test]
     fn a_bias_turns_the_told_axes_by_the_right_hand_rule() {
         let config = KnowledgeConfig { bias_arcsec: [100.0, -40.0, 7.0], ..Default::default() };
-        assert!((error(&config, &attitude(true), 3) - radians([100.0, -40.0, 7.0])).norm() < 1e-15);
+        assert!(
+            (error(&config, &attitude(true), 3) - radians_from_arcsec([100.0, -40.0, 7.0])).norm() < 1e-15
+        );
         // Told with the body turned by +100″ about x, a star along the true z has moved towards +y.
         let config = KnowledgeConfig { bias_arcsec: [100.0, 0.0, 0.0], ..Default::default() };
         let attitude = attitude(false);
-        let truth = attitude.truth(&trajectory().at_seconds(0.0), 0);
+        let truth = attitude.truth(&trajectory().states_at_seconds(0.0), 0);
         let star = truth.inverse() * contract::Direction::z();
-        let seen = told(&config, &attitude, 0).body_from_icrs * star;
-        assert!((seen.vector().y - radians([100.0; 3]).x).abs() < 1e-9);
+        let seen = telemetry_of(&config, &attitude, 0).body_from_icrs * star;
+        assert!((seen.vector().y - radians_from_arcsec([100.0; 3]).x).abs() < 1e-9);
     }
 
     #[test]
@@ -160,15 +162,15 @@ mod tests {
         let config = KnowledgeConfig { noise_arcsec, velocity_noise_m_s: 0.5, ..Default::default() };
         let (attitude, trajectory) = (attitude(true), trajectory());
         let knowledge = Knowledge::new(&config, SEED).unwrap();
-        let (time, states) = (trajectory.epoch(), trajectory.at_seconds(0.0));
+        let (time, states) = (trajectory.epoch(), trajectory.states_at_seconds(0.0));
         let n = 5000;
         let (mut turn, mut velocity) = (Vector3::zeros(), 0.0);
         for frame in 0..n {
-            let told = knowledge.telemetry(&attitude, &trajectory, time, frame, 0.1);
-            let off = told.body_from_icrs * attitude.truth(&states, frame).inverse();
-            let scaled = off.quaternion().scaled_axis().component_div(&radians(noise_arcsec));
+            let measured = knowledge.telemetry(&attitude, &trajectory, time, frame, 0.1);
+            let off = measured.body_from_icrs * attitude.truth(&states, frame).inverse();
+            let scaled = off.quaternion().scaled_axis().component_div(&radians_from_arcsec(noise_arcsec));
             turn += scaled.component_mul(&scaled);
-            let dv = told.velocity_km_s.unwrap() - states.chaser.velocity_km_s;
+            let dv = measured.velocity_km_s.unwrap() - states.chaser.velocity_km_s;
             velocity += (dv / 0.5e-3).norm_squared();
         }
         // χ² of n degrees has the standard deviation √(2n) = 100, of 3n degrees 173; four of them.
@@ -199,7 +201,7 @@ mod tests {
     fn a_drift_is_seen_in_telemetry() {
         let drift = DriftConfig { rms_arcsec: [50.0; 3], periods_s: vec![5992.0] };
         let config = KnowledgeConfig { drift: drift.clone(), ..Default::default() };
-        let expected = Drift::new(&drift, SEED, Effect::AttitudeKnowledge).at(DT_S * 100.0);
+        let expected = Drift::new(&drift, SEED, Effect::AttitudeKnowledge).error_rad_at(DT_S * 100.0);
         assert!((error(&config, &attitude(true), 100) - expected).norm() < 1e-15);
         assert!(expected.norm() > 0.0);
     }
@@ -213,9 +215,9 @@ mod tests {
             ..Default::default()
         };
         let attitude = attitude(true);
-        let in_run: Vec<_> = (0..50).map(|frame| told(&config, &attitude, frame)).collect();
+        let in_run: Vec<_> = (0..50).map(|frame| telemetry_of(&config, &attitude, frame)).collect();
         for frame in [49, 0, 25] {
-            assert_eq!(told(&config, &attitude, frame), in_run[frame as usize]);
+            assert_eq!(telemetry_of(&config, &attitude, frame), in_run[frame as usize]);
         }
     }
 

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::clock::parse_utc_of;
+use super::clock::parse_utc_field;
 use super::orbit::{Elements, State};
 
 /// An impulse given to the chaser.
@@ -32,7 +32,7 @@ impl ManoeuvreConfig {
 
     /// When.
     pub(crate) fn time(&self) -> Result<Epoch, OutOfRange> {
-        parse_utc_of("orbit.manoeuvres[].time_utc", &self.time_utc)
+        parse_utc_field("orbit.manoeuvres[].time_utc", &self.time_utc)
     }
 
     /// The orbit after the impulse, from the orbit just before: the position stays, the velocity changes, exactly.

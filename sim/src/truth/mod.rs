@@ -34,7 +34,7 @@ pub use mounting::MountingConfig;
 pub use orbit::{
     EARTH_GM_KM3_S2, EARTH_J2, EGM96_RADIUS_KM, Elements, ElementsConfig, Rtn, SecularRates, State,
 };
-pub use planets::{Planet, PlanetSight};
+pub use planets::{ApparentPlanet, Planet};
 pub use relative::RelativeElements;
 pub use schedule::{GroupConfig, MAX_FRAMES, Schedule, Sequence};
 pub use table::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};

@@ -174,7 +174,7 @@ impl Elements {
     }
 
     /// The elements `seconds` later (earlier when negative): Ω, ω and M have drifted, the rest stays.
-    pub fn after(&self, seconds: f64) -> Self {
+    pub fn propagate(&self, seconds: f64) -> Self {
         let rates = self.secular_rates();
         Self {
             raan_rad: wrap(self.raan_rad + rates.raan_rad_s * seconds),

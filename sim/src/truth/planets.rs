@@ -46,7 +46,7 @@ pub enum Planet {
 
 /// A planet as an observer has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanetSight {
+pub struct ApparentPlanet {
     /// Where it stands: light time applied, no aberration, no deflection.
     pub astrometric: Direction<Icrs>,
     /// Distance from the observer, au.
@@ -92,7 +92,7 @@ impl Planet {
 
     /// The planet from where the observer is, at `tdb_j2000_s` seconds of TDB since J2000.0; `None` for an observer inside
     /// of it.
-    pub fn seen(self, tdb_j2000_s: f64, observer: &Observer) -> Option<PlanetSight> {
+    pub fn apparent(self, tdb_j2000_s: f64, observer: &Observer) -> Option<ApparentPlanet> {
         // The Sun from the observer moves by 13 m/s while light is under way: nothing at this accuracy.
         let sun_au = observer.sun_km() / AU_KM;
         let mut light_s = 0.0;
@@ -104,7 +104,7 @@ impl Planet {
             from_observer = sun_au + heliocentric;
             light_s = from_observer.norm() * AU_LIGHT_S;
         }
-        Some(PlanetSight {
+        Some(ApparentPlanet {
             astrometric: Direction::from_vector(from_observer).ok()?,
             distance_au: from_observer.norm(),
             magnitude: self.magnitude(&heliocentric, &from_observer, tdb_j2000_s),
@@ -223,7 +223,7 @@ mod tests {
     use crate::truth::clock;
 
     /// Magnitude for distances from Sun and observer, au, and a phase angle, degrees.
-    fn at(planet: Planet, sun_au: f64, observer_au: f64, phase_deg: f64) -> f64 {
+    fn magnitude_at(planet: Planet, sun_au: f64, observer_au: f64, phase_deg: f64) -> f64 {
         let (sin, cos) = libm::sincos(phase_deg.to_radians());
         planet.magnitude(&(Vector3::x() * sun_au), &(Vector3::new(cos, sin, 0.0) * observer_au), 3e8)
     }
@@ -242,7 +242,7 @@ mod tests {
             (Planet::Jupiter, 4.957681473205, 3.95393078136013, 0.3431, -2.934),
             (Planet::Jupiter, 5.227587855371, 5.23501920009381, 147.0989, 0.790),
         ] {
-            let got = at(planet, sun_au, observer_au, phase_deg);
+            let got = magnitude_at(planet, sun_au, observer_au, phase_deg);
             assert!((got - expected).abs() < 6e-4, "{planet:?}: {got}, expected {expected}");
         }
     }
@@ -254,7 +254,7 @@ mod tests {
         let observer = Observer::new(time, Vector3::zeros(), Vector3::zeros()).unwrap();
         let expected = [2.393, -4.278, 1.592, -2.693, 0.508, 5.701, 7.690];
         for (planet, expected) in Planet::ALL.into_iter().zip(expected) {
-            let got = planet.seen(clock::tdb_j2000_s(time), &observer).unwrap().magnitude;
+            let got = planet.apparent(clock::tdb_j2000_s(time), &observer).unwrap().magnitude;
             // The reference takes the barycentre for the Sun: 0.5° of the phase of Venus and Mercury. Left out here:
             // Uranus 0.05, Mars 0.1.
             let tolerance = 0.1;
@@ -264,7 +264,8 @@ mod tests {
 
     #[test]
     fn the_curve_of_venus_has_no_step_where_its_two_pieces_meet() {
-        let (before, after) = (at(Planet::Venus, 0.72, 0.3, 163.69), at(Planet::Venus, 0.72, 0.3, 163.71));
+        let (before, after) =
+            (magnitude_at(Planet::Venus, 0.72, 0.3, 163.69), magnitude_at(Planet::Venus, 0.72, 0.3, 163.71));
         // The published pieces meet within 0.02 mag.
         assert!((before - after).abs() < 0.02, "{before} {after}");
     }

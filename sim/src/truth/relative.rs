@@ -109,8 +109,8 @@ mod tests {
 
     /// Position of the chaser from the target in the target's RTN, m, `seconds` after the elements hold.
     fn offset_m(relative: &RelativeElements, seconds: f64) -> Vector3<f64> {
-        let chaser = relative.chaser(&TARGET).after(seconds).state();
-        let target = TARGET.after(seconds).state();
+        let chaser = relative.chaser(&TARGET).propagate(seconds).state();
+        let target = TARGET.propagate(seconds).state();
         target.rtn_from_icrs().rotate(&(chaser.position_km - target.position_km)) * 1000.0
     }
 
@@ -149,7 +149,7 @@ mod tests {
         let relative = RelativeElements { a_dey_m: 400.0, a_diy_m: 300.0, ..Default::default() };
         for k in 0..24 {
             let seconds = period_s() * f64::from(k) / 24.0;
-            let u = TARGET.after(seconds).mean_argument_of_latitude_rad();
+            let u = TARGET.propagate(seconds).mean_argument_of_latitude_rad();
             // δe along +y: φ = 90°; δi along +y: θ = 90°.
             let expected = Vector3::new(-400.0 * libm::sin(u), -800.0 * libm::cos(u), -300.0 * libm::cos(u));
             let got = offset_m(&relative, seconds);

@@ -8,7 +8,7 @@ use hifitime::{Duration, Epoch, TimeScale};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::clock::parse_utc_of;
+use super::clock::parse_utc_field;
 
 /// Most frames that a scenario may have.
 pub const MAX_FRAMES: u64 = 100_000_000;
@@ -38,7 +38,7 @@ impl GroupConfig {
         if self.name.trim().is_empty() {
             return Err(OutOfRange::new("schedule[].name", "empty", "a name"));
         }
-        parse_utc_of("schedule[].start_utc", &self.start_utc)?;
+        parse_utc_field("schedule[].start_utc", &self.start_utc)?;
         bounds::check(self, "schedule[]")
     }
 }
@@ -91,7 +91,7 @@ impl Schedule {
             }
             // Counted in TAI: in UTC, adding seconds across a leap second would lose one.
             let start =
-                parse_utc_of("schedule[].start_utc", &config.start_utc)?.to_time_scale(TimeScale::TAI);
+                parse_utc_field("schedule[].start_utc", &config.start_utc)?.to_time_scale(TimeScale::TAI);
             if let Some(before) = groups.last()
                 && start <= before.time(before.frames.end - 1)
             {
@@ -175,7 +175,7 @@ mod tests {
         assert_eq!(schedule.frame_count(), 4612);
         assert_eq!(schedule.group_of(1633), Some(0));
         let (name, time) = schedule.frame(1634).unwrap();
-        assert_eq!((name, time), ("day 2", parse_utc_of("t", "2012-04-24T06:00:00Z").unwrap()));
+        assert_eq!((name, time), ("day 2", parse_utc_field("t", "2012-04-24T06:00:00Z").unwrap()));
         assert_eq!(schedule.frame(4611).map(|(name, _)| name), Some("day 2"));
         assert_eq!(schedule.frame(4612), None);
         assert_eq!(schedule.group_of(u64::MAX), None);
@@ -193,7 +193,7 @@ mod tests {
         // 0.1 s is not a binary fraction: a sum of ten million would be off by 1e-4 s.
         let schedule = Schedule::new(&[group("a", "2012-04-23T00:00:00Z", 0.1, 10_000_001)]).unwrap();
         let (_, last) = schedule.frame(10_000_000).unwrap();
-        let start = parse_utc_of("t", "2012-04-23T00:00:00Z").unwrap();
+        let start = parse_utc_field("t", "2012-04-23T00:00:00Z").unwrap();
         assert_eq!(
             (last.to_tai_duration() - start.to_tai_duration()).total_nanoseconds(),
             1_000_000_000_000_000
@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn a_leap_second_takes_its_time() {
         let schedule = Schedule::new(&[group("a", "2012-06-30T23:59:58Z", 1.0, 4)]).unwrap();
-        let midnight = parse_utc_of("t", "2012-07-01T00:00:00Z").unwrap();
+        let midnight = parse_utc_field("t", "2012-07-01T00:00:00Z").unwrap();
         assert_eq!(schedule.frame(3).unwrap().1, midnight);
     }
 

@@ -44,7 +44,7 @@ pub enum Visibility {
 
 impl Visibility {
     /// The class of a signal-to-noise ratio.
-    pub fn of_snr(snr: f64) -> Self {
+    pub fn from_snr(snr: f64) -> Self {
         match snr {
             s if s >= 5.0 => Self::Detectable,
             s if s >= 2.0 => Self::Ambiguous,

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::clock::parse_utc_of;
+use super::clock::parse_utc_field;
 use super::ephemeris::check_covered;
 use super::manoeuvre::ManoeuvreConfig;
 use super::orbit::{Elements, ElementsConfig, Rtn, State};
@@ -88,7 +88,7 @@ struct Arc {
 
 impl Arc {
     fn chaser_at(&self, time_s: f64) -> Elements {
-        self.chaser.after(time_s - self.start_s)
+        self.chaser.propagate(time_s - self.start_s)
     }
 }
 
@@ -99,7 +99,7 @@ impl Trajectory {
     /// [`OutOfRange`] for an epoch that is none or an orbit outside what is supported; [`OutOfRange`] for
     /// a manoeuvre that is out of order, not after the epoch, or leaves no supported orbit.
     pub fn new(config: &OrbitConfig) -> Result<Self, OutOfRange> {
-        let epoch = parse_utc_of("orbit.epoch_utc", &config.epoch_utc)?;
+        let epoch = parse_utc_field("orbit.epoch_utc", &config.epoch_utc)?;
         check_covered("orbit.epoch_utc", &config.epoch_utc, epoch)?;
         let target = config.target.elements()?;
         config.relative.check()?;
@@ -142,12 +142,12 @@ impl Trajectory {
     }
 
     /// Chaser and target at `time`.
-    pub fn at(&self, time: Epoch) -> States {
-        self.at_seconds(self.seconds(time))
+    pub fn states_at(&self, time: Epoch) -> States {
+        self.states_at_seconds(self.seconds(time))
     }
 
     /// Chaser and target `time_s` seconds after the orbit's epoch. At a manoeuvre: just after it.
-    pub fn at_seconds(&self, time_s: f64) -> States {
+    pub fn states_at_seconds(&self, time_s: f64) -> States {
         let (chaser, target) = self.elements(time_s);
         States { time_s, chaser: chaser.state(), target: target.state() }
     }
@@ -162,7 +162,7 @@ impl Trajectory {
     fn elements(&self, time_s: f64) -> (Elements, Elements) {
         let begun = self.arcs.partition_point(|arc| arc.start_s <= time_s);
         let arc = &self.arcs[begun.saturating_sub(1)];
-        (arc.chaser_at(time_s), self.target.after(time_s))
+        (arc.chaser_at(time_s), self.target.propagate(time_s))
     }
 }
 
@@ -211,8 +211,8 @@ mod tests {
     fn a_manoeuvre_changes_the_velocity_and_not_the_position() {
         let trajectory = Trajectory::new(&config()).unwrap();
         let manoeuvre_s = 6.0 * 3600.0;
-        let before = trajectory.at_seconds(manoeuvre_s - 1e-6).chaser;
-        let after = trajectory.at_seconds(manoeuvre_s).chaser;
+        let before = trajectory.states_at_seconds(manoeuvre_s - 1e-6).chaser;
+        let after = trajectory.states_at_seconds(manoeuvre_s).chaser;
         // A microsecond of flight at 7.5 km/s is 7.5e-6 km.
         assert!((after.position_km - before.position_km).norm() < 8e-6);
         let dv_m_s = (after.velocity_km_s - before.velocity_km_s) * 1000.0;
@@ -225,9 +225,9 @@ mod tests {
     fn the_target_does_not_feel_the_chasers_manoeuvres() {
         let quiet = OrbitConfig { manoeuvres: vec![], ..config() };
         let (a, b) = (Trajectory::new(&quiet).unwrap(), Trajectory::new(&config()).unwrap());
-        assert_eq!(a.at_seconds(80_000.0).target, b.at_seconds(80_000.0).target);
-        assert_eq!(a.at_seconds(100.0), b.at_seconds(100.0));
-        assert_ne!(a.at_seconds(80_000.0).chaser, b.at_seconds(80_000.0).chaser);
+        assert_eq!(a.states_at_seconds(80_000.0).target, b.states_at_seconds(80_000.0).target);
+        assert_eq!(a.states_at_seconds(100.0), b.states_at_seconds(100.0));
+        assert_ne!(a.states_at_seconds(80_000.0).chaser, b.states_at_seconds(80_000.0).chaser);
     }
 
     #[test]
@@ -255,7 +255,7 @@ mod tests {
         // 2012-06-30 had 86401 seconds.
         let config = OrbitConfig { epoch_utc: "2012-06-30T00:00:00Z".into(), manoeuvres: vec![], ..config() };
         let trajectory = Trajectory::new(&config).unwrap();
-        let next_day = parse_utc_of("time", "2012-07-01T00:00:00Z").unwrap();
+        let next_day = parse_utc_field("time", "2012-07-01T00:00:00Z").unwrap();
         assert_eq!(trajectory.seconds(next_day), 86_401.0);
         assert_eq!(trajectory.seconds(trajectory.epoch() - hifitime::Duration::from_seconds(1.5)), -1.5);
     }

@@ -45,7 +45,7 @@ impl Side {
     }
 
     /// How far a point lies beyond, m.
-    fn beyond(&self, point: &Vector3<f64>) -> f64 {
+    fn signed_distance_m(&self, point: &Vector3<f64>) -> f64 {
         self.normal.dot(point) - self.offset
     }
 }
@@ -59,17 +59,17 @@ impl Beam {
 
     /// Whether nothing of a sphere is inside.
     pub(super) fn misses(&self, sphere: &Sphere) -> bool {
-        self.sides.iter().any(|side| side.beyond(&sphere.centre) > sphere.radius)
+        self.sides.iter().any(|side| side.signed_distance_m(&sphere.centre) > sphere.radius)
     }
 
     /// Whether all of a sphere is inside.
-    fn holds(&self, sphere: &Sphere) -> bool {
-        self.sides.iter().all(|side| side.beyond(&sphere.centre) <= -sphere.radius)
+    fn contains(&self, sphere: &Sphere) -> bool {
+        self.sides.iter().all(|side| side.signed_distance_m(&sphere.centre) <= -sphere.radius)
     }
 
     /// The first side beyond which all of a sphere lies.
-    fn side_before(&self, centre: &Vector3<f64>, radius: f64) -> Option<&Side> {
-        self.sides.iter().find(|side| side.beyond(centre) > radius)
+    fn separating_side(&self, centre: &Vector3<f64>, radius: f64) -> Option<&Side> {
+        self.sides.iter().find(|side| side.signed_distance_m(centre) > radius)
     }
 
     /// Puts a polygon into `kept` without the corners that do not matter inside: of corners in a row that are all beyond one
@@ -83,17 +83,17 @@ impl Beam {
         // The side beyond which all corners since the last one kept lie, and the last of them.
         let (mut row, mut last) = (None::<&Side>, None);
         for (sphere, points) in loops.stretches(index) {
-            if row.is_some_and(|side| side.beyond(&sphere.centre) > sphere.radius) {
+            if row.is_some_and(|side| side.signed_distance_m(&sphere.centre) > sphere.radius) {
                 last = points.last();
                 continue;
             }
-            if self.holds(sphere) {
+            if self.contains(sphere) {
                 kept.extend(last.take());
                 kept.extend(points);
                 row = None;
                 continue;
             }
-            let side = self.side_before(&sphere.centre, sphere.radius);
+            let side = self.separating_side(&sphere.centre, sphere.radius);
             if let ([first, .., end], Some(_)) = (points, side) {
                 kept.extend(last.take());
                 kept.push(*first);
@@ -101,12 +101,12 @@ impl Beam {
                 continue;
             }
             for point in points {
-                if row.is_some_and(|side| side.beyond(point) > 0.0) {
+                if row.is_some_and(|side| side.signed_distance_m(point) > 0.0) {
                     last = Some(point);
                 } else {
                     kept.extend(last.take());
                     kept.push(*point);
-                    row = self.side_before(point, 0.0);
+                    row = self.separating_side(point, 0.0);
                 }
             }
         }
@@ -122,7 +122,7 @@ mod tests {
     use super::super::view::Lens;
     use super::*;
     use crate::scene::docking::{DockingScene, Facet, Part};
-    use crate::vector::planes::Prepared;
+    use crate::vector::planes::PreparedScene;
 
     const WINDOW: Window = Window { left: 30, right: 60, top: 20, bottom: 45 };
 
@@ -146,7 +146,7 @@ mod tests {
         let outer = corners.map(|[x, y]| Vector3::new(x, y, 0.0)).to_vec();
         let facet = Facet { outer, holes: Vec::new(), normal: Vector3::z(), reflectance: 0.5 };
         let part = Part { name: "ground".into(), facets: vec![facet], casts_shadow: false, visible: true };
-        Prepared::new(&DockingScene { parts: vec![part] }).planes.remove(0)
+        PreparedScene::new(&DockingScene { parts: vec![part] }).planes.remove(0)
     }
 
     /// Where the shadow of a point falls on the ground.
@@ -158,10 +158,10 @@ mod tests {
     }
 
     /// How often the shadow of a polygon goes round a place of the ground.
-    fn turns(source: Source, polygon: &[Vector3<f64>], place: &Vector3<f64>) -> i32 {
+    fn turns(source: Source, polygon: &[Vector3<f64>], window_point: &Vector3<f64>) -> i32 {
         let next = polygon.iter().cycle().skip(1);
         polygon.iter().zip(next).fold(0, |turns, (from, to)| {
-            let (a, b) = (shadow(source, from) - place, shadow(source, to) - place);
+            let (a, b) = (shadow(source, from) - window_point, shadow(source, to) - window_point);
             let is_right_of_place = (a.x * b.y - b.x * a.y) * (b.y - a.y) > 0.0;
             match (a.y < 0.0, b.y < 0.0) {
                 (true, false) if is_right_of_place => turns + 1,
@@ -197,7 +197,7 @@ mod tests {
             let ground = ground();
             let pixels =
                 (0..=10).flat_map(|i| (0..=10).map(move |j| (f64::from(i) / 10.0, f64::from(j) / 10.0)));
-            let places: Vec<Vector3<f64>> = pixels
+            let window_points: Vec<Vector3<f64>> = pixels
                 .map(|(s, t)| {
                     // Inside by a thousandth of a pixel: on the border itself rounding would decide.
                     let x = WINDOW.left as f64 + 1e-3 + s * ((WINDOW.right - WINDOW.left) as f64 - 2e-3);
@@ -214,9 +214,10 @@ mod tests {
                     loops.push(star.iter().copied());
                     beam.trim(&loops, 0, &mut kept);
                     left = [left[0] + kept.len(), left[1] + star.len()];
-                    for place in &places {
-                        let (before, after) = (turns(source, &star, place), turns(source, &kept, place));
-                        assert_eq!(before, after, "{radial} {source:?} {x} {y} {radius} {place}");
+                    for window_point in &window_points {
+                        let (before, after) =
+                            (turns(source, &star, window_point), turns(source, &kept, window_point));
+                        assert_eq!(before, after, "{radial} {source:?} {x} {y} {radius} {window_point}");
                     }
                 }
             }

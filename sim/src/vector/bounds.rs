@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 /// Boxes nearer than this touch, m: a plane along the axes has a flat one.
-const SAME_PLACE_M: f64 = 1e-6;
+const SAME_POINT_M: f64 = 1e-6;
 
 /// The smallest box along the target's axes about some points.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    pub(super) fn of<'a>(points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Self {
+    pub(super) fn from_points<'a>(points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Self {
         let nothing = Self { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) };
         points
             .into_iter()
@@ -21,10 +21,10 @@ impl Extent {
     }
 
     /// Whether two boxes have something in common, up to rounding.
-    pub(super) fn meets(&self, other: &Self) -> bool {
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|axis| {
-            self.low[axis] <= other.high[axis] + SAME_PLACE_M
-                && other.low[axis] <= self.high[axis] + SAME_PLACE_M
+            self.low[axis] <= other.high[axis] + SAME_POINT_M
+                && other.low[axis] <= self.high[axis] + SAME_POINT_M
         })
     }
 }
@@ -38,8 +38,8 @@ pub(super) struct Sphere {
 
 impl Sphere {
     /// About the middle of the points' extent along the axes; about the origin where there are no points.
-    pub(super) fn about<'a>(points: impl Iterator<Item = &'a Vector3<f64>> + Clone) -> Self {
-        let Extent { low, high } = Extent::of(points.clone());
+    pub(super) fn enclosing<'a>(points: impl Iterator<Item = &'a Vector3<f64>> + Clone) -> Self {
+        let Extent { low, high } = Extent::from_points(points.clone());
         let centre = if low.x <= high.x { 0.5 * (low + high) } else { Vector3::zeros() };
         let radius = points.map(|point| (point - centre).norm()).fold(0.0, f64::max);
         Self { centre, radius }

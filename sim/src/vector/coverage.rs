@@ -42,8 +42,8 @@ pub(super) struct Coverage {
 
 /// The whole part of a place in an image. Its sides fit into 32 bits, to which a processor converts in a third of the steps.
 #[inline(always)]
-fn whole(place: f64) -> usize {
-    place as u32 as usize
+fn pixel_index(position: f64) -> usize {
+    position as u32 as usize
 }
 
 impl Coverage {
@@ -69,7 +69,7 @@ impl Coverage {
     }
 
     /// The whole image.
-    pub(super) fn whole(&self) -> Window {
+    pub(super) fn full_window(&self) -> Window {
         Window { left: 0, right: self.columns, top: 0, bottom: self.rows }
     }
 
@@ -135,8 +135,8 @@ impl Coverage {
     /// An edge that lies in the window, `from` above `to`, and its x a row.
     fn add_inside(&mut self, from: [f64; 2], to: [f64; 2], per_row: f64, weights: [f32; 2]) {
         let (low, high) = if from[0] < to[0] { (from[0], to[0]) } else { (to[0], from[0]) };
-        let mut row = whole(from[1]).min(self.window.bottom - 1);
-        let last_row = whole(to[1]).min(self.window.bottom - 1);
+        let mut row = pixel_index(from[1]).min(self.window.bottom - 1);
+        let last_row = pixel_index(to[1]).min(self.window.bottom - 1);
         let [mut x, mut y] = from;
         let mut floor = row as f64;
         while row < last_row {
@@ -154,7 +154,7 @@ impl Coverage {
     fn add_in_row(&mut self, row: usize, a: f64, b: f64, height: f64, weights: [f32; 2]) {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
         let right = self.window.right;
-        let first = whole(low).min(right - 1);
+        let first = pixel_index(low).min(right - 1);
         let start = row * self.stride;
         // One more than the window's, for what is left beyond it.
         let steps = &mut self.steps[start..start + right + 1];
@@ -171,7 +171,7 @@ impl Coverage {
         } else {
             // Along the piece the height to the left of x grows in proportion; a pixel's area is its integral over the
             // pixel, a triangle in the first and all but a triangle in the last.
-            last = whole(high).min(right - 1);
+            last = pixel_index(high).min(right - 1);
             let slope = height / (high - low);
             let triangle = |side: f64| 0.5 * slope * side * side;
             let mut area = triangle(end - low);

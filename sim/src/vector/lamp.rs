@@ -33,7 +33,7 @@ impl<'a> LampOnPlane<'a> {
     }
 
     /// Where the ray of a point of the image (px from the corner of the first pixel) meets the plane.
-    fn at(&self, point: [f64; 2]) -> Node {
+    fn node_at(&self, point: [f64; 2]) -> Node {
         let ray = self.view.attitude * self.view.lens.ray(point);
         let descent = -self.normal.dot(&ray);
         let meets_plane = descent > 0.0;
@@ -66,14 +66,14 @@ struct Node {
 }
 
 impl Node {
-    fn towards(self, other: Self, part: f32) -> Self {
+    fn interpolate(self, other: Self, part: f32) -> Self {
         Self {
             radiance: self.radiance + part * (other.radiance - self.radiance),
             share: self.share + part * (other.share - self.share),
         }
     }
 
-    fn light(self) -> f32 {
+    fn shaded_radiance(self) -> f32 {
         self.radiance * self.share.clamp(0.0, 1.0)
     }
 }
@@ -92,37 +92,38 @@ impl LampGrid {
     /// Computes the nodes: on the window's border and not beyond, where the plane may end at its horizon.
     pub(super) fn fill(&mut self, light: &LampOnPlane<'_>, window: Window) {
         self.nodes.clear();
-        let places = |from: usize, to: usize| {
+        let positions = |from: usize, to: usize| {
             (0..=(to - from).div_ceil(Self::STEP)).map(move |i| (from + i * Self::STEP).min(to) as f64)
         };
-        for y in places(window.top, window.bottom) {
-            self.nodes.extend(places(window.left, window.right).map(|x| light.at([x, y])));
+        for y in positions(window.top, window.bottom) {
+            self.nodes.extend(positions(window.left, window.right).map(|x| light.node_at([x, y])));
         }
     }
 
     /// Computes the light of a row of the window.
-    pub(super) fn light_row(&mut self, window: Window, row: usize) {
+    pub(super) fn compute_row(&mut self, window: Window, row: usize) {
         let along = (window.right - window.left).div_ceil(Self::STEP) + 1;
         let cell = (row - window.top) / Self::STEP;
         let start = window.top + cell * Self::STEP;
         let part = ((row - start) as f32 + 0.5) / Self::STEP.min(window.bottom - start) as f32;
         let upper = &self.nodes[cell * along..][..along];
         let lower = &self.nodes[(cell + 1) * along..][..along];
-        let node = |i: usize| upper[i].towards(lower[i], part);
+        let node = |i: usize| upper[i].interpolate(lower[i], part);
         self.lights.clear();
         let mut left = node(0);
         for i in 0..along - 1 {
             let right = node(i + 1);
             let length = Self::STEP.min(window.right - window.left - i * Self::STEP);
             let pixel = 1.0 / length as f32;
-            let lights = (0..length).map(|j| left.towards(right, (j as f32 + 0.5) * pixel).light());
+            let lights =
+                (0..length).map(|j| left.interpolate(right, (j as f32 + 0.5) * pixel).shaded_radiance());
             self.lights.extend(lights);
             left = right;
         }
     }
 
     /// E/π at the centres of the pixels of that row, from the window's left.
-    pub(super) fn lights(&self) -> &[f32] {
+    pub(super) fn row_radiances(&self) -> &[f32] {
         &self.lights
     }
 }

@@ -49,10 +49,10 @@ impl Loops {
         self.points.extend(polygon);
         for start in (first..self.points.len()).step_by(Self::STRETCH) {
             let end = self.points.len().min(start + Self::STRETCH);
-            let sphere = Sphere::about(self.points[start..end].iter());
+            let sphere = Sphere::enclosing(self.points[start..end].iter());
             self.stretches.push(Stretch { start, end, sphere });
         }
-        let sphere = Sphere::about(self.points[first..].iter());
+        let sphere = Sphere::enclosing(self.points[first..].iter());
         self.polygons.push(Polygon { sphere, end: self.stretches.len() });
     }
 
@@ -64,15 +64,18 @@ impl Loops {
     /// The stretches of a polygon, in order.
     pub(super) fn stretches(&self, index: usize) -> impl Iterator<Item = (&Sphere, &[Vector3<f64>])> {
         let start = if index == 0 { 0 } else { self.polygons[index - 1].end };
-        self.of(&self.stretches[start..self.polygons[index].end])
+        self.points_of(&self.stretches[start..self.polygons[index].end])
     }
 
     /// The stretches of all polygons.
     pub(super) fn all_stretches(&self) -> impl Iterator<Item = (&Sphere, &[Vector3<f64>])> {
-        self.of(&self.stretches)
+        self.points_of(&self.stretches)
     }
 
-    fn of<'a>(&'a self, some: &'a [Stretch]) -> impl Iterator<Item = (&'a Sphere, &'a [Vector3<f64>])> {
+    fn points_of<'a>(
+        &'a self,
+        some: &'a [Stretch],
+    ) -> impl Iterator<Item = (&'a Sphere, &'a [Vector3<f64>])> {
         some.iter().map(|stretch| (&stretch.sphere, &self.points[stretch.start..stretch.end]))
     }
 }

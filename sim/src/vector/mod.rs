@@ -10,11 +10,11 @@ mod body;
 mod bounds;
 mod clip;
 mod coverage;
-mod kept_light;
 mod lamp;
 mod loops;
 mod painting;
 mod planes;
+mod radiance_cache;
 mod shadow;
 mod silhouette;
 mod source;
@@ -26,7 +26,7 @@ use contract::docking::Pose;
 use self::body::Body;
 use self::coverage::Coverage;
 use self::painting::{Canvas, Painting};
-use self::planes::Prepared;
+use self::planes::PreparedScene;
 use self::shadow::Shadows;
 use self::source::Source;
 use self::view::{Lens, View};
@@ -53,7 +53,7 @@ pub struct Drawer {
     lens: Lens,
     columns: usize,
     rows: usize,
-    prepared: Prepared,
+    prepared: PreparedScene,
     sun_shadows: Shadows,
     lamp_shadows: Shadows,
     coverage: Coverage,
@@ -71,7 +71,7 @@ impl Drawer {
             lens: Lens::new(camera)?,
             columns: camera.columns,
             rows: camera.rows,
-            prepared: Prepared::default(),
+            prepared: PreparedScene::default(),
             sun_shadows: Shadows::default(),
             lamp_shadows: Shadows::default(),
             coverage: Coverage::new(camera.columns, camera.rows),
@@ -94,7 +94,7 @@ impl Drawer {
         image.radiance.clear();
         image.radiance.resize(self.columns * self.rows, lighting.sky_radiance as f32);
         if self.prepared.scene != *scene {
-            self.prepared = Prepared::new(scene);
+            self.prepared = PreparedScene::new(scene);
             self.sun_shadows.forget();
             self.lamp_shadows.forget();
         }
@@ -122,9 +122,9 @@ impl Drawer {
             }
             self.painting.outline(part, ready_part, &canvas);
             if let Some(sun) = &lighting.sun {
-                self.painting.expect_shade(sun, &mut self.sun_shadows, &canvas);
+                self.painting.prepare_shadows(sun, &mut self.sun_shadows, &canvas);
             }
-            self.painting.lay(part, lighting, &mut canvas);
+            self.painting.paint_part(part, lighting, &mut canvas);
             self.painting.shade(part, lighting, &mut self.sun_shadows, &mut canvas);
             if let Some(lamp) = &lighting.floodlight {
                 self.painting.illuminate(part, lamp, &mut self.lamp_shadows, &mut canvas);

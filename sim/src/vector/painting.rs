@@ -7,9 +7,9 @@ use nalgebra::Vector3;
 
 use super::body::Body;
 use super::coverage::{Coverage, Run, Window};
-use super::kept_light::KeptLight;
 use super::lamp::{LampGrid, LampOnPlane};
-use super::planes::{Prepared, PreparedPart};
+use super::planes::{PreparedPart, PreparedScene};
+use super::radiance_cache::RadianceCache;
 use super::shadow::Shadows;
 use super::view::{Bounds, Outlines, View};
 use crate::scene::docking::{Floodlight, Lighting, Part, Sun};
@@ -17,7 +17,7 @@ use crate::scene::docking::{Floodlight, Lighting, Part, Sun};
 /// What a part is painted on.
 pub(super) struct Canvas<'a> {
     pub(super) view: View<'a>,
-    pub(super) prepared: &'a Prepared,
+    pub(super) prepared: &'a PreparedScene,
     pub(super) coverage: &'a mut Coverage,
     pub(super) radiance: &'a mut [f32],
     pub(super) columns: usize,
@@ -29,7 +29,7 @@ pub(super) struct Canvas<'a> {
 
 /// A facet in the image.
 #[derive(Debug, Clone)]
-struct SeenFacet {
+struct VisibleFacet {
     /// Its place in the part.
     facet: usize,
     /// Its polygons among the outlines.
@@ -39,7 +39,7 @@ struct SeenFacet {
 
 /// A plane of the part that shows its front and has facets in the image.
 #[derive(Debug, Clone)]
-struct SeenPlane {
+struct VisiblePlane {
     /// Its place in the scene.
     plane: usize,
     facets: Range<usize>,
@@ -50,10 +50,10 @@ struct SeenPlane {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Painting {
     outlines: Outlines,
-    facets: Vec<SeenFacet>,
-    planes: Vec<SeenPlane>,
+    facets: Vec<VisibleFacet>,
+    planes: Vec<VisiblePlane>,
     shadow: Outlines,
-    kept: KeptLight,
+    kept: RadianceCache,
     lamp_grid: LampGrid,
 }
 
@@ -79,7 +79,7 @@ impl Painting {
             for facet in &plane.facets {
                 let start = self.outlines.len();
                 let bounds = self.outlines.push(view, &part.facets[*facet].outer);
-                if bounds.window(canvas.coverage.whole()).is_none() {
+                if bounds.window(canvas.coverage.full_window()).is_none() {
                     self.outlines.truncate(start);
                     continue;
                 }
@@ -87,20 +87,24 @@ impl Painting {
                     self.outlines.push(view, hole);
                 }
                 bounds_of_plane = bounds_of_plane.with(bounds);
-                self.facets.push(SeenFacet { facet: *facet, polygons: start..self.outlines.len(), bounds });
+                self.facets.push(VisibleFacet {
+                    facet: *facet,
+                    polygons: start..self.outlines.len(),
+                    bounds,
+                });
             }
             if self.facets.len() > first {
                 let facets = first..self.facets.len();
-                self.planes.push(SeenPlane { plane: index, facets, bounds: bounds_of_plane });
+                self.planes.push(VisiblePlane { plane: index, facets, bounds: bounds_of_plane });
             }
         }
     }
 
     /// Finds the Sun's shadows on a part that shows one plane alone, and has [`Painting::lay`] keep its light there.
-    pub(super) fn expect_shade(&mut self, sun: &Sun, shadows: &mut Shadows, canvas: &Canvas<'_>) {
+    pub(super) fn prepare_shadows(&mut self, sun: &Sun, shadows: &mut Shadows, canvas: &Canvas<'_>) {
         let window = match &self.planes[..] {
             [seen] if sunlight(sun, &canvas.prepared.planes[seen.plane].normal) > 0.0 => {
-                let (plane, within) = (seen.plane, seen.bounds.window(canvas.coverage.whole()));
+                let (plane, within) = (seen.plane, seen.bounds.window(canvas.coverage.full_window()));
                 within.and_then(|within| self.outline_shadows(shadows, plane, within, canvas))
             }
             _ => None,
@@ -111,11 +115,11 @@ impl Painting {
     /// Lays the part over the image, lit by the Sun and from everywhere, as if nothing cast shadows on it.
     ///
     /// Here and below what rounding leaves under zero is zero: light is never negative.
-    pub(super) fn lay(&mut self, part: &Part, lighting: &Lighting, canvas: &mut Canvas<'_>) {
+    pub(super) fn paint_part(&mut self, part: &Part, lighting: &Lighting, canvas: &mut Canvas<'_>) {
         if self.planes.is_empty() {
             return;
         }
-        canvas.coverage.open(canvas.coverage.whole());
+        canvas.coverage.open(canvas.coverage.full_window());
         for seen in &self.planes {
             let plane = &canvas.prepared.planes[seen.plane];
             let light =
@@ -131,7 +135,7 @@ impl Painting {
         if canvas.in_body {
             let body = &mut *canvas.body;
             canvas.coverage.sweep(|row, column, run| {
-                kept.keep(row, column, &run);
+                kept.store(row, column, &run);
                 match run {
                     Run::Each(sums) => body.join(image, row, column, sums.iter().copied()),
                     Run::Same(sums, length) => {
@@ -142,7 +146,7 @@ impl Painting {
             return;
         }
         canvas.coverage.sweep(|row, column, run| {
-            kept.keep(row, column, &run);
+            kept.store(row, column, &run);
             let start = row * columns + column;
             match run {
                 Run::Each(sums) => {
@@ -183,7 +187,7 @@ impl Painting {
             if light <= 0.0 {
                 continue;
             }
-            let Some(within) = seen.bounds.window(canvas.coverage.whole()) else { continue };
+            let Some(within) = seen.bounds.window(canvas.coverage.full_window()) else { continue };
             let Some(window) = self.outline_shadows(shadows, seen.plane, within, canvas) else { continue };
             canvas.coverage.open(window);
             for polygon in 0..self.shadow.len() {
@@ -255,7 +259,7 @@ impl Painting {
             if !is_lit {
                 continue;
             }
-            let Some(window) = seen.bounds.window(canvas.coverage.whole()) else { continue };
+            let Some(window) = seen.bounds.window(canvas.coverage.full_window()) else { continue };
             self.outline_shadows(shadows, seen.plane, window, canvas);
             canvas.coverage.open(window);
             for facet in &self.facets[seen.facets] {
@@ -271,9 +275,9 @@ impl Painting {
             canvas.coverage.sweep(|row, column, run| {
                 if row_of_lights != Some(row) {
                     row_of_lights = Some(row);
-                    grid.light_row(window, row);
+                    grid.compute_row(window, row);
                 }
-                let lights = &grid.lights()[column - window.left..];
+                let lights = &grid.row_radiances()[column - window.left..];
                 let pixels = image[row * columns + column..].iter_mut().zip(lights);
                 match run {
                     Run::Each(sums) => {
@@ -290,7 +294,7 @@ impl Painting {
         }
     }
 
-    fn add(&self, facet: &SeenFacet, coverage: &mut Coverage, weights: [f32; 2]) {
+    fn add(&self, facet: &VisibleFacet, coverage: &mut Coverage, weights: [f32; 2]) {
         for polygon in facet.polygons.clone() {
             coverage.add(self.outlines.polygon(polygon), weights);
         }

@@ -55,13 +55,13 @@ pub(super) struct PreparedPart {
 
 /// The scene and what was made of it.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Prepared {
+pub(super) struct PreparedScene {
     pub(super) scene: DockingScene,
     pub(super) parts: Vec<PreparedPart>,
     pub(super) planes: Vec<Plane>,
 }
 
-impl Prepared {
+impl PreparedScene {
     pub(super) fn new(scene: &DockingScene) -> Self {
         let mut planes = Vec::new();
         let before = std::iter::once(None).chain(scene.parts.iter().map(Some));
@@ -75,13 +75,17 @@ impl Prepared {
                 }
                 PreparedPart {
                     planes: start..planes.len(),
-                    sphere: Sphere::about(part.facets.iter().flat_map(|facet| &facet.outer)),
+                    sphere: Sphere::enclosing(part.facets.iter().flat_map(|facet| &facet.outer)),
                     casters: if part.casts_shadow {
                         part.facets.iter().map(caster).collect()
                     } else {
                         Vec::new()
                     },
-                    outlines: if part.casts_shadow { FacetEdges::of(part) } else { FacetEdges::default() },
+                    outlines: if part.casts_shadow {
+                        FacetEdges::from_part(part)
+                    } else {
+                        FacetEdges::default()
+                    },
                     joins_previous: before.is_some_and(|before| touch(before, part)),
                 }
             })
@@ -128,7 +132,7 @@ fn planes_of(part: &Part, index_of_part: usize) -> Vec<Plane> {
     }
     for plane in &mut planes {
         let facets = plane.facets.iter().map(|index| &part.facets[*index]);
-        plane.extent = Extent::of(facets.flat_map(|facet| &facet.outer));
+        plane.extent = Extent::from_points(facets.flat_map(|facet| &facet.outer));
     }
     planes
 }
@@ -151,5 +155,5 @@ fn caster(facet: &Facet) -> Caster {
     for polygon in std::iter::once(&facet.outer).chain(&facet.holes) {
         loops.push(polygon.iter().copied());
     }
-    Caster { sphere: Sphere::about(facet.outer.iter()), area: signed.abs(), loops }
+    Caster { sphere: Sphere::enclosing(facet.outer.iter()), area: signed.abs(), loops }
 }

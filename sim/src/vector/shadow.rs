@@ -11,14 +11,14 @@ use super::beam::Beam;
 use super::bounds::{Extent, Sphere};
 use super::clip::keep_above;
 use super::coverage::Window;
-use super::planes::{Plane, Prepared};
+use super::planes::{Plane, PreparedScene};
 use super::silhouette::Silhouette;
 use super::source::Source;
 use super::view::View;
 
 impl Source {
     /// Where the outline of what casts is, seen from a plane; `sphere` is about all of it.
-    fn place(&self, outline: &Silhouette, sphere: &Sphere, plane: &Plane) -> Place {
+    fn classify(&self, outline: &Silhouette, sphere: &Sphere, plane: &Plane) -> RelativePosition {
         let highest = match self {
             Self::Parallel(_) => f64::INFINITY,
             Self::Point(position) => Shadows::BELOW_LIGHT * plane.height(position),
@@ -49,17 +49,17 @@ impl Source {
             }
         }
         if greatest <= Shadows::TOUCHING_M {
-            Place::Behind
+            RelativePosition::Behind
         } else if lowest >= -Shadows::TOUCHING_M && greatest <= highest {
-            Place::Between
+            RelativePosition::Between
         } else {
-            Place::Across
+            RelativePosition::Across
         }
     }
 }
 
 /// Where something is, seen from a plane.
-enum Place {
+enum RelativePosition {
     /// Nothing of it is over the plane.
     Behind,
     /// All of it is between plane and light; it may stand on the plane.
@@ -70,7 +70,7 @@ enum Place {
 
 /// What a part casts in one light.
 #[derive(Debug, Clone, Default)]
-struct Casting {
+struct PartShadow {
     /// Whether its dark side does.
     dark_side: bool,
     silhouette: Silhouette,
@@ -81,7 +81,7 @@ struct Casting {
 pub(super) struct Shadows {
     source: Option<Source>,
     /// Of each part.
-    casting: Vec<Casting>,
+    part_shadow: Vec<PartShadow>,
     trimmed: Vec<Vector3<f64>>,
     cut: Vec<Vector3<f64>>,
     shadow: Vec<Vector3<f64>>,
@@ -103,14 +103,14 @@ impl Shadows {
     }
 
     /// Turns to a light, unless it is the last one: then the outlines of what casts stay.
-    pub(super) fn update(&mut self, prepared: &Prepared, source: Source) {
+    pub(super) fn update(&mut self, prepared: &PreparedScene, source: Source) {
         if self.source == Some(source) {
             return;
         }
         self.source = Some(source);
-        self.casting.resize_with(prepared.parts.len(), Casting::default);
+        self.part_shadow.resize_with(prepared.parts.len(), PartShadow::default);
         let parts = prepared.scene.parts.iter().zip(&prepared.parts);
-        for ((part, ready), casting) in parts.zip(&mut self.casting) {
+        for ((part, ready), part_shadow) in parts.zip(&mut self.part_shadow) {
             let (mut lit, mut dark) = (0.0, 0.0);
             for (facet, caster) in part.facets.iter().zip(&ready.casters) {
                 let towards = source.from(&caster.sphere.centre);
@@ -123,9 +123,9 @@ impl Shadows {
                 };
                 if seen > 0.0 { lit += seen } else { dark -= seen }
             }
-            casting.dark_side = dark > lit * Self::LARGER;
-            let casts = |index: usize| source.casts(&part.facets[index], casting.dark_side);
-            casting.silhouette.find(&ready.outlines, casts);
+            part_shadow.dark_side = dark > lit * Self::LARGER;
+            let casts = |index: usize| source.casts_shadow(&part.facets[index], part_shadow.dark_side);
+            part_shadow.silhouette.find(&ready.outlines, casts);
         }
     }
 
@@ -134,40 +134,42 @@ impl Shadows {
     pub(super) fn find(
         &mut self,
         plane: &Plane,
-        prepared: &Prepared,
+        prepared: &PreparedScene,
         view: &View<'_>,
         window: Window,
         mut take: impl FnMut(&[Vector3<f64>]),
     ) {
-        let Some(source) = self.source.filter(|source| source.lights(plane)) else { return };
+        let Some(source) = self.source.filter(|source| source.illuminates(plane)) else { return };
         let beam = Beam::new(source, plane, view, window);
-        let parts = prepared.scene.parts.iter().zip(&prepared.parts).zip(&self.casting);
-        for (index, ((part, ready), casting)) in parts.enumerate() {
+        let parts = prepared.scene.parts.iter().zip(&prepared.parts).zip(&self.part_shadow);
+        for (index, ((part, ready), part_shadow)) in parts.enumerate() {
             if index == plane.part || ready.casters.is_empty() || beam.misses(&ready.sphere) {
                 continue;
             }
-            match source.place(&casting.silhouette, &ready.sphere, plane) {
-                Place::Behind => {}
-                Place::Between => {
-                    let outlines = &casting.silhouette.loops;
+            match source.classify(&part_shadow.silhouette, &ready.sphere, plane) {
+                RelativePosition::Behind => {}
+                RelativePosition::Between => {
+                    let outlines = &part_shadow.silhouette.loops;
                     for outline in 0..outlines.len() {
                         beam.trim(outlines, outline, &mut self.cut);
-                        if cast(&self.cut, plane, source, casting.dark_side, &mut self.shadow) {
+                        if cast(&self.cut, plane, source, part_shadow.dark_side, &mut self.shadow) {
                             take(&self.shadow);
                         }
                     }
                 }
-                Place::Across => {
+                RelativePosition::Across => {
                     for (facet, caster) in part.facets.iter().zip(&ready.casters) {
                         let is_behind = plane.height(&caster.sphere.centre) < -caster.sphere.radius;
-                        if is_behind || !source.casts(facet, casting.dark_side) || beam.misses(&caster.sphere)
+                        if is_behind
+                            || !source.casts_shadow(facet, part_shadow.dark_side)
+                            || beam.misses(&caster.sphere)
                         {
                             continue;
                         }
                         for polygon in 0..caster.loops.len() {
                             beam.trim(&caster.loops, polygon, &mut self.trimmed);
                             cut_between(&mut self.trimmed, plane, source, &mut self.cut);
-                            if cast(&self.cut, plane, source, casting.dark_side, &mut self.shadow) {
+                            if cast(&self.cut, plane, source, part_shadow.dark_side, &mut self.shadow) {
                                 take(&self.shadow);
                             }
                         }
@@ -218,5 +220,5 @@ fn cast(
     if dark_side {
         shadow.reverse();
     }
-    plane.extent.meets(&Extent::of(shadow.iter()))
+    plane.extent.overlaps(&Extent::from_points(shadow.iter()))
 }

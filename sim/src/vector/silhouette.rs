@@ -24,16 +24,16 @@ pub(super) struct FacetEdges {
 
 impl FacetEdges {
     /// Of a part; corners are the same when their coordinates are the same bits.
-    pub(super) fn of(part: &Part) -> Self {
+    pub(super) fn from_part(part: &Part) -> Self {
         let mut outlines = Self::default();
         let key = |corner: &Vector3<f64>| [corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()];
-        let mut places = std::collections::BTreeMap::new();
+        let mut indices = std::collections::BTreeMap::new();
         for facet in &part.facets {
             let start = outlines.edges.len();
             for polygon in std::iter::once(&facet.outer).chain(&facet.holes) {
                 for (from, to) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
                     let edge = [from, to].map(|corner| {
-                        *places.entry(key(corner)).or_insert_with(|| {
+                        *indices.entry(key(corner)).or_insert_with(|| {
                             outlines.corners.push(*corner);
                             (outlines.corners.len() - 1) as u32
                         })
@@ -122,7 +122,7 @@ mod tests {
         for part in &scene.parts {
             let lit = |facet: &crate::scene::docking::Facet| facet.normal.dot(&light) > 0.0;
             let mut silhouette = Silhouette::default();
-            silhouette.find(&FacetEdges::of(part), |index| lit(&part.facets[index]));
+            silhouette.find(&FacetEdges::from_part(part), |index| lit(&part.facets[index]));
             let facets = part.facets.iter().filter(|facet| lit(facet));
             let polygons = facets.flat_map(|facet| std::iter::once(&facet.outer).chain(&facet.holes));
             let whole: f64 = polygons

@@ -24,7 +24,7 @@ impl Source {
     }
 
     /// Whether a plane has its front to the light.
-    pub(super) fn lights(&self, plane: &Plane) -> bool {
+    pub(super) fn illuminates(&self, plane: &Plane) -> bool {
         match self {
             Self::Parallel(towards) => plane.normal.dot(towards) > 0.0,
             Self::Point(position) => plane.height(position) > 0.0,
@@ -32,7 +32,7 @@ impl Source {
     }
 
     /// Whether a facet is on the side of its part that casts.
-    pub(super) fn casts(&self, facet: &Facet, dark_side: bool) -> bool {
+    pub(super) fn casts_shadow(&self, facet: &Facet, dark_side: bool) -> bool {
         let Some(corner) = facet.outer.first() else { return false };
         (facet.normal.dot(&self.from(corner)) <= 0.0) == dark_side
     }

@@ -88,7 +88,7 @@ impl Lens {
     /// first pixel.
     pub(super) fn ray(&self, point: [f64; 2]) -> Vector3<f64> {
         let [u, v] = match &self.offsets {
-            Some(grid) => grid.at(point),
+            Some(grid) => grid.offset_at(point),
             None => self.offset_of(point),
         };
         Vector3::new(u / self.focal_px[0], v / self.focal_px[1], 1.0)
@@ -105,11 +105,11 @@ impl Lens {
         grid.reach(low, high)
     }
 
-    fn place(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+    fn pixel_position(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         if self.reach.is_none() {
             return [self.principal[0] + u, self.principal[1] + v];
         }
-        let point = self.projection.place(u, v);
+        let point = self.projection.pixel_position(u, v);
         [point.x + 0.5, point.y + 0.5]
     }
 }
@@ -140,14 +140,14 @@ impl OffsetGrid {
 
     /// Offsets that enclose those of a rectangle: of its border, at the grid's distances.
     fn reach(&self, low: [f64; 2], high: [f64; 2]) -> ([f64; 2], [f64; 2]) {
-        let places = |axis: usize| {
+        let coordinates = |axis: usize| {
             let steps = ((high[axis] - low[axis]) / self.step[axis]).ceil().max(1.0);
             (0..=steps as usize).map(move |i| low[axis] + (high[axis] - low[axis]) * i as f64 / steps)
         };
-        let across = places(0).flat_map(|x| [[x, low[1]], [x, high[1]]]);
-        let down = places(1).flat_map(|y| [[low[0], y], [high[0], y]]);
+        let across = coordinates(0).flat_map(|x| [[x, low[1]], [x, high[1]]]);
+        let down = coordinates(1).flat_map(|y| [[low[0], y], [high[0], y]]);
         let nothing = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        across.chain(down).map(|point| self.at(point)).fold(nothing, |(low, high), offset| {
+        across.chain(down).map(|point| self.offset_at(point)).fold(nothing, |(low, high), offset| {
             (
                 [0, 1].map(|axis| low[axis].min(offset[axis] - Self::MARGIN_PX)),
                 [0, 1].map(|axis| high[axis].max(offset[axis] + Self::MARGIN_PX)),
@@ -155,13 +155,13 @@ impl OffsetGrid {
         })
     }
 
-    fn at(&self, point: [f64; 2]) -> [f64; 2] {
-        let place = [0, 1].map(|axis| {
+    fn offset_at(&self, point: [f64; 2]) -> [f64; 2] {
+        let grid_position = [0, 1].map(|axis| {
             let along = point[axis] / self.step[axis];
             let cell = (along.max(0.0) as usize).min(self.cells[axis] - 1);
             (cell, along - cell as f64)
         });
-        let [(i, s), (j, t)] = place;
+        let [(i, s), (j, t)] = grid_position;
         let node = |i: usize, j: usize| self.nodes[j * (self.cells[0] + 1) + i];
         [0, 1].map(|axis| {
             let upper = node(i, j)[axis] + s * (node(i + 1, j)[axis] - node(i, j)[axis]);
@@ -290,7 +290,7 @@ impl Outlines {
         let offset = |point: &Vector3<f64>| [fx * (point.x / point.z), fy * (point.y / point.z)];
         let start = self.points.len();
         if lens.reach.is_none() {
-            self.points.extend(seen.iter().map(|point| lens.place(offset(point))));
+            self.points.extend(seen.iter().map(|point| lens.pixel_position(offset(point))));
         } else {
             self.offsets.clear();
             self.offsets.extend(seen.iter().map(offset));
@@ -305,8 +305,9 @@ impl Outlines {
 
 /// The image of a straight edge without its last point, by chords: a chord's sagitta goes with the square of its length.
 fn bend(lens: &Lens, from: [f64; 2], to: [f64; 2], points: &mut Vec<[f64; 2]>) {
-    let between = |t: f64| lens.place([from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])]);
-    let (start, end) = (lens.place(from), lens.place(to));
+    let between =
+        |t: f64| lens.pixel_position([from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])]);
+    let (start, end) = (lens.pixel_position(from), lens.pixel_position(to));
     let chord = [end[0] - start[0], end[1] - start[1]];
     let length = libm::hypot(chord[0], chord[1]).max(f64::MIN_POSITIVE);
     let sagitta = [0.25, 0.5, 0.75]

@@ -36,7 +36,7 @@ const WITNESS_RTN_M: [[f64; 3]; 5] = [
 fn two_implementations_fly_the_same_plan() {
     let trajectory = Trajectory::new(&fragment().orbit).unwrap();
     for (day, expected) in (1..).zip(WITNESS_RTN_M) {
-        let got = trajectory.at(noon(day)).chaser_rtn_km() * 1000.0;
+        let got = trajectory.states_at(noon(day)).chaser_rtn_km() * 1000.0;
         // Printed to 0.1 mm. The manoeuvres pass through elements of rounding 1e-15, that is 1e-8 m of semi-major axis
         // and, at 10 rad of drift a day, far less than 1 mm at the end.
         assert!((got - Vector3::from(expected)).norm() < 1e-3, "day {day}: {got} {expected:?}");
@@ -49,7 +49,7 @@ fn the_mean_range_at_noon_goes_down_as_planned() {
     let trajectory = Trajectory::new(&fragment().orbit).unwrap();
     for (day, expected_km) in [(1, 29.4), (2, 23.5), (3, 16.5), (4, 10.0), (5, 5.0)] {
         let ranges = (-50..50).map(|minute| {
-            trajectory.at(noon(day) + Duration::from_seconds(60.0 * f64::from(minute))).range_km()
+            trajectory.states_at(noon(day) + Duration::from_seconds(60.0 * f64::from(minute))).range_km()
         });
         let mean_km = ranges.sum::<f64>() / 100.0;
         assert!((mean_km / expected_km - 1.0).abs() < 0.1, "day {day}: {mean_km} km");
@@ -88,7 +88,7 @@ fn the_target_is_in_the_field_of_view_in_every_frame() {
     let mut widest = [0.0_f64; 2];
     for n in 0..schedule.frame_count() {
         let (_, time) = schedule.frame(n).unwrap();
-        let states = trajectory.at(time);
+        let states = trajectory.states_at(time);
         let seen = guidance.camera_from_icrs(&states).rotate(&states.line_of_sight_km());
         for (most, component) in widest.iter_mut().zip([seen.x, seen.y]) {
             *most = most.max(libm::atan2(component.abs(), seen.z).to_degrees());

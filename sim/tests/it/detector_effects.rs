@@ -2,8 +2,8 @@
 
 use boresight_sim::randomness::Seed;
 use boresight_sim::sensor::{
-    CosmicRayConfig, FixedPatternConfig, FlatLaws, HotPixelConfig, LineNoiseConfig, Opening, Sensor,
-    SensorConfig, SouthAtlanticConfig, TelegraphConfig,
+    CosmicRayConfig, ExposureInterval, FixedPatternConfig, FlatSamplers, HotPixelConfig, LineNoiseConfig,
+    Sensor, SensorConfig, SouthAtlanticConfig, TelegraphConfig,
 };
 use boresight_sim::truth::{ObjectKind, geographic};
 use boresight_sim::{Exposure, Simulation};
@@ -17,14 +17,14 @@ const FIVE_SIGMA: f64 = 5.0;
 /// Frames of a flat sky as deviations from the bias, electrons.
 fn flat_frames(config: &SensorConfig, size: usize, frames: u64, exposure_s: f64) -> Vec<Vec<f64>> {
     let sensor = Sensor::new(config, size, size).unwrap();
-    let (mut image, mut raw, mut laws) = (sensor.new_expected(), sensor.new_raw(), FlatLaws::new());
+    let (mut image, mut raw, mut samplers) = (sensor.new_expected(), sensor.new_raw(), FlatSamplers::new());
     let seed = Seed { seed: 17, case: 0 };
     (0..frames)
         .map(|frame| {
             image.clear(sensor.sky_electrons(exposure_s));
-            let charge =
-                sensor.collect(&mut image, &Opening { seed, middle_s: 10.0 * frame as f64, exposure_s });
-            sensor.read_out(&charge, &seed, frame, &mut laws, &mut raw).unwrap();
+            let charge = sensor
+                .collect(&mut image, &ExposureInterval { seed, middle_s: 10.0 * frame as f64, exposure_s });
+            sensor.read_out(&charge, &seed, frame, &mut samplers, &mut raw).unwrap();
             raw.dn().iter().map(|dn| (f64::from(*dn) - config.bias_dn) * config.gain_e_per_dn).collect()
         })
         .collect()

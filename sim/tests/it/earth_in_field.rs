@@ -79,7 +79,7 @@ fn stars_are_seen_above_the_limb_and_none_below_it() {
 fn nothing_is_to_be_found_where_the_background_fills_the_pixels() {
     let mut simulation = still();
     let detectable = |exposure: &Exposure| {
-        let detectable = |snr| Visibility::of_snr(snr) == Visibility::Detectable;
+        let detectable = |snr| Visibility::from_snr(snr) == Visibility::Detectable;
         stars(exposure).filter(|star| detectable(star.snr)).count()
     };
     assert!(detectable(&first(&simulation)) > 3);

@@ -26,7 +26,7 @@ fn the_expected_image_holds_the_electrons_of_the_truth_table_and_the_flat_level(
             let image = camera.expected();
             let flat_e = (60.0 + 40.0) * exposure.truth.exposure_s;
             assert!((image.flat_e() / flat_e - 1.0).abs() < 1e-14);
-            let in_image: f64 = image.drawn().map(|(_, signal_e)| signal_e).sum();
+            let in_image: f64 = image.object_pixels().map(|(_, signal_e)| signal_e).sum();
             let in_table: f64 = exposure.objects.iter().map(|object| object.electrons).sum();
             // Some thousand positive numbers are added in two orders: 1e-13. A star that was left out would show.
             assert!((in_image / in_table - 1.0).abs() < 1e-9, "frame {frame}: {in_image} and {in_table} e⁻");
@@ -64,7 +64,7 @@ fn motion_during_the_exposure_smears_stars_about_the_place_of_the_table() {
         let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
         for y in star.position.y as usize - 8..star.position.y as usize + 9 {
             for x in star.position.x as usize - 12..star.position.x as usize + 13 {
-                let signal = image.at(x, y) - image.flat_e();
+                let signal = image.electrons_at(x, y) - image.flat_e();
                 sum += signal;
                 first += signal * x as f64;
                 second += signal * (x as f64 - star.position.x) * (x as f64 - star.position.x);

@@ -8,18 +8,18 @@ use crate::small_scene::{simulator, still};
 fn hot_pixels_are_in_the_same_places_in_frames_seconds_and_minutes_apart() {
     let simulator = simulator(&still());
     let mut camera = simulator.camera().unwrap();
-    let mut places = |frame| {
+    let mut positions = |frame| {
         let objects = camera.expose(frame).unwrap().objects;
         let hot = objects.into_iter().filter(|object| object.kind == ObjectKind::HotPixel);
         hot.map(|object| (object.id, object.position)).collect::<Vec<_>>()
     };
     // A frame every quarter of a second.
-    let first = places(0);
+    let first = positions(0);
     assert_eq!(first.len(), 12);
     for frame in [1, 30, 61, 999] {
-        assert_eq!(places(frame), first, "frame {frame}");
+        assert_eq!(positions(frame), first, "frame {frame}");
     }
     // Their numbers count pixels row by row.
-    let is_its_place = |(id, at): &(u32, contract::PixelPoint)| f64::from(*id) == 160.0 * at.y + at.x;
-    assert!(first.iter().all(is_its_place), "{first:?}");
+    let is_its_position = |(id, at): &(u32, contract::PixelPoint)| f64::from(*id) == 160.0 * at.y + at.x;
+    assert!(first.iter().all(is_its_position), "{first:?}");
 }

@@ -1,4 +1,4 @@
-//! The simulator from outside, one module per suite: `cargo test -p boresight-sim --test it pixel_law::` runs one suite.
+//! The simulator from outside, one module per suite: `cargo test -p boresight-sim --test it pixel_distribution::` runs one suite.
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
@@ -19,7 +19,7 @@ mod golden_radiometry;
 mod hot_pixels;
 mod interlace;
 mod moon_in_field;
-mod pixel_law;
+mod pixel_distribution;
 mod planets;
 mod sparse;
 mod switching;

@@ -16,19 +16,19 @@ use nalgebra::Vector3;
 use crate::small_scene::{looking_at, simulator, still};
 
 /// DE421's Moon at one instant, from the chaser, and the scene of a camera that looks at it.
-struct Sight {
+struct MoonView {
     from_chaser_km: Vector3<f64>,
     simulation: Simulation,
 }
 
 /// The first instants of the reference at which the Earth is far from the line to the Moon.
-fn sights() -> Vec<Sight> {
+fn views() -> Vec<MoonView> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../golden/moon/moon_de421.csv");
     let text = fs::read_to_string(path).unwrap();
-    text.lines().skip(1).step_by(4).filter_map(sight).take(20).collect()
+    text.lines().skip(1).step_by(4).filter_map(view).take(20).collect()
 }
 
-fn sight(line: &str) -> Option<Sight> {
+fn view(line: &str) -> Option<MoonView> {
     let [tdb_j2000_s, x, y, z] =
         *line.split(',').map(|cell| cell.parse::<f64>().unwrap()).collect::<Vec<_>>()
     else {
@@ -43,12 +43,12 @@ fn sight(line: &str) -> Option<Sight> {
     simulation.schedule[0].start_utc = utc;
     simulation.solar_system = Switch::On;
     simulation.shutter = ShutterConfig::Fixed { exposure_s: 1e-6 };
-    let states = Trajectory::new(&simulation.orbit).unwrap().at(time);
+    let states = Trajectory::new(&simulation.orbit).unwrap().states_at(time);
     let from_chaser_km = Vector3::new(x, y, z) - states.chaser.position_km;
     let towards: Direction<Icrs> = Direction::from_vector(from_chaser_km).unwrap();
     simulation.attitude = looking_at(towards.ra().degrees() + 0.3, towards.dec().degrees());
     let up = from_chaser_km.normalize().dot(&states.chaser.position_km.normalize());
-    (up > -0.3).then_some(Sight { from_chaser_km, simulation })
+    (up > -0.3).then_some(MoonView { from_chaser_km, simulation })
 }
 
 fn the_moon(exposure: &Exposure) -> Option<&ObjectTruth> {
@@ -56,49 +56,49 @@ fn the_moon(exposure: &Exposure) -> Option<&ObjectTruth> {
 }
 
 /// Where the image has a direction.
-fn place(sight: &Sight, exposure: &Exposure, direction: Vector3<f64>) -> PixelPoint {
+fn place(view: &MoonView, exposure: &Exposure, direction: Vector3<f64>) -> PixelPoint {
     let direction: Direction<Icrs> = Direction::from_vector(direction).unwrap();
-    let projection = Projection::new(&sight.simulation.camera).unwrap();
+    let projection = Projection::new(&view.simulation.camera).unwrap();
     projection.project(&(exposure.truth.camera_from_icrs * direction)).unwrap()
 }
 
 /// Angle Sun–Moon–chaser, degrees, with the Sun at 1 au: its distance changes nothing of note.
-fn phase_deg(sight: &Sight, exposure: &Exposure) -> f64 {
-    let sun_km = exposure.truth.sun.vector() * 149_597_870.7 - sight.from_chaser_km;
-    sun_km.angle(&-sight.from_chaser_km).to_degrees()
+fn phase_deg(view: &MoonView, exposure: &Exposure) -> f64 {
+    let sun_km = exposure.truth.sun.vector() * 149_597_870.7 - view.from_chaser_km;
+    sun_km.angle(&-view.from_chaser_km).to_degrees()
 }
 
 #[test]
 fn the_disk_is_where_de421_has_it_as_large_as_it_is_and_lit_from_the_sun() {
-    let sights = sights();
-    assert_eq!(sights.len(), 20);
+    let views = views();
+    assert_eq!(views.len(), 20);
     let mut phases = Vec::new();
-    for sight in &sights {
-        let simulator = simulator(&sight.simulation);
+    for view in &views {
+        let simulator = simulator(&view.simulation);
         let mut camera = simulator.camera().unwrap();
         let exposure = camera.expose(0).unwrap();
-        let phase = phase_deg(sight, &exposure);
+        let phase = phase_deg(view, &exposure);
         phases.push(phase);
         let Some(moon) = the_moon(&exposure) else {
             assert!(phase > 170.0, "no Moon at {phase}°");
             continue;
         };
         // A pixel is 1.4′; the ephemeris errs by 0.02°, 0.85 px; 6″ of aberration by the orbit.
-        let towards: Direction<Icrs> = Direction::from_vector(sight.from_chaser_km).unwrap();
+        let towards: Direction<Icrs> = Direction::from_vector(view.from_chaser_km).unwrap();
         let error = moon.astrometric.unwrap().separation(&towards).degrees();
         assert!(error < 0.032, "{error}°");
-        let centre = place(sight, &exposure, sight.from_chaser_km);
+        let centre = place(view, &exposure, view.from_chaser_km);
 
         // The lit pixels about the centre: none outside the disk, and the bright half towards the Sun.
-        let sun_side = sight.from_chaser_km + exposure.truth.sun.vector() * 300.0;
-        let to_sun = place(sight, &exposure, sun_side);
+        let sun_side = view.from_chaser_km + exposure.truth.sun.vector() * 300.0;
+        let to_sun = place(view, &exposure, sun_side);
         let (dx, dy) = (to_sun.x - centre.x, to_sun.y - centre.y);
         let (bx, by) = (moon.position.x - centre.x, moon.position.y - centre.y);
         let along = (bx * dx + by * dy) / libm::hypot(dx, dy);
         let aside = (bx * dy - by * dx) / libm::hypot(dx, dy);
         assert!(aside.abs() < 1.2, "{aside} px aside at {phase}°");
-        let radius_rad = libm::asin(1737.4 / sight.from_chaser_km.norm());
-        let camera_config = &sight.simulation.camera;
+        let radius_rad = libm::asin(1737.4 / view.from_chaser_km.norm());
+        let camera_config = &view.simulation.camera;
         let (fx, fy) = camera_config.focal_length_px();
         let radius_px = radius_rad * (fx * fy).sqrt();
         assert!(phase < 60.0 || along > 0.1 * radius_px, "{along} px towards the Sun at {phase}°");
@@ -108,9 +108,9 @@ fn the_disk_is_where_de421_has_it_as_large_as_it_is_and_lit_from_the_sun() {
             // Lommel–Seeliger: nearly even, so that half the level is the limb; the terminator takes its part.
             let expected = camera.expected();
             let (columns, rows) = expected.size();
-            let level = expected.at(centre.x.round() as usize, centre.y.round() as usize);
+            let level = expected.electrons_at(centre.x.round() as usize, centre.y.round() as usize);
             let lit = (0..columns * rows)
-                .filter(|i| expected.at(i % columns, i / columns) > 0.5 * level)
+                .filter(|i| expected.electrons_at(i % columns, i / columns) > 0.5 * level)
                 .count() as f64;
             let disk = std::f64::consts::PI * radius_rad * radius_rad * fx * fy;
             let part = 0.5 * (1.0 + libm::cos(phase.to_radians()));
@@ -161,16 +161,16 @@ fn sun_distance_au(time: Epoch) -> f64 {
 #[test]
 fn its_light_is_that_of_allens_table_in_the_table_and_in_the_image() {
     let (mut checked, mut distances_km) = (0, Vec::new());
-    for sight in sights() {
-        let simulator = simulator(&sight.simulation);
+    for view in views() {
+        let simulator = simulator(&view.simulation);
         let mut camera = simulator.camera().unwrap();
         let exposure = camera.expose(0).unwrap();
-        let phase = phase_deg(&sight, &exposure);
+        let phase = phase_deg(&view, &exposure);
         if phase > 150.0 {
             continue;
         }
         let moon = the_moon(&exposure).unwrap_or_else(|| panic!("no Moon at {phase}°"));
-        let distance_km = sight.from_chaser_km.norm();
+        let distance_km = view.from_chaser_km.norm();
         let expected = published_magnitude(phase, distance_km, sun_distance_au(exposure.truth.time));
         let magnitude = moon.magnitude.unwrap();
         // The table's two hundredths scatter by 0.05 about a smooth curve up to 120°, and by 0.11 beyond.
@@ -182,7 +182,7 @@ fn its_light_is_that_of_allens_table_in_the_table_and_in_the_image() {
 
         // The image has these electrons more than one without the Moon; a star has none in a microsecond.
         let with: f64 = camera.expected().iter().sum();
-        let dark = Simulation { solar_system: Switch::Off, ..sight.simulation.clone() };
+        let dark = Simulation { solar_system: Switch::Off, ..view.simulation.clone() };
         let dark = crate::small_scene::simulator(&dark);
         let mut camera = dark.camera().unwrap();
         camera.expose(0).unwrap();
@@ -204,8 +204,8 @@ fn off_there_is_none_and_on_only_the_stars_behind_it_are_missing() {
         star.map(|star| star.id).collect()
     };
     let (mut moons, mut hidden, mut brightest_e) = (0, 0, 0.0_f64);
-    for sight in sights() {
-        let mut on = sight.simulation.clone();
+    for view in views() {
+        let mut on = view.simulation.clone();
         on.shutter = ShutterConfig::Fixed { exposure_s: 0.25 };
         on.catalog.magnitude_limit = Some(12.0);
         let off = Simulation { solar_system: Switch::Off, ..on.clone() };
@@ -236,8 +236,8 @@ fn off_there_is_none_and_on_only_the_stars_behind_it_are_missing() {
 #[test]
 fn the_shutter_follows_its_brightest_pixel() {
     let mut checked = 0;
-    for sight in sights().iter().take(6) {
-        let mut simulation = sight.simulation.clone();
+    for view in views().iter().take(6) {
+        let mut simulation = view.simulation.clone();
         simulation.shutter = ShutterConfig::Automatic {
             min_s: 1e-6,
             max_s: 0.25,

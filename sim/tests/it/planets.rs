@@ -57,7 +57,7 @@ fn directions_and_distances_are_those_of_de421_to_minutes_of_arc() {
     let mut worst_distance = [0.0_f64; 9];
     for Reference { tdb_j2000_s, planet, direction, distance_au } in references {
         let observer = Observer::new(epoch(tdb_j2000_s), Vector3::zeros(), Vector3::zeros()).unwrap();
-        let sight = planet.seen(tdb_j2000_s, &observer).unwrap();
+        let sight = planet.apparent(tdb_j2000_s, &observer).unwrap();
         let error_arcmin = sight.astrometric.separation(&direction).arcsec() / 60.0;
         let number = planet.number() as usize;
         worst[number] = worst[number].max(error_arcmin);
@@ -112,7 +112,7 @@ fn a_planet_is_where_de421_has_it_in_the_image_and_in_the_table() {
         assert!(planet.magnitude.unwrap() < -1.5);
         // Its light is in the image.
         let (x, y) = (planet.position.x.round() as usize, planet.position.y.round() as usize);
-        assert!(camera.expected().at(x, y) > 0.5 * planet.peak_electrons);
+        assert!(camera.expected().electrons_at(x, y) > 0.5 * planet.peak_electrons);
         // No star of the catalogue has its number's place.
         let star = exposure.objects.iter().filter(|object| object.kind == ObjectKind::Star);
         assert!(star.clone().all(|star| star.magnitude.unwrap() > planet.magnitude.unwrap()));

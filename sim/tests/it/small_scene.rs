@@ -7,8 +7,8 @@ use boresight_sim::onboard::{RoiConfig, ScanOrder, ShutterConfig};
 use boresight_sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use boresight_sim::scene::{BackgroundConfig, TargetConfig};
 use boresight_sim::sensor::{
-    BloomingConfig, CosmicRayConfig, FixedPatternConfig, HotLaw, HotPixelConfig, LineNoiseConfig,
-    NoiseConfig, SensorConfig, Switch, TelegraphConfig,
+    BloomingConfig, CosmicRayConfig, FixedPatternConfig, HotPixelConfig, HotPixelDistribution,
+    LineNoiseConfig, NoiseConfig, SensorConfig, Switch, TelegraphConfig,
 };
 use boresight_sim::truth::{
     AttitudeConfig, ControlConfig, DriftConfig, ElementsConfig, GroupConfig, Guidance, KnowledgeConfig,
@@ -28,7 +28,7 @@ pub(crate) fn simulator(simulation: &Simulation) -> Simulator {
 /// exposure; whole images; every noise on. Nothing in it is saturated.
 pub(crate) fn still() -> Simulation {
     let orbit = orbit();
-    let states = Trajectory::new(&orbit).unwrap().at(clock::parse_utc(START_UTC).unwrap());
+    let states = Trajectory::new(&orbit).unwrap().states_at(clock::parse_utc(START_UTC).unwrap());
     let ahead: Direction<Icrs> = Direction::from_vector(states.line_of_sight_km()).unwrap();
     Simulation {
         seed: 20120425,
@@ -130,7 +130,7 @@ pub(crate) fn defective(mut simulation: Simulation) -> Simulation {
     let sensor = &mut simulation.sensor;
     sensor.hot_pixels = HotPixelConfig {
         count: 40,
-        law: HotLaw::Pareto { index: 1.5 },
+        law: HotPixelDistribution::Pareto { index: 1.5 },
         telegraph: Some(TelegraphConfig { fraction: 0.5, low_level: 0.2, high_s: 20.0, low_s: 40.0 }),
         ..sensor.hot_pixels.clone()
     };

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use boresight_sim::{Drawing, Simulation, Simulator};
+use boresight_sim::{PixelSelection, Simulation, Simulator};
 
 use crate::{argon, small_scene};
 
 /// The frames with their regions, telemetry, truth and objects, to the bit.
 fn assert_sparse_is_whole(simulator: &Simulator, frames: Range<u64>) {
     let mut seen = simulator.camera().unwrap();
-    let mut all = simulator.camera().unwrap().drawing(Drawing::All);
+    let mut all = simulator.camera().unwrap().with_pixel_selection(PixelSelection::All);
     let mut regions = 0;
     for number in frames.clone() {
         let (seen, all) = (seen.expose(number).unwrap(), all.expose(number).unwrap());
@@ -22,7 +22,7 @@ fn assert_sparse_is_whole(simulator: &Simulator, frames: Range<u64>) {
 /// The images above a floor of a camera that suppresses the rest, to the bit.
 fn assert_above_is_whole(simulator: &Simulator, floor_dn: u16, frames: Range<u64>) {
     let (mut seen, mut all) =
-        (simulator.camera().unwrap(), simulator.camera().unwrap().drawing(Drawing::All));
+        (simulator.camera().unwrap(), simulator.camera().unwrap().with_pixel_selection(PixelSelection::All));
     let mut lit = 0;
     for number in frames {
         let (seen, all) = (seen.expose(number).unwrap(), all.expose(number).unwrap());

@@ -104,9 +104,12 @@ fn no_camera_is_inside_of_it_in_any_frame() {
     simulation.target = black_sphere(450.0);
     simulator(&simulation);
     simulation.target = black_sphere(600.0);
-    let told = refusal(&simulation);
-    assert!(told.starts_with("orbit.relative is 5") && told.contains("m from the target's centre"), "{told}");
-    assert!(told.ends_with("expected a camera outside of the target"), "{told}");
+    let message = refusal(&simulation);
+    assert!(
+        message.starts_with("orbit.relative is 5") && message.contains("m from the target's centre"),
+        "{message}"
+    );
+    assert!(message.ends_with("expected a camera outside of the target"), "{message}");
     simulation.target = black_box();
     simulator(&simulation);
     let relative = &mut simulation.orbit.relative;
@@ -118,8 +121,11 @@ fn no_camera_is_inside_of_it_in_any_frame() {
 fn exposures_hits_and_epochs_that_cannot_be_are_refused() {
     let mut simulation = still();
     simulation.shutter = ShutterConfig::Fixed { exposure_s: 0.26 };
-    let told = refusal(&simulation);
-    assert!(told.contains("shutter.exposure_s is 0.26") && told.contains("0.25 s (schedule)"), "{told}");
+    let message = refusal(&simulation);
+    assert!(
+        message.contains("shutter.exposure_s is 0.26") && message.contains("0.25 s (schedule)"),
+        "{message}"
+    );
     // A single frame lasts as long as it likes; two groups are apart by less than their cadence.
     simulation.schedule[0].count = 1;
     simulator(&simulation);
@@ -132,15 +138,15 @@ fn exposures_hits_and_epochs_that_cannot_be_are_refused() {
     simulation.sensor.cosmic_rays = Some(crate::small_scene::cosmic_rays(1e4));
     simulator(&simulation);
     simulation.sensor.cosmic_rays.as_mut().unwrap().readout_s = 1000.0;
-    let told = refusal(&simulation);
-    assert!(told.contains("sensor.cosmic_rays.rate_per_cm2_s is 10000 (1.371e5 hits"), "{told}");
-    assert!(told.contains("expected at most 1e5 hits in a frame"), "{told}");
+    let message = refusal(&simulation);
+    assert!(message.contains("sensor.cosmic_rays.rate_per_cm2_s is 10000 (1.371e5 hits"), "{message}");
+    assert!(message.contains("expected at most 1e5 hits in a frame"), "{message}");
 
     for epoch in ["1989-12-31T00:00:00Z", "2051-01-01T00:00:00Z"] {
         let mut simulation = still();
         simulation.orbit.epoch_utc = epoch.into();
-        let told = refusal(&simulation);
-        assert!(told.contains(epoch) && told.contains("from 1990-01-01 to 2050-01-05"), "{told}");
+        let message = refusal(&simulation);
+        assert!(message.contains(epoch) && message.contains("from 1990-01-01 to 2050-01-05"), "{message}");
     }
 }
 

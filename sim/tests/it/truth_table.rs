@@ -75,9 +75,13 @@ fn every_star_of_the_catalogue_with_light_on_the_detector_is_in_the_table() {
                 expected.insert(star.id);
             }
         }
-        let told: Vec<u32> = stars(&exposure).iter().map(|star| star.id).collect();
-        assert!(told.is_sorted_by(|a, b| a < b), "stars are in ascending order, each once");
-        assert_eq!(told.into_iter().collect::<BTreeSet<_>>(), expected, "at RA {ra_deg}°, Dec {dec_deg}°");
+        let reported: Vec<u32> = stars(&exposure).iter().map(|star| star.id).collect();
+        assert!(reported.is_sorted_by(|a, b| a < b), "stars are in ascending order, each once");
+        assert_eq!(
+            reported.into_iter().collect::<BTreeSet<_>>(),
+            expected,
+            "at RA {ra_deg}°, Dec {dec_deg}°"
+        );
         // 2.9 stars a square degree on average, 11 square degrees; at the galactic pole about half of it.
         assert!(expected.len() > 8, "{} stars at RA {ra_deg}°, Dec {dec_deg}°", expected.len());
     }
@@ -227,7 +231,7 @@ fn the_columns_of_a_frame_are_what_their_definitions_say() {
         assert_eq!(truth.time, start + hifitime::Unit::Second * (15.0 * frame as f64));
         assert_eq!((telemetry.time, telemetry.exposure_s), (truth.time, truth.exposure_s));
 
-        let states = trajectory.at(truth.time);
+        let states = trajectory.states_at(truth.time);
         let (chaser, target) = (states.chaser.position_km, states.target.position_km);
         assert_eq!((truth.position_km, truth.velocity_km_s), (chaser, states.chaser.velocity_km_s));
         // Positions of 7000 km are known to 1e-12 km.
@@ -273,7 +277,7 @@ fn the_columns_of_an_object_are_what_their_definitions_say() {
         let (mut moment_x, mut moment_y) = (0.0, 0.0);
         for y in 0..120 {
             for x in 0..160 {
-                let signal = image.at(x, y) - image.flat_e();
+                let signal = image.electrons_at(x, y) - image.flat_e();
                 electrons += signal;
                 (moment_x, moment_y) = (moment_x + signal * x as f64, moment_y + signal * y as f64);
                 peak = peak.max(signal);
@@ -293,7 +297,7 @@ fn the_columns_of_an_object_are_what_their_definitions_say() {
         assert!(close(target.snr, snr2.sqrt()), "{} {}", target.snr, snr2.sqrt());
         assert!(close(target.radius_px, radius), "{} {radius}", target.radius_px);
         assert!(close(target.cut, lost / electrons), "{} {}", target.cut, lost / electrons);
-        assert_eq!(exposure.truth.target_visibility, Visibility::of_snr(target.snr));
+        assert_eq!(exposure.truth.target_visibility, Visibility::from_snr(target.snr));
         // A pixel-integrated Gaussian of 0.8 px is off its centre by 1e-6 px; what is below the floor of 0.01 e⁻ a
         // pixel is some 2 e⁻ at some 12 px, evenly around.
         let centroid = PixelPoint::new(moment_x / electrons, moment_y / electrons);
@@ -396,11 +400,13 @@ fn in_the_earths_shadow_the_target_fades_through_penumbra_and_is_gone_in_umbra()
             changes.push(truth.shadow);
             // Where exactly: the two seconds before, in steps of 10 ms, or 75 m.
             for step in 0..200 {
-                let at =
-                    trajectory.at(truth.time - hifitime::Unit::Millisecond * (10 * step)).target.position_km;
-                let told = shadow::classify(shadow::sunlit_fraction(&at, &sun_km));
+                let at = trajectory
+                    .states_at(truth.time - hifitime::Unit::Millisecond * (10 * step))
+                    .target
+                    .position_km;
+                let reported = shadow::classify(shadow::sunlit_fraction(&at, &sun_km));
                 assert!(
-                    shadow_of(&at, &sun_km).is_none_or(|expected| told == expected),
+                    shadow_of(&at, &sun_km).is_none_or(|expected| reported == expected),
                     "{step} before {frame}"
                 );
             }

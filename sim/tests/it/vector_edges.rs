@@ -107,10 +107,11 @@ fn a_part_in_many_facets_is_the_part_in_one() {
         part("sheet", vec![flat(&[[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]], 0.0, 0.7)]),
     ]);
     let mut cut = whole.clone();
-    let place = |i: usize| -0.5 + i as f64 / 7.0;
+    let coordinate = |i: usize| -0.5 + i as f64 / 7.0;
     cut.parts[1].facets = (0..49)
         .map(|i| {
-            let (x, y) = ([place(i % 7), place(i % 7 + 1)], [place(i / 7), place(i / 7 + 1)]);
+            let (x, y) =
+                ([coordinate(i % 7), coordinate(i % 7 + 1)], [coordinate(i / 7), coordinate(i / 7 + 1)]);
             flat(&[[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]], 0.0, 0.7)
         })
         .collect();

@@ -66,7 +66,7 @@ fn at_every_pointing_the_field_has_every_star_and_no_other() {
     for i in 0..POINTINGS {
         let camera = camera_at(i);
         let mut sources = Vec::new();
-        field.look(&observer, &CameraMotion::still(camera), &projection, |_| 0.0, &mut sources);
+        field.add_visible(&observer, &CameraMotion::still(camera), &projection, |_| 0.0, &mut sources);
         let shown: Vec<u32> = sources.iter().map(|source| source.id).collect();
         let expected: Vec<u32> = apparent
             .iter()

@@ -226,7 +226,7 @@ impl FrameRecord {
             .objects
             .iter()
             .filter(|object| object.kind != ObjectKind::Target && object.cut < MAX_CUT)
-            .filter(|object| Visibility::of_snr(object.snr) == Visibility::Detectable)
+            .filter(|object| Visibility::from_snr(object.snr) == Visibility::Detectable)
             .collect();
         objects.sort_by(|a, b| {
             a.kind.cmp(&b.kind).then(b.electrons.total_cmp(&a.electrons)).then(a.id.cmp(&b.id))

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contract::docking::{
-    DockingOutcome, DockingSolution, Doubt, Features, FieldMeasurement, NoPose, Pose, PoseEstimate,
+    DockingOutcome, DockingSolution, FailedCheck, Features, FieldMeasurement, NoPose, Pose, PoseEstimate,
 };
 use nalgebra::{Matrix6, Vector3, Vector6};
 
@@ -170,7 +170,7 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
             }
             Ok(DockingSolution::RangeOnly { range_m, sigma_m })
         }
-        text if let Ok(doubt) = text.parse::<Doubt>() => {
+        text if let Ok(doubt) = text.parse::<FailedCheck>() => {
             Ok(DockingSolution::Doubtful { measurement: measurement(row)?, doubt })
         }
         _ => {
@@ -236,7 +236,7 @@ mod tests {
         outcome(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper })))
     }
 
-    fn doubtful_outcome(doubt: Doubt) -> DockingOutcome {
+    fn doubtful_outcome(doubt: FailedCheck) -> DockingOutcome {
         let DockingSolution::Measured(measurement) = measured_outcome().solution else {
             unreachable!("it is measured")
         };
@@ -255,8 +255,8 @@ mod tests {
             measured_outcome(),
             outcome(DockingSolution::RangeOnly { range_m: 312.5, sigma_m: 2.0 }),
             DockingOutcome::none(NoPose::TooFewFeatures),
-            doubtful_outcome(Doubt::Residuals),
-            doubtful_outcome(Doubt::Repeated),
+            doubtful_outcome(FailedCheck::Residuals),
+            doubtful_outcome(FailedCheck::Repeated),
             DockingOutcome::none(NoPose::Failed("out of film, twice".to_owned())),
         ]
         .into_iter()

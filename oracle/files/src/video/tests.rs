@@ -102,7 +102,7 @@ fn check_golden(name: &str, rows: usize, tolerance: u16) {
         for y in 0..field.image().rows() {
             for x in 0..48 {
                 let expected = golden_grey(x, field.lines().camera_row(y), k / 2);
-                let got = field.image().at(x, y);
+                let got = field.image().dn_at(x, y);
                 assert!(
                     got.abs_diff(expected) <= tolerance,
                     "{name}, field {k}, ({x}, {y}): {got}, {expected}"

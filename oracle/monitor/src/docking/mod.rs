@@ -40,13 +40,13 @@ impl MonitoredWorld for DockingMission {
     }
 
     fn time(&self, field: u64) -> Option<Epoch> {
-        Some(self.simulator().moment(field).ok()?.time)
+        Some(self.simulator().field_state(field).ok()?.time)
     }
 
     fn overview(&self, measurements: &Measurements, context: &MonitorContext) -> Result<[Value; 2], Failure> {
         let (scenario, simulator) = (self.scenario(), self.simulator());
         let plan = Plan::new("m", &context.frames, MARGIN_M_S, |field| {
-            let state = simulator.moment(field).ok()?.state;
+            let state = simulator.field_state(field).ok()?.state;
             Some([state.range_m(), state.range_rate_m_s()])
         });
         let cameras: Vec<Value> = scenario.cameras.iter().map(|c| camera(&c.name, &c.camera)).collect();

@@ -49,12 +49,14 @@ impl MonitoredWorld for FarRangeMission {
         let plan = Plan::new("km", frames, MARGIN_M_S, |frame| {
             at(frame).map(|time| range_and_rate(&trajectory, time))
         });
-        let radius_km = at(frames.start).map(|time| trajectory.at(time).target.position_km.norm());
+        let radius_km = at(frames.start).map(|time| trajectory.states_at(time).target.position_km.norm());
         let step = ((frames.end - frames.start) / ORBIT_POINTS).max(1);
         let orbit: Vec<(u64, [f64; 3])> = frames
             .clone()
             .step_by(usize::try_from(step).unwrap_or(usize::MAX))
-            .filter_map(|frame| at(frame).map(|time| (frame, trajectory.at(time).chaser_rtn_km().into())))
+            .filter_map(|frame| {
+                at(frame).map(|time| (frame, trajectory.states_at(time).chaser_rtn_km().into()))
+            })
             .collect();
         // Nobody looked between one day and the next: no line crosses that time.
         let begins: Vec<u64> = schedule.sequences().map(|day| day.frames.start).collect();

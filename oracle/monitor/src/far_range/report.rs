@@ -53,7 +53,7 @@ impl FarRangeReporter<'_> {
     }
 
     fn model(&self, truth: &FrameTruth, outcome: Option<&Outcome>) -> Model {
-        let states = self.trajectory.at(truth.time);
+        let states = self.trajectory.states_at(truth.time);
         let rtn_from_icrs = states.target.rtn_from_icrs();
         let position: [f64; 3] = states.chaser_rtn_km().into();
         let view = |camera_from_icrs: &contract::Rotation<contract::CameraFrame, contract::Icrs>| {
@@ -74,7 +74,7 @@ impl FarRangeReporter<'_> {
 
 /// Range, km, and range rate, m/s.
 pub(crate) fn range_and_rate(trajectory: &Trajectory, time: Epoch) -> [f64; 2] {
-    let states = trajectory.at(time);
+    let states = trajectory.states_at(time);
     let apart = states.line_of_sight_km();
     let range_km = apart.norm();
     let rate_km_s = apart.dot(&(states.target.velocity_km_s - states.chaser.velocity_km_s)) / range_km;
@@ -178,7 +178,7 @@ fn recognised(outcome: Option<&Outcome>) -> Vec<Shape> {
 fn true_positions(objects: &[ObjectTruth]) -> Vec<Shape> {
     objects
         .iter()
-        .filter(|object| Visibility::of_snr(object.snr) != Visibility::Invisible && object.cut < MAX_CUT)
+        .filter(|object| Visibility::from_snr(object.snr) != Visibility::Invisible && object.cut < MAX_CUT)
         .take(MAX_TRUTHS)
         .map(|object| {
             let kind = format!("truth {}", object.kind.code());

@@ -17,7 +17,7 @@ const TABLE_BINS: usize = 60;
 pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
     let trajectory = Trajectory::new(&run.run_file.scenario.orbit)?;
     let rtn_km: Vec<[f64; 3]> =
-        run.truths.iter().map(|truth| trajectory.at(truth.time).chaser_rtn_km().into()).collect();
+        run.truths.iter().map(|truth| trajectory.states_at(truth.time).chaser_rtn_km().into()).collect();
     let rows = evenly(rtn_km.len());
     let panel = |title: &str, component: usize| {
         let (mut along, mut values, mut frames) = (Vec::new(), Vec::new(), Vec::new());

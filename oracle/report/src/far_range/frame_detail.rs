@@ -227,7 +227,7 @@ fn draw_over(picture: &mut Picture, exposure: &Exposure, outcome: Option<&Outcom
     let others = exposure.objects.iter().filter(|object| {
         object.kind != ObjectKind::Target
             && is_shown(object.position)
-            && Visibility::of_snr(object.snr) == Visibility::Detectable
+            && Visibility::from_snr(object.snr) == Visibility::Detectable
     });
     picture.marks.extend(others.map(other_mark));
     picture.marks.extend(target(exposure).map(true_mark));

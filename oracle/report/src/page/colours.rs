@@ -1,5 +1,5 @@
 //! A colour for every cause, the same in every chart.
-use contract::docking::Doubt;
+use contract::docking::FailedCheck;
 use score::Cause;
 use score::docking::{GrossError, MissCause};
 
@@ -18,7 +18,7 @@ pub(crate) fn colour_of(cause: &str) -> &'static str {
     if let Some(place) = far_range(cause) {
         return PALETTE[place];
     }
-    if let Some(place) = Doubt::ALL.iter().position(|of| of.code() == cause) {
+    if let Some(place) = FailedCheck::ALL.iter().position(|of| of.code() == cause) {
         return DOUBTS[place];
     }
     // Docking shares some causes: its others take the colours that are left.
@@ -40,7 +40,7 @@ mod tests {
             assert_eq!(colours.len(), codes.len());
         };
         distinct(Cause::ALL.map(Cause::code).to_vec());
-        let doubts = Doubt::ALL.map(Doubt::code);
+        let doubts = FailedCheck::ALL.map(FailedCheck::code);
         distinct(
             MissCause::CODES.into_iter().chain(GrossError::ALL.map(GrossError::code)).chain(doubts).collect(),
         );

@@ -90,7 +90,7 @@ impl DockingRenderer {
             Self::Fast => Ok(simulator.expose(workspace, field)?),
             #[cfg(feature = "mitsuba")]
             Self::Mitsuba(images) => {
-                let moment = simulator.moment(field)?;
+                let moment = simulator.field_state(field)?;
                 let (lighting, pose) = (&moment.lighting, &moment.state.pose);
                 let camera = &setup.cameras[moment.camera];
                 let image = images.renderer.radiance(simulator.scene(), lighting, pose, camera)?;

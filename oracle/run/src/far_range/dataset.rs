@@ -131,7 +131,9 @@ fn world_coordinates(
     let principal = contract::PixelPoint::new(camera.principal_x_px, camera.principal_y_px);
     let boresight = truth.camera_from_icrs.inverse() * Direction::z();
     TanSip::fit(camera.columns, camera.rows, principal, boresight, |astrometric| {
-        simulator.projection().project(&(truth.camera_from_icrs * observer.apparent_of(*astrometric)))
+        simulator
+            .projection()
+            .project(&(truth.camera_from_icrs * observer.apparent_from_astrometric(*astrometric)))
     })
     .map_err(|error| Failure::Usage(format!("frame {}: {error}", truth.frame)))
 }

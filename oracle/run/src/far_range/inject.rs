@@ -47,7 +47,8 @@ impl InformedPipeline<FarRangeMission> for InjectedPipeline {
             Some(object) if object.kind == ObjectKind::HotPixel => Identity::Hotspot,
             _ => Identity::Neither,
         };
-        let apparent = |star: &ListedStar| -> Direction<Icrs> { observer.apparent_of(star.direction) };
+        let apparent =
+            |star: &ListedStar| -> Direction<Icrs> { observer.apparent_from_astrometric(star.direction) };
         let own = Overrides::default();
         let overrides = match self.stage {
             Stage::Centroids => Overrides { centroid: Some(&centroid), ..own },

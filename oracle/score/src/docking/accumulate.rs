@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contract::docking::{DockingOutcome, DockingSetup, Doubt, Motion, MotionReport};
+use contract::docking::{DockingOutcome, DockingSetup, FailedCheck, Motion, MotionReport};
 
 use super::bins::{bin, group_name, lens_names};
 use super::cause::MissCause;
@@ -275,7 +275,7 @@ fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
             .collect(),
         misses: counts(&MissCause::CODES, misses),
         wrong: counts(&GrossError::ALL.map(GrossError::code), wrong),
-        doubtful: counts(&Doubt::ALL.map(Doubt::code), doubtful),
+        doubtful: counts(&FailedCheck::ALL.map(FailedCheck::code), doubtful),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use contract::Camera;
 use contract::docking::{
-    DockingOutcome, DockingSetup, DockingSolution, Doubt, Features, FieldMeasurement, Outline, Pose,
+    DockingOutcome, DockingSetup, DockingSolution, FailedCheck, Features, FieldMeasurement, Outline, Pose,
     PoseEstimate, StandOffCross, TargetModel,
 };
 use nalgebra::{Matrix6, Vector3};
@@ -85,7 +85,7 @@ pub(crate) fn measured_outcome(pose: Pose) -> DockingOutcome {
 }
 
 /// The same measurement, doubtful.
-pub(crate) fn doubtful_outcome(pose: Pose, doubt: Doubt) -> DockingOutcome {
+pub(crate) fn doubtful_outcome(pose: Pose, doubt: FailedCheck) -> DockingOutcome {
     let DockingSolution::Measured(measurement) = measured_outcome(pose).solution else {
         unreachable!("it is measured")
     };

@@ -81,7 +81,7 @@ pub struct DockingScore {
     pub misses: IndexMap<String, u64>,
     /// Wrong answers by [`super::GrossError::code`].
     pub wrong: IndexMap<String, u64>,
-    /// Doubtful poses by [`contract::docking::Doubt::code`].
+    /// Doubtful poses by [`contract::docking::FailedCheck::code`].
     #[serde(default)]
     pub doubtful: IndexMap<String, u64>,
 }

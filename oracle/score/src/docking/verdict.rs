@@ -1,6 +1,6 @@
 //! What became of a field: one verdict each.
 
-use contract::docking::{DockingOutcome, DockingSolution, Doubt, NoPose, Pose};
+use contract::docking::{DockingOutcome, DockingSolution, FailedCheck, NoPose, Pose};
 
 use super::cause::MissCause;
 use super::errors::PoseErrors;
@@ -110,7 +110,7 @@ pub enum Verdict {
     /// A pose that the pipeline itself doubts, right or wrong.
     Doubtful {
         /// The test that it failed.
-        doubt: Doubt,
+        doubt: FailedCheck,
         /// In what it is grossly wrong, if it is.
         gross: Option<GrossError>,
     },
@@ -234,9 +234,12 @@ mod tests {
     /// A doubtful pose is neither success nor wrong, and its error is looked at all the same.
     #[test]
     fn a_doubtful_pose_is_doubtful_whatever_its_error() {
-        let at = |d3_m| verdict(10.0, &doubtful_outcome(ahead(d3_m), Doubt::Motion));
-        assert_eq!(at(10.0), Verdict::Doubtful { doubt: Doubt::Motion, gross: None });
-        assert_eq!(at(11.0), Verdict::Doubtful { doubt: Doubt::Motion, gross: Some(GrossError::Range) });
+        let at = |d3_m| verdict(10.0, &doubtful_outcome(ahead(d3_m), FailedCheck::Motion));
+        assert_eq!(at(10.0), Verdict::Doubtful { doubt: FailedCheck::Motion, gross: None });
+        assert_eq!(
+            at(11.0),
+            Verdict::Doubtful { doubt: FailedCheck::Motion, gross: Some(GrossError::Range) }
+        );
     }
 
     #[test]

@@ -46,7 +46,7 @@ impl DetectionRule {
             Self::Sigmas { low, high } => {
                 let sensor = &camera.config.sensor;
                 let (gain_e, read_e) = (sensor.gain_e_per_dn, readout_e(sensor));
-                let shot_e2 = sensor.noise.shot.of(background_e);
+                let shot_e2 = sensor.noise.shot.apply(background_e);
                 let sigma_dn = ((shot_e2 + read_e * read_e) / (gain_e * gain_e) + 1.0 / 12.0).sqrt();
                 let base_dn = sensor.bias_dn + background_e / gain_e;
                 let at = |sigmas: f64| (base_dn + sigmas * sigma_dn).floor();

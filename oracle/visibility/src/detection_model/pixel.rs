@@ -65,7 +65,7 @@ impl PixelThreshold {
 pub fn readout_e(sensor: &SensorConfig) -> f64 {
     let (pixel_e, lines) = (sensor.read_noise_e, sensor.line_noise);
     let variance_e2 = pixel_e * pixel_e + lines.row_e * lines.row_e + lines.column_e * lines.column_e;
-    sensor.noise.read.of(variance_e2).sqrt()
+    sensor.noise.read.apply(variance_e2).sqrt()
 }
 
 struct PixelModel<'a> {

@@ -217,7 +217,7 @@ impl Sky {
                 let observer = pointing.observer(motion)?;
                 let mut sources = Vec::new();
                 let still = CameraMotion::still(pointing.camera_from_icrs);
-                stars.look(&observer, &still, &camera.projection, |_| 0.0, &mut sources);
+                stars.add_visible(&observer, &still, &camera.projection, |_| 0.0, &mut sources);
                 let mut seen: Vec<SkyStar> = sources
                     .iter()
                     .map(|source| {

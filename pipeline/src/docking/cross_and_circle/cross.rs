@@ -21,7 +21,7 @@ pub(crate) struct CrossSeed {
 
 impl CrossSeed {
     /// A place on the cross: `along` the horizontal bar to the right and `down` the vertical one, px.
-    pub(crate) fn place(&self, along: f64, down: f64) -> Vector2<f64> {
+    pub(crate) fn point_at(&self, along: f64, down: f64) -> Vector2<f64> {
         let cos = 1.0 / (1.0 + self.slope * self.slope).sqrt();
         let sin = self.slope * cos;
         self.centre + Vector2::new(along * cos - down * sin, along * sin + down * cos)
@@ -139,7 +139,7 @@ pub(crate) fn measure(
 
 /// Levels of the cross (on its bars, the brighter half of it: a part may be in shadow) and of the plate around it.
 fn levels(view: &View<'_>, lens: &Lens, seed: &CrossSeed, width: f64) -> Option<Levels> {
-    let at = |along: f64, down: f64| view.sample(lens.to_camera(seed.place(along, down))?);
+    let at = |along: f64, down: f64| view.sample(lens.to_camera(seed.point_at(along, down))?);
     let half = seed.half_length_px;
     let across = [-(0.3 * width).max(1.0), 0.0, (0.3 * width).max(1.0)];
     let brightest = |values: [Option<f64>; 3]| values.into_iter().flatten().max_by(f64::total_cmp);
@@ -190,12 +190,12 @@ impl Scan<'_> {
         let mut values = Vec::new();
         let mut found = Vec::new();
         self.each_side(stride, |along| {
-            let centre = self.lens.to_camera(self.seed.place(along, 0.0))?;
-            let column = whole(centre.x, view.columns())?;
-            let first = whole(view.image_row(centre.y - reach).ceil(), view.rows())?;
-            let last = whole(view.image_row(centre.y + reach).floor(), view.rows())?;
+            let centre = self.lens.to_camera(self.seed.point_at(along, 0.0))?;
+            let column = pixel_index(centre.x, view.columns())?;
+            let first = pixel_index(view.image_row(centre.y - reach).ceil(), view.rows())?;
+            let last = pixel_index(view.image_row(centre.y + reach).floor(), view.rows())?;
             values.clear();
-            values.extend((first..=last).map(|row| view.at(column, row)));
+            values.extend((first..=last).map(|row| view.grey_at(column, row)));
             let edges =
                 bar_edges(&values, view.camera_row(first), view.step(), secant * self.width, &self.levels)?;
             let at = |y: f64| self.lens.to_ideal(PixelPoint::new(column as f64, y));
@@ -214,15 +214,15 @@ impl Scan<'_> {
         let mut values = Vec::new();
         let mut found = Vec::new();
         self.each_side(stride, |down| {
-            let near = self.lens.to_camera(self.seed.place(0.0, down))?;
-            let row = whole(view.image_row(near.y).round(), view.rows())?;
+            let near = self.lens.to_camera(self.seed.point_at(0.0, down))?;
+            let row = pixel_index(view.image_row(near.y).round(), view.rows())?;
             let y = view.camera_row(row);
             // Along the bar's own line to the row that is there.
             let centre_x = near.x - self.seed.slope * (y - near.y);
-            let first = whole((centre_x - reach).ceil(), view.columns())?;
-            let last = whole((centre_x + reach).floor(), view.columns())?;
+            let first = pixel_index((centre_x - reach).ceil(), view.columns())?;
+            let last = pixel_index((centre_x + reach).floor(), view.columns())?;
             values.clear();
-            values.extend((first..=last).map(|column| view.at(column, row)));
+            values.extend((first..=last).map(|column| view.grey_at(column, row)));
             let edges = bar_edges(&values, first as f64, 1.0, secant * self.width, &self.levels)?;
             let at = |x: f64| self.lens.to_ideal(PixelPoint::new(x, y));
             found.push((at(edges.0)? + at(edges.1)?) / 2.0);
@@ -247,7 +247,7 @@ impl Scan<'_> {
 }
 
 /// A whole number as an index below `n`.
-fn whole(value: f64, n: usize) -> Option<usize> {
+fn pixel_index(value: f64, n: usize) -> Option<usize> {
     let value = value.round();
     (value >= 0.0 && value < n as f64).then_some(value as usize)
 }
@@ -314,7 +314,7 @@ fn half_length(view: &View<'_>, lens: &Lens, seed: &CrossSeed, levels: &Levels) 
         let values: Vec<f64> = (0..=steps)
             .map_while(|i| {
                 let distance = from + step * i as f64;
-                view.sample(lens.to_camera(seed.place(x * distance, y * distance))?)
+                view.sample(lens.to_camera(seed.point_at(x * distance, y * distance))?)
             })
             .collect();
         ends.extend(falling_edge(&values, from, step, levels));
@@ -340,8 +340,8 @@ mod tests {
         fn exact_points_give_their_lines(a in -0.5..0.5f64, x in -300.0..300.0f64, y in -300.0..300.0f64) {
             let centre = Vector2::new(x, y);
             let seed = CrossSeed { centre, half_length_px: 50.0, slope: a };
-            let along: Vec<_> = [-40.0, -20.0, 15.0, 30.0].iter().map(|d| seed.place(*d, 0.0)).collect();
-            let down: Vec<_> = [-44.0, 12.0, 31.0].iter().map(|d| seed.place(0.0, *d)).collect();
+            let along: Vec<_> = [-40.0, -20.0, 15.0, 30.0].iter().map(|d| seed.point_at(*d, 0.0)).collect();
+            let down: Vec<_> = [-44.0, 12.0, 31.0].iter().map(|d| seed.point_at(0.0, *d)).collect();
             let lines = BarLines::fit(&along, &down).unwrap();
             // Rounding of coordinates of a few hundred pixels.
             prop_assert!((lines.a - a).abs() < 1e-12);

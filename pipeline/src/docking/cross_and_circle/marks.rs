@@ -21,7 +21,7 @@ pub(crate) struct Plane {
 
 impl Plane {
     /// Where a place of the plane is seen.
-    pub(crate) fn place(&self, [y1, y2]: [f64; 2]) -> Vector2<f64> {
+    pub(crate) fn project(&self, [y1, y2]: [f64; 2]) -> Vector2<f64> {
         let (sin, cos) = libm::sincos(self.roll_rad);
         self.centre + self.scale_px_m * Vector2::new(y1 * cos + y2 * sin, y1 * sin - y2 * cos)
     }
@@ -91,7 +91,7 @@ impl MarkShape {
     }
 
     /// A place of the plane, `along` the mark and `across` it from its centre, m.
-    fn place(&self, along: f64, across: f64) -> [f64; 2] {
+    fn point_on_plane(&self, along: f64, across: f64) -> [f64; 2] {
         let [u, v] = self.along;
         [self.centre_m[0] + along * u - across * v, self.centre_m[1] + along * v + across * u]
     }
@@ -115,7 +115,7 @@ pub(crate) fn shapes(model: &TargetModel) -> Vec<MarkShape> {
 
 /// A mark in a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SeenMark {
+pub(crate) struct MarkObservation {
     /// For the evidence.
     pub(crate) mark: Mark,
     /// Its centroid in the ideal image, or where it was predicted.
@@ -128,7 +128,7 @@ pub(crate) struct MarksFit {
     /// The plane through the used marks.
     pub(crate) plane: Plane,
     /// Every mark of the target.
-    pub(crate) marks: Vec<SeenMark>,
+    pub(crate) marks: Vec<MarkObservation>,
 }
 
 impl MarksFit {
@@ -202,7 +202,7 @@ impl MarkSearch<'_> {
                 return f64::NEG_INFINITY;
             }
             let at = |along: f64, across: f64| {
-                self.view.sample(self.lens.to_camera(plane.place(shape.place(along, across)))?)
+                self.view.sample(self.lens.to_camera(plane.project(shape.point_on_plane(along, across)))?)
             };
             let beside = shape.half_width_m + (2.0 * BLUR_PX + 0.5) / plane.scale_px_m;
             let (mut on, mut off, mut seen) = (0.0, 0.0, true);
@@ -232,12 +232,12 @@ impl MarkSearch<'_> {
     }
 
     fn pass(&self, plane: &Plane) -> Option<MarksFit> {
-        let mut marks: Vec<SeenMark> = Vec::with_capacity(self.shapes.len());
+        let mut marks: Vec<MarkObservation> = Vec::with_capacity(self.shapes.len());
         let mut heights = Vec::with_capacity(self.shapes.len());
         for (index, shape) in self.shapes.iter().enumerate() {
-            let predicted = plane.place(shape.centre_m);
+            let predicted = plane.project(shape.centre_m);
             let position = self.lens.to_camera(predicted);
-            let blank = |usage| SeenMark {
+            let blank = |usage| MarkObservation {
                 mark: Mark { index: index as u32, position: position.unwrap_or_default(), usage },
                 ideal: predicted,
             };
@@ -248,7 +248,7 @@ impl MarkSearch<'_> {
             };
             let half_diagonal =
                 plane.scale_px_m * libm::hypot(shape.half_length_m, shape.half_width_m) + 2.0 * BLUR_PX;
-            if !self.view.holds(position, half_diagonal) {
+            if !self.view.contains(position, half_diagonal) {
                 marks.push(blank(MarkUse::OutOfField));
                 heights.push(0.0);
                 continue;
@@ -257,7 +257,7 @@ impl MarkSearch<'_> {
                 Some((position, height)) => {
                     let ideal = self.lens.to_ideal(position);
                     marks.push(match ideal {
-                        Some(ideal) => SeenMark {
+                        Some(ideal) => MarkObservation {
                             mark: Mark { index: index as u32, position, usage: MarkUse::Used },
                             ideal,
                         },
@@ -287,7 +287,7 @@ impl MarkSearch<'_> {
         let pad_along_m = pad_m.min((0.5 * to_rim_m).max(1.2 * to_m));
         let (reach_along, reach_across) =
             (shape.half_length_m + pad_along_m, shape.half_width_m + pad_m + to_m);
-        let middle = self.lens.to_camera(plane.place(shape.centre_m))?;
+        let middle = self.lens.to_camera(plane.project(shape.centre_m))?;
         let reach_px = libm::hypot(reach_along, reach_across) * plane.scale_px_m + 1.0;
         let columns = span(middle.x - reach_px, middle.x + reach_px, self.view.columns());
         let rows = span(
@@ -311,7 +311,7 @@ impl MarkSearch<'_> {
                 if along > reach_along || across > reach_across {
                     continue;
                 }
-                let grey = self.view.at(column, row);
+                let grey = self.view.grey_at(column, row);
                 inside.push((column as f64, y, grey));
                 if across > shape.half_width_m + 1.8 * BLUR_PX * to_m {
                     beside.push(grey);
@@ -337,7 +337,7 @@ impl MarkSearch<'_> {
     }
 
     /// Leaves out marks that are not where the others say, worst first, and fits the plane to the rest.
-    fn reject_by_place(&self, marks: &mut [SeenMark]) -> Option<Plane> {
+    fn reject_by_place(&self, marks: &mut [MarkObservation]) -> Option<Plane> {
         loop {
             let pairs: Vec<_> = marks
                 .iter()
@@ -348,16 +348,16 @@ impl MarkSearch<'_> {
                 return None;
             }
             let plane = Plane::fit(&pairs)?;
-            let mut errors: Vec<f64> = pairs.iter().map(|(y, p)| (plane.place(*y) - p).norm()).collect();
+            let mut errors: Vec<f64> = pairs.iter().map(|(y, p)| (plane.project(*y) - p).norm()).collect();
             errors.sort_by(f64::total_cmp);
             let mark_radius_px =
                 plane.scale_px_m * self.shapes.iter().map(MarkShape::radius_m).fold(0.0, f64::max);
             // A tilt of ten degrees moves marks by 0.8 % of the radius from where a plane seen head on has them.
             let limit = (0.5 + 0.012 * mark_radius_px).max(3.0 * errors[errors.len() / 2]);
-            let error = |m: &SeenMark| {
+            let error = |m: &MarkObservation| {
                 self.shapes
                     .get(m.mark.index as usize)
-                    .map_or(0.0, |shape| (plane.place(shape.centre_m) - m.ideal).norm())
+                    .map_or(0.0, |shape| (plane.project(shape.centre_m) - m.ideal).norm())
             };
             let worst = marks
                 .iter_mut()
@@ -372,7 +372,7 @@ impl MarkSearch<'_> {
 }
 
 /// A mark in shadow has less light than the others, one with a glint or cut by something bright has more.
-fn reject_by_height(marks: &mut [SeenMark], heights: &[f64]) {
+fn reject_by_height(marks: &mut [MarkObservation], heights: &[f64]) {
     let mut seen: Vec<f64> = marks
         .iter()
         .zip(heights)
@@ -413,7 +413,7 @@ mod tests {
             let pairs: Vec<_> = shapes(&synthetic::target())
                 .iter()
                 .take(5)
-                .map(|shape| (shape.centre_m, plane.place(shape.centre_m)))
+                .map(|shape| (shape.centre_m, plane.project(shape.centre_m)))
                 .collect();
             let fit = Plane::fit(&pairs).unwrap();
             prop_assert!((fit.centre - plane.centre).norm() < 1e-9);

@@ -46,14 +46,14 @@ pub(crate) fn bar_edges(
     {
         return None;
     }
-    let place = |i: f64| first + step * i;
+    let sample_position = |i: f64| first + step * i;
     let background = |i: usize| before + (after - before) * i as f64 / (n - 1) as f64;
     let excess: Vec<f64> = values.iter().enumerate().map(|(i, v)| (v - background(i)).max(0.0)).collect();
     let sum: f64 = excess.iter().sum();
     let centroid = excess.iter().enumerate().map(|(i, e)| i as f64 * e).sum::<f64>() / sum;
     if width < MIN_PLATEAU_SAMPLES * step {
         let seen = (sum * step / levels.contrast()).clamp(0.3 * width, 1.7 * width);
-        let middle = place(centroid);
+        let middle = sample_position(centroid);
         return Some((middle - seen / 2.0, middle + seen / 2.0));
     }
     let half_core = 0.3 * width / step;
@@ -72,8 +72,8 @@ pub(crate) fn bar_edges(
     let covered = |part: &[f64], level: f64| -> f64 {
         part.iter().map(|v| ((v - level) / (plateau - level)).clamp(-0.3, 1.3)).sum()
     };
-    let low = place(middle as f64 - 0.5 - covered(&values[..middle], before));
-    let high = place(middle as f64 + 0.5 + covered(values.get(middle + 1..)?, after));
+    let low = sample_position(middle as f64 - 0.5 - covered(&values[..middle], before));
+    let high = sample_position(middle as f64 + 0.5 + covered(values.get(middle + 1..)?, after));
     let seen = high - low;
     (seen > 0.5 * width && seen < 1.6 * width).then_some((low, high))
 }

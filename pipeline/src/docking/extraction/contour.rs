@@ -99,10 +99,10 @@ pub(crate) fn find(view: &View<'_>, overview: &Overview, lens: &Lens) -> Option<
 
 /// The outline about where the field before has it; `None` when it is not there.
 pub(crate) fn follow(view: &View<'_>, lens: &Lens, before: &CircleFit) -> Option<StationOutline> {
-    let place = (before.centre, before.radius);
+    let predicted = (before.centre, before.radius);
     let share = least_share(before.radius);
     let reach = (0.07 * before.radius).max(3.0);
-    fit(view, lens, place, reach, least_step(view), share).filter(StationOutline::is_round)
+    fit(view, lens, predicted, reach, least_step(view), share).filter(StationOutline::is_round)
 }
 
 impl StationOutline {
@@ -126,7 +126,7 @@ fn noise(view: &View<'_>) -> f64 {
     let mut counts = [0u32; 256];
     let mut total = 0;
     for row in (0..view.rows()).step_by(4) {
-        let mean = |pair: usize| (view.at(2 * pair, row) + view.at(2 * pair + 1, row)) / 2.0;
+        let mean = |pair: usize| (view.grey_at(2 * pair, row) + view.grey_at(2 * pair + 1, row)) / 2.0;
         for pair in 1..view.columns() / 2 {
             counts[((mean(pair) - mean(pair - 1)).abs() + 0.5).min(View::WHITE) as usize] += 1;
             total += 1;
@@ -166,7 +166,7 @@ pub(crate) fn stands_before_sky(view: &View<'_>, lens: &Lens, circle: &CircleFit
     let mut inside: Vec<f64> = [0.8, 0.86, 0.92].into_iter().flat_map(around).collect();
     inside.sort_by(f64::total_cmp);
     let Some(&face) = inside.get(inside.len() / 2) else { return false };
-    let darkest = Histogram::of(view, &Rectangle::ALL).quantile(0.02);
+    let darkest = Histogram::from_region(view, &Rectangle::ALL).quantile(0.02);
     let sky = darkest + SKY_LEVEL * (face - darkest);
     SKY_AT.into_iter().all(|radii| {
         let outside = around(radii);
@@ -187,7 +187,7 @@ pub(crate) fn confirms(
         .filter(|ray| {
             let (sin, cos) = libm::sincos(std::f64::consts::TAU * *ray as f64 / RAYS as f64);
             lens.to_camera(centre + 1.2 * radius * Vector2::new(cos, sin))
-                .is_some_and(|place| view.holds(place, 2.0))
+                .is_some_and(|predicted| view.contains(predicted, 2.0))
         })
         .count();
     let inside = inside as f64 / RAYS as f64;
@@ -203,10 +203,10 @@ pub(crate) fn confirms(
 pub(crate) fn measure_at(
     view: &View<'_>,
     lens: &Lens,
-    place: (Vector2<f64>, f64),
+    predicted: (Vector2<f64>, f64),
     min_step: f64,
 ) -> Option<StationOutline> {
-    measure(view, lens, place, min_step, [MIN_SHARE, MIN_SHARE]).filter(StationOutline::is_round)
+    measure(view, lens, predicted, min_step, [MIN_SHARE, MIN_SHARE]).filter(StationOutline::is_round)
 }
 
 /// The circle through the steepest falls of brightness on rays from a centre, twice, the second time about the first; on it
@@ -304,7 +304,7 @@ mod tests {
     use crate::docking::synthetic;
     use contract::docking::Lines;
 
-    fn look_at(field: &contract::docking::Field) -> Option<StationOutline> {
+    fn find_outline(field: &contract::docking::Field) -> Option<StationOutline> {
         let view = View::new(field);
         find(&view, &view.overview(), &synthetic::lens())
     }
@@ -334,7 +334,7 @@ mod tests {
                     (x as f64 - centre.0).abs() < 3.0 * radius && (y as f64 - centre.1).abs() < 0.15 * radius;
                 if panel || disk(x, y, centre, radius) { 140 } else { 8 }
             });
-            let found = look_at(&field).unwrap();
+            let found = find_outline(&field).unwrap();
             let error = found.circle.radius - radius;
             assert!(error.abs() < 3.0 * found.sigma_px(), "{radius}: {found:?}");
             assert!(error.abs() < 1.0 + 0.02 * radius, "{radius}: {error}");
@@ -348,8 +348,8 @@ mod tests {
             let view = View::new(field);
             let lens = synthetic::lens();
             let middle = lens.to_ideal(contract::PixelPoint::new(centre.0, centre.1)).unwrap();
-            let place = (middle, 80.0);
-            stands_before_sky(&view, &lens, &measure_at(&view, &lens, place, 8.0).unwrap().circle)
+            let predicted = (middle, 80.0);
+            stands_before_sky(&view, &lens, &measure_at(&view, &lens, predicted, 8.0).unwrap().circle)
         };
         let body = |x, y| if disk(x, y, centre, 80.0) { 140 } else { 8 };
         assert!(circle(&synthetic::drawn(Lines::Even, body)));
@@ -366,15 +366,16 @@ mod tests {
     fn a_body_cut_by_the_border_is_measured_on_what_is_left() {
         let field =
             synthetic::drawn(Lines::Odd, |x, y| if disk(x, y, (380.0, 400.0), 220.0) { 140 } else { 8 });
-        let found = look_at(&field).unwrap();
+        let found = find_outline(&field).unwrap();
         assert!((found.circle.radius - 220.0).abs() < 3.0, "{found:?}");
     }
 
     #[test]
     fn nothing_is_found_where_there_is_no_circle() {
-        let look = |grey: &dyn Fn(usize, usize) -> u16| look_at(&synthetic::drawn(Lines::Odd, grey));
-        assert_eq!(look(&|_, _| 30), None);
-        assert_eq!(look(&|x, _| if x < 300 { 30 } else { 200 }), None);
-        assert_eq!(look(&|x, y| if x == 300 && y < 20 { 200 } else { 10 }), None);
+        let outline_in =
+            |grey: &dyn Fn(usize, usize) -> u16| find_outline(&synthetic::drawn(Lines::Odd, grey));
+        assert_eq!(outline_in(&|_, _| 30), None);
+        assert_eq!(outline_in(&|x, _| if x < 300 { 30 } else { 200 }), None);
+        assert_eq!(outline_in(&|x, y| if x == 300 && y < 20 { 200 } else { 10 }), None);
     }
 }

@@ -50,7 +50,7 @@ pub(crate) fn predict(
     let (d3, b) = (focal_px / plane.scale_px_m, model.cross.height_m);
     let from_vanishing = (cross_centre - plane.centre) * ((d3 - b) / b);
     let shrink = d3 / (d3 + outline.depth_m);
-    let offset = side.turn(plane.place(outline.centre_m) - plane.centre);
+    let offset = side.turn(plane.project(outline.centre_m) - plane.centre);
     let centre = plane.centre + offset * shrink + from_vanishing * (shrink - 1.0);
     (centre, outline.radius_m * plane.scale_px_m * shrink)
 }
@@ -175,8 +175,9 @@ mod tests {
         // The scene draws the unit in the plane of the disk.
         let unit = Outline { depth_m: 0.0, ..model.docking_unit };
         let look = |side| {
-            let place = predict(&model, &unit, lens.focal_px(), &scene.plane(), scene.cross().centre, side);
-            find(&view, &lens, place, 15.0)
+            let predicted =
+                predict(&model, &unit, lens.focal_px(), &scene.plane(), scene.cross().centre, side);
+            find(&view, &lens, predicted, 15.0)
         };
         let below = look(Side::Nominal);
         assert!(below.share > 0.8, "{below:?}");

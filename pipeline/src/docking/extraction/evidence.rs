@@ -5,16 +5,16 @@ use contract::docking::{Circle, Cross, Features, MarkUse, TargetModel};
 use nalgebra::Vector2;
 
 use super::docking_unit::{self, DiskEdge, Side};
-use super::recognise::Sight;
+use super::recognise::TargetFeatures;
 use crate::docking::cross_and_circle::marks::Plane;
-use crate::docking::pose::model_fit::Fitted;
+use crate::docking::pose::model_fit::FitResult;
 use crate::docking::preprocessing::region::Rectangle;
 use crate::docking::preprocessing::view::{Lens, View};
 
 /// The square about the plate: what brightness and contrast are set by.
 pub(crate) fn plate(lens: &Lens, plane: &Plane, target: &TargetModel) -> Rectangle {
     let half_side = target.plate_radius_m * plane.scale_px_m;
-    lens.to_camera(plane.centre).map_or(Rectangle::ALL, |centre| Rectangle::about(centre, half_side))
+    lens.to_camera(plane.centre).map_or(Rectangle::ALL, |centre| Rectangle::square(centre, half_side))
 }
 
 /// Centre and mean radius, in the camera's pixels, of a circle of the ideal image.
@@ -33,35 +33,38 @@ pub(crate) fn camera_circle(lens: &Lens, centre: Vector2<f64>, radius: f64) -> O
 }
 
 /// What was recognised, in the camera's pixels.
-pub(crate) fn evidence(lens: &Lens, sight: &Sight, unit: &DiskEdge) -> Features {
-    let seed = &sight.cross.seed;
+pub(crate) fn evidence(lens: &Lens, target_features: &TargetFeatures, unit: &DiskEdge) -> Features {
+    let seed = &target_features.cross.seed;
     let half = 0.5 * seed.half_length_px;
     let cross = (|| {
-        let (left, right) = (lens.to_camera(seed.place(-half, 0.0))?, lens.to_camera(seed.place(half, 0.0))?);
+        let (left, right) =
+            (lens.to_camera(seed.point_at(-half, 0.0))?, lens.to_camera(seed.point_at(half, 0.0))?);
         Some(Cross {
             centre: lens.to_camera(seed.centre)?,
-            raw_centre: lens.to_camera(sight.cross.raw_centre)?,
+            raw_centre: lens.to_camera(target_features.cross.raw_centre)?,
             slope: (right.y - left.y) / (right.x - left.x),
-            horizontal_pairs: sight.cross.pairs.0 as u32,
-            vertical_pairs: sight.cross.pairs.1 as u32,
+            horizontal_pairs: target_features.cross.pairs.0 as u32,
+            vertical_pairs: target_features.cross.pairs.1 as u32,
         })
     })();
     let circle = (|| {
-        let (centre, radius_px) = camera_circle(lens, sight.circle.centre, sight.circle.radius_px)?;
-        let (raw_centre, _) = camera_circle(lens, sight.circle.raw_centre, sight.circle.radius_px)?;
-        Some(Circle { centre, raw_centre, radius_px, points: sight.circle.points })
+        let (centre, radius_px) =
+            camera_circle(lens, target_features.circle.centre, target_features.circle.radius_px)?;
+        let (raw_centre, _) =
+            camera_circle(lens, target_features.circle.raw_centre, target_features.circle.radius_px)?;
+        Some(Circle { centre, raw_centre, radius_px, points: target_features.circle.points })
     })();
     Features {
         cross,
         circle,
         station: None,
         docking_unit: disk(lens, unit, 0.4),
-        marks: sight.marks.marks.iter().map(|seen| seen.mark).collect(),
+        marks: target_features.marks.marks.iter().map(|seen| seen.mark).collect(),
     }
 }
 
 /// Takes over what the best estimator says of the features: centres with perspective, and marks that it rejected.
-pub(crate) fn refine(features: &mut Features, fitted: &Fitted) {
+pub(crate) fn refine(features: &mut Features, fitted: &FitResult) {
     if let Some(cross) = &mut features.cross {
         cross.centre = fitted.cross_centre;
     }
@@ -85,9 +88,16 @@ fn disk(lens: &Lens, edge: &DiskEdge, share: f64) -> Option<Circle> {
 }
 
 /// The station's outline, where cross and marks say that it is.
-pub(crate) fn station(view: &View<'_>, lens: &Lens, target: &TargetModel, sight: &Sight) -> Option<Circle> {
-    let (plane, cross) = (&sight.marks.plane, sight.cross.seed.centre);
-    let place = docking_unit::predict(target, &target.station, lens.focal_px(), plane, cross, Side::Nominal);
-    let edge = docking_unit::find(view, lens, place, (0.12 * sight.cross.levels.contrast()).max(8.0));
+pub(crate) fn station(
+    view: &View<'_>,
+    lens: &Lens,
+    target: &TargetModel,
+    target_features: &TargetFeatures,
+) -> Option<Circle> {
+    let (plane, cross) = (&target_features.marks.plane, target_features.cross.seed.centre);
+    let predicted =
+        docking_unit::predict(target, &target.station, lens.focal_px(), plane, cross, Side::Nominal);
+    let edge =
+        docking_unit::find(view, lens, predicted, (0.12 * target_features.cross.levels.contrast()).max(8.0));
     disk(lens, &edge, 0.5)
 }

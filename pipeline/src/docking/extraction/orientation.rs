@@ -32,7 +32,7 @@ const SEEN_ARC: f64 = 0.5;
 const MIN_ARC: f64 = 0.15;
 
 /// What a field shows, `nominal` being what was found where the docking unit should be.
-pub(crate) fn look(
+pub(crate) fn assess(
     view: &View<'_>,
     lens: &Lens,
     model: &TargetModel,

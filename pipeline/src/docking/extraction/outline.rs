@@ -41,7 +41,7 @@ pub(crate) fn range(
     let circle = camera_circle(lens, outline.circle.centre, outline.circle.radius);
     if let Some((centre, radius_px)) = circle {
         features.station = Some(Circle { centre, raw_centre: centre, radius_px, points: outline.points });
-        *region = Rectangle::about(centre, radius_px);
+        *region = Rectangle::square(centre, radius_px);
     }
     // A station that is nearer than the target can be resolved is something else, or hides its target. Farther away, what
     // made a candidate inconsistent was none.
@@ -57,15 +57,15 @@ pub(crate) fn range(
 
 /// Why there is nothing in a field without an outline. The thousandths hold a small target before an empty sky; a field is empty
 /// when they hold nothing.
-pub(crate) fn nothing(view: &View<'_>, reason: NoPose) -> NoPose {
-    let whole = Histogram::of(view, &Rectangle::ALL);
+pub(crate) fn no_outline_reason(view: &View<'_>, reason: NoPose) -> NoPose {
+    let whole = Histogram::from_region(view, &Rectangle::ALL);
     let range = whole.quantile(0.999) - whole.quantile(0.01);
     if reason == NoPose::NoTarget && range < EMPTY_RANGE { NoPose::EmptyField } else { reason }
 }
 
 /// An outline in a field.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct OutlineObservation {
     time_s: f64,
     camera: usize,
     circle: CircleFit,
@@ -76,7 +76,7 @@ struct Seen {
 /// The outline of the field before: far away it moves by less than a pixel a field.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct OutlineTrack {
-    last: Option<Seen>,
+    last: Option<OutlineObservation>,
 }
 
 impl OutlineTrack {
@@ -95,12 +95,12 @@ impl OutlineTrack {
             return None;
         }
         let outline = contour::follow(view, lens, &before.circle)?;
-        self.last = Some(Seen { time_s, circle: outline.circle, ..before });
+        self.last = Some(OutlineObservation { time_s, circle: outline.circle, ..before });
         Some(outline)
     }
 
     /// Takes an outline that was found in a whole field.
-    pub(crate) fn found(&mut self, (time_s, camera): (f64, usize), outline: &StationOutline) {
-        self.last = Some(Seen { time_s, camera, circle: outline.circle, found_s: time_s });
+    pub(crate) fn restart(&mut self, (time_s, camera): (f64, usize), outline: &StationOutline) {
+        self.last = Some(OutlineObservation { time_s, camera, circle: outline.circle, found_s: time_s });
     }
 }

@@ -11,14 +11,14 @@ const ENOUGH: u32 = 10;
 
 /// A range that measurements have agreed on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Belief {
+struct RangeHypothesis {
     time_s: f64,
     range_m: f64,
     /// Measurements that agreed, up to [`ENOUGH`].
     support: u32,
 }
 
-impl Belief {
+impl RangeHypothesis {
     fn new(time_s: f64, range_m: f64) -> Self {
         Self { time_s, range_m, support: 1 }
     }
@@ -39,16 +39,16 @@ impl Belief {
 /// to the next right one, and a range seen for long is not given up for a few wrong ones.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RangeMemory {
-    believed: Option<Belief>,
-    contrary: Option<Belief>,
+    believed: Option<RangeHypothesis>,
+    contrary: Option<RangeHypothesis>,
 }
 
 impl RangeMemory {
     /// Takes a measurement; whether it may be told.
     pub(crate) fn admit(&mut self, time_s: f64, range_m: f64) -> bool {
-        let Some(believed) = self.believed.as_mut().filter(|belief| time_s >= belief.time_s) else {
+        let Some(believed) = self.believed.as_mut().filter(|hypothesis| time_s >= hypothesis.time_s) else {
             // Nothing was seen, or a sequence begins anew.
-            *self = Self { believed: Some(Belief::new(time_s, range_m)), contrary: None };
+            *self = Self { believed: Some(RangeHypothesis::new(time_s, range_m)), contrary: None };
             return true;
         };
         if believed.admits(time_s, range_m) {
@@ -61,7 +61,7 @@ impl RangeMemory {
                 contrary.agree(time_s, range_m);
                 contrary
             }
-            _ => Belief::new(time_s, range_m),
+            _ => RangeHypothesis::new(time_s, range_m),
         };
         self.contrary = Some(contrary);
         let is_outweighed = contrary.support >= believed.support;
@@ -77,28 +77,28 @@ mod tests {
     use super::*;
 
     /// What is said of ranges a fiftieth of a second apart.
-    fn told(ranges_m: &[f64]) -> Vec<bool> {
+    fn admitted(ranges_m: &[f64]) -> Vec<bool> {
         let mut memory = RangeMemory::default();
         ranges_m.iter().enumerate().map(|(i, range_m)| memory.admit(0.02 * i as f64, *range_m)).collect()
     }
 
     #[test]
     fn one_wrong_answer_among_right_ones_is_refused() {
-        assert_eq!(told(&[150.0, 150.1, 149.9, 36.0, 149.8]), [true, true, true, false, true]);
+        assert_eq!(admitted(&[150.0, 150.1, 149.9, 36.0, 149.8]), [true, true, true, false, true]);
     }
 
     #[test]
     fn one_wrong_answer_at_the_beginning_gives_way() {
-        assert_eq!(told(&[36.0, 150.1, 149.9]), [true, true, true]);
-        assert_eq!(told(&[36.0, 36.1, 149.9, 149.8, 149.7]), [true, true, false, true, true]);
+        assert_eq!(admitted(&[36.0, 150.1, 149.9]), [true, true, true]);
+        assert_eq!(admitted(&[36.0, 36.1, 149.9, 149.8, 149.7]), [true, true, false, true, true]);
     }
 
     #[test]
     fn ten_that_agree_outweigh_any_memory() {
         let mut ranges = vec![36.0; 100];
         ranges.extend([150.0; 11]);
-        let told = told(&ranges);
-        assert!(told[100..109].iter().all(|said| !said) && told[109] && told[110], "{told:?}");
+        let told = admitted(&ranges);
+        assert!(told[100..109].iter().all(|answer| !answer) && told[109] && told[110], "{told:?}");
     }
 
     #[test]

@@ -14,13 +14,13 @@ use crate::docking::preprocessing::view::{Lens, Overview, View};
 
 /// Cross and marks of one target.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Sight {
+pub(crate) struct TargetFeatures {
     pub(crate) cross: CrossFit,
     pub(crate) marks: MarksFit,
     pub(crate) circle: MarkCircle,
 }
 
-impl Sight {
+impl TargetFeatures {
     /// Whether it is of the same target as another one.
     fn repeats(&self, other: &Self) -> bool {
         let (one, two) = (&self.cross.seed, &other.cross.seed);
@@ -28,7 +28,7 @@ impl Sight {
     }
 
     /// Whether its cross is the one that is expected.
-    fn is_at(&self, expected: &CrossSeed) -> bool {
+    fn is_near(&self, expected: &CrossSeed) -> bool {
         let seed = &self.cross.seed;
         let scale = seed.half_length_px / expected.half_length_px;
         (seed.centre - expected.centre).norm() <= 0.5 * expected.half_length_px && (0.9..1.1).contains(&scale)
@@ -65,7 +65,7 @@ impl Recognition<'_> {
     ///
     /// # Errors
     /// The reason why it is not there.
-    pub(crate) fn track(&self, seed: &CrossSeed, plane: &Plane) -> Result<Sight, NoPose> {
+    pub(crate) fn track(&self, seed: &CrossSeed, plane: &Plane) -> Result<TargetFeatures, NoPose> {
         let cross = self.cross(seed).ok_or(NoPose::NoTarget)?;
         let start = Plane {
             // What the prediction was wrong by for the cross it was wrong by for the disk.
@@ -87,13 +87,13 @@ impl Recognition<'_> {
         &self,
         overview: &Overview,
         predicted: Option<&Prediction>,
-    ) -> Result<Sight, NoPose> {
+    ) -> Result<TargetFeatures, NoPose> {
         let ways: [&dyn Fn() -> Vec<Candidate>; 3] = [
             &|| candidates::by_regions(overview, self.lens),
             &|| candidates::by_edges(overview, self.lens, &self.config.edges),
             &|| candidates::by_structure(overview, self.lens, self.config.min_contrast, ALL_SCALES),
         ];
-        self.first_of(&ways, predicted)
+        self.first_success(&ways, predicted)
     }
 
     /// The one target within a station's outline, which says how large it must be.
@@ -105,7 +105,7 @@ impl Recognition<'_> {
         overview: &Overview,
         outline: &CircleFit,
         mark_circle_px: f64,
-    ) -> Result<Sight, NoPose> {
+    ) -> Result<TargetFeatures, NoPose> {
         let centre = self.lens.to_camera(outline.centre).ok_or(NoPose::NoTarget)?;
         let part = overview.around(centre, outline.radius);
         let half_px = mark_circle_px * self.model.cross.half_length_m / self.model.mark_circle_radius_m;
@@ -113,18 +113,18 @@ impl Recognition<'_> {
         let ways: [&dyn Fn() -> Vec<Candidate>; 2] = [&|| candidates::by_regions(&part, self.lens), &|| {
             candidates::by_structure(&part, self.lens, self.config.min_contrast, scales.clone())
         }];
-        self.first_of(&ways, None)
+        self.first_success(&ways, None)
     }
 
-    fn first_of(
+    fn first_success(
         &self,
         ways: &[&dyn Fn() -> Vec<Candidate>],
         predicted: Option<&Prediction>,
-    ) -> Result<Sight, NoPose> {
+    ) -> Result<TargetFeatures, NoPose> {
         let mut reason = NoPose::NoTarget;
         for way in ways {
-            if let Some(sight) = self.examine(way(), predicted, &mut reason)? {
-                return Ok(sight);
+            if let Some(target_features) = self.examine(way(), predicted, &mut reason)? {
+                return Ok(target_features);
             }
         }
         Err(reason)
@@ -136,8 +136,8 @@ impl Recognition<'_> {
         found: Vec<Candidate>,
         predicted: Option<&Prediction>,
         reason: &mut NoPose,
-    ) -> Result<Option<Sight>, NoPose> {
-        let mut sights: Vec<Sight> = Vec::new();
+    ) -> Result<Option<TargetFeatures>, NoPose> {
+        let mut sights: Vec<TargetFeatures> = Vec::new();
         let mut examined = 0;
         for candidate in found {
             if examined >= self.config.max_candidates {
@@ -148,13 +148,17 @@ impl Recognition<'_> {
             }
             examined += 1;
             match self.target_at(&candidate.seed) {
-                Ok(sight) if !sights.iter().any(|other| other.repeats(&sight)) => sights.push(sight),
+                Ok(target_features) if !sights.iter().any(|other| other.repeats(&target_features)) => {
+                    sights.push(target_features)
+                }
                 Ok(_) | Err(NoPose::NoTarget) => {}
                 Err(why) => *reason = why,
             }
         }
         if sights.len() > 1 {
-            sights.retain(|sight| predicted.is_some_and(|prediction| sight.is_at(&prediction.cross)));
+            sights.retain(|target_features| {
+                predicted.is_some_and(|prediction| target_features.is_near(&prediction.cross))
+            });
             if sights.len() != 1 {
                 return Err(NoPose::AmbiguousTarget);
             }
@@ -164,7 +168,7 @@ impl Recognition<'_> {
 
     fn in_window(&self, centre: Vector2<f64>) -> bool {
         let Some(window) = &self.config.region.window else { return true };
-        self.lens.to_camera(centre).is_some_and(|point| window.holds(point))
+        self.lens.to_camera(centre).is_some_and(|point| window.contains(point))
     }
 
     fn cross(&self, seed: &CrossSeed) -> Option<CrossFit> {
@@ -172,7 +176,7 @@ impl Recognition<'_> {
     }
 
     /// The target of a candidate.
-    fn target_at(&self, seed: &CrossSeed) -> Result<Sight, NoPose> {
+    fn target_at(&self, seed: &CrossSeed) -> Result<TargetFeatures, NoPose> {
         let cross = self.cross(seed).ok_or(NoPose::NoTarget)?;
         let (model, focal_px) = (self.model, self.lens.focal_px());
         let d3 = focal_px * model.cross.half_length_m / cross.seed.half_length_px + model.cross.height_m;
@@ -183,9 +187,17 @@ impl Recognition<'_> {
         };
         let radius_px = model.mark_circle_radius_m * plane.scale_px_m;
         match self.complete(cross, &plane, SEARCH_REACH * radius_px, 0.07) {
-            Ok(sight) if sight.marks.count(MarkUse::Used) >= self.least_marks(&sight) => {
-                self_check::on_station(self.view, self.lens, model, &sight.cross, &sight.marks.plane)?;
-                Ok(sight)
+            Ok(target_features)
+                if target_features.marks.count(MarkUse::Used) >= self.least_marks(&target_features) =>
+            {
+                self_check::on_station(
+                    self.view,
+                    self.lens,
+                    model,
+                    &target_features.cross,
+                    &target_features.marks.plane,
+                )?;
+                Ok(target_features)
             }
             Ok(_) => Err(NoPose::NoTarget),
             // Without its marks a cross is any cross, unless its marks have no place in the image.
@@ -196,14 +208,20 @@ impl Recognition<'_> {
     }
 
     /// Fewest marks that tell a target from chance: half of those in the field, five at least.
-    fn least_marks(&self, sight: &Sight) -> usize {
-        let in_field = sight.marks.marks.len() - sight.marks.count(MarkUse::OutOfField);
+    fn least_marks(&self, target_features: &TargetFeatures) -> usize {
+        let in_field = target_features.marks.marks.len() - target_features.marks.count(MarkUse::OutOfField);
         // A shadow takes some; chance does not bring a third of them.
         in_field.div_ceil(3).max(self_check::MIN_MARKS_TO_FIND)
     }
 
     /// Marks, circle and checks around a cross.
-    fn complete(&self, cross: CrossFit, start: &Plane, reach_px: f64, stretch: f64) -> Result<Sight, NoPose> {
+    fn complete(
+        &self,
+        cross: CrossFit,
+        start: &Plane,
+        reach_px: f64,
+        stretch: f64,
+    ) -> Result<TargetFeatures, NoPose> {
         let search = MarkSearch {
             view: self.view,
             lens: self.lens,
@@ -219,8 +237,8 @@ impl Recognition<'_> {
                 .filter(|shape| {
                     !self
                         .lens
-                        .to_camera(coarse.place(shape.centre_m))
-                        .is_some_and(|point| self.view.holds(point, 0.0))
+                        .to_camera(coarse.project(shape.centre_m))
+                        .is_some_and(|point| self.view.contains(point, 0.0))
                 })
                 .count();
             return Err(if 2 * outside > self.shapes.len() {
@@ -231,7 +249,7 @@ impl Recognition<'_> {
         };
         self_check::cross_and_marks(self.model, self.lens.focal_px(), &cross, &marks)?;
         let circle = self.circle(&marks);
-        Ok(Sight { cross, marks, circle })
+        Ok(TargetFeatures { cross, marks, circle })
     }
 
     /// The circle through the marks' centroids; where those stand on less than half of it, the circle of the plane that

@@ -1,6 +1,6 @@
 //! Whether what was found has the structure that the scene must have.
 
-use contract::docking::{Doubt, MarkUse, NoPose, PoseEstimate, TargetModel};
+use contract::docking::{FailedCheck, MarkUse, NoPose, PoseEstimate, TargetModel};
 
 use nalgebra::Vector3;
 
@@ -8,7 +8,7 @@ use super::contour::{self, StationOutline};
 use super::docking_unit::{self, DiskEdge, Side};
 use crate::docking::cross_and_circle::cross::CrossFit;
 use crate::docking::cross_and_circle::marks::{MarksFit, Plane};
-use crate::docking::pose::model_fit::Fitted;
+use crate::docking::pose::model_fit::FitResult;
 use crate::docking::preprocessing::region::Prediction;
 use crate::docking::preprocessing::view::{Lens, View};
 
@@ -65,9 +65,9 @@ pub(crate) fn docking_unit(
     plane: &Plane,
     side: Side,
 ) -> DiskEdge {
-    let place =
+    let predicted =
         docking_unit::predict(model, &model.docking_unit, lens.focal_px(), plane, cross.seed.centre, side);
-    docking_unit::find(view, lens, place, (0.12 * cross.levels.contrast()).max(8.0))
+    docking_unit::find(view, lens, predicted, (0.12 * cross.levels.contrast()).max(8.0))
 }
 
 /// Largest standard deviation of the range as a part of it: three of them are 5 %.
@@ -89,8 +89,9 @@ pub(crate) fn on_station(
         return Ok(());
     }
     let centre = cross.seed.centre;
-    let place = docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
-    match contour::confirms(view, lens, place, MIN_OUTLINE_STEP) {
+    let predicted =
+        docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
+    match contour::confirms(view, lens, predicted, MIN_OUTLINE_STEP) {
         Some(true) => Ok(()),
         _ => Err(NoPose::NoTarget),
     }
@@ -108,8 +109,9 @@ pub(crate) fn outline(
         return None;
     }
     let centre = cross.seed.centre;
-    let place = docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
-    contour::measure_at(view, lens, place, MIN_OUTLINE_STEP)
+    let predicted =
+        docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
+    contour::measure_at(view, lens, predicted, MIN_OUTLINE_STEP)
 }
 
 /// Whether the range of a small target is known at all, and is the one that the station's outline has. A pose of few pixels may be that of
@@ -132,10 +134,10 @@ pub(crate) fn range(
     if best_sigma_m > MAX_RANGE_SIGMA * best.pose.position_m.z {
         return Err(NoPose::TooFewFeatures);
     }
-    let told = outline.and_then(|outline| {
+    let measured = outline.and_then(|outline| {
         contour::range(&model.station, lens.focal_px(), outline.circle.radius, outline.sigma_px())
     });
-    let Some((range_m, sigma_m)) = told else { return Ok(()) };
+    let Some((range_m, sigma_m)) = measured else { return Ok(()) };
     let agrees = (best.pose.position_m.z - range_m).abs() <= 3.0 * libm::hypot(sigma_m, best_sigma_m);
     if agrees { Ok(()) } else { Err(NoPose::Inconsistent) }
 }
@@ -152,27 +154,27 @@ const MAX_BLUR_PX: f64 = 4.9;
 pub(crate) fn fit(
     model: &TargetModel,
     focal_px: f64,
-    fitted: &Fitted,
+    fitted: &FitResult,
     by_features: &PoseEstimate,
-) -> Option<Doubt> {
+) -> Option<FailedCheck> {
     if fitted.blur_px.iter().any(|blur| *blur >= MAX_BLUR_PX) {
-        return Some(Doubt::Residuals);
+        return Some(FailedCheck::Residuals);
     }
     let (best, other) = (&fitted.estimate.pose.position_m, &by_features.pose.position_m);
     let parallax =
         |d: &Vector3<f64>| focal_px * model.cross.height_m / (d.z * (d.z - model.cross.height_m)) * d.xy();
     let range = (other.z / best.z - 1.0).abs() <= OTHER_RANGE;
     let cross = (parallax(best) - parallax(other)).norm() <= OTHER_PARALLAX_PX;
-    (!(range && cross)).then_some(Doubt::Features)
+    (!(range && cross)).then_some(FailedCheck::Features)
 }
 
 /// Largest standard deviation of pitch and yaw, rad: two and a half of them are 5°, beyond which a pose is that of something else.
 const MAX_TILT_SIGMA: f64 = 2.0 / 180.0 * std::f64::consts::PI;
 
 /// Whether a pose is to be doubted because by its own covariance it may as well be a wrong one.
-pub(crate) fn tilt(best: &PoseEstimate) -> Option<Doubt> {
+pub(crate) fn tilt(best: &PoseEstimate) -> Option<FailedCheck> {
     let variance = best.covariance[(3, 3)].max(best.covariance[(4, 4)]);
-    (variance > MAX_TILT_SIGMA * MAX_TILT_SIGMA).then_some(Doubt::Residuals)
+    (variance > MAX_TILT_SIGMA * MAX_TILT_SIGMA).then_some(FailedCheck::Residuals)
 }
 
 /// Radius of the circle of the marks, px, up to which a target must have its station around it.
@@ -189,10 +191,10 @@ pub(crate) fn leaves_field(
     model: &TargetModel,
     prediction: &Prediction,
 ) -> bool {
-    let is_inside = |ideal| lens.to_camera(ideal).is_some_and(|point| view.holds(point, 1.0));
+    let is_inside = |ideal| lens.to_camera(ideal).is_some_and(|point| view.contains(point, 1.0));
     let half = prediction.cross.half_length_px;
     let ends = [(half, 0.0), (-half, 0.0), (0.0, half), (0.0, -half)];
     let middle = |corners: &[[f64; 2]; 4]| [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / 4.0);
-    let outside = model.marks.iter().filter(|c| !is_inside(prediction.plane.place(middle(c)))).count();
-    2 * outside > model.marks.len() || ends.iter().any(|(x, y)| !is_inside(prediction.cross.place(*x, *y)))
+    let outside = model.marks.iter().filter(|c| !is_inside(prediction.plane.project(middle(c)))).count();
+    2 * outside > model.marks.len() || ends.iter().any(|(x, y)| !is_inside(prediction.cross.point_at(*x, *y)))
 }

@@ -43,8 +43,8 @@ pub(crate) fn propose(grey: &GrayImage, min_step: f64) -> Vec<Proposal> {
             let x = (edge.x + radius * edge.inwards.x) * cells_px;
             let y = (edge.y + radius * edge.inwards.y) * cells_px;
             if x >= 0.0 && y >= 0.0 && (x as usize) < columns && (y as usize) < rows {
-                let place = y as usize * columns + x as usize;
-                votes[place] = votes[place].saturating_add(1);
+                let index = y as usize * columns + x as usize;
+                votes[index] = votes[index].saturating_add(1);
             }
         }
         let circumference = std::f64::consts::TAU * radius;
@@ -61,8 +61,8 @@ pub(crate) fn propose(grey: &GrayImage, min_step: f64) -> Vec<Proposal> {
                 let share = f64::from(sum) / circumference;
                 if best.len() < 4 || best.last().is_some_and(|last| share > last.share) {
                     let (x, y) = ((column + 1) as f64 / cells_px, (row + 1) as f64 / cells_px);
-                    let place = best.partition_point(|other| other.share >= share);
-                    best.insert(place, Proposal { x, y, radius, share });
+                    let index = best.partition_point(|other| other.share >= share);
+                    best.insert(index, Proposal { x, y, radius, share });
                     best.truncate(4);
                 }
             }

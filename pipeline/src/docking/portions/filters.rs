@@ -83,8 +83,8 @@ const OUTLINE_SCALE: f64 = 0.01;
 const OUTLINE_DRIFT: f64 = 2e-4;
 
 /// Standard deviations of the lateral offset, as a part of the range, and of the attitude, rad, before any pose is measured.
-const UNSEEN_OFFSET: f64 = 0.2;
-const UNSEEN_ANGLE_RAD: f64 = 0.2;
+const PRIOR_OFFSET_SHARE: f64 = 0.2;
+const PRIOR_ANGLE_RAD: f64 = 0.2;
 
 /// The range by a station's outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -151,8 +151,8 @@ impl Track {
 
     /// From a station's outline alone: nothing is known but the range.
     pub(super) fn begin_at_range(time_s: f64, range: &OutlineRange, config: &MotionConfig) -> Self {
-        let (place, angle) = (UNSEEN_OFFSET * range.range_m, UNSEEN_ANGLE_RAD);
-        let sigma = Vector6::new(place, place, place, angle, angle, angle);
+        let (position, angle) = (PRIOR_OFFSET_SHARE * range.range_m, PRIOR_ANGLE_RAD);
+        let sigma = Vector6::new(position, position, position, angle, angle, angle);
         let covariance = Matrix6::from_diagonal(&sigma.component_mul(&sigma));
         let pose = to_pose(&Vector6::new(0.0, 0.0, range.range_m, 0.0, 0.0, 0.0));
         let mut track = Self::begin(time_s, &PoseEstimate { pose, covariance }, &Matrix6::zeros(), config);
@@ -190,39 +190,43 @@ impl Track {
 
     /// The smallest normalised square by which a pose is off any filter.
     pub(super) fn least_square(&self, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> Option<f64> {
-        let squares = self.modes.iter().map(|mode| Some(Innovation::of(mode, measured, noise)?.square));
+        let squares =
+            self.modes.iter().map(|mode| Some(Innovation::from_pose(mode, measured, noise)?.square));
         squares.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::min)
     }
 
     /// The same of the range from a station's outline.
     pub(super) fn least_square_of_range(&self, range: &OutlineRange) -> f64 {
-        self.modes.iter().map(|mode| RangeInnovation::of(mode, range).square()).fold(f64::INFINITY, f64::min)
+        self.modes
+            .iter()
+            .map(|mode| RangeInnovation::from_range(mode, range).square())
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Whether it could be done.
     pub(super) fn update(&mut self, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> bool {
         let mut logs = [0.0; MODES.len()];
         for (mode, log) in self.modes.iter_mut().zip(&mut logs) {
-            let Some(innovation) = Innovation::of(mode, measured, noise) else { return false };
+            let Some(innovation) = Innovation::from_pose(mode, measured, noise) else { return false };
             *log = innovation.log_likelihood;
             innovation.update(mode);
         }
-        self.weigh(logs)
+        self.update_probabilities(logs)
     }
 
     /// Whether it could be done.
     pub(super) fn update_range(&mut self, range: &OutlineRange) -> bool {
         let mut logs = [0.0; MODES.len()];
         for (mode, log) in self.modes.iter_mut().zip(&mut logs) {
-            let innovation = RangeInnovation::of(mode, range);
+            let innovation = RangeInnovation::from_range(mode, range);
             *log = -0.5 * (innovation.square() + libm::log(innovation.variance));
             innovation.update(mode);
         }
-        self.weigh(logs)
+        self.update_probabilities(logs)
     }
 
     /// Makes the filters as probable as they predicted well; whether all of them are numbers.
-    fn weigh(&mut self, logs: [f64; MODES.len()]) -> bool {
+    fn update_probabilities(&mut self, logs: [f64; MODES.len()]) -> bool {
         let mut weights = logs;
         for (weight, mode) in weights.iter_mut().zip(&self.modes) {
             *weight += libm::log(mode.probability.max(1e-12));
@@ -268,8 +272,8 @@ impl Track {
             rate += self.common / (COMMON_S * COMMON_S);
         }
         let pick = |first: usize| {
-            let place = |i: usize| if i < 3 { first + i } else { first + i + 3 };
-            let part = Matrix6::from_fn(|i, j| covariance[(place(i), place(j))]);
+            let position = |i: usize| if i < 3 { first + i } else { first + i + 3 };
+            let part = Matrix6::from_fn(|i, j| covariance[(position(i), position(j))]);
             (part + part.transpose()) * 0.5
         };
         Motion {
@@ -325,11 +329,11 @@ impl Mode {
             let faded = libm::exp(-x);
             [tau_s * tau_s * (x - 1.0 + faded), tau_s * (1.0 - faded), faded]
         };
-        let [place, rate, left] = effect(step_s);
+        let [position, rate, left] = effect(step_s);
         let mut by = Square::identity();
         for axis in 0..6 {
             by[(axis, 6 + axis)] = step_s;
-            by[(axis, 12 + axis)] = place;
+            by[(axis, 12 + axis)] = position;
             by[(6 + axis, 12 + axis)] = rate;
             by[(12 + axis, 12 + axis)] = left;
         }
@@ -374,7 +378,7 @@ struct Innovation {
 }
 
 impl Innovation {
-    fn of(mode: &Mode, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> Option<Self> {
+    fn from_pose(mode: &Mode, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> Option<Self> {
         let off = measured - mode.state.fixed_rows::<6>(0);
         let covariance: Matrix6<f64> = mode.covariance.fixed_view::<6, 6>(0, 0) + noise;
         // Metres beside radians: scaled to a unit diagonal first.
@@ -419,7 +423,7 @@ struct RangeInnovation {
 }
 
 impl RangeInnovation {
-    fn of(mode: &Mode, range: &OutlineRange) -> Self {
+    fn from_range(mode: &Mode, range: &OutlineRange) -> Self {
         let mut by_state = State::zeros();
         (by_state[2], by_state[SCALE]) = (1.0, range.range_m);
         let variance = by_state.dot(&(mode.covariance * by_state)) + range.sigma_m * range.sigma_m;

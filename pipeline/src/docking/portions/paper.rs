@@ -52,7 +52,7 @@ const CONVERGED: f64 = 1e-12;
 
 /// The motion at the end of a portion, time counted from there, and the normal matrices that the next one inherits.
 #[derive(Debug, Clone)]
-struct Ended {
+struct PortionState {
     time_s: f64,
     /// (d1, d2, d3, d1', d2', d3').
     z: Vector6<f64>,
@@ -79,7 +79,7 @@ struct Attitude {
 pub struct PaperPortions {
     config: PaperPortionConfig,
     target: PaperTarget,
-    last: Option<Ended>,
+    last: Option<PortionState>,
 }
 
 impl PaperPortions {
@@ -99,7 +99,7 @@ impl PaperPortions {
         if fields.len() < LEAST_FIELDS {
             return None;
         }
-        let prior = self.last.as_ref().map(|last| carried(last, time_s));
+        let prior = self.last.as_ref().map(|last| propagated(last, time_s));
         let (z, normal, psi) = self.position(fields, time_s, prior.as_ref())?;
         let Attitude { v, normal: normal_attitude, squares } =
             self.attitude(fields, time_s, &z, prior.as_ref())?;
@@ -115,7 +115,7 @@ impl PaperPortions {
                 attitude_covariance[(i + 3 * a, i + 3 * b)] = spread[(a, b)] * variance;
             }
         }
-        self.last = Some(Ended { time_s, z, normal, v, normal_attitude });
+        self.last = Some(PortionState { time_s, z, normal, v, normal_attitude });
         Some(Motion {
             time_s,
             pose: Pose {
@@ -136,7 +136,7 @@ impl PaperPortions {
         &self,
         fields: &[(f64, PaperMeasurement)],
         time_s: f64,
-        prior: Option<&Ended>,
+        prior: Option<&PortionState>,
     ) -> Option<(Vector6<f64>, Matrix6<f64>, f64)> {
         let mut z = match prior {
             Some(prior) => prior.z,
@@ -162,7 +162,7 @@ impl PaperPortions {
         &self,
         fields: &[(f64, PaperMeasurement)],
         time_s: f64,
-        prior: Option<&Ended>,
+        prior: Option<&PortionState>,
         z: &Vector6<f64>,
     ) -> Option<(Matrix6<f64>, Vector6<f64>, f64)> {
         let (mut normal, mut gradient, mut psi) = match prior {
@@ -226,7 +226,7 @@ impl PaperPortions {
         fields: &[(f64, PaperMeasurement)],
         time_s: f64,
         z: &Vector6<f64>,
-        prior: Option<&Ended>,
+        prior: Option<&PortionState>,
     ) -> Option<Attitude> {
         let weight = prior
             .map_or_else(Matrix2::zeros, |prior| prior.normal_attitude * self.config.forgetting_attitude);
@@ -261,7 +261,7 @@ impl PaperPortions {
 }
 
 /// The same motion and the same information, time counted from `time_s`: with z' = T z, B' = T⁻ᵀ B T⁻¹.
-fn carried(last: &Ended, time_s: f64) -> Ended {
+fn propagated(last: &PortionState, time_s: f64) -> PortionState {
     let t = time_s - last.time_s;
     let mut back = Matrix6::identity();
     for i in 0..3 {
@@ -272,7 +272,7 @@ fn carried(last: &Ended, time_s: f64) -> Ended {
         forth[(i, i + 3)] = t;
     }
     let back_attitude = Matrix2::new(1.0, -t, 0.0, 1.0);
-    Ended {
+    PortionState {
         time_s,
         z: forth * last.z,
         normal: back.transpose() * last.normal * back,

@@ -82,7 +82,7 @@ impl MotionTracker {
 
     /// What is added to the covariance of a pose whose moment is known to a standard deviation only, s: the motion within that time. Before there
     /// is a motion it is as fast as a camera may be.
-    pub(in crate::docking) fn by_moment(&self, time_s: f64, sigma_s: f64) -> Matrix6<f64> {
+    pub(in crate::docking) fn timing_covariance(&self, time_s: f64, sigma_s: f64) -> Matrix6<f64> {
         let kept = self.track.as_ref().filter(|track| (0.0..=MAX_GAP_S).contains(&(time_s - track.time_s)));
         let squares = kept.map_or_else(|| unknown_rates(&self.config), Track::squares_of_rates);
         squares * (sigma_s * sigma_s)
@@ -224,7 +224,7 @@ mod tests {
     /// Errors of (d, φ) at the reports of a motion over their covariance, and those of d3's rate over its standard deviation.
     fn reports(motion: impl Fn(f64) -> Pose, seed: u64, seconds: u32) -> Vec<(f64, f64)> {
         let mut tracker = MotionTracker::new(MotionConfig::default()).unwrap();
-        let mut told = Vec::new();
+        let mut reports_in_sigma = Vec::new();
         for k in 0..50 * seconds {
             let (t, estimate) = measured(&motion, k, seed);
             assert_eq!(tracker.add(t, &estimate, &Matrix6::zeros()).0, Continuity::Continues, "field {k}");
@@ -234,16 +234,18 @@ mod tests {
                 let h = 1e-3;
                 let rate = (motion(t + h).position_m.z - motion(t - h).position_m.z) / (2.0 * h);
                 let sigma = report.position_covariance.diagonal().map(f64::sqrt);
-                told.push((off.z / sigma[2], (report.velocity_m_s.z - rate) / sigma[5]));
+                reports_in_sigma.push((off.z / sigma[2], (report.velocity_m_s.z - rate) / sigma[5]));
             }
         }
-        told
+        reports_in_sigma
     }
 
     fn share_within_3_sigma(motion: impl Fn(f64) -> Pose + Copy, seconds: u32) -> (f64, f64) {
-        let told: Vec<(f64, f64)> = (0..10).flat_map(|seed| reports(motion, seed, seconds)).collect();
+        let reports_in_sigma: Vec<(f64, f64)> =
+            (0..10).flat_map(|seed| reports(motion, seed, seconds)).collect();
         let share = |of: &dyn Fn(&(f64, f64)) -> f64| {
-            told.iter().filter(|one| of(one).abs() <= 3.0).count() as f64 / told.len() as f64
+            reports_in_sigma.iter().filter(|one| of(one).abs() <= 3.0).count() as f64
+                / reports_in_sigma.len() as f64
         };
         (share(&|one| one.0), share(&|one| one.1))
     }
@@ -251,10 +253,10 @@ mod tests {
     #[test]
     fn a_glide_and_a_braking_ship_are_within_what_is_told() {
         // 10 sequences of 15 and 45 reports, 99.7 % of which are expected within 3 σ.
-        let (place, rate) = share_within_3_sigma(approach, 3);
-        assert!(place >= 0.98 && rate >= 0.98, "{place} {rate}");
-        let (place, rate) = share_within_3_sigma(braking, 9);
-        assert!(place >= 0.98 && rate >= 0.97, "{place} {rate}");
+        let (position, rate) = share_within_3_sigma(approach, 3);
+        assert!(position >= 0.98 && rate >= 0.98, "{position} {rate}");
+        let (position, rate) = share_within_3_sigma(braking, 9);
+        assert!(position >= 0.98 && rate >= 0.97, "{position} {rate}");
     }
 
     #[test]

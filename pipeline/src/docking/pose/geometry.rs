@@ -51,7 +51,7 @@ pub fn target_from_camera(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// The rotation vector φ of a matrix A, the inverse of [`target_from_camera`]; for angles under 180°.
-pub fn phi_of(target_from_camera: &Matrix3<f64>) -> Vector3<f64> {
+pub fn phi_from_rotation(target_from_camera: &Matrix3<f64>) -> Vector3<f64> {
     let r = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * target_from_camera;
     let twice_sine = Vector3::new(r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
     let sine = 0.5 * twice_sine.norm();
@@ -62,12 +62,12 @@ pub fn phi_of(target_from_camera: &Matrix3<f64>) -> Vector3<f64> {
 /// Where a point of the target is seen by a camera at a pose, on the detector or beside it; `None` behind the camera or
 /// beyond the fold of the distortion. `point_m` in the target frame.
 pub fn project(camera: &CameraModel, pose: &Pose, point_m: &Vector3<f64>) -> Option<PixelPoint> {
-    camera.project_vector(&View::new(camera, pose).to_camera(point_m))
+    camera.project_vector(&PoseProjection::new(camera, pose).to_camera(point_m))
 }
 
 /// A camera at a pose: everything that the projection of many points shares.
 #[derive(Debug, Clone)]
-pub(crate) struct View {
+pub(crate) struct PoseProjection {
     position_m: Vector3<f64>,
     camera_from_target: Matrix3<f64>,
     jacobian: Matrix3<f64>,
@@ -76,13 +76,13 @@ pub(crate) struct View {
 
 /// A point of the target in the image without distortion, from the principal point.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Seen {
+pub(crate) struct ProjectedPoint {
     pub(crate) u: f64,
     pub(crate) v: f64,
     pub(crate) by_pose: ByPose,
 }
 
-impl View {
+impl PoseProjection {
     pub(crate) fn new(camera: &CameraModel, pose: &Pose) -> Self {
         Self {
             position_m: pose.position_m,
@@ -100,7 +100,7 @@ impl View {
     /// Image of a point of the target, with derivatives; `None` behind the camera.
     ///
     /// ∂x/∂d = −Aᵀ; with φ + δ, A becomes A exp([J δ]×), so ∂x/∂φ = [x]× J.
-    pub(crate) fn see(&self, point_m: &Vector3<f64>) -> Option<Seen> {
+    pub(crate) fn project_with_derivatives(&self, point_m: &Vector3<f64>) -> Option<ProjectedPoint> {
         let x = self.to_camera(point_m);
         if x.z.is_nan() || x.z <= 1e-6 * x.norm() {
             return None;
@@ -118,7 +118,7 @@ impl View {
             by_pose[(0, i + 3)] = (fx * turned[0] - u * turned[2]) * depth;
             by_pose[(1, i + 3)] = (fy * turned[1] - v * turned[2]) * depth;
         }
-        Some(Seen { u, v, by_pose })
+        Some(ProjectedPoint { u, v, by_pose })
     }
 
     /// Where the ray of an ideal image point meets the plane y3 = `height_m`: (y1, y2), m; `None` when it does not.
@@ -165,7 +165,7 @@ mod tests {
             let a = target_from_camera(&phi);
             assert!((a * a.transpose() - Matrix3::identity()).abs().max() < 1e-14);
             assert!((a.determinant() - 1.0).abs() < 1e-14);
-            assert!((phi_of(&a) - phi).norm() < 1e-12);
+            assert!((phi_from_rotation(&a) - phi).norm() < 1e-12);
         }
     }
 
@@ -188,7 +188,9 @@ mod tests {
         let point = Vector3::new(0.15, 0.1, 0.3);
         for phi in [Vector3::new(0.05, -0.03, 0.2), Vector3::new(1e-6, 0.0, 0.0)] {
             let at = to_vector(&Pose { phi_rad: phi, ..pose() });
-            let seen = |v: &Vector6<f64>| View::new(&model, &to_pose(v)).see(&point).unwrap();
+            let seen = |v: &Vector6<f64>| {
+                PoseProjection::new(&model, &to_pose(v)).project_with_derivatives(&point).unwrap()
+            };
             for i in 0..6 {
                 let step = Vector6::ith(i, 1e-6);
                 let (plus, minus) = (seen(&(at + step)), seen(&(at - step)));
@@ -204,9 +206,9 @@ mod tests {
 
     #[test]
     fn the_plane_is_where_the_ray_came_from() {
-        let view = View::new(&argon(), &pose());
+        let view = PoseProjection::new(&argon(), &pose());
         let point = Vector3::new(0.12, -0.21, 0.3);
-        let seen = view.see(&point).unwrap();
+        let seen = view.project_with_derivatives(&point).unwrap();
         let (y1, y2) = view.on_plane(seen.u, seen.v, 0.3).unwrap();
         assert!((y1 - point.x).abs() < 1e-12 && (y2 - point.y).abs() < 1e-12);
         assert!(view.on_plane(seen.u, seen.v, 6.0).is_none());
@@ -215,6 +217,10 @@ mod tests {
     #[test]
     fn nothing_behind_the_camera_is_seen() {
         assert!(project(&argon(), &pose(), &Vector3::new(0.0, 0.0, 5.5)).is_none());
-        assert!(View::new(&argon(), &pose()).see(&Vector3::new(0.0, 0.0, 5.5)).is_none());
+        assert!(
+            PoseProjection::new(&argon(), &pose())
+                .project_with_derivatives(&Vector3::new(0.0, 0.0, 5.5))
+                .is_none()
+        );
     }
 }

@@ -3,7 +3,7 @@
 use contract::docking::{NoPose, Pose, TargetModel};
 use nalgebra::Vector3;
 
-use super::geometry::{exponential, phi_of, target_from_camera};
+use super::geometry::{exponential, phi_from_rotation, target_from_camera};
 
 /// What 3.1 works on: cross and circle in the image without distortion, from the principal point.
 ///
@@ -34,7 +34,7 @@ pub struct PaperTarget {
 
 impl PaperTarget {
     /// The circle is that of the marks.
-    pub fn of(target: &TargetModel) -> Self {
+    pub fn from_model(target: &TargetModel) -> Self {
         Self { radius_m: target.mark_circle_radius_m, height_m: target.cross.height_m }
     }
 }
@@ -78,7 +78,7 @@ impl PaperMeasurement {
         let seen = Vector3::new(self.cross[0], self.cross[1], self.focal_px).normalize();
         // The small turn that brings what is seen to what is expected.
         let turn = exponential(&seen.cross(&expected));
-        let aimed = Pose { phi_rad: phi_of(&(attitude * turn)), ..pose };
+        let aimed = Pose { phi_rad: phi_from_rotation(&(attitude * turn)), ..pose };
         if aimed.phi_rad.iter().all(|value| value.is_finite()) {
             Ok(aimed)
         } else {

@@ -44,7 +44,7 @@ pub(crate) fn estimate(
     );
     let mut spread = Matrix6::zeros();
     for i in 0..6 {
-        let by = [sigma[i], -sigma[i]].map(|by| moved(measurement, i, by).aimed_pose(target));
+        let by = [sigma[i], -sigma[i]].map(|by| perturbed(measurement, i, by).aimed_pose(target));
         let column = match by {
             [Ok(up), Ok(down)] => (to_vector(&up) - to_vector(&down)) / 2.0,
             [Ok(one), Err(_)] | [Err(_), Ok(one)] => to_vector(&one) - to_vector(&pose),
@@ -56,7 +56,7 @@ pub(crate) fn estimate(
 }
 
 /// The measurement with one of Xc, Yc, a, Xo, Yo, R changed.
-fn moved(measurement: &PaperMeasurement, i: usize, by: f64) -> PaperMeasurement {
+fn perturbed(measurement: &PaperMeasurement, i: usize, by: f64) -> PaperMeasurement {
     let mut moved = *measurement;
     match i {
         0 => moved.cross[0] += by,
@@ -127,9 +127,9 @@ mod tests {
                 circle: see(0.0, 0.0),
                 radius_px: focal_px * 0.25 / 18.0,
             };
-            let told = estimate(&seen, &TARGET, 24.0).unwrap();
-            let error = to_vector(&told.pose) - to_vector(&truth);
-            worst = worst.max(error.dot(&(told.covariance.try_inverse().unwrap() * error)) / 6.0);
+            let estimated = estimate(&seen, &TARGET, 24.0).unwrap();
+            let error = to_vector(&estimated.pose) - to_vector(&truth);
+            worst = worst.max(error.dot(&(estimated.covariance.try_inverse().unwrap() * error)) / 6.0);
         }
         // Of what the formulas neglect alone, without an error of the features: less than its standard deviation.
         assert!(worst < 1.0, "{worst}");

@@ -16,7 +16,7 @@ pub(crate) struct Histogram {
 
 impl Histogram {
     /// Of the pixels inside `region`, at most about 50 000 of them.
-    pub(crate) fn of(view: &View<'_>, region: &Rectangle) -> Self {
+    pub(crate) fn from_region(view: &View<'_>, region: &Rectangle) -> Self {
         let clamp = |v: f64, n: usize| v.clamp(0.0, n as f64) as usize;
         let columns = clamp(region.first_column.ceil(), view.columns())
             ..clamp(region.last_column.floor() + 1.0, view.columns());
@@ -106,7 +106,7 @@ impl AutoContrastConfig {
     /// The setting that brings the region's levels to where they are wanted; `None` when the setting is good, or when
     /// there is nothing to see. Each wish goes half of the way, so that the loop stays stable with a lag of a field or
     /// two.
-    pub(crate) fn wish(&self, histogram: &Histogram, now: &Digitiser) -> Option<Digitiser> {
+    pub(crate) fn recommend(&self, histogram: &Histogram, now: &Digitiser) -> Option<Digitiser> {
         if self.mode == AutoContrastMode::Leave || now.check().is_err() {
             return None;
         }
@@ -163,8 +163,8 @@ mod tests {
         for _ in 0..40 {
             let now = *settings.last().unwrap();
             let field = ramp(low, high, &now);
-            let histogram = Histogram::of(&View::new(&field), &Rectangle::ALL);
-            match config.wish(&histogram, &now) {
+            let histogram = Histogram::from_region(&View::new(&field), &Rectangle::ALL);
+            match config.recommend(&histogram, &now) {
                 Some(wish) => settings.push(wish),
                 None => {
                     return (settings, histogram.quantile(0.01) / 255.0, histogram.quantile(0.98) / 255.0);
@@ -188,18 +188,18 @@ mod tests {
     #[test]
     fn nothing_is_asked_for_in_a_flat_field_or_when_told_to_leave_it() {
         let flat = ramp(0.3, 0.3, &Digitiser::default());
-        let histogram = Histogram::of(&View::new(&flat), &Rectangle::ALL);
-        assert_eq!(AutoContrastConfig::default().wish(&histogram, &Digitiser::default()), None);
+        let histogram = Histogram::from_region(&View::new(&flat), &Rectangle::ALL);
+        assert_eq!(AutoContrastConfig::default().recommend(&histogram, &Digitiser::default()), None);
         let dim = ramp(0.0, 0.1, &Digitiser::default());
-        let histogram = Histogram::of(&View::new(&dim), &Rectangle::ALL);
+        let histogram = Histogram::from_region(&View::new(&dim), &Rectangle::ALL);
         let leave = AutoContrastConfig { mode: AutoContrastMode::Leave, ..Default::default() };
-        assert_eq!(leave.wish(&histogram, &Digitiser::default()), None);
+        assert_eq!(leave.recommend(&histogram, &Digitiser::default()), None);
     }
 
     #[test]
     fn quantiles_of_a_ramp_are_its_levels() {
         let field = ramp(0.0, 1.0, &Digitiser::default());
-        let histogram = Histogram::of(&View::new(&field), &Rectangle::ALL);
+        let histogram = Histogram::from_region(&View::new(&field), &Rectangle::ALL);
         assert!((histogram.quantile(0.5) - 127.0).abs() <= 2.0);
         assert_eq!(histogram.quantile(1.0), 255.0);
     }
@@ -207,8 +207,8 @@ mod tests {
     #[test]
     fn a_region_outside_the_image_is_empty() {
         let field = ramp(0.0, 1.0, &Digitiser::default());
-        let far = Rectangle::about(PixelPoint::new(1e6, 1e6), 10.0);
-        assert_eq!(Histogram::of(&View::new(&field), &far).quantile(0.5), 0.0);
+        let far = Rectangle::square(PixelPoint::new(1e6, 1e6), 10.0);
+        assert_eq!(Histogram::from_region(&View::new(&field), &far).quantile(0.5), 0.0);
     }
 
     use contract::PixelPoint;

@@ -41,7 +41,7 @@ impl Rectangle {
     };
 
     /// The square about a point.
-    pub(crate) fn about(centre: PixelPoint, half_side: f64) -> Self {
+    pub(crate) fn square(centre: PixelPoint, half_side: f64) -> Self {
         Self {
             first_column: centre.x - half_side,
             first_row: centre.y - half_side,
@@ -50,7 +50,7 @@ impl Rectangle {
         }
     }
 
-    pub(crate) fn holds(&self, point: PixelPoint) -> bool {
+    pub(crate) fn contains(&self, point: PixelPoint) -> bool {
         (self.first_column..=self.last_column).contains(&point.x)
             && (self.first_row..=self.last_row).contains(&point.y)
     }
@@ -86,7 +86,7 @@ impl RegionConfig {
 
 /// Where cross and marks were in a field, ideal image.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sighting {
+pub(crate) struct FeaturePositions {
     pub(crate) time_s: f64,
     pub(crate) camera: usize,
     pub(crate) focal_px: f64,
@@ -95,9 +95,9 @@ pub(crate) struct Sighting {
     pub(crate) pose: Pose,
 }
 
-impl Sighting {
+impl FeaturePositions {
     /// Where a pose has cross and marks; `None` for a pose from which they cannot be seen.
-    pub(crate) fn of(
+    pub(crate) fn from_pose(
         time_s: f64,
         camera: usize,
         lens: &Lens,
@@ -142,8 +142,8 @@ pub(crate) struct Prediction {
 /// What is remembered of the target from field to field.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Track {
-    last: Option<Sighting>,
-    before: Option<Sighting>,
+    last: Option<FeaturePositions>,
+    before: Option<FeaturePositions>,
 }
 
 impl Track {
@@ -153,12 +153,12 @@ impl Track {
     }
 
     /// The last sighting.
-    pub(crate) fn last(&self) -> Option<&Sighting> {
+    pub(crate) fn last(&self) -> Option<&FeaturePositions> {
         self.last.as_ref()
     }
 
     /// Takes a new sighting.
-    pub(crate) fn push(&mut self, sighting: Sighting) {
+    pub(crate) fn push(&mut self, sighting: FeaturePositions) {
         let same_lens = self.last.is_some_and(|last| last.camera == sighting.camera);
         self.before = self.last.filter(|last| same_lens && last.time_s < sighting.time_s);
         self.last = Some(sighting);
@@ -187,7 +187,7 @@ impl Track {
         let share = if share <= 8.0 { share } else { 0.0 };
         let before = self.before.as_ref().unwrap_or(last);
         let number = |a: f64, b: f64| a + share * (a - b);
-        let place = |a: Vector2<f64>, b: Vector2<f64>| (a + share * (a - b)) * zoom;
+        let extrapolate = |a: Vector2<f64>, b: Vector2<f64>| (a + share * (a - b)) * zoom;
         let half_length_px = zoom * number(last.cross.half_length_px, before.cross.half_length_px);
         let scale = zoom * number(last.plane.scale_px_m, before.plane.scale_px_m);
         if !(half_length_px > 0.0 && scale > 0.0) {
@@ -199,12 +199,12 @@ impl Track {
         };
         Some(Prediction {
             cross: CrossSeed {
-                centre: place(last.cross.centre, before.cross.centre),
+                centre: extrapolate(last.cross.centre, before.cross.centre),
                 half_length_px,
                 slope: last.cross.slope,
             },
             plane: Plane {
-                centre: place(last.plane.centre, before.plane.centre),
+                centre: extrapolate(last.plane.centre, before.plane.centre),
                 scale_px_m: scale,
                 roll_rad: last.plane.roll_rad,
             },
@@ -217,8 +217,8 @@ impl Track {
 mod tests {
     use super::*;
 
-    fn sighting(time_s: f64, camera: usize, focal_px: f64, x: f64, half_length_px: f64) -> Sighting {
-        Sighting {
+    fn sighting(time_s: f64, camera: usize, focal_px: f64, x: f64, half_length_px: f64) -> FeaturePositions {
+        FeaturePositions {
             time_s,
             camera,
             focal_px,

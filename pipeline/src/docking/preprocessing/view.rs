@@ -65,8 +65,8 @@ impl<'a> View<'a> {
     }
 
     /// Grey value of a pixel of the image.
-    pub(crate) fn at(&self, column: usize, row: usize) -> f64 {
-        f64::from(self.field.image().at(column, row)) * self.scale
+    pub(crate) fn grey_at(&self, column: usize, row: usize) -> f64 {
+        f64::from(self.field.image().dn_at(column, row)) * self.scale
     }
 
     /// Grey value at a place, bilinear between pixels; `None` beyond the centres of the outer pixels.
@@ -79,13 +79,13 @@ impl<'a> View<'a> {
         let (x0, y0) = (x as usize, row as usize);
         let (fx, fy) = (x - x0 as f64, row - y0 as f64);
         let (x1, y1) = ((x0 + 1).min(self.columns() - 1), (y0 + 1).min(self.rows() - 1));
-        let upper = self.at(x0, y0) * (1.0 - fx) + self.at(x1, y0) * fx;
-        let lower = self.at(x0, y1) * (1.0 - fx) + self.at(x1, y1) * fx;
+        let upper = self.grey_at(x0, y0) * (1.0 - fx) + self.grey_at(x1, y0) * fx;
+        let lower = self.grey_at(x0, y1) * (1.0 - fx) + self.grey_at(x1, y1) * fx;
         Some(upper * (1.0 - fy) + lower * fy)
     }
 
     /// Whether a place is in the image, `margin` camera pixels away from its border.
-    pub(crate) fn holds(&self, point: PixelPoint, margin: f64) -> bool {
+    pub(crate) fn contains(&self, point: PixelPoint, margin: f64) -> bool {
         let bottom = self.camera_row(self.rows().saturating_sub(1));
         point.x >= margin
             && point.y >= self.first_row + margin
@@ -186,6 +186,6 @@ impl Lens {
 
     /// As the camera sees it; `None` beyond the fold of the distortion.
     pub(crate) fn to_camera(&self, ideal: Vector2<f64>) -> Option<PixelPoint> {
-        self.model.place_of_ideal(ideal.x, ideal.y / self.row_px)
+        self.model.pixel_from_ideal(ideal.x, ideal.y / self.row_px)
     }
 }

@@ -3,7 +3,7 @@
 use contract::{PixelPoint, Window};
 
 use super::image_fit::PointImage;
-use super::photometry::FrameLight;
+use super::photometry::PhotometryContext;
 
 /// A point below the threshold of clusters.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +19,7 @@ pub(super) struct FaintPoint {
 #[derive(Debug, Default)]
 pub(super) struct FaintPoints {
     /// Electrons above the background, hot pixels and clusters taken out.
-    light: Vec<f32>,
+    context: Vec<f32>,
     along_rows: Vec<f32>,
     filtered: Vec<f32>,
     points: Vec<(f32, FaintPoint)>,
@@ -39,15 +39,15 @@ impl FaintPoints {
     /// every pixel.
     pub(super) fn find(
         &mut self,
-        light: FrameLight<'_>,
+        context: PhotometryContext<'_>,
         image: &PointImage,
         stars: &[PixelPoint],
     ) -> Vec<FaintPoint> {
         let kernel = kernel(image.sigma_px);
         self.points.clear();
-        let whole = [Window { x: 0, y: 0, columns: light.frame.columns(), rows: light.frame.rows() }];
-        for window in light.frame.windows().unwrap_or(&whole) {
-            self.find_in(light, image, window, &kernel, stars);
+        let whole = [Window { x: 0, y: 0, columns: context.frame.columns(), rows: context.frame.rows() }];
+        for window in context.frame.windows().unwrap_or(&whole) {
+            self.find_in(context, image, window, &kernel, stars);
         }
         self.points.sort_by(|a, b| b.0.total_cmp(&a.0));
         self.points.truncate(MAX_POINTS);
@@ -56,7 +56,7 @@ impl FaintPoints {
 
     fn find_in(
         &mut self,
-        light: FrameLight<'_>,
+        context: PhotometryContext<'_>,
         image: &PointImage,
         window: &Window,
         kernel: &[f32],
@@ -66,12 +66,12 @@ impl FaintPoints {
         if columns < kernel.len() || rows < kernel.len() {
             return;
         }
-        self.load(light, window);
+        self.load(context, window);
         self.convolve(columns, rows, kernel);
         // The filter's output is the flux where its weights are k/Σk², with the noise σ/√Σk² of the pixels' σ.
         let power: f32 = kernel.iter().map(|k| k * k).sum();
         let power = f64::from(power * power);
-        let limit = LEAST_SNR * light.model.pixel_sigma_e * power.sqrt();
+        let limit = LEAST_SNR * context.model.pixel_sigma_e * power.sqrt();
         let sigma2 = image.sigma_px * image.sigma_px;
         let apart_px = APART_PX + reach as f64;
         for y in reach..rows - reach {
@@ -81,11 +81,11 @@ impl FaintPoints {
                     continue;
                 }
                 let position = self.vertex(x, y, columns, window);
-                let is_taken = light.is_near_cluster(position, apart_px)
+                let is_taken = context.is_near_cluster(position, apart_px)
                     || stars.iter().any(|star| star.distance(position) < apart_px);
                 if !is_taken {
                     let flux_e = f64::from(value) / power;
-                    let snr = f64::from(value) / (light.model.pixel_sigma_e * power.sqrt());
+                    let snr = f64::from(value) / (context.model.pixel_sigma_e * power.sqrt());
                     // That of a Gaussian in uniform noise: 2 σ²/snr².
                     let point = FaintPoint { position, variance_px2: 2.0 * sigma2 / (snr * snr), flux_e };
                     self.points.push((value, point));
@@ -95,18 +95,18 @@ impl FaintPoints {
     }
 
     /// Takes in the pixels of a window.
-    fn load(&mut self, light: FrameLight<'_>, window: &Window) {
-        let (gain, base_dn) = light.model.scale();
-        self.light.clear();
+    fn load(&mut self, context: PhotometryContext<'_>, window: &Window) {
+        let (gain, base_dn) = context.model.scale();
+        self.context.clear();
         for y in window.y..window.y + window.rows {
-            let row = &light.frame.row(y)[window.x..window.x + window.columns];
-            self.light.extend(row.iter().map(|&dn| (f32::from(dn) - base_dn) * gain));
+            let row = &context.frame.row(y)[window.x..window.x + window.columns];
+            self.context.extend(row.iter().map(|&dn| (f32::from(dn) - base_dn) * gain));
         }
-        let columns = light.frame.columns();
-        let taken_out = light.detector.pixels_in_clusters().chain(light.hot_pixels.indices());
+        let columns = context.frame.columns();
+        let taken_out = context.detector.pixels_in_clusters().chain(context.hot_pixels.indices());
         for (x, y) in taken_out.map(|index| (index % columns, index / columns)) {
             if window.contains(x, y) {
-                self.light[(y - window.y) * window.columns + x - window.x] = 0.0;
+                self.context[(y - window.y) * window.columns + x - window.x] = 0.0;
             }
         }
     }
@@ -116,7 +116,7 @@ impl FaintPoints {
         let reach = kernel.len() / 2;
         self.along_rows.clear();
         self.along_rows.resize(columns * rows, 0.0);
-        for (to, from) in self.along_rows.chunks_exact_mut(columns).zip(self.light.chunks_exact(columns)) {
+        for (to, from) in self.along_rows.chunks_exact_mut(columns).zip(self.context.chunks_exact(columns)) {
             let inner = &mut to[reach..columns - reach];
             for (k, &weight) in kernel.iter().enumerate() {
                 for (to, from) in inner.iter_mut().zip(&from[k..]) {

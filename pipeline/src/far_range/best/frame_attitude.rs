@@ -4,7 +4,7 @@ use contract::{AttitudeSource, CameraFrame, Icrs, PixelPoint, Rotation, Telemetr
 
 use super::lost_in_space;
 use super::mounting::AttitudeError;
-use super::photometry::{FittedSource, FrameLight, Source};
+use super::photometry::{FittedSource, PhotometryContext, Source};
 use super::stars::{
     ExpectedStar, StarCandidate, StarMeasurement, are_confirmed, image_covariance, matches_at_positions,
     matches_by_offset, solve_attitude,
@@ -101,7 +101,7 @@ impl BestPipeline {
     /// The attitude of the frame, and which clusters are stars.
     pub(super) fn attitude(
         &mut self,
-        light: FrameLight<'_>,
+        context: PhotometryContext<'_>,
         sources: &[Source],
         trail_px: [f64; 2],
         start: &AttitudeStart,
@@ -116,7 +116,7 @@ impl BestPipeline {
         let mut camera_from_icrs = of(prior.mean);
         let mut expected = self.expected_stars(&camera_from_icrs, telemetry, overrides);
         if let Some(identity) = overrides.identity {
-            return self.given_attitude(light, sources, trail_px, start, overrides, identity, expected);
+            return self.given_attitude(context, sources, trail_px, start, overrides, identity, expected);
         }
         let mut order: Vec<usize> = (0..sources.len()).filter(|&i| sources[i].spike.is_none()).collect();
         order.sort_by(|&a, &b| sources[b].flux_e.total_cmp(&sources[a].flux_e).then(a.cmp(&b)));
@@ -148,7 +148,7 @@ impl BestPipeline {
                 }
                 let i = order[c];
                 let fit = *fits[c].get_or_insert_with(|| {
-                    self.fitter.point(light, &sources[i], light.detector.members(i), &self.psf, trail_px)
+                    self.fitter.point(context, &sources[i], context.detector.members(i), &self.psf, trail_px)
                 });
                 if let Some(star) = self.star_measurement(&sources[i], fit, &expected[s], overrides) {
                     measured.push(star);
@@ -205,9 +205,9 @@ impl BestPipeline {
         }
         let at_centre = image_covariance(&error.covariance, 0.1, 0.1, (fx, fy));
         let gate_px = 2.0 + 3.5 * at_centre[(0, 0)].max(at_centre[(1, 1)]).sqrt();
-        let is_in_image = |position: PixelPoint| light.is_well_inside(position, gate_px);
+        let is_in_image = |position: PixelPoint| context.is_well_inside(position, gate_px);
         let is_chance = n_stars > 0
-            && !are_confirmed(&matched, &candidates, &expected, gate_px, light.threshold_e, is_in_image);
+            && !are_confirmed(&matched, &candidates, &expected, gate_px, context.threshold_e, is_in_image);
         if is_chance {
             error = prior;
             camera_from_icrs = of(prior.mean);
@@ -219,7 +219,7 @@ impl BestPipeline {
         if overrides.camera_from_icrs.is_none() && self.lost_in_space.is_none() {
             self.mounting.update(&prior, &error);
         }
-        self.learn(&matched, &candidates, &expected, &fits, telemetry.exposure_s);
+        self.update_estimates(&matched, &candidates, &expected, &fits, telemetry.exposure_s);
         let source = match n_stars {
             _ if is_chance => AttitudeSource::NoMatch,
             0 => AttitudeSource::NoStars,
@@ -236,7 +236,7 @@ impl BestPipeline {
     #[allow(clippy::too_many_arguments, reason = "the state of one frame, half way")]
     fn given_attitude(
         &mut self,
-        light: FrameLight<'_>,
+        context: PhotometryContext<'_>,
         sources: &[Source],
         trail_px: [f64; 2],
         start: &AttitudeStart,
@@ -257,7 +257,8 @@ impl BestPipeline {
             if measured.len() >= self.config.best.max_stars as usize || is_blended(&expected, s) {
                 continue;
             }
-            let fit = self.fitter.point(light, &sources[i], light.detector.members(i), &self.psf, trail_px);
+            let fit =
+                self.fitter.point(context, &sources[i], context.detector.members(i), &self.psf, trail_px);
             measured.extend(self.star_measurement(&sources[i], fit, &expected[s], overrides));
         }
         let of = |error: nalgebra::Vector3<f64>| match overrides.camera_from_icrs {
@@ -324,7 +325,7 @@ impl BestPipeline {
     }
 
     /// Takes the widths and the brightness of the stars into their estimates.
-    fn learn(
+    fn update_estimates(
         &mut self,
         matched: &[(usize, usize)],
         candidates: &[StarCandidate],
@@ -341,7 +342,7 @@ impl BestPipeline {
             if candidates[c].is_saturated {
                 continue;
             }
-            self.psf.take(&fit.image);
+            self.psf.update_from_star(&fit.image);
             if fit.image.flux_e > 0.0 {
                 let star = &expected[s];
                 let unscaled = self.unscaled_flux_e(star.star.magnitude, exposure_s);

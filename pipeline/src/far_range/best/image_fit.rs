@@ -78,7 +78,7 @@ impl PointImage {
     /// Share of the flux on the pixel whose centre is at the offset (dx, dy) from that of the image.
     pub(super) fn share(&self, dx: f64, dy: f64) -> f64 {
         let of = |sigma: f64| {
-            let along = |offset: f64, trail: f64| Share::of(offset, smeared(sigma, trail)).value;
+            let along = |offset: f64, trail: f64| Share::from_offset(offset, smeared(sigma, trail)).value;
             along(dx, self.trail_px[0]) * along(dy, self.trail_px[1])
         };
         (1.0 - self.halo_fraction) * of(self.sigma_px) + self.halo_fraction * of(self.halo_sigma_px)
@@ -419,9 +419,9 @@ fn smeared(sigma_px: f64, trail_px: f64) -> f64 {
 
 /// Shares of a Gaussian of width `sigma` about `centre` on all pixels of an axis: one error function per edge.
 fn fill(shares: &mut [Share], centre: f64, sigma: f64) {
-    let mut left = Edge::at(-0.5 - centre, sigma);
+    let mut left = Edge::from_offset(-0.5 - centre, sigma);
     for (i, share) in shares.iter_mut().enumerate() {
-        let right = Edge::at(i as f64 + 0.5 - centre, sigma);
+        let right = Edge::from_offset(i as f64 + 0.5 - centre, sigma);
         *share = Share::between(&left, &right, sigma);
         left = right;
     }
@@ -438,7 +438,7 @@ struct Edge {
 }
 
 impl Edge {
-    fn at(offset: f64, sigma: f64) -> Self {
+    fn from_offset(offset: f64, sigma: f64) -> Self {
         let t = offset / sigma;
         if t.abs() > FARTHEST {
             return Self { t, cumulative: 0.5_f64.copysign(t), density: 0.0 };
@@ -455,8 +455,8 @@ impl Edge {
 }
 
 impl Share {
-    fn of(offset: f64, sigma: f64) -> Self {
-        Self::between(&Edge::at(offset - 0.5, sigma), &Edge::at(offset + 0.5, sigma), sigma)
+    fn from_offset(offset: f64, sigma: f64) -> Self {
+        Self::between(&Edge::from_offset(offset - 0.5, sigma), &Edge::from_offset(offset + 0.5, sigma), sigma)
     }
 
     fn between(left: &Edge, right: &Edge, sigma: f64) -> Self {

@@ -92,7 +92,7 @@ impl LostInSpace {
         let mut tested = 0;
         for corners in pyramid_order(sources.len().min(MAX_TRIANGLE_SOURCES)) {
             let corners = corners.map(|corner| sources[corner]);
-            for stars in search.of(corners.map(|corner| corner.direction)) {
+            for stars in search.matching_triples(corners.map(|corner| corner.direction)) {
                 let triangle: Vec<Match> = corners
                     .into_iter()
                     .zip(stars)

@@ -20,7 +20,7 @@ const BRIGHTNESS_OFFSET: f64 = 0.35;
 impl BestPipeline {
     /// Half the angular size of the target by its flux, rad; `None` without a calibration of it.
     fn angular_radius(&self, flux_e: f64, exposure_s: f64) -> Option<f64> {
-        let target = self.light.target?;
+        let target = self.calibration.target?;
         let range_m = 1000.0 * (target.e_per_s_at_1_km * exposure_s / flux_e.max(1e-9)).sqrt();
         Some(target.radius_m / range_m)
     }
@@ -54,7 +54,7 @@ impl BestPipeline {
     ) -> Measurement {
         let TargetContext { attitude, exposure_s, .. } = of;
         let (candidate, fit) = (&image.candidate, image.fit.as_ref());
-        let frame = of.light.frame;
+        let frame = of.context.frame;
         let given = overrides.centroid.and_then(|centroid| centroid(candidate.position));
         let (columns, rows) = (frame.columns() as f64, frame.rows() as f64);
         let fitted = given.unwrap_or(candidate.position);

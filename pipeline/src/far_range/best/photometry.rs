@@ -96,7 +96,7 @@ impl PhotometryModel {
         let mut peak = (0, 0);
         for &index in members {
             let (x, y) = (index as usize % columns, index as usize / columns);
-            let dn = frame.at(x, y);
+            let dn = frame.dn_at(x, y);
             saturated += usize::from(self.is_saturated(frame, dn));
             if dn > peak.1 {
                 peak = (index as usize, dn);
@@ -120,7 +120,7 @@ impl PhotometryModel {
     /// Whether the pixel holds more of the light about it than half way between a point's image and all of it.
     fn is_spike(&self, frame: &Frame, index: usize, psf: &PointImage) -> bool {
         let (x, y) = (index % frame.columns(), index / frame.columns());
-        let above = |x: usize, y: usize| self.electrons(frame.at(x, y)) - self.background_e;
+        let above = |x: usize, y: usize| self.electrons(frame.dn_at(x, y)) - self.background_e;
         let peak_e = above(x, y);
         let mut around_e = 0.0;
         for row in y.saturating_sub(1)..(y + 2).min(frame.rows()) {
@@ -159,7 +159,7 @@ pub(super) struct KnownSource {
 
 /// A frame with its clusters, and what is known of the camera.
 #[derive(Clone, Copy)]
-pub(super) struct FrameLight<'a> {
+pub(super) struct PhotometryContext<'a> {
     pub(super) frame: &'a Frame,
     pub(super) detector: &'a Detector,
     pub(super) model: &'a PhotometryModel,
@@ -168,7 +168,7 @@ pub(super) struct FrameLight<'a> {
     pub(super) threshold_e: f64,
 }
 
-impl FrameLight<'_> {
+impl PhotometryContext<'_> {
     /// Whether all pixels within a distance of a position, along columns and rows, were transmitted.
     pub(super) fn is_well_inside(&self, position: PixelPoint, distance_px: f64) -> bool {
         let [x, y] = [position.x, position.y];
@@ -209,7 +209,7 @@ impl SourceFitter {
     /// halo, a few percent of the flux, counts as background.
     pub(super) fn point(
         &mut self,
-        light: FrameLight<'_>,
+        context: PhotometryContext<'_>,
         source: &Source,
         members: &[u32],
         psf: &PointImageEstimate,
@@ -217,26 +217,26 @@ impl SourceFitter {
     ) -> Option<FittedSource> {
         let image = psf.image(trail_px);
         let reach = (3.5 * image.sigma_px + 0.5 * trail_px[0].max(trail_px[1])).ceil().max(2.0) as usize;
-        let extent = Extent::of(light.frame, members);
+        let extent = Extent::from_members(context.frame, members);
         let window = if source.saturated == 0 && extent.side() <= 2 * reach + 1 {
-            FitWindow::about(light.frame, extent.rounded(source.centre), reach)?
+            FitWindow::about(context.frame, extent.rounded(source.centre), reach)?
         } else {
-            FitWindow::around(light.frame, extent, MARGIN_PX)?
+            FitWindow::around(context.frame, extent, MARGIN_PX)?
         };
-        self.gather(light, window, members, &[], light.model.may_spill);
+        self.gather(context, window, members, &[], context.model.may_spill);
         let centre = source.centre;
         let model = ImageModel {
             x_px: Prior::free(centre.x - window.x as f64),
             y_px: Prior::free(centre.y - window.y as f64),
             flux_e: Prior::free(source.flux_e.max(1.0)),
-            background_e: light.model.background_prior(),
+            background_e: context.model.background_prior(),
             log_width: Prior::normal(0.0, psf.log_width_sigma()),
             log_elongation: Prior::fixed(0.0),
             halo_fraction: Prior::fixed(0.0),
             image,
             neighbours: &[],
         };
-        let noise = light.model.noise(light.model.response);
+        let noise = context.model.noise(context.model.response);
         let fitted = self.fitter.fit(&self.pixels, window.size(), noise, &model)?;
         Some(window.in_frame(fitted))
     }
@@ -245,7 +245,7 @@ impl SourceFitter {
     /// where it is a prediction, infinite where it is a cluster's.
     pub(super) fn target(
         &mut self,
-        light: FrameLight<'_>,
+        context: PhotometryContext<'_>,
         start: &TargetStart<'_>,
         psf: &PointImageEstimate,
         known: &[KnownSource],
@@ -253,11 +253,11 @@ impl SourceFitter {
         let image = psf.image([0.0; 2]);
         let reach = (4.0 * image.sigma_px).ceil().max(3.0) as usize + 1;
         let window = match start.members {
-            [] => FitWindow::about(light.frame, rounded(light.frame, start.position)?, reach)?,
+            [] => FitWindow::about(context.frame, rounded(context.frame, start.position)?, reach)?,
             members => {
-                let extent = Extent::of(light.frame, members);
+                let extent = Extent::from_members(context.frame, members);
                 let margin = if start.is_saturated { MARGIN_PX + 2 } else { reach - 1 };
-                FitWindow::around(light.frame, extent, margin)?
+                FitWindow::around(context.frame, extent, margin)?
             }
         };
         let near = |source: &&KnownSource| window.distance_px(source.position) <= 3.0;
@@ -274,11 +274,14 @@ impl SourceFitter {
             })
             .collect();
         let mut fitted =
-            self.fit_from_all_starts(light, window, start, psf, &neighbours, light.model.may_spill)?;
-        if light.model.may_spill && !self.saturated.is_empty() && !self.spills(&fitted, light.model, &image) {
+            self.fit_from_all_starts(context, window, start, psf, &neighbours, context.model.may_spill)?;
+        if context.model.may_spill
+            && !self.saturated.is_empty()
+            && !self.spills(&fitted, context.model, &image)
+        {
             // No well overflows: the pixels beside saturated ones hold their own charge alone.
             fitted =
-                self.fit_from_all_starts(light, window, start, psf, &neighbours, false).unwrap_or(fitted);
+                self.fit_from_all_starts(context, window, start, psf, &neighbours, false).unwrap_or(fitted);
         }
         Some(window.in_frame(fitted))
     }
@@ -286,16 +289,16 @@ impl SourceFitter {
     /// The fit with the smallest χ² from the start, and, of an image that was cut in its bright part, from positions beyond the cut.
     fn fit_from_all_starts(
         &mut self,
-        light: FrameLight<'_>,
+        context: PhotometryContext<'_>,
         window: FitWindow,
         start: &TargetStart<'_>,
         psf: &PointImageEstimate,
         neighbours: &[Neighbour],
         spills: bool,
     ) -> Option<FittedImage> {
-        self.gather(light, window, start.members, neighbours, spills);
+        self.gather(context, window, start.members, neighbours, spills);
         let image = psf.image([0.0; 2]);
-        let noise = light.model.noise(light.model.response);
+        let noise = context.model.noise(context.model.response);
         let position_prior =
             |mean: f64| Prior { mean, variance: start.position_sigma_px * start.position_sigma_px };
         let (x, y) = (start.position.x - window.x as f64, start.position.y - window.y as f64);
@@ -303,7 +306,7 @@ impl SourceFitter {
             x_px: position_prior(x),
             y_px: position_prior(y),
             flux_e: Prior::free(start.flux_e.max(1.0)),
-            background_e: light.model.background_prior(),
+            background_e: context.model.background_prior(),
             log_width: Prior::normal(0.0, libm::hypot(psf.log_width_sigma(), start.body_log_width)),
             log_elongation: Prior::normal(0.0, start.body_log_width),
             halo_fraction: Prior::normal(image.halo_fraction, psf.halo_sigma),
@@ -391,18 +394,18 @@ impl SourceFitter {
     /// no other cluster but those of known sources.
     fn gather(
         &mut self,
-        light: FrameLight<'_>,
+        context: PhotometryContext<'_>,
         window: FitWindow,
         members: &[u32],
         known: &[Neighbour],
         spills: bool,
     ) {
-        let FrameLight { frame, detector, model, hot_pixels, .. } = light;
+        let PhotometryContext { frame, detector, model, hot_pixels, .. } = context;
         let columns = frame.columns();
         self.saturated.clear();
         for row in 0..window.rows {
             for column in 0..window.columns {
-                let dn = frame.at(window.x + column, window.y + row);
+                let dn = frame.dn_at(window.x + column, window.y + row);
                 if model.is_saturated(frame, dn) {
                     self.saturated.push((column, row));
                 }
@@ -423,7 +426,7 @@ impl SourceFitter {
         for row in 0..window.rows {
             for column in 0..window.columns {
                 let (x, y) = (window.x + column, window.y + row);
-                let dn = frame.at(x, y);
+                let dn = frame.dn_at(x, y);
                 let is_sent = windows.as_ref().is_none_or(|sent| sent.iter().any(|sent| sent.contains(x, y)));
                 if !is_sent || model.is_saturated(frame, dn) || hot_pixels.contains(y * columns + x) {
                     continue;
@@ -478,7 +481,7 @@ struct Extent {
 }
 
 impl Extent {
-    fn of(frame: &Frame, members: &[u32]) -> Self {
+    fn from_members(frame: &Frame, members: &[u32]) -> Self {
         let columns = frame.columns();
         let mut extent = Self { x: (usize::MAX, 0), y: (usize::MAX, 0) };
         for &index in members {

@@ -6,7 +6,7 @@ use contract::{
 
 use super::frame_attitude::FrameAttitude;
 use super::hot_pixels::HotPixels;
-use super::photometry::{FrameLight, KnownSource, PhotometryModel, Source};
+use super::photometry::{KnownSource, PhotometryContext, PhotometryModel, Source};
 use super::stars::ExpectedStar;
 use super::state::{BestPipeline, LastFrame};
 use super::target::TargetContext;
@@ -34,8 +34,8 @@ impl BestPipeline {
         let Some(background) = self.background.estimate(frame) else {
             return Outcome::none(NoSolution::EmptyFrame);
         };
-        let thresholds = self.config.thresholds.of(frame, Some(background));
-        if 2 * self.detector.look(frame, thresholds) > transmitted_pixels(frame) {
+        let thresholds = self.config.thresholds.for_frame(frame, Some(background));
+        if 2 * self.detector.find_bright(frame, thresholds) > transmitted_pixels(frame) {
             return Outcome::none(NoSolution::SaturatedFrame);
         }
         let max_clusters = self.config.max_clusters as usize;
@@ -46,7 +46,7 @@ impl BestPipeline {
         let hot_pixels = std::mem::take(&mut self.hot_pixels);
         let threshold_e =
             self.threshold_flux_e(f64::from(thresholds.high_dn) - background.median_dn, &photometry);
-        let light = FrameLight {
+        let context = PhotometryContext {
             frame,
             detector: &detector,
             model: &photometry,
@@ -58,7 +58,7 @@ impl BestPipeline {
             .enumerate()
             .map(|(i, blob)| photometry.source(frame, blob, detector.members(i), &self.psf.image([0.0; 2])))
             .collect();
-        let outcome = self.answer(light, &sources, telemetry, elapsed_s, overrides);
+        let outcome = self.answer(context, &sources, telemetry, elapsed_s, overrides);
         self.detector = detector;
         self.hot_pixels = hot_pixels;
         for spike in sources.iter().filter_map(|source| source.spike) {
@@ -97,9 +97,9 @@ impl BestPipeline {
         let gain = readout.gain_e_per_dn;
         PhotometryModel {
             readout,
-            response: self.light.response,
-            full_well_e: self.light.full_well_e,
-            may_spill: self.light.may_spill,
+            response: self.calibration.response,
+            full_well_e: self.calibration.full_well_e,
+            may_spill: self.calibration.may_spill,
             background_e: (background.median_dn - readout.bias_dn) * gain,
             pixel_sigma_e: background.sigma_dn * gain,
         }
@@ -113,7 +113,7 @@ impl BestPipeline {
 
     fn answer(
         &mut self,
-        light: FrameLight<'_>,
+        context: PhotometryContext<'_>,
         sources: &[Source],
         telemetry: &Telemetry,
         elapsed_s: Option<f64>,
@@ -122,18 +122,19 @@ impl BestPipeline {
         let start = self.start(sources, telemetry, overrides);
         let trail_px = self.trail_px(telemetry, elapsed_s, start.as_ref());
         let attitude = match &start {
-            Some(start) => self.attitude(light, sources, trail_px, start, telemetry, overrides),
+            Some(start) => self.attitude(context, sources, trail_px, start, telemetry, overrides),
             None => FrameAttitude::unknown(sources),
         };
         let known = self.known_sources(&attitude, trail_px);
         let exposure_s = telemetry.exposure_s;
-        let of = TargetContext { light, sources, attitude: &attitude, known: &known, exposure_s };
+        let of = TargetContext { context, sources, attitude: &attitude, known: &known, exposure_s };
         let mut images = self.candidates(of, overrides);
         let candidates: Vec<TargetCandidate> = images.iter().map(|image| image.candidate).collect();
         let track_model = TrackModel {
             max_speed_px_per_s: self.config.best.max_speed_px_per_s,
-            clutter_per_px2: (candidates.len() as f64 + 1.0) / transmitted_pixels(light.frame).max(1) as f64,
-            threshold_e_per_s: light.threshold_e / exposure_s,
+            clutter_per_px2: (candidates.len() as f64 + 1.0)
+                / transmitted_pixels(context.frame).max(1) as f64,
+            threshold_e_per_s: context.threshold_e / exposure_s,
         };
         let model = &self.model;
         let position_of = |direction: &Direction<Icrs>| {
@@ -144,7 +145,7 @@ impl BestPipeline {
 
         let chosen = self
             .tracks
-            .best()
+            .by_odds()
             .find_map(|track| track.candidate.filter(|_| track.log_odds >= self.config.best.min_log_odds));
         let solution = match chosen.and_then(|c| images.get_mut(c)) {
             Some(image) => {

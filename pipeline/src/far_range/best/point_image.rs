@@ -51,7 +51,7 @@ impl PointImageEstimate {
     }
 
     /// Takes in the width of a star that was fitted with this image, whose width was free with this estimate's standard deviation as its prior.
-    pub(super) fn take(&mut self, star: &FittedImage) {
+    pub(super) fn update_from_star(&mut self, star: &FittedImage) {
         let snr = star.flux_e / star.flux_sigma_e;
         if snr < LEAST_SNR || star.misfit() > LARGEST_MISFIT {
             return;

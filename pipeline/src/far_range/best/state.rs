@@ -24,7 +24,7 @@ pub(in crate::far_range) struct BestPipeline {
     pub(super) model: CameraModel,
     pub(super) stars: StarList,
     pub(super) readout: Option<Readout>,
-    pub(super) light: Calibrated,
+    pub(super) calibration: PhotometryCalibration,
     pub(super) mounting: MountingFilter,
     /// With no prior attitude.
     pub(super) lost_in_space: Option<LostInSpace>,
@@ -42,7 +42,7 @@ pub(in crate::far_range) struct BestPipeline {
 
 /// Numbers of the calibration that photometry needs.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Calibrated {
+pub(super) struct PhotometryCalibration {
     pub(super) response: f64,
     pub(super) full_well_e: f64,
     pub(super) may_spill: bool,
@@ -96,7 +96,7 @@ impl BestPipeline {
         Ok(Self {
             stars: StarList::new(&setup.stars, config.identification.max_magnitude, &model),
             readout: setup.readout,
-            light: Calibrated {
+            calibration: PhotometryCalibration {
                 response: calibration.response_sigma.unwrap_or(UNKNOWN_RESPONSE),
                 full_well_e: calibration.full_well_e.unwrap_or(f64::INFINITY),
                 may_spill: calibration.spill_fraction.is_none_or(|fraction| fraction > 0.0),
@@ -129,7 +129,7 @@ impl BestPipeline {
 
     /// Flux of a star by the calibration alone, electrons.
     pub(super) fn unscaled_flux_e(&self, magnitude: f64, exposure_s: f64) -> f64 {
-        let scale = self.light.zero_magnitude_e_per_s.unwrap_or(UNKNOWN_ZERO_MAGNITUDE);
+        let scale = self.calibration.zero_magnitude_e_per_s.unwrap_or(UNKNOWN_ZERO_MAGNITUDE);
         scale * exposure_s * libm::pow(10.0, -0.4 * magnitude)
     }
 }

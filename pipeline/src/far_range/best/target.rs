@@ -4,7 +4,7 @@ use contract::{Direction, Icrs, PixelPoint};
 
 use super::faint_points::FaintPoint;
 use super::frame_attitude::FrameAttitude;
-use super::photometry::{FittedSource, FrameLight, KnownSource, Source, TargetStart};
+use super::photometry::{FittedSource, KnownSource, PhotometryContext, Source, TargetStart};
 use super::state::BestPipeline;
 use super::tracks::TargetCandidate;
 use crate::far_range::overrides::{Identity, Overrides};
@@ -12,7 +12,7 @@ use crate::far_range::overrides::{Identity, Overrides};
 /// What is known of a frame before its target is looked for.
 #[derive(Clone, Copy)]
 pub(super) struct TargetContext<'a> {
-    pub(super) light: FrameLight<'a>,
+    pub(super) context: PhotometryContext<'a>,
     pub(super) sources: &'a [Source],
     pub(super) attitude: &'a FrameAttitude,
     /// Listed stars of known flux.
@@ -66,7 +66,7 @@ impl BestPipeline {
             let source = &of.sources[i];
             let is_fitted = images.len() < max_fitted || self.tracks.is_expected(source.centre);
             let fit = is_fitted.then(|| self.fit_cluster(of, i)).flatten();
-            let log_odds = log_odds(source, fit.as_ref(), of.light.threshold_e);
+            let log_odds = log_odds(source, fit.as_ref(), of.context.threshold_e);
             let candidate = self.cluster_candidate(of, source, fit.as_ref(), log_odds);
             images.push(CandidateImage { candidate, fit, cluster: Some(i) });
         }
@@ -81,7 +81,7 @@ impl BestPipeline {
     fn faint_candidates(&mut self, of: TargetContext<'_>) -> Vec<CandidateImage> {
         let image = self.psf.image([0.0; 2]);
         let stars: Vec<PixelPoint> = of.attitude.expected.iter().map(|star| star.position).collect();
-        let points = self.faint_points.find(of.light, &image, &stars);
+        let points = self.faint_points.find(of.context, &image, &stars);
         let candidate = |point: &FaintPoint| TargetCandidate {
             position: point.position,
             variance_px2: point.variance_px2,
@@ -122,7 +122,7 @@ impl BestPipeline {
             position_sigma_px: f64::INFINITY,
             flux_e: source.flux_e,
             body_log_width: self.body_log_width(source.flux_e, of.exposure_s),
-            members: of.light.detector.members(cluster),
+            members: of.context.detector.members(cluster),
             is_saturated: source.saturated > 0,
             is_cut: source.is_cut,
         };
@@ -154,7 +154,7 @@ impl BestPipeline {
             star.position.distance(start.position) <= KNOWN_REACH_PX && star.flux_e > 1e-3 * start.flux_e
         };
         let near: Vec<KnownSource> = of.known.iter().filter(is_near).copied().collect();
-        self.fitter.target(of.light, start, &self.psf, &near)
+        self.fitter.target(of.context, start, &self.psf, &near)
     }
 
     fn cluster_candidate(
@@ -196,7 +196,7 @@ impl BestPipeline {
         of: TargetContext<'_>,
         others: &[CandidateImage],
     ) -> Option<CandidateImage> {
-        let track = *self.tracks.best().next()?;
+        let track = *self.tracks.by_odds().next()?;
         let sigma_px = track.variance_px2().sqrt();
         if track.log_odds < PREDICTED_LOG_ODDS || sigma_px > PREDICTED_REACH_PX {
             return None;
@@ -247,7 +247,7 @@ fn target_clusters(of: TargetContext<'_>, overrides: &Overrides<'_>) -> Vec<usiz
             source.blob.pixels <= 2
                 && x >= 0.0
                 && y >= 0.0
-                && of.light.hot_pixels.contains(y as usize * of.light.frame.columns() + x as usize)
+                && of.context.hot_pixels.contains(y as usize * of.context.frame.columns() + x as usize)
         }
     };
     let mut clusters: Vec<usize> = (0..of.sources.len())

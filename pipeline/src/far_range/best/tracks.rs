@@ -186,7 +186,7 @@ impl Track {
         }
     }
 
-    fn take(&mut self, index: usize, c: &TargetCandidate, gain: f64) {
+    fn update_with(&mut self, index: usize, c: &TargetCandidate, gain: f64) {
         let [pp, pv, vv] = self.covariance;
         let measured = c.variance_px2 + JITTER_PX * JITTER_PX;
         let (kp, kv) = (pp / (pp + measured), pv / (pp + measured));
@@ -205,7 +205,7 @@ impl Track {
         self.candidate = Some(index);
     }
 
-    fn miss(&mut self, model: &TrackModel) {
+    fn register_miss(&mut self, model: &TrackModel) {
         let is_faint = libm::exp(self.log_flux) < 2.0 * model.threshold_e_per_s;
         let detected = if is_faint { DETECTED_FAINT } else { DETECTED };
         self.log_odds = (self.log_odds + libm::log(1.0 - detected)).max(LOG_ODDS.0);
@@ -249,7 +249,7 @@ impl Tracks {
     }
 
     /// The tracks with the best odds, the best first.
-    pub(super) fn best(&self) -> impl Iterator<Item = &Track> {
+    pub(super) fn by_odds(&self) -> impl Iterator<Item = &Track> {
         self.tracks.iter()
     }
 
@@ -279,11 +279,11 @@ impl Tracks {
         for (_, gain, t, c) in pairs {
             if !is_taken[c] && self.tracks[t].candidate.is_none() {
                 is_taken[c] = true;
-                self.tracks[t].take(c, &candidates[c], gain);
+                self.tracks[t].update_with(c, &candidates[c], gain);
             }
         }
         for track in self.tracks.iter_mut().filter(|track| track.candidate.is_none()) {
-            track.miss(model);
+            track.register_miss(model);
         }
         let with_stars = self.moved_with_the_stars(position_of);
         for (c, candidate) in candidates.iter().enumerate() {

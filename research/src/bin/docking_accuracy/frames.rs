@@ -91,7 +91,7 @@ impl Case {
 
     /// The Cramér–Rao bounds of its pose.
     pub(crate) fn bounds(&self) -> Result<[Bound; 3], SimError> {
-        let lighting = self.simulator.moment(0)?.lighting;
+        let lighting = self.simulator.field_state(0)?.lighting;
         bound::bounds_of_pose(&self.camera, self.simulator.scene(), &lighting, &self.pose)
     }
 

@@ -89,7 +89,7 @@ fn measure(case: &Case, image: &RadianceImage) -> Result<Option<Pose>, Box<dyn E
 
 /// The image by the fast renderer, and the same with Mitsuba's in the square about the target.
 fn images(case: &Case, samples: u32) -> Result<[RadianceImage; 2], Box<dyn Error>> {
-    let (scene, moment) = (case.simulator.scene(), case.simulator.moment(0)?);
+    let (scene, moment) = (case.simulator.scene(), case.simulator.field_state(0)?);
     let mut fast = RadianceImage::default();
     Drawer::new(&case.camera)?.draw(scene, &moment.lighting, &case.pose, &mut fast);
     let crop = case.target_window();

@@ -12,7 +12,7 @@ pub(crate) fn write(path: &Path, field: &Field, outcome: &DockingOutcome) -> Res
     let (columns, rows, step) = (field.image().columns(), field.camera_rows(), field.lines().step());
     let mut picture = RgbImage::from_fn(columns as u32, rows as u32, |x, y| {
         let row = (y as usize / step).min(field.image().rows() - 1);
-        let grey = (255 * u32::from(field.image().at(x as usize, row))
+        let grey = (255 * u32::from(field.image().dn_at(x as usize, row))
             / u32::from(field.image().full_scale_dn())) as u8;
         Rgb([grey; 3])
     });

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use sim::draw::ExpectedImage;
 use sim::optics::{Psf, PsfConfig, Stamp};
 use sim::randomness::{Effect, Seed, uniform};
-use sim::sensor::{FixedPatternConfig, FlatLaws, Opening, RawImage, Sensor, SensorConfig};
+use sim::sensor::{ExposureInterval, FixedPatternConfig, FlatSamplers, RawImage, Sensor, SensorConfig};
 
 pub(crate) const COLUMNS: usize = 752;
 pub(crate) const ROWS: usize = 580;
@@ -90,7 +90,7 @@ impl PlainScene {
             psf: Psf::new(&PsfConfig::Gaussian { sigma_px: SIGMA_PX })?,
             image: sensor.new_expected(),
             stamp: Stamp::new(),
-            laws: FlatLaws::new(),
+            samplers: FlatSamplers::new(),
             raw: sensor.new_raw(),
             sensor,
         })
@@ -104,7 +104,7 @@ pub(crate) struct PlainPainter {
     psf: Psf,
     image: ExpectedImage,
     stamp: Stamp,
-    laws: FlatLaws,
+    samplers: FlatSamplers,
     raw: RawImage,
 }
 
@@ -117,9 +117,9 @@ impl PlainPainter {
             self.psf.stamp(star.centre, star.electrons, Psf::FLOOR_E, (COLUMNS, ROWS), &mut self.stamp);
             self.image.add(&self.stamp);
         }
-        let opening = Opening { seed: SEED, middle_s: 0.0, exposure_s: EXPOSURE_S };
+        let opening = ExposureInterval { seed: SEED, middle_s: 0.0, exposure_s: EXPOSURE_S };
         let charge = self.sensor.collect(&mut self.image, &opening);
-        self.sensor.read_out(&charge, &SEED, number, &mut self.laws, &mut self.raw)?;
+        self.sensor.read_out(&charge, &SEED, number, &mut self.samplers, &mut self.raw)?;
         Ok(self.raw.dn())
     }
 }

@@ -50,7 +50,7 @@ fn star(path: &Path, line: usize, content: &str) -> Result<CatalogStar, CatalogE
         parallax_mas: field("Plx", 43..50).number(-1e4, 1e4, mas)?,
         pm_ra_mas_per_yr: field("pmRA", 51..59).number(-1e5, 1e5, motion)?,
         pm_dec_mas_per_yr: field("pmDE", 60..68).number(-1e5, 1e5, motion)?,
-        radial_velocity_km_s: radial_velocity::of(id).unwrap_or(0.0),
+        radial_velocity_km_s: radial_velocity::radial_velocity_km_s(id).unwrap_or(0.0),
         hp_mag: field("Hpmag", 129..136).magnitude()?,
         b_v: coloured.then_some(b_v),
         v_i: (coloured || v_i != 0.0).then_some(v_i),

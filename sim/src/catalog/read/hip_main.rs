@@ -3,14 +3,14 @@
 
 use std::path::Path;
 
-use super::super::parsed::{Exclusion, Parsed};
+use super::super::contents::{CatalogContents, Exclusion};
 use super::super::{CatalogError, CatalogStar, radial_velocity};
 use super::field::Field;
 
 /// H0 to H77.
 const FIELDS: usize = 78;
 
-pub(super) fn parse(path: &Path, text: &str) -> Result<Parsed, CatalogError> {
+pub(super) fn parse(path: &Path, text: &str) -> Result<CatalogContents, CatalogError> {
     let mut stars = Vec::new();
     let mut exclusions = Vec::new();
     for (line, content) in (1..).zip(text.lines()) {
@@ -36,7 +36,7 @@ fn star(id: u32, fields: &Fields<'_>) -> Result<CatalogStar, CatalogError> {
         parallax_mas: fields.get(11, "Plx (H11)").parallax_mas()?.unwrap_or(0.0),
         pm_ra_mas_per_yr: fields.get(12, "pmRA (H12)").proper_motion_mas_per_yr()?.unwrap_or(0.0),
         pm_dec_mas_per_yr: fields.get(13, "pmDE (H13)").proper_motion_mas_per_yr()?.unwrap_or(0.0),
-        radial_velocity_km_s: radial_velocity::of(id).unwrap_or(0.0),
+        radial_velocity_km_s: radial_velocity::radial_velocity_km_s(id).unwrap_or(0.0),
         hp_mag: fields.get(44, "Hpmag (H44)").magnitude()?,
         b_v: fields.get(37, "B-V (H37)").colour()?,
         v_i: fields.get(40, "V-I (H40)").colour()?,
@@ -79,7 +79,7 @@ mod tests {
     const HIP_1: &str = "H|           1| |00 00 00.22|+01 05 20.4| 9.10| |H|000.00091185|+01.08901332| |   3.54|   -5.20|   -1.88|  1.32|  0.74|  1.39|  1.36|  0.81| 0.32|-0.07|-0.11|-0.24| 0.09|-0.01| 0.10|-0.01| 0.01| 0.34|  0| 0.74|     1| 9.643|0.020| 9.130|0.019| | 0.482|0.025|T|0.55|0.03|L| | 9.2043|0.0020|0.017| 87| | 9.17| 9.24|       | | | |          | |  | 1| | | |  |   |       |     |     |    |S| | |224700|B+00 5077 |          |          |0.66|F5          |S \n";
 
     /// The line of HIP 1 with another text in one field.
-    fn with(number: usize, text: &str) -> String {
+    fn line_with_field(number: usize, text: &str) -> String {
         let mut texts: Vec<&str> = HIP_1.split('|').collect();
         texts[number] = text;
         texts.join("|")
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_star_left_out_is_told_with_its_reason() {
-        let text = HIP_1.to_owned() + &with(8, "            ") + &with(44, "       ");
+        let text = HIP_1.to_owned() + &line_with_field(8, "            ") + &line_with_field(44, "       ");
         let (stars, exclusions) = parse(Path::new("hip_main.dat"), &text).unwrap();
         assert_eq!(stars.len(), 1);
         assert_eq!(exclusions.iter().map(|star| (star.line, star.id)).collect::<Vec<_>>(), [(2, 1), (3, 1)]);
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_blank_colour_is_unknown() {
-        let (stars, _) = parse(Path::new("hip_main.dat"), &with(37, "      ")).unwrap();
+        let (stars, _) = parse(Path::new("hip_main.dat"), &line_with_field(37, "      ")).unwrap();
         assert_eq!((stars[0].1.b_v, stars[0].1.v_i), (None, Some(0.55)));
     }
 
@@ -120,9 +120,12 @@ mod tests {
             let message = message("hip_main.dat", content.as_bytes());
             assert!(message.contains(expected), "`{message}` does not say `{expected}`");
         };
-        refused(with(8, "400.00091185"), "line 1, column 52: RAdeg (H8) is `400.00091185`, expected degrees");
-        refused(with(9, "         inf"), "DEdeg (H9) is `inf`");
-        refused(with(1, "         one"), "line 1, column 12: HIP (H1) is `one`");
+        refused(
+            line_with_field(8, "400.00091185"),
+            "line 1, column 52: RAdeg (H8) is `400.00091185`, expected degrees",
+        );
+        refused(line_with_field(9, "         inf"), "DEdeg (H9) is `inf`");
+        refused(line_with_field(1, "         one"), "line 1, column 12: HIP (H1) is `one`");
         refused(HIP_1.to_owned() + "H|2|\n", "line 2: not a line of hip_main.dat: 3 fields");
     }
 }

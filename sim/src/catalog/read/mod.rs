@@ -8,10 +8,10 @@ mod hip_main;
 use std::path::Path;
 
 use super::CatalogError;
-use super::parsed::Parsed;
+use super::contents::CatalogContents;
 
 /// Parses a file of any known format; `path` tells the format and is named in errors.
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Parsed, CatalogError> {
+pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<CatalogContents, CatalogError> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = 1 + bytes.iter().take(error.valid_up_to()).filter(|byte| **byte == b'\n').count();
         CatalogError::Line { path: path.to_path_buf(), line, problem: "not UTF-8 text".to_owned() }

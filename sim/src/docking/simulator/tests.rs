@@ -112,11 +112,11 @@ fn each_field_holds_its_rows_at_its_own_moment() {
 fn the_lens_is_a_function_of_the_range() {
     let simulator = simulator(&simulation());
     for k in 0..simulator.field_count() {
-        let moment = simulator.moment(k).unwrap();
-        assert_eq!(moment.camera, usize::from(moment.state.range_m() < 3.0));
+        let field_state = simulator.field_state(k).unwrap();
+        assert_eq!(field_state.camera, usize::from(field_state.state.range_m() < 3.0));
     }
-    assert_eq!(simulator.moment(0).unwrap().camera, 0);
-    assert_eq!(simulator.moment(200).unwrap().camera, 1);
+    assert_eq!(simulator.field_state(0).unwrap().camera, 0);
+    assert_eq!(simulator.field_state(200).unwrap().camera, 1);
     assert_eq!(simulator.setup().cameras.len(), 2);
 }
 
@@ -280,10 +280,10 @@ fn a_glint_is_seen_where_the_truth_says_and_blooms() {
 fn an_image_drawn_elsewhere_goes_through_the_same_chain() {
     let simulator = simulator(&simulation());
     let mut workspace = simulator.workspace().unwrap();
-    let own = simulator.expose(&mut workspace, 5).unwrap();
+    let expected = simulator.expose(&mut workspace, 5).unwrap();
     let image = workspace.radiance().clone();
     let mut other = simulator.workspace().unwrap();
-    assert_eq!(simulator.expose_image(&mut other, 5, &image).unwrap(), own);
+    assert_eq!(simulator.expose_image(&mut other, 5, &image).unwrap(), expected);
     let small = RadianceImage { columns: 2, rows: 2, radiance: vec![0.0; 4] };
     assert!(simulator.expose_image(&mut other, 5, &small).is_err());
 }
@@ -367,7 +367,7 @@ fn the_built_in_approach_goes_from_500_m_to_contact_in_eight_to_ten_minutes() {
     let simulator = simulator(&simulation);
     let count = simulator.field_count();
     assert!((25_000..=30_000).contains(&count), "{count}");
-    let (first, last) = (simulator.moment(0).unwrap(), simulator.moment(count - 1).unwrap());
+    let (first, last) = (simulator.field_state(0).unwrap(), simulator.field_state(count - 1).unwrap());
     assert!((first.state.pose.position_m.z - 500.0).abs() < 1e-9);
     assert!((last.state.pose.position_m.z - 0.5).abs() < 0.1 / 50.0);
     assert!((last.state.velocity_m_s.z + 0.1).abs() < 1e-9);
@@ -381,12 +381,12 @@ fn the_built_in_approach_goes_from_500_m_to_contact_in_eight_to_ten_minutes() {
 fn the_marks_stay_in_the_field_of_the_built_in_approach_down_to_3_m_and_1_15_m() {
     let simulator = simulator(&built_in());
     for k in (0..simulator.field_count()).step_by(25) {
-        let moment = simulator.moment(k).unwrap();
-        let pose: &Pose = &moment.state.pose;
+        let field_state = simulator.field_state(k).unwrap();
+        let pose: &Pose = &field_state.state.pose;
         // The narrow lens loses marks from here on, and the wide one.
-        let least_m = [3.0, 1.15][moment.camera];
+        let least_m = [3.0, 1.15][field_state.camera];
         if pose.position_m.z > least_m {
-            let eye = &simulator.eyes[moment.camera];
+            let eye = &simulator.eyes[field_state.camera];
             let inside = simulator.geometry.marks_in_field(eye, pose);
             assert_eq!(inside, 0xfff, "at {:.3} m, field {k}", pose.position_m.z);
         }

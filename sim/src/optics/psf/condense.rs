@@ -77,19 +77,19 @@ mod tests {
         }
     }
 
-    fn at(x: f64, y: f64, share: f64) -> ImagePoint {
+    fn image_point(x: f64, y: f64, share: f64) -> ImagePoint {
         ImagePoint { position: PixelPoint::new(x, y), share }
     }
 
     #[test]
     fn few_points_have_the_moments_of_many() {
-        let triangle = [at(0.1, 0.2, 0.5), at(0.3, -0.1, 0.3), at(-0.2, 0.4, 0.2)];
+        let triangle = [image_point(0.1, 0.2, 0.5), image_point(0.3, -0.1, 0.3), image_point(-0.2, 0.4, 0.2)];
         let (four, count) = condensed(&triangle, 4.0).unwrap();
         assert_eq!(count, 4);
         assert_alike(&four[..count], &triangle);
         for (dx, dy) in [(0.3, 0.1), (0.0, 0.2), (-0.1, 0.3), (0.0, 0.0)] {
             let line: Vec<ImagePoint> =
-                (0..5).map(|i| at(f64::from(i) * dx * 0.5, f64::from(i) * dy * 0.5, 0.2)).collect();
+                (0..5).map(|i| image_point(f64::from(i) * dx * 0.5, f64::from(i) * dy * 0.5, 0.2)).collect();
             let (two, count) = condensed(&line, 4.0).unwrap();
             assert_eq!(count, 2);
             assert_alike(&two[..count], &line);
@@ -98,10 +98,10 @@ mod tests {
 
     #[test]
     fn points_far_apart_and_few_points_are_left_as_they_are() {
-        let line = [at(0.0, 0.0, 0.4), at(0.5, 0.0, 0.4), at(1.1, 0.0, 0.2)];
+        let line = [image_point(0.0, 0.0, 0.4), image_point(0.5, 0.0, 0.4), image_point(1.1, 0.0, 0.2)];
         assert!(condensed(&line, 4.0).is_none());
         assert!(condensed(&line[..2], 40.0).is_none());
-        assert!(condensed(&[at(f64::NAN, 0.0, 0.5); 3], 4.0).is_none());
+        assert!(condensed(&[image_point(f64::NAN, 0.0, 0.5); 3], 4.0).is_none());
     }
 
     /// A trail through a wide Gaussian, against the same trail point by point.

@@ -45,7 +45,7 @@ impl ErrorFunction {
 
     /// erf(z).
     #[inline(always)]
-    pub(super) fn at(&self, z: f64) -> f64 {
+    pub(super) fn value_at(&self, z: f64) -> f64 {
         let size = if z.abs() < END { z.abs() } else { END };
         let counted = size * NODES_PER_UNIT + TWO_TO_52;
         let [c0, c1, c2, c3, c4, c5] = self.nodes[counted.to_bits() as usize % NODES];
@@ -63,9 +63,12 @@ mod tests {
         let erf = ErrorFunction::shared();
         for i in -70_000..70_000 {
             let z = f64::from(i) * 1.003e-4;
-            let error = erf.at(z) - libm::erf(z);
+            let error = erf.value_at(z) - libm::erf(z);
             assert!(error.abs() < 1e-13, "{z}: {error}");
         }
-        assert_eq!((erf.at(0.0), erf.at(1e300), erf.at(f64::NEG_INFINITY)), (0.0, 1.0, -1.0));
+        assert_eq!(
+            (erf.value_at(0.0), erf.value_at(1e300), erf.value_at(f64::NEG_INFINITY)),
+            (0.0, 1.0, -1.0)
+        );
     }
 }

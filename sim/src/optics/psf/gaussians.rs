@@ -14,7 +14,7 @@ use super::error_function::ErrorFunction;
 use super::pixels_within::pixels_within;
 use super::share_table::ShareTable;
 use crate::optics::{ImagePoint, Stamp};
-use crate::widest::{Eight, LANES, Work, widest};
+use crate::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
 
 /// Points whose images are added at a time.
 const TOGETHER: usize = 4;
@@ -49,7 +49,7 @@ pub(super) struct Component {
 }
 
 impl Gaussians {
-    pub(super) fn one(sigma_px: f64) -> Self {
+    pub(super) fn single(sigma_px: f64) -> Self {
         Self { components: vec![Component::new(1.0, sigma_px)], floor_share: 1.0 }
     }
 
@@ -93,7 +93,7 @@ impl Gaussians {
             if own_px > 0.0 {
                 let condensed = condensed(points, component.sigma_px);
                 let points = condensed.as_ref().map_or(points, |(few, count)| &few[..*count]);
-                widest(Images { component: &component, points, electrons, own_px, profiles, stamp });
+                run_widest(Images { component: &component, points, electrons, own_px, profiles, stamp });
             }
         }
     }
@@ -117,7 +117,7 @@ struct Images<'a> {
     stamp: &'a mut Stamp,
 }
 
-impl Work for Images<'_> {
+impl SimdKernel for Images<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -173,11 +173,11 @@ fn add_products<'a, S: Simd, const N: usize>(
 ) {
     let columns: [&[[f64; LANES]]; N] = std::array::from_fn(|k| profiles.x[k].as_chunks::<LANES>().0);
     for (j, row) in rows.enumerate() {
-        let of_row: [Eight<S>; N] = std::array::from_fn(|k| Eight::splat(simd, fluxes[k] * profiles.y[k][j]));
+        let of_row: [F64x8<S>; N] = std::array::from_fn(|k| F64x8::splat(simd, fluxes[k] * profiles.y[k][j]));
         for (i, pixels) in row.iter_mut().enumerate() {
-            let mut sum = Eight::of(simd, pixels);
+            let mut sum = F64x8::from_array(simd, pixels);
             for k in 0..N {
-                sum = sum.plus(of_row[k].times(Eight::of(simd, &columns[k][i])));
+                sum = sum.plus(of_row[k].times(F64x8::from_array(simd, &columns[k][i])));
             }
             sum.store(pixels);
         }
@@ -187,11 +187,11 @@ fn add_products<'a, S: Simd, const N: usize>(
 impl Component {
     pub(super) fn new(weight: f64, sigma_px: f64) -> Self {
         let table = ShareTable::new(sigma_px).map(Arc::new);
-        Self { table, ..Self::of_width(weight, sigma_px) }
+        Self { table, ..Self::from_width(weight, sigma_px) }
     }
 
     /// One without a table.
-    fn of_width(weight: f64, sigma_px: f64) -> Self {
+    fn from_width(weight: f64, sigma_px: f64) -> Self {
         let central_share = libm::erf(0.5 / (sigma_px * std::f64::consts::SQRT_2));
         let density = 1.0 / (sigma_px * (2.0 * std::f64::consts::PI).sqrt());
         Self {
@@ -207,7 +207,7 @@ impl Component {
         if scale == 1.0 {
             Cow::Borrowed(self)
         } else {
-            Cow::Owned(Self::of_width(self.weight, self.sigma_px * scale))
+            Cow::Owned(Self::from_width(self.weight, self.sigma_px * scale))
         }
     }
 
@@ -229,7 +229,7 @@ impl Component {
         }
         let scale = 1.0 / (self.sigma_px * std::f64::consts::SQRT_2);
         let erf = ErrorFunction::shared();
-        let edge = |i: usize| erf.at((i as f64 - 0.5 - centre) * scale);
+        let edge = |i: usize| erf.value_at((i as f64 - 0.5 - centre) * scale);
         // First the error function at every edge, each by itself, then their differences in place.
         shares.resize(count + 1, 0.0);
         for (share, i) in shares.iter_mut().zip(first..) {

@@ -24,7 +24,7 @@ pub use config::PsfConfig;
 use super::field::FieldRadius;
 use super::{ImagePoint, Stamp};
 use crate::SimError;
-use crate::widest::{Eight, LANES, Work, widest};
+use crate::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
 use gaussians::{Gaussians, Profiles};
 use pixels_within::pixels_within;
 use tabulated::{Edges, Tabulated};
@@ -83,7 +83,7 @@ impl Psf {
     pub fn load(config: &PsfConfig, folder: &Path) -> Result<Self, SimError> {
         config.check()?;
         let shape = match config {
-            &PsfConfig::Gaussian { sigma_px } => Shape::Gaussians(Gaussians::one(sigma_px)),
+            &PsfConfig::Gaussian { sigma_px } => Shape::Gaussians(Gaussians::single(sigma_px)),
             &PsfConfig::GaussianHalo { sigma_px, halo_sigma_px, halo_fraction } => {
                 Shape::Gaussians(Gaussians::halo(sigma_px, halo_sigma_px, halo_fraction))
             }
@@ -103,7 +103,7 @@ impl Psf {
 
     /// The same, but 1 + `growth` ρ² times as wide at a distance ρ from the principal point of `camera`, in units of
     /// that of its farthest corner ([`super::OpticsConfig::psf_growth`]). An image has the width of its centre.
-    pub fn growing(mut self, growth: f64, camera: &Camera) -> Self {
+    pub fn with_growth(mut self, growth: f64, camera: &Camera) -> Self {
         self.growth = (growth != 0.0).then(|| Growth { a: growth, radius: FieldRadius::new(camera) });
         self
     }
@@ -157,7 +157,7 @@ impl Psf {
                 shape.draw(points, electrons, reach_px, scale, &mut self.edges, stamp);
             }
         }
-        widest(Emptied { pixels: &mut stamp.electrons, below: floor_e });
+        run_widest(FloorClip { pixels: &mut stamp.electrons, below: floor_e });
     }
 
     /// How far off the detector an object of `electrons` may be and still leave `floor_e` electrons in a pixel of it, px;
@@ -200,7 +200,7 @@ impl Growth {
     const STEPS: u32 = 8;
 
     fn scale(&self, at: PixelPoint) -> f64 {
-        1.0 + self.a * self.radius.squared(at)
+        1.0 + self.a * self.radius.normalised_radius_squared(at)
     }
 }
 
@@ -212,11 +212,11 @@ struct Extent {
 }
 
 impl Extent {
-    fn of(points: &[ImagePoint]) -> Self {
+    fn of(from_points: &[ImagePoint]) -> Self {
         let nothing = (f64::INFINITY, f64::NEG_INFINITY);
         let mut extent = Self { x: nothing, y: nothing, centre: PixelPoint::default() };
         let mut shares = 0.0;
-        for ImagePoint { position, share } in points {
+        for ImagePoint { position, share } in from_points {
             extent.x = (extent.x.0.min(position.x), extent.x.1.max(position.x));
             extent.y = (extent.y.0.min(position.y), extent.y.1.max(position.y));
             extent.centre.x += position.x * share;
@@ -231,19 +231,19 @@ impl Extent {
 }
 
 /// Pixels with less light than a floor, made 0: those of a stamp.
-struct Emptied<'a> {
+struct FloorClip<'a> {
     pixels: &'a mut [f64],
     below: f64,
 }
 
-impl Work for Emptied<'_> {
+impl SimdKernel for FloorClip<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let below = Eight::splat(simd, self.below);
+        let below = F64x8::splat(simd, self.below);
         for pixels in self.pixels.as_chunks_mut::<LANES>().0 {
-            Eight::of(simd, pixels).or_none_below(below).store(pixels);
+            F64x8::from_array(simd, pixels).zero_below(below).store(pixels);
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use pulp::Simd;
 
-use crate::widest::{Eight, LANES};
+use crate::simd_kernel::{F64x8, LANES};
 
 /// Coefficients of a polynomial: degree 5.
 const TERMS: usize = 6;
@@ -68,11 +68,11 @@ impl ShareTable {
         };
         let row = |term: usize| rows[term * self.width + from..][..shares.len()].as_chunks::<LANES>().0;
         let rows: [_; TERMS] = std::array::from_fn(row);
-        let d = Eight::splat(simd, d);
+        let d = F64x8::splat(simd, d);
         for (i, shares) in shares.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
-            let mut sum = Eight::of(simd, &rows[TERMS - 1][i]);
+            let mut sum = F64x8::from_array(simd, &rows[TERMS - 1][i]);
             for row in rows.iter().rev().skip(1) {
-                sum = Eight::of(simd, &row[i]).plus(d.times(sum));
+                sum = F64x8::from_array(simd, &row[i]).plus(d.times(sum));
             }
             sum.store(shares);
         }

@@ -84,7 +84,7 @@ impl Tabulated {
                 let y = (j as f64 + 0.5 + 0.5 * v) * step;
                 for (u, weight_u) in gauss {
                     let x = (i as f64 + 0.5 + 0.5 * u) * step;
-                    sum += weight_u * weight_v * profile.at((x * x + y * y).sqrt());
+                    sum += weight_u * weight_v * profile.value_at((x * x + y * y).sqrt());
                 }
             }
             sum * step * step
@@ -208,10 +208,10 @@ impl Tabulated {
             edges.columns.clear();
             edges.columns.extend((x.0..=x.1).map(column));
             let row = |j: usize| self.table.rows.stencil((j as f64 - 0.5 - at.y) * per_y);
-            self.table.row_of(&edges.columns, &row(y.0), &mut edges.above);
+            self.table.interpolate_row(&edges.columns, &row(y.0), &mut edges.above);
             let flux = electrons * point.share;
             for j in y.0..y.1 {
-                self.table.row_of(&edges.columns, &row(j + 1), &mut edges.below);
+                self.table.interpolate_row(&edges.columns, &row(j + 1), &mut edges.below);
                 let start = (j - stamp.y) * stamp.stride + x.0 - stamp.x;
                 let pixels = &mut stamp.electrons[start..start + x.1 - x.0];
                 for ((pixel, above), below) in
@@ -230,7 +230,7 @@ impl Tabulated {
         let columns = [-half_x, half_x].map(|x| self.table.columns.stencil(x));
         let mut row = Vec::new();
         let mut across = |y: f64| {
-            self.table.row_of(&columns, &self.table.rows.stencil(y), &mut row);
+            self.table.interpolate_row(&columns, &self.table.rows.stencil(y), &mut row);
             row[1] - row[0]
         };
         across(half_y) - across(-half_y)
@@ -239,7 +239,7 @@ impl Tabulated {
 
 impl Table {
     /// C at the edges of columns and one edge of rows.
-    fn row_of(&self, columns: &[Stencil], row: &Stencil, values: &mut Vec<f64>) {
+    fn interpolate_row(&self, columns: &[Stencil], row: &Stencil, values: &mut Vec<f64>) {
         let start = row.first * self.stride;
         let lines: [&[f64]; 6] =
             std::array::from_fn(|k| &self.nodes[start + k * self.stride..][..self.stride]);
@@ -267,9 +267,9 @@ impl Axis {
             Parity::Odd => (at.abs(), if at < 0.0 { -1.0 } else { 1.0 }),
             Parity::None => (at, 1.0),
         };
-        let place = ((along - self.origin) / self.step).clamp(0.0, self.cells as f64);
-        let cell = (place as usize).min(self.cells - 1);
-        Stencil { first: cell, weights: lagrange(place - cell as f64).map(|weight| sign * weight) }
+        let node_position = ((along - self.origin) / self.step).clamp(0.0, self.cells as f64);
+        let cell = (node_position as usize).min(self.cells - 1);
+        Stencil { first: cell, weights: lagrange(node_position - cell as f64).map(|weight| sign * weight) }
     }
 }
 
@@ -302,11 +302,11 @@ impl RadialProfile {
         Self { values, step }
     }
 
-    fn at(&self, radius: f64) -> f64 {
-        let place = radius / self.step;
-        let cell = place as usize;
+    fn value_at(&self, radius: f64) -> f64 {
+        let node_position = radius / self.step;
+        let cell = node_position as usize;
         let nodes = &self.values[cell..cell + 6];
-        nodes.iter().zip(lagrange(place - cell as f64)).map(|(value, weight)| value * weight).sum()
+        nodes.iter().zip(lagrange(node_position - cell as f64)).map(|(value, weight)| value * weight).sum()
     }
 }
 

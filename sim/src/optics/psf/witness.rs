@@ -309,7 +309,7 @@ fn an_image_away_from_the_centre_is_that_of_a_wider_shape_with_the_same_light() 
         // ρ² = (7.3² + 6.1²)/(2 · 20.5²).
         let scale = 1.0 + growth * (7.3 * 7.3 + 6.1 * 6.1) / (2.0 * 20.5 * 20.5);
         for (narrow, wide) in pairs(scale) {
-            let ours = image(&mut Psf::new(&narrow).unwrap().growing(growth, &camera()), at);
+            let ours = image(&mut Psf::new(&narrow).unwrap().with_growth(growth, &camera()), at);
             let expected = image(&mut Psf::new(&wide).unwrap(), at);
             for (a, b) in ours.iter().zip(&expected) {
                 // Where a mixture or a table ends is not scaled with it.

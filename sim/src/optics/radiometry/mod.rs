@@ -103,10 +103,10 @@ impl Radiometry {
     /// # Errors
     /// [`OutOfRange`] for a number outside its range, or when the detector sees nothing of the light.
     pub fn new(config: &RadiometryConfig) -> Result<Self, OutOfRange> {
-        Ok((*PREPARED.get(config.clone(), Self::prepared)?).clone())
+        Ok((*PREPARED.get(config.clone(), Self::compute)?).clone())
     }
 
-    fn prepared(config: &RadiometryConfig) -> Result<Self, OutOfRange> {
+    fn compute(config: &RadiometryConfig) -> Result<Self, OutOfRange> {
         config.check()?;
         let prepared = match config {
             RadiometryConfig::ZeroPoint { zero_point_e_per_s } => Self {
@@ -132,7 +132,7 @@ impl Radiometry {
                             let start_nm = (wavelength_nm - spectra::BIN_NM / 2.0).max(short);
                             let end_nm = (wavelength_nm + spectra::BIN_NM / 2.0).min(long);
                             let photons = irradiance * wavelength_nm / HC_J_NM * (end_nm - start_nm).max(0.0);
-                            photons * quantum_efficiency.at(wavelength_nm)
+                            photons * quantum_efficiency.efficiency_at(wavelength_nm)
                         })
                         .sum();
                     area_m2 * electrons_per_m2_s
@@ -157,7 +157,7 @@ impl Radiometry {
     /// V−I decides when it is known, otherwise B−V, which cannot tell M stars apart; a star without colours is taken for one of
     /// B−V = 0.70, the mean of Hipparcos. Colours beyond O5 and M7 are those of the ends.
     pub fn zero_point_e_per_s(&self, b_v: Option<f64>, v_i: Option<f64>) -> f64 {
-        let (before, part) = spectra::place(b_v, v_i);
+        let (before, part) = spectra::sequence_position(b_v, v_i);
         let (low, high) = (self.stars[before], self.stars[before + 1]);
         low + part * (high - low)
     }

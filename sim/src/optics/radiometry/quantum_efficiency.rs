@@ -45,7 +45,7 @@ impl QuantumEfficiency {
     }
 
     /// Electrons a photon at a wavelength, 0 to 1.
-    pub fn at(&self, wavelength_nm: f64) -> f64 {
+    pub fn efficiency_at(&self, wavelength_nm: f64) -> f64 {
         match self {
             Self::Known(KnownDetector::SiliconCcd) => silicon_ccd(wavelength_nm),
             Self::Table(table) => linear(table, wavelength_nm).unwrap_or(0.0),
@@ -106,24 +106,24 @@ mod tests {
     #[test]
     fn a_table_is_read_by_straight_lines_and_ends() {
         let table = QuantumEfficiency::Table(vec![[400.0, 0.2], [600.0, 0.6], [900.0, 0.0]]);
-        assert!((table.at(500.0) - 0.4).abs() < 1e-15);
-        assert!((table.at(600.0) - 0.6).abs() < 1e-15);
-        assert_eq!((table.at(399.9), table.at(900.1)), (0.0, 0.0));
+        assert!((table.efficiency_at(500.0) - 0.4).abs() < 1e-15);
+        assert!((table.efficiency_at(600.0) - 0.6).abs() < 1e-15);
+        assert_eq!((table.efficiency_at(399.9), table.efficiency_at(900.1)), (0.0, 0.0));
     }
 
     /// Front-illuminated CCDs without coating: blind in the near ultraviolet, between 0.4 and 0.6 at their peak from 600 to 700 nm, some
     /// 0.2 at 900 nm and a few hundredths at 1000 nm, as in the data sheets of such devices.
     #[test]
     fn a_front_illuminated_ccd_is_blind_in_the_ultraviolet_and_fades_in_the_infrared() {
-        assert!(CCD.at(350.0) < 0.01);
-        assert!((0.02..0.10).contains(&CCD.at(400.0)), "{}", CCD.at(400.0));
+        assert!(CCD.efficiency_at(350.0) < 0.01);
+        assert!((0.02..0.10).contains(&CCD.efficiency_at(400.0)), "{}", CCD.efficiency_at(400.0));
         let peak = (300..1100).map(f64::from).fold((0.0, 0.0), |best: (f64, f64), nm| {
-            if CCD.at(nm) > best.1 { (nm, CCD.at(nm)) } else { best }
+            if CCD.efficiency_at(nm) > best.1 { (nm, CCD.efficiency_at(nm)) } else { best }
         });
         assert!((580.0..680.0).contains(&peak.0) && (peak.1 - 0.53).abs() < 0.01, "{peak:?}");
-        assert!((0.10..0.25).contains(&CCD.at(900.0)), "{}", CCD.at(900.0));
-        assert!((0.02..0.06).contains(&CCD.at(1000.0)), "{}", CCD.at(1000.0));
-        assert_eq!(CCD.at(1101.0), 0.0);
+        assert!((0.10..0.25).contains(&CCD.efficiency_at(900.0)), "{}", CCD.efficiency_at(900.0));
+        assert!((0.02..0.06).contains(&CCD.efficiency_at(1000.0)), "{}", CCD.efficiency_at(1000.0));
+        assert_eq!(CCD.efficiency_at(1101.0), 0.0);
     }
 
     #[test]

@@ -33,29 +33,29 @@ pub(super) fn wavelength_nm(bin: usize) -> f64 {
     START_NM + BIN_NM * (bin as f64 + 0.5)
 }
 
-fn word(index: usize) -> f64 {
+fn table_value(index: usize) -> f64 {
     let (words, _) = TABLE.as_chunks::<WORD>();
     words.get(index).map_or(0.0, |word| f64::from_le_bytes(*word))
 }
 
 /// Spectral irradiance of star `number` of the sequence at V = 0.
 pub(super) fn star(number: usize) -> Spectrum {
-    std::array::from_fn(|bin| word(number * STAR_RECORD + 2 + bin))
+    std::array::from_fn(|bin| table_value(number * STAR_RECORD + 2 + bin))
 }
 
 /// Spectral irradiance of the Sun at 1 au.
 pub(super) fn sun() -> Spectrum {
-    std::array::from_fn(|bin| word(STARS * STAR_RECORD + bin))
+    std::array::from_fn(|bin| table_value(STARS * STAR_RECORD + bin))
 }
 
 /// Synthetic B−V of star `number` of the sequence, mag.
 pub(super) fn b_v(number: usize) -> f64 {
-    word(number * STAR_RECORD)
+    table_value(number * STAR_RECORD)
 }
 
 /// Synthetic V−I (Cousins) of star `number` of the sequence, mag.
 pub(super) fn v_i(number: usize) -> f64 {
-    word(number * STAR_RECORD + 1)
+    table_value(number * STAR_RECORD + 1)
 }
 
 /// The place on the sequence of a star with these colours: the number of the star before it, and how far it is on the way to
@@ -63,7 +63,7 @@ pub(super) fn v_i(number: usize) -> f64 {
 ///
 /// V−I decides when it is known, because it lies where silicon is sensitive: dwarfs and giants, reddened or not, agree better by
 /// it. Otherwise B−V. Colours beyond the ends of the sequence are those of the ends.
-pub(super) fn place(b_v_mag: Option<f64>, v_i_mag: Option<f64>) -> (usize, f64) {
+pub(super) fn sequence_position(b_v_mag: Option<f64>, v_i_mag: Option<f64>) -> (usize, f64) {
     match (v_i_mag, b_v_mag) {
         (Some(colour), _) => between(colour, STARS, v_i),
         (None, b_v_mag) => between(b_v_mag.unwrap_or(MEAN_B_V), BLUE, b_v),
@@ -151,10 +151,10 @@ mod tests {
     #[test]
     fn a_star_of_the_sequence_is_at_its_own_place() {
         for number in 0..STARS {
-            let (before, part) = place(Some(0.5), Some(v_i(number)));
+            let (before, part) = sequence_position(Some(0.5), Some(v_i(number)));
             assert!((before as f64 + part - number as f64).abs() < 1e-9, "{number}: {before} + {part}");
             if number < BLUE {
-                let (before, part) = place(Some(b_v(number)), None);
+                let (before, part) = sequence_position(Some(b_v(number)), None);
                 assert!((before as f64 + part - number as f64).abs() < 1e-9, "{number}: {before} + {part}");
             }
         }
@@ -162,9 +162,9 @@ mod tests {
 
     #[test]
     fn colours_beyond_the_ends_are_those_of_the_ends() {
-        assert_eq!(place(Some(-2.0), None), (0, 0.0));
-        assert_eq!(place(Some(5.0), None), (BLUE - 2, 1.0));
-        assert_eq!(place(None, Some(9.0)), (STARS - 2, 1.0));
+        assert_eq!(sequence_position(Some(-2.0), None), (0, 0.0));
+        assert_eq!(sequence_position(Some(5.0), None), (BLUE - 2, 1.0));
+        assert_eq!(sequence_position(None, Some(9.0)), (STARS - 2, 1.0));
     }
 
     #[test]

@@ -144,7 +144,7 @@ impl Background {
         let grid = Arc::new(NodeGrid::new(columns, rows));
         let nodes = (0..NODES * NODES)
             .map(|i| {
-                let (x, y) = grid.place(i);
+                let (x, y) = grid.node_position(i);
                 Node::new(projection, x, y).ok_or_else(|| {
                     OutOfRange::new(
                         "camera",
@@ -155,7 +155,10 @@ impl Background {
             })
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Some(Self {
-            earth_transmittance: config.earth.as_ref().map(|earth| TransmittanceTable::of(&earth.scatter)),
+            earth_transmittance: config
+                .earth
+                .as_ref()
+                .map(|earth| TransmittanceTable::from_config(&earth.scatter)),
             config: config.clone(),
             grid,
             nodes,
@@ -168,7 +171,7 @@ impl Background {
     /// other ways.
     pub fn vignetted(mut self, vignetting: &Vignetting) -> Self {
         for (i, node) in self.nodes.iter_mut().enumerate() {
-            let (x, y) = self.grid.place(i);
+            let (x, y) = self.grid.node_position(i);
             node.pixel_sr *= vignetting.transmission(PixelPoint::new(x, y));
         }
         self
@@ -196,17 +199,17 @@ impl Background {
                 s10 += zodiacal::zodiacal_s10(&direction, &sun);
             }
             let mut suns = 0.0;
-            for (law, rays) in
+            for (stray, rays) in
                 [(self.config.sun.as_ref(), &sun_rays), (self.config.moon.as_ref(), &moon_rays)]
             {
-                let Some(law) = law else { continue };
+                let Some(stray) = stray else { continue };
                 for ray in rays {
-                    suns += ray.suns * law.transmittance(&direction, &ray.direction);
+                    suns += ray.suns * stray.transmittance(&direction, &ray.direction);
                 }
             }
             if let Some(transmittance) = &self.earth_transmittance {
                 for ray in &earth_rays {
-                    suns += ray.suns * transmittance.at_cos(direction.dot(&ray.direction));
+                    suns += ray.suns * transmittance.transmittance_at_cos(direction.dot(&ray.direction));
                 }
             }
             s10 * self.s10_e_per_s_sr * pixel_sr + suns * self.bare_sun_e_per_s.unwrap_or(0.0)

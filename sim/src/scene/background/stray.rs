@@ -32,11 +32,11 @@ impl StrayLightConfig {
 
     /// Point source transmittance for light from the unit vector `source` in the direction `pixel`; at most 1.
     pub(super) fn transmittance(&self, pixel: &Vector3<f64>, source: &Vector3<f64>) -> f64 {
-        self.at_angle(libm::atan2(pixel.cross(source).norm(), pixel.dot(source)))
+        self.transmittance_at_angle(libm::atan2(pixel.cross(source).norm(), pixel.dot(source)))
     }
 
     /// Point source transmittance at an angle, rad, between the light and the direction of the pixel; at most 1.
-    pub(super) fn at_angle(&self, angle: f64) -> f64 {
+    pub(super) fn transmittance_at_angle(&self, angle: f64) -> f64 {
         let ratio = self.exclusion_deg.to_radians() / angle.max(Self::NEAREST_RAD);
         let power = if ratio < 1.0 { self.power } else { self.power_inside };
         (self.transmittance * libm::pow(ratio, power)).min(1.0)

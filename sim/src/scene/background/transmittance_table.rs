@@ -36,24 +36,24 @@ static MADE: Memo<StrayLightConfig, TransmittanceTable> = Memo::new();
 
 impl TransmittanceTable {
     /// That of a law, made once.
-    pub(super) fn of(law: &StrayLightConfig) -> Arc<Self> {
-        let Ok(table) = MADE.get(law.clone(), |law| Ok::<_, Infallible>(Self::new(law)));
+    pub(super) fn from_config(config: &StrayLightConfig) -> Arc<Self> {
+        let Ok(table) = MADE.get(config.clone(), |config| Ok::<_, Infallible>(Self::new(config)));
         table
     }
 
-    fn new(law: &StrayLightConfig) -> Self {
+    fn new(config: &StrayLightConfig) -> Self {
         let steps = 1 << STEPS_LOG2;
         let value = |i: u32| {
             let octave = f64::from(1_u32 << (OCTAVES - i / steps).min(31));
             let x = (1.0 + f64::from(i % steps) / f64::from(steps)) / octave;
-            law.at_angle(2.0 * libm::atan2(x.sqrt(), (1.0 - x).max(0.0).sqrt()))
+            config.transmittance_at_angle(2.0 * libm::atan2(x.sqrt(), (1.0 - x).max(0.0).sqrt()))
         };
         // One node more than there are: after x = 1 nothing follows.
         let mut values: Vec<f64> = (0..=OCTAVES * steps).map(value).collect();
-        values.push(law.at_angle(std::f64::consts::PI));
+        values.push(config.transmittance_at_angle(std::f64::consts::PI));
         let far = |i: usize| {
             let root = i as f64 / FAR_STEPS as f64 * (1.0 + SMOOTH_FROM_COS).sqrt();
-            law.at_angle(libm::acos(root * root - 1.0))
+            config.transmittance_at_angle(libm::acos(root * root - 1.0))
         };
         // One more: before it ends, rounding may ask for it.
         Self { values, far: (0..=FAR_STEPS + 1).map(far).collect() }
@@ -61,10 +61,10 @@ impl TransmittanceTable {
 
     /// The transmittance at an angle of cosine `cos`.
     #[inline(always)]
-    pub(super) fn at_cos(&self, cos: f64) -> f64 {
+    pub(super) fn transmittance_at_cos(&self, cos: f64) -> f64 {
         if cos < SMOOTH_FROM_COS {
-            let place = ((1.0 + cos.max(-1.0)) / (1.0 + SMOOTH_FROM_COS)).sqrt() * FAR_STEPS as f64;
-            return between(&self.far, place as usize, place - place.floor());
+            let position = ((1.0 + cos.max(-1.0)) / (1.0 + SMOOTH_FROM_COS)).sqrt() * FAR_STEPS as f64;
+            return between(&self.far, position as usize, position - position.floor());
         }
         let least = 1.0 / f64::from(1_u32 << OCTAVES);
         let bits = (0.5 - 0.5 * cos).clamp(least, 1.0).to_bits();
@@ -93,13 +93,14 @@ mod tests {
     #[test]
     fn the_table_is_the_law() {
         for (power, power_inside) in [(3.0, 6.0), (0.0, 20.0), (20.0, 1.5), (0.0, 0.0)] {
-            let law = StrayLightConfig { exclusion_deg: 40.0, transmittance: 1e-40, power, power_inside };
-            let table = TransmittanceTable::new(&law);
+            let config = StrayLightConfig { exclusion_deg: 40.0, transmittance: 1e-40, power, power_inside };
+            let table = TransmittanceTable::new(&config);
             let half: f64 = 0.5 * f64::max(power, power_inside);
             let bound = 2.0 * half * (half + 1.0) / 8.0 / (512.0 * 512.0) + 1e-9;
             for i in 0..=18_000_i32 {
                 let angle = f64::from(i).to_radians() / 100.0;
-                let (got, expected) = (table.at_cos(libm::cos(angle)), law.at_angle(angle));
+                let (got, expected) =
+                    (table.transmittance_at_cos(libm::cos(angle)), config.transmittance_at_angle(angle));
                 // Without the steps of the bends: a step is 0.04° wide at 40°, 0.001° at 1°, where the law ends.
                 if (i - 4000).abs() > 10 && i != 100 {
                     assert!((got / expected - 1.0).abs() < bound, "{power}, {angle}: {got} for {expected}");

@@ -121,7 +121,7 @@ impl BlanketsTable {
         count: usize,
     ) -> Option<([[f64; 2]; 6], f64)> {
         let streams = Seed { seed: self.seed, case: 0 }.streams(0, Effect::Blankets);
-        let place = |i: usize| (ring as u64) << 32 | i as u64;
+        let index = |i: usize| (ring as u64) << 32 | i as u64;
         // A stream is of a tile and of the seam at its begin.
         let seam = |stream: &mut Stream, i: usize| {
             let mut shift = || SEAM_SHIFT * (2.0 * uniform(stream) - 1.0);
@@ -129,9 +129,9 @@ impl BlanketsTable {
             let turn = PI * ring as f64 / 7.0;
             [shift(), shift()].map(|shift| turn + pitch * (i as f64 + shift))
         };
-        let mut stream = streams.at(place(i));
+        let mut stream = streams.stream_at(index(i));
         let begin = seam(&mut stream, i);
-        let mut end = seam(&mut streams.at(place((i + 1) % count)), (i + 1) % count);
+        let mut end = seam(&mut streams.stream_at(index((i + 1) % count)), (i + 1) % count);
         if i + 1 == count {
             end = end.map(|angle| angle + 2.0 * PI);
         }

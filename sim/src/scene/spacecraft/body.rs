@@ -56,7 +56,7 @@ impl LitBody {
             let Some(plate) = facing(plate, &eye_m, &sun) else { continue };
             let mut pieces = vec![plate.outline()];
             for (_, other) in plates.iter().enumerate().filter(|(j, _)| *j != i) {
-                take_away(&plate, other, &eye_m, &sun, &mut pieces);
+                subtract_shadow_and_occlusion(&plate, other, &eye_m, &sun, &mut pieces);
             }
             facets.extend(pieces.into_iter().map(|outline| Facet { plate, outline }));
         }
@@ -110,7 +110,7 @@ impl LitBody {
         let count: f64 = sizes.iter().map(|(across, along)| (across * along).max(1.0)).sum();
         let shrink = (0.25 * count_limit as f64 / count).min(1.0).sqrt();
         for (facet, (across, along)) in self.facets.iter().zip(sizes) {
-            let cells = (whole(across * shrink), whole(along * shrink));
+            let cells = (cell_count(across * shrink), cell_count(along * shrink));
             for_each_point(facet, cells, |point, area| {
                 visit(point, self.flux(&facet.plate, &point, area));
             });
@@ -133,7 +133,9 @@ impl LitBody {
                 let corners: Option<Polygon> = facet
                     .outline
                     .iter()
-                    .map(|corner| project(&facet.plate.at(corner)).map(|at| Vector2::new(at.x, at.y)))
+                    .map(|corner| {
+                        project(&facet.plate.point_in_body_frame(corner)).map(|at| Vector2::new(at.x, at.y))
+                    })
                     .collect();
                 let corners = corners?;
                 let middle = corners.iter().sum::<Vector2<f64>>() / corners.len() as f64;
@@ -153,8 +155,10 @@ impl LitBody {
     fn facet_flux(&self, facet: &Facet) -> f64 {
         let distance = (facet.plate.centre - self.eye_m).norm();
         let cell_m = CELL_ANGLE * facet.plate.front.angular_scale() * distance;
-        let cells =
-            (whole(2.0 * facet.plate.half_width / cell_m), whole(2.0 * facet.plate.half_height / cell_m));
+        let cells = (
+            cell_count(2.0 * facet.plate.half_width / cell_m),
+            cell_count(2.0 * facet.plate.half_height / cell_m),
+        );
         let mut sum = 0.0;
         for_each_point(facet, cells, |point, area| sum += self.flux(&facet.plate, &point, area));
         sum
@@ -180,14 +184,15 @@ fn facing(plate: &Plate, eye_m: &Vector3<f64>, sun: &Vector3<f64>) -> Option<Pla
 }
 
 /// Takes from the `pieces` of a plate what `other` shades and what it hides.
-fn take_away(
+fn subtract_shadow_and_occlusion(
     plate: &Plate,
     other: &Plate,
     eye_m: &Vector3<f64>,
     sun: &Vector3<f64>,
     pieces: &mut Vec<Polygon>,
 ) {
-    let corners: Vec<_> = other.outline().iter().map(|corner| plate.local(&other.at(corner))).collect();
+    let corners: Vec<_> =
+        other.outline().iter().map(|corner| plate.local(&other.point_in_body_frame(corner))).collect();
     let above = clip(&corners, |corner| corner.z - TOUCHING_M);
     if above.len() < 3 {
         return;
@@ -222,7 +227,7 @@ fn for_each_point(facet: &Facet, cells: (usize, usize), mut visit: impl FnMut(Ve
             let (low, high) = (edge(plate.half_height, j, cells.1), edge(plate.half_height, j + 1, cells.1));
             let cell = clip(&clip(&strip, |p| p.y - low), |p| high - p.y);
             if let Some((area, points)) = four_points(&cell) {
-                points.iter().for_each(|point| visit(plate.at(point), 0.25 * area));
+                points.iter().for_each(|point| visit(plate.point_in_body_frame(point), 0.25 * area));
             }
         }
     }
@@ -231,7 +236,9 @@ fn for_each_point(facet: &Facet, cells: (usize, usize), mut visit: impl FnMut(Ve
 /// Cells that a plate needs across and along for cells of 0.4 px.
 fn cells_px(plate: &Plate, project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>) -> (f64, f64) {
     let side = |from: Vector2<f64>, to: Vector2<f64>| {
-        project(&plate.at(&from)).zip(project(&plate.at(&to))).map_or(CELLS, |(a, b)| a.distance(b) / CELL_PX)
+        project(&plate.point_in_body_frame(&from))
+            .zip(project(&plate.point_in_body_frame(&to)))
+            .map_or(CELLS, |(a, b)| a.distance(b) / CELL_PX)
     };
     let (x, y) = (plate.half_width, plate.half_height);
     (
@@ -240,7 +247,7 @@ fn cells_px(plate: &Plate, project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint
     )
 }
 
-fn whole(cells: f64) -> usize {
+fn cell_count(cells: f64) -> usize {
     cells.ceil().clamp(1.0, CELLS) as usize
 }
 
@@ -264,12 +271,12 @@ pub(super) fn gather(points: &mut Vec<ImagePoint>, first: usize) {
     }
     let mean = sum / share;
     let products = [mean.x * mean.x, mean.x * mean.y, mean.y * mean.y];
-    let place = |d: Vector2<f64>| PixelPoint::new(origin.x + d.x, origin.y + d.y);
+    let pixel = |d: Vector2<f64>| PixelPoint::new(origin.x + d.x, origin.y + d.y);
     if span < ONE_POINT_PX {
-        points.push(ImagePoint { position: place(mean), share });
+        points.push(ImagePoint { position: pixel(mean), share });
     } else {
         let moments = [0, 1, 2].map(|i| squares[i] / share - products[i]);
         points
-            .extend(spread(mean, moments).map(|at| ImagePoint { position: place(at), share: 0.25 * share }));
+            .extend(spread(mean, moments).map(|at| ImagePoint { position: pixel(at), share: 0.25 * share }));
     }
 }

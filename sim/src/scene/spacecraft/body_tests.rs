@@ -213,7 +213,10 @@ fn shadows_and_occlusions_are_those_of_rays() {
             let n = 200;
             for (j, k) in (0..n * n).map(|m| (m / n, m % n)) {
                 let along = |half: f64, i: i32| half * (2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0);
-                let point = plate.at(&Vector2::new(along(plate.half_width, j), along(plate.half_height, k)));
+                let point = plate.point_in_body_frame(&Vector2::new(
+                    along(plate.half_width, j),
+                    along(plate.half_height, k),
+                ));
                 let to_eye = eye_m - point;
                 let cosines = plate.normal.dot(&sun) * plate.normal.dot(&to_eye.normalize());
                 let bright = cosines > 0.0 && (plate.normal.dot(&sun) > 0.0 || plate.back.is_some());

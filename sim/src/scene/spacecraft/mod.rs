@@ -190,21 +190,22 @@ impl Spacecraft {
     ) -> Appearance {
         let range_km = lighting.chaser_km.norm();
         match &self.model {
-            Model::Beacon { magnitude_at_1_km } => {
-                Appearance { magnitude: magnitude_at_1_km + 5.0 * libm::log10(range_km), lit: Lit::Point }
-            }
+            Model::Beacon { magnitude_at_1_km } => Appearance {
+                magnitude: magnitude_at_1_km + 5.0 * libm::log10(range_km),
+                lit: LitShape::Point,
+            },
             Model::Sphere { radius_m, albedo } => {
                 let ratio = radius_m / (range_km * 1000.0);
                 let flux_ratio = 2.0 / 3.0 * albedo * lambert_phase(lighting.phase_rad()) * ratio * ratio;
                 let (eye_m, sun) = (lighting.chaser_km * 1000.0, lighting.sun_km.normalize());
-                let lit = LitSphere::new(*radius_m, eye_m, sun).map_or(Lit::Point, Lit::Sphere);
+                let lit = LitSphere::new(*radius_m, eye_m, sun).map_or(LitShape::Point, LitShape::Sphere);
                 Appearance { magnitude: lighting.magnitude(flux_ratio), lit }
             }
             Model::Plates { plates, .. } => {
                 let turn = target_from_icrs.unwrap_or_else(Rotation::identity);
                 let sun = turn.rotate(&lighting.sun_km).normalize();
                 let lit = LitBody::new(plates, turn.rotate(&lighting.chaser_km) * 1000.0, sun);
-                Appearance { magnitude: lighting.magnitude(lit.flux_ratio()), lit: Lit::Body(lit) }
+                Appearance { magnitude: lighting.magnitude(lit.flux_ratio()), lit: LitShape::Body(lit) }
             }
         }
     }
@@ -214,12 +215,12 @@ impl Spacecraft {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Appearance {
     magnitude: f64,
-    lit: Lit,
+    lit: LitShape,
 }
 
 /// Where its light comes from.
 #[derive(Debug, Clone, PartialEq)]
-enum Lit {
+enum LitShape {
     /// The origin of the body frame.
     Point,
     Sphere(LitSphere),
@@ -241,9 +242,9 @@ impl Appearance {
         points: &mut Vec<ImagePoint>,
     ) {
         match &self.lit {
-            Lit::Body(body) => body.image(project, count_limit, points),
-            Lit::Sphere(sphere) => sphere.image(project, count_limit, points),
-            Lit::Point => {
+            LitShape::Body(body) => body.image(project, count_limit, points),
+            LitShape::Sphere(sphere) => sphere.image(project, count_limit, points),
+            LitShape::Point => {
                 points.extend(project(&Vector3::zeros()).map(|position| ImagePoint { position, share: 1.0 }));
             }
         }
@@ -252,9 +253,9 @@ impl Appearance {
     /// An estimate of the share of its light that falls in its brightest pixel, when `psf_share` of a point's does.
     pub fn peak_share(&self, project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>, psf_share: f64) -> f64 {
         let share = match &self.lit {
-            Lit::Body(body) => body.peak_share(project, psf_share),
-            Lit::Sphere(sphere) => sphere.peak_share(project, psf_share),
-            Lit::Point => None,
+            LitShape::Body(body) => body.peak_share(project, psf_share),
+            LitShape::Sphere(sphere) => sphere.peak_share(project, psf_share),
+            LitShape::Point => None,
         };
         share.unwrap_or(psf_share)
     }

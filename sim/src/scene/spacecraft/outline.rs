@@ -56,7 +56,7 @@ impl<'a> Outline<'a> {
                 let ahead = -self.eye_m.dot(&ray);
                 ahead > 0.0 && (self.eye_m + ray * ahead).norm() < radius_m
             }
-            Solid::Plates(plates, _) => plates.iter().any(|plate| plate.meets(&self.eye_m, &ray)),
+            Solid::Plates(plates, _) => plates.iter().any(|plate| plate.is_hit_by(&self.eye_m, &ray)),
         }
     }
 

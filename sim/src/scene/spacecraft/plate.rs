@@ -138,7 +138,7 @@ impl BoxConfig {
 
 impl Plate {
     /// Whether the ray from `eye` along `ray` meets it, from whichever side.
-    pub(super) fn meets(&self, eye: &Vector3<f64>, ray: &Vector3<f64>) -> bool {
+    pub(super) fn is_hit_by(&self, eye: &Vector3<f64>, ray: &Vector3<f64>) -> bool {
         let (towards, along) = (self.centre - eye, ray.dot(&self.normal));
         let reach = towards.dot(&self.normal) / along;
         let off = ray * reach - towards;
@@ -166,7 +166,7 @@ impl Plate {
     }
 
     /// A point of its plane in the body frame.
-    pub(super) fn at(&self, point: &Vector2<f64>) -> Vector3<f64> {
+    pub(super) fn point_in_body_frame(&self, point: &Vector2<f64>) -> Vector3<f64> {
         self.centre + self.right * point.x + self.up * point.y
     }
 

@@ -56,7 +56,7 @@ impl LitSphere {
         let disk = self.disk(project);
         let first = points.len();
         if disk.radius_px().is_some_and(|radius_px| radius_px >= ONE_POINT_RADIUS_PX) {
-            disk.image(|at| self.light(at), count_limit, points);
+            disk.image(|at| self.radiance_at(at), count_limit, points);
             gather(points, first);
         }
         // A crescent may be too thin for the grid.
@@ -88,7 +88,7 @@ impl LitSphere {
     ) -> Disk<impl Fn(Vector2<f64>) -> Option<PixelPoint>> {
         let sine = self.radius_m / self.distance_m;
         Disk {
-            place: |at: Vector2<f64>| project(&(self.across[0] * at.x + self.across[1] * at.y)),
+            to_image: |at: Vector2<f64>| project(&(self.across[0] * at.x + self.across[1] * at.y)),
             radius: self.radius_m / (1.0 - sine * sine).sqrt(),
             lit: 0.5 * (1.0 + libm::cos(self.phase_rad)),
             samples_across: SAMPLES_ACROSS,
@@ -97,7 +97,7 @@ impl LitSphere {
 
     /// Light that a place of the plane sends to the camera, from equal areas: the cosine of incidence of the surface that is
     /// seen there (Lambert), times the solid angle of the area over that at the centre.
-    fn light(&self, at: &Vector2<f64>) -> f64 {
+    fn radiance_at(&self, at: &Vector2<f64>) -> f64 {
         let on_plane = self.across[0] * at.x + self.across[1] * at.y;
         let ray = on_plane - self.towards_eye * self.distance_m;
         let length = ray.norm();
@@ -205,8 +205,10 @@ mod tests {
             let (sphere, _) = seen(phase_deg, 1e4, 1.0);
             let n = 800;
             let step = 2.0 * RADIUS_M / f64::from(n);
-            let place = |i: i32| (f64::from(i) + 0.5) * step - RADIUS_M;
-            let sum: f64 = (0..n * n).map(|i| sphere.light(&Vector2::new(place(i % n), place(i / n)))).sum();
+            let coordinate = |i: i32| (f64::from(i) + 0.5) * step - RADIUS_M;
+            let sum: f64 = (0..n * n)
+                .map(|i| sphere.radiance_at(&Vector2::new(coordinate(i % n), coordinate(i / n))))
+                .sum();
             let ratio = sum * step * step / (2.0 / 3.0 * PI * RADIUS_M * RADIUS_M);
             let expected = lambert_phase(f64::to_radians(phase_deg));
             assert!((ratio / expected - 1.0).abs() < 1e-3, "{phase_deg}°: {ratio}, expected {expected}");
@@ -258,9 +260,9 @@ mod tests {
         let (sphere, project) = seen(0.0, 2.0, 30.0);
         let disk_px = sphere.disk(&project).radius_px().unwrap();
         assert!((disk_px - 30.0 / libm::cos(PI / 6.0)).abs() < 1e-2, "{disk_px}");
-        assert!((sphere.light(&Vector2::zeros()) - 1.0).abs() < 1e-12);
+        assert!((sphere.radiance_at(&Vector2::zeros()) - 1.0).abs() < 1e-12);
         // At the horizon the Sun stands 60° from the zenith, and the area is 30° off the axis.
-        let limb = sphere.light(&Vector2::new(0.999999 * RADIUS_M / libm::cos(PI / 6.0), 0.0));
+        let limb = sphere.radiance_at(&Vector2::new(0.999999 * RADIUS_M / libm::cos(PI / 6.0), 0.0));
         let cos = libm::cos(PI / 6.0);
         assert!((limb - 0.5 * cos * cos * cos).abs() < 2e-3, "{limb}");
         assert!(LitSphere::new(RADIUS_M, Vector3::z() * 0.4, Vector3::x()).is_none());

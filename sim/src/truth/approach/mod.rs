@@ -195,7 +195,7 @@ impl Approach {
     }
 
     /// The state `time_s` after the beginning.
-    pub fn at(&self, time_s: f64) -> ApproachState {
+    pub fn state_at(&self, time_s: f64) -> ApproachState {
         match &self.course {
             Course::Constant(config) => constant_velocity(config, time_s),
             Course::Segmented { config, axial, contact_distance_m } => {
@@ -224,7 +224,7 @@ fn segmented(
     contact_distance_m: f64,
     time_s: f64,
 ) -> ApproachState {
-    let (d3_m, rate_m_s) = axial.at(time_s);
+    let (d3_m, rate_m_s) = axial.range_and_rate_at(time_s);
     let span_m = config.start_d3_m - contact_distance_m;
     let lateral = |i: usize| {
         let slope = (config.lateral_at_start_m[i] - config.lateral_at_contact_m[i]) / span_m;
@@ -239,12 +239,12 @@ fn segmented(
         velocity_m_s: Vector3::new(d1_rate, d2_rate, rate_m_s),
         phi_rate_rad_s: Vector3::zeros(),
     };
-    state.add(&config.limit_cycle.at(time_s));
+    state.add(&config.limit_cycle.displacement_at(time_s));
     let index = axial.begin_s().partition_point(|begin_s| *begin_s <= time_s).saturating_sub(1);
     if let Some(SegmentConfig::Oscillation { duration_s, swing }) = config.segments.get(index) {
         let since_s = time_s - axial.begin_s()[index];
         let (value, rate) = oscillation::window(since_s, *duration_s, config.ramp_s);
-        state.add(&swing.at(since_s).windowed(value, rate));
+        state.add(&swing.displacement_at(since_s).windowed(value, rate));
     }
     state
 }

@@ -45,7 +45,7 @@ impl Default for OscillationConfig {
 
 impl OscillationConfig {
     /// Displacement and its rate, `time_s` after the beginning.
-    pub(super) fn at(&self, time_s: f64) -> Displacement {
+    pub(super) fn displacement_at(&self, time_s: f64) -> Displacement {
         let lateral = [0, 1].map(|i| {
             sinusoid(self.lateral_amplitude_m[i], self.lateral_period_s[i], self.lateral_phase_deg[i], time_s)
         });

@@ -168,7 +168,7 @@ impl AxialMotion {
             }
             require(
                 "approach.segments[] (d3 where the motion turns, m)",
-                stretch.at(turn_s).0,
+                stretch.range_and_rate_at(turn_s).0,
                 "not nearer than contact and at most 20000: begin the change of speed farther out, or make ramp_s shorter",
                 |d3_m| (least_d3_m..=*D3_M.end()).contains(&d3_m),
             )
@@ -189,15 +189,17 @@ impl AxialMotion {
             rate_m_s: self.end_rate_m_s,
             acceleration_m_s2,
         };
-        (self.end_d3_m, self.end_rate_m_s) = stretch.at(self.end_s + duration_s);
+        (self.end_d3_m, self.end_rate_m_s) = stretch.range_and_rate_at(self.end_s + duration_s);
         self.end_s += duration_s;
         self.stretches.push(stretch);
     }
 
     /// d3 in m and its rate in m/s.
-    pub(super) fn at(&self, time_s: f64) -> (f64, f64) {
+    pub(super) fn range_and_rate_at(&self, time_s: f64) -> (f64, f64) {
         let index = self.stretches.partition_point(|stretch| stretch.begin_s <= time_s);
-        self.stretches.get(index.saturating_sub(1)).map_or((self.end_d3_m, 0.0), |stretch| stretch.at(time_s))
+        self.stretches
+            .get(index.saturating_sub(1))
+            .map_or((self.end_d3_m, 0.0), |stretch| stretch.range_and_rate_at(time_s))
     }
 
     /// Where the last segment ends, s.
@@ -212,7 +214,7 @@ impl AxialMotion {
 }
 
 impl Stretch {
-    fn at(&self, time_s: f64) -> (f64, f64) {
+    fn range_and_rate_at(&self, time_s: f64) -> (f64, f64) {
         let t = time_s - self.begin_s;
         let d3_m = self.d3_m + (self.rate_m_s + 0.5 * self.acceleration_m_s2 * t) * t;
         (d3_m, self.rate_m_s + self.acceleration_m_s2 * t)

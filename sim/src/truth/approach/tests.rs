@@ -38,7 +38,7 @@ fn rates_are_the_derivatives_of_the_pose() {
     let h = 1e-4;
     for i in 1..2000 {
         let t = approach.duration_s() * f64::from(i) / 2000.0;
-        let (before, now, after) = (approach.at(t - h), approach.at(t), approach.at(t + h));
+        let (before, now, after) = (approach.state_at(t - h), approach.state_at(t), approach.state_at(t + h));
         let velocity = (after.pose.position_m - before.pose.position_m) / (2.0 * h);
         let rate = (after.pose.phi_rad - before.pose.phi_rad) / (2.0 * h);
         // Rounding 60 m × 1e-16 / 1e-4 s, curvature 1 m/s³ × h²; across a change of acceleration ≤ 2 m/s² × h.
@@ -54,9 +54,9 @@ fn neither_position_nor_velocity_jumps() {
     let approach = approach(segments());
     let step_s = 1e-3;
     let steps = (approach.duration_s() / step_s) as u32;
-    let mut before = approach.at(0.0);
+    let mut before = approach.state_at(0.0);
     for i in 1..=steps {
-        let now = approach.at(f64::from(i) * step_s);
+        let now = approach.state_at(f64::from(i) * step_s);
         let jump_m = (now.pose.position_m - before.pose.position_m).norm();
         // At most 2.3 m/s and 1.6 m/s² in this approach.
         assert!(jump_m < 2.5e-3, "at step {i}: {jump_m} m");
@@ -72,12 +72,12 @@ fn segments_end_where_they_say() {
     config.limit_cycle = OscillationConfig::default();
     let approach = approach(config);
     // Glide: 30 m at a mean speed of 1.25 m/s.
-    let end = approach.at(24.0);
+    let end = approach.state_at(24.0);
     assert!((end.pose.position_m.z - 30.0).abs() < 1e-12 && (end.velocity_m_s.z + 0.5).abs() < 1e-12);
     // Braking from 0.5 m/s over 2 s takes another 0.5 m.
-    let held = approach.at(28.0);
+    let held = approach.state_at(28.0);
     assert!((held.pose.position_m.z - 29.5).abs() < 1e-12 && held.velocity_m_s.z == 0.0);
-    let contact = approach.at(approach.duration_s());
+    let contact = approach.state_at(approach.duration_s());
     assert!((contact.pose.position_m - Vector3::new(0.02, -0.01, CONTACT_M)).norm() < 1e-12);
     assert!((contact.velocity_m_s.z + 0.1).abs() < 1e-12);
 }
@@ -94,7 +94,7 @@ fn a_constant_velocity_is_constant_to_the_last_bit() {
     let approach = Approach::new(&ApproachConfig::ConstantVelocity(config), CONTACT_M).unwrap();
     for k in 0..64 {
         let t = 0.5 * f64::from(k);
-        let state = approach.at(t);
+        let state = approach.state_at(t);
         // Powers of two: no rounding.
         assert_eq!(state.pose.position_m, Vector3::new(0.5 - t / 8.0, -0.25 + t / 16.0, 20.0 - t / 2.0));
         assert_eq!(state.velocity_m_s, Vector3::new(-0.125, 0.0625, -0.5));
@@ -112,7 +112,7 @@ fn a_constant_velocity_is_constant_to_the_last_bit() {
     };
     let glide = Approach::new(&ApproachConfig::Segments(glide), CONTACT_M).unwrap();
     assert_eq!(glide.duration_s(), 32.0);
-    assert_eq!(glide.at(7.0).pose.position_m, Vector3::new(0.0, 0.0, 16.5));
+    assert_eq!(glide.state_at(7.0).pose.position_m, Vector3::new(0.0, 0.0, 16.5));
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn passive_angles_are_those_of_the_line_to_the_camera() {
         phi_rate_deg_s: [0.0; 3],
         duration_s: 0.0,
     };
-    let state = Approach::new(&ApproachConfig::ConstantVelocity(config), CONTACT_M).unwrap().at(0.0);
+    let state = Approach::new(&ApproachConfig::ConstantVelocity(config), CONTACT_M).unwrap().state_at(0.0);
     assert_eq!(state.range_m(), 13.0);
     assert_eq!(state.range_rate_m_s(), -12.0);
     assert!((state.passive_yaw_rad() - libm::atan2(3.0, 12.0)).abs() < 1e-15);

@@ -10,7 +10,7 @@ pub(super) const CHUNK: usize = 32;
 
 /// Ideal image coordinates of N pixels, px.
 #[derive(Debug, Clone)]
-pub(super) struct Places<const N: usize> {
+pub(super) struct IdealPositions<const N: usize> {
     pub(super) u: [f64; N],
     pub(super) v: [f64; N],
 }
@@ -103,7 +103,7 @@ impl Gram {
     }
 
     /// The sum of the products of two columns, the second not before the first.
-    pub(super) fn at(&self, i: usize, j: usize) -> f64 {
+    pub(super) fn column_product(&self, i: usize, j: usize) -> f64 {
         let [a, b, c, d, e, f, g, h] = self.parts[i][j];
         ((a + e) + (c + g)) + ((b + f) + (d + h))
     }

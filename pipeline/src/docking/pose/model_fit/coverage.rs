@@ -8,12 +8,12 @@ use contract::docking::{StandOffCross, TargetModel};
 use nalgebra::Vector3;
 
 use super::blur::Blur;
-use super::chunk::{Coverages, Places, Steps};
+use super::chunk::{Coverages, IdealPositions, Steps};
 use super::edge::Edge;
 use super::gaussian::LIMIT;
 use super::sampled::Tables;
 use super::unknowns::{ByGlobals, GLOBALS, SIDES};
-use crate::docking::pose::geometry::{Seen, View};
+use crate::docking::pose::geometry::{PoseProjection, ProjectedPoint};
 
 /// Edges of a feature: of the cross, front and back.
 pub(super) const EDGES: usize = 16;
@@ -38,12 +38,17 @@ pub(super) struct MarkImage {
 
 impl MarkImage {
     /// `None` when a corner is behind the camera.
-    pub(super) fn new(corners: &[[f64; 2]; 4], view: &View, blur: Blur, tables: &Tables) -> Option<Self> {
-        let seen = corners.map(|[y1, y2]| view.see(&Vector3::new(y1, y2, 0.0)));
+    pub(super) fn new(
+        corners: &[[f64; 2]; 4],
+        view: &PoseProjection,
+        blur: Blur,
+        tables: &Tables,
+    ) -> Option<Self> {
+        let seen = corners.map(|[y1, y2]| view.project_with_derivatives(&Vector3::new(y1, y2, 0.0)));
         let [Some(a), Some(b), Some(c), Some(d)] = seen else { return None };
         let middle = (0.25 * (a.u + b.u + c.u + d.u), 0.25 * (a.v + b.v + c.v + d.v));
         let edges = [(a, b), (b, c), (c, d), (d, a)]
-            .map(|(p, q)| Edge::through(&p, &q, middle, blur, &tables.profiles));
+            .map(|(p, q)| Edge::from_points(&p, &q, middle, blur, &tables.profiles));
         let correlations = [0, 1, 2, 3].map(|k: usize| edges[k].correlation(&edges[(k + 1) % 4], blur));
         Some(Self { edges, correlations })
     }
@@ -53,7 +58,7 @@ impl MarkImage {
     pub(super) fn cover<const N: usize>(
         &self,
         tables: &Tables,
-        at: &Places<N>,
+        at: &IdealPositions<N>,
         steps: &mut [Steps<N>; EDGES],
         coverage: &mut Coverages<N>,
     ) {
@@ -70,7 +75,12 @@ impl MarkImage {
 
     /// The steps of the edges, and the coverage between opposite ones.
     #[inline(always)]
-    fn step<const N: usize>(&self, tables: &Tables, at: &Places<N>, steps: &mut [Steps<N>]) -> [[f64; N]; 2] {
+    fn step<const N: usize>(
+        &self,
+        tables: &Tables,
+        at: &IdealPositions<N>,
+        steps: &mut [Steps<N>],
+    ) -> [[f64; N]; 2] {
         for (steps, edge) in steps.iter_mut().zip(&self.edges) {
             edge.steps(tables, at, steps);
         }
@@ -94,7 +104,7 @@ impl MarkImage {
 
     /// The coverage alone.
     #[inline(always)]
-    pub(super) fn values<const N: usize>(&self, tables: &Tables, at: &Places<N>) -> [f64; N] {
+    pub(super) fn values<const N: usize>(&self, tables: &Tables, at: &IdealPositions<N>) -> [f64; N] {
         let mut steps = [const { Steps::FAR }; 4];
         let across = self.step(tables, at, &mut steps);
         let mut value = [0.0; N];
@@ -104,7 +114,7 @@ impl MarkImage {
 
     /// The coverage alone, of one pixel.
     pub(super) fn value_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
-        let [value] = self.values(tables, &Places { u: [u], v: [v] });
+        let [value] = self.values(tables, &IdealPositions { u: [u], v: [v] });
         value
     }
 
@@ -168,7 +178,7 @@ impl CrossImage {
     /// camera.
     pub(super) fn new(
         target: &TargetModel,
-        view: &View,
+        view: &PoseProjection,
         camera_at: &Vector3<f64>,
         blur: Blur,
         sides: [f64; 4],
@@ -203,7 +213,7 @@ impl CrossImage {
     pub(super) fn cover<const N: usize>(
         &self,
         tables: &Tables,
-        at: &Places<N>,
+        at: &IdealPositions<N>,
         steps: &mut [Steps<N>; EDGES],
         coverage: &mut Coverages<N>,
     ) {
@@ -281,7 +291,7 @@ impl CrossImage {
     pub(super) fn value_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
         let mut steps = [const { Steps::FAR }; EDGES];
         let mut coverages = Coverages::NONE;
-        self.cover(tables, &Places { u: [u], v: [v] }, &mut steps, &mut coverages);
+        self.cover(tables, &IdealPositions { u: [u], v: [v] }, &mut steps, &mut coverages);
         coverages.value[0]
     }
 
@@ -296,16 +306,22 @@ impl CrossImage {
 }
 
 /// The eight edges of the two bars in the plane y3 = `height_m`.
-fn bars(cross: &StandOffCross, view: &View, height_m: f64, blur: Blur, tables: &Tables) -> Option<[Edge; 8]> {
+fn bars(
+    cross: &StandOffCross,
+    view: &PoseProjection,
+    height_m: f64,
+    blur: Blur,
+    tables: &Tables,
+) -> Option<[Edge; 8]> {
     let (half, length) = (0.5 * cross.width_m, cross.half_length_m);
-    let see = |y1: f64, y2: f64| view.see(&Vector3::new(y1, y2, height_m));
-    let middle: Seen = see(0.0, 0.0)?;
+    let see = |y1: f64, y2: f64| view.project_with_derivatives(&Vector3::new(y1, y2, height_m));
+    let middle: ProjectedPoint = see(0.0, 0.0)?;
     let bar = |across: f64, up: f64| -> Option<[Edge; 4]> {
         let (bl, br) = (see(-across, -up)?, see(across, -up)?);
         let (tl, tr) = (see(-across, up)?, see(across, up)?);
         Some(
             [(bl, tl), (br, tr), (bl, br), (tl, tr)]
-                .map(|(a, b)| Edge::through(&a, &b, (middle.u, middle.v), blur, &tables.profiles)),
+                .map(|(a, b)| Edge::from_points(&a, &b, (middle.u, middle.v), blur, &tables.profiles)),
         )
     };
     let ([a, b, c, d], [e, f, g, h]) = (bar(half, length)?, bar(length, half)?);

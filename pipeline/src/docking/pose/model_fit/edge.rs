@@ -1,11 +1,11 @@
 //! A straight edge of a feature in the image, blurred.
 
 use super::blur::{BOX_VARIANCE, Blur};
-use super::chunk::{Places, Steps};
+use super::chunk::{IdealPositions, Steps};
 use super::gaussian::LIMIT;
 use super::sampled::{SampledProfiles, Tables};
 use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, POSE};
-use crate::docking::pose::geometry::Seen;
+use crate::docking::pose::geometry::ProjectedPoint;
 
 /// A straight line through the images of two points, its inside, and how it is blurred.
 ///
@@ -35,9 +35,9 @@ pub(super) struct Edge {
 
 impl Edge {
     /// The line through a and b; `inside` is any point on its inner side.
-    pub(super) fn through(
-        a: &Seen,
-        b: &Seen,
+    pub(super) fn from_points(
+        a: &ProjectedPoint,
+        b: &ProjectedPoint,
         inside: (f64, f64),
         blur: Blur,
         profiles: &SampledProfiles,
@@ -73,7 +73,12 @@ impl Edge {
 
     /// The step at pixels.
     #[inline(always)]
-    pub(super) fn steps<const N: usize>(&self, tables: &Tables, at: &Places<N>, steps: &mut Steps<N>) {
+    pub(super) fn steps<const N: usize>(
+        &self,
+        tables: &Tables,
+        at: &IdealPositions<N>,
+        steps: &mut Steps<N>,
+    ) {
         let mut distance = [0.0; N];
         for l in 0..N {
             distance[l] = self.normal.0 * at.u[l] + self.normal.1 * at.v[l] + self.offset;
@@ -87,7 +92,7 @@ impl Edge {
             }
             return;
         }
-        let (below, density) = tables.gaussian.within(steps.z);
+        let (below, density) = tables.gaussian.cdfs_and_pdfs(steps.z);
         for l in 0..N {
             let z = steps.z[l];
             steps.inside[l] = below[l] + self.kurtosis * z * (z * z - 3.0) * density[l];
@@ -95,7 +100,7 @@ impl Edge {
         steps.density = density;
         match self.sampled {
             Some(table) => {
-                let (value, slope) = tables.profiles.at(table, &distance);
+                let (value, slope) = tables.profiles.step_and_slope(table, &distance);
                 for l in 0..N {
                     steps.inside[l] += self.share * value[l];
                     steps.density[l] += self.share * slope[l] * self.sigma;
@@ -119,7 +124,7 @@ impl Edge {
     pub(super) fn add_derivatives<const N: usize>(
         &self,
         steps: &Steps<N>,
-        at: &Places<N>,
+        at: &IdealPositions<N>,
         weight: &[f64; N],
         sum: &mut [[f64; N]; GLOBALS],
     ) {

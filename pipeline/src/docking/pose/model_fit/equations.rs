@@ -2,7 +2,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::chunk::{CHUNK, COLUMNS, Coverages, Equations, FIRST_GLOBAL, Gram, Places, Steps};
+use super::chunk::{CHUNK, COLUMNS, Coverages, Equations, FIRST_GLOBAL, Gram, IdealPositions, Steps};
 use super::coverage::{CrossImage, EDGES, MarkImage};
 use super::sampled::Tables;
 use super::samples::{Patch, Sample};
@@ -16,7 +16,7 @@ const WITHOUT_SIDES: usize = FIRST_GLOBAL + SIDES + 1;
 
 /// The image of a feature at a pose, and what its profiles are read from.
 #[derive(Clone, Copy)]
-pub(super) struct Look<'a> {
+pub(super) struct FeatureModel<'a> {
     pub(super) image: Image<'a>,
     pub(super) tables: &'a Tables,
     /// Share of the blur that acts on pixels.
@@ -31,8 +31,8 @@ pub(super) enum Image<'a> {
 }
 
 /// A chunk of pixels; a buffer.
-pub(super) struct Work {
-    places: Places<CHUNK>,
+pub(super) struct ChunkBuffers {
+    positions: IdealPositions<CHUNK>,
     corner: [f64; CHUNK],
     steps: [Steps<CHUNK>; EDGES],
     coverage: Coverages<CHUNK>,
@@ -40,9 +40,9 @@ pub(super) struct Work {
     gram: Gram,
 }
 
-impl Work {
+impl ChunkBuffers {
     pub(super) const NEW: Self = Self {
-        places: Places { u: [0.0; CHUNK], v: [0.0; CHUNK] },
+        positions: IdealPositions { u: [0.0; CHUNK], v: [0.0; CHUNK] },
         corner: [0.0; CHUNK],
         steps: [const { Steps::FAR }; EDGES],
         coverage: Coverages::NONE,
@@ -50,51 +50,51 @@ impl Work {
         gram: Gram::ZERO,
     };
 
-    fn place(&mut self, l: usize, pixel: &Sample) {
-        (self.places.u[l], self.places.v[l]) = (pixel.u, pixel.v);
+    fn set_pixel(&mut self, l: usize, pixel: &Sample) {
+        (self.positions.u[l], self.positions.v[l]) = (pixel.u, pixel.v);
         self.corner[l] = pixel.corner;
     }
 
     #[inline(always)]
-    fn cover(&mut self, look: &Look) {
-        let Self { places, steps, coverage, .. } = self;
-        match look.image {
-            Image::Mark(mark) => mark.cover(look.tables, places, steps, coverage),
-            Image::Cross(cross) => cross.cover(look.tables, places, steps, coverage),
+    fn cover(&mut self, feature_model: &FeatureModel) {
+        let Self { positions, steps, coverage, .. } = self;
+        match feature_model.image {
+            Image::Mark(mark) => mark.cover(feature_model.tables, positions, steps, coverage),
+            Image::Cross(cross) => cross.cover(feature_model.tables, positions, steps, coverage),
         }
         for l in 0..CHUNK {
-            coverage.value[l] += look.share * self.corner[l];
+            coverage.value[l] += feature_model.share * self.corner[l];
             coverage.by[GRID][l] += self.corner[l];
         }
     }
 }
 
 /// The coverage of a chunk of pixels with its derivatives; beyond the last pixel it is that of the last.
-pub(super) struct Cover<'a> {
-    pub(super) look: Look<'a>,
+pub(super) struct CoverageKernel<'a> {
+    pub(super) feature_model: FeatureModel<'a>,
     pub(super) pixels: &'a [Sample],
-    pub(super) work: &'a mut Work,
+    pub(super) work: &'a mut ChunkBuffers,
 }
 
-impl<'a> WithSimd for Cover<'a> {
+impl<'a> WithSimd for CoverageKernel<'a> {
     type Output = &'a Coverages<CHUNK>;
 
     // Inline, all of it: only so is it compiled for the registers of the machine.
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let Self { look, pixels, work } = self;
+        let Self { feature_model, pixels, work } = self;
         for l in 0..CHUNK {
             let Some(pixel) = pixels.get(l).or(pixels.last()) else { break };
-            work.place(l, pixel);
+            work.set_pixel(l, pixel);
         }
-        work.cover(&look);
+        work.cover(&feature_model);
         &work.coverage
     }
 }
 
 /// The normal equations of a patch's used pixels, of which every `stride`-th is looked at; the coverages of those are renewed.
 pub(super) struct NormalEquations<'a> {
-    pub(super) look: Look<'a>,
+    pub(super) feature_model: FeatureModel<'a>,
     /// The patch's centre, and its level of the feature as known so far.
     pub(super) centre: (f64, f64),
     pub(super) level: f64,
@@ -102,7 +102,7 @@ pub(super) struct NormalEquations<'a> {
     /// What DN are counted from.
     pub(super) origin: f64,
     pub(super) stride: usize,
-    pub(super) work: &'a mut Work,
+    pub(super) work: &'a mut ChunkBuffers,
 }
 
 impl<'a> WithSimd for NormalEquations<'a> {
@@ -111,7 +111,7 @@ impl<'a> WithSimd for NormalEquations<'a> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let Self { look, centre, level, pixels, origin, stride, work } = self;
+        let Self { feature_model, centre, level, pixels, origin, stride, work } = self;
         // The feature stands over a plate that a shadow darkens by so much more, in units of its level over the light one.
         let per_level = if level > 0.0 { 1.0 / level } else { 0.0 };
         let mut used = 0;
@@ -121,7 +121,7 @@ impl<'a> WithSimd for NormalEquations<'a> {
             let (mut dn, mut shadow_dn) = ([0.0; CHUNK], [0.0; CHUNK]);
             for l in 0..CHUNK {
                 let pixel = &pixels[l.min(count - 1) * stride];
-                work.place(l, pixel);
+                work.set_pixel(l, pixel);
                 let weight = if l < count && pixel.is_used { 1.0 } else { 0.0 };
                 used += usize::from(weight > 0.0);
                 (dn[l], shadow_dn[l]) = (pixel.dn, pixel.shadow_dn);
@@ -129,14 +129,14 @@ impl<'a> WithSimd for NormalEquations<'a> {
                 work.equations[4][l] = weight * pixel.beyond_rim;
                 over[l] = weight * (1.0 + pixel.shadow_dn * per_level);
             }
-            work.cover(&look);
-            let Work { places, coverage, equations, gram, .. } = &mut *work;
+            work.cover(&feature_model);
+            let ChunkBuffers { positions, coverage, equations, gram, .. } = &mut *work;
             for l in 0..CHUNK {
                 let weight = equations[1][l];
                 // A shadow darkens the plate where the feature does not hide it.
                 equations[0][l] = weight * (dn[l] + shadow_dn[l] * (1.0 - coverage.value[l]) - origin);
-                equations[2][l] = weight * ((places.u[l] - centre.0) / PATCH_UNIT_PX);
-                equations[3][l] = weight * ((places.v[l] - centre.1) / PATCH_UNIT_PX);
+                equations[2][l] = weight * ((positions.u[l] - centre.0) / PATCH_UNIT_PX);
+                equations[3][l] = weight * ((positions.v[l] - centre.1) / PATCH_UNIT_PX);
                 equations[LOCALS][l] = weight * coverage.value[l];
             }
             for (column, by) in equations[FIRST_GLOBAL..].iter_mut().zip(&coverage.by) {

@@ -30,7 +30,7 @@ impl Gaussian {
     }
 
     /// (Φ(z), φ(z)).
-    pub(super) fn at(&self, z: f64) -> (f64, f64) {
+    pub(super) fn cdf_and_pdf(&self, z: f64) -> (f64, f64) {
         if z >= LIMIT {
             return (1.0, 0.0);
         }
@@ -38,25 +38,25 @@ impl Gaussian {
         if z.is_nan() || z <= -LIMIT {
             return (0.0, 0.0);
         }
-        let ([below], [density]) = self.within([z]);
+        let ([below], [density]) = self.cdfs_and_pdfs([z]);
         (below, density)
     }
 
     /// (Φ, φ) of numbers within the limits; of others, those of the nearest limit or of none.
     #[inline(always)]
-    pub(super) fn within<const N: usize>(&self, z: [f64; N]) -> ([f64; N], [f64; N]) {
-        let (mut from_node, mut at, mut place) = ([0.0; N], [0.0; N], [0; N]);
+    pub(super) fn cdfs_and_pdfs<const N: usize>(&self, z: [f64; N]) -> ([f64; N], [f64; N]) {
+        let (mut from_node, mut at, mut node_index) = ([0.0; N], [0.0; N], [0; N]);
         for l in 0..N {
             let low = if z[l] > -LIMIT { z[l] } else { -LIMIT };
             let z = if low < LIMIT { low } else { LIMIT };
             let whole = (z + LIMIT) * NODES + WHOLE;
-            place[l] = whole.to_bits();
+            node_index[l] = whole.to_bits();
             at[l] = (whole - WHOLE) / NODES - LIMIT;
             from_node[l] = z - at[l];
         }
         let (mut below, mut density) = ([0.0; N], [0.0; N]);
         for l in 0..N {
-            (below[l], density[l]) = self.nodes[place[l] as usize % TABLE];
+            (below[l], density[l]) = self.nodes[node_index[l] as usize % TABLE];
         }
         for l in 0..N {
             let (at, d) = (at[l], from_node[l]);
@@ -77,11 +77,11 @@ mod tests {
         let table = Gaussian::new();
         for k in -6000..6000 {
             let z = f64::from(k) * 1.003e-3;
-            let (below, density) = table.at(z);
+            let (below, density) = table.cdf_and_pdf(z);
             assert!((below - 0.5 * libm::erfc(-z / 2f64.sqrt())).abs() < 5e-8, "{z}");
             let exact = libm::exp(-0.5 * z * z) / std::f64::consts::TAU.sqrt();
             assert!((density - exact).abs() < 2e-7, "{z}");
         }
-        assert_eq!(table.at(f64::NAN), (0.0, 0.0));
+        assert_eq!(table.cdf_and_pdf(f64::NAN), (0.0, 0.0));
     }
 }

@@ -38,7 +38,7 @@ struct Piece {
 }
 
 impl Piece {
-    fn of(group: usize) -> Self {
+    fn from_group(group: usize) -> Self {
         let (by_levels, by_globals) = ([SVector::zeros(); EFFECTS], [Globals::zeros(); EFFECTS]);
         Self { group, squares: [0.0; EFFECTS], by_levels, by_globals }
     }
@@ -80,11 +80,11 @@ impl Groups {
                 .resize(group + 1, Group { seen: [0.0; EFFECTS], squares: [0.0; EFFECTS], scores: zero });
         }
         // A patch's pixels come line by line: the piece is nearly always the last.
-        let place = self.pieces.iter().rposition(|piece| piece.group == *group).unwrap_or_else(|| {
-            self.pieces.push(Piece::of(*group));
+        let index = self.pieces.iter().rposition(|piece| piece.group == *group).unwrap_or_else(|| {
+            self.pieces.push(Piece::from_group(*group));
             self.pieces.len() - 1
         });
-        let (sums, piece) = (&mut self.groups[*group], &mut self.pieces[place]);
+        let (sums, piece) = (&mut self.groups[*group], &mut self.pieces[index]);
         for (k, effect) in effects.iter().enumerate() {
             sums.seen[k] += effect * residual;
             piece.squares[k] += effect * effect;
@@ -110,13 +110,13 @@ impl Groups {
     }
 
     /// Covariance of the gradient from effects of variance 1 in one group.
-    pub(super) fn shifted(&self, group: usize) -> GlobalMatrix {
+    pub(super) fn group_covariance(&self, group: usize) -> GlobalMatrix {
         let scores = self.groups.get(group).into_iter().flat_map(|sums| &sums.scores);
         scores.map(|scores| scores * scores.transpose()).sum()
     }
 
     /// The same from effects that are one in several groups.
-    pub(super) fn shifted_together(&self, groups: impl Iterator<Item = usize> + Clone) -> GlobalMatrix {
+    pub(super) fn common_covariance(&self, groups: impl Iterator<Item = usize> + Clone) -> GlobalMatrix {
         let sum = |k: usize| -> Globals {
             groups.clone().filter_map(|group| Some(self.groups.get(group)?.scores[k])).sum()
         };
@@ -125,7 +125,7 @@ impl Groups {
 
     /// The swelling as an unknown of the fit, its effect that of the first group: what it changes in the globals, their covariance from it, and
     /// what is known of it now. `inverse` is that of the information, `variance` a pixel's.
-    pub(super) fn as_unknown(
+    pub(super) fn estimate_swelling(
         &self,
         inverse: &GlobalMatrix,
         variance: f64,
@@ -134,7 +134,7 @@ impl Groups {
         let all = self.groups.first()?;
         let by_globals = inverse * all.scores[0];
         let alone = (all.squares[0] - all.scores[0].dot(&by_globals)).max(0.0);
-        let now = known.with(alone / variance, all.seen[0] / variance);
+        let now = known.add_information(alone / variance, all.seen[0] / variance);
         let change = by_globals * -(now.weighted / now.weight);
         let covariance = by_globals * by_globals.transpose() / now.weight;
         (change.iter().chain(&covariance).all(|v| v.is_finite())).then_some((change, covariance, now))

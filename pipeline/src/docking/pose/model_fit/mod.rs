@@ -45,7 +45,7 @@ use self::solve::{Evaluation, Search, normals, residual, solve, uncertainty};
 use self::swelling::Swelling;
 use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
 use crate::CameraModel;
-use crate::docking::pose::geometry::{View, project, to_pose, to_vector};
+use crate::docking::pose::geometry::{PoseProjection, project, to_pose, to_vector};
 
 /// Variance of the blur that the first field is begun with, px².
 const FIRST_BLUR_PX2: f64 = 0.5;
@@ -109,7 +109,7 @@ const LARGEST_SIGMA: (f64, f64, f64) = (0.05, 0.15, 0.15);
 
 /// A fitted field.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fitted {
+pub struct FitResult {
     /// The pose and its covariance: the inverse information of the pixels that were used, levels, blur and side faces left
     /// free, times the variance of their residuals.
     pub estimate: PoseEstimate,
@@ -178,7 +178,7 @@ impl ModelFit {
         camera: &CameraModel,
         target: &TargetModel,
         initial: &Pose,
-    ) -> Result<Fitted, NoPose> {
+    ) -> Result<FitResult, NoPose> {
         self.fit_from(field, camera, target, initial, SLACK_PX, &COARSE)
     }
 
@@ -195,7 +195,7 @@ impl ModelFit {
         camera: &CameraModel,
         target: &TargetModel,
         rough: &Pose,
-    ) -> Result<Fitted, NoPose> {
+    ) -> Result<FitResult, NoPose> {
         let is_finite = to_vector(rough).iter().all(|v| v.is_finite());
         if !(is_finite && rough.position_m.z > target.cross.height_m) {
             return Err(NoPose::Inconsistent);
@@ -219,7 +219,7 @@ impl ModelFit {
         initial: &Pose,
         slack_px: f64,
         coarse: &[(f64, usize)],
-    ) -> Result<Fitted, NoPose> {
+    ) -> Result<FitResult, NoPose> {
         let pose = to_vector(initial);
         if !(pose.iter().all(|v| v.is_finite()) && initial.position_m.z > target.cross.height_m) {
             return Err(NoPose::Inconsistent);
@@ -309,7 +309,7 @@ fn collect(
     slack_px: f64,
     most: f64,
 ) -> Result<(), NoPose> {
-    let view = View::new(scene.camera, &to_pose(globals));
+    let view = PoseProjection::new(scene.camera, &to_pose(globals));
     samples
         .collect(field, scene.camera, scene.target, scene.tables, &view, blur, slack_px, most)
         .ok_or(NoPose::Inconsistent)?;
@@ -379,7 +379,7 @@ fn judge(
     scene: &Scene,
     globals: &Globals,
     evaluation: &Evaluation,
-) -> Result<Fitted, NoPose> {
+) -> Result<FitResult, NoPose> {
     let used = samples.patches.iter().filter(|patch| patch.is_used);
     let used_pixels: usize = used.clone().map(|patch| patch.used_samples).sum();
     if 2 * used.count() < samples.patches.len() {
@@ -404,9 +404,9 @@ fn judge(
     if !is_determined {
         return Err(too_few(samples));
     }
-    *swelling = known.swelling.faded();
+    *swelling = known.swelling.decayed();
     let see = |point: Vector3<f64>| project(scene.camera, &pose, &point).ok_or(NoPose::Inconsistent);
-    Ok(Fitted {
+    Ok(FitResult {
         estimate: PoseEstimate { pose, covariance },
         common,
         marks: marks(samples, scene, &pose),

@@ -80,8 +80,8 @@ fn points(camera: &CameraModel, target: &TargetModel, rough: &Pose) -> Vec<Point
         let (short, long) = if length(&first) < length(&second) { (first, second) } else { (second, first) };
         let half = length(&short).max(f64::MIN_POSITIVE);
         for along in [-0.5, 0.0, 0.5] {
-            let place = [centre[0] + along * long[0], centre[1] + along * long[1]];
-            pair(place, (short[0] / half, short[1] / half), half, 0.0);
+            let position = [centre[0] + along * long[0], centre[1] + along * long[1]];
+            pair(position, (short[0] / half, short[1] / half), half, 0.0);
         }
     }
     let cross = &target.cross;
@@ -106,7 +106,7 @@ fn correlation(field: &Field, points: &[Point], by: [f64; 2]) -> f64 {
         if !is_inside {
             continue;
         }
-        let dn = f64::from(image.at(column as usize, row as usize));
+        let dn = f64::from(image.dn_at(column as usize, row as usize));
         n += 1.0;
         sum += dn;
         squares += dn * dn;

@@ -107,15 +107,19 @@ impl SampledProfiles {
 
     /// Sampled over continuous step at distances across the edge, px, and its slope, 1/px.
     #[inline(always)]
-    pub(super) fn at<const N: usize>(&self, table: usize, distance: &[f64; N]) -> ([f64; N], [f64; N]) {
+    pub(super) fn step_and_slope<const N: usize>(
+        &self,
+        table: usize,
+        distance: &[f64; N],
+    ) -> ([f64; N], [f64; N]) {
         let steps = &self.tables[table].steps;
         let (mut from_node, mut node) = ([0.0; N], [0; N]);
         for l in 0..N {
-            let place = distance[l].abs() * NODES;
-            let place = if place < REACH_PX * NODES { place } else { REACH_PX * NODES };
-            let whole = (place - 0.5) + WHOLE;
+            let position = distance[l].abs() * NODES;
+            let position = if position < REACH_PX * NODES { position } else { REACH_PX * NODES };
+            let whole = (position - 0.5) + WHOLE;
             node[l] = whole.to_bits();
-            from_node[l] = place - (whole - WHOLE);
+            from_node[l] = position - (whole - WHOLE);
         }
         let (mut step, mut slope) = ([0.0; N], [0.0; N]);
         for l in 0..N {
@@ -138,7 +142,7 @@ impl Table {
         let step = |k: usize| {
             let distance = k as f64 / NODES;
             let z = distance / variance.sqrt();
-            let (below, density) = gaussian.at(z);
+            let (below, density) = gaussian.cdf_and_pdf(z);
             let continuous = below + kurtosis * z * (z * z - 3.0) * density;
             sampled(normal, &blur.taps, distance) - continuous
         };
@@ -184,8 +188,9 @@ mod tests {
 
     /// Coverage of a pixel by a half plane, counted on 400 × 400 points.
     fn counted(nx: f64, ny: f64, distance: f64) -> f64 {
-        let place = |i: u32| (f64::from(i) + 0.5) / 400.0 - 0.5;
-        let inside = (0..160_000).filter(|i| nx * place(i % 400) + ny * place(i / 400) + distance > 0.0);
+        let position = |i: u32| (f64::from(i) + 0.5) / 400.0 - 0.5;
+        let inside =
+            (0..160_000).filter(|i| nx * position(i % 400) + ny * position(i / 400) + distance > 0.0);
         inside.count() as f64 / 160_000.0
     }
 
@@ -207,7 +212,9 @@ mod tests {
         let blur = Blur::on_grid(0.49, 0.49, 1.0);
         let largest = |profiles: &SampledProfiles, normal: (f64, f64)| {
             let table = profiles.find(normal, &blur).unwrap();
-            (0..400).map(|k| profiles.at(table, &[f64::from(k - 200) / 50.0]).0[0].abs()).fold(0.0, f64::max)
+            (0..400)
+                .map(|k| profiles.step_and_slope(table, &[f64::from(k - 200) / 50.0]).0[0].abs())
+                .fold(0.0, f64::max)
         };
         let diagonal = (0.5f64.sqrt(), 0.5f64.sqrt());
         assert!(tables.prepare(&[(1.0, 0.0), diagonal], &blur));
@@ -220,7 +227,7 @@ mod tests {
         assert!((0.004..0.006).contains(&smooth), "{smooth}");
         // Odd in the distance, and nothing far off.
         let table = tables.profiles.find((1.0, 0.0), &blur).unwrap();
-        let at = |distance: f64| tables.profiles.at(table, &[distance]).0[0];
+        let at = |distance: f64| tables.profiles.step_and_slope(table, &[distance]).0[0];
         assert!((at(0.3) + at(-0.3)).abs() < 1e-12 && at(3.9).abs() < 1e-4 && at(5.0) == 0.0);
     }
 }

@@ -14,7 +14,7 @@ use super::coverage::MarkImage;
 use super::sampled::{SMOOTH_PX2, covered};
 use super::samples::{Feature, Samples};
 use super::scene::Scene;
-use crate::docking::pose::geometry::View;
+use crate::docking::pose::geometry::PoseProjection;
 
 /// The filter reaches this many pixels to each side.
 const REACH: usize = TAPS - 1;
@@ -48,7 +48,7 @@ impl SampledMarks {
         if is_smooth {
             return false;
         }
-        let view = View::new(camera, pose);
+        let view = PoseProjection::new(camera, pose);
         let mut is_corrected = false;
         let blur = Blur::on_grid(blur.x, blur.y, 1.0);
         let lines = field.lines();
@@ -66,9 +66,9 @@ impl SampledMarks {
                 continue;
             }
             let pixels = &mut pixels[patch.first..patch.end];
-            let places = || pixels.iter().map(|pixel| (pixel.column, lines.camera_row(pixel.row)));
+            let positions = || pixels.iter().map(|pixel| (pixel.column, lines.camera_row(pixel.row)));
             let ends = |of: &dyn Fn((usize, usize)) -> usize| {
-                places().map(of).fold((usize::MAX, 0), |(low, high), at| (low.min(at), high.max(at)))
+                positions().map(of).fold((usize::MAX, 0), |(low, high), at| (low.min(at), high.max(at)))
             };
             let (columns, rows) = (ends(&|at| at.0), ends(&|at| at.1));
             let (width, height) = (columns.1 - columns.0 + 1, rows.1 - rows.0 + 1);
@@ -105,8 +105,9 @@ fn filtered(weights: &[f64; TAPS], value: impl Fn(usize) -> f64) -> f64 {
 }
 
 /// The sides of a mark in the image; `None` when a corner is behind the camera.
-fn sides(corners: &[[f64; 2]; 4], view: &View) -> Option<[Line; 4]> {
-    let [Some(a), Some(b), Some(c), Some(d)] = corners.map(|[y1, y2]| view.see(&Vector3::new(y1, y2, 0.0)))
+fn sides(corners: &[[f64; 2]; 4], view: &PoseProjection) -> Option<[Line; 4]> {
+    let [Some(a), Some(b), Some(c), Some(d)] =
+        corners.map(|[y1, y2]| view.project_with_derivatives(&Vector3::new(y1, y2, 0.0)))
     else {
         return None;
     };
@@ -203,9 +204,9 @@ mod tests {
             let mut sum = 0.0;
             for k in 0..144 {
                 let (u, v) = (f64::from(k % 12) - 5.7, f64::from(k / 12) - 5.4);
-                let place = |i: u32| (f64::from(i) + 0.5) / 200.0 - 0.5;
+                let coordinate = |i: u32| (f64::from(i) + 0.5) / 200.0 - 0.5;
                 let is_inside = |i: &u32| {
-                    let (x, y) = (u + place(i % 200), v + place(i / 200));
+                    let (x, y) = (u + coordinate(i % 200), v + coordinate(i / 200));
                     sides.iter().all(|(a, b, c)| a * x + b * y + c > 0.0)
                 };
                 let counted = (0..40_000).filter(is_inside).count() as f64 / 40_000.0;

@@ -13,7 +13,7 @@ use super::scene::Scene;
 use super::shadow::ShadowFinder;
 use super::unknowns::{BLUR, GLOBALS, Globals, LOCALS, SIDES};
 use crate::CameraModel;
-use crate::docking::pose::geometry::{View, to_pose};
+use crate::docking::pose::geometry::{PoseProjection, to_pose};
 
 /// A pixel that is looked at.
 #[derive(Debug, Clone, Copy)]
@@ -122,7 +122,7 @@ struct Search<'a> {
     field: &'a Field,
     camera: &'a CameraModel,
     target: &'a TargetModel,
-    view: &'a View,
+    view: &'a PoseProjection,
     tables: &'a Tables,
     reach_px: f64,
     blur_px: f64,
@@ -153,7 +153,7 @@ impl Samples {
         camera: &CameraModel,
         target: &TargetModel,
         tables: &Tables,
-        view: &View,
+        view: &PoseProjection,
         blur: Blur,
         slack_px: f64,
         most: f64,
@@ -200,7 +200,7 @@ impl Samples {
     ) {
         let Scene { camera, target, tables } = *scene;
         let pose = to_pose(globals);
-        let view = &View::new(camera, &pose);
+        let view = &PoseProjection::new(camera, &pose);
         let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
         let sides = [0, 1, 2, 3].map(|k| globals[SIDES + k]);
         let cross = CrossImage::new(target, view, &pose.position_m, blur, sides, tables);
@@ -211,7 +211,7 @@ impl Samples {
             let is_bare = inside_px > search.reach_px
                 && !search.is_on_marks(y1, y2, 0..target.marks.len())
                 && !search.is_near_post(u, v);
-            let beside_px = search.beside_cross_px(u, v) - search.side_px;
+            let beside_px = search.distance_from_cross_px(u, v) - search.side_px;
             if !is_bare || beside_px <= BESIDE_CROSS * search.blur_px {
                 None
             } else if beside_px > search.reach_px {
@@ -237,8 +237,8 @@ impl Samples {
                     let along = |axis: usize| -> f64 {
                         (0..4).map(|k| weight[k] * corners[(k + turn) % 4][axis]).sum()
                     };
-                    let seen = view.see(&Vector3::new(along(0), along(1), 0.0));
-                    seen.is_some_and(|seen| shadow.at(tables, seen.u, seen.v) > SHADED)
+                    let seen = view.project_with_derivatives(&Vector3::new(along(0), along(1), 0.0));
+                    seen.is_some_and(|seen| shadow.share_at(tables, seen.u, seen.v) > SHADED)
                 })
             });
             patch.is_shaded = is_shaded;
@@ -255,7 +255,7 @@ impl Samples {
                 Feature::Mark(_) => share > TOUCHED,
                 Feature::Cross => {
                     EDGE_OF_SHADOW.contains(&share)
-                        && search.beside_cross_px(pixel.u, pixel.v).abs() < edge_px
+                        && search.distance_from_cross_px(pixel.u, pixel.v).abs() < edge_px
                 }
             }
         });
@@ -397,7 +397,7 @@ impl Samples {
                 if *taken == self.collection {
                     continue;
                 }
-                let dn = image.at(x, row);
+                let dn = image.dn_at(x, row);
                 if dn >= image.full_scale_dn() {
                     continue;
                 }
@@ -447,14 +447,16 @@ impl<'a> Search<'a> {
         field: &'a Field,
         camera: &'a CameraModel,
         target: &'a TargetModel,
-        view: &'a View,
+        view: &'a PoseProjection,
         tables: &'a Tables,
         blur: Blur,
         slack_px: f64,
         most: f64,
     ) -> Option<Self> {
         let cross = &target.cross;
-        let at = |y1: f64, y2: f64, y3: f64| view.see(&Vector3::new(y1, y2, y3)).map(|seen| (seen.u, seen.v));
+        let at = |y1: f64, y2: f64, y3: f64| {
+            view.project_with_derivatives(&Vector3::new(y1, y2, y3)).map(|seen| (seen.u, seen.v))
+        };
         let scale = |radius: f64, height: f64| -> Option<f64> {
             let (a, b) = (at(-radius, 0.0, height)?, at(radius, 0.0, height)?);
             Some(libm::hypot(a.0 - b.0, a.1 - b.1) / (2.0 * radius))
@@ -510,7 +512,7 @@ impl<'a> Search<'a> {
             .filter(|index| {
                 target.marks[*index].iter().any(|[y1, y2]| {
                     at(*y1, *y2, 0.0)
-                        .is_some_and(|(u, v)| search.beside_cross_px(u, v) < 2.0 * reach_px + side_px)
+                        .is_some_and(|(u, v)| search.distance_from_cross_px(u, v) < 2.0 * reach_px + side_px)
                 })
             })
             .collect();
@@ -538,11 +540,11 @@ impl<'a> Search<'a> {
     fn beyond_rim(&self, u: f64, v: f64) -> Option<(f64, f64)> {
         let (y1, y2) = self.view.on_plane(u, v, 0.0)?;
         let inside_px = (self.target.plate_radius_m - norm(y1, y2)) * self.plate_scale;
-        (inside_px > 0.0).then(|| (self.tables.gaussian.at(-inside_px / self.blur_px).0, inside_px))
+        (inside_px > 0.0).then(|| (self.tables.gaussian.cdf_and_pdf(-inside_px / self.blur_px).0, inside_px))
     }
 
     /// Distance from the cross's front face, px, negative inside.
-    fn beside_cross_px(&self, u: f64, v: f64) -> f64 {
+    fn distance_from_cross_px(&self, u: f64, v: f64) -> f64 {
         let cross = &self.target.cross;
         let Some((y1, y2)) = self.view.on_plane(u, v, cross.height_m) else { return f64::INFINITY };
         let bar = |half_1: f64, half_2: f64| {
@@ -554,7 +556,7 @@ impl<'a> Search<'a> {
     }
 
     fn is_near_cross(&self, u: f64, v: f64) -> bool {
-        self.beside_cross_px(u, v) < self.reach_px + self.side_px || self.is_near_post(u, v)
+        self.distance_from_cross_px(u, v) < self.reach_px + self.side_px || self.is_near_post(u, v)
     }
 
     fn is_near_mark(&self, u: f64, v: f64) -> bool {

@@ -11,11 +11,11 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::blur::Blur;
-use super::chunk::{CHUNK, Places};
+use super::chunk::{CHUNK, IdealPositions};
 use super::coverage::MarkImage;
 use super::sampled::Tables;
 use crate::CameraModel;
-use crate::docking::pose::geometry::View;
+use crate::docking::pose::geometry::PoseProjection;
 
 /// Cells of the plate's map along a side.
 const CELLS: usize = 64;
@@ -31,7 +31,7 @@ const LEAST_GAIN: f64 = 40.0;
 
 /// What is kept of the evidence from field to field: the Sun stands still for seconds, and a shadow of which a few pixels are seen
 /// is no more than chance in a single field.
-const KEPT: f64 = 0.9;
+const RETENTION: f64 = 0.9;
 
 /// The direction of before is gone on with while it explains this part of what the best place does.
 const AS_GOOD: f64 = 0.8;
@@ -74,14 +74,14 @@ struct Evidence {
 
 impl Evidence {
     /// What a darker plate there explains, in variances of a pixel.
-    fn gain(&self) -> f64 {
+    fn explained_variance(&self) -> f64 {
         if self.step > 0.0 { self.step * self.step / self.weight } else { 0.0 }
     }
 }
 
 /// The Sun's direction as the fields before place it.
 #[derive(Debug, Clone, Copy)]
-struct Placed {
+struct SunEstimate {
     tangents: Vector2<f64>,
     information: Matrix2<f64>,
 }
@@ -95,7 +95,7 @@ pub(super) struct ShadowFinder {
     /// This field's evidence of each place, direction by direction, and that of all fields.
     field: Vec<Evidence>,
     evidence: Vec<Evidence>,
-    placed: Option<Placed>,
+    sun_estimate: Option<SunEstimate>,
 }
 
 /// A shadow on the plate as a camera sees it.
@@ -109,7 +109,7 @@ pub(super) struct Shadow {
 impl Shadow {
     fn new(
         target: &TargetModel,
-        view: &View,
+        view: &PoseProjection,
         blur: Blur,
         tables: &Tables,
         tangents: Vector2<f64>,
@@ -122,8 +122,8 @@ impl Shadow {
     }
 
     /// Blurred share of the shadow at an ideal image point.
-    pub(super) fn at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
-        let [share] = self.shares_at(tables, &Places { u: [u], v: [v] });
+    pub(super) fn share_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
+        let [share] = self.shares_at(tables, &IdealPositions { u: [u], v: [v] });
         share
     }
 
@@ -136,7 +136,7 @@ impl Shadow {
     ) {
         shares.clear();
         let mut points = points.peekable();
-        let mut at = Places { u: [0.0; CHUNK], v: [0.0; CHUNK] };
+        let mut at = IdealPositions { u: [0.0; CHUNK], v: [0.0; CHUNK] };
         while points.peek().is_some() {
             let (mut count, mut last) = (0, (0.0, 0.0));
             for l in 0..CHUNK {
@@ -151,7 +151,7 @@ impl Shadow {
     }
 
     #[inline(always)]
-    fn shares_at<const N: usize>(&self, tables: &Tables, at: &Places<N>) -> [f64; N] {
+    fn shares_at<const N: usize>(&self, tables: &Tables, at: &IdealPositions<N>) -> [f64; N] {
         let mut lit = [1.0; N];
         for image in &self.images {
             let covered = image.values(tables, at);
@@ -167,7 +167,7 @@ impl Shadow {
 struct Shares<'a> {
     shadow: &'a Shadow,
     tables: &'a Tables,
-    at: &'a Places<CHUNK>,
+    at: &'a IdealPositions<CHUNK>,
 }
 
 impl WithSimd for Shares<'_> {
@@ -209,7 +209,7 @@ impl ShadowFinder {
         camera: &CameraModel,
         target: &TargetModel,
         tables: &Tables,
-        view: &View,
+        view: &PoseProjection,
         blur: Blur,
         cross_dn: f64,
         lit_dn: impl Fn(f64, f64, f64, f64) -> Option<f64>,
@@ -220,7 +220,10 @@ impl ShadowFinder {
         if before.information == Matrix2::zeros() {
             // From a place on the map: as blurred as the map's cells are coarse, where they are coarser than the blur.
             let cell = 2.0 * target.plate_radius_m / CELLS as f64;
-            let (a, b) = (view.see(&Vector3::zeros())?, view.see(&Vector3::new(cell, 0.0, 0.0))?);
+            let (a, b) = (
+                view.project_with_derivatives(&Vector3::zeros())?,
+                view.project_with_derivatives(&Vector3::new(cell, 0.0, 0.0))?,
+            );
             let cell_px = libm::hypot(a.u - b.u, a.v - b.v);
             let extra = 0.25 * cell_px * cell_px;
             if extra > blur.x.max(blur.y) {
@@ -230,7 +233,8 @@ impl ShadowFinder {
         }
         let (tangents, seen, depth_dn) =
             self.refine(target, view, blur, tables, &before, tangents, variance)?;
-        self.placed = Some(Placed { tangents, information: (before.information + seen) * KEPT });
+        self.sun_estimate =
+            Some(SunEstimate { tangents, information: (before.information + seen) * RETENTION });
         let mut shadow = Shadow::new(target, view, blur, tables, tangents)?;
         shadow.depth_dn = depth_dn;
         (depth_dn > LEAST_DEPTH * cross_dn).then_some(shadow)
@@ -242,10 +246,10 @@ impl ShadowFinder {
     fn refine(
         &self,
         target: &TargetModel,
-        view: &View,
+        view: &PoseProjection,
         blur: Blur,
         tables: &Tables,
-        before: &Placed,
+        before: &SunEstimate,
         mut tangents: Vector2<f64>,
         variance: f64,
     ) -> Option<(Vector2<f64>, Matrix2<f64>, f64)> {
@@ -254,7 +258,7 @@ impl ShadowFinder {
         let [mut shares, mut to_first, mut to_second] = [const { Vec::new() }; 3];
         // Only pixels about the shadow's edges place it; the others say what is light and dark.
         let near: Vec<PlatePixel> = {
-            shadow.shares(tables, places(&self.pixels), &mut shares);
+            shadow.shares(tables, image_points(&self.pixels), &mut shares);
             let is_edge = |share: &f64| (0.002..0.998).contains(share);
             let edges: Vec<PlatePixel> =
                 self.pixels.iter().zip(&shares).filter(|(_, s)| is_edge(s)).map(|(p, _)| *p).collect();
@@ -267,9 +271,9 @@ impl ShadowFinder {
             let along = [Vector2::x(), Vector2::y()]
                 .map(|axis| Shadow::new(target, view, blur, tables, tangents + axis * STEP));
             let [Some(first), Some(second)] = along else { return None };
-            here.shares(tables, places(&near), &mut shares);
-            first.shares(tables, places(&near), &mut to_first);
-            second.shares(tables, places(&near), &mut to_second);
+            here.shares(tables, image_points(&near), &mut shares);
+            first.shares(tables, image_points(&near), &mut to_first);
+            second.shares(tables, image_points(&near), &mut to_second);
             let (light, depth) = levels(&near, &shares)?;
             let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
             for (pixel, ((share, first), second)) in
@@ -292,7 +296,7 @@ impl ShadowFinder {
             }
         }
         let shadow = Shadow::new(target, view, blur, tables, tangents)?;
-        shadow.shares(tables, places(&near), &mut shares);
+        shadow.shares(tables, image_points(&near), &mut shares);
         Some((tangents, seen, levels(&near, &shares)?.1))
     }
 
@@ -301,7 +305,7 @@ impl ShadowFinder {
         field: &Field,
         camera: &CameraModel,
         target: &TargetModel,
-        view: &View,
+        view: &PoseProjection,
         lit_dn: impl Fn(f64, f64, f64, f64) -> Option<f64>,
     ) -> Option<()> {
         let (image, lines) = (field.image(), field.lines());
@@ -333,7 +337,7 @@ impl ShadowFinder {
                 let Some((u, v)) = camera.to_ideal(at) else { continue };
                 let Some((y1, y2)) = view.on_plane(u, v, 0.0) else { continue };
                 if let Some(lit_dn) = lit_dn(u, v, y1, y2) {
-                    let dn = f64::from(image.at(column, row)) - lit_dn;
+                    let dn = f64::from(image.dn_at(column, row)) - lit_dn;
                     self.pixels.push(PlatePixel { u, v, y1, y2, dn });
                 }
             }
@@ -343,7 +347,7 @@ impl ShadowFinder {
 
     /// The direction that explains the plate's pixels best in this field and those before, by sums over rectangles of a map of the plate,
     /// and the variance of a pixel that it leaves, DN².
-    fn search(&mut self, target: &TargetModel) -> Option<(Placed, f64)> {
+    fn search(&mut self, target: &TargetModel) -> Option<(SunEstimate, f64)> {
         let radius = target.plate_radius_m;
         let cell = 2.0 * radius / CELLS as f64;
         let width = CELLS + 1;
@@ -412,7 +416,7 @@ impl ShadowFinder {
                 if inside.0 >= LEAST_PIXELS && outside.0 >= LEAST_PIXELS {
                     here.weight = inside.0 * outside.0 / n;
                     here.step = (outside.1 / outside.0 - inside.1 / inside.0) * here.weight;
-                    best_of_field = best_of_field.max(here.gain());
+                    best_of_field = best_of_field.max(here.explained_variance());
                 }
                 self.field.push(here);
             }
@@ -421,37 +425,37 @@ impl ShadowFinder {
         self.evidence.resize(self.field.len(), Evidence::default());
         let mut best = (0.0, 0);
         for (place, (sum, here)) in self.evidence.iter_mut().zip(&self.field).enumerate() {
-            sum.step = KEPT * sum.step + here.step / left;
-            sum.weight = KEPT * sum.weight + here.weight / left;
+            sum.step = RETENTION * sum.step + here.step / left;
+            sum.weight = RETENTION * sum.weight + here.weight / left;
             // Of places that look alike the farthest: bars that are not seen are not on the plate.
-            if sum.gain() >= best.0 {
-                best = (sum.gain(), place);
+            if sum.explained_variance() >= best.0 {
+                best = (sum.explained_variance(), place);
             }
         }
         if best.0 < LEAST_GAIN {
             return None;
         }
         let height = target.cross.height_m - 0.5 * target.cross.thickness_m;
-        let is_as_good = |placed: &Placed| {
+        let is_as_good = |placed: &SunEstimate| {
             let centre = placed.tangents * -height;
             let turns = libm::atan2(centre.y, centre.x) / TAU;
             let direction =
                 (turns * f64::from(DIRECTIONS)).round().rem_euclid(f64::from(DIRECTIONS)) as usize;
             let distance = ((centre.norm() / cell).round() as usize).min(reach);
-            self.evidence[direction * (reach + 1) + distance].gain() >= AS_GOOD * best.0
+            self.evidence[direction * (reach + 1) + distance].explained_variance() >= AS_GOOD * best.0
         };
-        let placed = self.placed.filter(is_as_good).unwrap_or_else(|| {
+        let placed = self.sun_estimate.filter(is_as_good).unwrap_or_else(|| {
             let (direction, distance) = (best.1 / (reach + 1), best.1 % (reach + 1));
             let (s, c) = libm::sincos(direction as f64 * TAU / f64::from(DIRECTIONS));
             let centre = Vector2::new(c, s) * (distance as f64 * cell);
-            Placed { tangents: centre / -height, information: Matrix2::zeros() }
+            SunEstimate { tangents: centre / -height, information: Matrix2::zeros() }
         });
         Some((placed, left))
     }
 }
 
 /// Image points of pixels.
-fn places(pixels: &[PlatePixel]) -> impl Iterator<Item = (f64, f64)> {
+fn image_points(pixels: &[PlatePixel]) -> impl Iterator<Item = (f64, f64)> {
     pixels.iter().map(|pixel| (pixel.u, pixel.v))
 }
 

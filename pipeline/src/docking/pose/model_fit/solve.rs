@@ -8,14 +8,14 @@ use pulp::Arch;
 use super::blur::Blur;
 use super::chunk::{CHUNK, FIRST_GLOBAL, Gram};
 use super::coverage::{CrossImage, MarkImage};
-use super::equations::{Cover, Image, Look, NormalEquations, Work, regressors};
+use super::equations::{ChunkBuffers, CoverageKernel, FeatureModel, Image, NormalEquations, regressors};
 use super::groups::{GroupedPixel, Groups, turns};
 use super::samples::{Feature, Patch, Sample, Samples};
 use super::scene::Scene;
 use super::swelling::{self, Swelling};
 use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, GlobalMatrix, Globals, LOCALS, POSE, SIDES};
 use crate::docking::portions::inverse;
-use crate::docking::pose::geometry::{View, to_pose};
+use crate::docking::pose::geometry::{PoseProjection, to_pose};
 
 /// What is expected of blur, its share on pixels and side faces before the image is seen: mean and standard deviation. Weak; it decides only
 /// where the image does not.
@@ -76,7 +76,7 @@ struct Images {
 impl Images {
     fn new(scene: &Scene, globals: &Globals, extra_blur_px2: f64) -> Option<Self> {
         let pose = to_pose(globals);
-        let view = View::new(scene.camera, &pose);
+        let view = PoseProjection::new(scene.camera, &pose);
         let (x, y) = (globals[BLUR] + extra_blur_px2, globals[BLUR + 1] + extra_blur_px2);
         let blur = Blur::on_grid(x, y, globals[GRID]);
         let sides = [0, 1, 2, 3].map(|k| globals[SIDES + k]);
@@ -91,7 +91,7 @@ impl Images {
         })
     }
 
-    fn of(&self, feature: Feature) -> Option<Image<'_>> {
+    fn feature_image(&self, feature: Feature) -> Option<Image<'_>> {
         match feature {
             Feature::Mark(index) => self.marks[index].as_ref().map(Image::Mark),
             Feature::Cross => Some(Image::Cross(&self.cross)),
@@ -127,8 +127,8 @@ pub(super) fn solve(
         let (mut damped, mut gradient) = (now.information, now.gradient);
         for i in 0..GLOBALS {
             damped[(i, i)] *= 1.0 + damping;
-            if is_held(i, globals[i], gradient[i]) {
-                hold(i, &mut damped, &mut gradient);
+            if is_at_bound(i, globals[i], gradient[i]) {
+                fix_parameter(i, &mut damped, &mut gradient);
             }
         }
         let mut step = inverse(&damped)? * gradient;
@@ -211,23 +211,28 @@ pub(super) fn uncertainty(
     let variance = evaluation.variance();
     let images = Images::new(scene, globals, 0.0)?;
     let pose = to_pose(globals);
-    let swollen = swelling::swollen(scene.target, scene.camera.focal_px().0 / pose.position_m.z);
+    let swollen = swelling::enlarged_target(scene.target, scene.camera.focal_px().0 / pose.position_m.z);
     let swollen = Images::new(&Scene { target: &swollen, ..*scene }, globals, 0.0)?;
-    let centre = View::new(scene.camera, &pose).see(&Vector3::zeros())?;
+    let centre = PoseProjection::new(scene.camera, &pose).project_with_derivatives(&Vector3::zeros())?;
     let [along, across] = turns(&centre.by_pose)?;
     let groups = [lines, of_patches, swellings];
     let [lines, of_patches, swellings] = groups.map(|groups| {
         groups.clear();
         groups
     });
-    let mut work = Work::NEW;
+    let mut work = ChunkBuffers::NEW;
     for (index, patch) in samples.patches.iter().filter(|patch| patch.is_used).enumerate() {
         let level = patch.levels[LOCALS - 1];
-        let look = Look { image: images.of(patch.feature)?, tables: scene.tables, share: globals[GRID] };
-        let wide = Look { image: swollen.of(patch.feature)?, ..look };
+        let feature_model = FeatureModel {
+            image: images.feature_image(patch.feature)?,
+            tables: scene.tables,
+            share: globals[GRID],
+        };
+        let wide = FeatureModel { image: swollen.feature_image(patch.feature)?, ..feature_model };
         for pixels in samples.pixels[patch.first..patch.end].chunks(CHUNK) {
-            let wider = Arch::new().dispatch(Cover { look: wide, pixels, work: &mut work }).value;
-            let coverage = Arch::new().dispatch(Cover { look, pixels, work: &mut work });
+            let wider =
+                Arch::new().dispatch(CoverageKernel { feature_model: wide, pixels, work: &mut work }).value;
+            let coverage = Arch::new().dispatch(CoverageKernel { feature_model, pixels, work: &mut work });
             for (l, pixel) in pixels.iter().enumerate().filter(|(_, pixel)| pixel.is_used) {
                 let levels = SVector::from(regressors(patch, pixel, coverage.value[l]));
                 let slopes = Globals::from_fn(|i, _| coverage.by[i][l]);
@@ -263,12 +268,12 @@ pub(super) fn uncertainty(
             Feature::Cross if is_small => SMALL_CROSS_PX,
             Feature::Cross => continue,
         };
-        by_patches += of_patches.shifted(index) * (off_px * off_px);
+        by_patches += of_patches.group_covariance(index) * (off_px * off_px);
     }
-    let (change, by_swelling, swelling) = swellings.as_unknown(&inverse, variance, known_swelling)?;
+    let (change, by_swelling, swelling) = swellings.estimate_swelling(&inverse, variance, known_swelling)?;
     let crosses = used().filter(|(_, patch)| patch.feature == Feature::Cross).map(|(index, _)| index);
     let aside_px = SIDEWAYS * swelling.weighted / swelling.weight;
-    by_patches += of_patches.shifted_together(crosses) * (aside_px * aside_px);
+    by_patches += of_patches.common_covariance(crosses) * (aside_px * aside_px);
     let noise = (variance - explained_by_lines - explained_by_patches).max(LEAST_NOISE * variance);
     let common = inverse * by_patches * inverse + by_swelling;
     Some(Uncertainty {
@@ -286,7 +291,7 @@ fn width_m(corners: &[[f64; 2]; 4]) -> f64 {
 }
 
 /// Whether a global is at the end of its range and would leave it.
-fn is_held(i: usize, value: f64, gradient: f64) -> bool {
+fn is_at_bound(i: usize, value: f64, gradient: f64) -> bool {
     let (low, high) = match i {
         0..BLUR => return false,
         BLUR..GRID => BLUR_RANGE_PX2,
@@ -296,7 +301,7 @@ fn is_held(i: usize, value: f64, gradient: f64) -> bool {
 }
 
 /// Takes a global out of the equations: no step, and no coupling.
-fn hold(i: usize, information: &mut GlobalMatrix, gradient: &mut Globals) {
+fn fix_parameter(i: usize, information: &mut GlobalMatrix, gradient: &mut Globals) {
     information.row_mut(i).fill(0.0);
     information.column_mut(i).fill(0.0);
     information[(i, i)] = 1.0;
@@ -331,22 +336,27 @@ fn evaluate(
         freedom: -(POSE as f64),
     };
     let Samples { pixels, patches, .. } = samples;
-    let mut work = Work::NEW;
+    let mut work = ChunkBuffers::NEW;
     for patch in patches.iter_mut() {
         let origin = pixels[patch.first].dn;
-        let look = Look { image: images.of(patch.feature)?, tables: scene.tables, share: globals[GRID] };
+        let feature_model = FeatureModel {
+            image: images.feature_image(patch.feature)?,
+            tables: scene.tables,
+            share: globals[GRID],
+        };
         // A small patch keeps enough to know its levels by.
         let stride = search.stride.min((patch.end - patch.first) / LEAST_OF_PATCH).max(1);
         let pixels = &mut pixels[patch.first..patch.end];
         let (centre, level) = (patch.centre, patch.levels[LOCALS - 1]);
-        let equations = NormalEquations { look, centre, level, pixels, origin, stride, work: &mut work };
+        let equations =
+            NormalEquations { feature_model, centre, level, pixels, origin, stride, work: &mut work };
         let (gram, used) = Arch::new().dispatch(equations);
         patch.used_samples = used;
-        fold(patch, gram, origin, &mut sum);
+        add_patch(patch, gram, origin, &mut sum);
     }
     for i in 0..GLOBALS {
         if !search.free.contains(&i) {
-            hold(i, &mut sum.information, &mut sum.gradient);
+            fix_parameter(i, &mut sum.information, &mut sum.gradient);
         } else if i >= BLUR {
             let (mean, sigma) = if i < GRID { BLUR_PRIOR_PX2 } else { SHARE_PRIOR };
             let weight = noise / (sigma * sigma);
@@ -370,8 +380,9 @@ pub(super) fn residual(patch: &Patch, pixel: &Sample) -> f64 {
 ///
 /// With L the regressors of the levels ℓ, A = Lᵀ L and D the derivatives of the coverage, the feature's level a being one of ℓ:
 /// information a² (DᵀD − DᵀL A⁻¹ LᵀD), gradient a Dᵀ(y − L ℓ).
-fn fold(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) {
-    let mut normal = SMatrix::<f64, LOCALS, LOCALS>::from_fn(|i, j| gram.at(1 + i.min(j), 1 + i.max(j)));
+fn add_patch(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) {
+    let mut normal =
+        SMatrix::<f64, LOCALS, LOCALS>::from_fn(|i, j| gram.column_product(1 + i.min(j), 1 + i.max(j)));
     for i in 0..LOCALS {
         // A level that no pixel of the patch shows is zero; another is hardly touched.
         normal[(i, i)] = if normal[(i, i)] > 1e-9 { normal[(i, i)] * (1.0 + 1e-9) } else { 1.0 };
@@ -380,9 +391,9 @@ fn fold(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) {
         patch.is_used = false;
         return;
     };
-    let right = SVector::<f64, LOCALS>::from_fn(|i, _| gram.at(0, 1 + i));
+    let right = SVector::<f64, LOCALS>::from_fn(|i, _| gram.column_product(0, 1 + i));
     let levels = normal * right;
-    patch.squares = (gram.at(0, 0) - right.dot(&levels)).max(0.0);
+    patch.squares = (gram.column_product(0, 0) - right.dot(&levels)).max(0.0);
     patch.levels = levels.into();
     patch.levels[0] += origin;
     if !patch.is_used {
@@ -396,13 +407,14 @@ fn fold(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) {
         // Darker than the plate: whatever this is, the feature is not where the patch was looked for.
         return;
     }
-    let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram.at(1 + i, FIRST_GLOBAL + j));
+    let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram.column_product(1 + i, FIRST_GLOBAL + j));
     patch.levels_inverse = normal;
     patch.levels_by_globals = normal * mixed;
     for i in 0..GLOBALS {
         for j in i..GLOBALS {
             let eliminated = mixed.column(i).dot(&patch.levels_by_globals.column(j));
-            let term = feature * feature * (gram.at(FIRST_GLOBAL + i, FIRST_GLOBAL + j) - eliminated);
+            let term =
+                feature * feature * (gram.column_product(FIRST_GLOBAL + i, FIRST_GLOBAL + j) - eliminated);
             sum.information[(i, j)] += term;
             if i != j {
                 sum.information[(j, i)] += term;
@@ -411,6 +423,6 @@ fn fold(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) {
     }
     let residual = mixed.transpose() * levels;
     for i in 0..GLOBALS {
-        sum.gradient[i] += feature * (gram.at(0, FIRST_GLOBAL + i) - residual[i]);
+        sum.gradient[i] += feature * (gram.column_product(0, FIRST_GLOBAL + i) - residual[i]);
     }
 }

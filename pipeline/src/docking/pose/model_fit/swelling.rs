@@ -11,7 +11,7 @@ pub(super) const STEP_PX: f64 = 0.05;
 const PRIOR_PX: f64 = 0.05;
 
 /// What is kept from field to field of what the fields before told.
-const KEPT: f64 = 0.9;
+const RETENTION: f64 = 0.9;
 
 /// What is known of the swelling: its information, 1/px², and that times its mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,20 +29,23 @@ impl Default for Swelling {
 
 impl Swelling {
     /// After a field that tells so much by itself.
-    pub(super) fn with(&self, weight: f64, weighted: f64) -> Self {
+    pub(super) fn add_information(&self, weight: f64, weighted: f64) -> Self {
         Self { weight: self.weight + weight, weighted: self.weighted + weighted }
     }
 
     /// What is left of it for the next field: a video's law changes slowly, and not at all by itself.
-    pub(super) fn faded(&self) -> Self {
+    pub(super) fn decayed(&self) -> Self {
         let prior = Self::default();
-        Self { weight: prior.weight + KEPT * (self.weight - prior.weight), weighted: KEPT * self.weighted }
+        Self {
+            weight: prior.weight + RETENTION * (self.weight - prior.weight),
+            weighted: RETENTION * self.weighted,
+        }
     }
 }
 
 /// The target with all edges of its features so far outside that they lie [`STEP_PX`] farther out in the image; `scale`: px/m on the
 /// plate.
-pub(super) fn swollen(target: &TargetModel, scale: f64) -> TargetModel {
+pub(super) fn enlarged_target(target: &TargetModel, scale: f64) -> TargetModel {
     let by_m = STEP_PX / scale;
     let mut swollen = target.clone();
     swollen.cross.width_m += 2.0 * by_m;

@@ -7,8 +7,8 @@ use contract::docking::{Field, Lines, MarkUse, NoPose, Pose};
 use contract::{Camera, Frame};
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use self::render::{Look, camera, expected, field, target};
-use super::{Fitted, ModelFit};
+use self::render::{FeatureModel, camera, expected, field, target};
+use super::{FitResult, ModelFit};
 use crate::CameraModel;
 use crate::docking::portions::inverse;
 use crate::docking::portions::tests::uniform;
@@ -52,7 +52,7 @@ struct Trial {
 
 /// Fits `draws` fields of each of `poses` poses.
 fn trial(focal_px: f64, distance_m: f64, poses: u64, draws: u64, noise_dn: f64) -> Trial {
-    let (camera, target, look) = (camera(focal_px, [0.0; 3]), target(), Look::default());
+    let (camera, target, feature_model) = (camera(focal_px, [0.0; 3]), target(), FeatureModel::default());
     let model = CameraModel::new(&camera).unwrap();
     let mut fit = ModelFit::new();
     let mut trial = Trial {
@@ -64,8 +64,8 @@ fn trial(focal_px: f64, distance_m: f64, poses: u64, draws: u64, noise_dn: f64) 
     };
     for p in 0..poses {
         let truth = pose(distance_m, 100 + p);
-        let image = expected(&camera, &target, &look, &truth);
-        let bound = bound(&camera, &look, &truth, noise_dn);
+        let image = expected(&camera, &target, &feature_model, &truth);
+        let bound = bound(&camera, &feature_model, &truth, noise_dn);
         for k in 0..draws {
             let lines = if k % 2 == 0 { Lines::Even } else { Lines::Odd };
             let field = field(&camera, &image, lines, noise_dn, 1000 * p + k);
@@ -87,7 +87,7 @@ fn trial(focal_px: f64, distance_m: f64, poses: u64, draws: u64, noise_dn: f64) 
 }
 
 /// Inverse Fisher information of an even field, by differences of images.
-fn bound(camera: &Camera, look: &Look, truth: &Pose, noise_dn: f64) -> Matrix6<f64> {
+fn bound(camera: &Camera, feature_model: &FeatureModel, truth: &Pose, noise_dn: f64) -> Matrix6<f64> {
     // Steps of about 0.25 px each: the cross against the marks (two), size, shift (two), roll. In the pose's own coordinates
     // a lateral step would be a shift, but for a sixtieth, and the image's own errors would count as parallax.
     let (f, _) = camera.focal_length_px();
@@ -105,8 +105,8 @@ fn bound(camera: &Camera, look: &Look, truth: &Pose, noise_dn: f64) -> Matrix6<f
     let slopes: Vec<Vec<f64>> = (0..6)
         .map(|i| {
             let step: Vector6<f64> = basis.column(i).into();
-            let plus = expected(camera, &target(), look, &to_pose(&(at + step)));
-            let minus = expected(camera, &target(), look, &to_pose(&(at - step)));
+            let plus = expected(camera, &target(), feature_model, &to_pose(&(at + step)));
+            let minus = expected(camera, &target(), feature_model, &to_pose(&(at - step)));
             plus.iter().zip(&minus).map(|(a, b)| 0.5 * (a - b)).collect()
         })
         .collect();
@@ -119,9 +119,9 @@ fn bound(camera: &Camera, look: &Look, truth: &Pose, noise_dn: f64) -> Matrix6<f
         let mut sum = 0.0;
         for y in (0..camera.rows).step_by(2) {
             for x in 0..camera.columns {
-                let place = y * camera.columns + x;
+                let pixel_index = y * camera.columns + x;
                 if libm::hypot(x as f64 - centre.x, y as f64 - centre.y) < rim {
-                    sum += slopes[i][place] * slopes[j][place];
+                    sum += slopes[i][pixel_index] * slopes[j][pixel_index];
                 }
             }
         }
@@ -149,7 +149,7 @@ fn check(focal_px: f64, distance_m: f64) {
         / n;
     let ratio = [0, 1, 2, 3, 4, 5]
         .map(|i| rms(trial.errors.iter().map(|e| e[i])) / rms(trial.bounds.iter().map(|b| b[(i, i)].sqrt())));
-    let told = [0, 1, 2, 3, 4, 5].map(|i| {
+    let stated = [0, 1, 2, 3, 4, 5].map(|i| {
         rms(trial.covariances.iter().map(|c| c[(i, i)].sqrt()))
             / rms(trial.bounds.iter().map(|b| b[(i, i)].sqrt()))
     });
@@ -157,7 +157,7 @@ fn check(focal_px: f64, distance_m: f64) {
     let lateral_mm = 1e3 * rms(trial.errors.iter().map(|e| libm::hypot(e[0], e[1])));
     let phi_deg = rms(trial.errors.iter().map(|e| libm::hypot(e[3], e[4]))).to_degrees();
     println!(
-        "{focal_px} px {distance_m} m: {percent:.4} % {lateral_mm:.2} mm {phi_deg:.4}°, NEES/6 {nees:.2}, over the bound {ratio:.2?}, told {told:.2?}, \
+        "{focal_px} px {distance_m} m: {percent:.4} % {lateral_mm:.2} mm {phi_deg:.4}°, NEES/6 {nees:.2}, over the bound {ratio:.2?}, told {stated:.2?}, \
          centres {:.4} px",
         rms(trial.centres_px.iter().copied())
     );
@@ -198,13 +198,18 @@ fn wide_at_1_m_errors_are_those_of_the_noise() {
     check(WIDE_PX, 1.1);
 }
 
-fn fit_one(camera: &Camera, look: &Look, truth: &Pose, noise_dn: f64) -> Result<Fitted, NoPose> {
-    let image = expected(camera, &target(), look, truth);
+fn fit_one(
+    camera: &Camera,
+    feature_model: &FeatureModel,
+    truth: &Pose,
+    noise_dn: f64,
+) -> Result<FitResult, NoPose> {
+    let image = expected(camera, &target(), feature_model, truth);
     let field = field(camera, &image, Lines::Even, noise_dn, 7);
     ModelFit::new().fit(&field, &CameraModel::new(camera).unwrap(), &target(), &guess(camera, truth, 3))
 }
 
-fn nees(fitted: &Fitted, truth: &Pose) -> f64 {
+fn nees(fitted: &FitResult, truth: &Pose) -> f64 {
     let error = to_vector(&fitted.estimate.pose) - to_vector(truth);
     (error.transpose() * inverse(&fitted.estimate.covariance).unwrap() * error)[0]
 }
@@ -215,7 +220,7 @@ fn without_noise_the_model_is_right_to_thousandths_of_a_pixel() {
         let camera = camera(focal_px, [0.0; 3]);
         for seed in 0..3 {
             let truth = pose(distance_m, 300 + seed);
-            let fitted = fit_one(&camera, &Look::default(), &truth, 0.0).unwrap();
+            let fitted = fit_one(&camera, &FeatureModel::default(), &truth, 0.0).unwrap();
             let model = CameraModel::new(&camera).unwrap();
             // Rounding to whole DN is left, and the test image's own 1/512 px.
             for point in [Vector3::zeros(), Vector3::new(0.0, 0.0, 0.3), Vector3::new(0.25, 0.0, 0.0)] {
@@ -233,8 +238,8 @@ fn a_half_shadowed_mark_is_rejected() {
     for (focal_px, distance_m) in [(NARROW_PX, 20.0), (NARROW_PX, 5.0), (WIDE_PX, 5.0)] {
         let camera = camera(focal_px, [0.0; 3]);
         let truth = pose(distance_m, 11);
-        let look = Look { half_shadowed: Some(4), ..Look::default() };
-        let fitted = fit_one(&camera, &look, &truth, 2.0).unwrap();
+        let feature_model = FeatureModel { half_shadowed: Some(4), ..FeatureModel::default() };
+        let fitted = fit_one(&camera, &feature_model, &truth, 2.0).unwrap();
         assert_eq!(fitted.marks[4].usage, MarkUse::Rejected, "{focal_px} px, {distance_m} m");
         assert!(fitted.marks.iter().filter(|mark| mark.usage == MarkUse::Used).count() >= 10);
         // 6 degrees of freedom: 22 once in a thousand.
@@ -248,12 +253,12 @@ fn a_shadow_almost_behind_the_cross_is_found_in_a_few_fields() {
     let model = CameraModel::new(&camera).unwrap();
     // 1.5° from the normal: a strip of 1.6 px beside the edges of one bar. A camera off the axis sees more of it, as from these two
     // poses, or less: a strip under 1.2 px is not told from a cross that stands a little off.
-    let look = Look { shadow: Some(([0.0, -0.026], 12.0)), ..Look::default() };
+    let feature_model = FeatureModel { shadow: Some(([0.0, -0.026], 12.0)), ..FeatureModel::default() };
     let mut sum = 0.0;
     let (poses, before, fields) = (2, 6, 14);
     for seed in 0..poses {
         let truth = pose(14.0, 500 + seed);
-        let image = expected(&camera, &target(), &look, &truth);
+        let image = expected(&camera, &target(), &feature_model, &truth);
         let mut fit = ModelFit::new();
         for draw in 0..fields {
             let field = field(&camera, &image, Lines::Even, 2.0, 100 * seed + draw);
@@ -271,7 +276,7 @@ fn doubled_noise_doubles_sigma() {
     let camera = camera(NARROW_PX, [0.0; 3]);
     let truth = pose(8.0, 12);
     let [once, twice] = [2.0, 4.0]
-        .map(|noise| fit_one(&camera, &Look::default(), &truth, noise).unwrap().estimate.covariance);
+        .map(|noise| fit_one(&camera, &FeatureModel::default(), &truth, noise).unwrap().estimate.covariance);
     for i in 0..6 {
         let ratio = (twice[(i, i)] / once[(i, i)]).sqrt();
         // σ is estimated from some thousand residuals, and rounding adds 1/12 to both variances: 3 %. What is expected of the
@@ -287,7 +292,7 @@ fn sigma_shrinks_towards_contact() {
     let sigmas: Vec<f64> = [20.0, 10.0, 5.0, 2.0, 1.1]
         .into_iter()
         .map(|distance_m| {
-            let fitted = fit_one(&camera, &Look::default(), &pose(distance_m, 13), 2.0).unwrap();
+            let fitted = fit_one(&camera, &FeatureModel::default(), &pose(distance_m, 13), 2.0).unwrap();
             fitted.estimate.covariance[(2, 2)].sqrt()
         })
         .collect();
@@ -298,8 +303,8 @@ fn sigma_shrinks_towards_contact() {
 fn blur_along_columns_and_rows_is_found_apart() {
     let camera = camera(NARROW_PX, [0.0; 3]);
     let truth = pose(5.0, 14);
-    let look = Look { blur_px: [1.1, 0.6], ..Look::default() };
-    let fitted = fit_one(&camera, &look, &truth, 2.0).unwrap();
+    let feature_model = FeatureModel { blur_px: [1.1, 0.6], ..FeatureModel::default() };
+    let fitted = fit_one(&camera, &feature_model, &truth, 2.0).unwrap();
     assert!(
         (fitted.blur_px[0] - 1.1).abs() < 0.02 && (fitted.blur_px[1] - 0.6).abs() < 0.02,
         "{:?}",
@@ -315,7 +320,7 @@ fn the_lens_distortion_is_undone() {
     let mut truth = pose(5.0, 15);
     // Half-way to a corner of the image.
     truth.phi_rad += Vector3::new(0.03, 0.04, 0.0);
-    let fitted = fit_one(&camera, &Look::default(), &truth, 2.0).unwrap();
+    let fitted = fit_one(&camera, &FeatureModel::default(), &truth, 2.0).unwrap();
     assert!(nees(&fitted, &truth) < 22.0, "{}", nees(&fitted, &truth));
 }
 
@@ -342,11 +347,11 @@ fn what_is_not_the_target_is_no_pose() {
 #[test]
 fn derivatives_are_those_of_finite_differences() {
     use super::blur::Blur;
-    use super::chunk::{Coverages, Places, Steps};
+    use super::chunk::{Coverages, IdealPositions, Steps};
     use super::coverage::{CrossImage, EDGES, MarkImage};
     use super::sampled::Tables;
     use super::unknowns::{BLUR, GLOBALS, SIDES};
-    use crate::docking::pose::geometry::View;
+    use crate::docking::pose::geometry::PoseProjection;
 
     let model = CameraModel::new(&camera(WIDE_PX, [0.0; 3])).unwrap();
     let (target, tables) = (target(), Tables::new());
@@ -359,18 +364,18 @@ fn derivatives_are_those_of_finite_differences() {
     at.fixed_rows_mut::<4>(SIDES).copy_from_slice(&[0.3, 0.4, 0.5, 0.6]);
     let evaluate = |g: &super::unknowns::Globals, u: f64, v: f64| {
         let pose = to_pose(g);
-        let view = View::new(&model, &pose);
+        let view = PoseProjection::new(&model, &pose);
         let blur = Blur::new(g[BLUR], g[BLUR + 1]);
         let sides = [0, 1, 2, 3].map(|k| g[SIDES + k]);
         let cross = CrossImage::new(&target, &view, &pose.position_m, blur, sides, &tables).unwrap();
         let mark = MarkImage::new(&target.marks[1], &view, blur, &tables).unwrap();
-        let (at, mut steps) = (Places { u: [u], v: [v] }, [const { Steps::FAR }; EDGES]);
+        let (at, mut steps) = (IdealPositions { u: [u], v: [v] }, [const { Steps::FAR }; EDGES]);
         let mut coverages = [const { Coverages::NONE }; 2];
         cross.cover(&tables, &at, &mut steps, &mut coverages[0]);
         mark.cover(&tables, &at, &mut steps, &mut coverages[1]);
         coverages.map(|coverage| (coverage.value[0], coverage.by.map(|by| by[0])))
     };
-    let view = View::new(&model, &truth);
+    let view = PoseProjection::new(&model, &truth);
     for (y1, y2, y3) in [
         (0.015, 0.08, 0.3),
         (0.15, 0.004, 0.3),
@@ -378,7 +383,7 @@ fn derivatives_are_those_of_finite_differences() {
         (0.017, 0.016, 0.295),
         (0.2, 0.11, 0.0),
     ] {
-        let seen = view.see(&Vector3::new(y1, y2, y3)).unwrap();
+        let seen = view.project_with_derivatives(&Vector3::new(y1, y2, y3)).unwrap();
         let analytic = evaluate(&at, seen.u, seen.v);
         for i in 0..GLOBALS {
             let mut step = super::unknowns::Globals::zeros();

@@ -63,7 +63,7 @@ impl<'a> TriangleSearch<'a> {
     }
 
     /// The triples of stars, by their index, that have the separations of the corners and their sense of rotation.
-    pub(super) fn of(&mut self, corners: [Direction<CameraFrame>; 3]) -> Vec<[u32; 3]> {
+    pub(super) fn matching_triples(&mut self, corners: [Direction<CameraFrame>; 3]) -> Vec<[u32; 3]> {
         let chord = |a: usize, b: usize| (corners[a].vector() - corners[b].vector()).norm();
         // The sides opposite to the corners.
         let sides = [chord(1, 2), chord(2, 0), chord(0, 1)];

@@ -7,12 +7,14 @@ use pulp::{Arch, Scalar, WithSimd};
 use super::super::blur::Blur;
 use super::super::chunk::{COLUMNS, FIRST_GLOBAL, Gram};
 use super::super::coverage::{CrossImage, MarkImage};
-use super::super::equations::{Cover, Image, Look, NormalEquations, Work, regressors};
+use super::super::equations::{
+    ChunkBuffers, CoverageKernel, FeatureModel, Image, NormalEquations, regressors,
+};
 use super::super::sampled::Tables;
 use super::super::samples::{Feature, Patch, Sample};
 use super::render::{camera, target};
 use crate::CameraModel;
-use crate::docking::pose::geometry::View;
+use crate::docking::pose::geometry::PoseProjection;
 
 /// 75 pixels about a place: two whole chunks and a part of one.
 fn samples(u: f64, v: f64) -> Vec<Sample> {
@@ -32,7 +34,7 @@ fn samples(u: f64, v: f64) -> Vec<Sample> {
 }
 
 fn products(gram: &Gram) -> Vec<f64> {
-    (0..COLUMNS).flat_map(|i| (i..COLUMNS).map(move |j| gram.at(i, j))).collect()
+    (0..COLUMNS).flat_map(|i| (i..COLUMNS).map(move |j| gram.column_product(i, j))).collect()
 }
 
 #[test]
@@ -40,7 +42,7 @@ fn equations_are_the_sums_over_pixels_and_the_same_bits_on_all_registers() {
     let model = CameraModel::new(&camera(super::WIDE_PX, [0.0; 3])).unwrap();
     let (target, mut tables) = (target(), Tables::new());
     let pose = Pose { position_m: Vector3::new(0.1, -0.05, 2.5), phi_rad: Vector3::new(0.02, -0.03, 0.1) };
-    let (view, blur) = (View::new(&model, &pose), Blur::on_grid(0.6, 0.5, 0.7));
+    let (view, blur) = (PoseProjection::new(&model, &pose), Blur::on_grid(0.6, 0.5, 0.7));
     let sides = [0.3, 0.4, 0.5, 0.6];
     let image = |tables: &Tables| {
         let cross = CrossImage::new(&target, &view, &pose.position_m, blur, sides, tables).unwrap();
@@ -49,16 +51,16 @@ fn equations_are_the_sums_over_pixels_and_the_same_bits_on_all_registers() {
     let normals: Vec<_> = image(&tables).0.normals().collect();
     assert!(tables.prepare(&normals, &blur));
     let (cross, mark) = image(&tables);
-    let end_of_arm = view.see(&Vector3::new(0.0, 0.15, 0.3)).unwrap();
-    let on_ring = view.see(&Vector3::new(0.125, 0.217, 0.0)).unwrap();
+    let end_of_arm = view.project_with_derivatives(&Vector3::new(0.0, 0.15, 0.3)).unwrap();
+    let on_ring = view.project_with_derivatives(&Vector3::new(0.125, 0.217, 0.0)).unwrap();
     for (image, at) in [(Image::Cross(&cross), end_of_arm), (Image::Mark(&mark), on_ring)] {
-        let look = Look { image, tables: &tables, share: 0.7 };
+        let feature_model = FeatureModel { image, tables: &tables, share: 0.7 };
         let patch = Patch::new(Feature::Cross, 0..75, (at.u + 0.3, at.v));
         let (level, origin) = (80.0, 110.0);
         let found = |widest: bool, stride: usize| {
-            let (mut pixels, mut work) = (samples(at.u, at.v), Work::NEW);
+            let (mut pixels, mut work) = (samples(at.u, at.v), ChunkBuffers::NEW);
             let equations = NormalEquations {
-                look,
+                feature_model,
                 centre: patch.centre,
                 level,
                 pixels: &mut pixels,
@@ -75,9 +77,10 @@ fn equations_are_the_sums_over_pixels_and_the_same_bits_on_all_registers() {
         }
         // The sums one pixel after the other.
         let mut sums = [[0.0; COLUMNS]; COLUMNS];
-        let mut work = Work::NEW;
+        let mut work = ChunkBuffers::NEW;
         for pixel in samples(at.u, at.v).iter().filter(|pixel| pixel.is_used) {
-            let cover = Cover { look, pixels: std::slice::from_ref(pixel), work: &mut work };
+            let cover =
+                CoverageKernel { feature_model, pixels: std::slice::from_ref(pixel), work: &mut work };
             let coverage = cover.with_simd(Scalar::new());
             let mut row = [0.0; COLUMNS];
             row[0] = pixel.dn + pixel.shadow_dn * (1.0 - coverage.value[0]) - origin;

@@ -16,7 +16,7 @@ const MARGIN: i64 = 8;
 
 /// What the target looks like.
 #[derive(Debug, Clone)]
-pub(super) struct Look {
+pub(super) struct FeatureModel {
     pub(super) plate_dn: f64,
     pub(super) beyond_dn: f64,
     pub(super) mark_dn: f64,
@@ -30,7 +30,7 @@ pub(super) struct Look {
     pub(super) shadow: Option<([f64; 2], f64)>,
 }
 
-impl Default for Look {
+impl Default for FeatureModel {
     fn default() -> Self {
         Self {
             plate_dn: 40.0,
@@ -88,7 +88,12 @@ pub(super) fn target() -> TargetModel {
 }
 
 /// The expected DN of every pixel of the camera, row by row, without noise.
-pub(super) fn expected(camera: &Camera, target: &TargetModel, look: &Look, pose: &Pose) -> Vec<f64> {
+pub(super) fn expected(
+    camera: &Camera,
+    target: &TargetModel,
+    feature_model: &FeatureModel,
+    pose: &Pose,
+) -> Vec<f64> {
     let plate: Vec<[f64; 2]> = (0..96)
         .map(|k| {
             let (s, c) = libm::sincos(f64::from(k) * std::f64::consts::TAU / 96.0);
@@ -99,11 +104,11 @@ pub(super) fn expected(camera: &Camera, target: &TargetModel, look: &Look, pose:
     let mut marks = Vec::new();
     for (index, [a, b, c, d]) in target.marks.iter().enumerate() {
         let middle = |p: &[f64; 2], q: &[f64; 2]| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
-        let quad = match look.half_shadowed {
+        let quad = match feature_model.half_shadowed {
             Some(shadowed) if shadowed == index => [middle(a, b), middle(a, b), middle(c, d), middle(c, d)],
             _ => [*a, *b, *c, *d],
         };
-        let quad = if look.half_shadowed == Some(index) { [*a, quad[0], quad[2], *d] } else { quad };
+        let quad = if feature_model.half_shadowed == Some(index) { [*a, quad[0], quad[2], *d] } else { quad };
         marks.push(image(camera, pose, &quad, 0.0));
     }
     let cross = &target.cross;
@@ -151,12 +156,12 @@ pub(super) fn expected(camera: &Camera, target: &TargetModel, look: &Look, pose:
 
     // Each group is a union; groups add their step over what is below.
     let mut groups = vec![
-        (vec![plate], look.plate_dn - look.beyond_dn),
-        (marks, look.mark_dn - look.plate_dn),
-        (solid.clone(), look.side_dn - look.plate_dn),
-        (vec![front], look.cross_dn - look.side_dn),
+        (vec![plate], feature_model.plate_dn - feature_model.beyond_dn),
+        (marks, feature_model.mark_dn - feature_model.plate_dn),
+        (solid.clone(), feature_model.side_dn - feature_model.plate_dn),
+        (vec![front], feature_model.cross_dn - feature_model.side_dn),
     ];
-    if let Some(([s1, s2], depth_dn)) = look.shadow {
+    if let Some(([s1, s2], depth_dn)) = feature_model.shadow {
         let cast = |height: f64| {
             image(camera, pose, &outline.map(|[y1, y2]| [y1 - height * s1, y2 - height * s2]), 0.0)
         };
@@ -165,7 +170,7 @@ pub(super) fn expected(camera: &Camera, target: &TargetModel, look: &Look, pose:
         solid.extend([cast(cross.height_m), cast(cross.height_m - cross.thickness_m)]);
         groups.extend([(solid, -depth_dn), (hidden, depth_dn)]);
     }
-    let kernels = look.blur_px.map(kernel);
+    let kernels = feature_model.blur_px.map(kernel);
     // The box lies on a pixel's own cells, the Gaussian reaches equally far before and after.
     let half = |axis: usize| (kernels[axis].len() - CELLS) / 2;
     let mut across = vec![0.0; columns * rows * CELLS];
@@ -190,7 +195,7 @@ pub(super) fn expected(camera: &Camera, target: &TargetModel, look: &Look, pose:
                 .sum();
         }
     }
-    let mut dn = vec![look.beyond_dn; camera.columns * camera.rows];
+    let mut dn = vec![feature_model.beyond_dn; camera.columns * camera.rows];
     for row in 0..rows {
         let y = y0 + row as i64;
         for column in 0..columns {
@@ -218,9 +223,9 @@ pub(super) fn field(camera: &Camera, expected: &[f64], lines: Lines, noise_dn: f
     let mut dn = Vec::with_capacity(rows * camera.columns);
     for row in 0..rows {
         for x in 0..camera.columns {
-            let place = lines.camera_row(row) * camera.columns + x;
-            let noise = noise_dn * normal(seed * 1_000_003 + place as u64);
-            dn.push((expected[place] + noise).round().clamp(0.0, 255.0) as u16);
+            let pixel_index = lines.camera_row(row) * camera.columns + x;
+            let noise = noise_dn * normal(seed * 1_000_003 + pixel_index as u64);
+            dn.push((expected[pixel_index] + noise).round().clamp(0.0, 255.0) as u16);
         }
     }
     Field::new(Frame::new(0, camera.columns, rows, 8, dn, None).unwrap(), lines, camera.rows).unwrap()

@@ -12,15 +12,15 @@ pub(crate) const LANES: usize = 8;
 /// Word i is number i / 8 of generator i % 8. Generator 0 is the stream at the same place; generator l is keyed by the four
 /// numbers 4 l … 4 l + 3 of the SplitMix64 whose first four key generator 0.
 #[derive(Debug, Clone)]
-pub(crate) struct Lanes {
+pub(crate) struct GeneratorLanes {
     state: [[u64; LANES]; 4],
 }
 
-impl Lanes {
+impl GeneratorLanes {
     /// The generators at a place of one effect in one frame. A place uses these or its stream.
     #[inline(always)]
-    pub(crate) fn at(streams: &Streams, place: u64) -> Self {
-        let base = streams.key_of(place);
+    pub(crate) fn from_streams(streams: &Streams, index: u64) -> Self {
+        let base = streams.key_at(index);
         let state = std::array::from_fn(|part| {
             std::array::from_fn(|lane| {
                 let number = (4 * lane + part) as u64;
@@ -48,26 +48,26 @@ impl Lanes {
         words
     }
 
-    /// Steps every generator `times` times; `tell` is told the number of the step and its words.
+    /// Steps every generator `times` times; `visit` is told the number of the step and its words.
     ///
     /// To be called in a function of its own ([`Simd::vectorize`]): among much else the generators would not stay in registers.
     #[inline(always)]
-    pub(crate) fn steps<S: Simd>(&mut self, _: S, times: usize, mut tell: impl FnMut(usize, [u64; LANES])) {
+    pub(crate) fn steps<S: Simd>(&mut self, _: S, times: usize, mut visit: impl FnMut(usize, [u64; LANES])) {
         #[cfg(target_arch = "x86_64")]
         if std::any::TypeId::of::<S>() == std::any::TypeId::of::<pulp::x86::V3>()
             && let Some(registers) = pulp::x86::V3::try_new()
         {
-            return avx2::steps(registers, self, times, tell);
+            return avx2::steps(registers, self, times, visit);
         }
         for step in 0..times {
-            tell(step, self.next());
+            visit(step, self.next());
         }
     }
 
     /// Leaves out the words of so many steps.
     #[inline(always)]
     pub(crate) fn skip<S: Simd>(&mut self, simd: S, times: usize) {
-        struct Skip<'a>(&'a mut Lanes, usize);
+        struct Skip<'a>(&'a mut GeneratorLanes, usize);
         impl WithSimd for Skip<'_> {
             type Output = ();
             #[inline(always)]
@@ -87,13 +87,18 @@ mod avx2 {
     use pulp::x86::V3;
     use pulp::{cast, u64x4};
 
-    use super::{LANES, Lanes};
+    use super::{GeneratorLanes, LANES};
 
     /// Registers for a part of the state of all generators.
     const REGISTERS: usize = 2;
 
     #[inline(always)]
-    pub(super) fn steps(v: V3, lanes: &mut Lanes, times: usize, mut tell: impl FnMut(usize, [u64; LANES])) {
+    pub(super) fn steps(
+        v: V3,
+        lanes: &mut GeneratorLanes,
+        times: usize,
+        mut visit: impl FnMut(usize, [u64; LANES]),
+    ) {
         let mut state: [[u64x4; REGISTERS]; 4] = lanes.state.map(cast);
         for step in 0..times {
             let [s0, s1, s2, s3] = &mut state;
@@ -110,7 +115,7 @@ mod avx2 {
                 s2[i] = v.xor_u64x4(s2[i], shifted);
                 s3[i] = v.or_u64x4(v.shl_const_u64x4::<45>(s3[i]), v.shr_const_u64x4::<19>(s3[i]));
             }
-            tell(step, cast(words));
+            visit(step, cast(words));
         }
         lanes.state = state.map(cast);
     }
@@ -126,14 +131,14 @@ mod tests {
     #[test]
     fn every_lane_is_the_named_generator() {
         let streams = Seed { seed: 42, case: 3 }.streams(7, Effect::PixelNoise);
-        let mut lanes = Lanes::at(&streams, 99);
+        let mut lanes = GeneratorLanes::from_streams(&streams, 99);
         let mut alone: Vec<Stream> = (0..LANES as u64)
             .map(|lane| {
-                let key = streams.key_of(99).wrapping_add(GOLDEN_GAMMA.wrapping_mul(4 * lane));
+                let key = streams.key_at(99).wrapping_add(GOLDEN_GAMMA.wrapping_mul(4 * lane));
                 Stream::seed_from_u64(key)
             })
             .collect();
-        let mut first = streams.at(99);
+        let mut first = streams.stream_at(99);
         for _ in 0..1000 {
             let words = lanes.next();
             assert_eq!(words[0], first.next_u64());
@@ -145,29 +150,33 @@ mod tests {
 
     #[test]
     fn steps_and_what_is_skipped_are_the_same_on_all_registers() {
-        struct Steps(Lanes);
+        struct Steps(GeneratorLanes);
         impl WithSimd for Steps {
             type Output = Vec<[u64; LANES]>;
             fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
-                let mut told = Vec::new();
+                let mut words_of_steps = Vec::new();
                 for times in [1, 8, 0, 3] {
                     self.0.steps(simd, times, |step, words| {
                         assert!(step < times);
-                        told.push(words);
+                        words_of_steps.push(words);
                     });
                     self.0.skip(simd, times);
                 }
-                told
+                words_of_steps
             }
         }
         let streams = Seed { seed: 42, case: 3 }.streams(7, Effect::PixelNoise);
-        let mut lanes = Lanes::at(&streams, 99);
+        let mut lanes = GeneratorLanes::from_streams(&streams, 99);
         let all: Vec<_> = (0..24).map(|_| lanes.next()).collect();
         let expected = [&all[..1], &all[2..10], &all[18..21]].concat();
-        for registers in crate::widest::tests::registers() {
-            assert_eq!(registers.dispatch(Steps(Lanes::at(&streams, 99))), expected, "{registers:?}");
+        for registers in crate::simd_kernel::tests::registers() {
+            assert_eq!(
+                registers.dispatch(Steps(GeneratorLanes::from_streams(&streams, 99))),
+                expected,
+                "{registers:?}"
+            );
         }
-        assert_eq!(pulp::Arch::Scalar.dispatch(Steps(Lanes::at(&streams, 99))), expected);
+        assert_eq!(pulp::Arch::Scalar.dispatch(Steps(GeneratorLanes::from_streams(&streams, 99))), expected);
     }
 
     /// Words of neighbouring lanes, and of the same lane at neighbouring places, differ in half of their bits.
@@ -175,8 +184,11 @@ mod tests {
     fn neighbouring_lanes_and_places_share_no_bits_but_by_chance() {
         let streams = Seed { seed: 1, case: 0 }.streams(0, Effect::PixelNoise);
         let (mut differ, mut bits) = (0_u64, 0_u64);
-        for place in 0..500 {
-            let (mut here, mut next) = (Lanes::at(&streams, place), Lanes::at(&streams, place + 1));
+        for index in 0..500 {
+            let (mut here, mut next) = (
+                GeneratorLanes::from_streams(&streams, index),
+                GeneratorLanes::from_streams(&streams, index + 1),
+            );
             for _ in 0..5 {
                 let (a, b) = (here.next(), next.next());
                 for lane in 0..LANES {

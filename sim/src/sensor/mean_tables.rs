@@ -10,16 +10,16 @@
 use pulp::Simd;
 
 use super::alias::AliasTable;
-use super::pixel_law::PixelLaw;
+use super::pixel_distribution::PixelDistribution;
 use super::poisson_digits::by_inversion;
 use crate::draw::{PART, PIECE};
-use crate::lanes::{LANES, Lanes};
+use crate::generator_lanes::{GeneratorLanes, LANES};
 use crate::randomness::Stream;
 
-/// Tables of the means of the grid, made when first met: 3072 of at most [`OwnMeans::WIDEST`] digital numbers, 25 MB.
+/// Tables of the means of the grid, made when first met: 3072 of at most [`MeanTables::WIDEST`] digital numbers, 25 MB.
 #[derive(Debug, Clone)]
-pub(super) struct OwnMeans {
-    law: PixelLaw,
+pub(super) struct MeanTables {
+    distribution: PixelDistribution,
     /// Cells of a table, as a power of two.
     log2_cells: u32,
     /// The packed cells of the tables: by the mean in quarters of an electron, then by n; 0 where none is made yet, and in
@@ -30,56 +30,60 @@ pub(super) struct OwnMeans {
 /// The grid ends here, electrons.
 const END_E: f64 = 256.0;
 /// Tables of a mean: with 0, 1 and 2 electrons more.
-const OF_A_MEAN: usize = 3;
+const TABLES_PER_MEAN: usize = 3;
 /// All tables of the grid.
-const TABLES: usize = 4 * END_E as usize * OF_A_MEAN;
+const TABLES: usize = 4 * END_E as usize * TABLES_PER_MEAN;
 /// The end of the grid in quarters of an electron.
 const QUARTERS: f32 = 4.0 * END_E as f32;
 const TWO_TO_23: f32 = 8_388_608.0;
 const TWO_TO_24: f32 = 16_777_216.0;
 
-impl OwnMeans {
+impl MeanTables {
     /// Digital numbers in a table at most.
     const WIDEST: f64 = 1024.0;
 
     /// No table made yet.
-    pub(super) fn new(law: &PixelLaw) -> Self {
+    pub(super) fn new(distribution: &PixelDistribution) -> Self {
         // A law reaches as many numbers as it is wide, and one at either end; n moves it by two electrons, not wider.
-        let cells = (law.width_dn(END_E).clamp(0.0, Self::WIDEST) as usize + 3).next_power_of_two();
-        Self { law: *law, log2_cells: cells.trailing_zeros(), cells: vec![0; (TABLES + 1) * cells] }
+        let cells = (distribution.width_dn(END_E).clamp(0.0, Self::WIDEST) as usize + 3).next_power_of_two();
+        Self {
+            distribution: *distribution,
+            log2_cells: cells.trailing_zeros(),
+            cells: vec![0; (TABLES + 1) * cells],
+        }
     }
 
     /// The means from which on pixels of a law have no grid, electrons; 0 where its tables would be wide.
-    pub(super) fn end_e(law: &PixelLaw) -> f64 {
-        if law.width_dn(END_E) <= Self::WIDEST { END_E } else { 0.0 }
+    pub(super) fn end_e(distribution: &PixelDistribution) -> f64 {
+        if distribution.width_dn(END_E) <= Self::WIDEST { END_E } else { 0.0 }
     }
 
     /// Draws the pixels of a row, each of a mean of its own, electrons (one below 0 is taken for 0), from the words of `lanes`,
-    /// one a pixel. `own` tells the stream of a pixel's own address.
+    /// one a pixel. `pixel_stream` tells the stream of a pixel's own address.
     #[inline(always)]
     pub(super) fn draw_row<S: Simd>(
         &mut self,
         simd: S,
         means_e: &[f64],
-        mut lanes: Lanes,
+        mut lanes: GeneratorLanes,
         row: &mut [u16],
-        own: impl Fn(usize) -> Stream,
+        pixel_stream: impl Fn(usize) -> Stream,
     ) {
         let mut words = Words::<PIECE>::new();
         for (p, (row, means_e)) in row.chunks_mut(PIECE).zip(means_e.chunks(PIECE)).enumerate() {
             words.draw(simd, &mut lanes);
-            self.draw_piece(means_e, &words, row, |i| own(p * PIECE + i));
+            self.draw_piece(means_e, &words, row, |i| pixel_stream(p * PIECE + i));
         }
     }
 
-    /// [`OwnMeans::draw_row`] of at most `N` pixels side by side, from their words.
+    /// [`MeanTables::draw_row`] of at most `N` pixels side by side, from their words.
     #[inline(always)]
     pub(super) fn draw_piece<const N: usize>(
         &mut self,
         means_e: &[f64],
         words: &Words<N>,
         piece: &mut [u16],
-        own: impl Fn(usize) -> Stream,
+        pixel_stream: impl Fn(usize) -> Stream,
     ) {
         let mut means = [0.0; N];
         for (mean, &mean_e) in means.iter_mut().zip(means_e) {
@@ -87,35 +91,36 @@ impl OwnMeans {
         }
         let mut places = [0; N];
         for i in 0..N {
-            places[i] = self.place(Choice::of(means[i], words.upper[i]).table(), words.lower[i]);
+            places[i] =
+                self.table_cell(TableChoice::from_mean(means[i], words.upper[i]).table(), words.lower[i]);
         }
-        self.pick(&places, words, means_e, piece, own);
+        self.pick(&places, words, means_e, piece, pixel_stream);
     }
 
-    /// [`OwnMeans::draw_piece`] where most pixels have the mean `even`, all but those of the parts that are lit: the same numbers,
+    /// [`MeanTables::draw_piece`] where most pixels have the mean `even`, all but those of the parts that are lit: the same numbers,
     /// in less time.
     #[inline(always)]
     pub(super) fn draw_mostly_even_piece(
         &mut self,
-        even: &EvenMean,
+        even: &UniformMean,
         is_lit: &[bool],
         means_e: &[f64],
         words: &Words<PIECE>,
         piece: &mut [u16],
-        own: impl Fn(usize) -> Stream,
+        pixel_stream: impl Fn(usize) -> Stream,
     ) {
         let mut places = [0; PIECE];
-        for (i, place) in places.iter_mut().enumerate() {
-            *place = self.place(even.table(words.upper[i]), words.lower[i]);
+        for (i, index) in places.iter_mut().enumerate() {
+            *index = self.table_cell(even.table(words.upper[i]), words.lower[i]);
         }
         for (part, _) in is_lit.iter().enumerate().filter(|(_, is_lit)| **is_lit) {
             let pixels = part * PART..((part + 1) * PART).min(means_e.len());
             for i in pixels {
-                let choice = Choice::of(means_e[i].max(0.0) as f32, words.upper[i]);
-                places[i] = self.place(choice.table(), words.lower[i]);
+                let choice = TableChoice::from_mean(means_e[i].max(0.0) as f32, words.upper[i]);
+                places[i] = self.table_cell(choice.table(), words.lower[i]);
             }
         }
-        self.pick(&places, words, means_e, piece, own);
+        self.pick(&places, words, means_e, piece, pixel_stream);
     }
 
     /// The numbers of a piece from the places of their cells; what no cell tells is drawn by the pixel's mean.
@@ -126,7 +131,7 @@ impl OwnMeans {
         words: &Words<N>,
         means_e: &[f64],
         piece: &mut [u16],
-        own: impl Fn(usize) -> Stream,
+        pixel_stream: impl Fn(usize) -> Stream,
     ) {
         // Looked up once: where the tables are, is told to no pixel.
         let all = self.cells.as_slice();
@@ -147,21 +152,21 @@ impl OwnMeans {
         if cells.iter().fold(false, |open, &cell| open | is_open(cell)) {
             for (i, (number, mean_e)) in piece.iter_mut().zip(means_e).enumerate() {
                 if is_open(cells[i]) {
-                    *number = self.draw(*mean_e, words.at(i), || own(i));
+                    *number = self.draw(*mean_e, words.word(i), || pixel_stream(i));
                 }
             }
         }
     }
 
     /// A digital number of a pixel with a mean of `mean_e` electrons, from a uniform word: its highest 24 bits decide n, its lower half
-    /// the digital number. `own` is the stream of the pixel's own address.
-    fn draw(&mut self, mean_e: f64, word: u64, own: impl FnOnce() -> Stream) -> u16 {
+    /// the digital number. `pixel_stream` is the stream of the pixel's own address.
+    fn draw(&mut self, mean_e: f64, word: u64, pixel_stream: impl FnOnce() -> Stream) -> u16 {
         let mean = mean_e.max(0.0) as f32;
-        let choice = Choice::of(mean, (word >> 32) as u32);
-        let place = self.place(choice.table(), word as u32) as usize;
-        let cell = self.cells.get(place).copied().unwrap_or(0);
+        let choice = TableChoice::from_mean(mean, (word >> 32) as u32);
+        let index = self.table_cell(choice.table(), word as u32) as usize;
+        let cell = self.cells.get(index).copied().unwrap_or(0);
         if is_open(cell) {
-            return self.draw_open(mean_e, choice, word, own());
+            return self.draw_open(mean_e, choice, word, pixel_stream());
         }
         let (level, pair) = halves(cell);
         self.number(level, pair, word as u32) as u16
@@ -169,18 +174,19 @@ impl OwnMeans {
 
     /// The same where there is no table, or not yet.
     #[cold]
-    fn draw_open(&mut self, mean_e: f64, choice: Choice, word: u64, mut own: Stream) -> u16 {
+    fn draw_open(&mut self, mean_e: f64, choice: TableChoice, word: u64, mut pixel_stream: Stream) -> u16 {
         if choice.quarters >= QUARTERS as i32 {
-            return self.law.sample(mean_e, 0.0, &mut own);
+            return self.distribution.sample(mean_e, 0.0, &mut pixel_stream);
         }
         let node_e = 0.25 * f64::from(choice.quarters);
-        if choice.more >= OF_A_MEAN as i32 {
+        if choice.more >= TABLES_PER_MEAN as i32 {
             let u = ((word >> 32) as f64 + 0.5) * (1.0 / 4_294_967_296.0);
-            let n = by_inversion(f64::from(choice.rest), u).max(OF_A_MEAN);
-            return self.law.sample_more(node_e, n as f64, &mut own);
+            let n = by_inversion(f64::from(choice.rest), u).max(TABLES_PER_MEAN);
+            return self.distribution.sample_more(node_e, n as f64, &mut pixel_stream);
         }
-        let law = self.law.probabilities(node_e, choice.more as u32);
-        let table = AliasTable::with_cells(1 << self.log2_cells, law.first_dn, &law.probabilities);
+        let distribution = self.distribution.probabilities(node_e, choice.more as u32);
+        let table =
+            AliasTable::with_cells(1 << self.log2_cells, distribution.first_dn, &distribution.probabilities);
         let start = (choice.table() as usize) << self.log2_cells;
         // A law of more numbers than a table has cells would have none: it would be drawn as it stands here, always.
         if table.packed().len() == 1 << self.log2_cells
@@ -193,7 +199,7 @@ impl OwnMeans {
 
     /// Where in a table the cell of a word is, by its lower half.
     #[inline(always)]
-    fn place(&self, table: u32, lower: u32) -> u32 {
+    fn table_cell(&self, table: u32, lower: u32) -> u32 {
         (table << self.log2_cells) + (lower >> (32 - self.log2_cells))
     }
 
@@ -219,11 +225,11 @@ impl<const N: usize> Words<N> {
 
     /// Makes them the next ones of a row.
     #[inline(always)]
-    pub(super) fn draw<S: Simd>(&mut self, simd: S, lanes: &mut Lanes) {
+    pub(super) fn draw<S: Simd>(&mut self, simd: S, lanes: &mut GeneratorLanes) {
         simd.vectorize(DrawWords { words: self, lanes });
     }
 
-    fn at(&self, i: usize) -> u64 {
+    fn word(&self, i: usize) -> u64 {
         u64::from(self.upper[i]) << 32 | u64::from(self.lower[i])
     }
 }
@@ -231,7 +237,7 @@ impl<const N: usize> Words<N> {
 /// [`Words::draw`].
 struct DrawWords<'a, const N: usize> {
     words: &'a mut Words<N>,
-    lanes: &'a mut Lanes,
+    lanes: &'a mut GeneratorLanes,
 }
 
 impl<const N: usize> pulp::WithSimd for DrawWords<'_, N> {
@@ -263,21 +269,21 @@ fn is_open(cell: u64) -> bool {
 
 /// Which table a pixel is drawn from.
 #[derive(Debug, Clone, Copy)]
-struct Choice {
+struct TableChoice {
     /// Its mean in quarters of an electron, and what is above them, electrons.
     quarters: i32,
     rest: f32,
-    /// The number n of electrons that the rest gives; [`OF_A_MEAN`] where it is that or more.
+    /// The number n of electrons that the rest gives; [`TABLES_PER_MEAN`] where it is that or more.
     more: i32,
 }
 
-impl Choice {
+impl TableChoice {
     /// Of a mean from 0 on.
     ///
     /// n is decided to 2^-24, by the highest bits of the upper half of a word, and the mean is rounded to the 24 bits of its float.
     #[inline(always)]
-    fn of(mean: f32, upper: u32) -> Self {
-        let (quarters, rest) = node_of(mean);
+    fn from_mean(mean: f32, upper: u32) -> Self {
+        let (quarters, rest) = grid_node(mean);
         let u = (upper >> 8) as i32 as f32 * (1.0 / TWO_TO_24);
         let at_most = n_at_most(rest);
         let more = i32::from(u >= at_most[0]) + i32::from(u >= at_most[1]) + i32::from(u >= at_most[2]);
@@ -287,27 +293,27 @@ impl Choice {
     /// The number of its table; the one after the last where there is none.
     #[inline(always)]
     fn table(self) -> u32 {
-        let known = (self.quarters < QUARTERS as i32) & (self.more < OF_A_MEAN as i32);
-        if known { (self.quarters * OF_A_MEAN as i32 + self.more) as u32 } else { TABLES as u32 }
+        let known = (self.quarters < QUARTERS as i32) & (self.more < TABLES_PER_MEAN as i32);
+        if known { (self.quarters * TABLES_PER_MEAN as i32 + self.more) as u32 } else { TABLES as u32 }
     }
 }
 
-/// The mean of many pixels: what [`Choice`] finds for each, found once.
+/// The mean of many pixels: what [`TableChoice`] finds for each, found once.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct EvenMean {
+pub(super) struct UniformMean {
     /// The table of 0 electrons more.
     first: u32,
     /// From which values of the 24 bits of a word on there are 1, 2 and 3 electrons more.
-    steps: [i32; OF_A_MEAN],
+    steps: [i32; TABLES_PER_MEAN],
 }
 
-impl EvenMean {
-    /// Of a mean from 0 to [`OwnMeans::end_e`], electrons.
+impl UniformMean {
+    /// Of a mean from 0 to [`MeanTables::end_e`], electrons.
     pub(super) fn new(mean_e: f64) -> Self {
-        let (quarters, rest) = node_of(mean_e.max(0.0) as f32);
+        let (quarters, rest) = grid_node(mean_e.max(0.0) as f32);
         // 24 bits are a float's own: comparing them as numbers without a point is comparing them as shares.
         let steps = n_at_most(rest).map(|share| (f64::from(share) * f64::from(TWO_TO_24)).ceil() as i32);
-        Self { first: (quarters * OF_A_MEAN as i32) as u32, steps }
+        Self { first: (quarters * TABLES_PER_MEAN as i32) as u32, steps }
     }
 
     #[inline(always)]
@@ -320,7 +326,7 @@ impl EvenMean {
 
 /// The node of the grid below a mean, in quarters of an electron, and what is above it, electrons.
 #[inline(always)]
-fn node_of(mean: f32) -> (i32, f32) {
+fn grid_node(mean: f32) -> (i32, f32) {
     // The floor without a conversion, which most machines have for one number at a time: in a sum with 2^23 the last bit
     // counts ones.
     let all = mean * 4.0;
@@ -333,7 +339,7 @@ fn node_of(mean: f32) -> (i32, f32) {
 
 /// The probabilities that a mean of `rest` electrons gives none, at most one and at most two.
 #[inline(always)]
-fn n_at_most(rest: f32) -> [f32; OF_A_MEAN] {
+fn n_at_most(rest: f32) -> [f32; TABLES_PER_MEAN] {
     // exp(−rest) by Taylor's series: for a rest of at most ¼ the next term is 1.2e-8.
     let r = -rest;
     let none = 1.0
@@ -348,31 +354,32 @@ fn n_at_most(rest: f32) -> [f32; OF_A_MEAN] {
 mod tests {
     use super::super::SensorConfig;
     use super::super::config::tests::twelve_bit;
-    use super::super::pixel_law::tests::{chi_square_p, chi_square_tail, counts_of, from_zero};
+    use super::super::pixel_distribution::tests::{chi_square_p, chi_square_tail, from_zero, histogram};
     use super::*;
     use crate::randomness::{Effect, Seed};
 
     /// A gain of 1 e⁻/DN and a low read noise, so that single electrons are seen.
-    fn law() -> PixelLaw {
-        PixelLaw::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() })
+    fn distribution() -> PixelDistribution {
+        PixelDistribution::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() })
     }
 
     #[test]
     fn pixels_of_their_own_means_follow_the_law_of_the_direct_sampler() {
-        let law = law();
-        let mut tables = OwnMeans::new(&law);
+        let distribution = distribution();
+        let mut tables = MeanTables::new(&distribution);
         for (frame, mean_e) in
             [0.0, 0.1, 0.3, 1.0, 17.99, 63.99, 64.0, 65.49, 201.7, 255.99].into_iter().enumerate()
         {
             let streams = Seed { seed: 23, case: 0 }.streams(frame as u64, Effect::PixelNoise);
             let n = 300_000;
-            let drawn = counts_of((0..n).map(|place| {
-                usize::from(tables.draw(mean_e, streams.word(place), || streams.at(n + place)))
+            let drawn = histogram((0..n).map(|index| {
+                usize::from(tables.draw(mean_e, streams.word(index), || streams.stream_at(n + index)))
             }));
-            let p = chi_square_p(&drawn, &from_zero(&law.probabilities(mean_e, 0)));
+            let p = chi_square_p(&drawn, &from_zero(&distribution.probabilities(mean_e, 0)));
             assert!(p > 1e-4, "mean {mean_e}: p = {p}");
-            let mut stream = streams.at(2 * n);
-            let sampled = counts_of((0..n).map(|_| usize::from(law.sample(mean_e, 0.0, &mut stream))));
+            let mut stream = streams.stream_at(2 * n);
+            let sampled =
+                histogram((0..n).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
             let (mut chi2, mut bins) = (0.0, 0.0);
             for (a, b) in drawn.iter().zip(&sampled).filter(|(a, b)| *a + *b >= 20) {
                 chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
@@ -386,8 +393,8 @@ mod tests {
     /// Half-way between the nodes of the grid n is least certain. Pearson's test against the exact law, its tails joined to
     /// ten expected numbers; draws of a row each.
     fn assert_the_law_midway(draws: usize) {
-        let law = law();
-        let mut tables = OwnMeans::new(&law);
+        let distribution = distribution();
+        let mut tables = MeanTables::new(&distribution);
         let mut row = vec![0; 1000];
         let mut after = 0.0;
         for i in 0..20_u64 {
@@ -399,11 +406,17 @@ mod tests {
             let means = vec![mean_e; row.len()];
             let mut counts = vec![0; 4096];
             for y in 0..(draws / row.len()) as u64 {
-                let own = |x: usize| streams.at((1 << 40) + (y << 10) + x as u64);
-                tables.draw_row(pulp::Scalar::new(), &means, Lanes::at(&streams, y), &mut row, own);
+                let pixel_stream = |x: usize| streams.stream_at((1 << 40) + (y << 10) + x as u64);
+                tables.draw_row(
+                    pulp::Scalar::new(),
+                    &means,
+                    GeneratorLanes::from_streams(&streams, y),
+                    &mut row,
+                    pixel_stream,
+                );
                 row.iter().for_each(|&dn| counts[usize::from(dn)] += 1);
             }
-            let p = chi_square_p(&counts, &from_zero(&law.probabilities(mean_e, 0)));
+            let p = chi_square_p(&counts, &from_zero(&distribution.probabilities(mean_e, 0)));
             // Twenty tests.
             assert!(p > 1e-4, "mean {mean_e}: p = {p}");
         }
@@ -423,43 +436,51 @@ mod tests {
 
     #[test]
     fn what_is_kept_changes_nothing() {
-        let law = law();
-        let mut kept = OwnMeans::new(&law);
+        let distribution = distribution();
+        let mut kept = MeanTables::new(&distribution);
         let streams = Seed { seed: 24, case: 0 }.streams(0, Effect::PixelNoise);
-        let mean_e = |place: u64| place as f64 * 0.0937;
-        let draw = |tables: &mut OwnMeans, place: u64| {
-            tables.draw(mean_e(place), streams.word(place), || streams.at(place))
+        let mean_e = |index: u64| index as f64 * 0.0937;
+        let draw = |tables: &mut MeanTables, index: u64| {
+            tables.draw(mean_e(index), streams.word(index), || streams.stream_at(index))
         };
-        let all: Vec<u16> = (0..2700).map(|place| draw(&mut kept, place)).collect();
-        for place in (0..2700).step_by(61) {
-            assert_eq!(draw(&mut OwnMeans::new(&law), place), all[place as usize]);
+        let all: Vec<u16> = (0..2700).map(|index| draw(&mut kept, index)).collect();
+        for index in (0..2700).step_by(61) {
+            assert_eq!(draw(&mut MeanTables::new(&distribution), index), all[index as usize]);
         }
     }
 
     /// Pieces, the last of them short, against one pixel after the other; twice, without tables and with them.
     #[test]
     fn a_row_is_drawn_as_its_pixels_are() {
-        let law = law();
-        let (mut by_row, mut one_by_one) = (OwnMeans::new(&law), OwnMeans::new(&law));
+        let distribution = distribution();
+        let (mut by_row, mut one_by_one) = (MeanTables::new(&distribution), MeanTables::new(&distribution));
         let streams = Seed { seed: 25, case: 0 }.streams(0, Effect::PixelNoise);
         let means: Vec<f64> = (0..1003).map(|x| f64::from(x) * 0.31 - 2.0).collect();
         let mut row = vec![0; means.len()];
         for y in [0, 0, 1] {
-            by_row.draw_row(pulp::Scalar::new(), &means, Lanes::at(&streams, y), &mut row, |x| {
-                streams.at(10 + x as u64)
-            });
-            let mut lanes = Lanes::at(&streams, y);
+            by_row.draw_row(
+                pulp::Scalar::new(),
+                &means,
+                GeneratorLanes::from_streams(&streams, y),
+                &mut row,
+                |x| streams.stream_at(10 + x as u64),
+            );
+            let mut lanes = GeneratorLanes::from_streams(&streams, y);
             let words: Vec<u64> = (0..126).flat_map(|_| lanes.next()).collect();
             for (x, (dn, mean_e)) in row.iter().zip(&means).enumerate() {
-                assert_eq!(*dn, one_by_one.draw(*mean_e, words[x], || streams.at(10 + x as u64)), "{x}");
+                assert_eq!(
+                    *dn,
+                    one_by_one.draw(*mean_e, words[x], || streams.stream_at(10 + x as u64)),
+                    "{x}"
+                );
             }
         }
     }
 
     #[test]
     fn wide_tables_are_not_made() {
-        assert_eq!(OwnMeans::end_e(&law()), END_E);
+        assert_eq!(MeanTables::end_e(&distribution()), END_E);
         let wide = SensorConfig { gain_e_per_dn: 0.05, ..twelve_bit() };
-        assert_eq!(OwnMeans::end_e(&PixelLaw::new(&wide)), 0.0);
+        assert_eq!(MeanTables::end_e(&PixelDistribution::new(&wide)), 0.0);
     }
 }

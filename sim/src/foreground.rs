@@ -3,27 +3,27 @@
 use contract::{Direction, Icrs};
 
 use crate::Simulator;
-use crate::moment::Moment;
 use crate::scene::{Background, Outline, earth::EarthDisk, moon::LitMoon};
+use crate::scene_state::SceneState;
 use crate::truth::Observer;
 
 /// The bodies of a scene that stars and planets may be behind: the Earth where its light is in the scene, the Moon, the target.
-pub(crate) struct Screens<'a> {
+pub(crate) struct ForegroundBodies<'a> {
     observer: &'a Observer,
     earth: Option<EarthDisk>,
     moon: Option<&'a LitMoon>,
     target: Option<Outline<'a>>,
 }
 
-impl<'a> Screens<'a> {
+impl<'a> ForegroundBodies<'a> {
     /// Those of a moment.
-    pub(crate) fn at(simulator: &'a Simulator, moment: &'a Moment) -> Self {
+    pub(crate) fn from_state(simulator: &'a Simulator, state: &'a SceneState) -> Self {
         let has_earth = simulator.background.as_ref().is_some_and(Background::has_earth);
         Self {
-            observer: &moment.observer,
-            earth: has_earth.then(|| EarthDisk::seen_from(&moment.states.chaser.position_km)),
-            moon: moment.moon.as_ref(),
-            target: simulator.target.outline(&-moment.states.line_of_sight_km(), moment.target_from_icrs),
+            observer: &state.observer,
+            earth: has_earth.then(|| EarthDisk::from_observer(&state.states.chaser.position_km)),
+            moon: state.moon.as_ref(),
+            target: simulator.target.outline(&-state.states.line_of_sight_km(), state.target_from_icrs),
         }
     }
 
@@ -33,7 +33,7 @@ impl<'a> Screens<'a> {
         let moon = self.moon.filter(|moon| moon.is_near(&astrometric));
         let target = self.target.as_ref().filter(|target| target.is_near(&astrometric));
         (earth.is_some() || moon.is_some() || target.is_some()) && {
-            let apparent = self.observer.apparent_of(astrometric);
+            let apparent = self.observer.apparent_from_astrometric(astrometric);
             earth.is_some_and(|earth| earth.hides(&apparent))
                 || moon.is_some_and(|moon| moon.hides(&apparent))
                 || target.is_some_and(|target| target.hides(&apparent))

@@ -6,7 +6,7 @@
 
 use boresight_sim::randomness::{Effect, Seed, Stream, normal};
 use boresight_sim::sensor::{
-    FixedPatternConfig, FlatLaws, LineNoiseConfig, Opening, Sensor, SensorConfig, poisson,
+    ExposureInterval, FixedPatternConfig, FlatSamplers, LineNoiseConfig, Sensor, SensorConfig, poisson,
 };
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -47,12 +47,12 @@ fn rows() -> SensorConfig {
 }
 
 /// The probability of each digital number from 0 on, by the plain sum over numbers of electrons.
-fn exact_law(mean_e: f64) -> Vec<f64> {
+fn exact_distribution(mean_e: f64) -> Vec<f64> {
     let normal_cdf = |z: f64| 0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2);
     // Beyond these lie less than 1e-14 of the electrons and of the noise.
     let (reach_e, reach_sigmas) = (9.0 * mean_e.sqrt() + 25.0, 8.0);
     let (first, last) = ((mean_e - reach_e).max(0.0) as u32, (mean_e + reach_e) as u32);
-    let mut law = vec![0.0; (f64::from(last) + BIAS_DN + reach_sigmas * READ_NOISE_E) as usize + 2];
+    let mut distribution = vec![0.0; (f64::from(last) + BIAS_DN + reach_sigmas * READ_NOISE_E) as usize + 2];
     for electrons in first..=last {
         let k = f64::from(electrons);
         let probability = libm::exp(k * libm::log(mean_e) - mean_e - libm::lgamma(k + 1.0));
@@ -60,26 +60,26 @@ fn exact_law(mean_e: f64) -> Vec<f64> {
         let low = (centre - reach_sigmas * READ_NOISE_E).max(0.0) as usize;
         let high = (centre + reach_sigmas * READ_NOISE_E) as usize + 1;
         let up_to = |dn: usize| normal_cdf((dn as f64 + 0.5 - centre) / READ_NOISE_E);
-        for (dn, share) in law.iter_mut().enumerate().take(high + 1).skip(low) {
+        for (dn, share) in distribution.iter_mut().enumerate().take(high + 1).skip(low) {
             // The converter clips what is below 0.
             let below = if dn == 0 { 0.0 } else { up_to(dn - 1) };
             *share += probability * (up_to(dn) - below);
         }
     }
-    law
+    distribution
 }
 
 /// How often each digital number comes in flat frames of a mean.
 fn counts_of_frames(config: &SensorConfig, mean_e: f64, draws: usize, seed: Seed) -> Vec<u64> {
     let rows = draws.min(1_000_000) / COLUMNS;
     let sensor = Sensor::new(config, COLUMNS, rows).unwrap();
-    let (mut image, mut raw, mut laws) = (sensor.new_expected(), sensor.new_raw(), FlatLaws::new());
-    let opening = Opening { seed, middle_s: 0.0, exposure_s: 1.0 };
+    let (mut image, mut raw, mut samplers) = (sensor.new_expected(), sensor.new_raw(), FlatSamplers::new());
+    let interval = ExposureInterval { seed, middle_s: 0.0, exposure_s: 1.0 };
     let mut counts = vec![0; 1 << 16];
     for frame in 0..(draws / (rows * COLUMNS)) as u64 {
         image.clear(mean_e);
-        let charge = sensor.collect(&mut image, &opening);
-        sensor.read_out(&charge, &seed, frame, &mut laws, &mut raw).unwrap();
+        let charge = sensor.collect(&mut image, &interval);
+        sensor.read_out(&charge, &seed, frame, &mut samplers, &mut raw).unwrap();
         raw.dn().iter().for_each(|&dn| counts[usize::from(dn)] += 1);
     }
     counts
@@ -102,13 +102,13 @@ fn tail(chi2: f64, degrees_of_freedom: f64) -> f64 {
 
 /// Pearson's test against a law. Neighbouring numbers are joined until ten are expected; what lies beyond the last is joined with
 /// it, so that a number that the law does not know counts against it.
-fn p_against_law(counts: &[u64], law: &[f64]) -> f64 {
+fn p_against_distribution(counts: &[u64], distribution: &[f64]) -> f64 {
     let draws = counts.iter().sum::<u64>() as f64;
     let mut bins: Vec<[f64; 2]> = Vec::new();
     let mut open = [0.0; 2];
     for (dn, &count) in counts.iter().enumerate() {
         open[0] += count as f64;
-        open[1] += draws * law.get(dn).copied().unwrap_or(0.0);
+        open[1] += draws * distribution.get(dn).copied().unwrap_or(0.0);
         if open[1] >= 10.0 {
             bins.push(std::mem::take(&mut open));
         }
@@ -136,10 +136,10 @@ fn p_of_two(a: &[u64], b: &[u64]) -> f64 {
     tail(chi2, bins - 1.0)
 }
 
-fn assert_the_law(draws: usize) {
+fn assert_distribution(draws: usize) {
     for (i, mean_e) in means_e().into_iter().enumerate() {
-        let law = exact_law(mean_e);
-        let sum: f64 = law.iter().sum();
+        let distribution = exact_distribution(mean_e);
+        let sum: f64 = distribution.iter().sum();
         assert!((sum - 1.0).abs() < 1e-10, "the law of {mean_e} e⁻ adds up to {sum}");
         let seed = |kind: u64| Seed { seed: 40 + kind, case: i as u64 };
         let sampled = counts_of_sampler(mean_e, draws, &mut seed(0).stream(0, Effect::PixelNoise, 0));
@@ -148,35 +148,35 @@ fn assert_the_law(draws: usize) {
             println!("{mean_e} e⁻, {what}: p = {p:.4}");
             assert!(p > 1e-5, "{mean_e} e⁻, {draws} draws, {what}: p = {p}");
         };
-        check("sampler against law", p_against_law(&sampled, &law));
+        check("sampler against law", p_against_distribution(&sampled, &distribution));
         for (number, kind, config) in [(1, "even", even()), (2, "uneven", uneven()), (3, "rows'", rows())] {
             let drawn = counts_of_frames(&config, mean_e, draws, seed(number));
-            check(&format!("{kind} detector against law"), p_against_law(&drawn, &law));
+            check(&format!("{kind} detector against law"), p_against_distribution(&drawn, &distribution));
             check(&format!("{kind} detector against sampler"), p_of_two(&drawn, &sampled));
         }
     }
 }
 
 #[test]
-fn frames_follow_the_law_between_the_nodes_of_their_tables() {
-    assert_the_law(200_000);
+fn frames_follow_the_distribution_between_the_nodes_of_their_tables() {
+    assert_distribution(200_000);
 }
 
-/// In full: `cargo test --release -p boresight-sim --test it pixel_law:: -- --ignored --nocapture`.
+/// In full: `cargo test --release -p boresight-sim --test it pixel_distribution:: -- --ignored --nocapture`.
 #[test]
 #[ignore = "8e9 draws, minutes of a processor: for a scheduled job"]
 fn frames_follow_the_law_in_a_hundred_million_draws_of_each_mean() {
-    assert_the_law(100_000_000);
+    assert_distribution(100_000_000);
 }
 
 /// The test can fail: a mean that is off by two hundredths of the noise is found in a million draws, hence by one of two thousandths
 /// in the full number.
 #[test]
-fn a_wrong_law_is_found() {
+fn a_wrong_distribution_is_found() {
     let (mean_e, draws) = (1000.125, 1_000_000);
     let sampled =
         counts_of_sampler(mean_e, draws, &mut Seed { seed: 50, case: 0 }.stream(0, Effect::PixelNoise, 0));
     let sigma_e = (mean_e + READ_NOISE_E * READ_NOISE_E).sqrt();
-    assert!(p_against_law(&sampled, &exact_law(mean_e)) > 1e-3);
-    assert!(p_against_law(&sampled, &exact_law(mean_e + 0.02 * sigma_e)) < 1e-5);
+    assert!(p_against_distribution(&sampled, &exact_distribution(mean_e)) > 1e-3);
+    assert!(p_against_distribution(&sampled, &exact_distribution(mean_e + 0.02 * sigma_e)) < 1e-5);
 }

@@ -2,11 +2,11 @@
 
 use pulp::Simd;
 
-/// Numbers that an [`Eight`] holds: those of the widest registers that there are.
+/// Numbers that an [`F64x8`] holds: those of the widest registers that there are.
 pub(crate) const LANES: usize = 8;
 
 /// Something that is done in loops over many numbers.
-pub(crate) trait Work {
+pub(crate) trait SimdKernel {
     /// What it gives.
     type Output;
     /// Does it. To be inlined always, with all that it calls: what is not is compiled for any machine.
@@ -16,9 +16,9 @@ pub(crate) trait Work {
 /// Does some work compiled for the widest registers that the machine has: the same steps everywhere, on as many numbers at a time
 /// as fit. No operation is joined with another or moved before it, so the bits do not depend on it.
 #[inline(always)]
-pub(crate) fn widest<W: Work>(work: W) -> W::Output {
+pub(crate) fn run_widest<W: SimdKernel>(work: W) -> W::Output {
     struct Widest<W>(W);
-    impl<W: Work> pulp::WithSimd for Widest<W> {
+    impl<W: SimdKernel> pulp::WithSimd for Widest<W> {
         type Output = W::Output;
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> W::Output {
@@ -32,8 +32,8 @@ pub(crate) fn widest<W: Work>(work: W) -> W::Output {
 #[inline(always)]
 pub(crate) fn arch() -> pulp::Arch {
     #[cfg(test)]
-    if let Some(asked) = tests::asked() {
-        return asked;
+    if let Some(requested) = tests::requested() {
+        return requested;
     }
     pulp::Arch::new()
 }
@@ -41,13 +41,13 @@ pub(crate) fn arch() -> pulp::Arch {
 /// Eight numbers side by side, in as few registers as the machine needs for them: what the compiler makes of short loops by itself
 /// is often one number at a time.
 #[derive(Clone, Copy)]
-pub(crate) struct Eight<S: Simd> {
+pub(crate) struct F64x8<S: Simd> {
     simd: S,
     /// The first so many that hold eight numbers.
     registers: [S::f64s; LANES],
 }
 
-impl<S: Simd> Eight<S> {
+impl<S: Simd> F64x8<S> {
     const REGISTERS: usize = LANES / S::F64_LANES;
 
     /// Eight times the same.
@@ -57,7 +57,7 @@ impl<S: Simd> Eight<S> {
     }
 
     #[inline(always)]
-    pub(crate) fn of(simd: S, numbers: &[f64; LANES]) -> Self {
+    pub(crate) fn from_array(simd: S, numbers: &[f64; LANES]) -> Self {
         let mut registers = [simd.splat_f64s(0.0); LANES];
         for (register, numbers) in registers.iter_mut().zip(S::as_simd_f64s(numbers).0) {
             *register = *numbers;
@@ -66,8 +66,8 @@ impl<S: Simd> Eight<S> {
     }
 
     #[inline(always)]
-    pub(crate) fn of_narrow(simd: S, numbers: &[f32; LANES]) -> Self {
-        Self::of(simd, &std::array::from_fn(|lane| f64::from(numbers[lane])))
+    pub(crate) fn from_f32(simd: S, numbers: &[f32; LANES]) -> Self {
+        Self::from_array(simd, &std::array::from_fn(|lane| f64::from(numbers[lane])))
     }
 
     #[inline(always)]
@@ -85,7 +85,7 @@ impl<S: Simd> Eight<S> {
     }
 
     #[inline(always)]
-    fn with(mut self, other: Self, step: impl Fn(S, S::f64s, S::f64s) -> S::f64s) -> Self {
+    fn zip_with(mut self, other: Self, step: impl Fn(S, S::f64s, S::f64s) -> S::f64s) -> Self {
         for i in 0..Self::REGISTERS {
             self.registers[i] = step(self.simd, self.registers[i], other.registers[i]);
         }
@@ -94,38 +94,38 @@ impl<S: Simd> Eight<S> {
 
     #[inline(always)]
     pub(crate) fn plus(self, other: Self) -> Self {
-        self.with(other, |simd, a, b| simd.add_f64s(a, b))
+        self.zip_with(other, |simd, a, b| simd.add_f64s(a, b))
     }
 
     #[inline(always)]
     pub(crate) fn times(self, other: Self) -> Self {
-        self.with(other, |simd, a, b| simd.mul_f64s(a, b))
+        self.zip_with(other, |simd, a, b| simd.mul_f64s(a, b))
     }
 
     #[inline(always)]
     pub(crate) fn over(self, other: Self) -> Self {
-        self.with(other, |simd, a, b| simd.div_f64s(a, b))
+        self.zip_with(other, |simd, a, b| simd.div_f64s(a, b))
     }
 
     /// The larger of each two; `other` where one is not a number.
     #[inline(always)]
-    pub(crate) fn or_larger(self, other: Self) -> Self {
-        self.with(other, |simd, a, b| simd.select_f64s(simd.greater_than_f64s(a, b), a, b))
+    pub(crate) fn max(self, other: Self) -> Self {
+        self.zip_with(other, |simd, a, b| simd.select_f64s(simd.greater_than_f64s(a, b), a, b))
     }
 
     /// The smaller of each two; `other` where one is not a number.
     #[inline(always)]
-    pub(crate) fn or_smaller(self, other: Self) -> Self {
-        self.with(other, |simd, a, b| simd.select_f64s(simd.less_than_f64s(a, b), a, b))
+    pub(crate) fn min(self, other: Self) -> Self {
+        self.zip_with(other, |simd, a, b| simd.select_f64s(simd.less_than_f64s(a, b), a, b))
     }
 
     /// Each that is less than `limit` replaced by 0.
     #[inline(always)]
-    pub(crate) fn or_none_below(self, limit: Self) -> Self {
+    pub(crate) fn zero_below(self, limit: Self) -> Self {
         let none = self.simd.splat_f64s(0.0);
         // The sum changes no number. Without it numbers that are put back where they came from become a store under a mask,
         // which some machines do one number at a time.
-        self.with(limit, |simd, a, limit| {
+        self.zip_with(limit, |simd, a, limit| {
             simd.select_f64s(simd.less_than_f64s(a, limit), none, simd.add_f64s(a, none))
         })
     }

@@ -3,7 +3,7 @@
 use super::CatalogStar;
 
 /// What a file holds: stars with the line each stands in, and the stars left out.
-pub(super) type Parsed = (Vec<(usize, CatalogStar)>, Vec<Exclusion>);
+pub(super) type CatalogContents = (Vec<(usize, CatalogStar)>, Vec<Exclusion>);
 
 /// A star that a file lists and that the catalogue does not hold.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -2,19 +2,19 @@ use std::cell::Cell;
 use std::path::Path;
 
 use super::*;
-use crate::{Drawing, Simulation, Simulator};
+use crate::{PixelSelection, Simulation, Simulator};
 
 // The simulation of the integration tests.
 #[path = "../../tests/it/argon.rs"]
 mod argon;
 
 thread_local! {
-    static ASKED: Cell<Option<pulp::Arch>> = const { Cell::new(None) };
+    static REQUESTED: Cell<Option<pulp::Arch>> = const { Cell::new(None) };
 }
 
 /// The registers that the test on this thread asks for.
-pub(super) fn asked() -> Option<pulp::Arch> {
-    ASKED.get()
+pub(super) fn requested() -> Option<pulp::Arch> {
+    REQUESTED.get()
 }
 
 /// All registers that the machine has, the narrowest first.
@@ -37,14 +37,14 @@ type Bits = (Vec<u16>, Vec<u64>, String);
 fn bits_of_frames(simulation: &Simulation) -> Vec<Bits> {
     let simulator = Simulator::new(simulation, Path::new("")).unwrap();
     let mut bits = Vec::new();
-    for drawing in [Drawing::Seen, Drawing::All] {
-        let mut camera = simulator.camera().unwrap().drawing(drawing);
+    for drawing in [PixelSelection::Needed, PixelSelection::All] {
+        let mut camera = simulator.camera().unwrap().with_pixel_selection(drawing);
         for number in [300, 5000, 14_000] {
             let exposure = camera.expose(number).unwrap();
             let expected = camera.expected().iter().map(f64::to_bits).collect();
             // Debug prints as many digits as tell a number from its neighbours, and the sign of 0.
-            let told = format!("{:?} {:?} {:?}", exposure.truth, exposure.telemetry, exposure.objects);
-            bits.push((exposure.frame.dn().to_vec(), expected, told));
+            let text = format!("{:?} {:?} {:?}", exposure.truth, exposure.telemetry, exposure.objects);
+            bits.push((exposure.frame.dn().to_vec(), expected, text));
         }
     }
     bits
@@ -53,9 +53,9 @@ fn bits_of_frames(simulation: &Simulation) -> Vec<Bits> {
 /// Asserts that work which asks for [`arch`] gives the same on all registers.
 pub(crate) fn same_on_all_registers<T: PartialEq>(work: impl Fn() -> T) {
     let on = |registers: pulp::Arch| {
-        ASKED.set(Some(registers));
+        REQUESTED.set(Some(registers));
         let result = work();
-        ASKED.set(None);
+        REQUESTED.set(None);
         result
     };
     let narrowest = on(pulp::Arch::Scalar);
@@ -76,22 +76,22 @@ fn frames_are_the_same_bits_on_all_registers() {
 /// All operations, on numbers that round differently in another order.
 struct All<'a>(&'a [[f64; LANES]; 3]);
 
-impl Work for All<'_> {
+impl SimdKernel for All<'_> {
     type Output = Vec<u64>;
     fn run<S: Simd>(self, simd: S) -> Vec<u64> {
-        let [a, b, c] = self.0.each_ref().map(|numbers| Eight::of(simd, numbers));
+        let [a, b, c] = self.0.each_ref().map(|numbers| F64x8::from_array(simd, numbers));
         let narrow = self.0[0].map(|number| number as f32);
         let eights = [
             a.plus(b),
             a.times(b).plus(c),
             a.over(b),
-            a.or_larger(b),
-            b.or_none_below(c),
-            Eight::of_narrow(simd, &narrow),
-            Eight::splat(simd, 0.1),
+            a.max(b),
+            b.zero_below(c),
+            F64x8::from_f32(simd, &narrow),
+            F64x8::splat(simd, 0.1),
         ];
         let folded = [a.plus(b).sum(), b.largest()];
-        eights.into_iter().flat_map(Eight::to_array).chain(folded).map(f64::to_bits).collect()
+        eights.into_iter().flat_map(F64x8::to_array).chain(folded).map(f64::to_bits).collect()
     }
 }
 
@@ -115,6 +115,6 @@ fn eight_numbers_are_what_each_of_them_is_alone_on_any_registers() {
     expected.push(((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])));
     expected.push(b.into_iter().fold(0.0, f64::max));
     let expected: Vec<u64> = expected.into_iter().map(f64::to_bits).collect();
-    assert_eq!(widest(All(&numbers)), expected);
+    assert_eq!(run_widest(All(&numbers)), expected);
     assert_eq!(All(&numbers).run(pulp::Scalar::new()), expected);
 }

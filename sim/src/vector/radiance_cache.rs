@@ -7,14 +7,14 @@ use super::coverage::{Run, Window};
 
 /// Light on the rows of a window.
 #[derive(Debug, Clone, Default)]
-pub(super) struct KeptLight {
+pub(super) struct RadianceCache {
     window: Option<Window>,
     columns: usize,
     /// Whole rows.
     light: Vec<f32>,
 }
 
-impl KeptLight {
+impl RadianceCache {
     /// Begins anew, for the rows of a window of an image so many columns wide; keeps nothing without one.
     pub(super) fn open(&mut self, window: Option<Window>, columns: usize) {
         self.window = window;
@@ -31,7 +31,7 @@ impl KeptLight {
     }
 
     /// Keeps the second sums of a run.
-    pub(super) fn keep(&mut self, row: usize, column: usize, run: &Run<'_>) {
+    pub(super) fn store(&mut self, row: usize, column: usize, run: &Run<'_>) {
         let Some(window) = self.window.filter(|window| (window.top..window.bottom).contains(&row)) else {
             return;
         };

@@ -4,20 +4,20 @@ use std::collections::BTreeSet;
 
 use hifitime::{Epoch, Unit};
 
-use crate::moment::Moment;
+use crate::foreground::ForegroundBodies;
 use crate::optics::Psf;
 use crate::scene::{BackgroundField, CameraMotion, Source, planets};
-use crate::screens::Screens;
+use crate::scene_state::SceneState;
 use crate::sensor::InterlaceConfig;
 use crate::switch::Switch;
 use crate::truth::{ObjectKind, clock};
 use crate::{SimError, Simulator};
 
 /// What the camera sees while its shutter is open.
-pub(crate) struct View {
+pub(crate) struct SceneView {
     time: Epoch,
     /// Where everything is at that time, the middle of the exposure.
-    pub(crate) moment: Moment,
+    pub(crate) state: SceneState,
     camera: CameraMotion,
     /// Target, stars, planets and the Moon, each by number.
     pub(crate) sources: Vec<Source>,
@@ -25,42 +25,48 @@ pub(crate) struct View {
 }
 
 /// What is drawn of a frame.
-pub(crate) enum Drawn {
+pub(crate) enum FrameViews {
     /// The scene in the middle of the frame.
-    Whole,
+    Single,
     /// The scenes in the middle of either field, with the same sources, in the same order, as the middle of the frame.
-    Fields(InterlaceConfig, Box<[View; 2]>),
+    Fields(InterlaceConfig, Box<[SceneView; 2]>),
 }
 
-impl View {
-    /// What the camera sees about the middle of frame `number`, where all is as `moment` says, and what of it is drawn.
-    pub(crate) fn of_frame(
+impl SceneView {
+    /// What the camera sees about the middle of frame `number`, where all is as `state` says, and what of it is drawn.
+    pub(crate) fn for_frame(
         simulator: &Simulator,
         psf: &Psf,
         time: Epoch,
-        moment: Moment,
+        state: SceneState,
         exposure_s: f64,
         number: u64,
-    ) -> Result<(Self, Drawn), SimError> {
-        let mut middle = Self::unseen(simulator, time, moment, exposure_s, number)?;
+    ) -> Result<(Self, FrameViews), SimError> {
+        let mut middle = Self::without_sources(simulator, time, state, exposure_s, number)?;
         let Some(interlace) = simulator.sensor.config().interlace else {
-            middle.look(simulator, psf, exposure_s);
-            return Ok((middle, Drawn::Whole));
+            middle.find_sources(simulator, psf, exposure_s);
+            return Ok((middle, FrameViews::Single));
         };
         let [first_s, second_s] = interlace.offsets_s();
         let field = |offset_s: f64| {
             let time = time + offset_s * Unit::Second;
-            Self::unseen(simulator, time, Moment::at(simulator, time, number)?, exposure_s, number)
+            Self::without_sources(
+                simulator,
+                time,
+                SceneState::compute_at(simulator, time, number)?,
+                exposure_s,
+                number,
+            )
         };
         let (mut first, mut second) = (field(first_s)?, field(second_s)?);
         // An object at the edge may have light in one field alone: all look out as far as any of them sees.
         let cameras = [middle.camera, first.camera, second.camera];
         for view in [&mut middle, &mut first, &mut second] {
             cameras.iter().for_each(|other| view.camera.widen_to(other));
-            view.look(simulator, psf, exposure_s);
+            view.find_sources(simulator, psf, exposure_s);
         }
-        keep_common([&mut middle.sources, &mut first.sources, &mut second.sources]);
-        Ok((middle, Drawn::Fields(interlace, Box::new([first, second]))))
+        retain_common([&mut middle.sources, &mut first.sources, &mut second.sources]);
+        Ok((middle, FrameViews::Fields(interlace, Box::new([first, second]))))
     }
 
     /// The background of every pixel, electrons a second, row by row; `false` when there is none of it.
@@ -72,29 +78,29 @@ impl View {
     }
 
     /// The camera with its shutter open about `time`, before it has looked.
-    fn unseen(
+    fn without_sources(
         simulator: &Simulator,
         time: Epoch,
-        mut moment: Moment,
+        mut state: SceneState,
         exposure_s: f64,
         number: u64,
     ) -> Result<Self, SimError> {
-        let camera = moment.motion(simulator, time, exposure_s, number)?;
-        Ok(Self { time, moment, camera, sources: Vec::new(), background: None })
+        let camera = state.motion(simulator, time, exposure_s, number)?;
+        Ok(Self { time, state, camera, sources: Vec::new(), background: None })
     }
 
     /// Finds all that has light on the detector while the shutter is open.
-    fn look(&mut self, simulator: &Simulator, psf: &Psf, exposure_s: f64) {
-        let Self { time, moment, camera, sources, background } = self;
+    fn find_sources(&mut self, simulator: &Simulator, psf: &Psf, exposure_s: f64) {
+        let Self { time, state, camera, sources, background } = self;
         let reach_px = |rate_e_per_s: f64| psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E);
-        if moment.target_position.is_some() {
-            sources.push(moment.target);
+        if state.target_position.is_some() {
+            sources.push(state.target);
         }
-        simulator.stars.look(&moment.observer, camera, &simulator.projection, reach_px, sources);
+        simulator.stars.add_visible(&state.observer, camera, &simulator.projection, reach_px, sources);
         if simulator.solar_system == Switch::On {
-            planets::look(
+            planets::add_visible(
                 clock::tdb_j2000_s(*time),
-                &moment.observer,
+                &state.observer,
                 camera,
                 &simulator.projection,
                 &simulator.radiometry,
@@ -102,17 +108,17 @@ impl View {
                 sources,
             );
         }
-        let screens = Screens::at(simulator, moment);
+        let screens = ForegroundBodies::from_state(simulator, state);
         sources.retain(|source| {
             let far = matches!(source.kind, ObjectKind::Star | ObjectKind::Planet);
             !(far && source.astrometric.is_some_and(|astrometric| screens.hide(astrometric)))
         });
-        if let Some(moon) = &moment.moon {
+        if let Some(moon) = &state.moon {
             sources.extend(moon.source(camera, &simulator.projection, &simulator.radiometry, reach_px));
         }
         *background = simulator.background.as_ref().map(|background| {
-            let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
-            background.field(*time, position_km, sun_km, moment.camera_from_icrs)
+            let (position_km, sun_km) = (&state.states.chaser.position_km, &state.observer.sun_km());
+            background.field(*time, position_km, sun_km, state.camera_from_icrs)
         });
     }
 }
@@ -120,7 +126,7 @@ impl View {
 /// Keeps the sources that are in all three lists, each in its order. What is missing in one has no light in any of the
 /// exposures, because each list was asked for all that comes near enough; or something hides it at one of the three
 /// moments: a star at its very limb is then left out of both fields, image and truth.
-fn keep_common(mut lists: [&mut Vec<Source>; 3]) {
+fn retain_common(mut lists: [&mut Vec<Source>; 3]) {
     let names =
         |list: &Vec<Source>| list.iter().map(|source| (source.kind, source.id)).collect::<BTreeSet<_>>();
     let known = lists.each_ref().map(|list| names(list));

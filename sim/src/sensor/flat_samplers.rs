@@ -11,9 +11,9 @@ use rand::Rng;
 
 use super::alias::AliasTable;
 use super::exceedance::Exceedance;
-use super::own_means::OwnMeans;
-use super::pixel_law::PixelLaw;
-use super::poisson_digits::{FEW, PoissonDigits, few};
+use super::mean_tables::MeanTables;
+use super::pixel_distribution::PixelDistribution;
+use super::poisson_digits::{FEW, PoissonDigits, small_poisson};
 use super::ziggurat::Ziggurat;
 use crate::randomness::{Stream, Streams};
 use crate::switch::Switch;
@@ -21,17 +21,17 @@ use crate::switch::Switch;
 /// Tables for the means met so far, kept from frame to frame. What they give does not depend on what they
 /// keep: an empty one works as well, only slower.
 #[derive(Debug, Clone, Default)]
-pub struct FlatLaws {
-    law: Option<PixelLaw>,
+pub struct FlatSamplers {
+    distribution: Option<PixelDistribution>,
     /// By the bits of the mean.
-    means: BTreeMap<u64, FlatLaw>,
-    own_means: Option<OwnMeans>,
+    means: BTreeMap<u64, FlatSampler>,
+    mean_tables: Option<MeanTables>,
     exceedance: Option<Exceedance>,
     digits: PoissonDigits,
     normal: Ziggurat,
 }
 
-impl FlatLaws {
+impl FlatSamplers {
     /// Means kept at most; a shutter's ladder has fewer exposures.
     const MEANS: usize = 64;
 
@@ -41,29 +41,29 @@ impl FlatLaws {
     }
 
     /// The tables of a flat mean, electrons.
-    pub(super) fn of(&mut self, law: &PixelLaw, mean_e: f64) -> &mut FlatLaw {
-        if self.law != Some(*law)
+    pub(super) fn sampler_for(&mut self, distribution: &PixelDistribution, mean_e: f64) -> &mut FlatSampler {
+        if self.distribution != Some(*distribution)
             || (self.means.len() >= Self::MEANS && !self.means.contains_key(&mean_e.to_bits()))
         {
-            self.forget(law);
+            self.forget(distribution);
         }
-        self.means.entry(mean_e.to_bits()).or_insert_with(|| FlatLaw::new(*law, mean_e))
+        self.means.entry(mean_e.to_bits()).or_insert_with(|| FlatSampler::new(*distribution, mean_e))
     }
 
     /// The tables of pixels with a mean of their own.
-    pub(super) fn own_means(&mut self, law: &PixelLaw) -> &mut OwnMeans {
-        if self.law != Some(*law) {
-            self.forget(law);
+    pub(super) fn mean_tables(&mut self, distribution: &PixelDistribution) -> &mut MeanTables {
+        if self.distribution != Some(*distribution) {
+            self.forget(distribution);
         }
-        self.own_means.get_or_insert_with(|| OwnMeans::new(law))
+        self.mean_tables.get_or_insert_with(|| MeanTables::new(distribution))
     }
 
     /// The law of the numbers above a floor.
-    pub(super) fn exceedance(&mut self, law: &PixelLaw, floor_dn: u16) -> &mut Exceedance {
-        if self.exceedance.as_ref().is_some_and(|kept| !kept.is_of(law, floor_dn)) {
+    pub(super) fn exceedance(&mut self, distribution: &PixelDistribution, floor_dn: u16) -> &mut Exceedance {
+        if self.exceedance.as_ref().is_some_and(|kept| !kept.is_valid_for(distribution, floor_dn)) {
             self.exceedance = None;
         }
-        self.exceedance.get_or_insert_with(|| Exceedance::new(law, floor_dn))
+        self.exceedance.get_or_insert_with(|| Exceedance::new(distribution, floor_dn))
     }
 
     /// The tables of numbers of electrons and of the read noise, for pixels whose law no table holds.
@@ -71,30 +71,30 @@ impl FlatLaws {
         (&mut self.digits, &self.normal)
     }
 
-    fn forget(&mut self, law: &PixelLaw) {
+    fn forget(&mut self, distribution: &PixelDistribution) {
         self.means.clear();
-        self.own_means = None;
-        self.law = Some(*law);
+        self.mean_tables = None;
+        self.distribution = Some(*distribution);
     }
 }
 
 /// The law of the pixels of one flat mean.
 #[derive(Debug, Clone)]
-pub(super) struct FlatLaw {
-    law: PixelLaw,
+pub(super) struct FlatSampler {
+    distribution: PixelDistribution,
     mean_e: f64,
     flat: AliasTable,
     /// For 0, 1, 2 … electrons more, made when first met.
     more: Vec<Option<AliasTable>>,
 }
 
-impl FlatLaw {
+impl FlatSampler {
     /// Signals up to this have their tables.
     const FAINT_E: f64 = 4.0;
 
-    fn new(law: PixelLaw, mean_e: f64) -> Self {
-        let table = table(&law, mean_e, 0);
-        Self { law, mean_e, flat: table, more: vec![None; FEW + 1] }
+    fn new(distribution: PixelDistribution, mean_e: f64) -> Self {
+        let table = table(&distribution, mean_e, 0);
+        Self { distribution, mean_e, flat: table, more: vec![None; FEW + 1] }
     }
 
     /// Draws pixels without signal, two from a word.
@@ -112,64 +112,65 @@ impl FlatLaw {
     }
 
     /// Draws a pixel where something was drawn, from its place.
-    pub(super) fn draw_lit(&mut self, signal_e: f64, streams: &Streams, place: u64) -> u16 {
+    pub(super) fn draw_lit(&mut self, signal_e: f64, streams: &Streams, index: u64) -> u16 {
         // Without shot noise electrons are not counted, and there is nothing to superpose. A dead pixel has less than the flat
         // level.
-        if (0.0..=Self::FAINT_E).contains(&signal_e) && self.law.shot == Switch::On {
-            self.draw_faint(signal_e, streams.word(place))
+        if (0.0..=Self::FAINT_E).contains(&signal_e) && self.distribution.shot == Switch::On {
+            self.draw_faint(signal_e, streams.word(index))
         } else {
-            self.law.sample(self.mean_e + signal_e, 0.0, &mut streams.at(place))
+            self.distribution.sample(self.mean_e + signal_e, 0.0, &mut streams.stream_at(index))
         }
     }
 
-    /// A digital number of a pixel with a signal of at most [`FlatLaw::FAINT_E`], from a uniform word: its upper half
+    /// A digital number of a pixel with a signal of at most [`FlatSampler::FAINT_E`], from a uniform word: its upper half
     /// decides the number of signal electrons (to 2^-32), its lower half the digital number.
     fn draw_faint(&mut self, signal_e: f64, word: u64) -> u16 {
-        let n = few(signal_e, (word >> 32) as u32);
+        let n = small_poisson(signal_e, (word >> 32) as u32);
         if n == 0 {
             return self.flat.draw(word as u32);
         }
-        self.more[n].get_or_insert_with(|| table(&self.law, self.mean_e, n as u32)).draw(word as u32)
+        self.more[n].get_or_insert_with(|| table(&self.distribution, self.mean_e, n as u32)).draw(word as u32)
     }
 }
 
 /// The table of a mean with `extra_e` electrons more.
-pub(super) fn table(law: &PixelLaw, mean_e: f64, extra_e: u32) -> AliasTable {
-    let probabilities = law.probabilities(mean_e, extra_e);
+pub(super) fn table(distribution: &PixelDistribution, mean_e: f64, extra_e: u32) -> AliasTable {
+    let probabilities = distribution.probabilities(mean_e, extra_e);
     AliasTable::new(probabilities.first_dn, &probabilities.probabilities)
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::config::tests::twelve_bit;
-    use super::super::pixel_law::tests::{chi_square_p, counts_of, from_zero};
+    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram};
     use super::*;
     use crate::randomness::{Effect, Seed};
     use crate::sensor::SensorConfig;
 
-    fn law(gain_e_per_dn: f64) -> PixelLaw {
-        PixelLaw::new(&SensorConfig { gain_e_per_dn, ..twelve_bit() })
+    fn distribution(gain_e_per_dn: f64) -> PixelDistribution {
+        PixelDistribution::new(&SensorConfig { gain_e_per_dn, ..twelve_bit() })
     }
 
     #[test]
     fn flat_draws_follow_the_law_of_the_direct_sampler() {
-        for (place, mean_e) in [0.1, 1.0, 20.0, 150.0, 1000.0].into_iter().enumerate() {
-            let law = law(2.0);
-            let mut stream = Seed { seed: 21, case: 0 }.stream(0, Effect::PixelNoise, place as u64);
-            let mut laws = FlatLaws::new();
-            let table = laws.of(&law, mean_e).flat.clone();
+        for (index, mean_e) in [0.1, 1.0, 20.0, 150.0, 1000.0].into_iter().enumerate() {
+            let distribution = distribution(2.0);
+            let mut stream = Seed { seed: 21, case: 0 }.stream(0, Effect::PixelNoise, index as u64);
+            let mut samplers = FlatSamplers::new();
+            let table = samplers.sampler_for(&distribution, mean_e).flat.clone();
             let n = 500_000;
-            let drawn = counts_of((0..n).map(|_| usize::from(table.draw(stream.next_u32()))));
-            let p = chi_square_p(&drawn, &from_zero(&law.probabilities(mean_e, 0)));
+            let drawn = histogram((0..n).map(|_| usize::from(table.draw(stream.next_u32()))));
+            let p = chi_square_p(&drawn, &from_zero(&distribution.probabilities(mean_e, 0)));
             assert!(p > 1e-4, "mean {mean_e}: p = {p} against the probabilities");
             // The sampler shares nothing with the table but the parameters.
-            let sampled = counts_of((0..n).map(|_| usize::from(law.sample(mean_e, 0.0, &mut stream))));
+            let sampled =
+                histogram((0..n).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
             let (mut chi2, mut bins) = (0.0, 0.0);
             for (a, b) in drawn.iter().zip(&sampled).filter(|(a, b)| *a + *b >= 20) {
                 chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
                 bins += 1.0;
             }
-            let p = super::super::pixel_law::tests::chi_square_tail(chi2, bins);
+            let p = super::super::pixel_distribution::tests::chi_square_tail(chi2, bins);
             assert!(p > 1e-4, "mean {mean_e}: p = {p} against the sampler");
         }
     }
@@ -177,15 +178,16 @@ mod tests {
     #[test]
     fn a_little_signal_superposes_to_the_law_of_the_sum() {
         // A gain of 1 e⁻/DN and a low read noise, so that single electrons are seen.
-        let law = PixelLaw::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() });
-        for (frame, signal_e) in [0.02, 0.5, 1.0, 2.7, FlatLaw::FAINT_E].into_iter().enumerate() {
+        let distribution =
+            PixelDistribution::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() });
+        for (frame, signal_e) in [0.02, 0.5, 1.0, 2.7, FlatSampler::FAINT_E].into_iter().enumerate() {
             let streams = Seed { seed: 22, case: 0 }.streams(frame as u64, Effect::PixelNoise);
-            let mut laws = FlatLaws::new();
-            let flat = laws.of(&law, 3.0);
-            let counts = counts_of(
-                (0..300_000).map(|place| usize::from(flat.draw_faint(signal_e, streams.word(place)))),
+            let mut samplers = FlatSamplers::new();
+            let flat = samplers.sampler_for(&distribution, 3.0);
+            let counts = histogram(
+                (0..300_000).map(|index| usize::from(flat.draw_faint(signal_e, streams.word(index)))),
             );
-            let p = chi_square_p(&counts, &from_zero(&law.probabilities(3.0 + signal_e, 0)));
+            let p = chi_square_p(&counts, &from_zero(&distribution.probabilities(3.0 + signal_e, 0)));
             assert!(p > 1e-4, "signal {signal_e}: p = {p}");
         }
     }
@@ -193,13 +195,13 @@ mod tests {
     #[test]
     fn what_is_kept_changes_nothing() {
         let word = |i: u32| i.wrapping_mul(0x9e37_79b9);
-        let mut kept = FlatLaws::new();
+        let mut kept = FlatSamplers::new();
         for i in 0..200 {
-            kept.of(&law(1.0), f64::from(i));
+            kept.sampler_for(&distribution(1.0), f64::from(i));
         }
-        kept.of(&law(3.0), 17.0);
-        let fresh = FlatLaws::new().of(&law(1.0), 17.0).flat.clone();
-        let kept = &kept.of(&law(1.0), 17.0).flat;
+        kept.sampler_for(&distribution(3.0), 17.0);
+        let fresh = FlatSamplers::new().sampler_for(&distribution(1.0), 17.0).flat.clone();
+        let kept = &kept.sampler_for(&distribution(1.0), 17.0).flat;
         assert!((0..10_000).all(|i| fresh.draw(word(i)) == kept.draw(word(i))));
     }
 }

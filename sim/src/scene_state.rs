@@ -11,7 +11,7 @@ use crate::truth::{ObjectKind, Observer, States, clock, shadow};
 use crate::{SimError, Simulator};
 
 /// Where everything is at one moment.
-pub(crate) struct Moment {
+pub(crate) struct SceneState {
     pub(crate) states: States,
     pub(crate) observer: Observer,
     pub(crate) body_from_icrs: Rotation<Body, Icrs>,
@@ -28,10 +28,10 @@ pub(crate) struct Moment {
     pub(crate) moon: Option<LitMoon>,
 }
 
-impl Moment {
+impl SceneState {
     /// Where everything is at `time`, with the attitude of frame `number`.
-    pub(crate) fn at(simulator: &Simulator, time: Epoch, number: u64) -> Result<Self, SimError> {
-        let states = simulator.trajectory.at(time);
+    pub(crate) fn compute_at(simulator: &Simulator, time: Epoch, number: u64) -> Result<Self, SimError> {
+        let states = simulator.trajectory.states_at(time);
         simulator.target.check_separation(&states, number)?;
         let body_from_icrs = simulator.attitude.truth(&states, number);
         let camera_from_icrs = simulator.camera_from_body * body_from_icrs;
@@ -92,7 +92,7 @@ impl Moment {
         let mut camera = CameraMotion::still(self.camera_from_icrs);
         if simulator.attitude.motion_smear() == Switch::On {
             for (end, side) in [-0.5, 0.5].into_iter().enumerate() {
-                let states = simulator.trajectory.at(time + side * exposure_s * Unit::Second);
+                let states = simulator.trajectory.states_at(time + side * exposure_s * Unit::Second);
                 camera.ends[end] = simulator.camera_from_body * simulator.attitude.truth(&states, number);
                 let line_of_sight = Direction::from_vector(states.line_of_sight_km())?;
                 if let Some(position) = simulator.projection.project(&(camera.ends[end] * line_of_sight)) {
@@ -104,7 +104,7 @@ impl Moment {
     }
 
     /// Where a point of the target's body frame, m, is in the image: each point in its own direction.
-    pub(crate) fn place_of(&self, point_m: &Vector3<f64>, projection: &Projection) -> Option<PixelPoint> {
+    pub(crate) fn project(&self, point_m: &Vector3<f64>, projection: &Projection) -> Option<PixelPoint> {
         let turned_m = self.target_from_icrs.map_or(*point_m, |turn| turn.inverse().rotate(point_m));
         let from_chaser_km = self.states.line_of_sight_km() + turned_m / 1000.0;
         projection.project(&(self.camera_from_icrs * Direction::from_vector(from_chaser_km).ok()?))

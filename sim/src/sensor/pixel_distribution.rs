@@ -11,7 +11,7 @@ use crate::switch::Switch;
 
 /// What the law of a pixel depends on besides its mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PixelLaw {
+pub(super) struct PixelDistribution {
     gain_e_per_dn: f64,
     bias_dn: f64,
     full_well_e: f64,
@@ -23,7 +23,7 @@ pub(super) struct PixelLaw {
 
 /// The probability of each digital number from `first_dn` on.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct DnLaw {
+pub(super) struct DnDistribution {
     pub(super) first_dn: u16,
     pub(super) probabilities: Vec<f64>,
 }
@@ -31,13 +31,13 @@ pub(super) struct DnLaw {
 /// Standard deviations beyond which a normal law is cut: 6e-14 of it lies there, less than 2^-43.
 const NORMAL_REACH: f64 = 7.5;
 
-impl PixelLaw {
+impl PixelDistribution {
     pub(super) fn new(config: &SensorConfig) -> Self {
         Self {
             gain_e_per_dn: config.gain_e_per_dn,
             bias_dn: config.bias_dn,
             full_well_e: config.full_well_e,
-            read_noise_e: config.noise.read.of(config.read_noise_e),
+            read_noise_e: config.noise.read.apply(config.read_noise_e),
             non_linearity: config.non_linearity,
             shot: config.noise.shot,
             full_scale_dn: config.full_scale_dn(),
@@ -53,7 +53,7 @@ impl PixelLaw {
         self.convert(collected_e.min(self.full_well_e), offset_e, stream)
     }
 
-    /// The electrons that a pixel collects, before its well is full: the first half of [`PixelLaw::sample`].
+    /// The electrons that a pixel collects, before its well is full: the first half of [`PixelDistribution::sample`].
     pub(super) fn collect(&self, mean_e: f64, stream: &mut Stream) -> f64 {
         // Beyond the range of the sampler the shot noise is less than 3e-8 of the mean.
         const SAMPLER_RANGE_E: f64 = 1e15;
@@ -69,7 +69,7 @@ impl PixelLaw {
         self.convert(collected_e.min(self.full_well_e), 0.0, stream)
     }
 
-    /// The digital number of a pixel that holds `held_e` electrons: the second half of [`PixelLaw::sample`].
+    /// The digital number of a pixel that holds `held_e` electrons: the second half of [`PixelDistribution::sample`].
     pub(super) fn convert(&self, held_e: f64, offset_e: f64, stream: &mut Stream) -> u16 {
         let normal = if self.read_noise_e > 0.0 { normal(stream) } else { 0.0 };
         self.read(held_e, normal, offset_e)
@@ -126,7 +126,7 @@ impl PixelLaw {
 
     /// The probability of every digital number when a Poisson number of mean `mean_e`, plus `extra_e` electrons for
     /// certain, is collected. The absolute error of a probability is below 2^-40.
-    pub(super) fn probabilities(&self, mean_e: f64, extra_e: u32) -> DnLaw {
+    pub(super) fn probabilities(&self, mean_e: f64, extra_e: u32) -> DnDistribution {
         let extra_e = f64::from(extra_e);
         let reach = PoissonReach::new(mean_e);
         let linear = self.non_linearity == 0.0;
@@ -139,7 +139,7 @@ impl PixelLaw {
     }
 
     /// The plain sum over numbers of electrons (value, probability): each gives a normal law cut into digital numbers.
-    fn by_sum(&self, atoms: &[(f64, f64)], extra_e: f64) -> DnLaw {
+    fn by_sum(&self, atoms: &[(f64, f64)], extra_e: f64) -> DnDistribution {
         let collected = |value: f64| self.amplified((value + extra_e).min(self.full_well_e));
         let reach_e = NORMAL_REACH * self.read_noise_e;
         let ends = |ends: (f64, f64)| (self.digitise(ends.0 - reach_e), self.digitise(ends.1 + reach_e));
@@ -159,7 +159,7 @@ impl PixelLaw {
             }
             probabilities[usize::from(high - first_dn)] += probability * (1.0 - below);
         }
-        DnLaw { first_dn, probabilities }
+        DnDistribution { first_dn, probabilities }
     }
 
     /// The same from the characteristic function of Poisson plus normal,
@@ -168,7 +168,7 @@ impl PixelLaw {
     /// With n digital numbers of width g that hold the whole law, the probability of the one centred at c is the
     /// Fourier series (1/n) [1 + 2 Σ_j Re(φ(u_j) e^{−i u_j c}) sinc(u_j g/2)], u_j = 2πj/(n g). It is exact but for
     /// the law's mass outside of them, and ends where φ is below 1e-15.
-    fn by_characteristic_function(&self, mean_e: f64, extra_e: f64, reach: PoissonReach) -> DnLaw {
+    fn by_characteristic_function(&self, mean_e: f64, extra_e: f64, reach: PoissonReach) -> DnDistribution {
         const NEGLIGIBLE_EXPONENT: f64 = 35.0;
         let (gain, sigma) = (self.gain_e_per_dn, self.read_noise_e);
         let to_dn = |electrons: f64| (electrons / gain + self.bias_dn + 0.5).floor();
@@ -204,7 +204,7 @@ impl PixelLaw {
             let probability = (2.0 * term / count as f64).max(0.0);
             probabilities[usize::from(clip(first + i as f64) - first_dn)] += probability;
         }
-        DnLaw { first_dn, probabilities }
+        DnDistribution { first_dn, probabilities }
     }
 }
 
@@ -258,7 +258,7 @@ pub(super) mod tests {
     use crate::randomness::{Effect, Seed};
 
     /// How often each number occurs.
-    pub(in crate::sensor) fn counts_of(numbers: impl Iterator<Item = usize>) -> Vec<usize> {
+    pub(in crate::sensor) fn histogram(numbers: impl Iterator<Item = usize>) -> Vec<usize> {
         let mut counts = Vec::new();
         for number in numbers {
             if number >= counts.len() {
@@ -297,37 +297,39 @@ pub(super) mod tests {
     }
 
     /// A law as probabilities that start at the digital number 0.
-    pub(in crate::sensor) fn from_zero(law: &DnLaw) -> Vec<f64> {
-        let mut all = vec![0.0; usize::from(law.first_dn)];
-        all.extend(&law.probabilities);
+    pub(in crate::sensor) fn from_zero(distribution: &DnDistribution) -> Vec<f64> {
+        let mut all = vec![0.0; usize::from(distribution.first_dn)];
+        all.extend(&distribution.probabilities);
         all
     }
 
-    fn laws() -> Vec<(PixelLaw, f64)> {
-        let mut laws = Vec::new();
+    fn distributions() -> Vec<(PixelDistribution, f64)> {
+        let mut distributions = Vec::new();
         for mean_e in [0.0, 0.1, 3.0, 20.0, 300.0, 1000.0] {
             for (gain_e_per_dn, read_noise_e, bias_dn) in
                 [(10.0, 15.0, 50.3), (1.0, 1.5, 0.0), (30.0, 4.0, 2.7), (0.5, 20.0, 0.0), (7.0, 0.0, 1.0)]
             {
                 let config = SensorConfig { gain_e_per_dn, read_noise_e, bias_dn, ..twelve_bit() };
-                laws.push((PixelLaw::new(&config), mean_e));
+                distributions.push((PixelDistribution::new(&config), mean_e));
             }
         }
-        laws
+        distributions
     }
 
     #[test]
     fn both_ways_to_the_probabilities_agree() {
-        for (law, mean_e) in laws().into_iter().filter(|(law, _)| law.read_noise_e >= 1.0) {
+        for (distribution, mean_e) in
+            distributions().into_iter().filter(|(distribution, _)| distribution.read_noise_e >= 1.0)
+        {
             for extra_e in [0.0, 3.0] {
                 let reach = PoissonReach::new(mean_e);
-                let sum = from_zero(&law.by_sum(&poisson_atoms(mean_e, reach), extra_e));
-                let series = from_zero(&law.by_characteristic_function(mean_e, extra_e, reach));
+                let sum = from_zero(&distribution.by_sum(&poisson_atoms(mean_e, reach), extra_e));
+                let series = from_zero(&distribution.by_characteristic_function(mean_e, extra_e, reach));
                 for dn in 0..sum.len().max(series.len()) {
-                    let at = |law: &[f64]| law.get(dn).copied().unwrap_or(0.0);
+                    let at = |distribution: &[f64]| distribution.get(dn).copied().unwrap_or(0.0);
                     let error = at(&sum) - at(&series);
                     // 2^-40, of each.
-                    assert!(error.abs() < 2.0 * 9.1e-13, "{law:?}, mean {mean_e}, {dn} DN: {error}");
+                    assert!(error.abs() < 2.0 * 9.1e-13, "{distribution:?}, mean {mean_e}, {dn} DN: {error}");
                 }
             }
         }
@@ -336,19 +338,20 @@ pub(super) mod tests {
     #[test]
     fn the_probabilities_have_the_moments_of_poisson_plus_normal_plus_rounding() {
         let mut checked = 0;
-        for (law, mean_e) in laws() {
+        for (distribution, mean_e) in distributions() {
             // Far from both ends, and smooth, so that Sheppard's correction of 1/12 DN² holds.
-            if law.read_noise_e < 0.75 * law.gain_e_per_dn || law.bias_dn < 40.0 {
+            if distribution.read_noise_e < 0.75 * distribution.gain_e_per_dn || distribution.bias_dn < 40.0 {
                 continue;
             }
-            let probabilities = from_zero(&law.probabilities(mean_e, 0));
+            let probabilities = from_zero(&distribution.probabilities(mean_e, 0));
             let moment = |f: &dyn Fn(f64) -> f64| -> f64 {
                 probabilities.iter().enumerate().map(|(dn, p)| p * f(dn as f64)).sum()
             };
             assert!((moment(&|_| 1.0) - 1.0).abs() < 1e-11);
-            let expected_dn = law.bias_dn + mean_e / law.gain_e_per_dn;
-            let gain2 = law.gain_e_per_dn * law.gain_e_per_dn;
-            let variance = (mean_e + law.read_noise_e * law.read_noise_e) / gain2 + 1.0 / 12.0;
+            let expected_dn = distribution.bias_dn + mean_e / distribution.gain_e_per_dn;
+            let gain2 = distribution.gain_e_per_dn * distribution.gain_e_per_dn;
+            let variance =
+                (mean_e + distribution.read_noise_e * distribution.read_noise_e) / gain2 + 1.0 / 12.0;
             // The rounding's own ripple is exp(−2π²σ²/g²), below 1e-15 at 1.5 DN of read noise.
             assert!((moment(&|dn| dn) - expected_dn).abs() < 1e-8);
             assert!((moment(&|dn| (dn - expected_dn) * (dn - expected_dn)) - variance).abs() < 1e-8);
@@ -360,11 +363,12 @@ pub(super) mod tests {
     #[test]
     fn the_sampler_follows_the_probabilities() {
         let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 0);
-        for (law, mean_e) in laws() {
-            let counts = counts_of((0..50_000).map(|_| usize::from(law.sample(mean_e, 0.0, &mut stream))));
-            let p = chi_square_p(&counts, &from_zero(&law.probabilities(mean_e, 0)));
+        for (distribution, mean_e) in distributions() {
+            let counts =
+                histogram((0..50_000).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
+            let p = chi_square_p(&counts, &from_zero(&distribution.probabilities(mean_e, 0)));
             // Thirty tests: one in 3,000 runs would fail by chance, and the seed is fixed.
-            assert!(p > 1e-5, "{law:?}, mean {mean_e}: p = {p}");
+            assert!(p > 1e-5, "{distribution:?}, mean {mean_e}: p = {p}");
         }
     }
 
@@ -374,28 +378,33 @@ pub(super) mod tests {
         for bit_depth in 8..=16 {
             let config = SensorConfig { bit_depth, full_well_e: 1e9, ..twelve_bit() };
             for mean_e in [1e8, 1e12, 1e300] {
-                assert_eq!(PixelLaw::new(&config).sample(mean_e, 0.0, &mut stream), config.full_scale_dn());
+                assert_eq!(
+                    PixelDistribution::new(&config).sample(mean_e, 0.0, &mut stream),
+                    config.full_scale_dn()
+                );
             }
         }
         let config = SensorConfig { full_well_e: 5000.0, ..twelve_bit() };
-        let law = PixelLaw::new(&config);
-        let counts = counts_of((0..20_000).map(|_| usize::from(law.sample(1e6, 0.0, &mut stream))));
+        let distribution = PixelDistribution::new(&config);
+        let counts = histogram((0..20_000).map(|_| usize::from(distribution.sample(1e6, 0.0, &mut stream))));
         // Five thousand electrons for certain, and the read noise.
-        let full = PixelLaw { shot: Switch::Off, ..law }.probabilities(5000.0, 0);
+        let full = PixelDistribution { shot: Switch::Off, ..distribution }.probabilities(5000.0, 0);
         assert!(chi_square_p(&counts, &from_zero(&full)) > 1e-4);
-        let half_full = counts_of((0..20_000).map(|_| usize::from(law.sample(5000.0, 0.0, &mut stream))));
-        assert!(chi_square_p(&half_full, &from_zero(&law.probabilities(5000.0, 0))) > 1e-4);
+        let half_full =
+            histogram((0..20_000).map(|_| usize::from(distribution.sample(5000.0, 0.0, &mut stream))));
+        assert!(chi_square_p(&half_full, &from_zero(&distribution.probabilities(5000.0, 0))) > 1e-4);
     }
 
     #[test]
     fn a_bent_amplifier_has_its_law() {
         let config =
             SensorConfig { non_linearity: 0.2, full_well_e: 2000.0, gain_e_per_dn: 3.0, ..twelve_bit() };
-        let law = PixelLaw::new(&config);
+        let distribution = PixelDistribution::new(&config);
         let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 3);
         for mean_e in [50.0, 1000.0, 2000.0] {
-            let counts = counts_of((0..50_000).map(|_| usize::from(law.sample(mean_e, 0.0, &mut stream))));
-            let probabilities = from_zero(&law.probabilities(mean_e, 0));
+            let counts =
+                histogram((0..50_000).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
+            let probabilities = from_zero(&distribution.probabilities(mean_e, 0));
             assert!(chi_square_p(&counts, &probabilities) > 1e-4, "mean {mean_e}");
             // e − 1e-4 e² of a Poisson number: ⟨e²⟩ = λ² + λ. The well cuts the last one.
             let mean_dn: f64 = probabilities.iter().enumerate().map(|(dn, p)| dn as f64 * p).sum();
@@ -408,10 +417,13 @@ pub(super) mod tests {
     fn without_any_noise_the_number_is_certain() {
         let mut config = twelve_bit();
         (config.noise.shot, config.noise.read) = (Switch::Off, Switch::Off);
-        let law = PixelLaw::new(&config);
+        let distribution = PixelDistribution::new(&config);
         let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 2);
         // 1234.5/10 + 50.3 + 0.5 = 174.25.
-        assert_eq!(law.sample(1234.5, 0.0, &mut stream), 174);
-        assert_eq!(law.probabilities(1234.5, 0), DnLaw { first_dn: 174, probabilities: vec![1.0] });
+        assert_eq!(distribution.sample(1234.5, 0.0, &mut stream), 174);
+        assert_eq!(
+            distribution.probabilities(1234.5, 0),
+            DnDistribution { first_dn: 174, probabilities: vec![1.0] }
+        );
     }
 }
