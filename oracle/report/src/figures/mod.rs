@@ -76,7 +76,7 @@ pub(crate) fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
             value => cell(value),
         };
         table.push([
-            figure_by_name(name).beside_percent(),
+            figure_by_name(name).label_without_percent(),
             number(figure.value),
             number(figure.low),
             number(figure.high),
