@@ -1,4 +1,4 @@
-//! Renders one frame of ARGON and lists what is in it: `cargo run --release --example frame`.
+//! Renders one frame of ARGON and lists its contents: `cargo run --release --example frame`.
 
 use boresight::run::{FarRangeMission, ScenarioSource};
 

@@ -1,4 +1,4 @@
-//! The smallest pipeline there is, scored: it calls the brightest pixel the target.
+//! Runs and scores a minimal pipeline that reports the brightest pixel as the target.
 
 use boresight::run::{FarRangeMission, ScenarioSource, World as _};
 use boresight::table::{TableStyle, far_range};

@@ -1,4 +1,4 @@
-//! Boresight as a library: the oracle's crates under one name, and the command `boresight` on top of them.
+//! Boresight as a library: the oracle's crates under one name, and the command `boresight` based on them.
 
 #![cfg_attr(
     not(test),

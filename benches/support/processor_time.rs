@@ -1,15 +1,16 @@
-//! Processor time for criterion: what else runs on the machine is not in it. Linux only.
+//! Processor time as a measurement of criterion, which excludes the time of other processes on the machine.
+//! Linux only.
 
 use std::time::Duration;
 
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 
-/// The time that this thread has had of a processor.
+/// Processor time used by the current thread.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ProcessorTime;
 
 fn now() -> Duration {
-    // The count is brought up to date when the scheduler looks.
+    // The kernel updates the count when its scheduler runs.
     std::thread::yield_now();
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
     Duration::from_nanos(text.split_whitespace().next().unwrap().parse().unwrap())

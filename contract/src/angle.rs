@@ -1,8 +1,8 @@
-//! An angle that knows its unit.
+//! Angles with explicit units.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// An angle. Held in radians; made and read in a named unit.
+/// An angle, stored in radians; constructors and accessors name the unit.
 ///
 /// ```
 /// use boresight_contract::Angle;
@@ -17,40 +17,40 @@ const RADIANS_PER_DEGREE: f64 = std::f64::consts::PI / 180.0;
 const RADIANS_PER_ARCSEC: f64 = RADIANS_PER_DEGREE / 3600.0;
 
 impl Angle {
-    /// Zero.
+    /// The zero angle.
     pub const ZERO: Self = Self { radians: 0.0 };
 
-    /// From radians.
+    /// Creates an angle from radians.
     pub const fn from_radians(radians: f64) -> Self {
         Self { radians }
     }
 
-    /// From degrees.
+    /// Creates an angle from degrees.
     pub const fn from_degrees(degrees: f64) -> Self {
         Self { radians: degrees * RADIANS_PER_DEGREE }
     }
 
-    /// From seconds of arc.
+    /// Creates an angle from arcseconds.
     pub const fn from_arcsec(arcsec: f64) -> Self {
         Self { radians: arcsec * RADIANS_PER_ARCSEC }
     }
 
-    /// In radians.
+    /// Returns the angle in radians.
     pub const fn radians(self) -> f64 {
         self.radians
     }
 
-    /// In degrees.
+    /// Returns the angle in degrees.
     pub const fn degrees(self) -> f64 {
         self.radians / RADIANS_PER_DEGREE
     }
 
-    /// In seconds of arc.
+    /// Returns the angle in arcseconds.
     pub const fn arcsec(self) -> f64 {
         self.radians / RADIANS_PER_ARCSEC
     }
 
-    /// The absolute value.
+    /// Returns the absolute value of the angle.
     pub fn abs(self) -> Self {
         Self { radians: self.radians.abs() }
     }

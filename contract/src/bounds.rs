@@ -1,4 +1,5 @@
-//! Ranges of numbers: declared once, as attributes of the fields that schemars puts into the JSON Schema, and checked here by that schema.
+//! Ranges of numbers, declared once as schemars attributes of the fields and checked here against the
+//! resulting JSON Schema.
 
 use std::any::TypeId;
 use std::collections::BTreeMap;
@@ -10,49 +11,51 @@ use serde_json::Value;
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
-/// A value that is not allowed: where, what it was, and what was expected.
+/// A value that is not allowed: its path, the value and the expected range or property.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{path} is {value}, expected {expected}")]
 pub struct OutOfRange {
-    /// Path of the field with its unit, as `sensor.gain_e_per_dn` or `schedule[2].count`; entries of lists count from 0.
+    /// Path of the field with its unit, for example `sensor.gain_e_per_dn` or `schedule[2].count`; list
+    /// entries count from 0.
     pub path: String,
-    /// The value met.
+    /// The rejected value.
     pub value: String,
-    /// The range or property expected.
+    /// The expected range or property.
     pub expected: String,
 }
 
-/// Longest number, in letters, that is shown without an exponent.
+/// Longest number, in characters, that is printed without an exponent.
 const LONGEST_NUMBER: usize = 24;
 
 impl OutOfRange {
-    /// The refusal of `value` at `path`.
+    /// Creates the error for `value` at `path`.
     pub fn new(path: impl Into<String>, value: impl ToString, expected: impl Into<String>) -> Self {
         let value = value.to_string();
-        // 1e300, and not a line of zeros.
+        // Prints 1e300 in exponent form rather than as a line of zeros.
         let long =
             Some(&value).filter(|text| text.len() > LONGEST_NUMBER).and_then(|text| text.parse::<f64>().ok());
         let value = long.map_or(value, |number| format!("{number:e}"));
         Self { path: path.into(), value, expected: expected.into() }
     }
 
-    /// The same in a table of a file.
+    /// Returns this error with its path inside `table`.
     #[must_use]
     pub fn under(self, table: &str) -> Self {
         Self { path: format!("{table}.{}", self.path), ..self }
     }
 
-    /// The same in an entry of a list: its place in the path's first `[]`.
+    /// Returns this error with the list index inserted in the first `[]` of its path.
     #[must_use]
     pub fn in_entry(self, index: usize) -> Self {
         Self { path: self.path.replacen("[]", &format!("[{index}]"), 1), ..self }
     }
 }
 
-/// Checks that `value` is finite and satisfies `holds`: for conditions that are no range of one field.
+/// Checks that `value` is finite and satisfies `holds`: for conditions that a range of one field cannot
+/// express.
 ///
 /// # Errors
-/// [`OutOfRange`] with the path and what was expected.
+/// [`OutOfRange`] with the path and the expected property.
 pub fn require(
     path: impl Into<String>,
     value: f64,
@@ -62,13 +65,15 @@ pub fn require(
     if value.is_finite() && holds(value) { Ok(()) } else { Err(OutOfRange::new(path, value, expected)) }
 }
 
-/// Checks every number of `value`, those of nested tables and lists too: it is finite and in the range that its field declares; and
-/// every list, that it is as long as its field declares. `path` is where the value stands, "" for the root of a file.
+/// Checks that every number of `value`, including nested tables and lists, is finite and in the range that
+/// its field declares, and that every list has the length that its field declares. `path` is the path of
+/// `value`, "" for the root of a file.
 ///
 /// # Errors
-/// [`OutOfRange`] for the first that is not.
+/// [`OutOfRange`] for the first number or list that fails the check.
 pub fn check<T: Serialize + JsonSchema + 'static>(value: &T, path: &str) -> Result<(), OutOfRange> {
-    // As TOML, which leaves out what is absent and keeps NaN, infinity and every integer; in JSON all but the last are null.
+    // Serialised as TOML, which omits absent values and keeps NaN, infinity and every integer. JSON would
+    // turn absent values, NaN and infinity into null.
     let unreadable = |error: &dyn ToString| OutOfRange::new(path, error.to_string(), "a table");
     let text = toml::to_string(value).map_err(|error| unreadable(&error))?;
     let table = DeTable::parse(&text).map_err(|error| unreadable(&error))?;
@@ -76,16 +81,16 @@ pub fn check<T: Serialize + JsonSchema + 'static>(value: &T, path: &str) -> Resu
     SchemaWalk { root: &root }.value(&[&root], &DeValue::Table(table.into_inner()), path)
 }
 
-/// The schema of a type, made once.
+/// Returns the schema of a type, generated once and cached.
 fn schema<T: JsonSchema + 'static>() -> Arc<Value> {
     static SCHEMAS: Mutex<BTreeMap<TypeId, Arc<Value>>> = Mutex::new(BTreeMap::new());
     let mut schemas = SCHEMAS.lock().unwrap_or_else(PoisonError::into_inner);
     schemas.entry(TypeId::of::<T>()).or_insert_with(|| Arc::new(schema_for!(T).to_value())).clone()
 }
 
-/// A walk over a value and its schema together.
+/// A parallel traversal of a value and its schema.
 struct SchemaWalk<'a> {
-    /// The whole schema, where references begin.
+    /// The whole schema, to which references are relative.
     root: &'a Value,
 }
 
@@ -136,7 +141,8 @@ impl<'a> SchemaWalk<'a> {
         }
     }
 
-    /// Collects all parts of a schema that speak of `value`: itself, what it refers to, and of alternatives those that the value may be.
+    /// Collects all parts of a schema that apply to `value`: the schema itself, the schema it refers to, and
+    /// those of its alternatives that `value` may match.
     fn collect(&self, schema: &'a Value, value: &DeValue<'_>, parts: &mut Vec<&'a Value>) {
         parts.push(schema);
         if let Some(target) = self.target(schema) {
@@ -153,8 +159,8 @@ impl<'a> SchemaWalk<'a> {
         self.root.pointer(schema.get("$ref")?.as_str()?.strip_prefix('#')?)
     }
 
-    /// Whether `value` may be what an alternative describes: by its type, and for a table by the keys that it must have and the
-    /// words that say its kind.
+    /// Returns true if `value` may match an alternative: by its type and, for a table, by the required keys
+    /// and the constant values that mark its kind.
     fn could_match(&self, schema: &Value, value: &DeValue<'_>) -> bool {
         let is_type = |name: &Value| match value {
             DeValue::Integer(_) => name == "integer" || name == "number",
@@ -182,13 +188,13 @@ impl<'a> SchemaWalk<'a> {
 }
 
 fn check_number(parts: &[&Value], number: f64, value: impl ToString, path: &str) -> Result<(), OutOfRange> {
-    // A number that no schema speaks of is finite too.
+    // A number without a schema must still be finite.
     let mut ranges = parts.iter().copied().chain([&Value::Null]).map(Range::from_schema);
     let refusing = ranges.find(|range| !(number.is_finite() && range.contains(number)));
     refusing.map_or(Ok(()), |range| Err(OutOfRange::new(path, value, range.description())))
 }
 
-/// What a schema allows of a number.
+/// Range of a number that a schema allows.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Range {
     at_least: Option<f64>,
@@ -215,9 +221,10 @@ impl Range {
             && self.less_than.is_none_or(|limit| number < limit)
     }
 
-    /// As messages say it: "0.05 to 1e5", "above 0 to 5", "at least 1".
+    /// Returns the range as text for messages: "0.05 to 1e5", "above 0 to 5", "at least 1".
     fn description(&self) -> String {
-        // The narrower of two lower limits is the exclusive one: an unsigned integer is at least 0 by its type.
+        // If both lower limits exist, the exclusive one is narrower: the inclusive limit of an unsigned
+        // integer is 0 by its type.
         let low = match (self.more_than, self.at_least) {
             (Some(limit), _) => Some(("above ", "above ", limit)),
             (None, limit) => limit.map(|limit| ("", "at least ", limit)),
@@ -238,7 +245,8 @@ impl Range {
     }
 }
 
-/// A number, powers of ten with an exponent where that is clearly shorter: 1e5, 1e-6, but 1000 and 0.001.
+/// Formats a number, with powers of ten in exponent form where that is clearly shorter: 1e5, 1e-6, but 1000
+/// and 0.001.
 fn short(number: f64) -> String {
     let (plain, scientific) = (number.to_string(), format!("{number:e}"));
     let is_power = scientific.trim_start_matches('-').starts_with("1e");

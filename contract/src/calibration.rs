@@ -5,23 +5,24 @@ use serde::{Deserialize, Serialize};
 
 use crate::{OutOfRange, bounds};
 
-/// Numbers that a user calibrates about the image of a point, the detector, the brightness scale and the errors of the telemetry; each
-/// is absent where it is not known. They may be wrong: a pipeline estimates what it can and takes these as a prior.
+/// Calibration values of the point-spread function, the detector, the brightness scale and the errors of the
+/// telemetry, as determined by the user. An unknown value is absent. The values may be wrong: a pipeline
+/// estimates them where possible and uses these values as a prior.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Calibration {
-    /// Image of a point.
+    /// Point-spread function.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub psf: Option<PsfCalibration>,
-    /// Electrons that a pixel holds, 1 to 1e9.
+    /// Full well of a pixel, e⁻, 1 to 1e9.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1e9))]
     pub full_well_e: Option<f64>,
-    /// Part of the charge above the full well that spills along the columns, 0 to 1; 0: none does.
+    /// Fraction of the charge above the full well that spills along the columns, 0 (no spill) to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub spill_fraction: Option<f64>,
-    /// Standard deviation of the response of single pixels, relative to their mean, 0 to 1.
+    /// Standard deviation of the pixel response, relative to its mean, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1))]
     pub response_sigma: Option<f64>,
@@ -32,7 +33,7 @@ pub struct Calibration {
     /// Size and brightness of the target.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<TargetCalibration>,
-    /// Errors of the telemetry's attitude and of the nominal mounting.
+    /// Errors of the attitude in the telemetry and of the nominal mounting.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub attitude: Option<AttitudeKnowledge>,
 }
@@ -41,15 +42,15 @@ pub struct Calibration {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TargetCalibration {
-    /// Half its size, m, 0 to 1e6.
+    /// Half the size of the target, m, 0 to 1e6.
     #[schemars(range(min = 0, max = 1e6))]
     pub radius_m: f64,
-    /// Photoelectrons per second at a range of 1 km, sunlit, 1e-3 to 1e18.
+    /// Photoelectrons per second from the sunlit target at a range of 1 km, 1e-3 to 1e18.
     #[schemars(range(min = 1e-3, max = 1e18))]
     pub e_per_s_at_1_km: f64,
 }
 
-/// Image of a point: a circular Gaussian core and a wider Gaussian halo.
+/// Point-spread function: a circular Gaussian core and a wider Gaussian halo.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PsfCalibration {
@@ -60,7 +61,7 @@ pub struct PsfCalibration {
     #[serde(default = "no_halo_px")]
     #[schemars(range(min = 0.2, max = 200))]
     pub halo_sigma_px: f64,
-    /// Part of the flux in the halo, 0 to 1.
+    /// Fraction of the flux in the halo, 0 to 1.
     #[serde(default)]
     #[schemars(range(min = 0, max = 1))]
     pub halo_fraction: f64,
@@ -71,26 +72,28 @@ fn no_halo_px() -> f64 {
     4.0
 }
 
-/// Standard deviations of the telemetry's attitude and of the mounting about the axes of the body.
+/// Standard deviations of the attitude in the telemetry and of the mounting, about the body axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AttitudeKnowledge {
-    /// Noise that is new in every frame, about x, y, z, arcsec, each 0 to 36000.
+    /// Standard deviation of the error that is independent in every frame, about x, y, z, arcsec, each 0 to
+    /// 36000.
     #[schemars(inner(range(min = 0, max = 36000)))]
     pub white_arcsec: [f64; 3],
-    /// Slow error, about x, y, z, arcsec, each 0 to 36000.
+    /// Standard deviation of the slow error, about x, y, z, arcsec, each 0 to 36000.
     #[schemars(inner(range(min = 0, max = 36000)))]
     pub slow_arcsec: [f64; 3],
-    /// Time over which the slow error changes, s, 1 to 1e9.
+    /// Time scale of the slow error, s, 1 to 1e9.
     #[schemars(range(min = 1, max = 1e9))]
     pub slow_period_s: f64,
-    /// Constant error, of the nominal mounting included, about x, y, z, arcsec, each 0 to 36000.
+    /// Standard deviation of the constant error, including that of the nominal mounting, about x, y, z,
+    /// arcsec, each 0 to 36000.
     #[schemars(inner(range(min = 0, max = 36000)))]
     pub constant_arcsec: [f64; 3],
 }
 
 impl Calibration {
-    /// Checks every number.
+    /// Checks the range of every number.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.
@@ -98,7 +101,7 @@ impl Calibration {
         bounds::check(self, "calibration")
     }
 
-    /// This calibration with the numbers that `stated` has in place of its own.
+    /// Returns this calibration with each value that `stated` contains in place of its own value.
     pub fn replaced_by(self, stated: Self) -> Self {
         Self {
             psf: stated.psf.or(self.psf),

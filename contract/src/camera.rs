@@ -1,4 +1,4 @@
-//! The camera's data: numbers, no mathematics.
+//! Camera parameters and mounting: data without projection mathematics.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,18 +7,17 @@ use crate::{Angle, Body, CameraFrame, OutOfRange, Rotation, bounds};
 
 /// Geometry of a camera: detector, focal length, principal point, distortion (far-range paper, Table 1).
 ///
-/// The model h: with x' = X/Z, y' = Y/Z, the undistorted offset from the principal point in pixels is
-/// u = f x'/pixel_x, v = f y'/pixel_y. The distorted offset is
-/// u (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 u v + p2 (r² + 2 u²),
-/// v (1 + k1 r² + k2 r⁴ + k3 r⁶) + p1 (r² + 2 v²) + 2 p2 u v, with r² = u² + v² in px².
-/// Simulator and pipelines each implement it on their own.
+/// The model h: with x' = X/Z, y' = Y/Z, the undistorted offset from the principal point in pixels is u = f
+/// x'/pixel_x, v = f y'/pixel_y. The distorted offset is u (1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 u v + p2 (r² +
+/// 2 u²), v (1 + k1 r² + k2 r⁴ + k3 r⁶) + p1 (r² + 2 v²) + 2 p2 u v, with r² = u² + v² in px². Simulator and
+/// pipelines implement this model independently.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
-    /// Columns of the detector, 1 to 16384.
+    /// Number of detector columns, 1 to 16384.
     #[schemars(range(min = 1, max = Self::MAX_SIDE_PX))]
     pub columns: usize,
-    /// Rows of the detector, 1 to 16384.
+    /// Number of detector rows, 1 to 16384.
     #[schemars(range(min = 1, max = Self::MAX_SIDE_PX))]
     pub rows: usize,
     /// Focal length, mm, 0.01 to 1e6.
@@ -30,10 +29,10 @@ pub struct Camera {
     /// Height of a pixel (along rows), µm, 0.01 to 1e4.
     #[schemars(range(min = 0.01, max = 1e4))]
     pub pixel_height_um: f64,
-    /// Principal point along columns, px, -1e5 to 1e5; the centre of the first pixel is 0.
+    /// Column of the principal point, px, -1e5 to 1e5; the centre of the first pixel is 0.
     #[schemars(range(min = -1e5, max = 1e5))]
     pub principal_x_px: f64,
-    /// Principal point along rows, px, -1e5 to 1e5; the centre of the first pixel is 0.
+    /// Row of the principal point, px, -1e5 to 1e5; the centre of the first pixel is 0.
     #[schemars(range(min = -1e5, max = 1e5))]
     pub principal_y_px: f64,
     /// Radial distortion (k1, k2, k3) in px⁻², px⁻⁴, px⁻⁶, each -1 to 1.
@@ -47,11 +46,12 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Largest number of columns or rows; bounds what a file can make us allocate.
+    /// Largest number of columns or rows; limits the memory that an input file can make the program allocate.
     pub const MAX_SIDE_PX: usize = 16384;
 
-    /// Checks every number. Pixels are from a hundredth of a micrometre to a centimetre: beyond, the unit is wrong. The principal point
-    /// may be far outside, as a detector may be a part of a larger image circle.
+    /// Checks the range of every number. Pixels are between a hundredth of a micrometre and a centimetre; a
+    /// value outside indicates a wrong unit. The principal point may be far outside the detector, because a
+    /// detector may cover only part of a larger image circle.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.
@@ -59,30 +59,31 @@ impl Camera {
         bounds::check(self, "camera")
     }
 
-    /// Focal length in pixels along columns and along rows.
+    /// Returns the focal length in pixels along columns and along rows.
     pub fn focal_length_px(&self) -> (f64, f64) {
         let f_um = self.focal_length_mm * 1000.0;
         (f_um / self.pixel_width_um, f_um / self.pixel_height_um)
     }
 }
 
-/// How the camera sits on the spacecraft: Euler angles 123 of the rotation from body to camera, degrees.
+/// Orientation of the camera on the spacecraft: Euler angles 123 of the rotation from body to camera,
+/// degrees.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mounting {
-    /// φ, about x, degrees, −3600 to 3600.
+    /// Rotation angle φ about x, degrees, −3600 to 3600.
     #[schemars(range(min = -3600, max = 3600))]
     pub phi_deg: f64,
-    /// θ, about the resulting y, degrees, −3600 to 3600.
+    /// Rotation angle θ about the resulting y, degrees, −3600 to 3600.
     #[schemars(range(min = -3600, max = 3600))]
     pub theta_deg: f64,
-    /// ψ, about the resulting z, degrees, −3600 to 3600.
+    /// Rotation angle ψ about the resulting z, degrees, −3600 to 3600.
     #[schemars(range(min = -3600, max = 3600))]
     pub psi_deg: f64,
 }
 
 impl Mounting {
-    /// Checks every number.
+    /// Checks the range of every angle.
     ///
     /// # Errors
     /// [`OutOfRange`] for an angle outside its range.
@@ -90,7 +91,7 @@ impl Mounting {
         bounds::check(self, "mounting")
     }
 
-    /// The rotation from body to camera.
+    /// Returns the rotation from body to camera.
     pub fn camera_from_body(&self) -> Rotation<CameraFrame, Body> {
         Rotation::from_euler_123(
             Angle::from_degrees(self.phi_deg),

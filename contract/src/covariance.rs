@@ -1,10 +1,11 @@
-//! Covariance of a measured point or direction.
+//! Covariance of a measured position or direction.
 
 use crate::{OutOfRange, bounds::require};
 
-/// Covariance matrix of two errors, held as their standard deviations and their correlation.
+/// Covariance matrix of two errors, stored as their standard deviations and their correlation.
 ///
-/// Both standard deviations are positive and finite and the correlation lies between −1 and 1, so that the matrix is positive definite.
+/// Both standard deviations are positive and finite and the correlation lies between −1 and 1, which makes
+/// the matrix positive definite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Covariance2 {
     sigma_x: f64,
@@ -13,10 +14,12 @@ pub struct Covariance2 {
 }
 
 impl Covariance2 {
-    /// A covariance from standard deviations along x and y, in one unit, and their correlation.
+    /// Creates a covariance from the standard deviations along x and y, in the same unit, and their
+    /// correlation.
     ///
     /// # Errors
-    /// [`OutOfRange`] unless the standard deviations are positive and finite and the correlation is above −1 and below 1.
+    /// [`OutOfRange`] unless the standard deviations are positive and finite and the correlation is above −1
+    /// and below 1.
     pub fn from_sigmas(sigma_x: f64, sigma_y: f64, correlation: f64) -> Result<Self, OutOfRange> {
         let is_sigma = |sigma: f64| sigma > 0.0 && sigma.is_finite();
         require("sigma_x", sigma_x, "a positive number", is_sigma)?;
@@ -25,7 +28,7 @@ impl Covariance2 {
         Ok(Self { sigma_x, sigma_y, correlation })
     }
 
-    /// A covariance from the elements of its matrix [[xx, xy], [xy, yy]].
+    /// Creates a covariance from the elements of its matrix [[xx, xy], [xy, yy]].
     ///
     /// # Errors
     /// [`OutOfRange`] unless the matrix is positive definite and finite.
@@ -34,44 +37,45 @@ impl Covariance2 {
         Self::from_sigmas(sigma_x, sigma_y, xy / (sigma_x * sigma_y))
     }
 
-    /// A covariance of two angles from their standard deviations, degrees, and their correlation.
+    /// Creates the covariance of two angles from their standard deviations, degrees, and their correlation.
     ///
     /// # Errors
-    /// As [`Covariance2::from_sigmas`].
+    /// Those of [`Covariance2::from_sigmas`].
     pub fn from_degrees([sigma_x_deg, sigma_y_deg, correlation]: [f64; 3]) -> Result<Self, OutOfRange> {
         Self::from_sigmas(sigma_x_deg.to_radians(), sigma_y_deg.to_radians(), correlation)
     }
 
-    /// Standard deviations of two angles, degrees, and their correlation.
+    /// Returns the standard deviations of two angles, degrees, and their correlation.
     pub fn degrees(&self) -> [f64; 3] {
         [self.sigma_x.to_degrees(), self.sigma_y.to_degrees(), self.correlation]
     }
 
-    /// Standard deviation of the first error.
+    /// Returns the standard deviation of the first error.
     pub fn sigma_x(&self) -> f64 {
         self.sigma_x
     }
 
-    /// Standard deviation of the second error.
+    /// Returns the standard deviation of the second error.
     pub fn sigma_y(&self) -> f64 {
         self.sigma_y
     }
 
-    /// Correlation of both errors, above −1 and below 1.
+    /// Returns the correlation of the two errors, above −1 and below 1.
     pub fn correlation(&self) -> f64 {
         self.correlation
     }
 
-    /// Elements of the matrix: xx, xy, yy.
+    /// Returns the elements xx, xy, yy of the matrix.
     pub fn matrix(&self) -> [f64; 3] {
         let Self { sigma_x, sigma_y, correlation } = self;
         [sigma_x * sigma_x, correlation * sigma_x * sigma_y, sigma_y * sigma_y]
     }
 
-    /// Squared Mahalanobis distance eᵀ C⁻¹ e of an error e: χ² with two degrees of freedom when C is the covariance of normal errors.
+    /// Returns the squared Mahalanobis distance eᵀ C⁻¹ e of an error e: χ² with two degrees of freedom if C
+    /// is the covariance of normal errors.
     pub fn mahalanobis_squared(&self, [x, y]: [f64; 2]) -> f64 {
         let (x, y, rho) = (x / self.sigma_x, y / self.sigma_y, self.correlation);
-        // A sum of squares: rounding makes none of it negative, however near the correlation is to ±1.
+        // A sum of squares stays non-negative under rounding, however close the correlation is to ±1.
         let of_x_beside_y = x - rho * y;
         of_x_beside_y * of_x_beside_y / ((1.0 - rho) * (1.0 + rho)) + y * y
     }

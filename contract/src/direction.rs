@@ -1,4 +1,4 @@
-//! Directions that know their frame.
+//! Directions, typed by their frame.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -7,25 +7,25 @@ use nalgebra::Vector3;
 
 use crate::{Angle, ContractError, OutOfRange};
 
-/// The celestial frame: ICRS axes, treated as J2000 (the frame bias of about 20 mas is below every budget).
+/// Celestial frame: ICRS axes, treated as J2000 (the frame bias of about 20 mas is below every error budget).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Icrs {}
 
-/// The body frame of the chaser spacecraft (`SC` in the papers).
+/// Body frame of the chaser spacecraft (`SC` in the papers).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Body {}
 
-/// The body frame of the target spacecraft.
+/// Body frame of the target spacecraft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {}
 
-/// The camera frame: z along the boresight, x along increasing column, y along increasing row.
+/// Camera frame: z along the boresight, x along increasing column, y along increasing row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CameraFrame {}
 
-/// A unit vector whose components are in the frame `F`.
+/// A unit vector with components in the frame `F`.
 ///
-/// Directions of different frames do not mix:
+/// Directions of different frames are different types:
 /// ```compile_fail
 /// use boresight_contract::{Direction, Icrs, Body};
 /// let star: Direction<Icrs> = Direction::from_ra_dec(Default::default(), Default::default());
@@ -37,10 +37,10 @@ pub struct Direction<F> {
 }
 
 impl<F> Direction<F> {
-    /// The direction of a vector of any length.
+    /// Returns the direction of a vector of any length.
     ///
     /// # Errors
-    /// [`ContractError::OutOfRange`] when the length is zero or not finite.
+    /// [`ContractError::OutOfRange`] if the length is zero or not finite.
     pub fn from_vector(vector: Vector3<f64>) -> Result<Self, ContractError> {
         let norm = vector.norm();
         if norm.is_finite() && norm > f64::MIN_POSITIVE {
@@ -50,50 +50,50 @@ impl<F> Direction<F> {
         }
     }
 
-    /// The direction of a vector that the caller knows to be of unit length.
+    /// Creates a direction from a vector of unit length; the caller guarantees the length.
     pub fn from_unit(unit: Vector3<f64>) -> Self {
         debug_assert!((unit.norm_squared() - 1.0).abs() < 1e-9, "not a unit vector: {unit:?}");
         Self { unit, frame: PhantomData }
     }
 
-    /// The boresight: (0, 0, 1).
+    /// Returns the boresight: (0, 0, 1).
     pub fn z() -> Self {
         Self::from_unit(Vector3::z())
     }
 
-    /// Components, a vector of unit length.
+    /// Returns the components as a unit vector.
     pub fn vector(&self) -> &Vector3<f64> {
         &self.unit
     }
 
-    /// The angle to another direction, accurate at every separation (atan2 of cross and dot product).
+    /// Returns the angle to another direction, accurate at every separation (atan2 of cross and dot product).
     pub fn separation(&self, other: &Self) -> Angle {
         Angle::from_radians(libm::atan2(self.unit.cross(&other.unit).norm(), self.unit.dot(&other.unit)))
     }
 }
 
 impl Direction<Icrs> {
-    /// From right ascension and declination: r = (cos α cos δ, sin α cos δ, sin δ) (far-range paper, Eq. 3,
-    /// with sine and cosine of α in their right places).
+    /// Creates a direction from right ascension and declination: r = (cos α cos δ, sin α cos δ, sin δ)
+    /// (far-range paper, Eq. 3, with its interchanged sin α and cos α corrected).
     pub fn from_ra_dec(ra: Angle, dec: Angle) -> Self {
         let (sin_ra, cos_ra) = libm::sincos(ra.radians());
         let (sin_dec, cos_dec) = libm::sincos(dec.radians());
         Self::from_unit(Vector3::new(cos_ra * cos_dec, sin_ra * cos_dec, sin_dec))
     }
 
-    /// Right ascension in [0, 2π).
+    /// Returns the right ascension in [0, 2π).
     pub fn ra(&self) -> Angle {
         let ra = libm::atan2(self.unit.y, self.unit.x);
         Angle::from_radians(if ra < 0.0 { ra + 2.0 * std::f64::consts::PI } else { ra })
     }
 
-    /// Declination in [−π/2, π/2].
+    /// Returns the declination in [−π/2, π/2].
     pub fn dec(&self) -> Angle {
         Angle::from_radians(libm::atan2(self.unit.z, libm::hypot(self.unit.x, self.unit.y)))
     }
 }
 
-// Written out: a derive would ask the marker F for the same traits.
+// Implemented by hand: a derive would require the same traits of the marker type F.
 impl<F> Clone for Direction<F> {
     fn clone(&self) -> Self {
         *self

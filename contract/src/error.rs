@@ -1,10 +1,10 @@
-//! The one error type of this crate.
+//! Error type of this crate.
 
 use thiserror::Error;
 
 use crate::OutOfRange;
 
-/// A value that the contract does not allow: which, what it was, and what was expected.
+/// A value that the contract does not allow, with the value and the expected range or property.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ContractError {
     /// A number outside its range, or not finite.
@@ -13,19 +13,19 @@ pub enum ContractError {
     /// Four numbers that are not a unit quaternion.
     #[error("quaternion (w, x, y, z) = {wxyz:?} has norm {norm}, expected 1 within 1e-5")]
     NotUnit {
-        /// The components met, scalar first.
+        /// The rejected components, scalar first.
         wxyz: [f64; 4],
-        /// Their norm.
+        /// Norm of the components.
         norm: f64,
     },
     /// An image whose number of pixels is not columns × rows.
     #[error("an image of {columns} × {rows} pixels has {got} values, expected {}", columns * rows)]
     ImageSize {
-        /// Columns expected.
+        /// Expected number of columns.
         columns: usize,
-        /// Rows expected.
+        /// Expected number of rows.
         rows: usize,
-        /// Values met.
+        /// Actual number of values.
         got: usize,
     },
     /// A pipeline that cannot be built from its setup.
@@ -33,7 +33,7 @@ pub enum ContractError {
     CannotBuild {
         /// Name of the pipeline.
         pipeline: String,
-        /// Why.
+        /// Reason of the failure.
         reason: String,
     },
 }

@@ -1,11 +1,11 @@
-//! What a far-range pipeline receives and answers.
+//! Inputs and outputs of a far-range pipeline.
 
 use crate::{
     Body, Calibration, Camera, CameraFrame, Frame, Interface, ListedStar, NoSolution, Outcome, Readout,
     Rotation, Solution, Telemetry,
 };
 
-/// The interface of far-range pipelines: star fields with a distant spacecraft.
+/// Interface of far-range pipelines: star fields with a distant spacecraft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FarRange;
 
@@ -33,21 +33,22 @@ impl Interface for FarRange {
     }
 }
 
-/// What a pipeline knows before the first frame.
+/// Data that a far-range pipeline receives before the first frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
     /// Nominal camera.
     pub camera: Camera,
-    /// Nominal mounting of the camera, as calibrated on ground.
+    /// Nominal mounting of the camera, as calibrated on the ground.
     pub camera_from_body: Rotation<CameraFrame, Body>,
-    /// Bits of the analogue-digital converter.
+    /// Bit depth of the analogue-digital converter.
     pub bit_depth: u8,
-    /// Gain, bias, read noise and saturation as calibrated; `None` when they are not known.
+    /// Calibrated gain, bias, read noise and saturation; `None` if unknown.
     pub readout: Option<Readout>,
-    /// Point-spread function, detector, brightness scale and attitude knowledge as calibrated.
+    /// Calibrated point-spread function, detector, brightness scale and attitude knowledge.
     pub calibration: Calibration,
-    /// Pixels up to this digital number arrive as 0, whatever they were; `None`: every pixel arrives as it was.
+    /// Threshold of the zero suppression, DN: pixels up to this value are transmitted as 0; `None` if every
+    /// pixel is transmitted unchanged.
     pub zero_suppression_dn: Option<u16>,
-    /// The uploaded star list, ordered by `id`.
+    /// Uploaded star list, ordered by `id`.
     pub stars: Vec<ListedStar>,
 }

@@ -1,4 +1,4 @@
-//! One image, as it arrives on the ground.
+//! One image, as received on the ground.
 
 use crate::{ContractError, OutOfRange};
 
@@ -16,7 +16,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// Whether the pixel (x, y) is inside.
+    /// Returns true if the pixel (x, y) is inside the window.
     pub fn contains(&self, x: usize, y: usize) -> bool {
         (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y)
     }
@@ -34,12 +34,12 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame of `columns` × `rows` digital numbers; `windows` are the regions that were transmitted, `None`
-    /// when the whole image was. Pixels outside every window are 0 and mean nothing.
+    /// Creates a frame of `columns` × `rows` digital numbers; `windows` are the transmitted regions, `None`
+    /// if the whole image was transmitted. Pixels outside every window are 0 and carry no information.
     ///
     /// # Errors
-    /// [`ContractError::ImageSize`] when the number of values is wrong, [`ContractError::OutOfRange`] when the bit
-    /// depth is not 1 to 16 or a window leaves the image.
+    /// [`ContractError::ImageSize`] if the number of values is wrong, [`ContractError::OutOfRange`] if the
+    /// bit depth is not 1 to 16 or a window extends beyond the image.
     pub fn new(
         number: u64,
         columns: usize,
@@ -67,60 +67,60 @@ impl Frame {
         Ok(Self { number, columns, rows, bit_depth, dn, windows })
     }
 
-    /// Number of the frame in its scenario or dataset.
+    /// Returns the number of the frame in its scenario or dataset.
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// Columns.
+    /// Returns the number of columns.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Bits of the analogue-digital converter.
+    /// Returns the bit depth of the analogue-digital converter.
     pub fn bit_depth(&self) -> u8 {
         self.bit_depth
     }
 
-    /// The largest digital number that the converter gives: 2^bits − 1.
+    /// Returns the largest digital number of the converter: 2^bits − 1.
     pub fn full_scale_dn(&self) -> u16 {
         (u32::MAX >> (32 - u32::from(self.bit_depth))) as u16
     }
 
-    /// All digital numbers, row by row.
+    /// Returns all digital numbers, row by row.
     pub fn dn(&self) -> &[u16] {
         &self.dn
     }
 
-    /// All digital numbers, row by row, given away without a copy.
+    /// Returns all digital numbers, row by row, by value and without a copy.
     pub fn into_dn(self) -> Vec<u16> {
         self.dn
     }
 
-    /// One row.
+    /// Returns the digital numbers of row `y`.
     ///
     /// # Panics
-    /// For a row that the frame does not have.
+    /// If the frame has no such row.
     #[allow(clippy::indexing_slicing, reason = "as of a slice, the caller keeps to the size of the frame")]
     pub fn row(&self, y: usize) -> &[u16] {
         &self.dn[y * self.columns..(y + 1) * self.columns]
     }
 
-    /// The digital number of the pixel (x, y).
+    /// Returns the digital number of the pixel (x, y).
     ///
     /// # Panics
-    /// For a pixel that the frame does not have.
+    /// If the frame has no such pixel.
     #[allow(clippy::indexing_slicing, reason = "as of a slice, the caller keeps to the size of the frame")]
     pub fn dn_at(&self, x: usize, y: usize) -> u16 {
         self.dn[y * self.columns + x]
     }
 
-    /// The regions that were transmitted; `None`: the whole image.
+    /// Returns the transmitted regions; `None` if the whole image was transmitted.
     pub fn windows(&self) -> Option<&[Window]> {
         self.windows.as_deref()
     }

@@ -1,9 +1,9 @@
-//! What simulator and pipelines both speak.
+//! Data types and interfaces shared by the simulator and the pipelines.
 //!
-//! Camera data, frames, telemetry, star lists, outcomes and the trait [`Pipeline`]: the words that cross the
-//! border between the simulator (which knows the truth) and a pipeline under test (which must not).
-//! Conventions and parameters live here; mathematics of projection or aberration does not, because an error
-//! in shared mathematics would cancel and the oracle would be blind to it.
+//! Camera data, frames, telemetry, star lists, outcomes and the trait [`Pipeline`]: the types that cross the
+//! boundary between the simulator (which has access to the truth) and a pipeline under test (which must not).
+//! The crate contains conventions and parameters, but no mathematics of projection or aberration: an error in
+//! shared mathematics would cancel, and the oracle could not detect it.
 
 #![cfg_attr(
     not(test),

@@ -1,47 +1,49 @@
-//! What a pipeline says about a frame.
+//! Outcome of a far-range pipeline for one frame.
 
 use std::fmt;
 
 use crate::{CameraFrame, Covariance2, Direction, Icrs, PixelPoint, Rotation};
 
-/// The target, found.
+/// Measurement of the target in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement {
     /// Centre of the target's image.
     pub position: PixelPoint,
-    /// Covariance of that centre along columns and rows, px; `None` when the pipeline does not estimate it.
+    /// Covariance of the position along columns and rows (standard deviations in px); `None` if the pipeline
+    /// does not estimate it.
     pub position_covariance: Option<Covariance2>,
-    /// Line of sight to the target; `None` when the pipeline measures in the image only.
+    /// Line of sight to the target; `None` if the pipeline measures only image positions.
     pub line_of_sight: Option<Direction<Icrs>>,
-    /// Covariance of the line of sight, rad: of its angles atan2(X, Z) across columns and atan2(Y, Z) across rows in the camera frame,
-    /// the error of the attitude included; `None` without a line of sight, or when the pipeline does not estimate it.
+    /// Covariance of the line of sight (standard deviations in rad), as angles atan2(X, Z) across columns and
+    /// atan2(Y, Z) across rows in the camera frame, including the error of the attitude; `None` without a
+    /// line of sight, or if the pipeline does not estimate it.
     pub line_of_sight_covariance: Option<Covariance2>,
 }
 
 impl Measurement {
-    /// A centre and a line of sight without covariances.
+    /// Creates a measurement without covariances.
     pub fn new(position: PixelPoint, line_of_sight: Option<Direction<Icrs>>) -> Self {
         Self { position, position_covariance: None, line_of_sight, line_of_sight_covariance: None }
     }
 }
 
-/// Why there is no target in the answer.
+/// Reason why an outcome contains no target.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum NoSolution {
-    /// No pixel rises above the background.
+    /// No pixel exceeds the background.
     EmptyFrame,
-    /// So much of the frame is saturated that nothing can be told apart.
+    /// Too much of the frame is saturated to distinguish anything.
     SaturatedFrame,
-    /// There was no previous frame to measure motion against.
+    /// No previous frame is available to measure motion against.
     NoPreviousFrame,
-    /// Clusters were found, none of them a candidate: all are stars, hotspots or not linked.
+    /// Clusters were found, but no candidate: all are stars, hotspots or unlinked.
     NoTarget,
-    /// The pipeline failed; the text says how. Counted as an outcome like any other.
+    /// The pipeline failed, with the reason as text. Counted as an outcome like any other.
     Failed(String),
 }
 
 impl NoSolution {
-    /// The word used in files.
+    /// Returns the name used in files.
     pub fn code(&self) -> &'static str {
         match self {
             Self::EmptyFrame => "empty_frame",
@@ -52,7 +54,7 @@ impl NoSolution {
         }
     }
 
-    /// Reads what [`fmt::Display`] writes, and `failed` alone; `None` for an unknown word.
+    /// Parses the output of [`fmt::Display`], or `failed` without a reason; `None` for an unknown text.
     pub fn parse(text: &str) -> Option<Self> {
         Some(match text {
             "empty_frame" => Self::EmptyFrame,
@@ -74,7 +76,7 @@ impl fmt::Display for NoSolution {
     }
 }
 
-/// The target, or why not.
+/// Measurement of the target, or the reason why there is none.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Solution {
     /// A target was found.
@@ -83,24 +85,24 @@ pub enum Solution {
     NoSolution(NoSolution),
 }
 
-/// Where the camera's attitude of an answer comes from.
+/// Source of the camera attitude of an outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AttitudeSource {
-    /// Solved from enough stars of this frame.
+    /// Solved from a sufficient number of stars in this frame.
     Stars,
-    /// Some stars, too few to solve: the last filtered mounting was used.
+    /// Too few stars to solve the attitude: the last filtered mounting was used.
     TooFewStars,
-    /// No star: the last filtered mounting was used.
+    /// No stars: the last filtered mounting was used.
     NoStars,
-    /// Enough stars seen, and no set of them that matches the list: the last filtered mounting was used.
+    /// Enough stars, but no set of them matches the star list: the last filtered mounting was used.
     NoMatch,
 }
 
 impl AttitudeSource {
-    /// Every one.
+    /// All variants.
     pub const ALL: [Self; 4] = [Self::Stars, Self::TooFewStars, Self::NoStars, Self::NoMatch];
 
-    /// The word used in files.
+    /// Returns the name used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Stars => "stars",
@@ -110,29 +112,29 @@ impl AttitudeSource {
         }
     }
 
-    /// Reads [`AttitudeSource::code`].
+    /// Parses the result of [`AttitudeSource::code`].
     pub fn parse(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|source| source.code() == code)
     }
 }
 
-/// What a pipeline took a cluster for.
+/// Classification of a cluster by a pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Label {
-    /// The listed star of this number.
+    /// Star with this number in the star list.
     Star(u32),
     /// A hotspot of the detector.
     Hotspot,
-    /// Not linked to any cluster of the previous frame, so without a motion to judge.
+    /// Not linked to a cluster of the previous frame, and therefore without a motion to test.
     Unlinked,
-    /// A candidate that lost the motion test.
+    /// A candidate that was not selected by the motion test.
     Candidate,
     /// The target.
     Target,
 }
 
 impl Label {
-    /// The word used in files; a star's number has a column of its own.
+    /// Returns the name used in files; the number of a star has a separate column.
     pub fn code(self) -> &'static str {
         match self {
             Self::Star(_) => "star",
@@ -144,36 +146,36 @@ impl Label {
     }
 }
 
-/// A cluster of bright pixels, and what the pipeline took it for: evidence for the cause of a miss.
+/// A cluster of bright pixels with its classification, used to find the cause of a miss.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cluster {
-    /// Its centre, however the pipeline measures it.
+    /// Centre of the cluster; the pipeline chooses the estimator.
     pub position: PixelPoint,
     /// Weighted size: the sum of the intensities, each in [0, 1].
     pub size: f64,
     /// Number of pixels.
     pub pixels: u32,
-    /// What it was taken for.
+    /// Classification of the cluster.
     pub label: Label,
 }
 
-/// A pipeline's whole answer to one frame.
+/// Complete outcome of a pipeline for one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// The target, or why not.
+    /// Measurement of the target, or the reason why there is none.
     pub solution: Solution,
-    /// The camera's attitude used for the line of sight, if the pipeline has one.
+    /// Camera attitude used for the line of sight, if the pipeline has one.
     pub camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
-    /// Where that attitude comes from.
+    /// Source of that attitude.
     pub attitude_source: Option<AttitudeSource>,
-    /// Stars identified in the frame; `None` when the pipeline does not tell.
+    /// Number of stars identified in the frame; `None` if the pipeline does not report it.
     pub n_stars: Option<u32>,
-    /// Every cluster with its label; may be empty when the pipeline does not tell.
+    /// All clusters with their labels; may be empty if the pipeline does not report them.
     pub clusters: Vec<Cluster>,
 }
 
 impl Outcome {
-    /// An answer that has nothing but a reason.
+    /// Creates an outcome without a solution, with its reason.
     pub fn none(reason: NoSolution) -> Self {
         Self {
             solution: Solution::NoSolution(reason),
@@ -184,7 +186,7 @@ impl Outcome {
         }
     }
 
-    /// The measurement, if there is one.
+    /// Returns the measurement, if present.
     pub fn measurement(&self) -> Option<&Measurement> {
         match &self.solution {
             Solution::Detected(measurement) => Some(measurement),

@@ -1,4 +1,4 @@
-//! The one interface that outsiders implement.
+//! Traits that an external pipeline implements.
 
 use std::fmt::Debug;
 
@@ -6,64 +6,65 @@ use thiserror::Error;
 
 use crate::ContractError;
 
-/// What the pipelines of a world receive and answer: a family of types, named by a marker such as [`crate::FarRange`] or
-/// [`crate::docking::Docking`].
+/// Input and output types of the pipelines of a world, selected by a marker type such as [`crate::FarRange`]
+/// or [`crate::docking::Docking`].
 pub trait Interface: Sized + 'static {
-    /// What a pipeline knows before the first image.
+    /// Data that a pipeline receives before the first image.
     type Setup: Clone + Debug + Send + Sync;
-    /// An image.
+    /// Type of an image.
     type Image: Clone + Debug + Send;
-    /// What is known of an image besides its pixels.
+    /// Telemetry of an image: the data besides its pixels.
     type Telemetry: Clone + Debug + Send;
-    /// A pipeline's whole answer to an image.
+    /// Complete outcome of a pipeline for one image.
     type Outcome: Clone + PartialEq + Debug + Send;
 
-    /// What an image is called, in messages and in the external protocol: `frame` or `field`.
+    /// Name of an image in messages and in the external protocol: `frame` or `field`.
     const IMAGE: &'static str;
 
-    /// The image's number in its sequence.
+    /// Returns the number of the image in its sequence.
     fn number(image: &Self::Image) -> u64;
 
-    /// The answer of a pipeline that failed.
+    /// Creates the outcome of a failed pipeline.
     fn failed(reason: String) -> Self::Outcome;
 
-    /// Why the pipeline failed, if it did.
+    /// Returns the reason of a failure, if the outcome is one.
     fn failure(outcome: &Self::Outcome) -> Option<&str>;
 }
 
 /// An image-processing pipeline under test.
 ///
-/// Built fresh for each sequence of images, and given them in order; it may remember what it likes in between.
-/// Images may be missing. It must answer every image, and what it answers must hold no NaN: see
-/// [`crate::conformance`].
+/// A pipeline is built afresh for each sequence of images and receives the images in order; it may keep any
+/// state between them. Images may be missing. The pipeline must return an outcome for every image, and no
+/// outcome may contain NaN: see [`crate::conformance`].
 pub trait Pipeline<I: Interface>: Send {
-    /// Answers one image.
+    /// Processes one image and returns its outcome.
     fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome;
 
-    /// What became of its starts, of a pipeline that has to be started before it can answer and never was.
+    /// Returns the failed starts of a pipeline that must be started before it can process images and has
+    /// never started.
     fn failed_starts(&self) -> Option<&FailedStarts> {
         None
     }
 }
 
-/// Starts of a pipeline, each of which failed. One is tried for every image, until one succeeds.
+/// Consecutive failed starts of a pipeline. One start is attempted per image until one succeeds.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("the pipeline did not start, {count} times in a row: {reason}")]
 pub struct FailedStarts {
-    /// How many there were.
+    /// Number of failed starts.
     pub count: u32,
-    /// Why the last one failed.
+    /// Reason of the last failure.
     pub reason: String,
 }
 
-/// Builds pipelines, one a sequence.
+/// Builds pipelines, one per sequence.
 pub trait PipelineFactory<I: Interface>: Sync {
-    /// Name, for tables and logs.
+    /// Returns the name for tables and logs.
     fn name(&self) -> String;
 
-    /// A fresh pipeline that has seen no image.
+    /// Builds a fresh pipeline that has processed no image.
     ///
     /// # Errors
-    /// [`ContractError::CannotBuild`] when the setup or the pipeline's own configuration does not allow it.
+    /// [`ContractError::CannotBuild`] if the setup or the pipeline's own configuration does not allow it.
     fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError>;
 }

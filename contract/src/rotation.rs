@@ -1,4 +1,4 @@
-//! Rotations that know both their frames.
+//! Rotations, typed by the frames they connect.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -8,11 +8,11 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::{Angle, ContractError, Direction};
 
-/// The rotation that turns components in frame `From` into components in frame `To`: v_to = R · v_from.
+/// Rotation that transforms components in frame `From` into components in frame `To`: v_to = R · v_from.
 ///
-/// A variable of this type is named `to_from_from`, as in `camera_from_icrs`, so that adjacent names match like
-/// the sizes of matrices. Its quaternion is Hamilton's, scalar first, and is called `q_to_from` in files:
-/// v_to = q v_from q*.
+/// A variable of this type is named `to_from_from`, for example `camera_from_icrs`: adjacent frame names
+/// match like the sizes of matrices. Its quaternion is Hamilton's, scalar first, and is called `q_to_from` in
+/// files: v_to = q v_from q*.
 ///
 /// ```
 /// use boresight_contract::{Body, CameraFrame, Icrs, Rotation};
@@ -27,7 +27,7 @@ use crate::{Angle, ContractError, Direction};
 /// let body_from_icrs: Rotation<Body, Icrs> = Rotation::identity();
 /// let wrong = body_from_icrs * camera_from_body;
 /// ```
-/// Neither does the wrong frame of a direction:
+/// A direction in the wrong frame does not compile either:
 /// ```compile_fail
 /// use boresight_contract::{Body, CameraFrame, Direction, Icrs, Rotation};
 /// let camera_from_body: Rotation<CameraFrame, Body> = Rotation::identity();
@@ -40,23 +40,23 @@ pub struct Rotation<To, From> {
 }
 
 impl<To, From> Rotation<To, From> {
-    /// The rotation between two frames that coincide.
+    /// Returns the rotation between two coincident frames.
     pub fn identity() -> Self {
         Self::from_unit_quaternion(UnitQuaternion::identity())
     }
 
-    /// From a unit quaternion q with v_to = q v_from q*.
+    /// Creates a rotation from a unit quaternion q with v_to = q v_from q*.
     pub fn from_unit_quaternion(quaternion: UnitQuaternion<f64>) -> Self {
         Self { quaternion, frames: PhantomData }
     }
 
-    /// From four components, scalar first.
+    /// Creates a rotation from four quaternion components, scalar first.
     ///
-    /// A norm within 1e-12 of one is kept to the bit, so that a file can be read back exactly; one within 1e-5
-    /// is normalised.
+    /// Components with a norm within 1e-12 of 1 are kept bit for bit, which makes reading a file back exact;
+    /// those with a norm within 1e-5 are normalised.
     ///
     /// # Errors
-    /// [`ContractError::NotUnit`] when the norm differs from 1 by more than 1e-5, or is not finite.
+    /// [`ContractError::NotUnit`] if the norm differs from 1 by more than 1e-5 or is not finite.
     pub fn from_wxyz(wxyz: [f64; 4]) -> Result<Self, ContractError> {
         let [w, x, y, z] = wxyz;
         let quaternion = Quaternion::new(w, x, y, z);
@@ -71,22 +71,23 @@ impl<To, From> Rotation<To, From> {
         }))
     }
 
-    /// From the rows of its matrix: the axes of `To`, given in `From`. They must be orthonormal and right-handed.
+    /// Creates a rotation from the rows of its matrix: the axes of `To`, expressed in `From`. They must be
+    /// orthonormal and right-handed.
     pub fn from_axes(x: &Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>) -> Self {
         let matrix = Matrix3::from_rows(&[x.transpose(), y.transpose(), z.transpose()]);
         let rotation = nalgebra::Rotation3::from_matrix_unchecked(matrix);
         Self::from_unit_quaternion(UnitQuaternion::from_rotation_matrix(&rotation))
     }
 
-    /// A small rotation given as a vector: its direction is the axis, its length the angle in radians. Turns
-    /// vectors (not axes) by the right-hand rule.
+    /// Creates a small rotation from a rotation vector: its direction is the axis, its length the angle in
+    /// radians. The rotation turns vectors (not axes) by the right-hand rule.
     pub fn from_rotation_vector(vector: Vector3<f64>) -> Self {
         Self::from_unit_quaternion(UnitQuaternion::from_scaled_axis(vector))
     }
 
-    /// From Euler angles in the convention 123: the frame `From` is turned by `phi` about its x axis, then by
-    /// `theta` about the resulting y axis, then by `psi` about the resulting z axis, and is then `To`
-    /// (far-range paper, Fig. 8).
+    /// Creates a rotation from Euler angles in the convention 123: the frame `From` is turned by `phi` about
+    /// its x axis, then by `theta` about the resulting y axis, then by `psi` about the resulting z axis, and
+    /// then coincides with `To` (far-range paper, Fig. 8).
     pub fn from_euler_123(phi: Angle, theta: Angle, psi: Angle) -> Self {
         let turn = |axis, angle: Angle| UnitQuaternion::from_axis_angle(axis, -angle.radians());
         Self::from_unit_quaternion(
@@ -94,7 +95,7 @@ impl<To, From> Rotation<To, From> {
         )
     }
 
-    /// The Euler angles (φ, θ, ψ) of [`Rotation::from_euler_123`]; θ in [−90°, 90°].
+    /// Returns the Euler angles (φ, θ, ψ) of [`Rotation::from_euler_123`]; θ is in [−90°, 90°].
     #[allow(clippy::indexing_slicing, reason = "constant indices of a 3 × 3 matrix")]
     pub fn euler_123(&self) -> (Angle, Angle, Angle) {
         let m = self.matrix();
@@ -104,34 +105,34 @@ impl<To, From> Rotation<To, From> {
         (Angle::from_radians(phi), Angle::from_radians(theta), Angle::from_radians(psi))
     }
 
-    /// The opposite rotation.
+    /// Returns the inverse rotation.
     pub fn inverse(&self) -> Rotation<From, To> {
         Rotation::from_unit_quaternion(self.quaternion.inverse())
     }
 
-    /// The 3 × 3 matrix R of v_to = R · v_from.
+    /// Returns the 3 × 3 matrix R of v_to = R · v_from.
     pub fn matrix(&self) -> Matrix3<f64> {
         *self.quaternion.to_rotation_matrix().matrix()
     }
 
-    /// The quaternion.
+    /// Returns the unit quaternion.
     pub fn quaternion(&self) -> &UnitQuaternion<f64> {
         &self.quaternion
     }
 
-    /// The quaternion's components, scalar first.
+    /// Returns the components of the quaternion, scalar first.
     pub fn wxyz(&self) -> [f64; 4] {
         let q = self.quaternion.quaternion();
         [q.w, q.i, q.j, q.k]
     }
 
-    /// The angle between this rotation and another one, in [0, π].
+    /// Returns the angle between this rotation and another one, in [0, π].
     pub fn angle_to(&self, other: &Self) -> Angle {
         let q = self.quaternion.inverse() * other.quaternion;
         Angle::from_radians(2.0 * libm::atan2(q.imag().norm(), q.w.abs()))
     }
 
-    /// Turns the components of any vector, a velocity for instance.
+    /// Transforms the components of any vector, for example of a velocity.
     pub fn rotate(&self, vector: &Vector3<f64>) -> Vector3<f64> {
         self.quaternion * vector
     }
@@ -151,7 +152,7 @@ impl<To, From> Mul<Direction<From>> for Rotation<To, From> {
     }
 }
 
-// Written out: a derive would ask the markers for the same traits.
+// Implemented by hand: a derive would require the same traits of the marker types.
 impl<To, From> Clone for Rotation<To, From> {
     fn clone(&self) -> Self {
         *self
@@ -179,11 +180,12 @@ mod tests {
 
     #[test]
     fn euler_123_turns_the_axes_one_after_the_other() {
-        // A frame turned by +90° about x has its y axis where z was: a vector along the old z has y = 1.
+        // After a rotation of the frame by +90° about x, its y axis has the direction of the old z axis: a
+        // vector along the old z has y = 1.
         let about_x: Rotation<CameraFrame, Body> =
             Rotation::from_euler_123(Angle::from_degrees(90.0), Angle::ZERO, Angle::ZERO);
         assert!((about_x.rotate(&Vector3::z()) - Vector3::y()).norm() < 1e-15);
-        // Then +90° about the resulting y: the old z, now along y, stays.
+        // A further rotation by +90° about the resulting y leaves the old z, now along y, unchanged.
         let both: Rotation<CameraFrame, Body> =
             Rotation::from_euler_123(Angle::from_degrees(90.0), Angle::from_degrees(90.0), Angle::ZERO);
         assert!((both.rotate(&Vector3::z()) - Vector3::y()).norm() < 1e-15);
@@ -206,7 +208,7 @@ mod tests {
         assert!((rotation.rotate(&Vector3::y()) - Vector3::x()).norm() < 1e-15);
     }
 
-    /// The test vector published in CONVENTIONS.md.
+    /// Test vector published in CONVENTIONS.md.
     #[test]
     fn the_published_quaternion_turns_the_published_vector() {
         let half = std::f64::consts::FRAC_1_SQRT_2;

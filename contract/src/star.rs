@@ -1,10 +1,10 @@
-//! The star list that a pipeline is given.
+//! Star list that a pipeline receives.
 
 use crate::{Direction, Icrs};
 
-/// A star of the list uploaded to a pipeline: where it is, how bright.
+/// A star of the uploaded list, with direction and magnitude.
 ///
-/// The direction is catalogued: proper motion is applied up to the scenario, aberration is not.
+/// The direction is catalogued: proper motion is applied up to the epoch of the scenario, aberration is not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ListedStar {
     /// Number in the catalogue (HIP for Hipparcos).

@@ -1,10 +1,10 @@
-//! Lines of an external pipeline.
+//! Fuzz target for output lines of an external pipeline.
 
 use pipeline::external::{docking_protocol, protocol};
 
 use crate::Sandbox;
 
-/// The frame that was asked for, and the detector's size.
+/// Number of the requested frame, and the size of the detector.
 const FRAME: u64 = 7;
 const SIZE_PX: (usize, usize) = (752, 580);
 

@@ -1,11 +1,11 @@
-//! Images.
+//! Fuzz targets for images.
 
 use boresight::files::{read_expected, read_frame, read_radiance};
 use boresight::show::is_boresight_picture;
 
 use crate::Sandbox;
 
-/// Bits that any image may have.
+/// Bit depth, 16, which allows every value of an image.
 const BITS: u8 = 16;
 
 pub(crate) fn fits(sandbox: &Sandbox, bytes: &[u8]) {
@@ -23,7 +23,7 @@ pub(crate) fn tiff(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = read_frame(&sandbox.file("a.tiff", bytes), 0, BITS, None);
 }
 
-/// With checksums that are wrong, no change would come further than to them.
+/// Corrects the checksums first; with wrong checksums, no mutated input would get past their check.
 pub(crate) fn png(sandbox: &Sandbox, bytes: &[u8]) {
     let mut bytes = bytes.to_vec();
     mend_checksums(&mut bytes);
@@ -31,7 +31,7 @@ pub(crate) fn png(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = is_boresight_picture(&bytes);
 }
 
-/// Writes behind every chunk the checksum that it has.
+/// Writes the correct checksum after every chunk.
 fn mend_checksums(bytes: &mut [u8]) {
     let mut at = 8;
     while let Some(length) = bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_be_bytes) {
@@ -43,7 +43,7 @@ fn mend_checksums(bytes: &mut [u8]) {
     }
 }
 
-/// The checksum of a chunk (PNG specification, annex D).
+/// Computes the checksum of a chunk (PNG specification, annex D).
 fn crc32(bytes: &[u8]) -> u32 {
     let bit = |crc: u32| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 };
     !bytes.iter().fold(u32::MAX, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| bit(crc)))

@@ -1,8 +1,9 @@
 //! Hostile input for every reader of the project.
 //!
-//! A [`Target`] takes bytes and hands them to what reads such bytes. It may refuse them; it may not panic, abort, hang, or reserve more
-//! than the bytes justify. `fuzz/corpus/` holds a folder of inputs for each target, replayed by `cargo test`; `fuzz/run` makes new
-//! ones of them with libFuzzer, guided by coverage, on the stable compiler.
+//! A [`Target`] passes bytes to the readers of its format. A reader may reject them; it must not panic,
+//! abort, hang, or allocate more memory than the bytes justify. `fuzz/corpus/` contains a directory of inputs
+//! for each target, replayed by `cargo test`; `fuzz/run` derives new inputs from them with libFuzzer, guided
+//! by coverage, on the stable compiler.
 
 mod answers;
 mod images;
@@ -15,12 +16,12 @@ mod videos;
 
 pub use sandbox::Sandbox;
 
-/// What reads some kind of bytes.
+/// A fuzz target: one or more readers of the same kind of bytes.
 #[derive(Debug, Clone, Copy)]
 pub struct Target {
-    /// Name, and that of its folder in the corpus.
+    /// Name of the target and of its directory in the corpus.
     pub name: &'static str,
-    /// What it is fed with.
+    /// Description of the input.
     pub reads: &'static str,
     run: fn(&Sandbox, &[u8]),
 }
@@ -30,18 +31,18 @@ impl Target {
         Self { name, reads, run }
     }
 
-    /// Feeds it.
+    /// Passes `bytes` to the target.
     pub fn run(&self, sandbox: &Sandbox, bytes: &[u8]) {
         (self.run)(sandbox, bytes);
     }
 
-    /// The target of a name.
+    /// Returns the target with the given name.
     pub fn named(name: &str) -> Option<&'static Self> {
         TARGETS.iter().find(|target| target.name == name)
     }
 }
 
-/// Every target, by name.
+/// All targets, ordered by name.
 pub const TARGETS: &[Target] = &[
     Target::new("answer", "a line of an external pipeline, of both worlds", answers::answer),
     Target::new("avi", "AVI, uncompressed and Motion-JPEG", videos::avi),

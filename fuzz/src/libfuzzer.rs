@@ -1,4 +1,5 @@
-//! The fuzzer: feeds the target that `BORESIGHT_TARGET` names, and ends at the first panic. Its arguments are libFuzzer's.
+//! Fuzzer: runs the target that `BORESIGHT_TARGET` names, and ends at the first panic. Its arguments are
+//! those of libFuzzer.
 
 #![no_main]
 
@@ -14,8 +15,9 @@ fn prepare() -> (&'static Target, Sandbox) {
     let name = std::env::var("BORESIGHT_TARGET").unwrap_or_default();
     let target =
         Target::named(&name).unwrap_or_else(|| panic!("BORESIGHT_TARGET is `{name}`, expected a target"));
-    // The fuzzer's own hook ends the process at every panic. Those inside the crate `parquet` and the buffers it slices are caught by the reader, which makes
-    // errors of them; one that comes as far as here is the reader's.
+    // The default hook of the fuzzer ends the process at every panic. Panics inside the crate `parquet` and
+    // the buffers that it slices are caught by the reader and turned into errors; a panic that reaches this
+    // hook from elsewhere is a fault of the reader.
     let _ = take_hook();
     set_hook(Box::new(|panic| {
         let place = panic.location().map_or("", |location| location.file());

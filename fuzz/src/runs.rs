@@ -1,14 +1,14 @@
-//! Directories of runs, one file of which is of anybody's making: what puts files together that each reader is content with.
+//! Run directories with one arbitrary file: tests code that combines files which each pass their own reader.
 
 use boresight::gate::read_result;
 use boresight::report::read_report;
 
 use crate::Sandbox;
 
-/// A file of a run: its place and what is in it.
+/// A file of a run: its path and its contents.
 type File = (&'static str, &'static [u8]);
 
-/// Three frames of the far range, and three fields of docking.
+/// Two valid runs: three far-range frames and three docking fields.
 const RUNS: [(&str, &[File]); 2] = [
     (
         "far/",
@@ -37,7 +37,8 @@ const RUNS: [(&str, &[File]); 2] = [
     ),
 ];
 
-/// The first line names the file (`far/measurements.csv`), the rest is what is in it.
+/// Replaces one file of a run: the first line of `bytes` names the file (`far/measurements.csv`), the
+/// remainder is its contents.
 pub(crate) fn directory(sandbox: &Sandbox, bytes: &[u8]) {
     let mut parts = bytes.splitn(2, |byte| *byte == b'\n');
     let (Some(name), Some(content)) = (parts.next(), parts.next()) else { return };
@@ -59,7 +60,7 @@ pub(crate) fn directory(sandbox: &Sandbox, bytes: &[u8]) {
 mod tests {
     use super::*;
 
-    /// Else nothing would be fed but the first thing that is wrong.
+    /// With an invalid base run, the fuzzer would never get past its first error.
     #[test]
     fn what_is_put_together_is_right() {
         let sandbox = Sandbox::new().unwrap();

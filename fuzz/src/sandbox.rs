@@ -1,14 +1,14 @@
-//! A folder of its own for the files that readers are given.
+//! Temporary directory for the files passed to the readers.
 
 use std::io::Result;
 use std::path::{Path, PathBuf};
 
-/// A folder, in memory where the system has one there; removed in the end.
+/// A temporary directory, in memory if the system provides `/dev/shm`; removed on drop.
 #[derive(Debug)]
 pub struct Sandbox(tempfile::TempDir);
 
 impl Sandbox {
-    /// Makes one.
+    /// Creates the directory.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -17,15 +17,15 @@ impl Sandbox {
         if in_memory.is_dir() { tempfile::tempdir_in(in_memory) } else { tempfile::tempdir() }.map(Self)
     }
 
-    /// Its path.
+    /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
         self.0.path()
     }
 
-    /// Writes a file, in the place of an earlier one, with the folders above it.
+    /// Writes a file, replacing an earlier one, and creates its parent directories.
     ///
     /// # Panics
-    /// When it cannot be written.
+    /// If the file cannot be written.
     #[expect(
         clippy::expect_used,
         reason = "without its file an input tests nothing, and must not pass for tested"

@@ -1,4 +1,4 @@
-//! The monitor's server.
+//! Fuzz target for the monitor's server.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpStream};
@@ -12,17 +12,17 @@ use boresight::run::{Options, ScenarioSource};
 
 use crate::Sandbox;
 
-/// What stands in an input for the server's address, which is another one every time.
+/// Placeholder in an input for the address of the server, which differs in every run.
 const ADDRESS: &[u8] = b"@@";
-/// Longer than any answer takes.
+/// Read timeout, longer than any response takes.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Bytes on a connection; what came back begins as an answer of HTTP, or nothing came.
+/// Sends bytes to the server and checks that the response is empty or begins as an HTTP response.
 pub(crate) fn http(_: &Sandbox, bytes: &[u8]) {
     let address = address();
     let Ok(mut stream) = TcpStream::connect(address) else { return };
     let _ = stream.set_read_timeout(Some(PATIENCE));
-    // A server that has had enough closes while more is being sent.
+    // A server that has received enough closes the connection while more bytes are being sent.
     let _ = stream.write_all(&addressed(bytes, address));
     let _ = stream.shutdown(Shutdown::Write);
     let mut answer = Vec::new();
@@ -49,7 +49,7 @@ fn addressed(bytes: &[u8], address: SocketAddr) -> Vec<u8> {
     whole
 }
 
-/// Starts a monitor of two fields, once.
+/// Starts a monitor of two fields on the first call and returns its address.
 #[expect(clippy::expect_used, reason = "without a server nothing is tested, and it must not pass for tested")]
 fn address() -> SocketAddr {
     static ADDRESS: OnceLock<SocketAddr> = OnceLock::new();

@@ -1,4 +1,4 @@
-//! Tables: CSV and Parquet, and the folders that they stand in.
+//! Fuzz targets for tables: CSV and Parquet, and the directories that contain them.
 
 use std::path::Path;
 
@@ -17,11 +17,11 @@ use sim::truth::{FrameTruth, ObjectTruth};
 
 use crate::Sandbox;
 
-/// A baseline that is right.
+/// A valid baseline.
 const BASELINE: &str = include_str!("../corpus/baseline/argon.toml");
 const BASELINE_ROWS: &[u8] = include_bytes!("../corpus/baseline_rows/argon.parquet");
 
-/// A camera whose frames may have been measured.
+/// Camera of the frames to which the measurements refer.
 const CAMERA: Camera = Camera {
     columns: 752,
     rows: 580,
@@ -34,7 +34,7 @@ const CAMERA: Camera = Camera {
     tangential: [0.0; 2],
 };
 
-/// The tables of CSV tell each other's files apart by their headers.
+/// Passes the bytes to every CSV reader; each reader recognises its tables by their header.
 pub(crate) fn csv(sandbox: &Sandbox, bytes: &[u8]) {
     let path = sandbox.file("a.csv", bytes);
     let _ = read_telemetry(&path);
@@ -71,7 +71,7 @@ pub(crate) fn baseline(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = Baseline::read(sandbox.path());
 }
 
-/// The header is told the hash of whatever rows there are: they are read.
+/// Inserts the hash of the given rows into the header, so that the rows pass the hash check and are read.
 pub(crate) fn baseline_rows(sandbox: &Sandbox, bytes: &[u8]) {
     let sha256 =
         |bytes: &[u8]| Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
@@ -81,7 +81,7 @@ pub(crate) fn baseline_rows(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = Baseline::read(sandbox.path());
 }
 
-/// A table that names images, in a folder with one.
+/// A table that names images, in a directory with one image.
 pub(crate) fn dataset(sandbox: &Sandbox, bytes: &[u8]) {
     sandbox.file("camera.toml", include_bytes!("../corpus/camera/small.toml"));
     sandbox.file("000000.png", include_bytes!("../corpus/png/small.png"));

@@ -1,4 +1,4 @@
-//! Text: TOML, JSON, and what has a form of its own.
+//! Fuzz targets for text: TOML, JSON, and formats specific to Boresight.
 
 use std::path::Path;
 
@@ -18,9 +18,10 @@ use sim::scene::docking::TargetFile;
 
 use crate::Sandbox;
 
-/// Most pixels of a camera whose simulator is made: larger ones cost what they are asked for.
+/// Largest number of pixels for which a simulator is built: a larger camera legitimately needs more memory
+/// and time.
 const MAX_PIXELS: usize = 1 << 16;
-/// Most frames of one.
+/// Largest number of frames for which a simulator is built.
 const MAX_FRAMES: u64 = 1 << 16;
 
 pub(crate) fn scenario(sandbox: &Sandbox, bytes: &[u8]) {
@@ -92,7 +93,7 @@ pub(crate) fn json(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = StudyResult::read(sandbox.path());
     sandbox.file("visibility.json", bytes);
     let _ = read_visibility(sandbox.path());
-    // Their readers want a whole run around them.
+    // The readers of these files need a complete run directory.
     let _ = serde_json::from_slice::<Score>(bytes);
     let _ = serde_json::from_slice::<DockingScore>(bytes);
 }

@@ -1,4 +1,4 @@
-//! Video, of the cameras of `corpus/setup/small.toml`.
+//! Fuzz targets for video of the cameras of `corpus/setup/small.toml`.
 
 use std::path::Path;
 use std::sync::OnceLock;

@@ -1,4 +1,5 @@
-//! What a file claims of itself is not what is reserved for it: a hundred bytes that say 60000 × 60000 pixels cost no more than a small image.
+//! Readers do not allocate the size that a file claims: a hundred bytes that claim 60000 × 60000 pixels cost
+//! no more memory than a small image.
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
@@ -12,15 +13,16 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// The peak is the process's: one test at a time.
+/// Peak memory is counted per process, so the tests run one at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// Most that an input of a few kilobytes may cost, bytes. 60000 × 60000 pixels of 16 bits are 7.2 GB.
+/// Largest memory that an input of a few kilobytes may use, bytes. For comparison, 60000 × 60000 pixels of 16
+/// bits are 7.2 GB.
 const MAX_BYTES: usize = 64 << 20;
-/// Formats whose headers say how much follows.
+/// Formats whose headers state the amount of data that follows.
 const FORMATS: [&str; 7] = ["avi", "baseline_rows", "exr", "fits", "parquet", "png", "tiff"];
 
-/// Feeds a target; what it reserved at most.
+/// Runs a target and returns its peak memory, bytes.
 fn cost(sandbox: &Sandbox, target: &str, bytes: &[u8]) -> usize {
     let target = Target::named(target).unwrap();
     MEMORY.reset_peak_usage();
@@ -38,13 +40,14 @@ fn seed(target: &str, name: &str) -> Vec<u8> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target).join(name)).unwrap()
 }
 
-/// Overwrites what follows the only place where the bytes stand.
+/// Overwrites the bytes that follow the first occurrence of `after`.
 fn overwrite(bytes: &mut [u8], after: &[u8], with: &[u8]) {
     let at = bytes.windows(after.len()).position(|window| window == after).unwrap() + after.len();
     bytes[at..at + with.len()].copy_from_slice(with);
 }
 
-/// The beginning of a PNG of so many pixels a side, 16-bit grey; the target puts its checksums right.
+/// Returns the beginning of a square PNG of `side` × `side` pixels, 16-bit grey; the fuzz target corrects its
+/// checksums.
 fn png(side: u32) -> Vec<u8> {
     let header = [side.to_be_bytes().as_slice(), &side.to_be_bytes(), &[16, 0, 0, 0, 0]].concat();
     let chunk =
@@ -58,7 +61,7 @@ fn png(side: u32) -> Vec<u8> {
     .concat()
 }
 
-/// A TIFF of one strip that is said to be as long as the image.
+/// Returns a TIFF with one strip whose stated length is that of the whole image.
 fn tiff(side: u32) -> Vec<u8> {
     let entry = |tag: u16, value: u32| {
         [&tag.to_le_bytes()[..], &4_u16.to_le_bytes(), &1_u32.to_le_bytes(), &value.to_le_bytes()].concat()
@@ -98,7 +101,7 @@ fn fits(side: u32, bytes: usize) -> Vec<u8> {
 fn a_header_that_lies_about_its_size_costs_nothing() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let sandbox = Sandbox::new().unwrap();
-    // 16384 pixels a side is what a detector may have: it is the length of the file that refuses it.
+    // 16384 pixels per side is allowed for a detector: such a file must be rejected by its length.
     for side in [60_000, 16_384] {
         check(&sandbox, "png", "size", &png(side));
         check(&sandbox, "tiff", "size", &tiff(side));
@@ -121,7 +124,7 @@ fn a_header_that_lies_about_its_size_costs_nothing() {
         overwrite(&mut mjpeg, b"\xff\xc0\x00\x0b\x08", &[side, side].concat());
         check(&sandbox, "avi", "size of its JPEG", &mjpeg);
     }
-    // A schema of 2^31 columns; a footer as long as can be said.
+    // A schema of 2^31 columns, and a footer of the largest length that its field can state.
     let footer = [
         &[0x15, 2, 0x19, 0x1c, 0x48, 1, b'r', 0x15][..],
         &[0xfe, 0xff, 0xff, 0xff, 0x0f],
@@ -133,12 +136,13 @@ fn a_header_that_lies_about_its_size_costs_nothing() {
     check(&sandbox, "parquet", "length of the footer", b"PAR1\0\0\0\0\xff\xff\xff\x7fPAR1");
 }
 
-/// Whatever number of a file is a claim, it is made as large as can be.
+/// Any number in a file may be a size, so every position is overwritten with the largest values.
 #[test]
 fn no_number_of_a_file_makes_it_costly() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let sandbox = Sandbox::new().unwrap();
-    // What the crate `parquet` asserts is caught by the reader; to tell of each would take longer than to read.
+    // Failed assertions of the crate `parquet` are caught by the reader; printing each of them would take
+    // longer than reading.
     let tell = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         if panic.location().is_some_and(|place| place.file().ends_with("claims.rs")) {
@@ -148,7 +152,7 @@ fn no_number_of_a_file_makes_it_costly() {
     let claims: [&[u8]; 4] = [
         &[0xff, 0xff, 0xff, 0x7f],
         &[0x7f, 0xff, 0xff, 0xff],
-        // The largest of 32 and of 64 bits in Thrift.
+        // Largest 32-bit and 64-bit values in Thrift encoding.
         &[0xfe, 0xff, 0xff, 0xff, 0x0f],
         &[0xfe, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x01],
     ];
@@ -157,7 +161,7 @@ fn no_number_of_a_file_makes_it_costly() {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             let bytes = fs::read(&path).unwrap();
-            // Of large files their ends, where the headers are.
+            // Only the two ends of large files, which contain the headers.
             let near_an_end = |at: usize| at < 160 || bytes.len() - at < 320;
             for at in (0..bytes.len()).filter(|&at| near_an_end(at)) {
                 for claim in claims.iter().filter(|claim| at + claim.len() <= bytes.len()) {

@@ -1,4 +1,4 @@
-//! Every input of the corpus through its target: what was mended stays mended.
+//! Runs every input of the corpus through its target: fixed faults stay fixed.
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use boresight_fuzz::{Sandbox, TARGETS, Target};
 
 const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/corpus");
-/// Longest time for one input, on a busy machine: an input that hangs takes for ever.
+/// Longest time for one input, on a busy machine; an input that hangs never ends.
 const LONGEST: Duration = Duration::from_secs(10);
 
 fn inputs(target: &Target) -> Vec<std::path::PathBuf> {

@@ -1,4 +1,4 @@
-//! Embeds the monitor's page, which is built separately, if its folder exists.
+//! Embeds the monitor's page, which is built separately, if its directory exists.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -6,10 +6,11 @@ use std::{env, fs, io};
 
 const DIST: &str = "../../monitor/dist";
 
-/// Writes `page.rs`: a sorted table of names and `include_bytes!` for the files of the page; an empty table before it is built.
+/// Writes `page.rs`: a sorted table of names and `include_bytes!` for the files of the page; an empty table
+/// before it is built.
 fn main() -> io::Result<()> {
-    // A path that does not exist would count as changed at every build, so before the page is built its folder's parent is
-    // watched: there `dist` appears.
+    // A missing path would count as changed in every build. Before the page is built, the parent of its
+    // directory is therefore watched: `dist` will appear in it.
     let is_built = Path::new(DIST).is_dir();
     println!("cargo::rerun-if-changed={}", if is_built { DIST } else { "../../monitor" });
 
@@ -29,7 +30,8 @@ fn main() -> io::Result<()> {
     fs::write(Path::new(&out).join("page.rs"), table)
 }
 
-/// Collects the files below `folder`, each with its name relative to the page: `prefix` and names joined by slashes.
+/// Collects the files below `folder`, each with its name relative to the page: `prefix` and the components of
+/// its path, joined by slashes.
 fn collect_files(folder: &Path, prefix: &str, files: &mut Vec<(String, PathBuf)>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

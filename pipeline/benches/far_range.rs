@@ -1,7 +1,8 @@
-//! What the far-range pipeline costs on whole frames of noise with stars in them, of several sizes and with few and many stars, and beside it
-//! the floor: one look at every pixel.
+//! Benchmark of the far-range pipeline on whole frames of noise with stars, of several sizes and with few and
+//! many stars, compared with a lower bound: reading every pixel once.
 //!
-//! `cargo bench -p boresight-pipeline --bench far_range`; `docs/speed/benchmarks.py` makes tables and a chart of what it finds.
+//! `cargo bench -p boresight-pipeline --bench far_range`; `docs/speed/benchmarks.py` makes tables and a chart
+//! of the results.
 #![allow(clippy::unwrap_used, reason = "a benchmark ends by panicking")]
 
 #[path = "../../benches/support/processor_time.rs"]
@@ -17,7 +18,7 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use hifitime::{Epoch, Unit};
 use processor_time::ProcessorTime;
 
-/// Sizes of frames in thousands of pixels, and their columns and rows; 436 is that of the scenario `argon`.
+/// Frame sizes in thousands of pixels, with their columns and rows; 436 is that of the scenario `argon`.
 const SIZES: [(usize, usize, usize); 5] =
     [(250, 577, 433), ARGON, (1000, 1154, 866), (4000, 2309, 1732), (25_000, 5773, 4330)];
 const ARGON: (usize, usize, usize) = (436, 752, 580);
@@ -44,9 +45,11 @@ fn setup(columns: usize, rows: usize) -> Setup {
     }
 }
 
-/// A level of 50 DN with the sum of four even numbers as noise, 2.6 DN, and stars of 3 × 3 pixels.
+/// Returns a frame with a background of 51 DN (45 DN plus the sum of four uniform integers from 0 to 3,
+/// standard deviation 2.2 DN) and stars of 3 × 3 pixels.
 fn frame(number: u64, columns: usize, rows: usize, stars: usize) -> Frame {
-    // A step of a linear congruential generator (Knuth's MMIX); its high bits are good enough for a benchmark.
+    // Step of a linear congruential generator (Knuth's MMIX), whose high bits are good enough for a
+    // benchmark.
     let mut state = number;
     let mut next = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -63,7 +66,7 @@ fn frame(number: u64, columns: usize, rows: usize, stars: usize) -> Frame {
     Frame::new(number, columns, rows, 12, dn, None).unwrap()
 }
 
-/// The pipeline on a few frames in turn.
+/// Measures the pipeline on a few frames in turn.
 fn process(
     c: &mut Criterion<ProcessorTime>,
     name: BenchmarkId,
@@ -93,7 +96,7 @@ fn process(
 }
 
 fn main() {
-    // A frame is always the same work: a second of it is enough.
+    // The work per frame is constant: one second of measurement is enough.
     let mut criterion = Criterion::default()
         .with_measurement(ProcessorTime)
         .sample_size(20)
@@ -111,7 +114,7 @@ fn main() {
         });
         group.finish();
     }
-    // More clusters than 500 are sorted, and the faintest left out.
+    // More than 500 clusters are sorted, and the faintest of them are left out.
     for stars in [0, 10, 100, 1000, 10_000] {
         process(&mut criterion, BenchmarkId::new("stars", stars), ARGON, stars);
     }

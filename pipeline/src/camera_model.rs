@@ -1,4 +1,4 @@
-//! The pipelines' own camera model: h and its inverse.
+//! Camera model of the pipelines: the map h and its inverse.
 
 use contract::{Camera, CameraFrame, ContractError, Direction, PixelPoint};
 use nalgebra::Vector3;
@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 /// The map h from directions in the camera frame to pixels, and its inverse (far-range paper, section 2.1 and
 /// Table 1; formula at [`Camera`]).
 ///
-/// A strong distortion folds the image back on itself far outside the field. The model knows the radius where it
-/// does, and refuses what lies beyond: such a direction would otherwise appear at a place where it is not seen.
+/// A strong distortion folds the image back on itself far outside the field. The model computes the radius of
+/// this fold and rejects directions beyond it, which would otherwise appear at a wrong position.
 #[derive(Debug, Clone)]
 pub struct CameraModel {
     columns: usize,
@@ -17,21 +17,22 @@ pub struct CameraModel {
     principal: PixelPoint,
     radial: [f64; 3],
     tangential: [f64; 2],
-    /// Largest undistorted radius at which the radial distortion still grows, px; infinite without a fold.
+    /// Largest undistorted radius at which the distorted radius still increases, px; infinite without a fold.
     fold_radius_px: f64,
 }
 
-/// Newton's method doubles its digits at each step; a start that needs more than this does not converge.
+/// Largest number of steps of Newton's method, which doubles its digits at each step: a start that needs more
+/// does not converge.
 const MAX_NEWTON_STEPS: usize = 30;
 
-/// Residual at which an inverse counts as found, px: a millionth of the best centroid.
+/// Largest residual of an accepted inverse, px: a millionth of the error of the best centroid.
 const RESIDUAL_PX: f64 = 1e-8;
 
 impl CameraModel {
-    /// The model of a camera.
+    /// Creates the model of a camera.
     ///
     /// # Errors
-    /// Those of [`Camera::check`].
+    /// The errors of [`Camera::check`].
     pub fn new(camera: &Camera) -> Result<Self, ContractError> {
         camera.check()?;
         let (focal_x_px, focal_y_px) = camera.focal_length_px();
@@ -47,8 +48,8 @@ impl CameraModel {
         })
     }
 
-    /// Where a direction is seen, on the detector or beside it; `None` behind the camera and beyond the fold of
-    /// the distortion.
+    /// Returns the image position of a direction, on the detector or beside it; `None` behind the camera and
+    /// beyond the fold of the distortion.
     pub fn project(&self, direction: &Direction<CameraFrame>) -> Option<PixelPoint> {
         self.project_vector(direction.vector())
     }
@@ -61,25 +62,26 @@ impl CameraModel {
         self.pixel_from_ideal(self.focal_x_px * (r.x / r.z), self.focal_y_px * (r.y / r.z))
     }
 
-    /// The direction seen at a pixel, h⁻¹; `None` when the distortion has no inverse there.
+    /// Returns the direction of a pixel position, h⁻¹; `None` when the distortion has no inverse there.
     pub fn back_project(&self, point: PixelPoint) -> Option<Direction<CameraFrame>> {
         let (x, y) = (point.x - self.principal.x, point.y - self.principal.y);
         let (u, v) = self.undistort(x, y)?;
         Direction::from_vector(Vector3::new(u / self.focal_x_px, v / self.focal_y_px, 1.0)).ok()
     }
 
-    /// Focal length along columns and along rows, px.
+    /// Returns the focal length along columns and along rows, px.
     pub(crate) fn focal_px(&self) -> (f64, f64) {
         (self.focal_x_px, self.focal_y_px)
     }
 
-    /// A pixel without distortion, from the principal point: (f x1/x3, f x2/x3), px. In this plane straight lines
-    /// of space are straight. `None` when the distortion has no inverse there.
+    /// Removes the distortion from a pixel position; the result is relative to the principal point: (f x1/x3,
+    /// f x2/x3), px. In this plane straight lines of space are straight. `None` when the distortion has no
+    /// inverse there.
     pub(crate) fn to_ideal(&self, point: PixelPoint) -> Option<(f64, f64)> {
         self.undistort(point.x - self.principal.x, point.y - self.principal.y)
     }
 
-    /// The inverse of [`CameraModel::to_ideal`]; `None` beyond the fold of the distortion.
+    /// Returns the inverse of [`CameraModel::to_ideal`]; `None` beyond the fold of the distortion.
     pub(crate) fn pixel_from_ideal(&self, u: f64, v: f64) -> Option<PixelPoint> {
         if u * u + v * v > self.fold_radius_px * self.fold_radius_px {
             return None;
@@ -89,18 +91,18 @@ impl CameraModel {
         (point.x.is_finite() && point.y.is_finite()).then_some(point)
     }
 
-    /// Whether a point lies in the image domain Ω, borders of the outer pixels included.
+    /// Returns true if a point lies in the image domain Ω, including the borders of the outer pixels.
     pub fn is_on_detector(&self, point: PixelPoint) -> bool {
         point.is_on_detector(self.columns, self.rows)
     }
 
-    /// Columns and rows of the detector.
+    /// Returns the numbers of columns and rows of the detector.
     pub fn size_px(&self) -> (usize, usize) {
         (self.columns, self.rows)
     }
 
-    /// Cosine of the half-angle of a cone about the boresight that holds the whole detector; 0 when a corner of
-    /// the detector sees no direction.
+    /// Returns the cosine of the half-angle of a cone about the boresight that contains the whole detector; 0
+    /// when a corner of the detector has no direction.
     pub(crate) fn cos_half_field(&self) -> f64 {
         let (right, bottom) = (self.columns as f64 - 0.5, self.rows as f64 - 0.5);
         [(-0.5, -0.5), (right, -0.5), (-0.5, bottom), (right, bottom)]
@@ -109,7 +111,7 @@ impl CameraModel {
             .fold(1.0, f64::min)
     }
 
-    /// Distorted offset of an undistorted one, px.
+    /// Returns the distorted offset for an undistorted one, px.
     fn distort(&self, u: f64, v: f64) -> (f64, f64) {
         let [k1, k2, k3] = self.radial;
         let [p1, p2] = self.tangential;
@@ -121,13 +123,13 @@ impl CameraModel {
         )
     }
 
-    /// The derivatives of [`CameraModel::distort`]: of its first coordinate by u, of either by the other, of its second by v.
+    /// Returns the derivatives of [`CameraModel::distort`]: ∂x/∂u, ∂x/∂v = ∂y/∂u, and ∂y/∂v.
     fn slopes(&self, u: f64, v: f64) -> (f64, f64, f64) {
         let [k1, k2, k3] = self.radial;
         let [p1, p2] = self.tangential;
         let r2 = u * u + v * v;
         let scale = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-        // d(scale)/d(r²), so that d(scale)/du = 2 u slope.
+        // d(scale)/d(r²), hence d(scale)/du = 2 u slope.
         let slope = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3);
         (
             scale + 2.0 * u * u * slope + 2.0 * p1 * v + 6.0 * p2 * u,
@@ -136,7 +138,7 @@ impl CameraModel {
         )
     }
 
-    /// Newton's method on [`CameraModel::distort`], started at the distorted offset.
+    /// Inverts [`CameraModel::distort`] by Newton's method, started at the distorted offset.
     fn undistort(&self, x: f64, y: f64) -> Option<(f64, f64)> {
         let (mut u, mut v) = (x, y);
         for _ in 0..MAX_NEWTON_STEPS {
@@ -156,19 +158,20 @@ impl CameraModel {
     }
 }
 
-/// What Newton's method for the offset (x, y) may leave, px.
+/// Returns the largest residual at which Newton's method ends for the offset (x, y), px.
 fn newton_tolerance_px(x: f64, y: f64) -> f64 {
     1e-13 * (1.0 + x.abs() + y.abs())
 }
 
-/// The solution (x, y) of a x + b y = p, b x + d y = q.
+/// Solves a x + b y = p, b x + d y = q for (x, y).
 fn solve((a, b, d): (f64, f64, f64), (p, q): (f64, f64)) -> (f64, f64) {
     let determinant = a * d - b * b;
     ((d * p - b * q) / determinant, (a * q - b * p) / determinant)
 }
 
-/// The first radius where d/dr (r + k1 r³ + k2 r⁵ + k3 r⁷) is not positive, looked for up to four times the
-/// detector's farthest corner: a fold beyond that brings nothing back onto the detector but what is not seen.
+/// Returns the first radius where d/dr (r + k1 r³ + k2 r⁵ + k3 r⁷) is not positive, searched up to four times
+/// the distance of the detector's farthest corner: directions beyond a farther fold are not imaged and cannot
+/// return to the detector.
 fn fold_radius_px(camera: &Camera) -> f64 {
     let [k1, k2, k3] = camera.radial;
     let farthest = |n: usize, c: f64| (c + 0.5).abs().max((n as f64 - 0.5 - c).abs());
@@ -191,7 +194,7 @@ pub(crate) mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Table 1 of the far-range paper.
+    /// Returns the camera of Table 1 of the far-range paper.
     pub(crate) fn argon_camera() -> Camera {
         Camera {
             columns: 752,
@@ -217,7 +220,7 @@ pub(crate) mod tests {
 
     #[test]
     fn the_field_of_view_is_the_papers() {
-        // 18.2° × 13.6°, both rounded in the paper, without distortion.
+        // 18.2° × 13.6°, each rounded in the paper, without distortion.
         let half = |pixels: f64, focal_px: f64| 2.0 * libm::atan(pixels / 2.0 / focal_px).to_degrees();
         let (fx, fy) = argon_camera().focal_length_px();
         assert!((half(752.0, fx) - 18.2).abs() < 0.05);
@@ -230,7 +233,7 @@ pub(crate) mod tests {
         let seen = model.back_project(PixelPoint::new(0.0, 579.0)).unwrap();
         let without = CameraModel::new(&Camera { radial: [0.0; 3], ..argon_camera() }).unwrap();
         let moved = without.project(&seen).unwrap().distance(PixelPoint::new(0.0, 579.0));
-        // k1 r³ with r = 490 px.
+        // Expected shift: k1 r³ with r = 490 px.
         assert!((moved - 3.0).abs() < 0.2, "{moved} px");
     }
 
@@ -246,20 +249,20 @@ pub(crate) mod tests {
     fn a_direction_beyond_the_fold_is_not_seen() {
         let camera = Camera { radial: [-1e-6, 0.0, 0.0], ..argon_camera() };
         let model = CameraModel::new(&camera).unwrap();
-        // The radial map r − 1e-6 r³ folds at r = 577 px; a direction at 1000 px would come back to 0.
+        // The radial map r − 1e-6 r³ folds at r = 577 px; a direction at 1000 px would return to 0.
         let beyond = Vector3::new(1000.0 / camera.focal_length_px().0, 0.0, 1.0);
         assert_eq!(model.project_vector(&beyond), None);
-        // The fold is a circle: on its diagonal it is 408 px away in either direction.
+        // The fold is a circle: on its diagonal it is at 408 px in each coordinate.
         assert!(
             model.pixel_from_ideal(400.0, 400.0).is_some() && model.pixel_from_ideal(420.0, 420.0).is_none()
         );
-        // And 385 px is the largest radius that anything is seen at.
+        // The largest radius in the distorted image is 385 px.
         assert!(model.back_project(PixelPoint::new(395.0 - 384.0, 288.0)).is_some());
         assert!(model.back_project(PixelPoint::new(395.0 - 386.0, 288.0)).is_none());
     }
 
-    /// Beyond the fold, on the axes and between them: Newton's method ends anywhere, near the fold without a solution or at the one
-    /// that r − 1e-6 r³ has on the other side of it.
+    /// Beyond the fold, on the axes and between them, Newton's method ends at an arbitrary point: near the
+    /// fold without a solution, or at the solution of r − 1e-6 r³ on the other side of the fold.
     #[test]
     fn beyond_the_fold_no_radius_has_a_direction() {
         let camera = Camera { radial: [-1e-6, 0.0, 0.0], ..argon_camera() };
@@ -279,7 +282,8 @@ pub(crate) mod tests {
         assert_eq!(solve((2.0, 1.0, 5.0), (2.0, -17.0)), (3.0, -4.0));
     }
 
-    /// 1 + 3 k1 r² = 0, 1 + 5 k2 r⁴ = 0 and 1 + 7 k3 r⁶ = 0 at 400 px; and 1 + 3 k1 r² + 5 k2 r⁴ + 7 k3 r⁶ with terms of 1, −1 and −1.
+    /// Zeros at 400 px of 1 + 3 k1 r², 1 + 5 k2 r⁴ and 1 + 7 k3 r⁶, and of 1 + 3 k1 r² + 5 k2 r⁴ + 7 k3 r⁶
+    /// with terms of 1, −1 and −1.
     #[test]
     fn the_fold_is_where_the_radius_stops_growing() {
         let r2 = 400.0 * 400.0;
@@ -287,13 +291,14 @@ pub(crate) mod tests {
         for radial in [[-k1, 0.0, 0.0], [0.0, -k2, 0.0], [0.0, 0.0, -k3], [k1, -k2, -k3], [k1, -3.0 * k2, k3]]
         {
             let fold = fold_radius_px(&Camera { radial, ..argon_camera() });
-            // The steps of the search are 0.5 px.
+            // The search has steps of 0.5 px.
             assert!((fold - 400.0).abs() < 0.5, "{radial:?}: {fold}");
         }
         assert_eq!(fold_radius_px(&argon_camera()), f64::INFINITY);
     }
 
-    /// Up to four times the distance of the corner that is farthest from the principal point, wherever that is.
+    /// The search extends to four times the distance of the corner farthest from the principal point, at any
+    /// position of this point.
     #[test]
     fn a_fold_is_looked_for_as_far_as_four_times_the_farthest_corner() {
         let camera = |x: f64, y: f64, fold_px: f64| Camera {
@@ -321,8 +326,8 @@ pub(crate) mod tests {
         assert_eq!(argon().pixel_from_ideal(1e110, 1.0), None);
     }
 
-    /// x = u s + 2 p1 u v + p2 (r² + 2 u²), y = v s + p1 (r² + 2 v²) + 2 p2 u v with s = 1 + k1 r² + k2 r⁴ + k3 r⁶, worked out apart
-    /// from this code.
+    /// x = u s + 2 p1 u v + p2 (r² + 2 u²), y = v s + p1 (r² + 2 v²) + 2 p2 u v with s = 1 + k1 r² + k2 r⁴ +
+    /// k3 r⁶, computed independently of this code.
     #[test]
     fn the_distortion_is_that_of_its_formula() {
         let camera = Camera { radial: [3e-8, -2e-13, 4e-19], tangential: [5e-7, -8e-7], ..argon_camera() };
@@ -342,7 +347,8 @@ pub(crate) mod tests {
         assert_eq!(model.focal_px(), camera.focal_length_px());
     }
 
-    /// A wrong slope finds the same inverse, in more steps: so the slopes are held against differences.
+    /// Wrong slopes give the same inverse, in more steps; the slopes are therefore compared with finite
+    /// differences.
     #[test]
     fn the_slopes_are_those_of_the_distortion() {
         let camera = Camera { radial: [3e-7, -2e-12, 4e-18], tangential: [5e-5, -8e-5], ..argon_camera() };
@@ -377,7 +383,7 @@ pub(crate) mod tests {
     fn the_cone_ends_at_the_corner_that_is_farthest() {
         let plain = Camera { radial: [0.0; 3], pixel_width_um: 8.0, pixel_height_um: 8.0, ..argon_camera() };
         let f_px = plain.focal_length_px().0;
-        // The principal point in each quarter: the opposite corner is the far one, 500 by 400 px away.
+        // With the principal point in each quadrant, the opposite corner is the farthest, 500 by 400 px away.
         for (x, y) in [(499.5, 399.5), (251.5, 399.5), (499.5, 179.5), (251.5, 179.5)] {
             let camera = Camera { principal_x_px: x, principal_y_px: y, ..plain.clone() };
             let cos = CameraModel::new(&camera).unwrap().cos_half_field();
@@ -409,7 +415,7 @@ pub(crate) mod tests {
             let point = PixelPoint::new(x, y);
             let direction = model.back_project(point).unwrap();
             let again = model.project(&direction).unwrap();
-            // Rounding of coordinates of a few hundred pixels.
+            // Tolerance for the rounding of coordinates of a few hundred pixels.
             prop_assert!(again.distance(point) < 1e-9, "{:?} and {:?}", again, point);
         }
     }

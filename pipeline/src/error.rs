@@ -1,15 +1,15 @@
-//! The one error type of this crate.
+//! Error type of this crate.
 
 use contract::{ContractError, OutOfRange};
 use thiserror::Error;
 
-/// Why a pipeline's configuration is refused.
+/// Reason why a pipeline's configuration is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PipelineError {
-    /// A parameter that is not allowed, by its path in the configuration.
+    /// Parameter outside its range, with its path in the configuration.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// A value that the contract refuses.
+    /// Value refused by the contract.
     #[error(transparent)]
     Contract(#[from] ContractError),
 }

@@ -1,12 +1,13 @@
-//! The image-processing pipelines under test.
+//! Image-processing pipelines under test.
 //!
-//! A pipeline sees a [`contract::Frame`], its [`contract::Telemetry`] and the [`contract::Setup`], never the truth,
-//! and computes with mathematics of its own: its camera model and its aberration share nothing with the simulator.
+//! A pipeline receives a [`contract::Frame`], its [`contract::Telemetry`] and the [`contract::Setup`], never
+//! the truth. Its mathematics are independent: the camera model and the aberration share nothing with the
+//! simulator.
 //!
 //! - [`far_range`]: the far-range method of the ARGON experiment (star identification, tracking, motion
 //!   segmentation);
-//! - [`docking`]: the monitoring of a docking approach by its target's cross and marks;
-//! - [`external`]: somebody else's pipeline, run as a process.
+//! - [`docking`]: the monitoring of a docking approach by the cross and marks of its target;
+//! - [`external`]: an external pipeline, run as a process.
 
 #![cfg_attr(
     not(test),

@@ -1,4 +1,4 @@
-//! Arguments that several functions share.
+//! Arguments shared by several functions.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use pyo3::types::PyRangeMethods;
 
 use crate::errors::refused;
 
-/// A range of frames, of a scenario that has `count`; all of them without one.
+/// Reads a range of frames of a scenario with `count` frames; all frames if none is given.
 pub(crate) fn frames(given: Option<&Bound<'_, PyAny>>, count: u64) -> PyResult<Range<u64>> {
     let Some(given) = given else { return Ok(0..count) };
     let expected = format!(
@@ -27,7 +27,7 @@ pub(crate) fn frames(given: Option<&Bound<'_, PyAny>>, count: u64) -> PyResult<R
     }
 }
 
-/// A number of threads; one a core without one.
+/// Reads a number of threads; one per core if none is given.
 pub(crate) fn jobs(given: Option<i64>) -> PyResult<usize> {
     let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     match given {
@@ -37,7 +37,7 @@ pub(crate) fn jobs(given: Option<i64>) -> PyResult<usize> {
     }
 }
 
-/// A path, or a word that may be one.
+/// Reads an argument that is a path, or text that may be a path.
 pub(crate) fn word(what: &str, given: &Bound<'_, PyAny>) -> PyResult<String> {
     let path: PathBuf = given.extract().map_err(|_| {
         let kind = given.get_type().name().map_or_else(|_| "?".to_owned(), |name| name.to_string());

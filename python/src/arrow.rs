@@ -1,4 +1,4 @@
-//! Columns of tables as Arrow arrays, numbers without a copy.
+//! Table columns as Arrow arrays; numbers are not copied.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::errors::BoresightError;
 /// Time zone of all times.
 const ZONE: &str = "UTC";
 
-/// Names and types of columns.
+/// Returns the Arrow schema of columns: their names and types.
 pub(crate) fn schema(columns: &[Column]) -> SchemaRef {
     let field = |column: &Column| {
         Field::new(column.name(), data_type(column.values().column_type()), column.is_nullable())
@@ -21,7 +21,7 @@ pub(crate) fn schema(columns: &[Column]) -> SchemaRef {
     Arc::new(Schema::new(columns.iter().map(field).collect::<Vec<_>>()))
 }
 
-/// Columns of one length as a batch.
+/// Combines columns of equal length into a record batch.
 pub(crate) fn batch(columns: Vec<Column>) -> PyResult<RecordBatch> {
     let schema = schema(&columns);
     let arrays = columns.into_iter().map(|column| array(column.into_values())).collect();

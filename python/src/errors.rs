@@ -1,4 +1,4 @@
-//! Failures as Python's exceptions.
+//! Conversion of failures to Python exceptions.
 
 use boresight::failure::Failure;
 use boresight::files::FileError as ReadOrWrite;
@@ -9,7 +9,8 @@ import_exception!(boresight.errors, BoresightError);
 import_exception!(boresight.errors, InputError);
 import_exception!(boresight.errors, FileError);
 
-/// The exception of a failure: an `InputError` for what can be put right in what was given, a `FileError` for what the system refused.
+/// Converts a failure to an exception: an `InputError` if the user can correct the input, a `FileError` if
+/// the system refused an operation.
 pub(crate) fn raised(failure: Failure) -> PyErr {
     match &failure {
         Failure::Interrupted => PyKeyboardInterrupt::new_err(()),
@@ -24,12 +25,12 @@ pub(crate) fn raised(failure: Failure) -> PyErr {
     }
 }
 
-/// The exception of a file that cannot be read or written.
+/// Converts the failure to read or write a file to an exception.
 pub(crate) fn file_error(error: ReadOrWrite) -> PyErr {
     raised(error.into())
 }
 
-/// The exception of an argument: `what` is `value`, expected …
+/// Returns the exception for an invalid argument: `what` is `value`, expected …
 pub(crate) fn refused(what: &str, value: impl std::fmt::Display, expected: &str) -> PyErr {
     InputError::new_err(format!("`{what}` is {value}, expected {expected}"))
 }

@@ -1,33 +1,35 @@
-//! Frames and telemetry for Python: pixels as numpy arrays over the buffer that the simulator filled.
+//! Frames and telemetry for Python; pixels are numpy arrays over the buffer that the simulator filled.
 
 use boresight::files::format_utc;
 use contract::docking::{Field, FieldTelemetry as DockingTelemetry};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// An image as it arrives on the ground: what a pipeline sees.
+/// Image as received on the ground: the input of a pipeline.
 #[pyclass(frozen, subclass, module = "boresight")]
 pub(crate) struct Frame {
-    /// Number of the frame (docking: of the field) in its scenario.
+    /// Number of the frame (docking: of the field) in the scenario.
     #[pyo3(get)]
     pub(crate) number: u64,
     /// Bits of the converter: full scale is 2**bit_depth - 1.
     #[pyo3(get)]
     bit_depth: u8,
-    /// Digital numbers, uint16 of shape (rows, columns); `pixels[y, x]`, the centre of the first pixel is x = 0, y = 0.
+    /// Digital numbers, uint16 of shape (rows, columns): `pixels[y, x]`; the centre of the first pixel is at
+    /// x = 0, y = 0.
     #[pyo3(get)]
     pixels: Py<PyArray2<u16>>,
-    /// The regions that were transmitted, each (x, y, columns, rows); all other pixels are 0 and mean nothing. None: the whole image was.
+    /// Transmitted regions, each (x, y, columns, rows); all other pixels are 0 and carry no information. None
+    /// if the whole image was transmitted.
     #[pyo3(get)]
     windows: Option<Vec<(usize, usize, usize, usize)>>,
-    /// Docking: which rows of the camera these are, `all`, `even` or `odd`: row k of the image is the camera's row k, 2k or 2k + 1. None
-    /// in the far range.
+    /// Docking: camera rows in the image, `all`, `even` or `odd`: row k of the image is row k, 2k or 2k + 1
+    /// of the camera. None in the far range.
     #[pyo3(get)]
     lines: Option<&'static str>,
 }
 
 impl Frame {
-    /// A frame whose pixels go over to Python as they lie in memory.
+    /// Converts a frame; Python receives the pixel buffer without a copy.
     pub(crate) fn from_contract(py: Python<'_>, frame: contract::Frame) -> PyResult<Self> {
         let (rows, columns) = (frame.rows(), frame.columns());
         let windows = frame.windows();
@@ -37,7 +39,7 @@ impl Frame {
         Ok(Self { number, bit_depth, pixels, windows, lines: None })
     }
 
-    /// A docking field, likewise.
+    /// Converts a docking field; Python receives the pixel buffer without a copy.
     pub(crate) fn from_field(py: Python<'_>, field: Field) -> PyResult<Self> {
         let lines = Some(field.lines().code());
         Ok(Self { lines, ..Self::from_contract(py, field.into_image())? })
@@ -52,16 +54,17 @@ impl Frame {
     }
 }
 
-/// What the spacecraft tells about a frame besides its pixels: measured, not the truth.
+/// Telemetry of a frame: values measured by the spacecraft, not the truth.
 #[pyclass(frozen, get_all, module = "boresight")]
 pub(crate) struct Telemetry {
     /// Middle of the exposure, UTC, ISO 8601 with nanoseconds.
     time_utc: String,
     /// Exposure time, s.
     exposure_s: f64,
-    /// Attitude of the spacecraft's body, (w, x, y, z), Hamilton, v_sc = q v_j2000 q*.
+    /// Attitude of the spacecraft's body, a Hamilton quaternion (w, x, y, z): v_sc = q v_j2000 q*.
     q_sc_j2000: (f64, f64, f64, f64),
-    /// Velocity about the Earth, km/s, along the axes of ICRS; None when it is not known. The Earth's own is not in it.
+    /// Velocity about the Earth, km/s, along the axes of ICRS; None if unknown. It excludes the velocity of
+    /// the Earth.
     v_orbital_j2000_km_s: Option<(f64, f64, f64)>,
 }
 
@@ -84,12 +87,12 @@ impl Telemetry {
     }
 }
 
-/// What is known of a docking field besides its pixels.
+/// Telemetry of a docking field: the data beside its pixels.
 #[pyclass(frozen, get_all, module = "boresight")]
 pub(crate) struct FieldTelemetry {
-    /// Middle of the field's exposure, s since the beginning of the sequence.
+    /// Middle of the field's exposure, s since the start of the sequence.
     time_s: f64,
-    /// Which of the setup's cameras took it, from 0.
+    /// Index of the camera that took the field, in the setup's list of cameras, from 0.
     camera: usize,
     /// Contrast of the digitiser, 0.1 to 20.
     contrast: f64,

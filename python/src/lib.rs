@@ -1,7 +1,8 @@
-//! The library `boresight._boresight`, which Python loads: scenarios, frames, runs, scores, studies and visibility over the same engine
-//! as the command `boresight`, and pipelines written in Python.
+//! The library `boresight._boresight`, which Python loads: scenarios, frames, runs, scores, studies and
+//! visibility over the same engine as the command `boresight`, and pipelines written in Python.
 //!
-//! Nothing is computed here: values change hands. Every number is that of the command, bit for bit (python/tests).
+//! This crate computes nothing; it only converts values. Every number equals that of the command, bit for bit
+//! (python/tests).
 
 #![cfg_attr(
     not(test),

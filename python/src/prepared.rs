@@ -1,11 +1,11 @@
-//! A scenario that can be run.
+//! Scenario that is ready to run.
 
 use boresight::failure::Failure;
 use boresight::run::{Options, ScenarioSource};
 
 use crate::worlds::{AnyPythonWorld, prepare_for_python};
 
-/// A scenario with what makes its frames.
+/// Scenario with the world that makes its frames.
 pub(crate) struct PreparedScenario {
     pub(crate) source: ScenarioSource,
     pub(crate) world: Box<dyn AnyPythonWorld>,

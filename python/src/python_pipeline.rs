@@ -1,5 +1,5 @@
-//! A pipeline that is written in Python. Its exceptions are outcomes with their message, as the faults of a program are
-//! (`pipeline::external`), and its answers are read by the same code.
+//! Pipeline written in Python. Its exceptions become outcomes that carry their message, like the faults of an
+//! external program (`pipeline::external`), and its answers are parsed by the same code.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -15,21 +15,22 @@ use crate::scenario::setup;
 use crate::wait::Interruption;
 use crate::worlds::{PythonFactory, PythonInterface};
 
-/// Longest reason of an exception, in characters: it stands in a table.
+/// Maximum length of an exception's reason, characters: the reason appears in a table.
 const REASON: usize = 400;
 
-/// A callable of (frame, telemetry), ready to be asked.
+/// Callable of (frame, telemetry), ready to be called.
 pub(crate) struct PythonPipeline {
     name: String,
-    /// Why there is none, where its class could not make one.
+    /// The callable, or the reason why its class could not be instantiated.
     callable: Result<Py<PyAny>, String>,
-    /// Turns what it returns into a line of the protocol.
+    /// Function that converts the callable's return value to a line of the protocol.
     line: Py<PyAny>,
     ended: Arc<Interruption>,
 }
 
 impl PythonPipeline {
-    /// A pipeline of a callable, or of a class, which is made with the setup. What a class raises when it is made is the caller's.
+    /// Creates a pipeline from a callable, or from a class, which is instantiated with the setup. An
+    /// exception raised by the class is returned to the caller.
     pub(crate) fn new(
         given: &Bound<'_, PyAny>,
         prepared: &PreparedScenario,
@@ -44,8 +45,9 @@ impl PythonPipeline {
         Self::from_callable(given, Ok(callable.unbind()), ended)
     }
 
-    /// A pipeline for one case of many, of a callable that all share, or of a class, which is made with the case's setup. What a class
-    /// raises when it is made is the outcome of every frame of the case.
+    /// Creates the pipeline of one case of a study, from a callable that all cases share, or from a class,
+    /// which is instantiated with the case's setup. An exception raised by the class becomes the outcome of
+    /// every frame of the case.
     pub(crate) fn for_case<'py>(
         given: &Bound<'py, PyAny>,
         setup: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
@@ -59,7 +61,7 @@ impl PythonPipeline {
         Self::from_callable(given, callable, ended)
     }
 
-    /// A pipeline of what was made of a callable or a class.
+    /// Creates a pipeline from a callable, or from the reason why there is none.
     fn from_callable(
         given: &Bound<'_, PyAny>,
         callable: Result<Py<PyAny>, String>,
@@ -78,7 +80,8 @@ impl PythonPipeline {
         }
     }
 
-    /// The answer to a question as a line of the protocol, or why there is none; `key` says what `number` counts.
+    /// Calls the pipeline and returns its answer as a line of the protocol, or the reason why there is none;
+    /// `key` names the unit that `number` counts.
     fn call(
         &self,
         (key, number): (&str, u64),
@@ -97,7 +100,8 @@ impl PythonPipeline {
     }
 }
 
-/// Why there is no answer, by the exception in its place; what is no `Exception` ends the work besides.
+/// Returns the reason for a missing answer, from the exception raised instead; an exception that is no
+/// `Exception` also ends the work.
 fn reason(py: Python<'_>, error: PyErr, ended: &Interruption) -> String {
     let reason = format!("{}{}", exception_text(&error), traceback_location(py, &error));
     if !error.is_instance_of::<PyException>(py) {
@@ -106,7 +110,7 @@ fn reason(py: Python<'_>, error: PyErr, ended: &Interruption) -> String {
     reason
 }
 
-/// The beginning of what an exception says.
+/// Message of an exception, cut to the maximum length.
 fn exception_text(error: &PyErr) -> String {
     let text = error.to_string();
     match text.char_indices().nth(REASON).and_then(|(end, _)| text.get(..end)) {
@@ -115,7 +119,7 @@ fn exception_text(error: &PyErr) -> String {
     }
 }
 
-/// Where an exception was raised, as it follows on what it says.
+/// Location where an exception was raised, as a suffix to its message.
 fn traceback_location(py: Python<'_>, error: &PyErr) -> String {
     let mut traceback_location = String::new();
     let mut step = error.traceback(py).map(Bound::into_any);
@@ -128,7 +132,7 @@ fn traceback_location(py: Python<'_>, error: &PyErr) -> String {
     traceback_location
 }
 
-/// Refuses what is no pipeline.
+/// Refuses a value that is no pipeline.
 pub(crate) fn check(given: &Bound<'_, PyAny>) -> PyResult<()> {
     if given.is_callable() { Ok(()) } else { Err(refused_kind(given)?) }
 }
@@ -140,7 +144,7 @@ fn refused_kind(given: &Bound<'_, PyAny>) -> PyResult<PyErr> {
     Ok(refused("pipeline", format!("of type {kind}"), expected))
 }
 
-/// Whether a pipeline is made of it, rather than that it is one.
+/// Returns true if the value is a class, from which a pipeline is made, rather than a pipeline.
 fn is_class(given: &Bound<'_, PyAny>) -> bool {
     given.is_instance_of::<PyType>()
 }
@@ -169,7 +173,7 @@ impl<I: PythonInterface> PipelineFactory<I> for PythonPipeline {
     }
 }
 
-/// A callable at work on one sequence.
+/// Callable that processes one sequence.
 pub(crate) struct RunningPipeline<I: PythonInterface> {
     pub(crate) callable: PythonPipeline,
     pub(crate) setup: I::Setup,

@@ -1,4 +1,4 @@
-//! Simulate, process, score: what the command `run` does, with its directory behind it.
+//! Simulation, processing and scoring: the command `run`, with access to its directory.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -22,12 +22,13 @@ use crate::table::Table;
 use crate::wait::Interruption;
 use crate::worlds::factory;
 
-/// Largest score.json that is read.
+/// Maximum size of a score.json that is read, bytes.
 const MAX_SCORE_BYTES: u64 = 1 << 26;
 
-/// What a run gave: score, truth and measurements.
+/// Result of a run: score, truth and measurements.
 ///
-/// A view of its directory (docs/formats.md), which is a temporary one, gone with the object, unless `out` was given.
+/// A view of the run's directory (docs/formats.md). Without `out` the directory is temporary and is deleted
+/// with the object.
 #[pyclass(frozen, module = "boresight")]
 pub(crate) struct Run {
     path: PathBuf,
@@ -67,7 +68,7 @@ impl Run {
 
 #[pymethods]
 impl Run {
-    /// Opens the directory of a run, of the command's or of `out`.
+    /// Opens the directory of a run, written by the command or with `out`.
     #[staticmethod]
     fn load(directory: PathBuf) -> PyResult<Self> {
         let file = directory.join("run.toml");
@@ -83,13 +84,14 @@ impl Run {
         Ok(Self { path: directory, is_docking, first_failure: None, _temporary: None })
     }
 
-    /// The directory of the run.
+    /// Directory of the run.
     #[getter]
     fn directory(&self) -> &Path {
         &self.path
     }
 
-    /// The score, a dictionary: score.json, described in docs/score.md. Rates are 0 to 1, each figure has its count and its 95 % interval.
+    /// Score as a dictionary: score.json, described in docs/score.md. Rates are 0 to 1; each figure has its
+    /// count and its 95 % interval.
     #[getter]
     fn score<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let path = self.path.join("score.json");
@@ -98,45 +100,46 @@ impl Run {
         json::text_to_python(py, &text)
     }
 
-    /// The first failure of the pipeline, (frame, reason); None if it never failed, or the run was loaded.
+    /// First failure of the pipeline, (frame, reason); None if the pipeline never failed or the run was
+    /// loaded.
     #[getter]
     fn first_failure(&self) -> Option<(u64, &str)> {
         self.first_failure.as_ref().map(|failure| (failure.frame, failure.reason.as_str()))
     }
 
-    /// The truth about each frame: truth/frames.parquet (docking: truth/fields.parquet).
+    /// Truth of each frame: truth/frames.parquet (docking: truth/fields.parquet).
     #[getter]
     fn truth_frames(&self, py: Python<'_>) -> PyResult<Table> {
         self.parquet(py, if self.is_docking { "truth/fields.parquet" } else { "truth/frames.parquet" })
     }
 
-    /// The truth about each object in each frame: truth/objects.parquet. Far range alone.
+    /// Truth of each object in each frame: truth/objects.parquet. Far range only.
     #[getter]
     fn truth_objects(&self, py: Python<'_>) -> PyResult<Table> {
         self.check_world("truth_objects", false)?;
         self.parquet(py, "truth/objects.parquet")
     }
 
-    /// The pipeline's answers: measurements.csv.
+    /// Outcomes of the pipeline: measurements.csv.
     #[getter]
     fn measurements(&self, py: Python<'_>) -> PyResult<Table> {
         self.csv(py, "measurements.csv")
     }
 
-    /// What a pipeline may know of each frame beside its pixels: telemetry.csv.
+    /// Telemetry of each frame, the data that a pipeline receives beside the pixels: telemetry.csv.
     #[getter]
     fn telemetry(&self, py: Python<'_>) -> PyResult<Table> {
         self.csv(py, "telemetry.csv")
     }
 
-    /// What the pipeline took each cluster for: clusters.parquet. Far range alone.
+    /// Label that the pipeline assigned to each cluster: clusters.parquet. Far range only.
     #[getter]
     fn clusters(&self, py: Python<'_>) -> PyResult<Table> {
         self.check_world("clusters", false)?;
         self.parquet(py, "clusters.parquet")
     }
 
-    /// What the pipeline said at the end of each portion: motion.csv. Docking alone.
+    /// Report of the pipeline at the end of each portion: motion.csv. Docking only.
     #[getter]
     fn motion(&self, py: Python<'_>) -> PyResult<Table> {
         self.check_world("motion", true)?;
@@ -148,16 +151,19 @@ impl Run {
     }
 }
 
-/// Makes frames, has a pipeline process them, and scores its answers, as the command `boresight run` does and with the same numbers.
+/// Makes frames, processes them with a pipeline, and scores its outcomes, as the command `boresight run` does
+/// and with the same numbers.
 ///
-/// `scenario`: a scenario, the name of a built-in one, or the path of a TOML file. `frames`: a `range` of step 1; all frames (docking:
-/// fields) without one. `jobs`: threads that make frames, 1 to 1024; default: all cores. The results do not depend on it. `out`: a new or
-/// empty directory that keeps the run. `timeout_s`: longest time that an `exec:` pipeline may take for a frame, s.
+/// `scenario`: a scenario, the name of a built-in scenario, or the path of a TOML file. `frames`: a `range`
+/// of step 1; default: all frames (docking: fields). `jobs`: threads that make frames, 1 to 1024; default:
+/// all cores. The results do not depend on `jobs`. `out`: a new or empty directory that keeps the run.
+/// `timeout_s`: longest time that an `exec:` pipeline may take for a frame, s.
 ///
-/// `pipeline` is None (the built-in one), `exec:COMMAND`, a callable of (frame, telemetry), or a class that is made with the setup and
-/// whose instances are such a callable. A callable returns `Detection`, `NoSolution`, None (no target) or a dictionary with the keys of
-/// docs/external-pipeline.md; in docking `Pose`, `RangeOnly`, `NoSolution` or None. Whatever it raises is the outcome of its frame, with
-/// its message; only what is no `Exception` (Ctrl-C) ends the run.
+/// `pipeline` is None (the built-in pipeline), `exec:COMMAND`, a callable of (frame, telemetry), or a class
+/// that is instantiated with the setup and whose instances are such callables. A callable returns
+/// `Detection`, `NoSolution`, None (no target) or a dictionary with the keys of docs/external-pipeline.md; in
+/// docking `Pose`, `RangeOnly`, `NoSolution` or None. An exception that it raises becomes the outcome of the
+/// frame, with its message; only an exception that is no `Exception` (Ctrl-C) ends the run.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, frames=None, pipeline=None, jobs=None, out=None, timeout_s=10.0))]
 pub(crate) fn run(
@@ -192,7 +198,7 @@ pub(crate) fn run(
         }
     };
     let run = || {
-        // The pipeline first: while nothing has been written.
+        // The pipeline is created first, before anything is written.
         let world = &prepared.world;
         let factory = match asked {
             PipelineArgument::Word(choice) => world.factory(&choice, scratch.path())?,
@@ -215,13 +221,13 @@ pub(crate) fn run(
     Ok(Run { path: directory.path().to_owned(), is_docking, first_failure, _temporary: temporary })
 }
 
-/// The pipeline asked for.
+/// Requested pipeline.
 enum PipelineArgument {
     Word(PipelineChoice),
     Python(PythonPipeline),
 }
 
-/// Where a run is written, and the temporary directory that it is in.
+/// Creates the directory of a run; without `out` inside a temporary directory, which is returned too.
 fn create_directory(out: Option<&Path>) -> Result<(RunDirectory, Option<TempDir>), Failure> {
     if let Some(out) = out {
         return Ok((RunDirectory::create(out)?, None));

@@ -1,4 +1,4 @@
-//! Scenarios as objects. A scenario that exists can be run: all its values were checked.
+//! Scenarios as Python objects. Every scenario object can be run: all its values have been checked.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,16 +18,16 @@ use crate::simulated_frame::SimulatedFrame;
 use crate::stream::FrameStream;
 use crate::worlds::PendingFrame;
 
-/// What to simulate: a built-in scenario or a TOML file, with all its values checked.
+/// Scenario to simulate: a built-in scenario or a TOML file, with all its values checked.
 ///
-/// It does not change: `with_values` and `with_seed` give another one.
+/// It is immutable: `with_values` and `with_seed` return another scenario.
 #[pyclass(frozen, module = "boresight")]
 pub(crate) struct Scenario {
     pub(crate) prepared: Arc<PreparedScenario>,
 }
 
 impl Scenario {
-    /// A scenario, of an object or of the word that names one.
+    /// Returns a scenario, given as an object or by its name or path.
     pub(crate) fn from_argument(given: &Bound<'_, PyAny>) -> PyResult<Arc<PreparedScenario>> {
         match given.cast::<Self>() {
             Ok(scenario) => Ok(Arc::clone(&scenario.get().prepared)),
@@ -52,7 +52,8 @@ impl Scenario {
         Self::checked(py, ScenarioSource::read(&word).map_err(raised)?)
     }
 
-    /// The scenario of a case of a study (docs/studies.md), with the values and the seed that were drawn for it.
+    /// Scenario of one case of a study (docs/studies.md), with the values and the seed that were drawn for
+    /// the case.
     ///
     /// `study` is the study's file. Raises `InputError` for a case that the study does not have.
     #[staticmethod]
@@ -70,39 +71,40 @@ impl Scenario {
         BUILT_IN.iter().map(|built_in| built_in.name).collect()
     }
 
-    /// Name: that of the built-in one, or the file's without its extension.
+    /// Name of the built-in scenario, or the file name without its extension.
     #[getter]
     fn name(&self) -> &str {
         &self.prepared.source.name
     }
 
-    /// What it is, in one line.
+    /// Title of the scenario, one line.
     #[getter]
     fn title(&self) -> &str {
         self.prepared.source.scenario.title()
     }
 
-    /// `far_range` or `docking`.
+    /// World of the scenario: `far_range` or `docking`.
     #[getter]
     fn world(&self) -> &'static str {
         self.prepared.source.world().code()
     }
 
-    /// Seed of every random draw.
+    /// Seed of all random draws.
     #[getter]
     fn seed(&self) -> u64 {
         self.prepared.source.scenario.seed()
     }
 
-    /// Number of its frames (docking: fields).
+    /// Number of frames (docking: fields).
     #[getter]
     fn frame_count(&self) -> u64 {
         self.prepared.frame_count()
     }
 
-    /// The same scenario with other values, by their paths: `{"sensor.gain_e_per_dn": 3.0, "schedule[0].count": 100}`.
+    /// Returns the scenario with other values, given by their paths: `{"sensor.gain_e_per_dn": 3.0,
+    /// "schedule[0].count": 100}`.
     ///
-    /// Raises `InputError` for a path that there is not, and for a value outside its range.
+    /// Raises `InputError` for a path that does not exist, and for a value outside its range.
     fn with_values(&self, py: Python<'_>, values: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut overlay: Vec<(String, Value)> = Vec::new();
         for (path, value) in values {
@@ -115,30 +117,31 @@ impl Scenario {
         Self::checked(py, with_overlay(&self.prepared.source, &overlay).map_err(raised)?)
     }
 
-    /// The same scenario with another seed, 0 to 2**63 - 1: other noise, the same sky.
+    /// Returns the scenario with another seed, 0 to 2**63 - 1: the noise changes, the sky does not.
     fn with_seed(&self, py: Python<'_>, seed: &Bound<'_, PyAny>) -> PyResult<Self> {
         let overlay = [("seed".to_owned(), json::from_python("seed", seed)?)];
         Self::checked(py, with_overlay(&self.prepared.source, &overlay).map_err(raised)?)
     }
 
-    /// The value at a path, as in `sensor.gain_e_per_dn`; tables as dictionaries, None for what the scenario leaves out.
+    /// Returns the value at a path such as `sensor.gain_e_per_dn`; tables as dictionaries, None for values
+    /// that the scenario leaves out.
     fn value<'py>(&self, py: Python<'py>, path: &str) -> PyResult<Bound<'py, PyAny>> {
         json::to_python(py, &value_at(&self.prepared.source, path).map_err(raised)?)
     }
 
-    /// All its values with all defaults, as a TOML file that can be run.
+    /// Returns all values of the scenario, including defaults, as a TOML file that can be run.
     fn to_toml(&self) -> PyResult<String> {
         self.prepared.source.scenario.to_toml().map_err(raised)
     }
 
-    /// What a pipeline is told before the first frame, a dictionary: camera, mounting and star list (docking: cameras and target). Its keys
-    /// are those of the greeting in docs/external-pipeline.md.
+    /// Setup that a pipeline receives before the first frame, as a dictionary: camera, mounting and star list
+    /// (docking: cameras and target). The keys are those of the greeting in docs/external-pipeline.md.
     #[getter]
     fn setup<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         setup(py, &self.prepared)
     }
 
-    /// Makes one frame: the same bits as in a whole run.
+    /// Makes one frame, identical to the bit to that frame of a whole run.
     fn frame(&self, py: Python<'_>, number: i64) -> PyResult<Py<SimulatedFrame>> {
         let count = self.prepared.frame_count();
         let expected = || {
@@ -154,8 +157,9 @@ impl Scenario {
         SimulatedFrame::new(py, made.ok_or_else(expected)?, &self.prepared)
     }
 
-    /// Makes frames, in order, on `jobs` threads (default: all cores) while the caller works on those before: an iterator over
-    /// `SimulatedFrame`. `frames` is a `range` of step 1; all frames without one.
+    /// Returns an iterator over `SimulatedFrame`, in order. The frames are made ahead on `jobs` threads
+    /// (default: all cores) while the caller works on earlier frames. `frames` is a `range` of step 1;
+    /// default: all frames.
     #[pyo3(signature = (frames=None, *, jobs=None))]
     fn frames(&self, frames: Option<&Bound<'_, PyAny>>, jobs: Option<i64>) -> PyResult<FrameStream> {
         let frames = arguments::frames(frames, self.prepared.frame_count())?;
@@ -168,7 +172,7 @@ impl Scenario {
     }
 }
 
-/// What a pipeline is told before the first frame, as a dictionary.
+/// Setup that a pipeline receives before the first frame, as a dictionary.
 pub(crate) fn setup<'py>(py: Python<'py>, prepared: &PreparedScenario) -> PyResult<Bound<'py, PyAny>> {
     let line = prepared.world.greeting().map_err(BoresightError::new_err)?;
     json::text_to_python(py, &String::from_utf8_lossy(&line))

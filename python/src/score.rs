@@ -1,4 +1,4 @@
-//! The oracle over anybody's measurements.
+//! Score of measurements from any source.
 
 use std::path::{Path, PathBuf};
 
@@ -16,11 +16,13 @@ use crate::run::Run;
 
 /// Scores measurements against the truth, as the command `boresight score` does.
 ///
-/// `truth` is a `Run`, or the directory of a run or of a rendered dataset. `measurements` is a file, or a table: boresight's own, one of
-/// polars, pandas or pyarrow, or a dictionary of columns. Its columns are those of measurements.csv (docs/formats.md); `frame`, `status`,
-/// `x_px`, `y_px` are enough (docking: `field`, `status`, `d1_m` ... `phi3_deg`). A frame of the truth without a row is a miss. Of a file,
-/// `clusters.parquet` (docking: `motion.csv`) beside it is read too: evidence for the causes of misses. `attitude`, `telemetry` or `true`, turns
-/// centroids without a line of sight into one. Gives the dictionary of score.json.
+/// `truth` is a `Run`, or the directory of a run or of a rendered dataset. `measurements` is a file or a
+/// table: a table of boresight, polars, pandas or pyarrow, or a dictionary of columns. Its columns are those
+/// of measurements.csv (docs/formats.md); `frame`, `status`, `x_px`, `y_px` are enough (docking: `field`,
+/// `status`, `d1_m` ... `phi3_deg`). A frame of the truth without a row is a miss. If `measurements` is a
+/// file, `clusters.parquet` (docking: `motion.csv`) beside it is read too, as evidence for the causes of
+/// misses. `attitude`, `telemetry` or `true`, selects the attitude that converts centroids without a line of
+/// sight to one. Returns the dictionary of score.json.
 #[pyfunction]
 #[pyo3(signature = (truth, measurements, *, attitude=None))]
 pub(crate) fn score<'py>(
@@ -48,7 +50,7 @@ pub(crate) fn score<'py>(
     std::fs::write(&path, text).map_err(temporary)?;
     let scored = py.detach(|| score_json(&directory, &path, attitude));
     let scored = scored.map_err(|failure| {
-        // The table has no file: its lines are its rows, below the names of the columns.
+        // A table has no file: line numbers in the message count its rows, below the column names.
         let told = failure.to_string().replace(&path.display().to_string(), "measurements");
         match raised(failure) {
             error if error.is_instance_of::<FileError>(py) => FileError::new_err(told),
@@ -58,7 +60,7 @@ pub(crate) fn score<'py>(
     text_to_python(py, &scored?)
 }
 
-/// Reads the word of an attitude, which the command takes too.
+/// Parses the name of an attitude, as the command does.
 fn attitude_choice(word: &str) -> PyResult<AttitudeChoice> {
     match word {
         "telemetry" => Ok(AttitudeChoice::Telemetry),
@@ -67,7 +69,7 @@ fn attitude_choice(word: &str) -> PyResult<AttitudeChoice> {
     }
 }
 
-/// The score of a file of measurements, as JSON.
+/// Scores a file of measurements and returns the score as JSON.
 fn score_json(
     directory: &Path,
     measurements: &Path,

@@ -14,10 +14,12 @@ use crate::prepared::PreparedScenario;
 use crate::table::{Table, row};
 use crate::worlds::{FrameParts, PendingFrame};
 
-/// A frame with its telemetry and its truth. As a `Frame` it can be given to a pipeline, which looks at no more than a `Frame` has.
+/// Frame with its telemetry and its truth. It is also a `Frame` and can be passed to a pipeline, which reads
+/// only the members of `Frame`.
 #[pyclass(frozen, extends = Frame, module = "boresight")]
 pub(crate) struct SimulatedFrame {
-    /// What a pipeline is told beside the frame: `Telemetry`, or `FieldTelemetry` of a docking field.
+    /// Telemetry that a pipeline receives beside the frame: `Telemetry`, or `FieldTelemetry` of a docking
+    /// field.
     #[pyo3(get)]
     telemetry: Py<PyAny>,
     truth: RecordBatch,
@@ -41,13 +43,14 @@ impl SimulatedFrame {
 
 #[pymethods]
 impl SimulatedFrame {
-    /// The truth about the frame, by the names of truth/frames.parquet (docking: truth/fields.parquet), units in the names.
+    /// Truth of the frame, with the names of truth/frames.parquet (docking: truth/fields.parquet) as keys,
+    /// units in the names.
     #[getter]
     fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         row(py, self.truth.clone())
     }
 
-    /// The truth about every object in the frame: a table with the columns of truth/objects.parquet. Far range alone.
+    /// Truth of every object in the frame: a table with the columns of truth/objects.parquet. Far range only.
     #[getter]
     fn objects(&self) -> PyResult<Table> {
         let objects = self.objects.clone();
@@ -56,8 +59,8 @@ impl SimulatedFrame {
         Ok(Table::from_batch(objects))
     }
 
-    /// The frame without noise: expected photoelectrons, dark current and hot pixels included, before saturation; float64 of shape
-    /// (rows, columns). Made when it is first asked for. Far range alone.
+    /// Frame without noise: expected photoelectrons, including dark current and hot pixels, before
+    /// saturation; float64 of shape (rows, columns). Computed on first access. Far range only.
     #[getter]
     fn expected<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (py, own, number) = (slf.py(), slf.get(), slf.as_super().get().number);

@@ -1,4 +1,4 @@
-//! Frames made on threads, taken one by one in Python.
+//! Iterator over frames that are made on other threads.
 
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
@@ -13,12 +13,12 @@ use crate::prepared::PreparedScenario;
 use crate::simulated_frame::SimulatedFrame;
 use crate::worlds::PendingFrame;
 
-/// How often a waiting caller looks whether somebody pressed Ctrl-C.
+/// Interval at which a waiting caller checks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(50);
-/// Frames that wait for the caller beside those of the batch being made.
+/// Number of finished frames that wait for the caller, beside those of the batch in progress.
 const WAITING: usize = 2;
 
-/// Frames in order, an iterator. They are made on other threads, some ahead of the one that is taken.
+/// Iterator over frames, in order. They are made on other threads, some ahead of the frame being taken.
 #[pyclass(frozen, module = "boresight")]
 pub(crate) struct FrameStream {
     prepared: Arc<PreparedScenario>,
@@ -26,7 +26,7 @@ pub(crate) struct FrameStream {
 }
 
 impl FrameStream {
-    /// Starts the threads. They end when all is made, or nobody takes frames any more.
+    /// Starts the threads. They end when all frames are made or no process takes frames any more.
     pub(crate) fn start(prepared: &Arc<PreparedScenario>, frames: Range<u64>, jobs: usize) -> PyResult<Self> {
         let (send, made) = sync_channel(WAITING);
         let own = Arc::clone(prepared);
@@ -46,7 +46,7 @@ fn make(
 ) {
     let mut hand_over = |made: PendingFrame| send.send(Ok(made)).map_err(|_| Failure::Interrupted);
     if let Err(failure) = prepared.world.make(frames, jobs, &mut hand_over) {
-        // Nobody may be there to hear it.
+        // The receiver may be gone.
         let _ = send.send(Err(failure));
     }
 }

@@ -1,4 +1,4 @@
-//! Studies: Monte Carlo over what can vary.
+//! Studies: Monte Carlo campaigns over varied parameters.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,7 +19,7 @@ use crate::study_pipeline::PythonStudyPipeline;
 use crate::table::Table;
 use crate::wait::{AfterCtrlC, Interruption, interruptibly};
 
-/// What a study gave: its summary, and a row a case.
+/// Result of a study: its summary, and one row per case.
 #[pyclass(frozen, module = "boresight")]
 pub(crate) struct StudyResult {
     directory: PathBuf,
@@ -31,25 +31,28 @@ pub(crate) struct StudyResult {
 
 #[pymethods]
 impl StudyResult {
-    /// The directory of the study.
+    /// Directory of the study.
     #[getter]
     fn directory(&self) -> &Path {
         &self.directory
     }
 
-    /// Figures with intervals, sensitivities, the worst cases: the dictionary of summary.json (docs/studies.md).
+    /// Figures with intervals, sensitivities and the worst cases: the dictionary of summary.json
+    /// (docs/studies.md).
     #[getter]
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         text_to_python(py, &self.summary)
     }
 
-    /// The first failure of the pipeline among the cases that were run now, (case, frame, reason); None if it never failed.
+    /// First failure of the pipeline among the cases run by this call, (case, frame, reason); None if the
+    /// pipeline never failed.
     #[getter]
     fn first_failure(&self) -> Option<(u64, u64, &str)> {
         self.first_failure.as_ref().map(|(case, failure)| (*case, failure.frame, failure.reason.as_str()))
     }
 
-    /// A row a case: `case`, `seed`, `set.PATH` for what was drawn, and NAME, NAME.count, NAME.of for each figure.
+    /// Table with one row per case: `case`, `seed`, `set.PATH` for each drawn value, and NAME, NAME.count,
+    /// NAME.of for each figure.
     #[getter]
     fn rows(&self, py: Python<'_>) -> PyResult<Table> {
         Table::from_parts(py.detach(|| read_parquet_table(&self.cases)).map_err(file_error)?)
@@ -60,15 +63,17 @@ impl StudyResult {
     }
 }
 
-/// Runs what is missing of a study and sums it up, as the command `boresight study run` does.
+/// Runs the missing cases of a study and summarises it, as the command `boresight study run` does.
 ///
-/// `path` is the study's file (docs/studies.md). `out` keeps the results; run again with it, only what is missing is made. Without it they
-/// are in a temporary directory, gone with the object. `jobs`: threads that make frames, 1 to 1024; default: all cores. `timeout_s`: longest
-/// time that an `exec:` pipeline may take for a frame, s.
+/// `path` is the study's file (docs/studies.md). `out` is a directory that keeps the results; a later call
+/// with this directory runs only the missing cases. Without `out` the results are in a temporary directory,
+/// deleted with the object. `jobs`: threads that make frames, 1 to 1024; default: all cores. `timeout_s`:
+/// longest time that an `exec:` pipeline may take for a frame, s.
 ///
-/// `pipeline` is None (the built-in one), `exec:COMMAND`, a callable of (frame, telemetry), or a class of them, as in `run`. Cases run side
-/// by side, and call it one at a time: a class is made anew for every case, with the case's setup; a function is called for frames of
-/// several cases in turn, and must remember nothing. Whatever it raises is the outcome of its frame.
+/// `pipeline` is None (the built-in pipeline), `exec:COMMAND`, a callable of (frame, telemetry), or a class
+/// of such callables, as in `run`. Cases run in parallel and call the pipeline one at a time. A class is
+/// instantiated for every case, with the case's setup; a function is called for frames of several cases in
+/// turn, and must keep no state. An exception that it raises becomes the outcome of the frame.
 #[pyfunction]
 #[pyo3(signature = (path, *, out=None, pipeline=None, jobs=None, timeout_s=10.0))]
 pub(crate) fn study(

@@ -1,4 +1,4 @@
-//! A pipeline that is written in Python, for the cases of a study: they ask it side by side, one call at a time.
+//! Pipeline written in Python, for the cases of a study. Cases call it in parallel, one call at a time.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -15,17 +15,18 @@ use crate::python_pipeline::{PythonPipeline, RunningPipeline, check, name};
 use crate::wait::Interruption;
 use crate::worlds::{PythonFactory, PythonInterface, factory};
 
-/// A callable of (frame, telemetry), or a class of them, of which every case has an instance of its own.
+/// Callable of (frame, telemetry), or a class of such callables with one instance per case.
 pub(crate) struct PythonStudyPipeline {
     name: String,
     given: Py<PyAny>,
-    /// SHA-256 of its name and its source.
+    /// SHA-256 of the name and the source of the callable.
     hash: [u8; 32],
     ended: Arc<Interruption>,
 }
 
 impl PythonStudyPipeline {
-    /// A pipeline for the cases of a study; `ended` is set by what it raises that is no `Exception`.
+    /// Creates a pipeline for the cases of a study; an exception that it raises and that is no `Exception`
+    /// sets `ended`.
     pub(crate) fn new(given: &Bound<'_, PyAny>, ended: &Arc<Interruption>) -> PyResult<Self> {
         check(given)?;
         let hash =
@@ -38,7 +39,7 @@ impl PythonStudyPipeline {
         Self { name: self.name.clone(), given, hash: self.hash, ended: Arc::clone(&self.ended) }
     }
 
-    /// The pipeline of a case, whose setup is what a greeting of the protocol says.
+    /// Creates the pipeline of a case, with the setup from the greeting of the protocol.
     fn build_for_case(
         &self,
         greeting: impl FnOnce() -> Result<Vec<u8>, String>,

@@ -1,4 +1,5 @@
-//! Tables for Python: Arrow, handed over by its C data interface, so that polars, pandas and pyarrow read them and none is needed.
+//! Tables for Python: Arrow data, exported through the C data interface, so that polars, pandas and pyarrow
+//! read them and none is required.
 
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
@@ -15,10 +16,11 @@ use pyo3::types::{PyCapsule, PyDict, PyList};
 use crate::arrow::{batch, schema};
 use crate::errors::BoresightError;
 
-/// A table: columns by name, units in the names, as docs/formats.md describes them.
+/// Table with named columns, units in the names, as described in docs/formats.md.
 ///
-/// `polars.DataFrame(table)`, `pyarrow.table(table)` and `pandas.DataFrame.from_arrow(table)` take it as it is, by the Arrow C data
-/// interface and without a copy. Without any of them `table["x_px"]` is a numpy array.
+/// `polars.DataFrame(table)`, `pyarrow.table(table)` and `pandas.DataFrame.from_arrow(table)` import it
+/// through the Arrow C data interface without a copy. Without these libraries `table["x_px"]` is a numpy
+/// array.
 #[pyclass(frozen, module = "boresight")]
 pub(crate) struct Table {
     schema: SchemaRef,
@@ -26,7 +28,7 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// A table of a file.
+    /// Creates a table from a table read from a file.
     pub(crate) fn from_parts(table: LoadedTable) -> PyResult<Self> {
         let schema = schema(&table.header);
         let batches = table.parts.into_iter().map(batch).collect::<PyResult<_>>()?;
@@ -74,7 +76,7 @@ impl Table {
     }
 }
 
-/// Numbers as floating-point ones, NaN where there is none.
+/// Converts numbers to floating point, NaN for missing values.
 fn floats(array: &ArrayRef) -> Vec<f64> {
     match array.data_type() {
         DataType::Float64 => {
@@ -88,7 +90,7 @@ fn floats(array: &ArrayRef) -> Vec<f64> {
             let values = array.as_primitive::<UInt32Type>().iter();
             values.map(|value| value.map_or(f64::NAN, f64::from)).collect()
         }
-        // No table of ours has another type.
+        // No table of this crate has another type.
         _ => vec![f64::NAN; array.len()],
     }
 }
@@ -111,8 +113,8 @@ impl Table {
         self.rows()
     }
 
-    /// A column: numbers and truth values as a numpy array (NaN where there is no value), times as `datetime64[ns]` (UTC), words as a
-    /// list (None where there is none).
+    /// Returns a column: numbers and truth values as a numpy array (NaN for missing values), times as
+    /// `datetime64[ns]` (UTC), text as a list (None for missing values).
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let index = self.schema.index_of(name).map_err(|_| {
             let known = self.column_names().join(", ");
@@ -121,7 +123,7 @@ impl Table {
         self.column(py, index)
     }
 
-    /// All columns by name, as `table[name]` gives them.
+    /// Returns all columns by name, in the form of `table[name]`.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
         for (index, field) in self.schema.fields().iter().enumerate() {
@@ -130,21 +132,21 @@ impl Table {
         Ok(columns)
     }
 
-    /// Arrow's C data interface: the table as a stream.
+    /// Arrow C data interface: exports the table as a stream.
     #[pyo3(signature = (requested_schema=None))]
     fn __arrow_c_stream__<'py>(
         &self,
         py: Python<'py>,
         requested_schema: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyCapsule>> {
-        // Another schema is a wish that a producer need not grant.
+        // A producer need not honour the requested schema.
         drop(requested_schema);
         let batches: Vec<Result<RecordBatch, ArrowError>> = self.batches.iter().cloned().map(Ok).collect();
         let reader = RecordBatchIterator::new(batches, SchemaRef::clone(&self.schema));
         PyCapsule::new_with_value(py, FFI_ArrowArrayStream::new(Box::new(reader)), c"arrow_array_stream")
     }
 
-    /// Arrow's C data interface: names and types of the columns.
+    /// Arrow C data interface: exports names and types of the columns.
     fn __arrow_c_schema__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyCapsule>> {
         let schema = FFI_ArrowSchema::try_from(self.schema.as_ref())
             .map_err(|error| BoresightError::new_err(error.to_string()))?;
@@ -156,7 +158,7 @@ impl Table {
     }
 }
 
-/// The one row of a batch, by column: what is not there is None.
+/// Returns the single row of a batch as a dictionary by column; missing values are None.
 pub(crate) fn row<'py>(py: Python<'py>, batch: RecordBatch) -> PyResult<Bound<'py, PyDict>> {
     let cells = PyDict::new(py);
     let nulls: Vec<bool> = batch.columns().iter().map(|column| column.is_null(0)).collect();
@@ -169,7 +171,7 @@ pub(crate) fn row<'py>(py: Python<'py>, batch: RecordBatch) -> PyResult<Bound<'p
         }
         let column = table.column(py, index)?;
         let is_time = matches!(table.schema.field(index).data_type(), DataType::Timestamp(..));
-        // Python's own numbers; a time stays numpy's, which knows nanoseconds.
+        // Numbers become Python numbers; a time stays a numpy value, which has nanosecond resolution.
         let values =
             if is_time { column } else { py.import("builtins")?.call_method1("list", (plain(&column)?,))? };
         cells.set_item(name, values.get_item(0)?)?;
@@ -177,7 +179,7 @@ pub(crate) fn row<'py>(py: Python<'py>, batch: RecordBatch) -> PyResult<Bound<'p
     Ok(cells)
 }
 
-/// A numpy array as a list of Python's own numbers.
+/// Converts a numpy array to a list of Python numbers.
 fn plain<'py>(column: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     if column.hasattr("tolist")? { column.call_method0("tolist") } else { Ok(column.clone()) }
 }

@@ -1,4 +1,4 @@
-//! Which camera is needed.
+//! Visibility: selection of the required camera.
 
 use std::sync::Arc;
 
@@ -17,11 +17,13 @@ pub(crate) fn requirement_names() -> Vec<&'static str> {
     BUILT_IN_REQUIREMENTS.iter().map(|built_in| built_in.name).collect()
 }
 
-/// Says which requirements a camera meets, and which exposure (s), aperture (mm) or focal length (mm) would, as the command `boresight
-/// visibility` does: the dictionary that it prints with `--json` (docs/visibility.md).
+/// Returns the requirements that a camera meets, and the exposure (s), aperture (mm) or focal length (mm)
+/// that would meet them, as the command `boresight visibility` does: the dictionary that it prints with
+/// `--json` (docs/visibility.md).
 ///
-/// `requirement` is the name of a built-in requirement file or the path of one; `frames` are simulated for each result, 0 (none) to 100000,
-/// instead of the file's number. `jobs`: threads, 1 to 1024; default: all cores.
+/// `requirement` is the name of a built-in requirement file or the path of a requirement file; `frames` is
+/// the number of frames simulated for each result, 0 (none) to 100000, instead of the file's number. `jobs`:
+/// threads, 1 to 1024; default: all cores.
 #[pyfunction]
 #[pyo3(signature = (requirement, *, frames=None, jobs=None))]
 pub(crate) fn visibility<'py>(

@@ -1,4 +1,4 @@
-//! Long work that Ctrl-C can end.
+//! Long-running work that Ctrl-C can end.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,19 +9,20 @@ use pyo3::prelude::*;
 
 use crate::errors::{BoresightError, raised};
 
-/// How often a waiting caller looks whether the work is done, or somebody pressed Ctrl-C.
+/// Interval at which a waiting caller checks for the end of the work and for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Whether work goes on when its caller has gone.
+/// Treatment of work whose caller was interrupted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AfterCtrlC {
-    /// It looks at its flag, and is waited for: what it writes is then as it is after a command that was ended.
+    /// The work checks its flag and the caller waits for its end, so that its files are in the state of an
+    /// interrupted command.
     Ends,
-    /// It writes nothing and goes on unseen to its end.
+    /// The work writes no files and runs unobserved to its end.
     IsLeft,
 }
 
-/// Why work is to end although all is well with it: Ctrl-C, or an exception like it.
+/// Reason to end work that has not failed: Ctrl-C, or an exception like it.
 #[derive(Default)]
 pub(crate) struct Interruption {
     is_set: AtomicBool,
@@ -29,23 +30,23 @@ pub(crate) struct Interruption {
 }
 
 impl Interruption {
-    /// Ends the work; the first reason counts.
+    /// Ends the work; the first reason is kept.
     pub(crate) fn set(&self, reason: PyErr) {
         self.reason.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(reason);
         self.is_set.store(true, Ordering::Relaxed);
     }
 
-    /// Set when the work is not wanted any more.
+    /// Flag that is set when the work must end.
     pub(crate) fn flag(&self) -> &AtomicBool {
         &self.is_set
     }
 
-    /// The exception that ended the work.
+    /// Takes the exception that ended the work.
     pub(crate) fn take(&self) -> Option<PyErr> {
         self.reason.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// Whether the work may go on; hears of Ctrl-C.
+    /// Returns an error if the work must end; also checks for Ctrl-C.
     pub(crate) fn go_on(&self) -> Result<(), Failure> {
         if self.is_set.load(Ordering::Relaxed) {
             return Err(Failure::Interrupted);
@@ -57,8 +58,8 @@ impl Interruption {
     }
 }
 
-/// Does work on a thread of its own, Python free to do something else; `ended` is set when it is not wanted any more, by Ctrl-C or by the
-/// work itself.
+/// Runs work on a separate thread while Python is free to do something else; `ended` is set when the work
+/// must end, by Ctrl-C or by the work itself.
 pub(crate) fn interruptibly<T: Send + 'static>(
     py: Python<'_>,
     after: AfterCtrlC,
@@ -75,7 +76,7 @@ pub(crate) fn interruptibly<T: Send + 'static>(
         if let Err(interrupt) = py.check_signals() {
             ended.is_set.store(true, Ordering::Relaxed);
             if after == AfterCtrlC::Ends {
-                // What it has to say is less than the interrupt.
+                // The interrupt takes precedence over the result of the work.
                 let _ = py.detach(|| worker.join());
             }
             return Err(interrupt);

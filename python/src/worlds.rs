@@ -1,4 +1,4 @@
-//! The worlds whose frames and answers are values in Python.
+//! Worlds whose frames and answers are Python values.
 
 use std::any::Any;
 use std::ops::Range;
@@ -19,17 +19,17 @@ use sim::truth::{FrameTruth, ObjectTruth};
 use crate::arrow::batch;
 use crate::frame::{FieldTelemetry, Frame, Telemetry};
 
-/// One line each.
+/// Entries of all worlds, one line each.
 fn world_entries<P: PythonFactory>() -> [WorldEntry<P>; 2] {
     [WorldEntry::for_world::<FarRangeMission>(), WorldEntry::for_world::<DockingMission>()]
 }
 
-/// A mission of a world, or what is none of it.
+/// Mission of a world, or the unchanged input if it is a mission of another world.
 type DowncastMission = Result<Box<dyn AnyPythonWorld>, Box<dyn Any>>;
 /// Rows and columns of a frame, and its electrons row by row.
 type ExpectedFrame = Result<([usize; 2], Vec<f64>), Failure>;
 
-/// A world: its word, what makes its frames, and the factory of a pipeline that is a callable.
+/// World: its code, the conversion of its mission, and the factory of a callable pipeline.
 struct WorldEntry<P> {
     code: &'static str,
     take: fn(Box<dyn Any>) -> DowncastMission,
@@ -49,10 +49,10 @@ impl<P: PythonFactory> WorldEntry<P> {
     }
 }
 
-/// What makes the frames of a scenario.
+/// Returns the object that makes the frames of a scenario.
 ///
 /// # Errors
-/// [`Failure::Usage`] when they are of a world that has no class in Python.
+/// [`Failure::Usage`] if the frames belong to a world without a class in Python.
 pub(crate) fn prepare_for_python(
     world: &dyn AnyWorld,
     prepared: Box<dyn AnyMission>,
@@ -67,10 +67,10 @@ pub(crate) fn prepare_for_python(
     Err(Failure::Usage(format!("frames of the world {} have no class", world.code())))
 }
 
-/// The factory of a pipeline that is a callable, for a world.
+/// Returns the factory of a callable pipeline for a world.
 ///
 /// # Errors
-/// [`Failure::Usage`] when its frames have no class in Python.
+/// [`Failure::Usage`] if the frames of the world have no class in Python.
 pub(crate) fn factory<P: PythonFactory>(world: &dyn AnyWorld, pipeline: P) -> Result<AnyFactory, Failure> {
     match world_entries::<P>().into_iter().find(|entry| entry.code == world.code()) {
         Some(entry) => Ok((entry.factory)(pipeline)),
@@ -78,13 +78,13 @@ pub(crate) fn factory<P: PythonFactory>(world: &dyn AnyWorld, pipeline: P) -> Re
     }
 }
 
-/// A callable that can be the pipeline of any world.
+/// Callable that can be the pipeline of any world.
 pub(crate) trait PythonFactory {
-    /// It as one of the interface `I`.
+    /// Converts the callable to a factory for the interface `I`.
     fn into_factory<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send>;
 }
 
-/// No callable.
+/// Empty type for entries without a callable.
 enum NoCallable {}
 
 impl PythonFactory for NoCallable {
@@ -93,12 +93,12 @@ impl PythonFactory for NoCallable {
     }
 }
 
-/// An interface whose images and telemetry are values in Python.
+/// Interface whose images and telemetry are Python values.
 pub(crate) trait PythonInterface: Protocol {
-    /// An image as an object.
+    /// Converts an image to a Python object.
     fn frame(py: Python<'_>, image: Self::Image) -> PyResult<Frame>;
 
-    /// What is told beside it.
+    /// Converts the telemetry to a Python object.
     fn telemetry(py: Python<'_>, telemetry: &Self::Telemetry) -> PyResult<Py<PyAny>>;
 }
 
@@ -122,12 +122,12 @@ impl PythonInterface for Docking {
     }
 }
 
-/// A world whose frames are values in Python.
+/// World whose frames are Python values.
 pub(crate) trait PythonWorld: World<Interface: PythonInterface, Truth: Send> {
-    /// The truth about a frame, a row; and about the objects in it, where the world tells of objects.
+    /// Truth of a frame, one row, and truth of its objects if the world records objects.
     fn tables(truth: Self::Truth) -> PyResult<(RecordBatch, Option<RecordBatch>)>;
 
-    /// A frame without noise, row by row, where the world has it: its rows and columns, and its electrons.
+    /// Frame without noise if the world provides it: its rows and columns, and its electrons row by row.
     fn expected(&self, _frame: u64) -> Option<ExpectedFrame> {
         None
     }
@@ -157,10 +157,10 @@ impl PythonWorld for DockingMission {
     }
 }
 
-/// A frame that was made, not a value of Python yet.
+/// Finished frame that is not yet converted to a Python value.
 pub(crate) type PendingFrame = Box<dyn FnOnce(Python<'_>) -> PyResult<FrameParts> + Send>;
 
-/// What a frame of a scenario consists of.
+/// Components of a frame of a scenario.
 pub(crate) struct FrameParts {
     pub(crate) frame: Frame,
     pub(crate) telemetry: Py<PyAny>,
@@ -168,12 +168,12 @@ pub(crate) struct FrameParts {
     pub(crate) objects: Option<RecordBatch>,
 }
 
-/// A [`PythonWorld`], without its types.
+/// Type-erased [`PythonWorld`].
 pub(crate) trait AnyPythonWorld: AnyMission {
-    /// What a program is told before the first frame, a line of JSON.
+    /// Greeting that a program receives before the first frame, a line of JSON.
     fn greeting(&self) -> Result<Vec<u8>, String>;
 
-    /// Makes frames on threads and hands them on, in order.
+    /// Makes frames on threads and passes them on in order.
     fn make(
         &self,
         frames: Range<u64>,
@@ -181,7 +181,7 @@ pub(crate) trait AnyPythonWorld: AnyMission {
         take: &mut dyn FnMut(PendingFrame) -> Result<(), Failure>,
     ) -> Result<(), Failure>;
 
-    /// [`PythonWorld::expected`].
+    /// See [`PythonWorld::expected`].
     fn expected(&self, frame: u64) -> Option<ExpectedFrame>;
 }
 

@@ -1,7 +1,9 @@
-//! What a frame costs: whole frames of the scenario `argon`, frames of other sizes and star counts, their stages, and beside them the floors,
-//! which no simulator gets under: filling the memory of an image, and its random numbers.
+//! Cost of a frame: whole frames of the scenario `argon`, frames of other sizes and star counts, their
+//! stages, and beside them the lower limits that no simulator undercuts: filling the memory of an image, and
+//! its random numbers.
 //!
-//! `cargo bench -p boresight-sim --bench frame`; `docs/speed/benchmarks.py` makes tables and a chart of what it finds.
+//! `cargo bench -p boresight-sim --bench frame`; `docs/speed/benchmarks.py` makes tables and a chart of the
+//! results.
 #![allow(clippy::unwrap_used, reason = "a benchmark ends by panicking")]
 
 #[path = "../tests/it/argon.rs"]
@@ -27,20 +29,20 @@ use processor_time::ProcessorTime;
 use rand::Rng;
 
 const SEED: Seed = Seed { seed: 1, case: 0 };
-/// Sizes of frames in thousands of pixels; 436 is that of the scenario `argon`.
+/// Sizes of frames, thousands of pixels; 436 is the size in the scenario `argon`.
 const KILOPIXELS: [usize; 5] = [250, 436, 1000, 4000, 25_000];
 const OPENING: ExposureInterval = ExposureInterval { seed: SEED, middle_s: 0.0, exposure_s: 0.25 };
-/// Stars of the frames of all sizes.
+/// Number of stars in the frames of all sizes.
 const STARS: u64 = 160;
 
-/// Detectors that are drawn in different ways.
+/// Detectors that are simulated in different ways.
 #[derive(Debug, Clone, Copy)]
 enum Detector {
     /// Every pixel has the same mean.
     Even,
-    /// Every pixel has a response and a dark current of its own.
+    /// Every pixel has a separate response and dark current.
     Uneven,
-    /// Rows have offsets as well.
+    /// Rows have offsets in addition.
     Rows,
 }
 
@@ -48,7 +50,7 @@ impl Detector {
     const ALL: [(Self, &str); 3] =
         [(Self::Even, "even"), (Self::Uneven, "uneven"), (Self::Rows, "row offsets")];
 
-    /// So many pixels, 4 columns to 3 rows.
+    /// Detector of `kilopixels` thousand pixels, 4 columns to 3 rows.
     fn sensor(self, kilopixels: usize) -> Sensor {
         let pixels = kilopixels * 1000;
         let rows = (pixels as f64 * 0.75).sqrt() as usize;
@@ -74,7 +76,7 @@ impl Detector {
     }
 }
 
-/// A camera without a sky: stars of 600 electrons, most stars' lot, anywhere.
+/// Camera without a sky: stars of 600 electrons, the signal of most stars, at random positions.
 struct Camera {
     sensor: Sensor,
     psf: Psf,
@@ -157,7 +159,7 @@ fn argon_frames(c: &mut Criterion<ProcessorTime>) {
     group.finish();
 }
 
-/// One frame's stages, each alone. The charge is collected anew for each image that is read out, but counts for nothing there.
+/// Stages of one frame, each timed separately. The charge that is read out is collected outside the timing.
 fn stages(c: &mut Criterion<ProcessorTime>) {
     let mut group = c.benchmark_group("stage");
     group.throughput(Throughput::Elements(436_000));
@@ -232,7 +234,7 @@ fn stars(c: &mut Criterion<ProcessorTime>) {
 }
 
 fn main() {
-    // A frame is always the same work: a second of it is enough.
+    // Every frame is the same amount of work, so one second of measurement is enough.
     let mut criterion = Criterion::default()
         .with_measurement(ProcessorTime)
         .sample_size(20)

@@ -1,4 +1,4 @@
-//! The expected image: photo-electrons before any noise.
+//! Expected image: photoelectrons before any noise.
 
 mod background;
 mod objects;
@@ -14,37 +14,40 @@ use crate::pixel_factors::PixelFactors;
 use crate::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
 use crate::smooth_field::SmoothField;
 
-/// Pixels of a piece of a row, the unit in which images are looked at: of each there is one word of bits.
+/// Number of pixels in a piece of a row, the unit in which images are examined, with one word of bits per
+/// piece.
 pub(crate) const PIECE: usize = u64::BITS as usize;
 
-/// Pixels of a part of a piece, the unit in which frames are lit and drawn in parts: about as many as a star is wide.
+/// Number of pixels in a part of a piece, the unit in which partial frames are drawn: about the width of a
+/// star.
 pub(crate) const PART: usize = 16;
-/// Parts of a piece.
+/// Number of parts in a piece.
 pub(crate) const PARTS: usize = PIECE / PART;
 
-/// Expected photo-electrons of a frame: a flat level, what makes the background uneven, the images of objects, and single pixels.
+/// Expected photoelectrons of a frame: a flat level, the non-uniform background, the images of objects, and
+/// single pixels.
 ///
-/// All of it is kept as it was told, the background in layers and the images of objects as stamps, and made for a row, or for a
-/// piece of it, when that is asked for: an image is not walked through for each of them, and what nobody looks at costs
-/// nothing. It is reused from frame to frame.
+/// All of these are stored as added, the background in layers and the images of objects as stamps, and
+/// evaluated for a row, or for a piece of a row, on request. Adding an object does not traverse the image,
+/// and pixels that are never read cost nothing. The image is reused from frame to frame.
 #[derive(Debug, Clone)]
 pub struct ExpectedImage {
     columns: usize,
     rows: usize,
     background: Background,
-    /// What each pixel makes of the light that falls on it; `None`: all of it.
+    /// Fraction of the incident light that each pixel collects; `None`: all of it.
     response: Option<PixelFactors>,
     objects: Objects,
-    /// Electrons of single pixels, above all that, row by row.
+    /// Electrons of single pixels in addition to background and objects, row by row.
     single: Vec<f64>,
-    /// One bit a pixel, `words_per_row` words a row: whether it is such a pixel.
+    /// One bit per pixel, `words_per_row` words per row: set if the pixel has an entry in `single`.
     is_single: Vec<u64>,
     words_per_row: usize,
-    /// Of each piece, no pixel has more electrons above the background.
+    /// Upper bound of the electrons above the background in each piece.
     peaks: Vec<f64>,
 }
 
-/// Images are equal that have the same electrons in every pixel, however they were told.
+/// Images are equal if every pixel has equal electrons, however these were added.
 impl PartialEq for ExpectedImage {
     fn eq(&self, other: &Self) -> bool {
         self.size() == other.size() && self.iter().eq(other.iter())
@@ -52,7 +55,7 @@ impl PartialEq for ExpectedImage {
 }
 
 impl ExpectedImage {
-    /// An image without light, on pixels that collect all of it.
+    /// Creates a dark image on pixels that collect all incident light.
     pub fn new(columns: usize, rows: usize) -> Self {
         let words_per_row = columns.div_ceil(64);
         Self {
@@ -68,19 +71,21 @@ impl ExpectedImage {
         }
     }
 
-    /// The same on pixels that respond differently: each collects the light that falls on it times its factor.
+    /// Returns this image on pixels with different responses: each collects the incident light times its
+    /// factor.
     pub(crate) fn with_response(mut self, response: &PixelFactors) -> Self {
         self.response = (!response.is_empty()).then(|| response.clone());
         self.background.response = self.response.clone();
         self
     }
 
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub fn size(&self) -> (usize, usize) {
         (self.columns, self.rows)
     }
 
-    /// Takes away everything drawn and all that is uneven, and sets the flat level, electrons a pixel.
+    /// Removes all objects, single pixels and non-uniform layers, and sets the flat level, electrons per
+    /// pixel.
     pub fn clear(&mut self, flat_e: f64) {
         let rows = self.single.chunks_exact_mut(self.columns.max(1));
         for (row, words) in rows.zip(self.is_single.chunks_exact_mut(self.words_per_row.max(1))) {
@@ -100,8 +105,8 @@ impl ExpectedImage {
         self.background = Background { light_e: flat_e, field, response, ..Background::default() };
     }
 
-    /// Sets light that varies from pixel to pixel: `scale` · `field`, electrons above the flat level, row by row;
-    /// `None` takes it away. Where `field` is too short, there is none.
+    /// Sets a background light that varies from pixel to pixel: `scale` · `field`, electrons above the flat
+    /// level, row by row; `None` removes it. Values missing at the end of `field` count as zero.
     pub fn set_field(&mut self, field: Option<&[f64]>, scale: f64) {
         let held = &mut self.background.field;
         held.clear();
@@ -112,17 +117,18 @@ impl ExpectedImage {
         }
     }
 
-    /// Sets smooth light: `scale` · `smooth`, electrons above the flat level.
+    /// Sets a smooth background light: `scale` · `smooth`, electrons above the flat level.
     pub(crate) fn set_smooth(&mut self, smooth: &SmoothField, scale: f64) {
         self.background.smooth = Some((smooth.clone(), scale));
     }
 
-    /// Whether the background varies from pixel to pixel.
+    /// Returns true if the background varies from pixel to pixel.
     pub fn has_field(&self) -> bool {
         self.background.is_uneven()
     }
 
-    /// Makes one field of all layers of the background, the flat level being kept: for a step that is not a layer.
+    /// Merges all layers of the background into one field and keeps the flat level, for a step that is not a
+    /// layer.
     fn flatten(&mut self) {
         let flat_e = self.flat_e();
         let mut field = vec![0.0; self.columns * self.rows];
@@ -133,7 +139,7 @@ impl ExpectedImage {
         self.background = Background { light_e: flat_e, field, ..Background::default() };
     }
 
-    /// Adds `electrons` to every pixel, times a factor of its own.
+    /// Adds `electrons` to every pixel, multiplied by the factor of the pixel.
     pub(crate) fn add_pattern(&mut self, electrons: f64, factors: &PixelFactors) {
         if self.background.pattern.is_some() {
             self.flatten();
@@ -141,8 +147,8 @@ impl ExpectedImage {
         self.background.pattern = Some((electrons, factors.clone()));
     }
 
-    /// Adds to every pixel `share` of the light of all other pixels of its column; tells what a pixel gains, the mean over
-    /// all pixels.
+    /// Adds to every pixel `share` of the electrons of all other pixels of its column; returns the gain of a
+    /// pixel, averaged over all pixels.
     pub(crate) fn smear(&mut self, share: f64) -> f64 {
         let (mut sums, mut row_e) = (vec![0.0; self.columns], vec![0.0; self.columns]);
         for y in 0..self.rows {
@@ -159,19 +165,20 @@ impl ExpectedImage {
                 *field += share * (sum - row_e);
             }
         }
-        // Each pixel gives to all others of its column, and there are as many of them as pixels that it is one of.
+        // Each pixel contributes to all other pixels of its column, so its electrons are added once per other
+        // pixel.
         let others = self.rows.saturating_sub(1) as f64;
         share * others * sums.iter().sum::<f64>() / (self.columns * self.rows).max(1) as f64
     }
 
-    /// Empties one pixel, background included.
+    /// Removes all electrons of a pixel, including the background.
     pub(crate) fn empty_pixel(&mut self, x: usize, y: usize) {
         self.objects.empty(x, y);
         let background_e = self.background_at(x, y);
         *self.single_pixel(x, y) = -background_e;
     }
 
-    /// The electrons of a single pixel.
+    /// Electrons of a single pixel, which is marked as such.
     fn single_pixel(&mut self, x: usize, y: usize) -> &mut f64 {
         self.is_single[y * self.words_per_row + x / PIECE] |= 1 << (x % PIECE);
         &mut self.single[y * self.columns + x]
@@ -182,24 +189,24 @@ impl ExpectedImage {
         self.background.electrons_at(x, y, self.columns)
     }
 
-    /// Expected electrons of the background about a pixel: without what this pixel has more or less than those around it, its response
-    /// and its dark current.
+    /// Expected electrons of the background around a pixel: without the deviation of this pixel from its
+    /// neighbours in response and dark current.
     pub(crate) fn background_near(&self, x: usize, y: usize) -> f64 {
         self.background.uniform_response_electrons_at(x, y, self.columns)
     }
 
-    /// Raises the flat level of every pixel, electrons; no response changes them.
+    /// Raises the flat level of every pixel, electrons; the response is not applied.
     pub fn add_flat(&mut self, electrons: f64) {
         self.background.dark_e += electrons;
     }
 
-    /// Adds the image of an object, made for a detector of the size of the image, as its pixels respond to the light; tells that
-    /// image. What of a stamp lies off the image is left out.
+    /// Adds the image of an object, made for a detector of the image's size, with the response of the pixels
+    /// applied; returns the resulting image. Parts of the stamp outside the image are left out.
     pub fn add(&mut self, stamp: &Stamp) -> &Stamp {
         self.add_painted(|next| next.clone_from(stamp))
     }
 
-    /// Adds the image of an object as [`ExpectedImage::add`] does: `paint` makes it.
+    /// Adds the image of an object, made by `paint`, like [`ExpectedImage::add`].
     pub(crate) fn add_painted(&mut self, paint: impl FnOnce(&mut Stamp)) -> &Stamp {
         let mut stamp = self.objects.reuse_stamp();
         paint(&mut stamp);
@@ -207,12 +214,12 @@ impl ExpectedImage {
         self.objects.push(stamp)
     }
 
-    /// The images of the objects, in the order in which they were added: as the pixels have responded to their light.
+    /// Images of the objects with the pixel response applied, in the order in which they were added.
     pub fn objects(&self) -> &[Stamp] {
         self.objects.stamps()
     }
 
-    /// Adds what something has left in pixels, as they have collected it.
+    /// Adds electrons that pixels have already collected: the response is not applied.
     pub(crate) fn add_collected(&mut self, stamp: &Stamp) {
         for (x, y, row) in stamp.rows() {
             for (i, &electrons) in row.iter().enumerate().filter(|(_, electrons)| **electrons > 0.0) {
@@ -221,7 +228,7 @@ impl ExpectedImage {
         }
     }
 
-    /// Adds electrons to one pixel, as it has collected them; outside the image nothing happens.
+    /// Adds collected electrons to one pixel; does nothing outside the image.
     pub fn add_pixel(&mut self, x: usize, y: usize, electrons: f64) {
         if x < self.columns && y < self.rows {
             *self.single_pixel(x, y) += electrons;
@@ -229,13 +236,13 @@ impl ExpectedImage {
         }
     }
 
-    /// The flat level, electrons a pixel: all of the background where it does not vary.
+    /// Flat level, electrons per pixel: the whole background where it does not vary.
     pub fn flat_e(&self) -> f64 {
         let pattern_e = self.background.pattern.as_ref().map_or(0.0, |(electrons, _)| *electrons);
         self.background.light_e + (self.background.dark_e + pattern_e)
     }
 
-    /// Expected electrons of a pixel, background included.
+    /// Expected electrons of a pixel, including background.
     pub fn electrons_at(&self, x: usize, y: usize) -> f64 {
         let mut signal_e = [0.0];
         self.add_signal(x, y, &mut signal_e);
@@ -257,7 +264,7 @@ impl ExpectedImage {
         }
     }
 
-    /// Expected electrons of all pixels, row by row, background included.
+    /// Expected electrons of all pixels, row by row, including background.
     pub fn iter(&self) -> impl Iterator<Item = f64> {
         (0..self.rows).flat_map(|y| {
             let mut row = vec![0.0; self.columns];
@@ -266,26 +273,27 @@ impl ExpectedImage {
         })
     }
 
-    /// Expected electrons of the pixels of a row, background included; `out` is as long as a row.
+    /// Computes the expected electrons of the pixels of a row, including background; `out` is as long as a
+    /// row.
     #[inline(always)]
     pub(crate) fn row(&self, y: usize, out: &mut [f64]) {
         self.span::<{ 16 * PIECE }>(0, y, out);
     }
 
-    /// [`ExpectedImage::row`] of part `p` of `N` pixels alone; `out` is as long as the part.
+    /// Computes part `p` of `N` pixels of a row, like [`ExpectedImage::row`]; `out` is as long as the part.
     #[inline(always)]
     pub(crate) fn part<const N: usize>(&self, y: usize, p: usize, out: &mut [f64]) {
         self.span::<N>(p * N, y, out);
     }
 
-    /// Whether something was drawn in row `y`.
+    /// Returns true if row `y` contains drawn pixels.
     #[inline(always)]
     pub(crate) fn is_row_lit(&self, y: usize) -> bool {
         let words = &self.is_single[y * self.words_per_row..(y + 1) * self.words_per_row];
         self.objects.are_in_row(y) || any(words)
     }
 
-    /// Of each `N` pixels of row `y`, whether something was drawn in any of them.
+    /// Marks each group of `N` pixels of row `y` that contains drawn pixels.
     pub(crate) fn lit_parts<const N: usize>(&self, y: usize, is_lit: &mut [bool]) {
         is_lit.fill(false);
         self.objects.for_each_span(y, |from, to| is_lit[from / N..to.div_ceil(N)].fill(true));
@@ -297,12 +305,12 @@ impl ExpectedImage {
         }
     }
 
-    /// Expected electrons of the pixels of row `y` from column `x` on, made by `N` pixels at a time.
+    /// Computes the expected electrons of the pixels of row `y` from column `x` on, `N` pixels at a time.
     #[inline(always)]
     fn span<const N: usize>(&self, x: usize, y: usize, out: &mut [f64]) {
         self.background.span(x, y, self.columns, out);
         for (i, out) in out.chunks_mut(N).enumerate() {
-            // As a pixel alone is made: the sum of all signal, added to the background.
+            // In the order of the computation of one pixel: the sum of all signal, added to the background.
             let mut signal_e = [0.0; N];
             let signal_e = &mut signal_e[..out.len()];
             self.add_signal(x + i * N, y, signal_e);
@@ -312,12 +320,12 @@ impl ExpectedImage {
         }
     }
 
-    /// The pixels of piece `p` of row `y`, as indices into the image.
+    /// Pixels of piece `p` of row `y`, as indices into the image.
     pub(crate) fn piece_pixels(&self, y: usize, p: usize) -> Range<usize> {
         y * self.columns + p * PIECE..y * self.columns + ((p + 1) * PIECE).min(self.columns)
     }
 
-    /// The pixels of piece `p` of row `y` where something was drawn, one bit each, and their electrons above the background.
+    /// Drawn pixels of piece `p` of row `y`, one bit each, and their electrons above the background.
     #[inline(always)]
     pub(crate) fn signal_in(&self, y: usize, p: usize) -> (u64, [f64; PIECE]) {
         let mut signal_e = [0.0; PIECE];
@@ -326,14 +334,14 @@ impl ExpectedImage {
         (lit | self.is_single[y * self.words_per_row + p], signal_e)
     }
 
-    /// No pixel of the background of row `y` has more electrons.
+    /// Upper bound of the background electrons in row `y`.
     #[inline(always)]
     pub(crate) fn row_bound_e(&self, y: usize) -> f64 {
         self.background.row_bound_e(y, self.columns)
     }
 
-    /// In which parts of piece `p` of row `y` something was drawn that may bring a pixel above `limit_e`, over a background of at
-    /// most `bound_e`, which is no more than that: a bit each, the lowest first.
+    /// Parts of piece `p` of row `y` whose drawn signal may bring a pixel above `limit_e`, over a background
+    /// of at most `bound_e`, which is at most `limit_e`: one bit per part, the lowest first.
     #[inline(always)]
     pub(crate) fn parts_that_may_rise_above<S: Simd>(
         &self,
@@ -346,7 +354,7 @@ impl ExpectedImage {
         if bound_e + self.peaks[y * self.words_per_row + p] <= limit_e {
             return 0;
         }
-        // The peaks of objects side by side were added up.
+        // The stored bound adds the peaks of objects that lie side by side, so the signal is computed.
         let mut signal_e = [0.0; PIECE];
         self.add_signal(p * PIECE, y, &mut signal_e[..self.piece_pixels(y, p).len()]);
         signal_e.as_chunks::<PART>().0.iter().enumerate().fold(0, |parts, (i, part)| {
@@ -356,7 +364,8 @@ impl ExpectedImage {
         })
     }
 
-    /// Of each column, the rows from the first to the last pixel with more than `limit_e` expected electrons.
+    /// Returns for each column the rows from the first to the last pixel with more than `limit_e` expected
+    /// electrons.
     pub(crate) fn rows_above(&self, limit_e: f64) -> Vec<Range<usize>> {
         let mut columns = vec![0..0; self.columns];
         let extend = |rows: &mut Range<usize>, y: usize| {
@@ -373,7 +382,7 @@ impl ExpectedImage {
             }
             return columns;
         }
-        // Then only something drawn can be above it.
+        // Only drawn pixels can be above the limit here.
         let simd = pulp::Scalar::new();
         for y in 0..self.rows {
             let may_rise = |&p: &usize| self.parts_that_may_rise_above(simd, y, p, bound_e, limit_e) != 0;
@@ -387,8 +396,7 @@ impl ExpectedImage {
         columns
     }
 
-    /// Index (row by row) and electrons above the background of every pixel where something was drawn, in the order
-    /// of the image.
+    /// Index (row by row) and electrons above the background of every drawn pixel, in the order of the image.
     pub fn object_pixels(&self) -> impl Iterator<Item = (usize, f64)> {
         let pieces = (0..self.rows).flat_map(|y| (0..self.words_per_row).map(move |p| (y, p)));
         pieces
@@ -404,13 +412,13 @@ impl ExpectedImage {
     }
 }
 
-/// Whether any bit is set: without an early exit, for many words at once.
+/// Returns true if any bit is set. It has no early exit, to process many words at once.
 #[inline(always)]
 fn any(words: &[u64]) -> bool {
     words.iter().fold(0, |all, word| all | word) != 0
 }
 
-/// The image of an object, as the pixels of an image respond to it.
+/// Applies the response of an image's pixels to the image of an object.
 struct Respond<'a> {
     image: &'a mut ExpectedImage,
     stamp: &'a mut Stamp,
@@ -449,9 +457,9 @@ impl SimdKernel for Respond<'_> {
     }
 }
 
-/// The places of the ones in a word, lowest first.
+/// Indices of the set bits in a word, lowest first.
 pub(crate) fn set_bits(word: u64) -> impl Iterator<Item = usize> {
-    // Each word is the one before without its lowest one.
+    // Each word is the previous word without its lowest set bit.
     std::iter::successors(Some(word), |word| Some(word & word.wrapping_sub(1)))
         .take_while(|word| *word != 0)
         .map(|word| word.trailing_zeros() as usize)

@@ -1,36 +1,36 @@
-//! The one error type of this crate.
+//! Error type of this crate.
 
 use std::path::PathBuf;
 
 use contract::{ContractError, OutOfRange};
 use thiserror::Error;
 
-/// Why a simulation cannot be made.
+/// Reason why a simulation is impossible.
 #[derive(Debug, Error)]
 pub enum SimError {
-    /// A parameter that is not allowed, by its path in the scenario.
+    /// A parameter, given by its path in the scenario, has an invalid value.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// A value that the contract refuses.
+    /// The contract refuses a value.
     #[error(transparent)]
     Contract(ContractError),
-    /// A star catalogue that cannot be used.
+    /// A star catalogue cannot be used.
     #[error(transparent)]
     Catalog(#[from] crate::catalog::CatalogError),
-    /// A point-spread function of the user's that cannot be used.
+    /// A point-spread function file of the user cannot be used.
     #[error("psf.path {}: {problem}", path.display())]
     PsfFile {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong.
+        /// Description of the problem.
         problem: String,
     },
-    /// A docking target that cannot be used.
+    /// A docking target cannot be used.
     #[error("target {target:?}: {problem}")]
     TargetFile {
-        /// Its name, or the path of its file.
+        /// Name of the target, or the path of its file.
         target: String,
-        /// What is wrong.
+        /// Description of the problem.
         problem: String,
     },
 }

@@ -1,5 +1,6 @@
-//! TOML read to the letter. The crate `toml` drops what an array has beyond the length of its type, and takes an array for a table whose
-//! values stand in the order of a struct's fields; serde leaves both to the format. Here both are mistakes, with their place.
+//! Strict TOML reader. The crate `toml` drops the elements of an array beyond the length of its type, and
+//! accepts an array instead of a table if its values are in the order of a struct's fields; serde leaves both
+//! decisions to the format. Here both are errors, with their position.
 
 use std::fmt;
 
@@ -8,15 +9,16 @@ use serde::de::{
     SeqAccess, Unexpected, VariantAccess, Visitor,
 };
 
-/// Reads a text as a `T`: an array of fixed length has exactly its values, and a table is one.
+/// Parses a text as `T`: an array of fixed length must have exactly its number of values, and a table must be
+/// written as a table.
 ///
 /// # Errors
-/// Those of [`toml::from_str`], and for what it would drop or take for a table.
+/// Those of [`toml::from_str`], and an error for values that it would drop or accept as a table.
 pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, toml::de::Error> {
     T::deserialize(StrictReader(toml::Deserializer::parse(text)?))
 }
 
-/// A part of the reading, around that of `toml` or of a type.
+/// Wrapper of one part of the deserialisation, around that of `toml` or of a type.
 struct StrictReader<X>(X);
 
 impl<'de, D: Deserializer<'de>> Deserializer<'de> for StrictReader<D> {
@@ -69,22 +71,22 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for StrictReader<D> {
         self.0.deserialize_enum(name, variants, ShapeVisitor(visitor, Shape::Any))
     }
 
-    // TOML tells these types by itself.
+    // TOML determines these types by itself.
     serde::forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq map identifier ignored_any
     }
 }
 
-/// What a type is in TOML.
+/// Required form of a type in TOML.
 #[derive(Clone, Copy)]
 enum Shape {
     Any,
-    /// So many values.
+    /// Array with this number of values.
     Array(usize),
     Table,
 }
 
-/// A type's visitor, whose values are read exactly.
+/// Visitor of a type that checks the form of its values.
 struct ShapeVisitor<V>(V, Shape);
 
 macro_rules! delegate {
@@ -143,7 +145,7 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for ShapeVisitor<V> {
     }
 }
 
-/// In the words of serde, which refuses arrays that are too short.
+/// Expected length, in the wording of serde, which refuses arrays that are too short.
 struct Values(usize);
 
 impl Expected for Values {

@@ -1,4 +1,4 @@
-//! Truth → scene → optics → sensor → on board: one frame, in one function.
+//! One frame in one function: truth → scene → optics → sensor → on board.
 
 use contract::{Frame, OutOfRange, Telemetry, Window};
 use hifitime::{Epoch, Unit};
@@ -17,40 +17,41 @@ use crate::switch::Switch;
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility, clock, shadow};
 use crate::{SimError, Simulator};
 
-/// Points that the image of a source is made of, at most: its body's and those of its trail, multiplied.
+/// Maximum number of points in the image of a source: those of its body multiplied by those of its trail.
 const POINTS: usize = 1 << 18;
-/// The same of the Moon: a disk of 1150 px has a point in every pixel.
+/// Maximum number of points in the image of the Moon: a disk of 1150 px has a point in every pixel.
 const MOON_POINTS: usize = 1 << 20;
-/// The share of the Moon's light below which the shutter control leaves a pixel out: a hundredth of what a pixel of a disk of
-/// 1150 px has.
+/// Fraction of the Moon's flux below which the shutter control omits a pixel: a hundredth of the flux of a
+/// pixel in a disk of 1150 px.
 const MOON_FLOOR: f64 = 1e-8;
 
-/// One frame with all that belongs to it.
+/// Frame with its telemetry and its truth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exposure {
-    /// The image as it arrives on the ground.
+    /// Image as received on the ground.
     pub frame: Frame,
-    /// What the spacecraft tells about it.
+    /// Telemetry of the frame.
     pub telemetry: Telemetry,
-    /// The truth about the frame.
+    /// Truth of the frame.
     pub truth: FrameTruth,
-    /// The truth about every object in it: the target, then stars, planets, the Moon, hot pixels and tracks of particles, each by
-    /// number.
+    /// Truth of every object in the frame: the target, then stars, planets, the Moon, hot pixels and
+    /// cosmic-ray hits, each by number.
     pub objects: Vec<ObjectTruth>,
 }
 
-/// Which pixels of a frame are drawn of which a camera keeps regions, or only what is above a floor. What it keeps is the same, bit for
-/// bit.
+/// Selection of the drawn pixels in a frame of which a camera keeps only regions, or only values above a
+/// floor. The kept pixels are bit-identical in both cases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PixelSelection {
-    /// Those that the camera looks at: all above the threshold of its regions or its floor, and all in its regions.
+    /// Pixels that the camera examines: all above the threshold of its regions or its floor, and all in its
+    /// regions.
     #[default]
     Needed,
-    /// All of them.
+    /// All pixels.
     All,
 }
 
-/// A camera of a [`Simulator`], with the buffers that frames reuse. One a thread.
+/// Camera of a [`Simulator`], with the buffers that frames reuse; one per thread.
 #[derive(Debug)]
 pub struct SimulatedCamera<'a> {
     simulator: &'a Simulator,
@@ -60,22 +61,24 @@ pub struct SimulatedCamera<'a> {
     raw: SparseImage,
     pixel_selection: PixelSelection,
     regions: Option<RoiExtractor>,
-    /// Background of an interlaced scene, electrons a second, pixel by pixel: of the first field, and of the second.
+    /// Background of an interlaced scene, electrons per second, pixel by pixel: of the first field, and of
+    /// the second.
     backgrounds: [Vec<f64>; 2],
-    /// Its hot pixels.
+    /// Stamps of the hot pixels.
     hot: Vec<Stamp>,
-    /// The track of a particle: drawn when it strikes and again when it is described, as there may be many.
+    /// Stamp of a cosmic-ray hit: drawn when it strikes and again when it is described, because hits may be
+    /// numerous.
     hit_stamp: Stamp,
-    /// The image of an object as the scene was in the first and in the second field.
+    /// Image of an object in the scene of the first and of the second field.
     halves: [Stamp; 2],
-    /// The image of an object whose wells overflow.
+    /// Image of an object whose wells overflow.
     bloomed: Stamp,
-    /// A frame that nobody needs any more.
+    /// Frame that is no longer needed, for reuse.
     spare: Option<Frame>,
 }
 
 impl Simulator {
-    /// A camera of this simulation: one a thread, reused from frame to frame.
+    /// Creates a camera of this simulation: one per thread, reused from frame to frame.
     ///
     /// # Errors
     /// None after [`Simulator::new`], which made the same checks.
@@ -105,20 +108,21 @@ impl<'a> SimulatedCamera<'a> {
         })
     }
 
-    /// The same camera, with other pixels drawn of the frames of which it keeps regions.
+    /// Returns this camera with another selection of drawn pixels, for frames of which it keeps regions.
     pub fn with_pixel_selection(self, pixel_selection: PixelSelection) -> Self {
         Self { pixel_selection, ..self }
     }
 
-    /// Makes the next frame in the memory of one that nobody needs any more: the same bits, without the time that fresh memory takes.
+    /// Provides the memory of a frame that is no longer needed for the next frame. The result is
+    /// bit-identical, and the time for fresh memory is saved.
     pub fn reuse(&mut self, frame: Frame) {
         self.spare = Some(frame);
     }
 
-    /// Makes frame number `number`: the same bits whatever was made before.
+    /// Makes frame number `number`. The result is bit-identical whichever frames were made before.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] when the schedule has no such frame.
+    /// [`SimError::OutOfRange`] if the schedule has no such frame.
     pub fn expose(&mut self, number: u64) -> Result<Exposure, SimError> {
         let simulator = self.simulator;
         let (group, time) = simulator
@@ -128,7 +132,7 @@ impl<'a> SimulatedCamera<'a> {
         let lag_s = simulator.shutter.lag_s();
         let watched = SceneState::compute_at(simulator, time - lag_s * Unit::Second, number)?;
         let exposure_s = self.exposure_s(&watched, time - lag_s * Unit::Second);
-        // A control without lag looks at the frame's own moment.
+        // A control without lag uses the state at the time of the frame.
         let state = if lag_s == 0.0 { watched } else { SceneState::compute_at(simulator, time, number)? };
         let (mut view, drawn) =
             SceneView::for_frame(simulator, self.painter.psf(), time, state, exposure_s, number)?;
@@ -179,19 +183,19 @@ impl<'a> SimulatedCamera<'a> {
         Ok(Exposure { frame, telemetry, truth, objects })
     }
 
-    /// The noise-free expectation of the last frame made, electrons a pixel (dark current and hot pixels included), before
-    /// saturation.
+    /// Noise-free expectation of the last frame made, electrons per pixel (including dark current and hot
+    /// pixels), before saturation.
     pub fn expected(&self) -> &ExpectedImage {
         &self.image
     }
 
-    /// The exposure time that the shutter control chooses: it follows the brightest object on the detector, as it
-    /// is at a moment, a lag before the exposure.
+    /// Exposure time that the shutter control chooses. It follows the brightest object on the detector at an
+    /// instant that precedes the exposure by a lag.
     fn exposure_s(&self, state: &SceneState, time: Epoch) -> f64 {
         let simulator = self.simulator;
         let (columns, rows) = simulator.projection.detector();
         let target = state.target_position.filter(|position| position.is_on_detector(columns, rows));
-        // A body that spans pixels has a lower peak than a point of its light.
+        // A body that spans pixels has a lower peak than a point source of equal flux.
         let peak_share = self.painter.psf().peak_share();
         let project = |point_m: &Vector3<f64>| state.project(point_m, &simulator.projection);
         let spread = state.appearance.peak_share(&project, peak_share) / peak_share;
@@ -218,8 +222,8 @@ impl<'a> SimulatedCamera<'a> {
         simulator.shutter.exposure_s((peak > 0.0).then_some(peak))
     }
 
-    /// Electrons a second in the brightest pixel of the Moon, from its image without the camera's motion; 0 when it is not
-    /// in the field.
+    /// Electrons per second in the brightest pixel of the Moon, from its image without the camera's motion; 0
+    /// if the Moon is not in the field.
     fn moon_peak_e_per_s(&self, state: &SceneState) -> f64 {
         let simulator = self.simulator;
         let Some(moon) = &state.moon else { return 0.0 };
@@ -234,7 +238,8 @@ impl<'a> SimulatedCamera<'a> {
         stamp.truth(0.0, 0.0, f64::INFINITY).peak_electrons * source.electrons_per_s
     }
 
-    /// Draws the expected image and the digital numbers, and tells the truth of every object that has light on the detector.
+    /// Draws the expected image and the digital numbers, and returns the truth of every object with signal on
+    /// the detector.
     fn draw(
         &mut self,
         view: &mut SceneView,
@@ -303,7 +308,7 @@ impl<'a> SimulatedCamera<'a> {
         let sources = &mut view.sources;
         let mut charge = sensor.collect(image, interval);
         for (pixel, stamp) in hot_pixels.iter().zip(&mut *hot) {
-            // The sensor itself collects it; here it is only described.
+            // The sensor itself collects these electrons; this stamp only describes them.
             stamp.set_pixel(pixel.x, pixel.y, sensor.hot_electrons(pixel, interval));
             sources.push(detector_source(ObjectKind::HotPixel, pixel.y * columns + pixel.x, stamp));
         }
@@ -375,16 +380,16 @@ impl<'a> SimulatedCamera<'a> {
     }
 }
 
-/// What the camera has seen of a frame.
+/// Camera's result for a frame.
 struct FrameContents {
     objects: Vec<ObjectTruth>,
-    /// Electrons that the frame transfer adds to a pixel, the mean over all.
+    /// Electrons that the frame transfer adds to a pixel, averaged over all pixels.
     smear_e_per_px: f64,
-    /// The regions that are kept; `None`: the whole image.
+    /// Regions that are kept; `None`: the whole image.
     windows: Option<Vec<Window>>,
 }
 
-/// Reads out a frame as far as the camera looks at it, and finds the regions that it keeps.
+/// Reads out the pixels of a frame that the camera examines, and finds the regions that it keeps.
 fn extract_regions(
     sensor: &Sensor,
     frame_charge: &FrameCharge<'_>,
@@ -399,7 +404,7 @@ fn extract_regions(
     Ok(windows)
 }
 
-/// Reads out all pixels of a frame that are above a floor, or all that there are.
+/// Reads out the pixels of a frame above a floor, or all pixels.
 fn read_out_above(
     sensor: &Sensor,
     floor_dn: u16,
@@ -416,7 +421,7 @@ fn read_out_above(
     Ok(())
 }
 
-/// What the detector makes by itself, as a source that is described by its stamp.
+/// Source for a signal that the detector itself generates, described by its stamp.
 fn detector_source(kind: ObjectKind, id: usize, stamp: &Stamp) -> Source {
     Source {
         kind,

@@ -1,4 +1,4 @@
-//! What stands before the stars.
+//! Occultation of stars and planets.
 
 use contract::{Direction, Icrs};
 
@@ -7,7 +7,8 @@ use crate::scene::{Background, Outline, earth::EarthDisk, moon::LitMoon};
 use crate::scene_state::SceneState;
 use crate::truth::Observer;
 
-/// The bodies of a scene that stars and planets may be behind: the Earth where its light is in the scene, the Moon, the target.
+/// Bodies of a scene that can occult stars and planets: the Earth if its light is in the scene, the Moon, and
+/// the target.
 pub(crate) struct ForegroundBodies<'a> {
     observer: &'a Observer,
     earth: Option<EarthDisk>,
@@ -16,7 +17,7 @@ pub(crate) struct ForegroundBodies<'a> {
 }
 
 impl<'a> ForegroundBodies<'a> {
-    /// Those of a moment.
+    /// Returns the occulting bodies at one instant.
     pub(crate) fn from_state(simulator: &'a Simulator, state: &'a SceneState) -> Self {
         let has_earth = simulator.background.as_ref().is_some_and(Background::has_earth);
         Self {
@@ -27,7 +28,7 @@ impl<'a> ForegroundBodies<'a> {
         }
     }
 
-    /// Whether one of them stands before a far source with this astrometric direction.
+    /// Returns true if any of the bodies hides a distant source with this astrometric direction.
     pub(crate) fn hide(&self, astrometric: Direction<Icrs>) -> bool {
         let earth = self.earth.as_ref().filter(|earth| earth.is_near(&astrometric));
         let moon = self.moon.filter(|moon| moon.is_near(&astrometric));

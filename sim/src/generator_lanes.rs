@@ -1,23 +1,25 @@
-//! Random words for bulk draws: eight generators side by side, which a machine with wide registers steps at once.
+//! Random words for bulk draws: eight generators side by side, which a machine with wide registers steps
+//! together.
 
 use pulp::{Simd, WithSimd};
 
 use crate::randomness::{GOLDEN_GAMMA, Streams, split_mix};
 
-/// Generators side by side.
+/// Number of generators.
 pub(crate) const LANES: usize = 8;
 
 /// Eight generators xoshiro256++ (Blackman & Vigna 2019), stepped together.
 ///
-/// Word i is number i / 8 of generator i % 8. Generator 0 is the stream at the same place; generator l is keyed by the four
-/// numbers 4 l … 4 l + 3 of the SplitMix64 whose first four key generator 0.
+/// Word i is number i / 8 of generator i % 8. Generator 0 is the stream with this index; generator l is keyed
+/// by the four numbers 4 l … 4 l + 3 of the SplitMix64 whose first four numbers key generator 0.
 #[derive(Debug, Clone)]
 pub(crate) struct GeneratorLanes {
     state: [[u64; LANES]; 4],
 }
 
 impl GeneratorLanes {
-    /// The generators at a place of one effect in one frame. A place uses these or its stream.
+    /// Creates the generators for an index of one effect in one frame. An index uses either these or its
+    /// stream.
     #[inline(always)]
     pub(crate) fn from_streams(streams: &Streams, index: u64) -> Self {
         let base = streams.key_at(index);
@@ -30,7 +32,7 @@ impl GeneratorLanes {
         Self { state }
     }
 
-    /// The next word of every generator.
+    /// Next word of every generator.
     #[inline(always)]
     pub(crate) fn next(&mut self) -> [u64; LANES] {
         let [s0, s1, s2, s3] = &mut self.state;
@@ -48,9 +50,10 @@ impl GeneratorLanes {
         words
     }
 
-    /// Steps every generator `times` times; `visit` is told the number of the step and its words.
+    /// Steps every generator `times` times and passes the number of each step and its words to `tell`.
     ///
-    /// To be called in a function of its own ([`Simd::vectorize`]): among much else the generators would not stay in registers.
+    /// It must be called in a separate function ([`Simd::vectorize`]): inside a larger function the
+    /// generators would not stay in registers.
     #[inline(always)]
     pub(crate) fn steps<S: Simd>(&mut self, _: S, times: usize, mut visit: impl FnMut(usize, [u64; LANES])) {
         #[cfg(target_arch = "x86_64")]
@@ -64,7 +67,7 @@ impl GeneratorLanes {
         }
     }
 
-    /// Leaves out the words of so many steps.
+    /// Skips the words of `times` steps.
     #[inline(always)]
     pub(crate) fn skip<S: Simd>(&mut self, simd: S, times: usize) {
         struct Skip<'a>(&'a mut GeneratorLanes, usize);
@@ -81,7 +84,8 @@ impl GeneratorLanes {
     }
 }
 
-/// The same steps told to AVX2 one by one: it has no rotation, and the compiler does one of them for each number alone.
+/// Steps written in AVX2 instructions: AVX2 has no rotation, and the compiler computes one of the rotations
+/// for each number separately.
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
     use pulp::x86::V3;
@@ -89,7 +93,7 @@ mod avx2 {
 
     use super::{GeneratorLanes, LANES};
 
-    /// Registers for a part of the state of all generators.
+    /// Number of registers for one part of the state of all generators.
     const REGISTERS: usize = 2;
 
     #[inline(always)]
@@ -179,7 +183,7 @@ mod tests {
         assert_eq!(pulp::Arch::Scalar.dispatch(Steps(GeneratorLanes::from_streams(&streams, 99))), expected);
     }
 
-    /// Words of neighbouring lanes, and of the same lane at neighbouring places, differ in half of their bits.
+    /// Words of neighbouring lanes, and of one lane at neighbouring indices, differ in half of their bits.
     #[test]
     fn neighbouring_lanes_and_places_share_no_bits_but_by_chance() {
         let streams = Seed { seed: 1, case: 0 }.streams(0, Effect::PixelNoise);
@@ -198,7 +202,7 @@ mod tests {
                 }
             }
         }
-        // Binomial, standard deviation sqrt(bits)/2; four of them.
+        // Binomial with standard deviation sqrt(bits)/2; the limit is four of them.
         assert!((differ as f64 - bits as f64 / 2.0).abs() < 2.0 * (bits as f64).sqrt(), "{differ} of {bits}");
     }
 }

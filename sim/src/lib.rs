@@ -1,7 +1,8 @@
-//! The simulator: truth → scene → optics → sensor → on-board preprocessing → frame.
+//! Simulator: truth → scene → optics → sensor → on-board preprocessing → frame.
 //!
-//! [`SimulatedCamera::expose`] makes one frame with its telemetry and its truth. Every random draw has an address
-//! (seed, case, frame, effect, place), so frame 7000 alone is the frame 7000 of the whole run.
+//! [`SimulatedCamera::expose`] makes one frame with its telemetry and its truth. Every random draw has an
+//! address (seed, case, frame, effect, index), so frame 7000 made separately equals frame 7000 of the whole
+//! run.
 
 #![cfg_attr(
     not(test),

@@ -1,23 +1,24 @@
-//! The faintest star that a camera sees.
+//! Magnitude of the faintest star that a camera detects.
 
 use contract::PixelPoint;
 
 use crate::Simulator;
 use crate::optics::{Psf, Stamp};
 
-/// The magnitudes between which one is looked for.
+/// Limits of the searched magnitudes.
 const FAINTEST: f64 = 40.0;
 const BRIGHTEST: f64 = -10.0;
-/// Steps of the bisection within a magnitude: to 1e-3.
+/// Number of bisection steps within a magnitude, for an accuracy of 1e-3.
 const HALVINGS: usize = 10;
 
 impl Simulator {
-    /// The V magnitude of the faintest star like the Sun whose image, at rest in the middle of the detector, has a signal-to-noise ratio
-    /// of `snr`, as in the truth table, in an exposure of `exposure_s`; to 1e-3. `None` when none from −10 to 40 has. Of the background
-    /// what is the same in all directions counts.
+    /// V magnitude of the faintest Sun-like star whose image, at rest in the middle of the detector, has a
+    /// signal-to-noise ratio of `snr`, as defined in the truth table, in an exposure of `exposure_s`;
+    /// accurate to 1e-3. `None` if no magnitude from −10 to 40 reaches it. Only the part of the background
+    /// that is equal in all directions is included.
     pub fn limiting_magnitude(&self, exposure_s: f64, snr: f64) -> Option<f64> {
         let (columns, rows) = self.projection.detector();
-        // On the centre of a pixel.
+        // At the centre of a pixel.
         let centre = PixelPoint::new((columns / 2) as f64, (rows / 2) as f64);
         let (sensor, transmission) = (&self.sensor, self.vignetting.transmission(centre));
         let background_e = sensor.sky_electrons(exposure_s) + sensor.dark_electrons(exposure_s);
@@ -28,7 +29,7 @@ impl Simulator {
             let truth = stamp.truth(background_e, sensor.readout_noise_e(), sensor.config().saturation_e());
             truth.snr >= snr
         };
-        // From the faint side: a bright star fills the detector, and takes as long.
+        // Searched from the faint side: a bright star fills the detector, and its image takes long to draw.
         let steps = (FAINTEST - BRIGHTEST) as usize;
         let mut seen = (0..=steps).map(|step| FAINTEST - step as f64).find(|m| is_seen(*m))?;
         let mut step = 1.0;

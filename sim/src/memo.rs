@@ -1,25 +1,27 @@
-//! Results of costly pure functions, kept by their arguments.
+//! Cache of the results of costly pure functions, by their arguments.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Results that are kept, the latest: enough for a sweep of a few values, few enough that memory stays small: a sky is some 20 MB.
+/// Number of latest results that are kept: enough for a sweep of a few values, and few enough to limit
+/// memory; a sky is some 20 MB.
 const KEPT: usize = 4;
 
-/// The latest results of a pure function, shared by all threads of a process. The cases of a study differ in a few values: what the
-/// others give is made once.
+/// Latest results of a pure function, shared by all threads of a process. The cases of a study differ in a
+/// few values, so results that depend on other values are computed once.
 #[derive(Debug, Default)]
 pub struct Memo<K, V>(Mutex<Vec<(K, Arc<V>)>>);
 
 impl<K: PartialEq, V> Memo<K, V> {
-    /// A memo without results.
+    /// Creates an empty memo.
     pub const fn new() -> Self {
         Self(Mutex::new(Vec::new()))
     }
 
-    /// The result of `make`, or the earlier one for an equal key. Nothing is locked while it is made: two threads may make the same.
+    /// Returns the result of `make`, or the earlier result for an equal key. No lock is held while `make`
+    /// runs: two threads may compute the same result.
     ///
     /// # Errors
-    /// That of `make`, which is not kept.
+    /// The error of `make`, which is not kept.
     pub fn get<E>(&self, key: K, make: impl FnOnce(&K) -> Result<V, E>) -> Result<Arc<V>, E> {
         let kept = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, result)) = kept().iter().find(|(known, _)| *known == key) {

@@ -1,15 +1,15 @@
-//! Draws the image of one source: its body, carried along its trail, through the point-spread function.
+//! Drawing of the image of one source: its body, moved along its trail, through the point-spread function.
 
 use contract::PixelPoint;
 
 use crate::optics::{self, ImagePoint, Psf, Stamp};
 use crate::scene::Source;
 
-/// A point-spread function with the buffers that sources reuse.
+/// Point-spread function with the buffers that sources reuse.
 #[derive(Debug)]
 pub(crate) struct Painter {
     psf: Psf,
-    /// The body in the middle of the exposure.
+    /// Points of the body in the middle of the exposure.
     body: Vec<ImagePoint>,
     trail: Vec<ImagePoint>,
     points: Vec<ImagePoint>,
@@ -20,13 +20,14 @@ impl Painter {
         Self { psf, body: Vec::new(), trail: Vec::new(), points: Vec::new() }
     }
 
-    /// The point-spread function it draws with.
+    /// Point-spread function of the painter.
     pub(crate) fn psf(&self) -> &Psf {
         &self.psf
     }
 
-    /// Makes `stamp` the image of a source that gives `electrons` to a detector of (columns, rows). `resolve` appends the
-    /// points of its body, shares adding up to 1; it is told how many points the trail has, each of which takes them all.
+    /// Draws into `stamp` the image of a source that gives `electrons` to a detector of (columns, rows).
+    /// `resolve` appends the points of its body, with shares adding up to 1; it receives the number of points
+    /// of the trail, at each of which the whole body is drawn.
     pub(crate) fn paint(
         &mut self,
         source: &Source,
@@ -46,12 +47,13 @@ impl Painter {
     }
 }
 
-/// The points of an image that moves as a whole: each point of the `body` along the `trail` that `centre` makes.
+/// Computes the points of an image that moves as a whole: each point of the `body` along the `trail` of
+/// `centre`.
 fn carry_along(body: &[ImagePoint], centre: PixelPoint, trail: &[ImagePoint], points: &mut Vec<ImagePoint>) {
     points.clear();
     for along in trail {
         points.extend(body.iter().map(|point| {
-            // From the trail outwards: a point at the centre is on it to the bit.
+            // Measured from the trail outwards: a point at the centre is exactly on the trail.
             let (dx, dy) = (point.position.x - centre.x, point.position.y - centre.y);
             let position = PixelPoint::new(along.position.x + dx, along.position.y + dy);
             ImagePoint { position, share: along.share * point.share }

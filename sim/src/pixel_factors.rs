@@ -1,26 +1,27 @@
-//! A factor of every pixel of a detector, the same in every frame.
+//! Factor of every pixel of a detector, constant over all frames.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::simd_kernel::LANES;
 
-/// Columns that lie together.
+/// Number of adjacent columns in a strip.
 const STRIP: usize = 64;
-/// Factors of a line of memory, 64 bytes.
+/// Number of factors in a cache line of 64 bytes.
 const LINE: usize = 16;
-/// Factors of a row of a strip: whole lines.
+/// Number of factors in a row of a strip: whole cache lines.
 const STRIDE: usize = (STRIP + LANES).next_multiple_of(LINE);
 
 /// Factors of the pixels of a detector, none below 0; shared by all frames.
 ///
-/// They lie in strips of 64 columns, row after row of a strip: the rows of an image of an object so are next to each other, and not
-/// each in a page of memory of its own; and each row of a strip begins with a line of memory.
+/// They are stored in strips of 64 columns, row after row of a strip. The rows of an object's image are thus
+/// close together and not each in a separate page of memory, and each row of a strip begins at a cache line.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PixelFactors {
-    /// The rows of a strip go on with the first columns of the next strip: eight pixels side by side are together wherever they begin.
+    /// Factors by strip. Each row of a strip continues with the first columns of the next strip: eight
+    /// adjacent pixels are contiguous for any first pixel.
     values: Arc<[f32]>,
-    /// Where the first strip begins.
+    /// Index at which the first strip begins.
     first: usize,
     columns: usize,
     rows: usize,
@@ -28,16 +29,16 @@ pub(crate) struct PixelFactors {
 }
 
 impl PixelFactors {
-    /// Of a detector of so many columns, row by row; of no factors, none.
+    /// Creates the factors of a detector with this number of columns, row by row; empty if there are none.
     pub(crate) fn new(columns: usize, factors: impl IntoIterator<Item = f32>) -> Self {
         let by_rows: Vec<f32> = factors.into_iter().collect();
         if by_rows.is_empty() || columns == 0 {
             return Self::default();
         }
         let rows = by_rows.len() / columns;
-        // Where there are no pixels, there is no light either.
+        // There is no light outside the pixels, so the padding is irrelevant.
         let mut values: Arc<[f32]> = vec![1.0; columns.div_ceil(STRIP) * rows * STRIDE + LINE].into();
-        // From the beginning of a line of memory, if that can be had: it changes no factor.
+        // Starts at a cache line if possible; this changes no factor.
         let first = values.as_ptr().align_offset(size_of::<[f32; LINE]>()).min(LINE);
         let slots = Arc::get_mut(&mut values).unwrap_or_default()[first..].chunks_exact_mut(STRIDE);
         let strips = (0..columns).step_by(STRIP);
@@ -50,29 +51,30 @@ impl PixelFactors {
         Self { values, first, columns, rows, largest }
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no factors.
     pub(crate) fn is_empty(&self) -> bool {
         self.rows == 0
     }
 
-    /// The largest of them; 0 without any.
+    /// Largest factor; 0 without factors.
     pub(crate) fn largest(&self) -> f64 {
         f64::from(self.largest)
     }
 
-    /// Whether they are of a detector with so many columns and with a row `y`.
+    /// Returns true if the factors belong to a detector with this number of columns and with a row `y`.
     #[inline(always)]
     pub(crate) fn has_row(&self, y: usize, columns: usize) -> bool {
         y < self.rows && columns == self.columns
     }
 
-    /// That of a pixel; `None` off the detector.
+    /// Factor of a pixel; `None` off the detector.
     pub(crate) fn factor_at(&self, x: usize, y: usize) -> Option<f32> {
         let is_inside = x < self.columns && y < self.rows;
         is_inside.then(|| self.values.get(self.index(x, y)).copied()).flatten()
     }
 
-    /// Those of `length` pixels of a row from column `x` on, part by part: which of the pixels, and their factors.
+    /// Factors of `length` pixels of a row from column `x` on, part by part: the range of the pixels, and
+    /// their factors.
     #[inline(always)]
     pub(crate) fn span(
         &self,
@@ -88,14 +90,14 @@ impl PixelFactors {
         })
     }
 
-    /// Those of eight pixels of a row from column `x` on; 1 off the detector.
+    /// Factors of eight pixels of a row from column `x` on; 1 off the detector.
     #[inline(always)]
     pub(crate) fn eight(&self, x: usize, y: usize) -> &[f32; LANES] {
         let from = if y < self.rows { self.values.get(self.index(x, y)..) } else { None };
         from.and_then(<[f32]>::first_chunk).unwrap_or(&[1.0; LANES])
     }
 
-    /// Row by row.
+    /// Factors row by row.
     #[cfg(test)]
     pub(crate) fn iter(&self) -> impl Iterator<Item = f32> {
         (0..self.rows).flat_map(move |y| (0..self.columns).filter_map(move |x| self.factor_at(x, y)))
@@ -107,7 +109,7 @@ impl PixelFactors {
     }
 }
 
-/// Wherever in memory they are.
+/// Equality is independent of the alignment in memory.
 impl PartialEq for PixelFactors {
     fn eq(&self, other: &Self) -> bool {
         let strips = self.values.len().saturating_sub(LINE);

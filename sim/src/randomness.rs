@@ -1,34 +1,35 @@
-//! Random draws that have an address, not a history.
+//! Random draws identified by an address, independent of any history.
 //!
-//! A stream is named by (seed, case, frame, effect, place): the same address gives the same numbers whatever was
-//! drawn before, on any thread and any machine. The generator is xoshiro256++ (Blackman & Vigna 2019), keyed by
-//! SplitMix64 (Steele, Lea & Flood 2014) over the words of the address; both are portable and named, so the
-//! numbers are part of Boresight's contract: to change them is a change of results.
+//! A stream is identified by (seed, case, frame, effect, index): an address gives identical numbers
+//! regardless of earlier draws, on any thread and any machine. The generator is xoshiro256++ (Blackman &
+//! Vigna 2019), keyed by SplitMix64 (Steele, Lea & Flood 2014) over the words of the address. Both are
+//! portable and named, so the numbers are part of Boresight's contract: a change of the numbers is a change
+//! of results.
 
 use rand::Rng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
-/// What a draw is for. Each effect has streams of its own, so that switching one off leaves every other draw as
-/// it was. The numbers are part of the address and never change.
+/// Purpose of a draw. Each effect has separate streams, so that switching one effect off leaves all other
+/// draws unchanged. The numbers are part of the address and never change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Effect {
     /// Shot, dark and read noise of a pixel: one effect, one draw.
     PixelNoise = 1,
-    /// Places and strengths of hot pixels (addressed with the sensor's seed).
+    /// Positions and strengths of hot pixels (addressed with the sensor's seed).
     HotPixels = 2,
     /// Error of the attitude control.
     AttitudeControl = 3,
-    /// Error of the attitude's knowledge in telemetry.
+    /// Error of the attitude reported in telemetry.
     AttitudeKnowledge = 4,
     /// Sensitivity of each pixel (addressed with the sensor's seed).
     PixelResponse = 20,
     /// Dark current of each pixel (addressed with the sensor's seed).
     DarkPattern = 21,
-    /// Places of dead pixels (addressed with the sensor's seed).
+    /// Positions of dead pixels (addressed with the sensor's seed).
     DeadPixels = 22,
-    /// Places of dead columns (addressed with the sensor's seed).
+    /// Positions of dead columns (addressed with the sensor's seed).
     DeadColumns = 23,
     /// Fixed offset of each column (addressed with the sensor's seed).
     ColumnOffset = 24,
@@ -36,9 +37,9 @@ pub enum Effect {
     RowNoise = 25,
     /// Noise common to a column of a frame.
     ColumnNoise = 26,
-    /// Switching of hot pixels; addressed by cells of time, not by frames.
+    /// Switching of hot pixels; addressed by time cells, not by frames.
     Telegraph = 27,
-    /// Hits of cosmic rays.
+    /// Cosmic-ray hits.
     CosmicRays = 28,
     /// Layout of the blankets on a docking target's station (addressed with the target's seed).
     Blankets = 40,
@@ -48,32 +49,35 @@ pub enum Effect {
     VideoDrift = 42,
     /// Shift of each line of a field.
     LineJitter = 43,
-    /// Which lines of a field are lost, and what stands in their place.
+    /// Selection of the lost lines of a field, and the signal that replaces them.
     LostLines = 44,
     /// Level of each line of a field.
     LineLevel = 45,
-    /// Errors of range and range rate that the overlay of a video picture says, by the second.
+    /// Errors of range and range rate in the overlay of a video picture, by the second.
     OverlayReading = 46,
-    /// Which dark pixels are above the floor of a camera that looks no lower, and the numbers of those that are not.
+    /// Selection of the dark pixels above the floor of a camera that reads no lower values, and the redrawn
+    /// values of dark pixels that must not exceed it.
     Exceedance = 47,
     /// Values of a study's dispersed parameters (addressed with the study's seed and the case).
     StudyParameter = 60,
     /// Shifts and permutations of a study's design (addressed with the study's seed).
     StudyDesign = 61,
-    /// The seed of a case's scenario (addressed with the study's seed and the case).
+    /// Seed of a case's scenario (addressed with the study's seed and the case).
     CaseSeed = 62,
     /// Resampling of cases for the intervals of a study's figures (addressed with the study's seed).
     Bootstrap = 63,
-    /// Which blocks a gate exchanges between baseline and result (addressed with the number of blocks).
+    /// Selection of the blocks that a gate exchanges between baseline and result (addressed with the number
+    /// of blocks).
     BlockExchange = 64,
-    /// Which of equally bad cases of a study are named (addressed with the study's seed and the case).
+    /// Choice among equally bad cases of a study that are listed (addressed with the study's seed and the
+    /// case).
     WorstCases = 65,
 }
 
-/// The generator behind every draw.
+/// Generator of every draw.
 pub type Stream = Xoshiro256PlusPlus;
 
-/// Seed and case: what all streams of one simulated sequence have in common.
+/// Seed and case, common to all streams of one simulated sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Seed {
     /// Seed of the scenario or study.
@@ -83,12 +87,13 @@ pub struct Seed {
 }
 
 impl Seed {
-    /// The stream at an address. `index` is a row, a pixel, a component: whatever the effect counts by.
+    /// Returns the stream at an address. `place` is the index by which the effect counts, for instance a row,
+    /// a pixel or a component.
     pub fn stream(&self, frame: u64, effect: Effect, index: u64) -> Stream {
         self.streams(frame, effect).stream_at(index)
     }
 
-    /// All streams of an effect in a frame: for loops over many places.
+    /// Returns all streams of an effect in a frame, for loops over many indices.
     pub fn streams(&self, frame: u64, effect: Effect) -> Streams {
         let mut key = 0x426f_7265_7369_6768; // "Boresigh"
         for word in [self.seed, self.case, frame, effect as u64] {
@@ -98,42 +103,43 @@ impl Seed {
     }
 }
 
-/// The streams of one effect in one frame: an address that lacks its place.
+/// Streams of one effect in one frame: an address without its index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Streams {
     key: u64,
 }
 
 impl Streams {
-    /// The stream at a place, the same as [`Seed::stream`].
+    /// Returns the stream at an index, equal to that of [`Seed::stream`].
     pub fn stream_at(&self, index: u64) -> Stream {
         Stream::seed_from_u64(self.key_at(index))
     }
 
-    /// The first uniform number of the stream at a place, without the cost of the stream.
+    /// Returns the first uniform number of the stream at an index, without the cost of the stream.
     #[inline(always)]
     pub(crate) fn first_uniform(&self, index: u64) -> f64 {
         let key = self.key_at(index);
-        // The first word of xoshiro256++ is made of the first and the fourth of the numbers that key it.
+        // The first word of xoshiro256++ depends on the first and the fourth of the numbers that key the
+        // generator.
         let [first, fourth] =
             [0, 3].map(|number| split_mix(key.wrapping_add(GOLDEN_GAMMA.wrapping_mul(number))));
         in_unit_interval(first.wrapping_add(fourth).rotate_left(23).wrapping_add(first))
     }
 
-    /// What keys the generators at a place.
+    /// Key of the generators at an index.
     pub(crate) fn key_at(&self, index: u64) -> u64 {
         split_mix(self.key ^ index)
     }
 
-    /// A single word of 64 random bits at a place, without the cost of a generator. Not a number of the stream
-    /// there; a place uses either its stream or its word.
+    /// Returns a word of 64 random bits at an index, without the cost of a generator. The word is not a
+    /// number of the stream at this index; an index uses either its stream or its word.
     pub fn word(&self, index: u64) -> u64 {
-        // Twice: once would give neighbouring places inputs that differ in a bit or two only.
+        // Applied twice: after one step the inputs of neighbouring indices would differ only in a bit or two.
         split_mix(split_mix(self.key ^ index))
     }
 }
 
-/// By how much the state of SplitMix64 grows from one number to the next.
+/// Increment of SplitMix64's state from one number to the next.
 pub(crate) const GOLDEN_GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// One step of SplitMix64: a bijection that spreads every bit.
@@ -145,19 +151,19 @@ pub(crate) fn split_mix(word: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// A uniform number in the open interval (0, 1), with 53 bits.
+/// Returns a uniform number in the open interval (0, 1), with 53 bits.
 pub fn uniform(stream: &mut Stream) -> f64 {
     in_unit_interval(stream.next_u64())
 }
 
-/// The uniform number of a word.
+/// Converts a word to a uniform number.
 #[inline(always)]
 fn in_unit_interval(word: u64) -> f64 {
-    // The half step keeps 0 out, so that a logarithm can be taken.
+    // The half step excludes 0, so that its logarithm can be taken.
     ((word >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0)
 }
 
-/// A normal number of mean 0 and standard deviation 1 (Box & Muller 1958, the cosine half).
+/// Returns a normal number of mean 0 and standard deviation 1 (Box & Muller 1958, the cosine half).
 pub fn normal(stream: &mut Stream) -> f64 {
     let radius = (-2.0 * libm::log(uniform(stream))).sqrt();
     radius * libm::cos(2.0 * std::f64::consts::PI * uniform(stream))
@@ -175,7 +181,7 @@ mod tests {
         assert_eq!(draw(), draw());
     }
 
-    /// The numbers themselves are frozen: a change here changes every result and belongs in CHANGELOG.md.
+    /// The numbers are frozen: a change here changes every result and belongs in CHANGELOG.md.
     #[test]
     fn the_first_number_is_frozen() {
         assert_eq!(SEED.stream(0, Effect::PixelNoise, 0).next_u64(), FIRST_OF_42);
@@ -213,7 +219,8 @@ mod tests {
         assert_eq!(streams.stream_at(99).next_u64(), SEED.stream(7, Effect::PixelNoise, 99).next_u64());
     }
 
-    /// Bits of words at neighbouring places, and at the same place in neighbouring frames, differ in half the cases.
+    /// Bits of words at neighbouring indices, and at one index in neighbouring frames, differ in half the
+    /// cases.
     #[test]
     fn neighbouring_words_share_no_bits_but_by_chance() {
         let n = 20_000;
@@ -230,7 +237,7 @@ mod tests {
                 }
             }
         }
-        // Binomial, standard deviation sqrt(n)/2 = 71; five of them for 128 counts.
+        // Binomial with standard deviation sqrt(n)/2 = 71; the limit is five of them for 128 counts.
         for count in differ.into_iter().flatten() {
             assert!((f64::from(count) - n as f64 / 2.0).abs() < 354.0, "{count} of {n}");
         }
@@ -246,7 +253,7 @@ mod tests {
             })
             .collect();
         let correlation = rows.iter().map(|(a, b)| a * b).sum::<f64>() / n as f64;
-        // Standard error 1/sqrt(n) = 0.007; four of them.
+        // Standard error 1/sqrt(n) = 0.007; the limit is four of them.
         assert!(correlation.abs() < 0.028, "correlation {correlation}");
     }
 
@@ -263,7 +270,7 @@ mod tests {
             .enumerate()
             .map(|(i, x)| (standard.cdf(*x) - (i as f64 + 0.5) / n as f64).abs())
             .fold(0.0, f64::max);
-        // Kolmogorov-Smirnov at the 1e-4 level: 2.23/sqrt(n).
+        // Kolmogorov–Smirnov limit at the 1e-4 level: 2.23/sqrt(n).
         assert!(distance < 2.23 / (n as f64).sqrt(), "distance {distance}");
     }
 }

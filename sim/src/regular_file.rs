@@ -1,15 +1,16 @@
-//! Files that a user names: opened or read whole, if they have an end.
+//! Files named by the user: opened or read completely if they are finite.
 
 use std::fs::File;
 use std::io::{Error, Read, Result};
 use std::path::Path;
 
-/// Opens a file for reading. A pipe or a device, which may have no end or nobody at the other one, is refused.
+/// Opens a file for reading. Refuses a pipe or a device, which may have no end or no process at the other
+/// end.
 ///
 /// # Errors
 /// Those of the operating system, and for a file that is not regular.
 pub fn open(path: &Path) -> Result<File> {
-    // Asked before: opening a pipe waits for whoever writes into it.
+    // Checked before opening: opening a pipe waits for a writing process.
     let metadata = std::fs::metadata(path)?;
     if !metadata.is_file() || (metadata.len() == 0 && is_kernel_file(path)) {
         return Err(Error::other("it is not a regular file"));
@@ -17,13 +18,14 @@ pub fn open(path: &Path) -> Result<File> {
     File::open(path)
 }
 
-/// Whether a file is one that the kernel makes up as it is read: it calls itself regular and empty, and may have no end.
+/// Returns true if the kernel generates the file on reading: such a file is listed as regular and empty, and
+/// may have no end.
 fn is_kernel_file(path: &Path) -> bool {
     let resolved = std::fs::canonicalize(path);
     resolved.is_ok_and(|resolved| resolved.starts_with("/proc") || resolved.starts_with("/sys"))
 }
 
-/// The bytes of a file of at most `max_bytes`. A pipe or a device, which may have no end, is refused.
+/// Reads the bytes of a file of at most `max_bytes`. Refuses a pipe or a device, which may have no end.
 ///
 /// # Errors
 /// Those of the operating system, and for a file that is not regular or larger.
@@ -35,12 +37,12 @@ pub fn read(path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
         return Err(too_long(length));
     }
     let mut bytes = Vec::with_capacity(length as usize);
-    // It may have grown since.
+    // The file may have grown since.
     file.take(max_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > max_bytes { Err(too_long(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
-/// The text of such a file.
+/// Reads the text of a file of at most `max_bytes`.
 ///
 /// # Errors
 /// Those of [`read`], and for bytes that are not UTF-8.

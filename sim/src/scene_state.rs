@@ -1,4 +1,4 @@
-//! Where everything is at one moment: chaser, target, camera, light.
+//! State of the scene at one instant: chaser, target, camera, light.
 
 use contract::{Body, CameraFrame, Direction, Icrs, PixelPoint, Rotation, Target};
 use hifitime::{Epoch, Unit};
@@ -10,7 +10,7 @@ use crate::switch::Switch;
 use crate::truth::{ObjectKind, Observer, States, clock, shadow};
 use crate::{SimError, Simulator};
 
-/// Where everything is at one moment.
+/// State of the scene at one instant.
 pub(crate) struct SceneState {
     pub(crate) states: States,
     pub(crate) observer: Observer,
@@ -19,17 +19,17 @@ pub(crate) struct SceneState {
     pub(crate) line_of_sight: Direction<Icrs>,
     pub(crate) sunlit_fraction: f64,
     pub(crate) phase_rad: f64,
-    /// The target, and where the origin of its body frame is in the image; `None` behind the camera.
+    /// Target, and the pixel position of its body frame's origin; `None` behind the camera.
     pub(crate) target: Source,
     pub(crate) target_position: Option<PixelPoint>,
     pub(crate) target_from_icrs: Option<Rotation<Target, Icrs>>,
     pub(crate) appearance: Appearance,
-    /// `None` without the Solar System.
+    /// Moon; `None` without the Solar System.
     pub(crate) moon: Option<LitMoon>,
 }
 
 impl SceneState {
-    /// Where everything is at `time`, with the attitude of frame `number`.
+    /// Computes the state of the scene at `time`, with the attitude of frame `number`.
     pub(crate) fn compute_at(simulator: &Simulator, time: Epoch, number: u64) -> Result<Self, SimError> {
         let states = simulator.trajectory.states_at(time);
         simulator.target.check_separation(&states, number)?;
@@ -49,7 +49,8 @@ impl SceneState {
         let target_from_icrs = simulator.target.attitude(&states);
         let appearance = simulator.target.appearance(&lighting, target_from_icrs);
         let magnitude = appearance.magnitude();
-        // The target moves with the chaser: light time cancels aberration, so it is seen where it is.
+        // The target moves with the chaser: light time cancels aberration, so the target appears in its
+        // geometric direction.
         let target_position = simulator.projection.project(&(camera_from_icrs * line_of_sight));
         let target = Source {
             kind: ObjectKind::Target,
@@ -57,7 +58,7 @@ impl SceneState {
             position: target_position.unwrap_or_default(),
             ends: [target_position.unwrap_or_default(); 2],
             astrometric: Some(line_of_sight),
-            // In the umbra there is no light, and no magnitude.
+            // In the umbra the target has neither flux nor magnitude.
             magnitude,
             electrons_per_s: magnitude.map_or(0.0, |m| simulator.radiometry.sunlit(m)),
         };
@@ -81,7 +82,8 @@ impl SceneState {
         })
     }
 
-    /// How the camera turns during the exposure about this moment, its middle, and where its target is at both ends.
+    /// Rotation of the camera during the exposure centred on this instant; also sets the target's positions
+    /// at the start and the end.
     pub(crate) fn motion(
         &mut self,
         simulator: &Simulator,
@@ -103,7 +105,8 @@ impl SceneState {
         Ok(camera)
     }
 
-    /// Where a point of the target's body frame, m, is in the image: each point in its own direction.
+    /// Pixel position of a point of the target's body frame, m; each point is projected in its individual
+    /// direction.
     pub(crate) fn project(&self, point_m: &Vector3<f64>, projection: &Projection) -> Option<PixelPoint> {
         let turned_m = self.target_from_icrs.map_or(*point_m, |turn| turn.inverse().rotate(point_m));
         let from_chaser_km = self.states.line_of_sight_km() + turned_m / 1000.0;

@@ -1,4 +1,5 @@
-//! What the camera sees while its shutter is open: of a frame as a whole, or of either field of an interlaced one.
+//! Scene in front of the camera during an exposure: of a whole frame, or of each field of an interlaced
+//! frame.
 
 use std::collections::BTreeSet;
 
@@ -13,27 +14,29 @@ use crate::switch::Switch;
 use crate::truth::{ObjectKind, clock};
 use crate::{SimError, Simulator};
 
-/// What the camera sees while its shutter is open.
+/// Scene in front of the camera during an exposure.
 pub(crate) struct SceneView {
     time: Epoch,
-    /// Where everything is at that time, the middle of the exposure.
+    /// Positions and attitudes at `time`, the middle of the exposure.
     pub(crate) state: SceneState,
     camera: CameraMotion,
-    /// Target, stars, planets and the Moon, each by number.
+    /// Target, stars, planets and the Moon, each kind in order of number.
     pub(crate) sources: Vec<Source>,
     pub(crate) background: Option<BackgroundField>,
 }
 
-/// What is drawn of a frame.
+/// Scenes from which a frame is drawn.
 pub(crate) enum FrameViews {
-    /// The scene in the middle of the frame.
+    /// The scene at the middle of the frame.
     Single,
-    /// The scenes in the middle of either field, with the same sources, in the same order, as the middle of the frame.
+    /// The scenes at the middle of each field, with the same sources in the same order as at the middle of
+    /// the frame.
     Fields(InterlaceConfig, Box<[SceneView; 2]>),
 }
 
 impl SceneView {
-    /// What the camera sees about the middle of frame `number`, where all is as `state` says, and what of it is drawn.
+    /// Returns the view about the middle of frame `number`, with positions and attitudes from `moment`, and
+    /// the scenes to draw.
     pub(crate) fn for_frame(
         simulator: &Simulator,
         psf: &Psf,
@@ -59,7 +62,7 @@ impl SceneView {
             )
         };
         let (mut first, mut second) = (field(first_s)?, field(second_s)?);
-        // An object at the edge may have light in one field alone: all look out as far as any of them sees.
+        // An object at the edge may contribute in only one field: each view searches the area of all three.
         let cameras = [middle.camera, first.camera, second.camera];
         for view in [&mut middle, &mut first, &mut second] {
             cameras.iter().for_each(|other| view.camera.widen_to(other));
@@ -69,7 +72,8 @@ impl SceneView {
         Ok((middle, FrameViews::Fields(interlace, Box::new([first, second]))))
     }
 
-    /// The background of every pixel, electrons a second, row by row; `false` when there is none of it.
+    /// Writes the background of every pixel, electrons per second, row by row; returns false if there is
+    /// none.
     pub(crate) fn background_e_per_s(&self, out: &mut Vec<f64>) -> bool {
         if let Some(background) = &self.background {
             background.electrons_per_s(out);
@@ -77,7 +81,7 @@ impl SceneView {
         self.background.is_some()
     }
 
-    /// The camera with its shutter open about `time`, before it has looked.
+    /// Creates the view of an exposure about `time`, before its sources are found.
     fn without_sources(
         simulator: &Simulator,
         time: Epoch,
@@ -89,7 +93,7 @@ impl SceneView {
         Ok(Self { time, state, camera, sources: Vec::new(), background: None })
     }
 
-    /// Finds all that has light on the detector while the shutter is open.
+    /// Finds all sources and the background that contribute electrons on the detector during the exposure.
     fn find_sources(&mut self, simulator: &Simulator, psf: &Psf, exposure_s: f64) {
         let Self { time, state, camera, sources, background } = self;
         let reach_px = |rate_e_per_s: f64| psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E);
@@ -123,9 +127,10 @@ impl SceneView {
     }
 }
 
-/// Keeps the sources that are in all three lists, each in its order. What is missing in one has no light in any of the
-/// exposures, because each list was asked for all that comes near enough; or something hides it at one of the three
-/// moments: a star at its very limb is then left out of both fields, image and truth.
+/// Keeps the sources that occur in all three lists, each list in its order. A source missing from one list
+/// contributes nothing in any of the exposures, because each list was searched for all sources near enough;
+/// or it is hidden at one of the three times: a star exactly at the limb of the hiding body is then omitted
+/// from both fields, in image and truth.
 fn retain_common(mut lists: [&mut Vec<Source>; 3]) {
     let names =
         |list: &Vec<Source>| list.iter().map(|source| (source.kind, source.id)).collect::<BTreeSet<_>>();

@@ -1,20 +1,22 @@
-//! Loops on the widest registers of the machine.
+//! Loops compiled for the widest registers of the machine.
 
 use pulp::Simd;
 
-/// Numbers that an [`F64x8`] holds: those of the widest registers that there are.
+/// Number of values in an [`Eight`]: as many as the widest existing registers hold.
 pub(crate) const LANES: usize = 8;
 
-/// Something that is done in loops over many numbers.
+/// Work done in loops over many numbers.
 pub(crate) trait SimdKernel {
-    /// What it gives.
+    /// Result of the work.
     type Output;
-    /// Does it. To be inlined always, with all that it calls: what is not is compiled for any machine.
+    /// Performs the work. Must always be inlined, with all functions that it calls: a function that is not
+    /// inlined is compiled for a generic machine.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-/// Does some work compiled for the widest registers that the machine has: the same steps everywhere, on as many numbers at a time
-/// as fit. No operation is joined with another or moved before it, so the bits do not depend on it.
+/// Performs work compiled for the widest registers of the machine: the same steps everywhere, on as many
+/// numbers at a time as fit. No operation is fused with another or reordered; the resulting bits are
+/// therefore independent of the registers.
 #[inline(always)]
 pub(crate) fn run_widest<W: SimdKernel>(work: W) -> W::Output {
     struct Widest<W>(W);
@@ -28,7 +30,7 @@ pub(crate) fn run_widest<W: SimdKernel>(work: W) -> W::Output {
     arch().dispatch(Widest(work))
 }
 
-/// The widest registers that the machine has; in a test those that it asks for.
+/// Returns the widest registers of the machine; in a test, the registers that the test requests.
 #[inline(always)]
 pub(crate) fn arch() -> pulp::Arch {
     #[cfg(test)]
@@ -38,19 +40,19 @@ pub(crate) fn arch() -> pulp::Arch {
     pulp::Arch::new()
 }
 
-/// Eight numbers side by side, in as few registers as the machine needs for them: what the compiler makes of short loops by itself
-/// is often one number at a time.
+/// Eight numbers side by side, in as few registers as the machine allows: compilers often turn short loops
+/// into operations on one number at a time.
 #[derive(Clone, Copy)]
 pub(crate) struct F64x8<S: Simd> {
     simd: S,
-    /// The first so many that hold eight numbers.
+    /// Registers; only the first ones, as many as eight numbers fill, are used.
     registers: [S::f64s; LANES],
 }
 
 impl<S: Simd> F64x8<S> {
     const REGISTERS: usize = LANES / S::F64_LANES;
 
-    /// Eight times the same.
+    /// Returns eight copies of a number.
     #[inline(always)]
     pub(crate) fn splat(simd: S, number: f64) -> Self {
         Self { simd, registers: [simd.splat_f64s(number); LANES] }
@@ -107,37 +109,37 @@ impl<S: Simd> F64x8<S> {
         self.zip_with(other, |simd, a, b| simd.div_f64s(a, b))
     }
 
-    /// The larger of each two; `other` where one is not a number.
+    /// Returns the larger number of each pair; the number of `other` if either is not a number.
     #[inline(always)]
     pub(crate) fn max(self, other: Self) -> Self {
         self.zip_with(other, |simd, a, b| simd.select_f64s(simd.greater_than_f64s(a, b), a, b))
     }
 
-    /// The smaller of each two; `other` where one is not a number.
+    /// Returns the smaller number of each pair; the number of `other` if either is not a number.
     #[inline(always)]
     pub(crate) fn min(self, other: Self) -> Self {
         self.zip_with(other, |simd, a, b| simd.select_f64s(simd.less_than_f64s(a, b), a, b))
     }
 
-    /// Each that is less than `limit` replaced by 0.
+    /// Replaces each number less than `limit` by 0.
     #[inline(always)]
     pub(crate) fn zero_below(self, limit: Self) -> Self {
         let none = self.simd.splat_f64s(0.0);
-        // The sum changes no number. Without it numbers that are put back where they came from become a store under a mask,
-        // which some machines do one number at a time.
+        // The addition changes no number. Without it, storing numbers back to their origin becomes a masked
+        // store, which some machines perform one number at a time.
         self.zip_with(limit, |simd, a, limit| {
             simd.select_f64s(simd.less_than_f64s(a, limit), none, simd.add_f64s(a, none))
         })
     }
 
-    /// The sum, in one order.
+    /// Returns the sum, added in a fixed order.
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {
         let [a, b, c, d, e, f, g, h] = self.to_array();
         ((a + b) + (c + d)) + ((e + f) + (g + h))
     }
 
-    /// The largest, and 0.
+    /// Returns the largest number, at least 0.
     #[inline(always)]
     pub(crate) fn largest(self) -> f64 {
         self.to_array().into_iter().fold(0.0, f64::max)

@@ -1,4 +1,4 @@
-//! A simulation, checked and prepared.
+//! Simulation configuration, and the checked and prepared simulator.
 
 use std::convert::Infallible;
 use std::path::Path;
@@ -21,48 +21,49 @@ use crate::truth::{
     Schedule, Trajectory,
 };
 
-/// All that the simulator is told.
+/// Complete input of the simulator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// Seed of every random draw but the detector's fixed pattern.
+    /// Seed of every random draw except the detector's fixed pattern.
     pub seed: u64,
-    /// Which stars are drawn.
+    /// Selection of the stars to draw.
     pub catalog: CatalogConfig,
     /// Orbits of target and chaser.
     pub orbit: OrbitConfig,
-    /// When images are taken.
+    /// Times of the images.
     pub schedule: Vec<GroupConfig>,
-    /// Where the chaser points, and how well.
+    /// Pointing of the chaser, and its accuracy.
     pub attitude: AttitudeConfig,
-    /// What telemetry knows of the attitude.
+    /// Attitude knowledge in the telemetry.
     pub knowledge: KnowledgeConfig,
-    /// How the camera sits on the chaser.
+    /// Mounting of the camera on the chaser.
     pub mounting: MountingConfig,
     /// Geometry of the camera.
     pub camera: Camera,
-    /// Point spread function.
+    /// Point-spread function.
     pub psf: PsfConfig,
-    /// What of the optics changes over the field.
+    /// Variation of the optics over the field of view.
     pub optics: OpticsConfig,
-    /// From magnitudes to photoelectrons.
+    /// Conversion from magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
-    /// Light without a source in the field.
+    /// Background light, which has no source in the field of view.
     pub background: BackgroundConfig,
     /// The detector.
     pub sensor: SensorConfig,
-    /// The law of the exposure time.
+    /// Control of the exposure time.
     pub shutter: ShutterConfig,
-    /// Regions kept on board; `None`: whole images.
+    /// Regions kept on board; `None` for whole images.
     pub roi: Option<RoiConfig>,
-    /// Whole images: pixels up to this digital number are sent as 0; `None`: every pixel as it is.
+    /// Threshold of zero suppression for whole images, DN: pixels up to this digital number are transmitted
+    /// as 0. `None`: every pixel is transmitted unchanged.
     pub zero_suppression_dn: Option<u16>,
-    /// The target as a source of light.
+    /// The target as a light source.
     pub target: TargetConfig,
-    /// Whether Moon and planets are in the field.
+    /// Simulation of Moon and planets in the field of view.
     pub solar_system: Switch,
 }
 
-/// A simulation that was checked and prepared; shared by all threads.
+/// Checked and prepared simulation; shared by all threads.
 #[derive(Debug)]
 pub struct Simulator {
     catalog: Catalog,
@@ -88,15 +89,15 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// Checks and prepares a simulation; paths in it start from `folder`.
+    /// Checks and prepares a simulation; relative paths in it start from `folder`.
     ///
     /// # Errors
-    /// [`SimError`] for the first value that is not allowed, or a catalogue that cannot be read.
+    /// [`SimError`] for the first value that is not allowed, or for a catalogue that cannot be read.
     pub fn new(simulation: &Simulation, folder: &Path) -> Result<Self, SimError> {
         let seed = Seed { seed: simulation.seed, case: 0 };
         let radiometry = Radiometry::new(&simulation.radiometry)?;
         let target = Spacecraft::new(&simulation.target)?;
-        // Before the shutter, which takes the sensor's saturation for granted.
+        // Before the shutter, which requires a checked saturation of the sensor.
         simulation.sensor.check()?;
         let cosmic_rays = simulation.sensor.cosmic_rays.as_ref();
         let cosmic_rays = cosmic_rays.map(|config| CosmicRays::new(config, &simulation.camera));
@@ -149,12 +150,12 @@ impl Simulator {
         })
     }
 
-    /// Puts the same camera before the same sky on another flight: seed, orbit, schedule, attitude, knowledge, mounting, shutter
-    /// and target become those of `simulation`, whose camera, detector, optics and catalogue are not looked at. What it then
-    /// makes is what [`Simulator::new`] of all that would make, in a thousandth of the time.
+    /// Reuses the simulator for another flight: seed, orbit, schedule, attitude, knowledge, mounting, shutter
+    /// and target become those of `simulation`, whose camera, detector, optics and catalogue are ignored. The
+    /// result equals that of [`Simulator::new`] for the combined configuration, in a thousandth of the time.
     ///
     /// # Errors
-    /// [`SimError`] for the first value that is not allowed; the simulator is then as it was.
+    /// [`SimError`] for the first value that is not allowed; the simulator is then unchanged.
     pub fn fly(&mut self, simulation: &Simulation) -> Result<(), SimError> {
         let seed = Seed { seed: simulation.seed, case: 0 };
         let target = Spacecraft::new(&simulation.target)?;
@@ -174,12 +175,12 @@ impl Simulator {
         &self.catalog
     }
 
-    /// When images are taken.
+    /// Times of the images.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 
-    /// The shortest and the longest exposure that the shutter control may choose, s.
+    /// Shortest and longest exposure that the shutter control may choose, s.
     pub fn exposures_s(&self) -> [f64; 2] {
         [self.shutter.shortest_s(), self.shutter.longest_s()]
     }
@@ -190,7 +191,7 @@ impl Simulator {
     }
 }
 
-/// The stars of embedded catalogues as a camera's radiometry has them.
+/// Cache of the stars of embedded catalogues, prepared with a camera's radiometry.
 static STAR_FIELDS: Memo<(CatalogConfig, RadiometryConfig), StarField> = Memo::new();
 
 fn star_field(simulation: &Simulation, catalog: &Catalog, radiometry: &Radiometry) -> Arc<StarField> {
@@ -201,12 +202,12 @@ fn star_field(simulation: &Simulation, catalog: &Catalog, radiometry: &Radiometr
             let Ok(shared) = STAR_FIELDS.get(key, |_| Ok::<_, Infallible>(field()));
             shared
         }
-        // The file may have changed.
+        // Not cached, because the file may have changed.
         CatalogSource::File(_) => Arc::new(field()),
     }
 }
 
-/// Where the spacecraft are, when images are taken, and for how long; checked with each other.
+/// Returns trajectory, schedule and shutter, after checking them individually and against each other.
 fn flight(
     simulation: &Simulation,
     sensor: &SensorConfig,
@@ -225,8 +226,9 @@ fn flight(
     Ok((trajectory, schedule, shutter))
 }
 
-/// Checks that the chaser can see from where it is: at the time that the shutter control looks at for the first frame,
-/// and at the first and last frame, whose fields are exposed `half_interval_s` before and after. All others lie between.
+/// Checks that the chaser's position and velocity allow observations at the extreme times: at the time that
+/// the shutter control uses for the first frame, and at the first and last frame, whose fields are exposed
+/// `half_interval_s` before and after. All other times lie between.
 fn check_times(
     schedule: &Schedule,
     trajectory: &Trajectory,
@@ -244,14 +246,15 @@ fn check_times(
     Ok(())
 }
 
-/// Flights whose frames have the camera off the target.
+/// Cache of flights whose frames passed the check of separation.
 static APART: Memo<(OrbitConfig, Vec<GroupConfig>, TargetConfig), ()> = Memo::new();
 
-/// Frames of a schedule at which the separation is looked at, at most: of longer ones every so many.
+/// Maximum number of frames of a schedule at which the separation is checked; longer schedules are sampled at
+/// equal steps.
 const SEPARATIONS: usize = 100_000;
 
-/// Checks that the camera is off the target, and outside of it, in the frames; those that are passed over here are looked at when they
-/// are made.
+/// Checks that the camera is separated from the target, and outside it, in the frames. Frames that are
+/// skipped here are checked when they are made.
 fn check_separation(
     schedule: &Schedule,
     trajectory: &Trajectory,

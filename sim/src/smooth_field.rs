@@ -1,22 +1,23 @@
-//! A smooth field over the detector, told by its values at the nodes of a grid and bilinear between them.
+//! Smooth field over the detector, given by its values at the nodes of a grid and bilinear between them.
 //!
-//! A row of it is a few straight pieces: it is made when it is needed, row by row, and never stored for a whole image.
+//! A row of the field consists of a few straight pieces: it is computed on demand, row by row, and never
+//! stored for a whole image.
 
 use std::sync::Arc;
 
-/// Nodes along each side of the detector.
+/// Number of nodes along each side of the detector.
 pub(crate) const NODES: usize = 17;
 
-/// The grid of nodes over a detector of so many columns and rows.
+/// Grid of nodes over a detector with a given number of columns and rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct NodeGrid {
     columns: usize,
     rows: usize,
-    /// Of each column, how far it is from the node before to the next, 0 to 1.
+    /// Relative position of each column between the node before it and the next node, 0 to 1.
     across: Vec<f64>,
-    /// The first column after each node.
+    /// First column at or after each node.
     starts: [usize; NODES],
-    /// Share of each node, along columns and along rows, in the mean over all pixels.
+    /// Weight of each node, along columns and along rows, in the mean over all pixels.
     column_weights: [f64; NODES],
     row_weights: [f64; NODES],
 }
@@ -34,7 +35,7 @@ impl NodeGrid {
         }
     }
 
-    /// The place of node `i` of the grid, counted row by row: column and row, px.
+    /// Position of node `i` of the grid, counted row by row: column and row, px.
     pub(crate) fn node_position(&self, i: usize) -> (f64, f64) {
         (node_coordinate(i % NODES, self.columns), node_coordinate(i / NODES, self.rows))
     }
@@ -44,7 +45,7 @@ impl NodeGrid {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SmoothField {
     grid: Arc<NodeGrid>,
-    /// At the nodes, row by row.
+    /// Values at the nodes, row by row.
     values: [f64; NODES * NODES],
 }
 
@@ -53,12 +54,12 @@ impl SmoothField {
         Self { grid, values }
     }
 
-    /// Columns and rows.
+    /// Number of columns and of rows.
     pub(crate) fn size(&self) -> (usize, usize) {
         (self.grid.columns, self.grid.rows)
     }
 
-    /// The mean over all pixels.
+    /// Mean over all pixels.
     pub(crate) fn mean(&self) -> f64 {
         let mut mean = 0.0;
         for (i, value) in self.values.iter().enumerate() {
@@ -67,12 +68,12 @@ impl SmoothField {
         mean
     }
 
-    /// The largest value: that of a node.
+    /// Largest value of the field, which occurs at a node.
     pub(crate) fn largest(&self) -> f64 {
         self.values.iter().copied().fold(0.0, f64::max)
     }
 
-    /// The field at a pixel; 0 outside the detector.
+    /// Value of the field at a pixel; 0 outside the detector.
     pub(crate) fn value_at(&self, x: usize, y: usize) -> f64 {
         let Some(&across) = self.grid.across.get(x).filter(|_| y < self.grid.rows) else { return 0.0 };
         let (before, _) = between_nodes(x, self.grid.columns);
@@ -82,7 +83,8 @@ impl SmoothField {
         from + across * (to - from)
     }
 
-    /// The field of the pixels of a row from column `x` on; `out` is left as it is outside the detector.
+    /// Writes the field of the pixels of a row from column `x` on to `out`; entries outside the detector are
+    /// unchanged.
     #[inline(always)]
     pub(crate) fn span(&self, x: usize, y: usize, out: &mut [f64]) {
         let (row, down) = between_nodes(y, self.grid.rows);
@@ -102,13 +104,15 @@ impl SmoothField {
         }
     }
 
-    /// The largest value of a row of pixels, or a little more: that of one of its ends or of a node's column.
+    /// Upper bound, close to the maximum, of the field along a row of pixels: the largest value at the ends
+    /// of the row and at the node columns.
     pub(crate) fn largest_of_row(&self, y: usize) -> f64 {
         let (row, down) = between_nodes(y, self.grid.rows);
         (0..NODES).map(|i| self.value_between_rows(row, down, i)).fold(0.0, f64::max)
     }
 
-    /// The field at the column of node `i`, `down` of the way from a row of nodes to the next.
+    /// Value of the field at the column of node `i`, at the fraction `down` of the distance from a row of
+    /// nodes to the next.
     #[inline(always)]
     fn value_between_rows(&self, row: usize, down: f64, i: usize) -> f64 {
         let (above, below) = (self.values[row * NODES + i], self.values[(row + 1) * NODES + i]);
@@ -116,19 +120,20 @@ impl SmoothField {
     }
 }
 
-/// The pixel on which node `i` lies, of `n` pixels.
+/// Pixel position of node `i` along `n` pixels.
 fn node_coordinate(i: usize, n: usize) -> f64 {
     i as f64 * (n as f64 - 1.0) / (NODES - 1) as f64
 }
 
-/// The node before pixel `i` of `n`, and how far it is to the next, 0 to 1.
+/// Returns the node before pixel `i` of `n`, and the relative position of the pixel between this node and the
+/// next, 0 to 1.
 fn between_nodes(i: usize, n: usize) -> (usize, f64) {
     let at = i as f64 * (NODES - 1) as f64 / (n as f64 - 1.0).max(1.0);
     let before = (at as usize).min(NODES - 2);
     (before, at - before as f64)
 }
 
-/// Share of each node in the mean over `n` pixels in a line.
+/// Weight of each node in the mean over `n` pixels in a line.
 fn mean_weights(n: usize) -> [f64; NODES] {
     let mut weights = [0.0; NODES];
     for i in 0..n {
@@ -143,7 +148,7 @@ fn mean_weights(n: usize) -> [f64; NODES] {
 mod tests {
     use super::*;
 
-    /// x² + 3y at the nodes.
+    /// Field with the values x² + 3y at the nodes.
     fn field(columns: usize, rows: usize) -> SmoothField {
         let grid = Arc::new(NodeGrid::new(columns, rows));
         let values = std::array::from_fn(|i| {
@@ -178,7 +183,7 @@ mod tests {
         }
     }
 
-    /// A parabola lies below its chord by at most step²/4; a plane is met to the bit of a rounding.
+    /// A parabola lies below its chord by at most step²/4; a plane is reproduced to rounding.
     #[test]
     fn between_nodes_the_field_is_bilinear() {
         let field = field(161, 81);

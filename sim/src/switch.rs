@@ -1,21 +1,21 @@
-//! On and off.
+//! Switch of an effect: on or off.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Whether an effect is simulated.
+/// Simulation of an effect: on or off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Switch {
-    /// It is.
+    /// The effect is simulated.
     #[default]
     On,
-    /// It is left out.
+    /// The effect is left out.
     Off,
 }
 
 impl Switch {
-    /// `value` when on, 0 when off.
+    /// Returns `value` if on, 0 if off.
     pub fn apply(self, value: f64) -> f64 {
         match self {
             Self::On => value,

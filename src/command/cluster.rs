@@ -1,4 +1,4 @@
-//! A study on the workers of a Dask cluster: what Rust knows of it is how to start the driver.
+//! Execution of a study on the workers of a Dask cluster: the Rust code only starts the driver.
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -6,13 +6,14 @@ use std::str::FromStr;
 
 use files::Failure;
 
-/// Who runs the shards of a study.
+/// Executor of the shards of a study.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) enum Engine {
-    /// The threads of this process.
+    /// Threads of this process.
     #[default]
     Local,
-    /// The workers of a Dask cluster: of the scheduler at an address, or a cluster started for the purpose on this machine.
+    /// Workers of a Dask cluster: of the scheduler at an address, or of a cluster started for this purpose on
+    /// this machine.
     Dask(Option<String>),
 }
 
@@ -31,18 +32,18 @@ impl FromStr for Engine {
     }
 }
 
-/// The Python that runs the driver.
+/// Environment variable with the Python interpreter that runs the driver.
 const PYTHON: &str = "BORESIGHT_PYTHON";
-/// The program as workers find it, where it is not at the same place as here.
+/// Environment variable with the path of the program on the workers, if it differs from the path here.
 const PROGRAM: &str = "BORESIGHT_PROGRAM";
 
 const INSTALL: &str =
     "`pip install './python[dask]'` installs it, and BORESIGHT_PYTHON names the interpreter";
 
-/// Refuses where Python, the package or Dask is not there.
+/// Returns an error if Python, the package or Dask is missing.
 ///
 /// # Errors
-/// [`Failure::Usage`] that says what installs it.
+/// [`Failure::Usage`], which states how to install it.
 pub(super) fn check_dask() -> Result<(), Failure> {
     let python = python();
     let tried = Command::new(&python).args(["-c", "import boresight.dask_engine, distributed"]).output();
@@ -61,11 +62,11 @@ fn python() -> String {
     std::env::var(PYTHON).unwrap_or_else(|_| "python3".to_owned())
 }
 
-/// Has the workers of a cluster make the shards of a plan (JSON, as `study plan` prints it) below `out`; `done` is told of
-/// each shard.
+/// Makes the workers of a cluster run the shards of a plan (JSON, as `study plan` prints it) below `out`;
+/// calls `done` with each finished shard.
 ///
 /// # Errors
-/// [`Failure::Usage`] when the driver does not start, and when a shard failed.
+/// [`Failure::Usage`] if the driver does not start, or if a shard failed.
 pub(super) fn run_on_dask(
     plan: &str,
     out: &Path,
@@ -93,18 +94,18 @@ pub(super) fn run_on_dask(
     let mut child = command.spawn().map_err(|error| {
         Failure::Usage(format!("--engine dask: `{python}` cannot be started ({error}); {INSTALL}"))
     })?;
-    // Both pipes are read while the driver runs, so that it never waits for us.
+    // Both pipes are read while the driver runs, to keep it from blocking on them.
     let mut errors = child.stderr.take().map(BufReader::new);
     let log = std::thread::spawn(move || {
         let mut text = String::new();
         if let Some(errors) = &mut errors {
-            // What cannot be read cannot be told.
+            // Output that cannot be read is not reported.
             let _ = std::io::Read::read_to_string(errors, &mut text);
         }
         text
     });
     if let Some(mut input) = child.stdin.take() {
-        // A driver that ended at once says why by its status.
+        // A driver that ends immediately reports the reason by its exit status.
         let _ = input.write_all(plan.as_bytes());
     }
     for line in
@@ -125,7 +126,7 @@ pub(super) fn run_on_dask(
     }
 }
 
-/// What the driver tells of each shard.
+/// Message from the driver about each shard.
 #[derive(serde::Deserialize)]
 struct FinishedShard {
     shard: u64,

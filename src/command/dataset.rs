@@ -1,4 +1,4 @@
-//! `boresight render` and `boresight process`: datasets for somebody else's pipeline, and from somebody else's camera.
+//! `boresight render` and `boresight process`: datasets for external pipelines, and from external cameras.
 
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
@@ -26,14 +26,15 @@ use super::output::Output;
 pub(super) struct RenderArguments {
     #[command(flatten)]
     selection: Selection,
-    /// A new or empty directory for the dataset. Docking with --format y4m: `-` writes the video alone to standard output
+    /// A new or empty directory for the dataset. Docking with --format y4m: `-` writes only the video, to
+    /// standard output
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
-    /// Format of the images: fits (the default), png or exr; docking: png (the default), avi (uncompressed), mjpeg (AVI) or
-    /// y4m
+    /// Format of the images: fits (the default), png or exr; docking: png (the default), avi (uncompressed),
+    /// mjpeg (AVI) or y4m
     #[arg(long, value_name = "FORMAT")]
     format: Option<String>,
-    /// Write the noise-free expectation of every frame too, in electrons, to truth/expected/
+    /// Also write the noise-free expected image of every frame, in electrons, to truth/expected/
     #[arg(long)]
     expected: bool,
     #[command(flatten)]
@@ -55,7 +56,7 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
         expectation: if arguments.expected { Expectation::Kept } else { Expectation::Dropped },
     };
     if arguments.out == Path::new("-") {
-        // The video alone, for another program to read as it comes.
+        // Only the video is written, for another program that reads it during production.
         prepared.check_stream(&frame_jobs)?;
         output.check_free("--out -")?;
         prepared.stream(&frame_jobs)?;
@@ -85,15 +86,16 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
 
 #[derive(Debug, Args)]
 pub(super) struct ProcessArguments {
-    /// A dataset: camera.toml, telemetry.csv and the images it names; stars.csv if it has one. Docking: a dataset with
-    /// setup.toml, a folder of images, an AVI or Y4M file, or `-` for Y4M (with --raw: raw frames) on standard input
+    /// A dataset: camera.toml, telemetry.csv, the images listed there, and optionally stars.csv. Docking: a
+    /// dataset with setup.toml, a folder of images, an AVI or Y4M file, or `-` for Y4M (with --raw: raw
+    /// frames) on standard input
     #[arg(value_name = "DIR|FILE|-")]
     directory: PathBuf,
     #[command(flatten)]
     sequence: SequenceArguments,
-    /// The file of measurements to write; what else there is goes beside it (clusters.parquet; docking: motion.csv,
-    /// features.parquet). Default: `measurements.csv` in the dataset, of a video in the current directory. Docking: `-` writes
-    /// the measurements to standard output, each as it comes, and nothing beside
+    /// File to write the measurements to; other results are written beside it (clusters.parquet; docking:
+    /// motion.csv, features.parquet). Default: `measurements.csv` in the dataset; for a video, in the current
+    /// directory. Docking: `-` writes only the measurements, to standard output, one after the other
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -125,7 +127,7 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     }
 }
 
-/// A dataset of any world.
+/// Processes a dataset of any world.
 fn process_dataset(
     world: &dyn AnyWorld,
     arguments: &ProcessArguments,
@@ -169,28 +171,27 @@ fn process_dataset(
     Ok(Answer::Yes)
 }
 
-/// How a sequence of docking fields is to be read.
+/// Options for reading a sequence of docking fields.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Docking sequences")]
 struct SequenceArguments {
-    /// The docking scenario whose cameras, target and pipeline these are; default: `setup.toml` in the folder, or beside the
-    /// video
+    /// Docking scenario that defines cameras, target and pipeline; default: `setup.toml` in the folder, or
+    /// beside the video
     #[arg(long, value_name = "SCENARIO")]
     scenario: Option<String>,
-    /// A file `setup.toml` that names them, in the place of a scenario
+    /// File `setup.toml` that defines cameras, target and pipeline, instead of a scenario
     #[arg(long, value_name = "FILE", conflicts_with = "scenario")]
     setup: Option<PathBuf>,
-    /// Which of its cameras took the images, from 0
-    /// [default: 0]
+    /// Index of the camera that took the images, from 0 [default: 0]
     #[arg(long, value_name = "N")]
     camera: Option<usize>,
-    /// Which field of a whole frame is first in time, whatever a header says [default: top]
+    /// Field of a whole frame that is first in time, regardless of any header [default: top]
     #[arg(long, value_name = "top|bottom")]
     field_order: Option<FieldOrder>,
-    /// Frames are progressive: of one moment, not two fields
+    /// Frames are progressive: taken at one time, without two fields
     #[arg(long, conflicts_with = "field_order")]
     progressive: bool,
-    /// Whole frames a second; default: what the file says, 25 where it says nothing
+    /// Whole frames per second; default: the rate stated in the file, or 25 if it states none
     #[arg(long, value_name = "HZ")]
     frame_rate_hz: Option<f64>,
     /// Raw grey frames of 8 bits and this size, without headers
@@ -199,14 +200,14 @@ struct SequenceArguments {
 }
 
 impl SequenceArguments {
-    /// The first option that is given: the input is a docking sequence then.
+    /// Returns the first given option that identifies the input as a docking sequence.
     fn given(&self) -> Option<&'static str> {
         let given_options = [("--scenario", self.scenario.is_some()), ("--setup", self.setup.is_some())];
         self.given_of_fields()
             .or_else(|| given_options.into_iter().find_map(|(option, is_given)| is_given.then_some(option)))
     }
 
-    /// The first option that is given and tells of fields what `telemetry.csv` tells.
+    /// Returns the first given option that specifies a property of fields that `telemetry.csv` contains.
     fn given_of_fields(&self) -> Option<&'static str> {
         let all = [
             ("--camera", self.camera.is_some()),
@@ -218,12 +219,12 @@ impl SequenceArguments {
         all.into_iter().find_map(|(option, is_given)| is_given.then_some(option))
     }
 
-    /// Whether cameras and target are told.
+    /// Returns true if an option specifies cameras and target.
     fn names_cameras(&self) -> bool {
         self.scenario.is_some() || self.setup.is_some()
     }
 
-    /// What a sequence does not say of itself: as the options have it, or as it is by default.
+    /// Returns the properties that a sequence does not state itself: from the options, or their defaults.
     fn options(&self) -> SequenceOptions {
         let order = self.field_order.unwrap_or(FieldOrder::Top);
         SequenceOptions {
@@ -235,7 +236,7 @@ impl SequenceArguments {
         }
     }
 
-    /// Refuses an option that a folder with `telemetry.csv` would pass over.
+    /// Rejects an option that would be ignored for a directory with `telemetry.csv`.
     fn check_free(&self, table: &Path) -> Result<(), Failure> {
         match self.given_of_fields() {
             Some(option) if table.is_file() => Err(Failure::Usage(format!(
@@ -247,7 +248,7 @@ impl SequenceArguments {
     }
 }
 
-/// Docking: digitised television, from files or standard input.
+/// Processes a docking sequence: digitised television, from files or standard input.
 fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Answer, Failure> {
     let (path, sequence) = (&arguments.directory, &arguments.sequence);
     sequence.check_free(&path.join("telemetry.csv"))?;
@@ -304,13 +305,14 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
     Ok(Answer::Yes)
 }
 
-/// Holds what a pipeline is given against the checksums of a dataset, where it is one that has them.
+/// Verifies the pipeline's input files against the checksums of a dataset, if it has checksums.
 fn check_sums(folder: &Path) -> Result<(), FileError> {
     const GIVEN: [&str; 4] = ["camera.toml", "setup.toml", "stars.csv", "telemetry.csv"];
     Checksums::check(folder, |name| GIVEN.contains(&name))
 }
 
-/// The file that tells cameras and target: the one asked for, or `setup.toml` in a folder or beside a video.
+/// Returns the file that defines cameras and target: the requested file, or `setup.toml` in a directory or
+/// beside a video.
 fn setup_file(path: &Path, sequence: &SequenceArguments) -> Option<PathBuf> {
     let neighbouring_file =
         || if path.is_dir() { path.join("setup.toml") } else { path.with_file_name("setup.toml") };

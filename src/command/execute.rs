@@ -1,4 +1,4 @@
-//! What `run` and `study replay` do alike: run, report, show.
+//! Steps shared by `run` and `study replay`: run, report, show.
 
 use files::{Failure, FileError, RunDirectory, toml_file};
 use run::{AnyFactory, AnyMission, FrameJobs};
@@ -9,17 +9,17 @@ use super::output::Output;
 use super::report::write_beside_run;
 use crate::table::score_table;
 
-/// How a run is shown.
+/// Options for presenting a run.
 pub(super) struct Presentation<'a> {
-    /// What was run, for the progress bar.
+    /// Name of the run, for the progress bar.
     pub(super) name: &'a str,
-    /// Whether the report is written into the directory.
+    /// True if the report is written into the directory.
     pub(super) has_report: bool,
-    /// A remark below the score.
+    /// Remark below the score.
     pub(super) note: Option<String>,
 }
 
-/// Has an interrupt tell what it leaves of a run directory.
+/// Makes an interrupt report the unfinished run directory.
 pub(super) fn note_unfinished_run(directory: &RunDirectory) {
     let path = directory.path().display().to_string();
     report_interruption(move || {
@@ -29,7 +29,7 @@ pub(super) fn note_unfinished_run(directory: &RunDirectory) {
     });
 }
 
-/// Runs a scenario into a directory, writes the report if it is wanted, and shows the score.
+/// Runs a scenario into a directory, writes the report if requested, and shows the score.
 pub(super) fn execute(
     prepared: &dyn AnyMission,
     frame_jobs: &FrameJobs<String>,

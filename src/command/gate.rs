@@ -1,4 +1,4 @@
-//! `boresight gate`: whether a result is worse than a baseline.
+//! `boresight gate`: test whether a result is worse than a baseline.
 
 use std::path::PathBuf;
 
@@ -27,7 +27,7 @@ pub(super) struct GateArguments {
 
 #[derive(Debug, Subcommand)]
 enum GateCommand {
-    /// Make a baseline of a run or of a study, deliberately and for a reason
+    /// Make a baseline of a run or of a study, deliberately and with a stated reason
     Baseline(BaselineArguments),
 }
 
@@ -35,54 +35,57 @@ enum GateCommand {
 struct CompareArguments {
     /// Folder of a baseline (`boresight gate baseline`)
     baseline: PathBuf,
-    /// Directory of a run, or of a study that is complete
+    /// Directory of a run, or of a complete study
     result: PathBuf,
-    /// Probability of finding any figure worse when none is
+    /// Probability of reporting any figure as worse when none is
     #[arg(long, value_name = "P", default_value_t = 0.05)]
     alpha: f64,
-    /// Only these figures, with commas between them; default: all of the baseline
+    /// Only these figures, separated by commas; default: all figures of the baseline
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     figures: Vec<String>,
-    /// By how much a figure may be worse and pass, in its own unit; may be given for several. Default: what the baseline says
+    /// Tolerated worsening of a figure, in the unit of the figure; may be given for several. Default: from
+    /// the baseline
     #[arg(long, value_name = "FIGURE=SIZE")]
     tolerance: Vec<Tolerance>,
-    /// Let figures with a best value change (a bias, a NEES): for a reason, which the report repeats
+    /// Let figures with a best value (a bias, a NEES) change, for a reason that the report repeats
     #[arg(long, requires = "reason")]
     accept_changed: bool,
-    /// Why they may change
+    /// Reason why they may change
     #[arg(long, value_name = "TEXT", requires = "accept_changed", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     reason: Option<String>,
-    /// Write the report as JUnit XML too, or why nothing could be compared; a new file
+    /// Also write the report as JUnit XML, or the reason why nothing could be compared; a new file
     #[arg(long, value_name = "FILE", value_parser = output_path())]
     junit: Option<PathBuf>,
-    /// Write the report as one HTML file too, flipped frames as pictures; replaced if it is there
+    /// Also write the report as one HTML file, with flipped frames as pictures; replaces an existing file
     #[arg(long, value_name = "FILE", value_parser = output_path())]
     report: Option<PathBuf>,
-    // Not flattened: of an `Option` of arguments clap asks the group of their struct, which a struct with others in it does not have.
-    /// Far range: turn a centroid without a line of sight into one by this attitude, in the place of what the run was asked for
+    // Not flattened: for an `Option` of arguments, clap requires the group of their struct, and a struct that
+    // contains other structs has none.
+    /// Far range: convert a centroid without a line of sight to a line of sight by this attitude, instead of
+    /// the attitude requested for the run
     #[arg(long, value_name = "ATTITUDE", value_enum)]
     attitude: Option<AttitudeChoice>,
 }
 
 #[derive(Debug, Args)]
 struct BaselineArguments {
-    /// Directory of a run, or of a study that is complete
+    /// Directory of a run, or of a complete study
     result: PathBuf,
     /// Folder of the baseline
     #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: PathBuf,
-    /// Why this is what later results are held against
+    /// Reason why later results are compared with this result
     #[arg(long, value_name = "TEXT")]
     reason: String,
-    /// Replace a baseline that is there already
+    /// Replace an existing baseline
     #[arg(long)]
     replace: bool,
-    /// Frames (fields, cases) of a block; default: ten times as many as the figures remember, fewer where that leaves
-    /// fewer than twenty blocks, at least thirty
+    /// Frames (fields, cases) per block; default: ten times the longest autocorrelation time of the figures,
+    /// fewer if that leaves fewer than twenty blocks, at least thirty
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     block_length: Option<u64>,
-    /// By how much a figure may be worse and pass, in its own unit; may be given for several. Default: 1 % of an amount's size, 0.1 % of
-    /// a rate
+    /// Tolerated worsening of a figure, in the unit of the figure; may be given for several. Default: 1 % of
+    /// an amount's size, 0.1 % of a rate
     #[arg(long, value_name = "FIGURE=SIZE")]
     tolerance: Vec<Tolerance>,
     #[command(flatten)]
@@ -118,7 +121,7 @@ pub(super) fn gate(arguments: &GateArguments, output: &Output) -> Result<Answer,
     match (&arguments.command, &arguments.compare) {
         (Some(GateCommand::Baseline(arguments)), _) => make_baseline(arguments, output),
         (None, Some(arguments)) => run_gate(arguments, output),
-        // clap asks for the one or the other.
+        // clap requires one of the two.
         (None, None) => Err(Failure::Usage("BASELINE and RESULT are missing, expected both".to_owned())),
     }
 }
@@ -135,7 +138,7 @@ fn make_baseline(arguments: &BaselineArguments, output: &Output) -> Result<Answe
 }
 
 fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Failure> {
-    // Now, before minutes are spent on what could not be written.
+    // Checked now, before minutes are spent on a report that could not be written.
     if let Some(path) = arguments.junit.as_ref().filter(|path| path.exists()) {
         return Err(Failure::Usage(format!(
             "--junit is {}, which exists and is not overwritten; expected the name of a new file",

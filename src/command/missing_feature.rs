@@ -1,8 +1,8 @@
-//! Commands that a build may be without.
+//! Commands that may be missing from a build.
 
 use files::Failure;
 
-/// The failure of a command that needs a feature which this build does not have.
+/// Returns the failure of a command that needs a feature missing from this build.
 pub(super) fn missing_feature(feature: &str) -> Failure {
     Failure::Usage(format!(
         "this boresight was built without the feature `{feature}`, expected a build with it: cargo install --path . --features {feature}"

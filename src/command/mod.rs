@@ -1,4 +1,5 @@
-//! The command `boresight`: arguments in, exit status out. Printing, clocks and environment live here.
+//! The command `boresight`: arguments in, exit status out. Printing, clocks and environment are confined to
+//! this module.
 
 mod answer;
 mod cluster;
@@ -37,7 +38,7 @@ use missing_feature::missing_feature;
 #[derive(Debug, Parser)]
 #[command(name = "boresight", version, max_term_width = 110)]
 struct Arguments {
-    /// Print one JSON document on stdout and nothing else there
+    /// Print one JSON document, and nothing else, on stdout
     #[arg(long, global = true)]
     json: bool,
     #[command(subcommand)]
@@ -48,24 +49,25 @@ struct Arguments {
 enum Command {
     /// Simulate, process and score a scenario; write a run directory
     Run(run::RunArguments),
-    /// Render a dataset for somebody else's pipeline, truth apart from the frames
+    /// Render a dataset for an external pipeline, with the truth apart from the frames
     Render(dataset::RenderArguments),
-    /// Run a pipeline over a dataset, real images included
+    /// Run a pipeline on a dataset, which may contain real images
     Process(dataset::ProcessArguments),
-    /// Score anybody's measurements against the truth of a dataset or run directory
+    /// Score measurements of any pipeline against the truth of a dataset or run directory
     Score(score::ScoreArguments),
-    /// Monte Carlo: a scenario over everything that can vary
+    /// Monte Carlo: a scenario with variation of any parameter that can vary
     #[command(subcommand)]
     Study(study::StudyCommand),
-    /// Which camera sees enough stars and the target: verify requirements, find exposure, aperture or field
+    /// Find cameras that see enough stars and the target: verify requirements, find exposure, aperture or
+    /// field
     Visibility(visibility::VisibilityArguments),
-    /// Say whether a result is worse than a baseline; exit status 1 when it is
+    /// Test whether a result is worse than a baseline; exit status 1 if it is
     Gate(gate::GateArguments),
-    /// One HTML file of what a directory of results holds: charts, tables, frames; it needs no network
+    /// Write the content of a result directory as one HTML file: charts, tables, frames; needs no network
     Report(report::ReportArguments),
     /// Draw frames of a run or dataset: pixels, truth, answer, regions, scale bar and legend as one PNG
     Show(show::ShowArguments),
-    /// The page of an operator, on loopback: camera, ground track, phase chart, model and parameters
+    /// Serve an operator's page on loopback: camera, ground track, phase chart, model and parameters
     #[command(
         after_help = "SCENARIO may be the directory of a run: it is then replayed, its pictures drawn anew. The name of a built-in \
                       scenario is that scenario; a folder of that name is ./NAME."
@@ -80,28 +82,28 @@ enum Command {
     Man(shell::ManArguments),
 }
 
-/// Runs the command of this process's arguments.
+/// Runs the command with this process's arguments.
 pub fn main() -> ExitCode {
     ExitCode::from(run_words(std::env::args_os()))
 }
 
-/// Runs the command of these words, its own name first, and gives its exit status: 0 done, 1 the answer is no, 2 usage, bad input, or a
-/// pipeline that does not start.
+/// Runs the command with the given words, starting with the command name, and returns the exit status: 0
+/// success, 1 negative result, 2 usage error, invalid input, or a pipeline that does not start.
 pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // The arguments are not known to be right, but what the caller reads is.
+            // The arguments may be invalid, but the output format that the caller expects is known.
             output::Output::new(words.iter().any(|word| word == "--json")).misuse(&error);
-            // Nobody can be told that the stream is closed.
+            // A closed stream cannot be reported.
             let _ = error.print();
             return u8::from(error.use_stderr()) * Failure::EXIT_STATUS;
         }
     };
     let output = output::Output::new(arguments.json);
     if !matches!(arguments.command, Some(Command::Monitor(_))) {
-        // The monitor's server ends on signals by itself.
+        // The monitor's server handles signals itself.
         clean_up_when_interrupted();
     }
     let answer = match arguments.command.unwrap_or_else(|| Command::Run(run::RunArguments::argon())) {

@@ -1,4 +1,4 @@
-//! `boresight monitor`: the page of an operator, served on loopback.
+//! `boresight monitor`: an operator's page, served on loopback.
 
 mod arguments;
 #[cfg(feature = "monitor")]
@@ -8,7 +8,7 @@ pub(super) use arguments::MonitorArguments;
 #[cfg(feature = "monitor")]
 pub(super) use page::monitor;
 
-/// Fails: this build has no server of the page.
+/// Returns a failure: this build has no server for the page.
 #[cfg(not(feature = "monitor"))]
 pub(super) fn monitor(
     _: &MonitorArguments,

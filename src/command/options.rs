@@ -1,4 +1,4 @@
-//! Arguments that several commands share.
+//! Arguments shared by several commands.
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -14,7 +14,7 @@ use scenario::AttitudeChoice;
 
 use super::interrupt::clean_up_when_interrupted;
 
-/// A range of frames, `A..B`: from A up to and without B.
+/// A range of frames, `A..B`: from A up to, but excluding, B.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct FrameRange(pub(super) Range<u64>);
 
@@ -31,47 +31,48 @@ impl FromStr for FrameRange {
     }
 }
 
-/// Which scenario, which of its frames, which seed.
+/// Selection of scenario, frames and seed.
 #[derive(Debug, Args)]
 pub(super) struct Selection {
     /// A built-in scenario (see `boresight scenario list`) or a TOML file
     pub(super) scenario: String,
-    /// Only these frames (docking: fields), A up to and without B
+    /// Only these frames (docking: fields), from A up to, but excluding, B
     #[arg(long, value_name = "A..B")]
     pub(super) frames: Option<FrameRange>,
-    /// Seed instead of the scenario's own
+    /// Seed instead of the scenario's seed
     #[arg(long, value_name = "N")]
     pub(super) seed: Option<u64>,
-    /// Threads that make frames; default: all cores. The results do not depend on it
+    /// Threads that make frames; default: all cores. The results do not depend on the number of threads
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) jobs: Option<u16>,
 }
 
-/// Which pipeline, and how long a foreign one may take.
+/// Selection of the pipeline, and limits of an external pipeline.
 #[derive(Debug, Args)]
 pub(super) struct PipelineOptions {
-    /// `far_range` or `docking`, or `exec:COMMAND` for a program that speaks the protocol of docs/external-pipeline.md;
-    /// default: the one of the scenario's world
+    /// `far_range` or `docking`, or `exec:COMMAND` for a program that implements the protocol of
+    /// docs/external-pipeline.md; default: the pipeline of the scenario's world
     #[arg(long, value_name = "NAME|exec:COMMAND")]
     pub(super) pipeline: Option<String>,
-    /// Longest time that an `exec:` pipeline may take for a frame, s
+    /// Maximum time of an `exec:` pipeline per frame, s
     #[arg(long, value_name = "S", default_value_t = 10.0)]
     pub(super) timeout_s: f64,
-    /// Most memory of an `exec:` pipeline, and of each process that it starts, MB; heeded on Linux
+    /// Maximum memory of an `exec:` pipeline, and of each process that it starts, MB; enforced on Linux
     #[arg(long, value_name = "MB", default_value_t = DEFAULT_MEMORY_MB)]
     pub(super) memory_mb: u64,
-    /// Let an `exec:` pipeline read the system, the files beside it and its frames, write temporary files, and nothing else: no truth, no
-    /// scenario, no run, no network. Refused where the kernel has no Landlock
+    /// Let an `exec:` pipeline read the system, the files beside it and its frames, write temporary files,
+    /// and nothing else: no truth, no scenario, no run, no network. Rejected if the kernel has no Landlock
     #[arg(long, requires = "pipeline")]
     pub(super) sandbox: bool,
-    /// A file or folder that an `exec:` pipeline may read in its sandbox as well; may be given for several
+    /// A file or folder that an `exec:` pipeline may also read in its sandbox; may be given several times
     #[arg(long, value_name = "PATH", requires = "sandbox")]
     pub(super) sandbox_read: Vec<PathBuf>,
 }
 
 impl PipelineOptions {
-    /// The pipeline asked for. If it is a program, it is ended with this process from now on, when that is asked to end. A sandbox hides
-    /// `hidden` from it, though its own files may lie beside them.
+    /// Returns the requested pipeline. An external program is from now on ended together with this process
+    /// when the process is requested to end. A sandbox hides `hidden` from it, even if its own files lie
+    /// beside them.
     pub(super) fn choice(&self, hidden: &[&Path]) -> PipelineChoice {
         if self.pipeline.as_deref().is_some_and(|word| word.starts_with("exec:")) {
             clean_up_when_interrupted();
@@ -101,16 +102,16 @@ impl Default for PipelineOptions {
     }
 }
 
-/// What is granted to a pipeline that measures in the image alone.
+/// Attitude provided to a pipeline that measures only in the image.
 #[derive(Debug, Default, Args)]
 pub(super) struct AttitudeOption {
-    /// Far range: turn a centroid without a line of sight into one by this attitude, so that RA and Dec have figures; default: none
-    /// unless the scenario says so ([score] attitude)
+    /// Far range: convert a centroid without a line of sight to a line of sight by this attitude, to give RA
+    /// and Dec figures; default: none, unless the scenario sets one ([score] attitude)
     #[arg(long = "attitude", value_name = "ATTITUDE", value_enum)]
     pub(super) choice: Option<AttitudeChoice>,
 }
 
-/// Reads the place of a command's output: `-`, which elsewhere is standard output, is none.
+/// Parses the path of a command's output; rejects `-`, which means standard output elsewhere.
 pub(super) fn output_path() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|word| match word.to_str() {
         Some("-") => Err("expected a name: only docking's `render` and `process` write to standard output (`./-` is a file)"),
@@ -119,30 +120,30 @@ pub(super) fn output_path() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// Who draws a docking scene.
+/// Renderer of a docking scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum RendererName {
     /// The fast renderer
     #[default]
     Fast,
-    /// Mitsuba 3.9.1, its judge; seconds to minutes a field
+    /// Mitsuba 3.9.1, the reference for the fast renderer; seconds to minutes per field
     Mitsuba,
 }
 
-/// Who draws a docking scene, and where Mitsuba is.
+/// Renderer of a docking scene, and location of Mitsuba.
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Docking images")]
 pub(super) struct RendererOptions {
-    /// Who draws the scene of a docking scenario
+    /// Renderer of a docking scenario
     #[arg(long, value_name = "RENDERER", value_enum, default_value_t)]
     renderer: RendererName,
-    /// The command of Mitsuba, as a shell would split it; default: that of BORESIGHT_MITSUBA, or `mitsuba`, or `uvx`
+    /// Command of Mitsuba, split as by a shell; default: BORESIGHT_MITSUBA, or `mitsuba`, or `uvx`
     #[arg(long, value_name = "COMMAND")]
     mitsuba: Option<String>,
-    /// Folder that keeps Mitsuba's images; default: `boresight/mitsuba` in the user's cache
+    /// Folder for Mitsuba's images; default: `boresight/mitsuba` in the user's cache
     #[arg(long, value_name = "DIR")]
     mitsuba_cache: Option<PathBuf>,
-    /// Mitsuba's rays a pixel, a square number up to 4096; default: 256
+    /// Rays of Mitsuba per pixel, a square number up to 4096; default: 256
     #[arg(long, value_name = "N")]
     mitsuba_rays: Option<u32>,
 }
@@ -162,7 +163,7 @@ impl RendererOptions {
         }
     }
 
-    /// The renderer asked for.
+    /// Returns the requested renderer.
     pub(super) fn renderer(&self) -> Result<RendererChoice, Failure> {
         if self.renderer == RendererName::Fast {
             self.check_fast()?;
@@ -187,7 +188,7 @@ impl RendererOptions {
         Err(super::missing_feature("mitsuba"))
     }
 
-    /// The number of threads: one where each image has several of its own.
+    /// Returns the number of threads: one if each image uses several threads.
     pub(super) fn jobs(&self, selection: &Selection) -> usize {
         match (self.renderer, selection.jobs) {
             (RendererName::Mitsuba, None) => 1,
@@ -197,12 +198,12 @@ impl RendererOptions {
 }
 
 impl Selection {
-    /// A whole scenario as it is.
+    /// Selects a whole scenario with its default seed.
     pub(super) fn for_scenario(scenario: &str) -> Self {
         Self { scenario: scenario.to_owned(), frames: None, seed: None, jobs: None }
     }
 
-    /// The scenario, with the seed asked for.
+    /// Returns the scenario, with the requested seed.
     pub(super) fn scenario(&self) -> Result<ScenarioSource, Failure> {
         let mut source = ScenarioSource::read(&self.scenario)?;
         if let Some(seed) = self.seed {
@@ -211,7 +212,7 @@ impl Selection {
         Ok(source)
     }
 
-    /// The frames asked for, of a scenario of `count`.
+    /// Returns the requested frames of a scenario with `count` frames.
     pub(super) fn frames(&self, count: u64) -> Result<Range<u64>, Failure> {
         let frames = self.frames.as_ref().map_or(0..count, |range| range.0.clone());
         if frames.end > count {
@@ -223,13 +224,13 @@ impl Selection {
         Ok(frames)
     }
 
-    /// The number of threads.
+    /// Returns the number of threads.
     pub(super) fn jobs(&self) -> usize {
         self.jobs.map_or_else(default_jobs, usize::from)
     }
 }
 
-/// A thread a core.
+/// Returns one thread per core.
 pub(super) fn default_jobs() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }

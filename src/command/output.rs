@@ -1,4 +1,4 @@
-//! What goes to stdout and stderr: a table for a person, or one JSON document.
+//! Output on stdout and stderr: a table for a user, or one JSON document.
 use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
@@ -9,7 +9,7 @@ use pipeline::external::protocol::harmless;
 use run::FirstFailure;
 use serde::Serialize;
 
-/// The two streams, and whether stdout belongs to a machine.
+/// Output to stdout and stderr; stdout is reserved for JSON with `--json`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Output {
     json: bool,
@@ -20,7 +20,7 @@ impl Output {
         Self { json }
     }
 
-    /// Prints `document` as JSON, or `text` for a person.
+    /// Prints `document` as JSON, or `text` for a user.
     pub(super) fn answer(&self, document: &impl Serialize, text: impl Display) -> Result<(), Failure> {
         if self.json {
             let json = serde_json::to_string_pretty(document)
@@ -31,12 +31,12 @@ impl Output {
         }
     }
 
-    /// Prints a document that is JSON already, or `text` for a person.
+    /// Prints a document that is already JSON, or `text` for a user.
     pub(super) fn answer_json(&self, json: &str, text: impl Display) -> Result<(), Failure> {
         if self.json { print_json(json) } else { print_line(harmless_but_styled(&text.to_string())) }
     }
 
-    /// Prints `document` where `--json` asks for it: of a command that has nothing else for stdout.
+    /// Prints `document` if `--json` is given; for a command that has no other output on stdout.
     #[cfg_attr(
         not(feature = "monitor"),
         expect(dead_code, reason = "only the monitor answers while it runs")
@@ -45,7 +45,7 @@ impl Output {
         if self.json { self.answer(document, "") } else { Ok(()) }
     }
 
-    /// Refuses an argument that needs stdout for itself where `--json` has it.
+    /// Rejects an argument that needs stdout if `--json` is given.
     pub(super) fn check_free(&self, argument: &str) -> Result<(), Failure> {
         if self.json {
             return Err(Failure::Usage(format!(
@@ -55,25 +55,26 @@ impl Output {
         Ok(())
     }
 
-    /// A remark on stderr.
+    /// Prints a remark on stderr.
     pub(super) fn note(&self, text: impl Display) {
-        // Nobody can be told that stderr is closed.
+        // A closed stderr cannot be reported.
         let _ = writeln!(std::io::stderr(), "{}", harmless(&text.to_string()));
     }
 
-    /// What is allowed, and probably not meant.
+    /// Prints warnings about input that is valid but probably unintended.
     pub(super) fn warn(&self, warnings: &[String]) {
         warnings.iter().for_each(|warning| self.note(format!("warning: {warning}")));
     }
 
-    /// Tells of a pipeline that failed, so that a program which never started is not taken for a poor one.
+    /// Reports a pipeline that failed, to distinguish a program that never started from one with poor
+    /// results.
     pub(super) fn first_failure(&self, failure: Option<&FirstFailure>) {
         if let Some(FirstFailure { frame, reason }) = failure {
             self.note(format!("the pipeline failed, first at frame {frame}: {reason}"));
         }
     }
 
-    /// Tells why there is no answer: on stderr with the place of the mistake, and with `--json` on stdout too.
+    /// Reports a failure: on stderr with the location of the mistake, and with `--json` on stdout too.
     pub(super) fn failure(&self, failure: Failure) {
         if self.json {
             let document = serde_json::json!({ "error": failure.to_string() });
@@ -82,8 +83,8 @@ impl Output {
         self.note(failure.explain());
     }
 
-    /// With `--json`, tells on stdout what is wrong with the arguments; clap itself tells it on stderr. Asking for help
-    /// or for the version is no mistake.
+    /// With `--json`, reports invalid arguments on stdout; clap itself reports them on stderr. A request for
+    /// help or for the version is not an error.
     pub(super) fn misuse(&self, error: &clap::Error) {
         if self.json && error.use_stderr() {
             let text = error.to_string();
@@ -93,12 +94,12 @@ impl Output {
         }
     }
 
-    /// A progress bar over `frames` on stderr; hidden when stderr is not a terminal.
+    /// Returns a progress bar over `frames` on stderr; hidden if stderr is not a terminal.
     pub(super) fn progress(&self, frames: u64, what: &str) -> ProgressBar {
         self.progress_of(frames, "frames", what)
     }
 
-    /// A progress bar over so many of something.
+    /// Returns a progress bar over `count` units.
     pub(super) fn progress_of(&self, count: u64, unit: &str, what: &str) -> ProgressBar {
         if !std::io::stderr().is_terminal() {
             return ProgressBar::hidden();
@@ -112,7 +113,7 @@ impl Output {
         }
     }
 
-    /// A count of fields on stderr, of which nobody knows how many there will be; hidden when stderr is not a terminal.
+    /// Returns a counter of fields on stderr, for an unknown total; hidden if stderr is not a terminal.
     pub(super) fn counter(&self, what: &str) -> ProgressBar {
         if !std::io::stderr().is_terminal() {
             return ProgressBar::hidden();
@@ -125,13 +126,14 @@ impl Output {
         }
     }
 
-    /// Whether a person at a terminal reads stdout.
+    /// Returns true if stdout is a terminal.
     pub(super) fn is_terminal(&self) -> bool {
         std::io::stdout().is_terminal()
     }
 }
 
-/// A text that orders nothing of a terminal but how letters look: names and reasons in it are of anybody's making.
+/// Returns a text whose only terminal control sequences are text styles: names and reasons in it may come
+/// from any source.
 fn harmless_but_styled(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     let mut rest = text;
@@ -147,8 +149,9 @@ fn harmless_but_styled(text: &str) -> String {
     shown + &harmless(rest)
 }
 
-/// Prints JSON in which no string orders anything of a terminal: JSON itself escapes the control characters below U+0020 alone, and not
-/// DEL and those from U+0080, of which U+009B begins an order as well as ESC does.
+/// Prints JSON without terminal control characters. JSON itself only escapes the control characters below
+/// U+0020, and not DEL or the characters from U+0080 on, of which U+009B begins a control sequence as ESC
+/// does.
 fn print_json(json: &str) -> Result<(), Failure> {
     print_line(harmless_json(json))
 }
@@ -164,7 +167,7 @@ fn harmless_json(json: &str) -> String {
     shown
 }
 
-/// Prints one line; a reader that has gone away (`| head`) is not an error.
+/// Prints one line; a reader that has closed the pipe (`| head`) is not an error.
 fn print_line(text: impl Display) -> Result<(), Failure> {
     match writeln!(std::io::stdout(), "{text}") {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {

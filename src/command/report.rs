@@ -1,4 +1,4 @@
-//! `boresight report`, and the reports that other commands leave beside their results.
+//! `boresight report`, and the reports that other commands write beside their results.
 
 #[cfg(feature = "report")]
 mod budget;
@@ -23,20 +23,21 @@ pub(super) use pages::{
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {
-    /// The directory of a run, of a study, or of `boresight visibility --out`
+    /// Directory of a run, of a study, or of `boresight visibility --out`
     #[arg(value_name = "DIR")]
     directory: PathBuf,
-    /// The file to write, replaced if it is there; default: `report.html` in the directory
+    /// File to write, replaced if it exists; default: `report.html` in the directory
     #[arg(short, long, value_name = "FILE", value_parser = output_path())]
     out: Option<PathBuf>,
-    /// Far range, for the error budget: `all` flies the same frames again, once a stage, and keeps what they gave in DIR/budget; or the
-    /// directory of a run of the same frames with --inject STAGE, may be given for every stage
+    /// Far range, for the error budget: `all` runs the same frames again, once per stage, and keeps the
+    /// results in DIR/budget; or the directory of a run of the same frames with --inject STAGE, may be given
+    /// for every stage
     #[arg(long, value_name = "all|DIR")]
     budget: Vec<PathBuf>,
 }
 
-/// Refuses the option `--report` in a build that cannot write reports, and a place where something else is than a report: now, before
-/// minutes are spent on what could not be written.
+/// Rejects the option `--report` in a build that cannot write reports, and a path that holds anything other
+/// than a report. Checked before minutes are spent on a report that could not be written.
 ///
 /// # Errors
 /// [`Failure::Usage`] that names the missing feature; a [`Failure`] that names the file.

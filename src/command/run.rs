@@ -12,7 +12,7 @@ use super::execute::{Presentation, execute};
 use super::options::{AttitudeOption, PipelineOptions, RendererOptions, Selection, output_path};
 use super::output::Output;
 
-/// Where numbered run directories go when `--out` is not given.
+/// Parent directory of numbered run directories if `--out` is not given.
 pub(super) const RUNS: &str = "runs";
 
 #[derive(Debug, Args)]
@@ -26,10 +26,11 @@ pub(super) struct RunArguments {
     pipeline: PipelineOptions,
     #[command(flatten)]
     attitude: AttitudeOption,
-    /// Give the built-in pipeline the truth in the place of this stage's result, to see what the stage costs
+    /// Give the built-in pipeline the truth instead of this stage's result, to measure the stage's
+    /// contribution to the error
     #[arg(long, value_name = "STAGE")]
     inject: Option<Stage>,
-    /// Keep the images as well: fits, png or exr (about 1 MB a frame); docking: png, avi, mjpeg (AVI) or y4m
+    /// Also keep the images: fits, png or exr (about 1 MB per frame); docking: png, avi, mjpeg (AVI) or y4m
     #[arg(long, value_name = "FORMAT")]
     save_frames: Option<String>,
     /// Write no report.html
@@ -40,7 +41,7 @@ pub(super) struct RunArguments {
 }
 
 impl RunArguments {
-    /// What the bare command means: `run argon`.
+    /// Returns the arguments of the command without a subcommand: `run argon`.
     pub(super) fn argon() -> Self {
         Self {
             selection: Selection::for_scenario("argon"),

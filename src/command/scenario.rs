@@ -1,4 +1,5 @@
-//! `boresight scenario`: what scenarios and cameras there are, whether one is right, what one may contain, and a start.
+//! `boresight scenario`: list scenarios and cameras, check a scenario, print the schema, write a starting
+//! point.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -20,7 +21,7 @@ use super::output::Output;
 pub(super) enum ScenarioCommand {
     /// List the built-in scenarios
     List,
-    /// Check a scenario: exit status 0 when it can be run, 1 with the place of the first mistake
+    /// Check a scenario: exit status 0 if it can be run, 1 with the location of the first mistake
     Check {
         /// A built-in scenario or a TOML file
         scenario: String,
@@ -34,15 +35,15 @@ pub(super) enum ScenarioCommand {
     },
     /// Print the JSON Schema of scenario files
     Schema {
-        /// Of this world alone: far_range or docking
+        /// Only of this world: far_range or docking
         #[arg(long, value_name = "WORLD", value_parser = world_by_name)]
         world: Option<&'static dyn AnyWorld>,
     },
-    /// Write a commented starting point to a file that does not exist yet
+    /// Write a commented starting point to a new file
     New {
-        /// The TOML file to write
+        /// TOML file to write
         file: PathBuf,
-        /// Of this world: far_range or docking
+        /// World of the scenario: far_range or docking
         #[arg(long, value_name = "WORLD", value_parser = world_by_name, default_value = FIRST.code())]
         world: &'static dyn AnyWorld,
     },
@@ -100,7 +101,8 @@ fn camera(name: &str, output: &Output) -> Result<(), Failure> {
     output.answer(&json!({ "name": name, "toml": camera.text }), camera.text.trim_end().to_owned())
 }
 
-/// A mistake in a scenario is the answer no; a file that cannot be read is none.
+/// Checks a scenario. A mistake in it gives the negative result; a file that cannot be read is a failure
+/// instead.
 fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Answer, Failure> {
     let checked = ScenarioSource::read(scenario).and_then(|source| {
         let prepared = source.prepare(Options::default())?;

@@ -1,4 +1,4 @@
-//! `boresight score`: the oracle over anybody's measurements.
+//! `boresight score`: the oracle applied to the measurements of any pipeline.
 
 use std::path::PathBuf;
 
@@ -14,16 +14,17 @@ use crate::table::score_table;
 
 #[derive(Debug, Args)]
 pub(super) struct ScoreArguments {
-    /// A rendered dataset or a run directory: `run.toml` and `truth/` are read
+    /// A rendered dataset or a run directory, from which `run.toml` and `truth/` are read
     directory: PathBuf,
-    /// The measurements, CSV: frame, status, x_px, y_px, or field, status, d1_m ..., and what else docs/formats.md names
+    /// Measurements, CSV: frame, status, x_px, y_px, or field, status, d1_m ..., and optional columns
+    /// (docs/formats.md)
     measurements: PathBuf,
-    /// What the pipeline took each cluster for, Parquet: evidence for the causes of misses. Default:
-    /// `clusters.parquet` beside the measurements, if it is there
+    /// The pipeline's classification of each cluster, Parquet: evidence for the causes of misses. Default:
+    /// `clusters.parquet` beside the measurements, if it exists
     #[arg(long, value_name = "FILE")]
     clusters: Option<PathBuf>,
-    /// Docking: what the pipeline said at the end of portions, CSV. Default: `motion.csv` beside the measurements, if it
-    /// is there
+    /// Docking: the pipeline's motion estimates at the end of portions, CSV. Default: `motion.csv` beside the
+    /// measurements, if it exists
     #[arg(long, value_name = "FILE")]
     motion: Option<PathBuf>,
     #[command(flatten)]
@@ -70,7 +71,7 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
     Ok(Answer::Yes)
 }
 
-/// Returns the JSON of a score with the entry `not_flown`, as `run` writes it.
+/// Returns the JSON of a score, with the frames that were not run added as `run` does.
 fn with_incomplete_run(score: &str, incomplete: &IncompleteRun) -> Result<String, Failure> {
     let unwritable = |error| Failure::Usage(format!("the score cannot be written as JSON: {error}"));
     let mut document: Map<String, Value> = serde_json::from_str(score).map_err(unwritable)?;

@@ -1,4 +1,4 @@
-//! A place for files that nobody keeps.
+//! Temporary directories.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -8,31 +8,34 @@ use std::time::{Duration, SystemTime};
 use files::Failure;
 use tempfile::TempDir;
 
-/// How the names of these directories begin.
+/// Prefix of the names of temporary directories.
 const PREFIX: &str = "boresight-scratch-";
-/// The file in each that its process holds a lock on. A directory without it is somebody's, whatever its name.
+/// File in each temporary directory on which its process holds a lock. A directory without this file belongs
+/// to the user, regardless of its name.
 const MARK: &str = ".boresight-scratch";
-/// A process that has made one locks it at once.
+/// Minimum age of a directory before it is removed; a process locks a new directory at once.
 const UNLOCKED: Duration = Duration::from_secs(3600);
 
-/// Those of this process.
+/// Temporary directories of this process.
 static PLACES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// A directory for files that nobody keeps; gone with the value.
+/// A temporary directory, removed when the value is dropped.
 pub(super) struct ScratchDirectory {
     directory: TempDir,
-    /// Held as long as the process lives, whatever ends it: so one that was left is told from one that is used.
+    /// Held as long as the process lives, however it ends: this distinguishes an abandoned directory from one
+    /// in use.
     _lock: Option<File>,
 }
 
 impl ScratchDirectory {
-    /// Makes one in a folder, and removes those of processes that were killed.
+    /// Creates a temporary directory in `folder`, and removes those of killed processes.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when none can be made there.
+    /// [`Failure::Usage`] if no directory can be created there.
     pub(super) fn create(folder: &Path) -> Result<Self, Failure> {
         remove_abandoned(folder);
-        // Held meanwhile: whoever removes them all knows this one too.
+        // The lock on the list is held during creation, to include this directory in any concurrent removal
+        // of all.
         let mut directories = directories();
         let directory = tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder).map_err(|error| {
             Failure::Usage(format!("a temporary directory cannot be made in {}: {error}", folder.display()))
@@ -53,11 +56,11 @@ impl Drop for ScratchDirectory {
     }
 }
 
-/// Removes those of this process, which is about to end without dropping them.
+/// Removes the temporary directories of this process, which is about to end without dropping them.
 #[cfg(unix)]
 pub(super) fn remove_all() {
     for directory in directories().iter() {
-        // Another thread may put a file there meanwhile.
+        // Another thread may create a file there in the meantime.
         let _ = std::fs::remove_dir_all(directory).or_else(|_| std::fs::remove_dir_all(directory));
     }
 }
@@ -66,7 +69,8 @@ fn directories() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     PLACES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what processes left that were killed. That it cannot be done is no matter: nobody reads it.
+/// Removes the directories of killed processes. Errors are ignored, because no process reads these
+/// directories.
 fn remove_abandoned(folder: &Path) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -85,7 +89,7 @@ fn remove_abandoned(folder: &Path) {
 mod tests {
     use super::*;
 
-    /// Makes a directory of two hours ago.
+    /// Creates a directory that is two hours old.
     fn old_directory(folder: &Path, name: &str, file: &str) -> PathBuf {
         let path = folder.join(name);
         std::fs::create_dir(&path).unwrap();

@@ -1,4 +1,5 @@
-//! `boresight completions` and `boresight man`: what a shell and its manual need, from the command's own definition.
+//! `boresight completions` and `boresight man`: shell completions and manual pages, from the command's
+//! definition.
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -12,19 +13,19 @@ use super::output::Output;
 
 #[derive(Debug, Args)]
 pub(super) struct CompletionsArguments {
-    /// The shell
+    /// Shell to complete for
     #[arg(value_enum)]
     shell: Shell,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct ManArguments {
-    /// Directory of the pages, made when it is not there; pages that are there are replaced
+    /// Directory of the pages, created if it does not exist; existing pages are replaced
     #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: PathBuf,
 }
 
-/// Prints the completions of a shell for `root`, for it to source.
+/// Prints a completion script for `root`, to be sourced by a shell.
 pub(super) fn completions(
     arguments: &CompletionsArguments,
     mut root: Command,
@@ -34,7 +35,7 @@ pub(super) fn completions(
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut root, "boresight", &mut script);
     match std::io::stdout().write_all(&script) {
-        // A reader that has gone away is not an error.
+        // A reader that has closed the pipe is not an error.
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(Failure::Usage(format!("stdout cannot be written: {error}")))
         }
@@ -54,7 +55,7 @@ pub(super) fn man(arguments: &ManArguments, root: Command, output: &Output) -> R
     Ok(Answer::Yes)
 }
 
-/// Manual pages of the command, which later ones replace.
+/// Manual pages of the command, which newer pages replace.
 const PAGES: ReplaceableFile<'static> =
     ReplaceableFile { description: "an earlier page of this manual", matches: &is_page };
 
@@ -84,7 +85,7 @@ fn write_pages(
     Ok(())
 }
 
-/// The synopsis of a page. That of clap_mangen has options without their values.
+/// Returns the synopsis of a page. The synopsis of clap_mangen shows options without their values.
 fn usage(command: &Command) -> String {
     let name = command.get_bin_name().unwrap_or_else(|| command.get_name()).to_owned();
     let shown = || command.get_arguments().filter(|argument| !argument.is_hide_set());

@@ -27,23 +27,24 @@ pub(super) struct ShowArguments {
     /// Number of the frame (docking: of the field); several, up to 16, become a contact sheet
     #[arg(value_name = "FRAME", required = true)]
     frames: Vec<u64>,
-    /// The PNG file to write. An earlier picture of this command is replaced, any other file is not; default: RUN/show/FRAME.png
+    /// PNG file to write. Replaces an earlier picture of this command, but no other file; default:
+    /// RUN/show/FRAME.png
     #[arg(short, long, value_name = "FILE.png")]
     out: Option<PathBuf>,
-    /// From digital numbers to grey: asinh, linear (darkest to brightest pixel) or full (0 to full scale); default: asinh, docking
-    /// full
+    /// Map from digital numbers to grey: asinh, linear (darkest to brightest pixel) or full (0 to full
+    /// scale); default: asinh, docking full
     #[arg(long, value_name = "STRETCH")]
     stretch: Option<Stretch>,
-    /// The whole frame, with the target enlarged in a close-up, or the surroundings of the target alone
+    /// The whole frame, with the target enlarged in a close-up, or only the surroundings of the target
     #[arg(long, value_name = "VIEW", value_enum, default_value_t)]
     view: ShownArea,
-    /// The answers to draw, CSV; default: `measurements.csv` in RUN, if it is there. What the pipeline recognised
-    /// (features.parquet, clusters.parquet) is read from beside it
+    /// Outcomes to draw, CSV; default: `measurements.csv` in RUN, if it exists. The features and clusters
+    /// that the pipeline recognised (features.parquet, clusters.parquet) are read from the same directory
     #[arg(long, value_name = "FILE")]
     measurements: Option<PathBuf>,
 }
 
-/// Part of the frame that is drawn.
+/// Part of the frame to draw.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 enum ShownArea {
     /// The whole frame
@@ -53,18 +54,18 @@ enum ShownArea {
     Target,
 }
 
-/// Reads frames of a directory and makes their panels.
+/// Function that reads frames of a directory and makes their panels.
 type Panels = fn(&Source, &[u64]) -> Result<Vec<AnnotatedFrame>, Failure>;
 
-/// Whether a panel of a whole frame has a close-up of the target in it.
+/// Presence of a close-up of the target in the panel of a whole frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum CloseUp {
     Inset,
-    /// The target fills the frame soon enough.
+    /// No close-up: the target soon fills the frame.
     None,
 }
 
-/// The worlds whose frames can be drawn: one line each.
+/// Worlds whose frames can be drawn: one line each.
 const PANELS: [(&str, Panels, CloseUp); 2] = [
     (FarRangeMission::CODE, far_range::panels, CloseUp::Inset),
     (DockingMission::CODE, docking::panels, CloseUp::None),
@@ -75,7 +76,7 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
         return Err(undrawn(ShowError::PanelCount(arguments.frames.len())));
     }
     let source = Source::open(&arguments.directory, arguments.measurements.as_deref())?;
-    // Refused before the work.
+    // Rejected before the work begins.
     let file = PictureFile::new(arguments.out.as_deref(), &source.directory, &arguments.frames)?;
     let (_, panels, close_up) =
         PANELS.iter().find(|(code, ..)| *code == source.world.code()).ok_or_else(|| {
@@ -114,7 +115,7 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
     Ok(Answer::Yes)
 }
 
-/// The failure of a picture that cannot be drawn.
+/// Returns the failure of a picture that cannot be drawn.
 fn undrawn(error: ShowError) -> Failure {
     Failure::Usage(error.to_string())
 }

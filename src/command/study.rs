@@ -1,4 +1,4 @@
-//! `boresight study`: Monte Carlo over what can vary.
+//! `boresight study`: Monte Carlo over variable parameters.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -26,11 +26,11 @@ use crate::table::{LiveFigure, study_table};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum StudyCommand {
-    /// Run what is missing of a study, and sum it up; with --shard, one piece of it
+    /// Run the missing cases of a study, and summarise it; with --shard, one part of it
     Run(RunArguments),
-    /// Say how a study is cut into shards, and the command of each
+    /// Print how a study is divided into shards, and the command of each
     Plan(PlanArguments),
-    /// Put the shards of a study together and sum it up; none may be missing
+    /// Merge the shards of a study and summarise it; none may be missing
     Merge(MergeArguments),
     /// Run one case again and keep its run directory, frames included
     Replay(ReplayArguments),
@@ -44,19 +44,21 @@ pub(super) enum StudyCommand {
 pub(super) struct RunArguments {
     /// A TOML file (docs/studies.md)
     study: PathBuf,
-    /// Directory of the results; one that holds a part of the same study is gone on with
+    /// Directory of the results; an unfinished directory of the same study is continued
     #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: PathBuf,
-    /// One shard of so many, `I/N` with I from 1
+    /// One shard of N, `I/N` with I from 1
     #[arg(long, value_name = "I/N")]
     shard: Option<ShardSelection>,
-    /// Number of shards; default: one for 32 cases, at most 1000
+    /// Number of shards; default: one per 32 cases, at most 1000
     #[arg(long, value_name = "N", conflicts_with = "shard")]
     shards: Option<u64>,
-    /// Who runs the shards: `local`, this process; `dask`, a Dask cluster on this machine; or `dask=ADDRESS` of a scheduler
+    /// Executor of the shards: `local`, this process; `dask`, a Dask cluster on this machine; or
+    /// `dask=ADDRESS` of a scheduler
     #[arg(long, value_name = "ENGINE", default_value = "local", conflicts_with = "shard")]
     engine: Engine,
-    /// Threads, or workers of a cluster on this machine; default: all cores. The results do not depend on it
+    /// Threads, or workers of a cluster on this machine; default: all cores. The results do not depend on
+    /// their number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Write no report.html
@@ -70,7 +72,7 @@ pub(super) struct RunArguments {
 pub(super) struct PlanArguments {
     /// A TOML file (docs/studies.md)
     study: PathBuf,
-    /// Number of shards; default: one for 32 cases, at most 1000
+    /// Number of shards; default: one per 32 cases, at most 1000
     #[arg(long, value_name = "N")]
     shards: Option<u64>,
     #[command(flatten)]
@@ -79,7 +81,7 @@ pub(super) struct PlanArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct MergeArguments {
-    /// The study's file
+    /// File of the study
     study: PathBuf,
     /// Directory of the shards
     #[arg(short, long, value_name = "DIR", value_parser = output_path())]
@@ -93,18 +95,19 @@ pub(super) struct MergeArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ReplayArguments {
-    /// The study's file
+    /// File of the study
     study: PathBuf,
     /// Number of the case
     #[arg(long, value_name = "K")]
     case: u64,
-    /// Refuse a study that has another hash, or begins with other digits: one of other files, values or pipeline than the rows
+    /// Reject a study whose hash differs or does not begin with these digits: its files, values or pipeline
+    /// are not those of the rows
     #[arg(long, value_name = "HEX")]
     hash: Option<String>,
     /// A new or empty directory for the run; default: the next free `runs/STUDY-case-K-001`
     #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: Option<PathBuf>,
-    /// Keep the images as well: fits, png or exr; docking: png, avi, mjpeg (AVI) or y4m
+    /// Also keep the images: fits, png or exr; docking: png, avi, mjpeg (AVI) or y4m
     #[arg(long, value_name = "FORMAT")]
     save_frames: Option<String>,
     /// Write no report.html
@@ -122,7 +125,7 @@ pub(super) struct CheckArguments {
     pipeline: PipelineOptions,
 }
 
-/// A shard of so many.
+/// One shard of a given number of shards.
 #[derive(Debug, Clone, Copy)]
 struct ShardSelection {
     shard: u64,
@@ -252,7 +255,7 @@ fn to_json(value: &impl Serialize) -> Result<String, Failure> {
         .map_err(|error| Failure::Usage(format!("the plan cannot be written as JSON: {error}")))
 }
 
-/// A thread that panicked while it held what is known cannot have left half of it.
+/// Locks a value, even if a thread panicked while holding the lock: the value cannot be half written.
 fn lock<T>(known: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     known.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
@@ -285,15 +288,16 @@ fn finish(
     })
 }
 
-/// The plan of a study, with what makes each shard.
+/// Plan of a study, with the command of each shard.
 #[derive(Serialize)]
 struct PlanDocument {
     #[serde(flatten)]
     plan: Plan,
     pieces: Vec<ShardDocument>,
-    /// Folder that relative paths in the commands start from.
+    /// Directory to which relative paths in the commands refer.
     directory: PathBuf,
-    /// Files that the commands read, absolute: the study's own, its scenario's, those that cases read, and those among the words of a program.
+    /// Absolute paths of the files that the commands read: the study, its scenario, the files that cases
+    /// read, and files among the words of a program's command.
     files: Vec<PathBuf>,
 }
 
@@ -332,7 +336,7 @@ fn plan(arguments: &PlanArguments, output: &Output) -> Result<Answer, Failure> {
     Ok(Answer::Yes)
 }
 
-/// Refuses a study that no shard knows the end of.
+/// Rejects a study whose end cannot be determined from a single shard.
 fn refuse_until(study: &Study) -> Result<(), Failure> {
     match study.file.stop.until {
         None => Ok(()),
@@ -343,7 +347,7 @@ fn refuse_until(study: &Study) -> Result<(), Failure> {
     }
 }
 
-/// Refuses a pipeline that the study's scenario does not have, or that cannot be run on its cameras.
+/// Rejects a pipeline that is not available for the study's scenario, or that cannot run on its cameras.
 fn check_pipeline(choice: &PipelineChoice, study: &Study) -> Result<(), Failure> {
     let (scenario, world) = (study.scenario(), study.scenario().world());
     world.check_choice(scenario, choice)?;
@@ -466,7 +470,8 @@ fn check(arguments: &CheckArguments, output: &Output) -> Result<Answer, Failure>
     Ok(Answer::Yes)
 }
 
-/// Asks a program for its answer to the first frame of the first case: one that is not there, or does not speak the protocol, is refused.
+/// Requests a program's outcome for the first frame of the first case; rejects a program that is missing or
+/// does not implement the protocol.
 fn check_answer(choice: &PipelineChoice, study: &Study) -> Result<(), Failure> {
     if choice.is_built_in(study.scenario().world().code()) {
         return Ok(());

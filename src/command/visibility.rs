@@ -1,4 +1,4 @@
-//! `boresight visibility`: which camera is needed.
+//! `boresight visibility`: selection of a camera.
 
 use std::path::PathBuf;
 
@@ -21,13 +21,14 @@ pub(super) struct VisibilityArguments {
     /// A new or empty directory for visibility.json, visibility.md and the curves
     #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: Option<PathBuf>,
-    /// Write the report as one HTML file too, replaced if it is there; with --out it is in the directory anyway
+    /// Also write the report as one HTML file, replaced if it exists; with --out it is always in the
+    /// directory
     #[arg(long, value_name = "FILE", value_parser = output_path())]
     report: Option<PathBuf>,
-    /// Frames simulated for each result, instead of the file's `confirm.frames`; 0: none
+    /// Number of frames simulated for each result, instead of `confirm.frames` in the file; 0: none
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000))]
     frames: Option<u32>,
-    /// Threads; default: all cores. The results do not depend on it
+    /// Threads; default: all cores. The results do not depend on their number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Print the JSON Schema of requirement files
@@ -38,7 +39,8 @@ pub(super) struct VisibilityArguments {
     list: bool,
 }
 
-/// Exit status 0 when every requirement is met, 1 when one is not or cannot be.
+/// Runs the command; exit status 0 if every requirement is met, 1 if a requirement is not met or cannot be
+/// met.
 pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Result<Answer, Failure> {
     if arguments.schema {
         let schema = schemars::schema_for!(RequirementFile);

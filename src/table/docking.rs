@@ -1,5 +1,5 @@
-//! The table of a docking score that a person reads: a row a bin of range and lens, the paper's formulas beside the
-//! pipeline's own best estimator.
+//! Table of a docking score for a user: one row per bin of range and lens, with the paper's formulas beside
+//! the pipeline's best estimator.
 use comfy_table::{Attribute, Cell};
 use contract::docking::FailedCheck;
 use indexmap::IndexMap;
@@ -8,8 +8,8 @@ use score::{Figure, warm_up_note};
 
 use crate::table::far_range::{finish, percent, plain_table, share};
 
-/// The score of a docking run as text: single fields, what is said at the end of portions, misses and wrong answers by
-/// cause. Ends with a line feed.
+/// Returns the score of a docking run as text: single fields, estimates at the end of portions, misses and
+/// wrong results by cause. Ends with a line feed.
 pub fn docking(score: &DockingScore, styled: bool) -> String {
     let rows = rows(score);
     let mut text = if score.renderer == "mitsuba" { "Scene drawn by Mitsuba.\n" } else { "" }.to_owned();
@@ -51,7 +51,7 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
     text
 }
 
-/// One row: a group, or all.
+/// One row: a group, or all groups.
 struct Row<'a> {
     name: &'a str,
     frames: u64,
@@ -71,7 +71,7 @@ impl Row<'_> {
         self.figures.get(name).and_then(|figure| figure.value)
     }
 
-    /// The value of the best estimator and, after a stroke, that of the paper's formulas.
+    /// Formats the value of the best estimator and, after a slash, that of the paper's formulas.
     fn values_of_both(&self, name: &str, format: fn(f64) -> String) -> String {
         let paper = self.figure(&format!("{}{name}", names::PAPER), format);
         match (self.figure(name, format).as_str(), paper.as_str()) {
@@ -80,7 +80,7 @@ impl Row<'_> {
         }
     }
 
-    /// How often there is a range alone, and how far it is off.
+    /// Formats the frequency and the error of outcomes with only a range.
     fn range_only(&self) -> String {
         let error = self.value(names::RANGE_ONLY_RMS_PERCENT);
         let share = self.figure(names::RANGE_ONLY_RATE, percent);
@@ -99,7 +99,7 @@ impl Row<'_> {
     }
 }
 
-/// The groups and all; all alone where one group is everything.
+/// Returns the groups and all together; only all if one group contains everything.
 fn rows(score: &DockingScore) -> Vec<Row<'_>> {
     let groups = score.groups.iter().map(|(name, group)| {
         let DockingGroup { frames, portions, figures, misses, wrong, doubtful } = group;
@@ -193,7 +193,7 @@ fn portions(rows: &[Row<'_>], styled: bool) -> String {
     )
 }
 
-/// How long things take, in words.
+/// Returns a description of latencies.
 fn latency(score: &DockingScore) -> String {
     let value = |name: &str| score.figures.get(name).and_then(|figure| figure.value);
     let latency = value(names::LATENCY_FIELDS)
@@ -209,7 +209,8 @@ fn latency(score: &DockingScore) -> String {
     if lines.is_empty() { String::new() } else { format!("\n{}\n", lines.join("\n")) }
 }
 
-/// Counts by cause, a column each, with their share of the row's fields; one line when there is none.
+/// Counts by cause, one column each, with their fraction of the row's fields; a single line if there are
+/// none.
 fn causes(
     title: &str,
     rows: &[Row<'_>],
@@ -242,12 +243,12 @@ fn sheet(header: &[&str], rows: impl Iterator<Item = Vec<String>>, styled: bool)
     finish(table)
 }
 
-/// Metres, below one as millimetres; three digits.
+/// Formats a length in metres, or in millimetres below one metre; three digits.
 fn length(m: f64) -> String {
     if m < 0.9995 { format!("{} mm", three_digits(1000.0 * m)) } else { format!("{} m", three_digits(m)) }
 }
 
-/// Metres a second, below one as millimetres a second.
+/// Formats a speed in metres per second, or in millimetres per second below one.
 fn speed(m_s: f64) -> String {
     format!("{}/s", length(m_s))
 }

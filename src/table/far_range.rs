@@ -1,32 +1,33 @@
-//! The table that a person reads, shaped like Table 2 of the far-range paper.
+//! Table for a user, in the form of Table 2 of the far-range paper.
 use comfy_table::{Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use indexmap::IndexMap;
 use score::{
     Cause, ConsistencyRow, Figure, Score, Table2, Table2Distance, angle, attitude_note, names, warm_up_note,
 };
 
-/// How to print a score.
+/// Style of a printed score.
 #[derive(Debug, Clone, Copy)]
 pub struct TableStyle<'a> {
-    /// Whether to set letters bold and dim with terminal codes: false when the output is not a terminal.
+    /// True if text is set bold and dim with terminal codes; false if the output is not a terminal.
     pub styled: bool,
-    /// Columns of the terminal. Where a line does not fit, the intervals go below their values.
+    /// Width of the terminal, columns. If a line does not fit, the intervals are placed below their values.
     pub width: usize,
-    /// Published figures to print below ours; they are left out unless the score has as many groups.
+    /// Published figures to print below those of the score; omitted unless the number of groups is the same.
     pub reference: Option<&'a Table2>,
-    /// The score of the best mode on the same frames, to print below ours; its columns are those of the score, or it is left out.
+    /// Score of the best mode on the same frames, to print below the score; omitted unless it has the same
+    /// columns.
     pub best_mode: Option<&'a Score>,
 }
 
 impl Default for TableStyle<'_> {
-    /// Plain, 120 columns, without published figures.
+    /// Returns a plain style with 120 columns, without published figures.
     fn default() -> Self {
         Self { styled: false, width: 120, reference: None, best_mode: None }
     }
 }
 
-/// The score of a far-range run as text: figures by group with their 95 % intervals, then the misses and the wrong
-/// answers by cause, each with its share of the column's frames in percent. Ends with a line feed.
+/// Returns the score of a far-range run as text: figures by group with their 95 % intervals, then the misses
+/// and the wrong results by cause, each with its percentage of the column's frames. Ends with a line feed.
 pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
     let columns = columns(score);
     let reference = style.reference.filter(|table| table.images.len() == columns.len());
@@ -72,7 +73,7 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
     text
 }
 
-/// One column: a group, or all.
+/// One column: a group, or all groups.
 struct Column<'a> {
     name: &'a str,
     frames: u64,
@@ -83,7 +84,7 @@ struct Column<'a> {
 
 type Counts = for<'a> fn(&Column<'a>) -> &'a IndexMap<String, u64>;
 
-/// The groups and all; all alone where one group is everything.
+/// Returns the groups and all together; only all if one group contains everything.
 fn columns(score: &Score) -> Vec<Column<'_>> {
     let groups = score.groups.iter().map(|(name, group)| Column {
         name,
@@ -102,7 +103,7 @@ fn columns(score: &Score) -> Vec<Column<'_>> {
     groups.filter(|_| score.groups.len() > 1 || score.warm_up_frames > 0).chain([all]).collect()
 }
 
-/// One row: its label and the value and interval of every column.
+/// One row: its label, and the value and interval of every column.
 struct Row {
     label: String,
     cells: Vec<(String, Option<String>)>,
@@ -149,10 +150,10 @@ fn rows(columns: &[Column<'_>], reference: Option<&Table2>, best_mode: Option<&[
     rows
 }
 
-/// How a number is written.
+/// Format of a number.
 type Format = fn(f64) -> String;
 
-/// Figures of the honesty of covariances, with their labels.
+/// Figures of covariance consistency, with their labels.
 const CONSISTENCY: [(&str, &str, Format); 6] = [
     ("x/y NEES", names::CENTROID_NEES_MEAN, number),
     ("x/y < 1 σ", names::CENTROID_WITHIN_1SIGMA_RATE, percent),
@@ -162,7 +163,7 @@ const CONSISTENCY: [(&str, &str, Format); 6] = [
     ("RA/Dec < 3 σ", names::LINE_OF_SIGHT_WITHIN_3SIGMA_RATE, percent),
 ];
 
-/// The honesty of the covariances by the state of the image and by the source of the attitude.
+/// Returns the consistency of the covariances, by the state of the image and by the source of the attitude.
 fn consistency(rows: &[ConsistencyRow], styled: bool) -> String {
     let mut table = plain_table(styled);
     let labels = CONSISTENCY.map(|(label, ..)| label);
@@ -175,7 +176,7 @@ fn consistency(rows: &[ConsistencyRow], styled: bool) -> String {
     finish(table)
 }
 
-/// The value and the interval of a figure as they are printed; a dash where there is none.
+/// Returns the value and the interval of a figure in printed form; a dash if there is none.
 fn figure(figure: Option<&Figure>, format: Format) -> (String, Option<String>) {
     let value = figure.and_then(|figure| figure.value).map_or("–".to_owned(), format);
     let interval = figure
@@ -184,12 +185,13 @@ fn figure(figure: Option<&Figure>, format: Format) -> (String, Option<String>) {
     (value, interval)
 }
 
-/// A fraction in percent with one decimal. A whole 100 has none: all frames, which no rounding reaches.
+/// Formats a fraction in percent with one decimal. Exactly 100 has no decimal: it means all frames, and is
+/// never reached by rounding.
 pub(crate) fn percent(fraction: f64) -> String {
     if fraction == 1.0 { "100".to_owned() } else { format!("{:.1}", (100.0 * fraction).min(99.9)) }
 }
 
-/// Degrees in seconds of arc, with a decimal below 100.
+/// Formats degrees as seconds of arc, with one decimal below 100.
 fn arcsec(degrees: f64) -> String {
     let arcsec = 3600.0 * degrees;
     if arcsec < 99.95 { format!("{arcsec:.1}") } else { format!("{arcsec:.0}") }
@@ -199,7 +201,7 @@ fn number(value: f64) -> String {
     format!("{value:.2}")
 }
 
-/// A count. The interval of a mean count may begin below 0, where no count is.
+/// Formats a count. The interval of a mean count may begin below 0, where no count exists.
 fn integer_text(count: f64) -> String {
     format!("{:.0}", count.max(0.0))
 }
@@ -227,7 +229,7 @@ fn sheet(columns: &[Column<'_>], rows: &[Row], before_interval: &str, styled: bo
     finish(table)
 }
 
-/// Counts by cause with their share of the column's frames, or one line when there is none.
+/// Counts by cause with their fraction of the column's frames, or a single line if there are none.
 fn causes(title: &str, columns: &[Column<'_>], pick: Counts, styled: bool) -> String {
     let occurring: Vec<&str> = Cause::ALL
         .iter()
@@ -242,7 +244,7 @@ fn causes(title: &str, columns: &[Column<'_>], pick: Counts, styled: bool) -> St
     for code in occurring {
         let cells = columns.iter().map(|column| {
             let count = pick(column).get(code).copied().unwrap_or(0);
-            // A column without frames has no counts, and no share either.
+            // A column without frames has neither counts nor fractions.
             if count == 0 { "–".to_owned() } else { share(count, column.frames) }
         });
         table.add_row([code.replace('_', " ")].into_iter().chain(cells));
@@ -267,7 +269,7 @@ pub(crate) fn plain_table(styled: bool) -> Table {
     table
 }
 
-/// Numbers to the right, no blanks at the edges; ends with a line feed.
+/// Aligns numbers to the right, without spaces at the edges; ends with a line feed.
 pub(crate) fn finish(mut table: Table) -> String {
     for (index, column) in table.column_iter_mut().enumerate() {
         if index == 0 {
@@ -284,7 +286,7 @@ mod tests {
     use super::*;
     use score::{ARGON_TABLE_2, GroupScore};
 
-    /// Figures of the size of a real run; each with `of` independent frames.
+    /// Figures with the magnitude of a real run, each from `frames` independent frames.
     fn figures(frames: u64) -> IndexMap<String, Figure> {
         let rate = |share: f64, of: u64| {
             let hits = (share * of as f64) as u64;
@@ -439,7 +441,7 @@ mod tests {
             .iter()
             .map(|(name, _)| 100.0 * score.figures[*name].value.unwrap())
             .collect();
-        // The groups of this score are alike, and like the whole.
+        // The groups of this score are similar to each other and to the whole.
         let differences: Vec<f64> = ARGON_TABLE_2
             .rates()
             .iter()

@@ -1,4 +1,4 @@
-//! The table of a scored run of any world.
+//! Table of a scored run of any world.
 
 use comfy_table::Cell;
 use run::docking::DockingJudgement;
@@ -8,10 +8,10 @@ use score::FarRangeJudgement;
 use crate::table::far_range::{finish, percent, plain_table};
 use crate::table::{TableStyle, docking, far_range};
 
-/// Makes the table of a scored run if it is one of a certain world.
+/// Function that returns the table of a scored run, or `None` if the run is from another world.
 type Table = fn(&dyn AnyJudgement, bool) -> Option<String>;
 
-/// The worlds with tables of their own: one line each.
+/// Worlds with dedicated tables: one line each.
 const TABLES: [Table; 2] = [
     |scored, styled| {
         let scored = scored.as_any().downcast_ref::<FarRangeJudgement>()?;
@@ -22,7 +22,8 @@ const TABLES: [Table; 2] = [
     |scored, styled| Some(docking(&scored.as_any().downcast_ref::<DockingJudgement>()?.score, styled)),
 ];
 
-/// The score of a run as text: the table of its world, or its figures where it has none. Ends with a line feed.
+/// Returns the score of a run as text: the table of its world or, if the world has none, the figures. Ends
+/// with a line feed.
 pub fn score_table(scored: &dyn AnyJudgement, styled: bool) -> String {
     TABLES.iter().find_map(|table| table(scored, styled)).unwrap_or_else(|| figures(scored, styled))
 }

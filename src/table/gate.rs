@@ -1,4 +1,4 @@
-//! What a person reads of a gate.
+//! Text output of a gate for a user.
 use comfy_table::{Attribute, Cell};
 use gate::{Baseline, FigureReport, FigureVerdict, Flip, GateReport, Pairing};
 use pipeline::external::protocol::harmless;
@@ -6,13 +6,13 @@ use run::figure_by_name;
 
 use crate::table::far_range::{finish, percent, plain_table};
 
-/// Units that changed, at most, that are printed; all of them are in the JSON.
+/// Maximum number of changed units that are printed; the JSON contains all of them.
 const SHOWN: usize = 10;
 
-/// Rows of the table, unless more figures are worse or better.
+/// Maximum number of rows of the table, unless more figures are worse or better.
 const MAX_ROWS: usize = 20;
 
-/// A report as text: a row a figure, then the units that changed. Ends with a line feed.
+/// Returns a report as text: one row per figure, then the changed units. Ends with a line feed.
 pub fn gate_table(report: &GateReport, styled: bool) -> String {
     let mut table = plain_table(styled);
     let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
@@ -83,7 +83,8 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
     text
 }
 
-/// The figures that are shown, in their order: all with a verdict to speak of, and of the others those that came nearest to one.
+/// Returns the figures to show, in the report's order: all figures with a notable verdict, and from the
+/// remaining figures those nearest to one.
 fn rows(report: &GateReport) -> Vec<(&String, &FigureReport)> {
     let is_silent = |figure: &FigureReport| {
         matches!(figure.verdict, FigureVerdict::NoWorse | FigureVerdict::TooLittleData)
@@ -131,7 +132,7 @@ fn difference(name: &str, figure: &FigureReport) -> String {
     }
 }
 
-/// What a baseline is, as text. Ends with a line feed.
+/// Returns a description of a baseline as text. Ends with a line feed.
 pub fn baseline_text(baseline: &Baseline) -> String {
     let header = &baseline.header;
     let (run, rule) = (&header.run, &header.blocks);
@@ -160,7 +161,7 @@ fn number(name: &str, value: f64) -> String {
     if size == 0.0 {
         "0".to_owned()
     } else if (0.01..1e5).contains(&size) {
-        // Three digits that count, or all before the point.
+        // Three significant digits, or all digits before the decimal point.
         let digits = (2 - libm::log10(size).floor() as i32).max(0) as usize;
         format!("{value:.digits$}")
     } else {

@@ -1,4 +1,4 @@
-//! What a person reads of a study.
+//! Text output of a study for a user.
 use std::collections::HashMap;
 
 use comfy_table::{Attribute, Cell};
@@ -12,12 +12,12 @@ use study::{
 
 use crate::table::far_range::{finish, percent, plain_table};
 
-/// Parameters of the sensitivity table, at most.
+/// Maximum number of parameters in the sensitivity table.
 const SHOWN: usize = 12;
-/// Figures that have a column in the tables of sweep and sensitivities, at most.
+/// Maximum number of figures with a column in the tables of sweep and sensitivities.
 const SHOWN_FIGURES: usize = 4;
 
-/// A summary as text: figures, sweep, sensitivities, the worst cases. Ends with a line feed.
+/// Returns a summary as text: figures, sweep, sensitivities, the worst cases. Ends with a line feed.
 pub fn study_table(summary: &Summary, styled: bool) -> String {
     let mut table = plain_table(styled);
     let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
@@ -119,7 +119,8 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     text
 }
 
-/// The figures that have a column: the one by which cases are good or bad, those required, then the others in their order.
+/// Returns the figures that have a column: the figure by which cases are ranked, the required figures, then
+/// the remaining ones in order.
 fn shown_figures(summary: &Summary) -> Vec<&String> {
     let required = summary.requirements.iter().map(|result| &result.requirement.figure);
     let recorded = summary.figures.iter().filter(|(_, figure)| figure.cases > 0).map(|(name, _)| name);
@@ -132,7 +133,7 @@ fn shown_figures(summary: &Summary) -> Vec<&String> {
     names
 }
 
-/// The requirements with their verdicts; empty without any.
+/// Returns the requirements with their verdicts as text; empty if there are none.
 fn requirements(summary: &Summary, styled: bool) -> String {
     let Some(verdict) = summary.verdict() else { return String::new() };
     let mut table = plain_table(styled);
@@ -161,7 +162,7 @@ fn requirements(summary: &Summary, styled: bool) -> String {
     format!("\n{}{together}\n", finish(table))
 }
 
-/// How the figures go with what was drawn.
+/// Returns the correlations of the figures with the drawn parameters as text.
 fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String {
     let (varied, constant): (Vec<&String>, Vec<&String>) =
         figures.iter().copied().partition(|name| correlations_with(summary, name).next().is_some());
@@ -214,7 +215,7 @@ fn correlations_with<'a>(summary: &'a Summary, figure: &'a str) -> impl Iterator
     summary.correlations.iter().filter(move |correlation| correlation.figure == figure)
 }
 
-/// Sobol indices of the figures.
+/// Returns the Sobol indices of the figures as text.
 fn indices(summary: &Summary, figures: &[&String], styled: bool) -> String {
     let mut text = String::new();
     let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
@@ -241,7 +242,8 @@ fn indices(summary: &Summary, figures: &[&String], styled: bool) -> String {
     text
 }
 
-/// What each step of the sweep changes of the figure by which cases are good or bad; empty where nothing can be compared.
+/// Returns the change of the figure by which cases are ranked, at each step of the sweep, as text; empty if
+/// there is nothing to compare.
 fn differences(summary: &Summary, styled: bool) -> String {
     let by = &summary.worst_by;
     let mut table = plain_table(styled);
@@ -266,7 +268,7 @@ fn differences(summary: &Summary, styled: bool) -> String {
     if is_empty { String::new() } else { format!("\n{}", finish(table)) }
 }
 
-/// A difference of two figures with its interval; of rates in points of a percent.
+/// Formats a difference of two figures with its interval; for rates, in percentage points.
 fn shown_difference(name: &str, estimate: &Estimate) -> String {
     let is_rate = figure_by_name(name).is_rate();
     let one = |value: f64| {
@@ -283,38 +285,38 @@ fn signed(name: &str, value: f64) -> String {
     format!("{sign}{}", number(name, value))
 }
 
-/// A cause as in `missed.cut_by_roi`, in words.
+/// Returns the words for a cause such as `missed.cut_by_roi`.
 fn cause_words(name: &str) -> String {
     name.replacen('.', ": ", 1).replace('_', " ")
 }
 
-/// A share with its interval.
+/// Formats a fraction with its interval, in percent.
 fn percents(share: &Estimate) -> String {
     let bounds = share.low.zip(share.high);
     let bounds = bounds.map(|(low, high)| format!(" ({} %–{} %)", percent(low), percent(high)));
     format!("{} %{}", percent(share.value), bounds.unwrap_or_default())
 }
 
-/// A figure of the cases so far, in a few words: estimated anew after each twentieth more of them, so that it costs little however many
-/// there are.
+/// Brief running estimate of a figure over the cases so far. The estimate is renewed whenever the number of
+/// cases has grown by a twentieth, to keep its cost low for any number of cases.
 pub struct LiveFigure {
     name: String,
     column: Option<usize>,
     cases: Vec<CaseFigure>,
-    /// The number of each case's draw, and of each draw that of its seed.
+    /// Index of each case's draw; cases with the same seed share a draw.
     draws: Vec<usize>,
     seeds: HashMap<u64, usize>,
     next: usize,
 }
 
 impl LiveFigure {
-    /// Of a study, before its first case.
+    /// Creates the running estimate of a study, before its first case.
     pub fn new(study: &Study, name: String) -> Self {
         let column = study.figures().iter().position(|figure| *figure == name);
         Self { name, column, cases: Vec::new(), draws: Vec::new(), seeds: HashMap::new(), next: 1 }
     }
 
-    /// Adds a case; what is to be shown now, if it is to be shown anew.
+    /// Adds a case, and returns the text to show if the estimate was renewed.
     pub fn add(&mut self, row: &CaseRow) -> Option<String> {
         self.cases.push(*row.figures.get(self.column?)?);
         let draw = self.seeds.len();
@@ -328,7 +330,7 @@ impl LiveFigure {
     }
 }
 
-/// What a figure is called beside its values.
+/// Returns the label of a figure beside its values.
 fn label(key: &str) -> String {
     figure_by_name(key).label_without_percent()
 }
@@ -349,7 +351,7 @@ fn number(name: &str, value: f64) -> String {
     }
     let size = value.abs();
     if size == 0.0 || (0.01..1e5).contains(&size) {
-        // Four digits that count.
+        // Four significant digits.
         let digits = if size >= 1000.0 {
             0
         } else if size >= 100.0 {

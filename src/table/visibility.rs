@@ -1,19 +1,20 @@
-//! What a person reads of requirements: the verification table and the curves, on screen and as Markdown.
+//! Text output of requirements for a user: the verification table and the curves, for the terminal and as
+//! Markdown.
 use visibility::{Status, Verdict, VisibilityReport, digits};
 
 use crate::table::far_range::{finish, plain_table};
 
-/// Points of a curve that are shown, about.
+/// Approximate number of points of a curve that are shown.
 const SHOWN: usize = 9;
 
-/// A heading, columns, rows.
+/// A table with heading, columns and rows.
 struct TextTable {
     title: String,
     head: Vec<&'static str>,
     rows: Vec<Vec<String>>,
 }
 
-/// The report as text; letters are set bold with terminal codes when `styled`. Ends with a line feed.
+/// Returns the report as text; headings are bold with terminal codes if `styled`. Ends with a line feed.
 pub fn visibility_table(report: &VisibilityReport, styled: bool) -> String {
     let mut text = format!("{}: {}\n{}\n", report.name, report.title, in_figures(report));
     for verdict in &report.requirements {
@@ -35,7 +36,7 @@ pub fn visibility_table(report: &VisibilityReport, styled: bool) -> String {
     text
 }
 
-/// The report in Markdown.
+/// Returns the report in Markdown.
 pub fn visibility_markdown(report: &VisibilityReport) -> String {
     let mut text = format!("# {}\n\n{}\n", report.title, in_figures(report));
     let requirements = TextTable {
@@ -49,7 +50,7 @@ pub fn visibility_markdown(report: &VisibilityReport) -> String {
         text.push_str(&" --- |".repeat(sheet.head.len()));
         text.push('\n');
         for row in sheet.rows {
-            // A bar would end the cell.
+            // A vertical bar would end the cell.
             let cells: Vec<_> = row.iter().map(|cell| cell.replace('|', "\\|")).collect();
             text.push_str(&format!("| {} |\n", cells.join(" | ")));
         }
@@ -160,7 +161,7 @@ fn curves(report: &VisibilityReport) -> Vec<TextTable> {
     sheets
 }
 
-/// ID, text, status, margin, evidence.
+/// Returns ID, text, status, margin and evidence.
 fn requirement(verdict: &Verdict) -> [String; 5] {
     let margin = verdict.margin.map_or("–".to_owned(), |margin| {
         let sign = if margin >= 0.0 { "+" } else { "" };
@@ -218,7 +219,7 @@ fn remarks(report: &VisibilityReport) -> Vec<String> {
     lines
 }
 
-/// Some points of a curve, its ends among them.
+/// Returns evenly spaced points of a curve, from its first point on.
 fn thinned<T>(points: &[T]) -> impl Iterator<Item = &T> {
     let step = points.len().saturating_sub(1).div_ceil(SHOWN - 1).max(1);
     points.iter().step_by(step)

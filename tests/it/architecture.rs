@@ -1,12 +1,12 @@
-//! Dependencies between our crates point down, and no reader of input can panic.
+//! Dependencies between the project's crates point down, and no reader of input can panic.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use cargo_metadata::{Metadata, MetadataCommand, Target};
 
-/// Each of our crates, and those of our crates that it may name. The pipelines know the contract alone: what they do not depend on
-/// they cannot share with the simulator.
+/// Each crate of the project, and the project's crates that it may depend on. The pipelines depend only on
+/// the contract, and therefore cannot share code with the simulator.
 const ARROWS: [(&str, &str); 19] = [
     ("contract", ""),
     ("sim", "contract"),
@@ -32,7 +32,7 @@ const ARROWS: [(&str, &str); 19] = [
     ("research", "boresight contract pipeline sim"),
 ];
 
-/// The packages of the workspace, as their manifests declare them.
+/// Returns the packages of the workspace, as declared in their manifests.
 pub(crate) fn workspace() -> Metadata {
     MetadataCommand::new()
         .manifest_path(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"))
@@ -45,7 +45,7 @@ pub(crate) fn workspace() -> Metadata {
 fn dependencies_point_down_and_nowhere_else() {
     let metadata = workspace();
     let ours: BTreeSet<String> = metadata.packages.iter().map(|p| p.name.to_string()).collect();
-    // All kinds of dependencies: a test that reached across would share mathematics as well.
+    // All kinds of dependencies count: a test dependency would share mathematics as well.
     let arrows: BTreeMap<String, BTreeSet<String>> = metadata
         .packages
         .iter()
@@ -66,7 +66,8 @@ fn dependencies_point_down_and_nowhere_else() {
     assert_eq!(arrows, expected);
 }
 
-/// Most modules at the root of a crate of `oracle/`, or of the package itself: files of one idea are in a folder.
+/// Maximum number of modules at the root of a crate of `oracle/`, or of the package itself: files that share
+/// an idea are in a directory.
 const MAX_MODULES: usize = 12;
 
 #[test]
@@ -87,7 +88,7 @@ fn the_root_of_a_crate_reads_like_a_table_of_contents() {
     assert_eq!(crates, 13, "crates of the oracle, and the package itself");
 }
 
-/// Arrow was a fifth of the release build. The tables are flat; Python alone needs it, to hand them over.
+/// Arrow took a fifth of the release build. The tables are flat; only Python needs Arrow, to pass them on.
 #[test]
 fn only_the_python_package_depends_on_arrow() {
     for package in workspace().packages {
@@ -107,10 +108,10 @@ fn only_the_python_package_depends_on_arrow() {
     }
 }
 
-/// What a panic is made of; `unwrap_used` and `todo` are denied everywhere.
+/// Lints against panics; `unwrap_used` and `todo` are denied everywhere.
 const LINTS: [&str; 5] = ["indexing_slicing", "string_slice", "expect_used", "panic", "unreachable"];
 
-/// What reads bytes that it did not write.
+/// Calls that read bytes from outside the module.
 const READS: [&str; 21] = [
     "File::open(",
     "fs::read(",
@@ -134,13 +135,14 @@ const READS: [&str; 21] = [
     "read_until(",
     "stdin()",
 ];
-/// Files of exempt modules that contain one of these calls and read no input, each with the reason.
+/// Files of exempt modules that contain one of these calls but read no input, each with the reason.
 const NO_READERS: [(&str, &str); 1] = [("sim/src/docking/simulator.rs", "passes the text to serde")];
 
-/// Programs of the developers, whose input is their own.
+/// Developers' programs, which only read their own input.
 const TOOLS: [&str; 2] = ["boresight-fuzz", "boresight-research"];
 
-/// The lints hold for whole crates. Modules of arithmetic are exempt, with a reason; a reader among them denies the lints again.
+/// The lints apply to whole crates. Arithmetic modules are exempt, with a reason; a reader among them denies
+/// the lints again.
 #[test]
 fn no_reader_can_panic() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -185,7 +187,7 @@ fn an_exemption_is_found_however_it_is_written() {
     assert!(std::panic::catch_unwind(|| exempt_modules(&file)).is_err(), "a file cannot exempt itself");
 }
 
-/// Files that may name more than one world: a table of worlds a crate, and tables of contents.
+/// Files that may name more than one world: one table of worlds per crate, and tables of contents.
 const TABLES_OF_WORLDS: [&str; 9] = [
     "oracle/monitor/src/feed.rs",
     "oracle/report/src/worlds.rs",
@@ -198,7 +200,7 @@ const TABLES_OF_WORLDS: [&str; 9] = [
     "src/table/figures.rs",
 ];
 
-/// Whether a file names types or words of both built-in worlds.
+/// Returns true if a file names types or words of both built-in worlds.
 fn names_both_worlds(text: &str) -> bool {
     let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let lines: Vec<&str> = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
@@ -240,7 +242,8 @@ fn denies_panics(text: &str) -> bool {
     LINTS.iter().all(|lint| list.split(',').any(|name| name.strip_prefix("clippy::") == Some(lint)))
 }
 
-/// The paths, without extension, of the modules that a file declares and exempts from a lint of [`LINTS`].
+/// Returns the paths, without extension, of the modules that a file declares and exempts from a lint of
+/// [`LINTS`].
 fn exempt_modules(file: &Path) -> Vec<PathBuf> {
     let text = read(file);
     let is_lint = |attribute: &str| LINTS.iter().any(|lint| attribute.contains(&format!("clippy::{lint}")));
@@ -262,7 +265,7 @@ fn exempt_modules(file: &Path) -> Vec<PathBuf> {
     exempt
 }
 
-/// The files of a module, by its path without extension.
+/// Returns the files of a module, given by its path without extension.
 fn files_of(module: &Path) -> Vec<PathBuf> {
     let file = module.with_extension("rs");
     let mut files = if module.is_dir() { sources(module) } else { Vec::new() };
@@ -271,7 +274,7 @@ fn files_of(module: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The Rust files under a folder.
+/// Returns the Rust files in a directory and below it.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("a folder of sources");
     let paths = entries.map(|entry| entry.expect("an entry").path());

@@ -1,21 +1,22 @@
-//! The scenario `argon` in stretches of its five days: what the far-range paper tells of them follows from the physics.
+//! Parts of the five days of the scenario `argon`: the effects reported in the far-range paper follow from
+//! the physics.
 
 use pipeline::far_range::aberration_correction;
 use serde_json::Value;
 
 use crate::support::{Bench, figure};
 
-/// Frames of each day that a test looks at, and the time between them, s.
+/// Number of frames of each day that a test uses, and the time between them, s.
 #[derive(Clone, Copy)]
 struct Stretch {
     frames: i64,
     cadence_s: f64,
 }
 
-/// As flown, fifteen minutes of each day.
+/// With the cadence of the flight: fifteen minutes of each day.
 const AS_FLOWN: Stretch = Stretch { frames: 60, cadence_s: 15.0 };
 
-/// Runs a stretch from the middle of each day with a change to the scenario, and gives the score.
+/// Runs a stretch from the middle of each day with a change to the scenario, and returns the score.
 fn score(bench: &Bench, run: &str, stretch: Stretch, change: impl FnOnce(&mut toml::Table)) -> Value {
     let file = format!("argon-{run}.toml");
     bench.scenario(&file, "argon", |scenario| {
@@ -34,19 +35,20 @@ fn score(bench: &Bench, run: &str, stretch: Stretch, change: impl FnOnce(&mut to
     bench.boresight(&format!("run {file} --out {run} --json")).done().json()
 }
 
-/// Without hot pixels and particles: a target found on one of them is as wrong in both angles, and hides what is cut.
+/// Removes hot pixels and cosmic-ray hits: a false target on one of them is equally wrong in both angles, and
+/// masks the effect of truncated images.
 fn without_false_targets(scenario: &mut toml::Table) {
     let sensor = scenario["sensor"].as_table_mut().unwrap();
     sensor.remove("hot_pixels").unwrap();
     sensor.remove("cosmic_rays").unwrap();
 }
 
-/// A figure of the days 1 to 5.
+/// Returns a figure for days 1 to 5.
 fn by_day(score: &Value, name: &str) -> [f64; 5] {
     std::array::from_fn(|day| figure(&score["groups"][format!("day {}", day + 1)], name))
 }
 
-/// Section 4 of the paper and its Fig. 6: the regions cut the image of the target at the bottom.
+/// Section 4 and Fig. 6 of the paper: the regions truncate the image of the target at the bottom.
 #[test]
 fn the_regions_of_interest_and_nothing_else_spoil_the_declination_of_the_last_days() {
     let bench = Bench::new();
@@ -60,14 +62,14 @@ fn the_regions_of_interest_and_nothing_else_spoil_the_declination_of_the_last_da
         assert!(ra.iter().all(|rate| *rate > 0.7), "{ra:?}");
         std::array::from_fn(|day| ra[day] - dec[day])
     };
-    // 60 frames a day: a difference of two rates near 0.85 is known to 0.065, the effect is 0.7.
+    // 60 frames per day: the uncertainty of a difference of two rates near 0.85 is 0.065; the effect is 0.7.
     let (flown, whole) = (lost(&flown), lost(&whole));
     assert!(flown[..2].iter().all(|lost| lost.abs() < 0.15), "{flown:?}");
     assert!(flown[3..].iter().all(|lost| *lost > 0.5), "{flown:?}");
     assert!(whole.iter().all(|lost| lost.abs() < 0.15), "{whole:?}");
 }
 
-/// Fig. 7 of the paper: the shutter shortens the exposure as the target grows, and stars are lost.
+/// Fig. 7 of the paper: the shutter shortens the exposure as the target becomes brighter, and stars are lost.
 #[test]
 fn stars_are_lost_as_the_target_comes_near() {
     let bench = Bench::new();
@@ -81,14 +83,14 @@ fn stars_are_lost_as_the_target_comes_near() {
     assert!(mean_s(4) < 0.5 * mean_s(0), "{} s and {} s", mean_s(0), mean_s(4));
 }
 
-/// Fig. 9 of the paper: the correction is a few thousandths of a degree, comes back with the orbit, and improves the mean
-/// error.
+/// Fig. 9 of the paper: the correction is a few thousandths of a degree, repeats with the orbital period, and
+/// improves the mean error.
 #[test]
 fn correcting_aberration_takes_an_error_with_the_period_of_the_orbit_out_of_the_mean() {
-    /// 5990 s, the period of the target's orbit, in a hundred steps, twice.
+    /// Two periods of the target's orbit, 5990 s each, in a hundred steps each.
     const TWO_ORBITS: Stretch = Stretch { frames: 200, cadence_s: 59.9 };
     let bench = Bench::new();
-    // Few stars and noisy telemetry would hide it: neither has to do with aberration.
+    // Few stars and noisy telemetry would mask the effect; neither is related to aberration.
     let quiet = |scenario: &mut toml::Table| {
         scenario["schedule"].as_array_mut().unwrap().truncate(2);
         let knowledge = scenario["knowledge"].as_table_mut().unwrap();

@@ -1,5 +1,6 @@
-//! The best mode against the Cramér–Rao bound: centroid and covariance of the target, attitude, and images that are saturated and cut. The
-//! bounds are computed here, from another Gaussian integrated over pixels.
+//! The best mode compared with the Cramér–Rao bound: centroid and covariance of the target, attitude, and
+//! saturated and truncated images. The bounds are computed here, from an independent Gaussian integrated over
+//! pixels.
 
 use contract::{
     AttitudeKnowledge, AttitudeSource, Calibration, Camera, CameraFrame, Direction, Frame, Icrs, ListedStar,
@@ -21,8 +22,8 @@ const BIAS_DN: f64 = 40.3;
 const FOCAL_PX: f64 = 2000.0;
 const ZERO_MAGNITUDE_E_PER_S: f64 = 1.5e6;
 
-/// Sides of the lattice of phases and places: the fractional parts of multiples of the powers of the plastic number's inverse
-/// fill the square evenly (Roberts 2018).
+/// Coordinates of a lattice of phases and positions: the fractional parts of multiples of the powers of the
+/// plastic number's inverse fill the square evenly (Roberts 2018).
 fn lattice(k: usize) -> (f64, f64) {
     let fraction = |v: f64| v - v.floor();
     (fraction(0.754_877_666_246_692_7 * k as f64), fraction(0.569_840_290_998_053_2 * k as f64))
@@ -41,7 +42,7 @@ fn sensor(columns: usize, rows: usize, spill_fraction: Option<f64>) -> Sensor {
     Sensor::new(&config, columns, rows).unwrap()
 }
 
-/// Draws points of light, by place and electrons, with a frame's noise.
+/// Draws point sources, given by position and electrons, with the noise of a frame.
 fn draw(sensor: &Sensor, psf: &PsfConfig, points: &[(PixelPoint, f64)], number: u64) -> RawImage {
     let mut psf = Psf::new(psf).unwrap();
     let mut image = sensor.new_expected();
@@ -72,7 +73,8 @@ fn camera(columns: usize, rows: usize) -> Camera {
     }
 }
 
-/// The best mode on a sky without aberration, with a point-spread function known to a thousandth and stars that are where the list has them.
+/// Best mode for a sky without aberration, with a point-spread function known to a thousandth and stars
+/// exactly at their listed positions.
 fn best() -> FarRangeConfig {
     FarRangeConfig {
         aberration: AberrationConfig::Ignore,
@@ -93,13 +95,13 @@ fn calibration(halo_fraction: f64, spill_fraction: f64) -> Calibration {
         spill_fraction: Some(spill_fraction),
         response_sigma: Some(0.0),
         zero_magnitude_e_per_s: Some(ZERO_MAGNITUDE_E_PER_S),
-        // A point.
+        // A point target.
         target: Some(TargetCalibration { radius_m: 0.0, e_per_s_at_1_km: 1e9 }),
         attitude: None,
     }
 }
 
-/// A fresh pipeline for frames of a size.
+/// Creates a pipeline for frames of a given size.
 fn pipeline(
     calibration: Calibration,
     (columns, rows): (usize, usize),
@@ -131,7 +133,7 @@ fn telemetry(time_s: f64, truth: Rotation<CameraFrame, Icrs>) -> Telemetry {
     }
 }
 
-/// The answer of a fresh pipeline to one frame.
+/// Outcome of a new pipeline for one frame.
 fn answer(
     calibration: Calibration,
     frame: &Frame,
@@ -141,11 +143,11 @@ fn answer(
     pipeline(calibration, (frame.columns(), frame.rows()), stars).process(frame, &telemetry(0.0, truth))
 }
 
-/// Half the side of the square of pixels that a bound uses: all that could tell anything.
+/// Half the side of the square of pixels used for a bound: all pixels with any information.
 const BOUND_REACH_PX: i64 = 8;
 
-/// The Cramér–Rao bound of a star's centre: variances along x and y, px², flux and background unknown too. A pixel has a
-/// variance of its expected electrons + read noise² + gain²/12 for the rounding.
+/// Cramér–Rao bound of a star's centre: variances along x and y, px², with flux and background also unknown.
+/// The variance of a pixel is its expected electrons + read noise² + gain²/12 for the rounding.
 fn bound(centre: PixelPoint, electrons: f64) -> (f64, f64) {
     let expected = |p: &Vector4<f64>, column: i64, row: i64| {
         let share = |pixel: i64, centre: f64| {
@@ -198,7 +200,7 @@ impl Errors {
     }
 }
 
-/// A point on an empty sky, 2,048 draws a brightness: an RMS of these is known to 1.6 %.
+/// A point source on an empty sky, 2,048 draws per brightness: the uncertainty of their RMS is 1.6 %.
 #[test]
 fn the_centroid_of_a_whole_target_reaches_the_cramer_rao_bound() {
     const SIDE: usize = 40;
@@ -221,7 +223,7 @@ fn the_centroid_of_a_whole_target_reaches_the_cramer_rao_bound() {
             x.add(error[0]);
             y.add(error[1]);
             nees.add(0.5 * found.position_covariance.unwrap().mahalanobis_squared(error));
-            // Every sixteenth phase is enough for the mean of a smooth function of the phase.
+            // Every sixteenth phase suffices for the mean of a smooth function of the phase.
             if k % 16 == 0 {
                 let (variance_x, variance_y) = bound(place, electrons);
                 bound_x += variance_x / (DRAWS / 16) as f64;
@@ -239,11 +241,11 @@ fn the_centroid_of_a_whole_target_reaches_the_cramer_rao_bound() {
         );
         for (errors, bound) in [(&x, bound_x), (&y, bound_y)] {
             assert!(errors.rms() <= 1.1 * bound, "{electrons} e: {} of {bound} px", errors.rms());
-            // Lower than the bound by more than chance (3 × 1.6 %) would be a wrong bound.
+            // A value below the bound by more than chance (3 × 1.6 %) would indicate a wrong bound.
             assert!(errors.rms() >= 0.95 * bound, "{electrons} e: {} of {bound} px", errors.rms());
             assert!(errors.mean().abs() <= 0.003, "{electrons} e: bias {} px", errors.mean());
         }
-        // χ² with two degrees of freedom over two: a mean of 2,048 is known to 2.2 %.
+        // χ² with two degrees of freedom, divided by two: the uncertainty of a mean of 2,048 is 2.2 %.
         assert!((0.85..1.15).contains(&nees.mean()), "{electrons} e: NEES {}", nees.mean());
     }
 }
@@ -253,7 +255,7 @@ fn pixel(seen: &Vector3<f64>, side: usize) -> PixelPoint {
     PixelPoint::new(centre + FOCAL_PX * seen.x / seen.z, centre + FOCAL_PX * seen.y / seen.z)
 }
 
-/// The bound of an attitude from stars, the covariance of a small rotation about the camera's axes, rad².
+/// Bound of an attitude from stars: covariance of a small rotation about the camera's axes, rad².
 fn attitude_bound(stars: &[(PixelPoint, f64)], side: usize) -> Matrix3<f64> {
     let mut fisher = Matrix3::zeros();
     for (place, electrons) in stars {
@@ -278,7 +280,8 @@ fn attitude_bound(stars: &[(PixelPoint, f64)], side: usize) -> Matrix3<f64> {
 /// Side of the images of star fields, px.
 const FIELD_SIDE: usize = 160;
 
-/// Sixteen stars, one in each cell of a grid, so that no two are merged; with an attitude and the list that has them there.
+/// Sixteen stars, one in each cell of a grid, which keeps them from merging; with an attitude, and a list of
+/// the stars at these positions.
 fn star_grid(number: usize) -> StarField {
     const FLUXES_E: [f64; 5] = [3000.0, 6000.0, 15_000.0, 40_000.0, 120_000.0];
     let star = |k: usize| {
@@ -289,7 +292,7 @@ fn star_grid(number: usize) -> StarField {
     StarField::from_stars((0..16).map(star).collect(), number)
 }
 
-/// Twenty stars at random places with random fluxes, N(> F) ∝ F^−1.2.
+/// Twenty stars at random positions with random fluxes, N(> F) ∝ F^−1.2.
 fn random_stars(number: usize) -> StarField {
     // SplitMix64 (Steele, Lea & Flood 2014).
     let uniform = |i: usize| {
@@ -307,10 +310,10 @@ fn random_stars(number: usize) -> StarField {
 }
 
 struct StarField {
-    /// Place and electrons of each star.
+    /// Position and electrons of each star.
     stars: Vec<(PixelPoint, f64)>,
     camera_from_icrs: Rotation<CameraFrame, Icrs>,
-    /// The list that has them there.
+    /// List of the stars at these positions.
     listed: Vec<ListedStar>,
 }
 
@@ -330,7 +333,8 @@ impl StarField {
     }
 }
 
-/// Sixteen stars a frame, 1000 frames: the RMS across the boresight is known to 1.6 %, that about it to 2.2 %.
+/// Sixteen stars per frame, 1000 frames: the uncertainty of the RMS is 1.6 % across the boresight, and 2.2 %
+/// about it.
 #[test]
 fn the_weighted_attitude_reaches_the_cramer_rao_bound() {
     const FRAMES: usize = 1000;
@@ -369,13 +373,14 @@ fn the_weighted_attitude_reaches_the_cramer_rao_bound() {
     }
 }
 
-/// A telemetry that is off by a multiple of what the calibration says: some of twenty stars lie by chance where others are looked for.
+/// Telemetry with an error of a multiple of the σ in the calibration: by chance, some of the twenty stars lie
+/// at the expected positions of others.
 #[test]
 fn a_prior_beyond_its_sigma_gives_no_false_attitude() {
     const FRAMES: usize = 400;
     let sensor = sensor(FIELD_SIDE, FIELD_SIDE, None);
     let arcsec = |radians: f64| radians.to_degrees() * 3600.0;
-    // 6 px, where 30 px are meant.
+    // 6 px instead of the required 30 px.
     let sigma = [0.0, 0.0, 0.0].map(|_: f64| arcsec(6.0 / FOCAL_PX));
     let attitude = AttitudeKnowledge {
         white_arcsec: sigma,
@@ -402,8 +407,9 @@ fn a_prior_beyond_its_sigma_gives_no_false_attitude() {
     assert!(100 * wrong <= FRAMES, "{wrong} of {FRAMES}");
 }
 
-/// A target so bright that its core is saturated, and whose image the region of interest cuts at the bottom: the first pixel
-/// met stands two rows below the region's top, nine rows are sent. Without and with wells that spill along the columns.
+/// A target so bright that its core is saturated, with an image that the region of interest truncates at the
+/// bottom: the first pixel found is two rows below the region's top, and nine rows are transmitted. Without
+/// and with wells that spill along the columns.
 #[test]
 fn a_saturated_image_cut_by_a_region_is_fitted_where_it_is() {
     let psf = PsfConfig::GaussianHalo { sigma_px: SIGMA_PX, halo_sigma_px: 4.0, halo_fraction: 0.03 };
@@ -453,7 +459,8 @@ fn a_saturated_image_cut_by_a_region_is_fitted_where_it_is() {
     }
 }
 
-/// Errors in px of the answers to a sequence of frames every ten seconds, of a point that moves by half a pixel a frame; infinite where there is no answer.
+/// Errors, px, of the outcomes for a sequence of frames every ten seconds, for a point that moves by half a
+/// pixel per frame; infinite where there is no measurement.
 fn sequence(electrons: impl Fn(usize) -> f64, frames: usize, number: u64) -> Vec<f64> {
     const SIDE: usize = 160;
     let sensor = sensor(SIDE, SIDE, None);
@@ -469,15 +476,15 @@ fn sequence(electrons: impl Fn(usize) -> f64, frames: usize, number: u64) -> Vec
     (0..frames).map(of_frame).collect()
 }
 
-/// Electrons of a point with this signal-to-noise ratio before the background, by a matched filter.
+/// Electrons of a point source with this signal-to-noise ratio against the background, by a matched filter.
 fn electrons_of(snr: f64) -> f64 {
     let pixel_e = (BACKGROUND_E + READ_NOISE_E * READ_NOISE_E + GAIN_E_PER_DN * GAIN_E_PER_DN / 12.0).sqrt();
-    // The norm of a Gaussian over pixels: 1/(2 σ √π), with the variance of a pixel added to its own.
+    // Norm of a Gaussian over pixels: 1/(2 σ √π), with the variance of a pixel added to that of the Gaussian.
     let sigma_px = (SIGMA_PX * SIGMA_PX + 1.0 / 12.0).sqrt();
     snr * pixel_e * 2.0 * sigma_px * std::f64::consts::PI.sqrt()
 }
 
-/// No pixel of these targets stands out by six standard deviations, as a cluster must.
+/// No pixel of these targets exceeds the background by six standard deviations, as a cluster requires.
 #[test]
 fn frames_are_added_up_until_a_faint_target_is_found() {
     for (snr, least_correct) in [(5.0, 0.85), (6.0, 0.95)] {

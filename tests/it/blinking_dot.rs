@@ -1,5 +1,5 @@
-//! A world of its own, registered in one line: a dot that blinks on a line of pixels. It runs through render, process, run, score, study,
-//! gate and report, none of which knows it.
+//! A separate world, registered in one line: a dot that blinks on a line of pixels. It runs through render,
+//! process, run, score, study, gate and report, none of which refers to it.
 
 use std::path::Path;
 use std::sync::Once;
@@ -28,7 +28,7 @@ use crate::support::Bench;
 
 const SCENARIO: &str = "world = \"blinking_dot\"\ntitle = \"A dot that blinks\"\nseed = 1\nframes = 300\nnoise_dn = 40\n\n[blinking_dot]\nthreshold_dn = 50\n";
 
-/// The scenario. The dot has 90 DN in two frames of three, noise up to `noise_dn`.
+/// The scenario. The dot has 90 DN in two of three frames, and the noise is at most `noise_dn`.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Scene {
@@ -61,11 +61,11 @@ table! {
 }
 
 table! {
-    /// The column of the dot: the true one, or the answer.
+    /// Column of the dot: the true column or the measured one.
     struct Dot: csv {
         /// number of the frame
         number: u64,
-        /// its column; none where it is off, or the pipeline failed
+        /// column of the dot; none where it is off, or the pipeline failed
         column: Option<u32>,
     }
 }
@@ -79,7 +79,7 @@ impl From<(u64, &Answer)> for Dot {
     }
 }
 
-/// What its pipelines receive and answer.
+/// Interface of the world's pipelines.
 enum Blinks {}
 
 impl Interface for Blinks {
@@ -128,7 +128,7 @@ impl PipelineFactory<Blinks> for Detector {
     }
 }
 
-/// The brightest pixel above a threshold.
+/// Measures the brightest pixel above a threshold.
 impl Pipeline<Blinks> for Detector {
     fn process(&mut self, image: &Line, (): &()) -> Answer {
         let brightest = (0..).zip(image.pixels_dn).max_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -136,7 +136,7 @@ impl Pipeline<Blinks> for Detector {
     }
 }
 
-/// The true and the answered column.
+/// The true and the measured column.
 struct Unit(Dot, Dot);
 
 impl ScoredUnit<BlinkingDot> for Unit {
@@ -166,7 +166,7 @@ impl ScoredUnit<BlinkingDot> for Unit {
     }
 }
 
-/// A scenario, ready to fly.
+/// A scenario, ready to run.
 struct BlinkingDot(RunFile<Scene>);
 
 impl World for BlinkingDot {
@@ -307,7 +307,8 @@ impl Dataset<BlinkingDot> for Files {
     }
 }
 
-/// Runs the command with these words in this process, which knows the world, and gives its exit status.
+/// Runs the command with these words in this process, in which the world is registered, and returns its exit
+/// status.
 fn boresight(words: &str) -> u8 {
     static REGISTERED: Once = Once::new();
     REGISTERED.call_once(|| register(&ErasedWorld::<BlinkingDot>::NEW));
@@ -324,27 +325,28 @@ fn a_world_of_its_own_runs_through_everything() {
     assert_eq!(boresight(&format!("scenario check {scenario}")), 0);
     assert_eq!(boresight(&format!("run {scenario} --out {run}")), 0);
     let score: IndexMap<String, Figure> = serde_json::from_str(&bench.read("run/score.json")).unwrap();
-    // The noise passes the threshold in no line without a dot, and moves the brightest pixel of none with one.
+    // The noise never exceeds the threshold in a line without a dot, and never moves the brightest pixel in a
+    // line with a dot.
     assert_eq!(score["correct_rate"].value, Some(1.0));
     assert_eq!((score["column_rms_px"].value, score["column_rms_px"].of), (Some(0.0), 200));
     let report = bench.read("run/report.html");
     assert!(report.contains("A dot that blinks") && report.contains("column_rms_px"));
 
-    // What it rendered gives the same answers, and the same score.
+    // The rendered dataset gives the same measurements, and the same score.
     assert_eq!(boresight(&format!("render {scenario} --out {set}")), 0);
     assert_eq!(boresight(&format!("process {set}")), 0);
     assert_eq!(bench.read("set/measurements.csv"), bench.read("run/measurements.csv"));
     assert_eq!(boresight(&format!("score {run} {set}/measurements.csv")), 0);
     assert_eq!(boresight(&format!("report {run} -o {}", at("report.html"))), 0);
 
-    // A pipeline that takes noise for the dot is worse than the baseline.
+    // A pipeline that mistakes noise for the dot is worse than the baseline.
     assert_eq!(boresight(&format!("gate baseline {run} --out {} --reason first", at("baseline"))), 0);
     assert_eq!(boresight(&format!("gate {} {run}", at("baseline"))), 0);
     bench.write("low.toml", SCENARIO.replace("threshold_dn = 50", "threshold_dn = 5"));
     assert_eq!(boresight(&format!("run {} --out {}", at("low.toml"), at("low"))), 0);
     assert_eq!(boresight(&format!("gate {} {}", at("baseline"), at("low"))), 1);
 
-    // A study of the threshold.
+    // A study with varying threshold.
     let distribution = "distribution = { kind = \"choice\", values = [5, 50] }";
     let study = format!(
         "title = \"\"\nscenario = \"dot.toml\"\nseed = 1\n[stop]\ncases = 8\n[[vary]]\npath = \"blinking_dot.threshold_dn\"\n{distribution}\n"
@@ -359,7 +361,7 @@ fn a_world_of_its_own_runs_through_everything() {
     assert_eq!(boresight(&words), 0);
     assert_eq!(boresight(&format!("report {} -o {}", at("study"), at("study.html"))), 0);
 
-    // A world that is not there is refused.
+    // An unknown world is rejected.
     bench.write("other.toml", SCENARIO.replace("world = \"blinking_dot\"", "world = \"blinking_dott\""));
     assert_eq!(boresight(&format!("run {} --out {}", at("other.toml"), at("other"))), 2);
 }

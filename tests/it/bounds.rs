@@ -1,4 +1,5 @@
-//! The ranges of numbers that users write: each declared once, told by the schema, and as the documentation says.
+//! Ranges of numbers in users' files: each is declared once, is contained in the schema, and agrees with the
+//! documentation.
 
 use boresight::files::{CameraFile, docking::SetupFile};
 use boresight::run::json_schema;
@@ -10,7 +11,7 @@ use schemars::schema_for;
 use serde_json::Value;
 use sim::scene::docking::TargetFile;
 
-/// Every number of a file that a user writes, with its path in the types, as `SensorConfig.gain_e_per_dn`.
+/// Every number of a user's file, with its path in the types, such as `SensorConfig.gain_e_per_dn`.
 fn numbers() -> Vec<(String, Field)> {
     let schemas = [
         schema_for!(FarRangeScenario),
@@ -30,11 +31,11 @@ fn numbers() -> Vec<(String, Field)> {
     all
 }
 
-/// A field that holds a number, or lists of numbers.
+/// A field with a number, or lists of numbers.
 #[derive(Debug, PartialEq)]
 struct Field {
     description: String,
-    /// Of the number: at least, above, at most, below.
+    /// Limits of the number: at least, above, at most, below.
     limits: [Option<f64>; 4],
 }
 
@@ -66,7 +67,7 @@ fn is_type(schema: &Value, name: &str) -> bool {
     schema["type"] == name || schema["type"].as_array().is_some_and(|types| types.iter().any(|t| t == name))
 }
 
-/// The number that a schema is of, inside lists too.
+/// Returns the schema of the number in a schema, including inside lists.
 fn number(schema: &Value) -> Option<&Value> {
     if is_type(schema, "number") || is_type(schema, "integer") {
         Some(schema)
@@ -77,7 +78,8 @@ fn number(schema: &Value) -> Option<&Value> {
     }
 }
 
-/// The first range that a description names, and whether its lower limit is outside of it: "0.05 to 1e5", "above 0 to 5" or "above 0, at most 5".
+/// Returns the first range in a description, and true if its lower limit is excluded: "0.05 to 1e5", "above 0
+/// to 5" or "above 0, at most 5".
 fn named_range(description: &str) -> Option<(bool, [f64; 2])> {
     let plain = description.replace('−', "-").replace("10 000", "10000");
     let words: Vec<&str> = plain.split_whitespace().collect();
@@ -121,7 +123,7 @@ fn every_number_has_both_bounds() {
     assert!(free.is_empty() && numbers.len() > 300, "{free:?}");
 }
 
-/// No angle is of more than ten turns: one that is has another unit.
+/// No angle exceeds ten turns: a larger one would have another unit.
 #[test]
 fn every_angle_is_within_ten_turns() {
     let numbers = numbers();

@@ -1,10 +1,12 @@
-//! The best mode with a calibration that is wrong by a fifth: what it estimates itself does not depend on it.
+//! The best mode with a calibration that is wrong by a fifth: its own estimates do not depend on the
+//! calibration.
 
 use serde_json::Value;
 
 use crate::support::{Bench, figure};
 
-/// A hundred and twenty frames of the third day of ARGON, in which regions begin to cut the image, with numbers of the calibration that differ from the truth.
+/// Score of a hundred and twenty frames of the third day of ARGON, in which regions begin to truncate the
+/// image, with a calibration that differs from the truth.
 fn score(bench: &Bench, run: &str, calibration: &str) -> Value {
     let file = format!("{run}.toml");
     bench.scenario(&file, "argon", |scenario| {

@@ -1,4 +1,4 @@
-//! The docking world end to end: run, render, process, score.
+//! The docking world from end to end: run, render, process, score.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -28,9 +28,9 @@ fn a_run_measures_the_pose_and_is_the_same_on_any_number_of_threads() {
     run(&bench, "--out two --jobs 2");
     check_same_files(&bench.tree("one"), &bench.tree("two"));
     assert_eq!(score["frames"], 50);
-    // At 2 m every artefact at its default leaves the target clear; the requirement is 98 %.
+    // At 2 m the target is clear with every artefact at its default; the requirement is 98 %.
     assert!(figure(&score, "success_rate") >= 0.98, "{score}");
-    // 0.01 px of the circle's radius is 0.15 mm at 2 m; a slip of the method is centimetres.
+    // 0.01 px of the circle's radius is 0.15 mm at 2 m; an error of the method would be centimetres.
     assert!(figure(&score, "range_rms_m") < 2e-3, "{score}");
 }
 
@@ -44,7 +44,7 @@ fn the_files_of_a_run_score_as_the_run_itself() {
     bench.check_same("run/truth/fields.parquet", "set/truth/fields.parquet");
 }
 
-/// Where the pipeline leaves the digitiser as it is, a dataset gives what a run gives.
+/// If the pipeline leaves the digitiser unchanged, a dataset gives the same results as a run.
 #[test]
 fn a_dataset_is_processed_and_scored() {
     let bench = Bench::new();
@@ -85,7 +85,8 @@ fn the_example_of_a_program_keeps_the_contract() {
     conformance::check(&factory, &setup()).unwrap();
 }
 
-/// It says 10 m at each field; the camera is between 9.9 and 10.1 m in these, at the turn of the approach.
+/// The example reports 10 m for each field; the camera is between 9.9 and 10.1 m in these, at the turning
+/// point of the approach.
 #[test]
 fn the_example_of_a_program_is_scored_and_its_wish_for_the_digitiser_heeded() {
     let bench = Bench::new();

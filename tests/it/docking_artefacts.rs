@@ -1,4 +1,4 @@
-//! The docking pipeline against one artefact at a time, each at its default size, on fields of the simulator.
+//! The docking pipeline with one artefact at a time, each at its default size, on fields of the simulator.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -17,7 +17,8 @@ use sim::television::{
 };
 use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig};
 
-/// The target 8 m ahead in the narrow lens, closing, the Sun on it, interlaced, with noise, and nothing else.
+/// The target 8 m ahead in the narrow lens, approaching, sunlit, interlaced, with noise, and without any
+/// artefact.
 fn plain() -> DockingSimulation {
     DockingSimulation {
         seed: 7,
@@ -66,18 +67,18 @@ fn sun(azimuth_deg: f64, elevation_deg: f64) -> SunConfig {
     SunConfig { azimuth_deg, elevation_deg, rate_deg_s: 0.0, rate_axis: [0.0, 1.0, 0.0], irradiance: PI }
 }
 
-/// What a block of fields gave.
+/// Results of a block of fields.
 #[derive(Debug, Default)]
 struct Block {
     fields: usize,
     measured: usize,
-    /// Fields in which the cross was compared with the truth.
+    /// Number of fields in which the cross was compared with the truth.
     crosses: usize,
-    /// Largest distance of the cross from truth, px, and error of the range, m.
+    /// Largest error of the cross, px; `range` is the largest error of the range, m.
     cross_px: f64,
     range: f64,
     reasons: Vec<NoPose>,
-    /// Every mark that was used in some field.
+    /// All marks that were used in some field.
     used: BTreeSet<u32>,
 }
 
@@ -111,7 +112,8 @@ fn run(simulation: &DockingSimulation, fields: u64) -> Block {
     block
 }
 
-/// Nearly every field is measured, and as well as the disturbance allows: a tenth of a pixel of the circle's 91 px is 9 mm.
+/// Checks that nearly every field is measured, with the accuracy that the disturbance allows: a tenth of a
+/// pixel of the circle's 91 px is 9 mm.
 fn check(simulation: &DockingSimulation, fields: u64) {
     let block = run(simulation, fields);
     assert!(50 * block.measured >= 49 * block.fields && block.crosses == block.measured, "{block:?}");
@@ -126,7 +128,7 @@ fn without_artefacts_every_field_is_measured() {
 #[test]
 fn a_glint_beside_the_marks_does_not_disturb() {
     let mut simulation = plain();
-    // The bisector of Sun and camera.
+    // The bisector of the directions to the Sun and to the camera.
     let (to_sun, to_camera) = ([0.282, 0.407, 0.869], [0.0, 0.0, 1.0]);
     let normal = [0, 1, 2].map(|i| to_sun[i] + to_camera[i]);
     simulation.lighting.glints =
@@ -163,7 +165,7 @@ fn at_night_the_floodlight_is_enough() {
 #[test]
 fn the_sun_in_the_field_leaves_the_target_measurable() {
     let mut simulation = plain();
-    // Behind the station, above its edge: the face has the light of Earth and lamp only.
+    // The Sun is behind the station, above its edge: the face is lit only by Earth and lamp.
     simulation.lighting.sun = Some(sun(177.0, 4.5));
     simulation.lighting.fill_radiance = 0.3;
     simulation.lighting.floodlight = Some(FloodlightConfig::default());
@@ -175,7 +177,7 @@ fn the_sun_in_the_field_leaves_the_target_measurable() {
 fn a_lens_with_distortion_is_undone() {
     let mut simulation = plain();
     simulation.approach = approach([0.5, -0.35, 8.0], [0.3, -0.2, 1.0]);
-    // Three pixels at the corner of the image.
+    // Distortion of three pixels at the corner of the image.
     simulation.cameras[0].camera.radial = [2.7e-8, 0.0, 0.0];
     check(&simulation, 6);
 }
@@ -183,14 +185,14 @@ fn a_lens_with_distortion_is_undone() {
 #[test]
 fn marks_in_shadow_are_rejected() {
     let mut simulation = plain();
-    // Between Sun and target, over the right third of the plate.
+    // A shade between Sun and target, over the right third of the plate.
     let corner = |y1: f64, y2: f64| [y1 + 0.282 * 2.0 / 0.869, y2 + 0.407 * 2.0 / 0.869, 2.0];
     simulation.lighting.shades = vec![ShadeConfig {
         corners_m: vec![corner(0.14, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(0.14, 1.0)],
     }];
     let block = run(&simulation, 6);
     assert_eq!((block.measured, block.crosses), (6, 6), "{block:?}");
-    // The marks at 0° and ±30°, all of them in the shade; those at ±60° are lit up to a corner.
+    // The marks at 0° and ±30° are completely in the shade; those at ±60° are lit except for a corner.
     assert!([0, 1, 11].iter().all(|index| !block.used.contains(index)), "{block:?}");
     assert!(block.used.len() >= 5, "{block:?}");
     assert!(block.cross_px < 0.5 && block.range < 0.03, "{block:?}");

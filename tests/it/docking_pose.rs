@@ -1,10 +1,11 @@
-//! The pose of docking against numbers that stand in the scenario: no truth table in between, every sign told apart.
+//! The docking pose compared with the numbers in the scenario: without an intermediate truth table, and with
+//! every sign distinguishable.
 
 use crate::support::Bench;
 
-/// d (m) and φ (deg) of a camera at rest: all six different, and none the opposite of another.
+/// d (m) and φ (deg) of a camera at rest: six different values, no two of them opposite.
 const POSE: [f64; 6] = [0.06, -0.09, 8.0, 0.4, -0.7, 3.0];
-/// The signs of small angles and offsets are the question, not the accuracy, which is that of docs/docking-accuracy.md.
+/// The test examines the signs of small angles and offsets; accuracy is covered by docs/docking-accuracy.md.
 const TOLERANCE: [f64; 6] = [0.01, 0.01, 0.02, 0.1, 0.1, 0.1];
 
 #[test]

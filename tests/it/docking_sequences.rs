@@ -1,4 +1,5 @@
-//! Television from elsewhere, end to end: videos, streams, orders of fields, and images in which the target is not as expected.
+//! External television from end to end: videos, streams, field orders, and images in which the target is not
+//! as expected.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,7 +19,7 @@ fn poses(rows: &Rows) -> Vec<[f64; 6]> {
     rows.iter().map(|row| names.map(|name| row[name].parse().unwrap())).collect()
 }
 
-/// Grey AVI and Y4M hold the same bytes as the images; Motion-JPEG nearly.
+/// Grey AVI and Y4M hold the same bytes as the images; Motion-JPEG holds nearly the same.
 #[test]
 fn a_dataset_is_processed_alike_whatever_its_images_are_kept_in() {
     let bench = Bench::new();
@@ -33,12 +34,13 @@ fn a_dataset_is_processed_alike_whatever_its_images_are_kept_in() {
         (poses(&bench.csv("png/measurements.csv")), poses(&bench.csv("mjpeg/measurements.csv")));
     assert_eq!((lossless.len(), lossy.len()), (10, 10));
     for (a, b) in lossless.iter().zip(&lossy) {
-        // A millimetre at 2 m is ten times what a pixel's noise does to the pose.
+        // A millimetre at 2 m is ten times the effect of pixel noise on the pose.
         assert!(a[..3].iter().zip(&b[..3]).all(|(a, b)| (a - b).abs() < 1e-3), "{a:?} {b:?}");
     }
 }
 
-/// What one command writes another one reads, without a file between them; each measurement is a line as it comes.
+/// One command reads the output of another without an intermediate file; each measurement is written
+/// immediately, as one line.
 #[test]
 fn a_stream_is_rendered_and_measured_live() {
     let bench = Bench::new();
@@ -62,7 +64,7 @@ fn a_stream_is_rendered_and_measured_live() {
     assert_eq!(statuses(&table), statuses(&bench.read("set/measurements.csv")));
 }
 
-/// A dataset that begins with an odd field is a video whose lower field is first.
+/// A dataset that begins with an odd field is a video whose lower field comes first.
 #[test]
 fn the_order_of_fields_is_heeded() {
     let bench = Bench::new();
@@ -77,12 +79,12 @@ fn the_order_of_fields_is_heeded() {
     );
 }
 
-/// The docking scenario with the camera held at a place.
+/// Docking scenario with the camera held at a position.
 fn still_scenario(phi_deg: [f64; 3], d3_m: f64) -> String {
     still_or_flown(phi_deg, d3_m, 0.0, 0.4)
 }
 
-/// The docking scenario with the camera closing on the target's axis.
+/// Docking scenario with the camera approaching along the target's axis.
 fn approach_scenario(d3_m: f64, speed_m_s: f64, duration_s: f64) -> String {
     still_or_flown([0.0; 3], d3_m, speed_m_s, duration_s)
 }
@@ -97,7 +99,7 @@ fn still_or_flown(phi_deg: [f64; 3], d3_m: f64, speed_m_s: f64, duration_s: f64)
     scenario.to_string()
 }
 
-/// The reasons of fields that must not be measured.
+/// Statuses of fields that must not be measured.
 fn reasons(bench: &Bench, set: &str) -> Vec<String> {
     let rows = bench.csv(&format!("{set}/measurements.csv"));
     rows.iter().map(|row| row["status"].clone()).collect()
@@ -106,17 +108,17 @@ fn reasons(bench: &Bench, set: &str) -> Vec<String> {
 #[test]
 fn a_picture_without_the_target_gives_no_pose() {
     let bench = Bench::new();
-    // 30° to the side of a lens of 15°: nothing but panels and sky.
+    // 30° to the side with a lens of 15°: only panels and sky are visible.
     bench.write("away.toml", still_scenario([0.0, 30.0, 0.0], 12.0));
     let score = bench.boresight("run away.toml --out run --json").done().json();
     assert_eq!(figure(&score, "measured_rate"), 0.0, "{score}");
     let told = reasons(&bench, "run");
-    // What is examined and refused is told as such.
+    // Features that were examined and rejected are reported as such.
     assert!(told.iter().all(|reason| reason == "no_target" || reason == "inconsistent"), "{told:?}");
     assert_eq!(figure(&score, "miss_rate"), 1.0, "{score}");
 }
 
-/// What is said of a dataset's pictures turned by half a turn, as no approach may be.
+/// Statuses for a dataset whose pictures are rotated by half a turn, which no approach may be.
 fn upside_down(bench: &Bench, approach: &str, fields: u64) -> Vec<String> {
     bench.write("approach.toml", approach);
     bench.boresight(&format!("render approach.toml --frames 0..{fields} --out set")).done();
@@ -130,8 +132,8 @@ fn upside_down(bench: &Bench, approach: &str, fields: u64) -> Vec<String> {
     told
 }
 
-/// Cross and marks look the same upside down; the docking unit does not. At 20 m it is wholly in the picture, at 8 m an arc of it
-/// is.
+/// Cross and marks look the same upside down; the docking unit does not. At 20 m the whole unit is in the
+/// picture, at 8 m an arc of it.
 #[test]
 fn a_target_upside_down_is_inconsistent() {
     for d3_m in [20.0, 8.0] {
@@ -140,7 +142,7 @@ fn a_target_upside_down_is_inconsistent() {
     }
 }
 
-/// The docking unit leaves the narrow lens's picture at 6 m: what was seen before holds.
+/// The docking unit leaves the picture of the narrow lens at 6 m: the earlier result remains valid.
 #[test]
 fn a_target_upside_down_is_inconsistent_where_only_the_earlier_fields_show_it() {
     let approach = approach_scenario(8.0, 10.0, 0.45);
@@ -148,9 +150,10 @@ fn a_target_upside_down_is_inconsistent_where_only_the_earlier_fields_show_it() 
     assert!(told.iter().all(|status| status == "inconsistent"), "{told:?}");
 }
 
-/// Begun where nothing of the docking unit is in the picture, a target upside down is at first an upright one: its marks and its cross have
-/// four directions alike, and of the station a pipeline knows round outlines alone. What its fields show of the motion does not agree, and from the third
-/// field on the poses are doubtful.
+/// Without any part of the docking unit in the first picture, a target upside down is at first mistaken for
+/// an upright one: its marks and its cross are alike in four directions, and of the station the pipeline uses
+/// only round outlines. The motion in the fields is inconsistent with this, and from the third field on the
+/// poses are doubtful.
 #[test]
 fn known_limit_a_target_upside_down_begun_within_5_m_is_taken_for_upright_in_two_fields() {
     let statuses = upside_down(&Bench::new(), &still_scenario([0.0; 3], 4.0), 6);
@@ -159,11 +162,11 @@ fn known_limit_a_target_upside_down_begun_within_5_m_is_taken_for_upright_in_two
     assert!(later.iter().all(|status| status == "doubtful: motion"), "{statuses:?}");
 }
 
-/// Copies the middle of a field to its left, which is sky or station.
+/// Copies the middle of a field to its left side, which is sky or station.
 fn double(path: &Path) {
     let field = image::open(path).unwrap().into_luma8();
     let mut doubled: GrayImage = field.clone();
-    // The plate of 0.6 m at 20 m is 88 px wide and 44 lines high.
+    // At 20 m, the plate of 0.6 m is 88 px wide and 44 lines high.
     for row in 110..178 {
         for column in 0..136 {
             doubled.put_pixel(40 + column, row, *field.get_pixel(316 + column, row));

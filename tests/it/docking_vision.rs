@@ -1,4 +1,5 @@
-//! The docking pipeline on the simulator's fields: every artefact of the docking scenario on, from acquisition on.
+//! The docking pipeline on simulated fields: with every artefact of the docking scenario on, from acquisition
+//! on.
 
 use std::path::Path;
 
@@ -8,7 +9,7 @@ use contract::docking::{Digitiser, DockingSolution, NoPose};
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::docking::{DockingSimulation, DockingSimulator};
 
-/// The simulation of the built-in scenario; `wide`: seen by its wide lens alone.
+/// Simulation of the built-in scenario; with `wide`, only through its wide lens.
 fn simulation(wide: bool) -> DockingSimulation {
     let mut table: toml::Table = DOCKING.parse().unwrap();
     for key in ["world", "title", "docking"] {
@@ -21,7 +22,7 @@ fn simulation(wide: bool) -> DockingSimulation {
     simulation
 }
 
-/// One field of the check.
+/// Result of one field.
 #[derive(Debug)]
 struct Answer {
     range_m: f64,
@@ -33,7 +34,7 @@ struct Answer {
 #[derive(Debug)]
 enum Kind {
     Measured,
-    /// The range alone, and its error over its standard deviation.
+    /// Only the range, and its error divided by its standard deviation.
     Range {
         sigmas: f64,
     },
@@ -41,7 +42,8 @@ enum Kind {
     Missed(NoPose),
 }
 
-/// Starts a fresh pipeline at many places of the approach from `first` on and gives it a few fields each.
+/// Starts a new pipeline at many positions of the approach, from `first` on, and processes a few fields with
+/// each.
 fn answers(wide: bool, first: u64, block_step: usize, block: u64) -> Vec<Answer> {
     let simulator = DockingSimulator::new(&simulation(wide), Path::new(".")).unwrap();
     let factory = DockingFactory::new(DockingConfig::default()).unwrap();
@@ -59,7 +61,7 @@ fn answers(wide: bool, first: u64, block_step: usize, block: u64) -> Vec<Answer>
             let answer = match &outcome.solution {
                 DockingSolution::Measured(measurement) => {
                     let best = &measurement.best.pose;
-                    // What the score calls gross: 5 % of the range, 5° of roll.
+                    // Gross errors as defined by the score: 5 % of the range, 5° of roll.
                     let is_wrong = (best.position_m.norm() / truth.range_m - 1.0).abs() > 0.05
                         || (best.phi_rad.z - truth.pose.phi_rad.z).abs() > 0.087;
                     if is_wrong { Kind::Wrong } else { Kind::Measured }
@@ -72,7 +74,7 @@ fn answers(wide: bool, first: u64, block_step: usize, block: u64) -> Vec<Answer>
                         Kind::Range { sigmas: error_m / sigma_m }
                     }
                 }
-                // Such as it is, it is no answer to rely on.
+                // A doubtful pose is not a reliable result.
                 DockingSolution::Doubtful { .. } => Kind::Missed(NoPose::Inconsistent),
                 DockingSolution::NoSolution(NoPose::Failed(text)) => panic!("{text}"),
                 DockingSolution::NoSolution(reason) => Kind::Missed(reason.clone()),
@@ -88,7 +90,8 @@ fn answers(wide: bool, first: u64, block_step: usize, block: u64) -> Vec<Answer>
     answers
 }
 
-/// Success 98 % or more, wrong 1 % or less, over the fields for which `counts` holds.
+/// Checks that at least 98 % are measured and at most 1 % are wrong, over the fields for which `counts`
+/// holds.
 fn check(answers: &[Answer], counts: impl Fn(&Answer) -> bool) {
     let counted: Vec<&Answer> = answers.iter().filter(|answer| counts(answer)).collect();
     let count = |kind: fn(&Kind) -> bool| counted.iter().filter(|a| kind(&a.answer)).count() as f64;
@@ -110,7 +113,7 @@ fn from_30_m_to_3_m_the_narrow_lens_measures_the_target() {
 fn from_10_m_to_1_m_the_wide_lens_measures_the_target() {
     let answers = answers(true, 17_000, 301, 4);
     check(&answers, |a| a.is_whole && (1.1..=10.0).contains(&a.range_m));
-    // Closer, the target is measured by what is left of it, or its absence is told.
+    // At closer range, the target is measured by its visible part, or its absence is reported.
     let close: Vec<&Answer> = answers.iter().filter(|a| a.range_m < 1.1 || !a.is_whole).collect();
     assert!(close.len() >= 4, "{} fields say little", close.len());
     for answer in close {

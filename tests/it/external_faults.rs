@@ -1,5 +1,6 @@
-//! Programs in the place of the pipeline that do the worst they can: each costs its frames and has its reason, within limits of time and
-//! memory, and nothing of it is left. In `run` and `process` of both worlds, and in studies.
+//! External pipeline programs with the worst faults: each loses its frames with a reason, stays within the
+//! limits of time and memory, and leaves nothing behind. In `run` and `process` of both worlds, and in
+//! studies.
 
 use std::os::unix::process::ExitStatusExt;
 use std::process::Command;
@@ -7,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use crate::support::{Answer, Bench};
 
-/// What every program of this suite begins with: `note` keeps the numbers of its processes, `hello` greets as it should, `ask` gives
-/// the number of the next frame, `none` answers it.
+/// Common beginning of all programs of this suite: `note` records the numbers of their processes, `hello`
+/// sends a correct greeting, `ask` returns the number of the next frame, `none` answers it.
 const PRELUDE: &str = r#"
 import json, os, signal, subprocess, sys, time
 def note(pid):
@@ -31,7 +32,7 @@ def none(number):
     say(json.dumps({KEY: number, "status": "no_target"}))
 "#;
 
-/// A program that does wrong, and what is said of it.
+/// A faulty program, and the reason reported for it.
 struct Faulty {
     name: &'static str,
     body: &'static str,
@@ -45,13 +46,13 @@ const fn faulty(name: &'static str, body: &'static str, reason: &'static str) ->
 const LATE: &str = "it gave no answer within 1 s";
 
 impl Faulty {
-    /// Short for those that give no answer; long for those that end by themselves, on a busy machine.
+    /// Short for programs that give no answer; long for programs that end by themselves, on a busy machine.
     fn timeout_s(&self) -> &'static str {
         if self.reason.starts_with(LATE) { "1" } else { "30" }
     }
 }
 
-/// Each answers no frame.
+/// Programs that answer no frame.
 const PROGRAMS: [Faulty; 14] = [
     faulty("hangs", "hello()\nask()\ntime.sleep(100)", LATE),
     faulty(
@@ -87,7 +88,8 @@ const PROGRAMS: [Faulty; 14] = [
     faulty("answers far too late", "hello()\nn = ask()\ntime.sleep(3)\nnone(n)\ntime.sleep(100)", LATE),
     faulty(
         "speaks before it is asked",
-        // In one piece with the greeting's answer: later, it could be taken for the answer to the first question.
+        // In the same write as the greeting: a later line could be mistaken for the answer to the first
+        // request.
         "ask()\nsay('{\"boresight_pipeline\": 1, \"name\": \"faulty\"}\\n{}\\n{}')\ntime.sleep(100)",
         "it wrote a line without being asked",
     ),
@@ -114,7 +116,7 @@ const PROGRAMS: [Faulty; 14] = [
     ),
 ];
 
-/// Memory of a program, MB: enough for Python, less than the hoarder would have.
+/// Memory limit of a program, MB: enough for Python, less than the memory hoarder would use.
 const MEMORY_MB: &str = "500";
 
 struct World {
@@ -131,22 +133,22 @@ fn write_program(bench: &Bench, world: &World, body: &str) {
     bench.write("program.py", format!("KEY = \"{}\"\n{PRELUDE}\n{body}\n", world.key));
 }
 
-/// Runs the command with the program in the place of the pipeline; whatever was started is gone when it ends.
+/// Runs the command with the external program; checks that all its processes are gone when the command ends.
 fn with_program(bench: &Bench, words: &[&str], timeout_s: &str) -> Answer {
     bench.write("pids", "");
     let limits = ["--timeout-s", timeout_s, "--memory-mb", MEMORY_MB];
-    // By `env`, as the suites share one way of starting the command.
+    // Set by `env`, because all suites start the command in the same way.
     let pipeline = format!("exec:env PIDS={} python3 program.py", bench.path("pids").display());
     let begun = Instant::now();
     let words = [words, &["--pipeline", &pipeline], &limits].concat();
     let answer = bench.boresight_words(&words);
-    // Start, greeting and as many limits as there are frames, on a busy machine.
+    // Start, greeting and one time limit per frame, on a busy machine.
     assert!(begun.elapsed() < Duration::from_secs(60), "{words:?} took {:?}", begun.elapsed());
     check_none_left(bench);
     answer
 }
 
-/// No process of those that the programs noted is running.
+/// Checks that none of the processes noted by the programs is running.
 fn check_none_left(bench: &Bench) {
     let pids = bench.read("pids");
     assert!(!pids.is_empty(), "the program was not started");
@@ -159,27 +161,27 @@ fn check_none_left(bench: &Bench) {
     }
 }
 
-/// Whether a process runs; a zombie that whoever adopts orphans has not reaped does not.
+/// Returns true if a process is running; a zombie that its adoptive parent has not reaped does not count.
 fn is_running(pid: &str) -> bool {
     let output = Command::new("ps").args(["-o", "stat=", "-p", pid]).output().unwrap();
     let state = String::from_utf8(output.stdout).unwrap();
     !state.trim().is_empty() && !state.trim_start().starts_with('Z')
 }
 
-/// Every frame has its row, and each is a failure for the reason.
+/// Checks that every frame has a row with a failure for the given reason.
 fn check_rows(bench: &Bench, name: &str, measurements: &str, world: &World, reason: &str) {
     let rows = bench.csv(measurements);
     assert_eq!(rows.len(), world.count, "{name}");
     for row in rows {
         let status = &row["status"];
         assert!(status.starts_with("failed: "), "{name}: {status}");
-        // What it says before it dies costs one frame, its death the others.
+        // The last output before its death costs one frame, the death costs the others.
         assert!(status.contains(reason) || status.contains("it ended with"), "{name}: {status}");
     }
     assert!(bench.read(measurements).contains(reason), "{name}: {}", bench.read(measurements));
 }
 
-/// Checks each program, some at a time: most of the time they are waited for.
+/// Checks each program, several concurrently: most of the time is spent waiting for them.
 fn with_each(check: impl Fn(&Faulty) + Sync) {
     const AT_A_TIME: usize = 4;
     std::thread::scope(|scope| {
@@ -235,7 +237,8 @@ fn over_a_dataset_each_is_an_outcome_with_its_reason_and_nothing_is_left() {
     }
 }
 
-/// A study goes on over a program that fails, says of which cases, and is the same study when it is run again.
+/// A study continues past a failing program, reports the affected cases, and gives the same results when it
+/// is run again.
 #[test]
 fn in_a_study_each_is_a_failed_case_and_the_study_goes_on() {
     with_each(|faulty @ Faulty { name, body, .. }| {
@@ -258,7 +261,7 @@ fn in_a_study_each_is_a_failed_case_and_the_study_goes_on() {
     });
 }
 
-/// Programs that never greet: one that is not there, one that ends, one of another version.
+/// Programs that never send a greeting: a missing program, one that ends, and one with another version.
 const NEVER_GREET: [(&str, &str); 3] = [
     ("exec:python3 missing.py", "missing.py"),
     ("exec:python3 -c 'raise SystemExit(\"no film\")'", "no film"),
@@ -268,7 +271,8 @@ const NEVER_GREET: [(&str, &str); 3] = [
     ),
 ];
 
-/// A program that does not start ends a run after three frames: they are scored, the others are not flown, and none of them is a miss.
+/// A program that does not start ends a run after three frames: these are scored, the others are not run, and
+/// none of the latter is a miss.
 #[test]
 fn a_program_that_never_greets_ends_a_run_in_both_worlds() {
     for (scenario, frames) in [("starting-point", "100..110"), ("docking", "18000..18010")] {
@@ -288,7 +292,7 @@ fn a_program_that_never_greets_ends_a_run_in_both_worlds() {
             let score = bench.json("run/score.json");
             assert_eq!((&score["frames"], &score["not_flown"]["frames"]), (&3.into(), &7.into()));
             assert!(score["not_flown"]["reason"].as_str().unwrap().contains(reason), "{score}");
-            // What there is of it is a run like any other.
+            // The partial run can be used like any other run.
             let again = bench.boresight("score run run/measurements.csv --json").done();
             assert!(again.stderr.contains("7 were not flown"), "{}", again.stderr);
             assert_eq!(again.json()["not_flown"], score["not_flown"]);
@@ -300,7 +304,7 @@ fn a_program_that_never_greets_ends_a_run_in_both_worlds() {
     }
 }
 
-/// A run too short for three starts is not done either.
+/// A run too short for three starts is incomplete as well.
 #[test]
 fn a_run_of_two_frames_without_a_start_is_refused() {
     let bench = Bench::new();
@@ -312,7 +316,7 @@ fn a_run_of_two_frames_without_a_start_is_refused() {
     assert_eq!(score["not_flown"]["frames"], 0);
 }
 
-/// One start that fails costs its frame; the program is started again, as it remembers nothing yet.
+/// One failed start costs its frame; the program is started again, because it has no state yet.
 #[test]
 fn a_program_that_starts_in_the_end_goes_on() {
     let bench = Bench::new();
@@ -327,7 +331,7 @@ fn a_program_that_starts_in_the_end_goes_on() {
     assert!(bench.json("run/score.json").get("not_flown").is_none());
 }
 
-/// Over a dataset nothing is written: there is no truth by which the frames could be scored.
+/// For a dataset nothing is written: there is no truth with which the frames could be scored.
 #[test]
 fn a_program_that_never_greets_answers_no_dataset() {
     for (scenario, frames) in [("starting-point", "100..105"), ("docking", "18000..18005")] {
@@ -344,7 +348,8 @@ fn a_program_that_never_greets_answers_no_dataset() {
     }
 }
 
-/// A case without a start is a failed row of its three frames, as its replay has it; ten of them before any other end the study.
+/// A case without a start is a failed row of its three frames, as in its replay; ten such cases before any
+/// other end the study.
 #[test]
 fn cases_without_a_start_are_failed_rows_and_the_first_ten_end_a_study() {
     let study = |cases: u64| {
@@ -372,7 +377,7 @@ fn cases_without_a_start_are_failed_rows_and_the_first_ten_end_a_study() {
     }
 }
 
-/// An answer that cannot be used costs its frame and no other.
+/// An unusable answer costs only its frame.
 #[test]
 fn garbage_costs_its_frame_alone_in_both_worlds() {
     let body = "hello()\nfor text in ('Paris', '[1, 2', '{\"KEY\": 99, \"status\": \"no_target\"}'):\n    n = ask()\n    \
@@ -391,8 +396,9 @@ fn garbage_costs_its_frame_alone_in_both_worlds() {
     }
 }
 
-/// Endless lines fill four places and then the pipe; an endless line ends at a mebibyte. The command itself has 700 MB here: it would
-/// take seconds to have read more than that from a program that writes as fast as it can.
+/// An endless stream of lines fills a queue of four and then the pipe; an endless line ends at a mebibyte.
+/// The command itself is limited to 700 MB here: it would take seconds to read more than that from a program
+/// that writes as fast as possible.
 #[test]
 fn a_flood_takes_no_memory() {
     for (body, reason) in [
@@ -423,7 +429,7 @@ fn a_flood_takes_no_memory() {
     }
 }
 
-/// The limit is of the program's own choice where it is given, and holds for its children too.
+/// The limit can be set for a program, and applies to its children too.
 #[test]
 fn memory_is_limited_as_requested_in_children_too() {
     let hoard = "hello()\nn = ask()\nhoard = bytearray(200_000_000)\nnone(n)\nwhile True:\n    none(ask())";
@@ -453,7 +459,8 @@ fn memory_is_limited_as_requested_in_children_too() {
     assert!(!bench.path("run").exists());
 }
 
-/// Asked to end, the command takes its programs along, hanging ones with their children too, which get no interrupt of a terminal.
+/// When requested to end, the command also ends its programs, even hanging programs and their children, which
+/// receive no interrupt from a terminal.
 #[test]
 fn programs_end_with_a_command_that_is_interrupted() {
     for signal in ["INT", "TERM", "HUP"] {

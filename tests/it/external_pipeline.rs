@@ -1,5 +1,5 @@
-//! Somebody else's program in the place of the pipeline, by `--pipeline exec:COMMAND`: the example of the docs, and
-//! programs that do everything wrong.
+//! External pipeline programs with `--pipeline exec:COMMAND`: the example of the documentation, and programs
+//! with every kind of fault.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,15 +19,16 @@ use serde_json::{Value, json};
 
 use crate::support::{Bench, figure};
 
-/// The command of the example in docs/examples.
+/// Command of the example in docs/examples.
 fn brightest() -> String {
     format!("exec:python3 '{}/docs/examples/brightest.py'", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Frames of the starting point, whole images, in which the target outshines the hot pixels.
+/// Frames of the starting point with whole images in which the target outshines the hot pixels.
 const FRAMES: &str = "100..105";
 
-/// The measured places are where the target truly is, but for the first frame, which has none before it.
+/// Checks that the measured positions agree with the true positions of the target, except for the first
+/// frame, which has no previous frame.
 fn check_places(bench: &Bench, measurements: &str, run: &str, tolerance_px: [f64; 2]) {
     let rows = bench.csv(measurements);
     assert_eq!(rows.len(), bench.frames(run).len());
@@ -57,9 +58,9 @@ fn the_example_finds_the_target_in_whole_images() {
     let bench = Bench::new();
     let words = ["run", "starting-point", "--frames", FRAMES, "--out", "run", "--pipeline", &brightest()];
     bench.boresight_words(&words).done();
-    // A bright image, not cut: its centroid has an error of some thousandths of a pixel, and the sunlit side of the
-    // sphere is up to 0.06 px from its middle. A convention of pixels that is off by a half, or axes that are
-    // exchanged, cannot pass.
+    // A bright, complete image: its centroid has an error of some thousandths of a pixel, and the sunlit side
+    // of the sphere is up to 0.06 px from its middle. A pixel convention that differs by half a pixel, or
+    // exchanged axes, cannot pass.
     check_places(&bench, "run/measurements.csv", "run", [0.1, 0.1]);
     assert_eq!(figure(&bench.json("run/score.json"), "correct_rate"), 4.0 / 5.0);
 }
@@ -69,8 +70,8 @@ fn the_example_finds_the_target_in_regions_of_interest() {
     let bench = Bench::new();
     let words = ["run", "argon", "--frames", "15000..15005", "--out", "run", "--pipeline", &brightest()];
     bench.boresight_words(&words).done();
-    // 3 km before the target its image is saturated and cut below: the centroid moves up by some pixels, as the paper
-    // says of its Fig. 6.
+    // At 3 km from the target its image is saturated and truncated at the bottom: the centroid moves up by
+    // some pixels, as in Fig. 6 of the paper.
     check_places(&bench, "run/measurements.csv", "run", [0.8, 5.0]);
 }
 
@@ -85,7 +86,7 @@ fn the_example_answers_a_dataset_as_it_answers_a_run() {
     bench.check_same("run/measurements.csv", "set/measurements.csv");
 }
 
-/// A small camera at rest, and a listed star whose image is at the pixel (10.5, 40.5).
+/// A small camera at rest, and a listed star with its image at the pixel (10.5, 40.5).
 fn setup() -> Setup {
     let star = Vector3::new((10.5 - 31.5) * 8e-3, (40.5 - 23.5) * 8e-3, 20.0);
     Setup {
@@ -109,7 +110,8 @@ fn setup() -> Setup {
     }
 }
 
-/// A frame of level 100 with a square of 2 × 2 pixels at the listed star, and a fainter one about (30.5, 20.5).
+/// A frame of level 100 with a square of 2 × 2 pixels at the listed star, and a fainter square around (30.5,
+/// 20.5).
 fn star_and_target() -> (Frame, Telemetry) {
     let mut dn = vec![100; 64 * 48];
     for (x, y, level) in [(10, 40, 3000), (30, 20, 1000)] {
@@ -124,7 +126,7 @@ fn star_and_target() -> (Frame, Telemetry) {
     (Frame::new(1, 64, 48, 12, dn, None).unwrap(), telemetry)
 }
 
-/// By the interpreter that has the packages.
+/// Run with the interpreter that has the packages.
 #[test]
 #[ignore = "needs numpy, astropy, sep and photutils; BORESIGHT_PYTHON names the interpreter"]
 fn examples_with_packages_keep_the_contract_and_leave_listed_stars_alone() {
@@ -151,7 +153,8 @@ fn examples_with_packages_keep_the_contract_and_leave_listed_stars_alone() {
     }
 }
 
-/// A program that greets, answers the frames 100 and 101, and then does `then` in Python with a request in `line`.
+/// A program that sends a greeting, answers frames 100 and 101, and then executes `then` in Python with a
+/// request in `line`.
 fn answers_two_then(then: &str) -> String {
     format!(
         r#"import json, sys, time
@@ -167,7 +170,7 @@ for line in sys.stdin:
     )
 }
 
-/// A run over [`FRAMES`] with a program; the statuses and the score.
+/// Runs [`FRAMES`] with a program; returns the statuses and the score.
 fn run_with(bench: &Bench, program: &str, more: &[&str]) -> (Vec<String>, Value) {
     bench.write("program.py", program);
     let words = [
@@ -188,7 +191,8 @@ fn statuses(bench: &Bench) -> Vec<String> {
     bench.csv("run/measurements.csv").iter().map(|row| row["status"].clone()).collect()
 }
 
-/// The first two frames are misses of the program's own, the other three failures whose reason has `parts`.
+/// Checks that the first two frames are misses by the program, and the other three are failures whose reason
+/// contains `parts`.
 fn check_fails_after_two(program: &str, more: &[&str], parts: &[&str]) {
     let bench = Bench::new();
     let (statuses, score) = run_with(&bench, program, more);
@@ -263,7 +267,7 @@ fn a_program_is_given_no_truth() {
     );
     let program = program.replace("frame < 102", "frame < 1000");
     run_with(&bench, &program, &[]);
-    // World coordinates and the observer's velocity are of the truth; a rendered dataset has them.
+    // World coordinates and the observer's velocity belong to the truth; a rendered dataset contains them.
     let of_truth = ["CRVAL1", "CTYPE1", "A_ORDER", "OBSVELX"];
     bench.boresight("render starting-point --frames 100..101 --out set").done();
     let rendered = std::fs::read(bench.path("set/frames/000100.fits")).unwrap();

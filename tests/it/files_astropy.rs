@@ -1,4 +1,4 @@
-//! The written files through readers that this project did not write: astropy, pyarrow, Pillow.
+//! The written files read with independent readers: astropy, pyarrow, Pillow.
 
 use std::process::Command;
 
@@ -17,7 +17,7 @@ const ROWS: usize = 580;
 const PRINCIPAL: PixelPoint = PixelPoint::new(395.0, 288.0);
 const OBSERVER_KM_S: Vector3<f64> = Vector3::new(-17.0, 22.0, 9.5);
 
-/// The camera of Table 1 behind an aberration of first order: the whole way from the sky to the detector.
+/// The camera of Table 1, with first-order aberration: the complete projection from the sky to the detector.
 fn pixel(camera_from_icrs: &Rotation<CameraFrame, Icrs>, sky: &Direction<Icrs>) -> Option<PixelPoint> {
     let v = camera_from_icrs.rotate(&(sky.vector() + OBSERVER_KM_S / 299_792.458).normalize());
     let (x, y) = (20_187.0 / 8.6 * v.x / v.z, 20_187.0 / 8.3 * v.y / v.z);
@@ -25,14 +25,15 @@ fn pixel(camera_from_icrs: &Rotation<CameraFrame, Icrs>, sky: &Direction<Icrs>) 
     (v.z > 0.0).then(|| PixelPoint::new(PRINCIPAL.x + factor * x, PRINCIPAL.y + factor * y))
 }
 
-/// A frame whose camera looks at this place, rolled by an arbitrary angle.
+/// Camera attitude for a given direction, with an arbitrary roll angle.
 fn camera_from_icrs(ra_deg: f64, dec_deg: f64) -> Rotation<CameraFrame, Icrs> {
     let z = *Direction::from_ra_dec(Angle::from_degrees(ra_deg), Angle::from_degrees(dec_deg)).vector();
     let x = z.cross(&Vector3::new(0.3, -0.2, 0.5)).normalize();
     Rotation::from_axes(&x, &z.cross(&x), &z)
 }
 
-/// Stars on a grid of the sky about the boresight, wherever they fall; dense enough for some near the centre.
+/// Stars on a grid of the sky around the boresight, including those off the detector; dense enough for some
+/// near the centre.
 fn stars(number: u64, camera_from_icrs: &Rotation<CameraFrame, Icrs>) -> Vec<ObjectTruth> {
     let directions = (0..41 * 41).filter_map(|i| {
         let (x, y) = (f64::from(i % 41 - 20) / 20.0 * 0.17, f64::from(i / 41 - 20) / 20.0 * 0.13);

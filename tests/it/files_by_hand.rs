@@ -1,4 +1,5 @@
-//! Files read and written by their definitions alone: a mistake that our writer and our reader share would come back unseen.
+//! Files read and written only by their definitions: a mistake shared by the project's writer and reader
+//! would otherwise remain undetected.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,13 +14,14 @@ use tempfile::tempdir;
 
 use crate::support::Bench;
 
-/// Bytes of a block of a FITS file, and of a card of its header (FITS standard 4.0, sections 3.1 and 4.1).
+/// Bytes in a block of a FITS file; `CARD` is the bytes in a card of its header (FITS standard 4.0, sections
+/// 3.1 and 4.1).
 const BLOCK: usize = 2880;
 const CARD: usize = 80;
 
 const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// The published quaternion (docs/conventions.md): it turns (1, 0, 0) into (0, -1, 0).
+/// Telemetry with the published quaternion (docs/conventions.md), which rotates (1, 0, 0) into (0, -1, 0).
 fn row() -> TelemetryRow {
     let telemetry = Telemetry {
         time: parse_utc("2012-04-25T12:00:00.25Z").unwrap(),
@@ -30,7 +32,7 @@ fn row() -> TelemetryRow {
     TelemetryRow { frame: 3, file: None, telemetry, windows: None }
 }
 
-/// v' = q v q*, written out (Hamilton, scalar first).
+/// v' = q v q*, in components (Hamilton, scalar first).
 fn turned([w, x, y, z]: [f64; 4], [a, b, c]: [f64; 3]) -> [f64; 3] {
     [
         (w * w + x * x - y * y - z * z) * a + 2.0 * (x * y - w * z) * b + 2.0 * (x * z + w * y) * c,
@@ -102,7 +104,7 @@ fn the_first_pixels_of_a_fits_file_are_those_of_the_first_row() {
     let end = bytes.chunks(CARD).position(|card| card.starts_with(b"END ")).unwrap();
     let start = ((end + 1) * CARD).next_multiple_of(BLOCK);
     let samples = bytes[start..].chunks_exact(2).take(7 * 5);
-    // BITPIX 16 with BZERO 32768: big-endian, signed, less by 32768.
+    // BITPIX 16 with BZERO 32768: big-endian, signed, with 32768 subtracted.
     let dn: Vec<u16> =
         samples.map(|b| (i32::from(i16::from_be_bytes([b[0], b[1]])) + 32768) as u16).collect();
     assert_eq!(dn, image().dn());
@@ -129,7 +131,8 @@ fn a_fits_file_written_by_hand_is_read_from_its_first_row_on() {
     assert_eq!((read.columns(), read.rows(), read.dn()), (3, 2, [1, 2, 3, 4, 5, 6].as_slice()));
 }
 
-/// Fifty fields a second, the first at the start and the even rows first (CCIR): time and rows follow from the number.
+/// Fifty fields per second, the first at the start and the even rows first (CCIR): time and rows follow from
+/// the number.
 #[test]
 fn a_field_of_docking_has_its_own_time_and_rows() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! A dataset from writing to reading, and what is refused on the way.
+//! A dataset from writing to reading, and the invalid inputs that are rejected.
 
 use std::fs;
 use std::path::Path;
@@ -77,7 +77,7 @@ fn row(number: u64, format: ImageFormat) -> TelemetryRow {
 
 const NUMBERS: [u64; 3] = [3, 4, 9];
 
-/// A dataset with a gap between its frames.
+/// Writes a dataset with a gap between its frames.
 fn dataset(format: ImageFormat) -> (TempDir, RunDirectory) {
     let parent = tempdir().unwrap();
     let run = RunDirectory::create(&parent.path().join("set")).unwrap();
@@ -106,7 +106,7 @@ fn refusal(directory: &Path) -> String {
     Dataset::open(directory).unwrap_err().to_string()
 }
 
-/// Replaces a text in a file that has it.
+/// Replaces a text in a file that contains it.
 fn edit(path: &Path, from: &str, to: &str) {
     let text = fs::read_to_string(path).unwrap();
     assert!(text.contains(from), "{text}");

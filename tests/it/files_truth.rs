@@ -1,4 +1,4 @@
-//! The truth tables: exact round trips, damage, and the schema.
+//! Truth tables: exact round trips, damage, and the schema.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -72,7 +72,7 @@ fn object(frame: u64, i: u64) -> ObjectTruth {
     }
 }
 
-/// A table with the rows of each frame, written frame by frame.
+/// Writes a table with the rows of each frame, frame by frame.
 fn write<R: Row>(frames: impl IntoIterator<Item = Vec<R>>) -> (TempDir, PathBuf) {
     let directory = tempdir().unwrap();
     let path = directory.path().join("table.parquet");
@@ -102,7 +102,7 @@ fn frames_come_back_to_the_bit() {
 
 #[test]
 fn objects_come_back_to_the_bit_over_many_batches() {
-    // More rows than two batches of the reader; every third frame has none.
+    // More rows than two batches of the reader; every third frame has no rows.
     let objects = |frame: u64| {
         if frame.is_multiple_of(3) { vec![] } else { (0..200).map(|i| object(frame, i)).collect() }
     };
@@ -112,7 +112,7 @@ fn objects_come_back_to_the_bit_over_many_batches() {
         let (back, expected) = (reader.rows_of(number).unwrap(), objects(number));
         assert_eq!(back.len(), expected.len());
         for (back, expected) in back.into_iter().zip(expected) {
-            // A direction goes through degrees: a few roundings of 360°, 1e-15 rad each.
+            // A direction is converted to degrees and back: a few roundings of 360°, 1e-15 rad each.
             if let (Some(a), Some(b)) = (&back.astrometric, &expected.astrometric) {
                 assert!(a.separation(b).radians() < 1e-14);
             }
@@ -149,7 +149,7 @@ fn a_number_that_is_not_one_is_named_by_row() {
     assert!(message.contains("row 1: `snr` is `NaN`, expected a finite number"), "{message}");
 }
 
-/// A table that has the name of a column and not its type.
+/// A table with a column of the right name and the wrong type.
 struct MistypedColumn;
 
 impl Row for MistypedColumn {
@@ -164,7 +164,7 @@ impl Row for MistypedColumn {
     }
 }
 
-/// A table with one column of the truth and no more.
+/// A table with only one column of the truth.
 struct SingleColumn;
 
 impl Row for SingleColumn {
@@ -212,7 +212,7 @@ proptest! {
         let (_directory, path) = write([(0..50).map(|i| object(1, i)).collect()]);
         let mut bytes = fs::read(&path).unwrap();
         for (place, value) in changes {
-            // The end of the file holds its metadata: damage there does the most.
+            // The end of the file holds its metadata, where damage has the largest effect.
             let span = if tail { 1200.min(bytes.len()) } else { bytes.len() };
             let place = bytes.len() - 1 - place % span;
             bytes[place] = value;

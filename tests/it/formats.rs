@@ -1,4 +1,4 @@
-//! The tables of `docs/formats.md` are those that the crates declare.
+//! The tables of `docs/formats.md` agree with the tables that the crates declare.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -8,7 +8,7 @@ use boresight::gate::row_columns;
 use boresight::study::case_columns;
 use boresight::visibility;
 
-/// A row of the page: names, type, and what the columns are.
+/// Row of the page: names, type, and meaning of the columns.
 fn line(field: &FieldDeclaration, is_csv: bool) -> String {
     let names: Vec<String> = field.names.iter().map(|name| format!("`{name}`")).collect();
     let names = match names.as_slice() {
@@ -30,7 +30,7 @@ fn line(field: &FieldDeclaration, is_csv: bool) -> String {
     format!("| {names} | {column_type}{empty} | {optional}{} |\n", field.meaning)
 }
 
-/// The page with the tables that are declared between its marks.
+/// Page with the declared tables inserted between its marks.
 fn page(old: &str) -> String {
     let csv = csv_tables().into_iter().chain(visibility::tables()).map(|(name, fields)| (name, fields, true));
     let others = [("rows.parquet", row_columns()), ("cases.parquet", case_columns())];
@@ -47,7 +47,7 @@ fn page(old: &str) -> String {
     page
 }
 
-/// With `REMAKE=1` in the environment this test writes the page anew.
+/// With `REMAKE=1` in the environment this test rewrites the page.
 #[test]
 fn the_page_of_formats_has_every_column() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/formats.md");

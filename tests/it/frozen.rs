@@ -1,4 +1,5 @@
-//! Results that must keep their bits: `golden/frozen/` has the hashes of what a list of commands prints and leaves.
+//! Results that must keep their bits: `golden/frozen/` contains the hashes of the output and the files of a
+//! list of commands.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -27,7 +28,7 @@ fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/frozen").join(name)
 }
 
-/// The frozen hashes by command: of what it prints, and of each file that it leaves.
+/// Frozen hashes by command: of its output, and of each file that it writes.
 fn frozen() -> BTreeMap<String, BTreeMap<String, String>> {
     let mut commands: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     let mut command = String::new();

@@ -1,4 +1,4 @@
-//! `boresight gate`: it finds what is worse, and nothing where nothing is.
+//! `boresight gate` finds changes for the worse, and reports nothing where there are none.
 
 mod cases;
 mod real;
@@ -10,10 +10,11 @@ use std::collections::BTreeMap;
 
 use crate::support::{Bench, check_same_files};
 
-/// Of 400 pairs in which nothing is worse at most so many may be rejected: 20 are expected at 5 %, the standard deviation is 4.4.
+/// Maximum number of rejections out of 400 pairs without a worsening: 20 are expected at 5 %, with a standard
+/// deviation of 4.4.
 const MOST_OF_400: usize = 31;
 
-/// How many of so many trials the gate rejects.
+/// Number of trials that the gate rejects.
 fn rejected(trials: u64, is_worse: impl Fn(u64) -> bool + Sync) -> usize {
     (0..trials).into_par_iter().filter(|&trial| is_worse(trial)).count()
 }
@@ -49,7 +50,8 @@ fn null_control_a_harmless_change_in_episodes_is_rejected_as_often_as_alpha_says
     assert!(count <= MOST_OF_400, "{count} of 400");
 }
 
-/// The saboteur of the two tests above: the same runs, their frames taken for independent of one another, are rejected far too often.
+/// Counterpart of the null-control tests above: if the frames of the same runs are treated as independent,
+/// far too many runs are rejected.
 #[test]
 fn frames_taken_for_independent_would_fail_the_null_control() {
     let run = |seed: u64| sample_of(seed, &Synthetic { stretches: 12, frames: 30 }.run(seed));
@@ -73,7 +75,8 @@ fn planted_faults_are_caught_at_their_stated_size() {
     }
 }
 
-/// A worsening of the size that the gate says it would see is seen: the claim of `smallest_visible`, on a rate and on an amount.
+/// A worsening of the size that the gate claims to detect is detected: the claim of `smallest_visible`, on a
+/// rate and on an amount.
 #[test]
 fn the_smallest_visible_change_is_visible() {
     let options = CompareOptions::default();
@@ -97,7 +100,7 @@ fn the_smallest_visible_change_is_visible() {
     assert!(rate >= 90 && amount >= 90, "rate {rate}, amount {amount} of 100");
 }
 
-/// A pipeline that no longer tells its stars has not become better at it.
+/// A pipeline that no longer reports its stars has not improved.
 #[test]
 fn a_figure_that_vanishes_is_gone_and_shuts_the_gate() {
     let mut frames = Synthetic { stretches: 30, frames: 30 }.run(1);
@@ -108,7 +111,7 @@ fn a_figure_that_vanishes_is_gone_and_shuts_the_gate() {
     assert_eq!(report.figures["stars_mean"].verdict, FigureVerdict::Gone);
 }
 
-/// A change that is certain and of no account: every error a thousandth larger, in every block.
+/// A change that is certain and negligible: every error is a thousandth larger, in every block.
 #[test]
 fn a_change_below_the_tolerance_is_no_worsening() {
     let frames = Synthetic { stretches: 12, frames: 30 }.run(1);
@@ -134,7 +137,7 @@ fn what_limits_the_trust_in_a_comparison_is_noted() {
     assert!(report.notes.iter().any(|note| note.contains("the simulator has changed")), "{:?}", report.notes);
 }
 
-/// A run of ARGON's first frames.
+/// Returns a bench with a run of ARGON's first frames, and its baseline.
 fn bench() -> Bench {
     let bench = Bench::new();
     bench.boresight("run argon --frames 0..60 --out run").done();
@@ -161,7 +164,7 @@ fn the_same_run_is_no_worse_and_a_worse_one_shuts_the_gate() {
     assert_eq!((&same["verdict"], &same["pairing"]), (&"no_worse".into(), &"frames".into()));
     assert_eq!(same["flips"]["units"].as_array().unwrap().len(), 0);
 
-    // Every second answer is lost.
+    // Every second outcome is lost.
     bench.boresight("run argon --frames 0..60 --out worse").done();
     let lines: Vec<String> = bench.read("worse/measurements.csv").lines().map(str::to_owned).collect();
     let columns = lines[0].matches(',').count();
@@ -200,7 +203,7 @@ fn the_same_run_is_no_worse_and_a_worse_one_shuts_the_gate() {
     assert_eq!(text.status, Some(1));
     assert!(text.stdout.contains("WORSE: ") && text.stdout.contains("it was good enough"), "{}", text.stdout);
 
-    // Of a figure that is not worse alone the gate stays open.
+    // With only a figure that is not worse, the gate stays open.
     bench.boresight("gate base worse --figures wrong_rate").done();
 
     let junit = quick_junit::Report::deserialize_from_str(&bench.read("junit.xml")).unwrap();
@@ -208,24 +211,25 @@ fn the_same_run_is_no_worse_and_a_worse_one_shuts_the_gate() {
     assert!(junit.failures >= 2, "{}", bench.read("junit.xml"));
     bench.boresight("gate base worse --junit junit.xml").refused(&["--junit is junit.xml", "exists"]);
 
-    // What cannot be compared is an error to whoever reads the XML, too.
+    // A failed comparison is an error in the XML, too.
     bench.boresight("gate base nowhere --junit error.xml").refused(&["nowhere"]);
     let junit = quick_junit::Report::deserialize_from_str(&bench.read("error.xml")).unwrap();
     assert_eq!((junit.tests, junit.errors), (1, 1), "{}", bench.read("error.xml"));
 
-    // A result of which a third is missing is not a result that is no worse.
+    // A result with a third of its measurements missing does not pass as no worse.
     let lines = bench.read("worse/measurements.csv");
     let some = lines.lines().enumerate().filter(|(i, _)| *i == 0 || i % 3 != 0).map(|(_, line)| line);
     bench.write("worse/measurements.csv", some.collect::<Vec<_>>().join("\n") + "\n");
     bench.boresight("gate base worse").refused(&["cannot compare", "no measurement of 20 of 60 frames"]);
 }
 
-/// The errors of centroids by the true attitude, 2″, had been held against those of a pipeline's own lines of sight, 50″.
-/// A shift of all centroids shuts the gate whichever side it points to, and names what it changed; for a reason it passes.
+/// Regression test: the errors of centroids by the true attitude, 2″, used to be compared with the errors of
+/// a pipeline's own lines of sight, 50″. A shift of all centroids closes the gate in either direction, and
+/// the report names the changed figure; with a reason it passes.
 #[test]
 fn a_shift_of_half_a_pixel_is_no_improvement() {
     let bench = bench();
-    // Of five blocks with an answer no two-sided test has a p below 1/16.
+    // With five blocks that have a measurement, no two-sided test has a p below 1/16.
     let words =
         ["gate", "baseline", "run", "--out", "fine", "--reason", "more blocks", "--block-length", "3"];
     bench.boresight_words(&words).done();
@@ -283,12 +287,12 @@ fn figures_that_count_other_things_are_not_compared() {
     let attitude = "is of lines of sight by the attitude `own` in the baseline and";
     refused("gate base centroids", &[attitude, "`none` in the result"]);
     refused("gate base centroids --attitude true", &[attitude, "`true` in the result"]);
-    // Figures of the image are, whatever is granted.
+    // Figures of the image are compared for any attitude.
     for words in ["", "--attitude telemetry"] {
         let words = format!("gate base centroids --figures hit_rate,centroid_x_rms_px {words}");
         bench.boresight(&words).done();
     }
-    // Against its like it is, and says so.
+    // With a baseline of the same kind it is compared, and the report states the attitude.
     let words = "gate baseline centroids --attitude true --out like --reason centroids --block-length 6";
     bench.boresight(words).done();
     let report = bench.boresight("gate like centroids --attitude true").done().stdout;
@@ -426,7 +430,7 @@ fn a_study_is_held_against_a_study_case_by_case() {
     bench.boresight("gate base run").refused(&["`kind` is `study`", "`run`"]);
 }
 
-/// The scenarios of the project's own gates are the built-in ones but for when images are taken.
+/// The scenarios of the project's own gates equal the built-in ones, except for the times of the images.
 #[test]
 fn the_gates_fly_the_built_in_scenarios() {
     for (name, apart) in [("argon", "schedule"), ("docking", "approach")] {
@@ -440,8 +444,9 @@ fn the_gates_fly_the_built_in_scenarios() {
     }
 }
 
-/// The null control on the simulator itself: 400 pairs of runs of ARGON that differ by their seed, and 400 by a harmless change. Half an
-/// hour of CPU: `cargo test --release --test it real_runs_with -- --ignored --nocapture`.
+/// Null control with the simulator: 400 pairs of runs of ARGON that differ by their seed, and 400 that differ
+/// by a harmless change. Half an hour of CPU: `cargo test --release --test it real_runs_with -- --ignored
+/// --nocapture`.
 #[test]
 #[ignore = "800 runs of the simulator"]
 fn real_runs_with_other_seeds_are_rejected_as_often_as_alpha_says() {
@@ -458,7 +463,8 @@ fn real_runs_with_other_seeds_are_rejected_as_often_as_alpha_says() {
     assert!(blocks <= MOST_OF_400 && frames <= MOST_OF_400, "{blocks}, {frames}");
 }
 
-/// Power on the simulator itself, at the size of the project's gate: `cargo test --release --test it planted_faults_in_real_runs -- --ignored --nocapture`.
+/// Power with the simulator, at the size of the project's gate: `cargo test --release --test it
+/// planted_faults_in_real_runs -- --ignored --nocapture`.
 #[test]
 #[ignore = "100 runs of the simulator"]
 fn planted_faults_in_real_runs_are_caught_at_their_stated_size() {
@@ -483,8 +489,8 @@ fn planted_faults_in_real_runs_are_caught_at_their_stated_size() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
-/// The same in docking: a scale of the range by a thousandth, in two hundred fields from 10 to 7 m, beside a null control.
-/// `cargo test --release --test it docking_range_scale -- --ignored --nocapture`.
+/// Power in docking: a range scale error of a thousandth, in two hundred fields from 10 to 7 m, together with
+/// a null control. `cargo test --release --test it docking_range_scale -- --ignored --nocapture`.
 #[test]
 #[ignore = "200 runs of the docking simulator"]
 fn a_docking_range_scale_is_caught_in_real_runs() {
@@ -501,6 +507,7 @@ fn a_docking_range_scale_is_caught_in_real_runs() {
         rejects(&baseline_of(a), &b, Pairing::Blocks)
     });
     println!("range scale 1.001: caught in {scaled} of 100; other seeds rejected in {null} of 50");
-    // Binomial of 50 at 0.05: 2.5 expected, standard deviation 1.5; four of them above.
+    // Binomial distribution of 50 at 0.05: 2.5 expected, standard deviation 1.5; the limit is four standard
+    // deviations above.
     assert!(scaled >= 95 && null <= 8, "{scaled}, {null}");
 }

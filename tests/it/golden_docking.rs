@@ -1,13 +1,15 @@
-//! The fast renderer against Mitsuba: the images of golden/docking, made by rays, hold the one made by areas to its edges,
-//! its shades and its shadows.
+//! The fast renderer compared with Mitsuba: the images of golden/docking, rendered with rays, verify the
+//! edges, shades and shadows of images rendered with areas.
 //!
-//! Every clean edge of Mitsuba's image is measured along rows or columns in both images by the same estimator: the area
-//! under the profile between its plateaus. Edges are sorted by what the target's dimensions say is there, with a
-//! projection of this test's own.
+//! Every clean edge of Mitsuba's image is measured along rows or columns in both images with the same
+//! estimator: the area under the profile between its plateaus. Edges are classified by the target's
+//! dimensions, with a projection that is independent of the renderer.
 //!
-//! The fast image is measured twice: as it is drawn, and drawn with pixels an eighth as wide and averaged. The fast renderer takes
-//! what covers a pixel for spread evenly over it, so that it errs where two edges cross the same pixel (models.md, *Not modelled*);
-//! of small pixels few have two. What both images disagree in is that, and nothing of geometry or light.
+//! The fast image is measured twice: with pixels of the camera's size, and with pixels an eighth as wide that
+//! are then averaged. The fast renderer assumes that partial coverage is spread evenly over the pixel, and
+//! therefore has errors where two edges cross the same pixel (models.md, *Not modelled*); few small pixels
+//! contain two edges. The difference between the two fast images is due to this, and not to geometry or
+//! light.
 
 mod cases;
 
@@ -18,19 +20,20 @@ use contract::docking::TargetModel;
 use nalgebra::Vector3;
 use sim::vector::{Drawer, RadianceImage};
 
-/// Pixels of a profile on either side of its middle; the two outermost at each end are its plateaus.
+/// Pixels of a profile on either side of its middle; the two outermost pixels at each end are its plateaus.
 const HALF: usize = 4;
-/// Least step of an edge that is measured, of full scale: a shadow on the disk has 0.03.
+/// Smallest step of a measured edge, as a fraction of full scale: a shadow on the disk has 0.03.
 const LEAST_STEP: f64 = 0.02;
-/// Two pixels of a plateau, and the plateaus of both images, differ by no more, of the step: what else is in the profile is then
-/// worth 0.02 px a pixel at most.
+/// Largest difference between the two pixels of a plateau, and between the plateaus of both images, as a
+/// fraction of the step: anything else in the profile then contributes at most 0.02 px per pixel.
 const FLAT: f64 = 0.01;
 
-/// Small pixels along a side of a pixel.
+/// Number of small pixels along a side of a pixel.
 const FINER: usize = 8;
-/// Root of the mean square that edges agree to, px.
+/// Largest root mean square of the differences between edges, px.
 const AGREE_PX: f64 = 0.02;
-/// Where more of the pixels on an edge have a second one, as docs/mitsuba.md measures: case, edge, px as drawn and by small pixels.
+/// Cases in which more pixels on an edge contain a second edge, as measured in docs/mitsuba.md: case, edge,
+/// limits in px with full-size and with small pixels.
 const TWO_EDGES: [(&str, Kind, [f64; 2]); 4] = [
     ("wide-20", Kind::Disk, [0.08, 0.022]),
     ("narrow-20", Kind::Disk, [0.035, AGREE_PX]),
@@ -38,40 +41,41 @@ const TWO_EDGES: [(&str, Kind, [f64; 2]); 4] = [
     ("narrow-2", Kind::Marks, [0.03, AGREE_PX]),
 ];
 
-/// How far over a surface Mitsuba starts its rays at the origin, m: 1500 × 2⁻²⁴ (`RayEpsilon` of its float variants).
+/// Height above a surface at which Mitsuba starts its rays at the origin, m: 1500 × 2⁻²⁴ (`RayEpsilon` of its
+/// float variants).
 const RAY_EPSILON: f64 = 8.940_697e-5;
 
-/// What an edge is of.
+/// Object to which an edge belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Disk,
     Cross,
     Marks,
-    /// On the disk, where no part of the target has an edge: of a shadow.
+    /// A shadow: an edge on the disk where no part of the target has an edge.
     Shadow,
-    /// Off the disk: of the station, its docking unit, and their shadows.
+    /// Off the disk: the station, its docking unit, and their shadows.
     Elsewhere,
 }
 
-/// An edge, and by how much the fast image has it elsewhere, across it, px; `None` where the shades beside it differ, so that
-/// there is no one edge to compare.
+/// An edge, and its displacement in the fast image, across the edge, px; `None` if the shades beside it
+/// differ, and there is no common edge to compare.
 struct Edge {
     kind: Kind,
     shift_px: Option<f64>,
-    /// The same, if Mitsuba started its shadow rays on the disk and not over it: see [`Pair::lifted_px`].
+    /// Displacement if Mitsuba started its shadow rays on the disk and not above it: see [`Pair::lifted_px`].
     exact_px: Option<f64>,
 }
 
-/// Both images of a case.
+/// The fast and the Mitsuba image of a case.
 struct Pair<'a> {
     case: &'a Case,
     fast: RadianceImage,
     mitsuba: RadianceImage,
     outlines: Vec<(Kind, Vec<PixelPoint>)>,
     focal_px: f64,
-    /// In px of the crop.
+    /// Principal point, px of the crop.
     principal: PixelPoint,
-    /// Towards the Sun, where there is one.
+    /// Direction towards the Sun, if there is one.
     sun: Option<Vector3<f64>>,
 }
 
@@ -118,8 +122,9 @@ impl<'a> Pair<'a> {
         Self { case, fast, mitsuba, outlines, focal_px, principal, sun }
     }
 
-    /// By how much Mitsuba has a shadow on the disk elsewhere, px: in single precision it starts shadow rays (1 + |p|∞) ε over the
-    /// surface, so that a shadow falls as on a plane that is so much higher.
+    /// Returns the displacement of a shadow on the disk in Mitsuba's image, px: in single precision Mitsuba
+    /// starts shadow rays (1 + |p|∞) ε above the surface. A shadow therefore falls as on a plane that is
+    /// higher by this amount.
     fn lifted_px(&self, point: PixelPoint) -> [f64; 2] {
         let Some(sun) = self.sun else { return [0.0; 2] };
         let (pose, axes) = (self.case.pose(), target_from_camera(&self.case.pose()));
@@ -149,8 +154,8 @@ impl<'a> Pair<'a> {
         edges
     }
 
-    /// The edge whose steepest place along a row (`step` is 1) or a column is the pixel `at`, if there is a clean one that runs
-    /// rather across than along it.
+    /// Returns the clean edge whose steepest point along a row (`step` is 1) or a column is the pixel `at`,
+    /// if there is one that crosses the row or column more than it runs along it.
     fn edge(&self, at: usize, step: usize, across: usize, (x, y): (f64, f64)) -> Option<Edge> {
         let value = |image: &RadianceImage, at: usize| f64::from(image.radiance[at]);
         let slope =
@@ -187,7 +192,7 @@ impl<'a> Pair<'a> {
         let kind = self.kind(point);
         let exact_px = shift_px.map(|shift| {
             let [dx, dy] = if kind == Kind::Shadow { self.lifted_px(point) } else { [0.0; 2] };
-            // Across the edge; the slopes along and aside are the gradient's components.
+            // Component across the edge; the slopes along and aside are the components of the gradient.
             let (gx, gy) = if step == 1 { (along, aside) } else { (aside, along) };
             let across = (dx * gx + dy * gy) / libm::hypot(along, aside) * along.signum();
             shift + across
@@ -207,8 +212,8 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// Differences of shade, of full scale, on the disk and off it, where Mitsuba's image is even over 5 × 5 px: no edge within
-    /// 1.5 px.
+    /// Returns differences of shade, as fractions of full scale, on the disk and off it, where Mitsuba's
+    /// image is uniform over 5 × 5 px: no edge within 1.5 px.
     fn shades(&self) -> [Vec<f64>; 2] {
         let (columns, rows) = (self.mitsuba.columns, self.mitsuba.rows);
         let mut differences = [Vec::new(), Vec::new()];
@@ -230,7 +235,7 @@ impl<'a> Pair<'a> {
     }
 }
 
-/// The fast image of a case, drawn with so many small pixels along a side of a pixel.
+/// Draws the fast image of a case, with `finer` small pixels along a side of a pixel.
 fn drawn(
     case: &Case,
     cases: &Cases,
@@ -260,7 +265,8 @@ fn plateaus(profile: &[f64; 2 * HALF + 1]) -> (f64, f64) {
     ((profile[0] + profile[1]) / 2.0, (profile[last] + profile[last - 1]) / 2.0)
 }
 
-/// Where the step is, px from the first pixel of the profile: the same area lies under it as under the profile.
+/// Returns the position of the step, px from the first pixel of the profile: the area under the step equals
+/// that under the profile.
 fn place_of_edge(profile: &[f64; 2 * HALF + 1], (low, high): (f64, f64)) -> f64 {
     let area: f64 = profile.iter().map(|v| (v - low) / (high - low)).sum();
     2.0 * HALF as f64 + 0.5 - area
@@ -281,7 +287,8 @@ fn inside(point: PixelPoint, polygon: &[PixelPoint]) -> bool {
     crossings.count() % 2 == 1
 }
 
-/// Number, root of the mean square, and the value that a share of them does not exceed.
+/// Returns the number of values, their root mean square, and the absolute value that a fraction `share` of
+/// them does not exceed.
 fn figures(values: &[f64], share: f64) -> (usize, f64, f64) {
     let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
     sizes.sort_by(f64::total_cmp);
@@ -290,13 +297,13 @@ fn figures(values: &[f64], share: f64) -> (usize, f64, f64) {
     (sizes.len(), rms, sizes.get(at.saturating_sub(1)).copied().unwrap_or(0.0))
 }
 
-/// What is measured of the edges of a kind.
+/// Returns a measured quantity for the edges of a kind.
 fn values_of_kind(edges: &[Edge], kind: Kind, measured: impl Fn(&Edge) -> Option<f64>) -> Vec<f64> {
     edges.iter().filter(|edge| edge.kind == kind).filter_map(measured).collect()
 }
 
-/// Holds the edges of a kind in one picture to their limit: `most` is of 99 % of them; `fine_rms` that of the image by small pixels,
-/// of shadows without Mitsuba's lift.
+/// Compares the edges of a kind in one picture with their limit: `most` applies to 99 % of them; `fine_rms`
+/// is that of the image with small pixels, for shadows without Mitsuba's displacement.
 fn assert_agrees(case: &str, kind: Kind, (rms, most): (f64, f64), fine_rms: f64) {
     let allowed = TWO_EDGES.iter().find(|(name, of, _)| *name == case && *of == kind);
     let [allowed, fine_allowed] = allowed.map_or([AGREE_PX; 2], |(_, _, px)| *px);
@@ -341,8 +348,9 @@ fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
             let worst = own.iter().fold(0.0_f64, |a, b| a.max(*b));
             let off = own.iter().filter(|difference| **difference > 0.02).count();
             print!(" {place} {count} {most:.4}/{worst:.3}, over 2 %: {off}");
-            // What the fast image leaves out (shadows of and on the structure behind the station's end, the cone's own) is in the
-            // field from far away only: 3.4 % of the pixels at 200 m, 0.4 % at 20 m.
+            // Effects that the fast image omits (shadows of and on the structure behind the station's end,
+            // and the cone's own shadow) are in the field only from far away: 3.4 % of the pixels at 200 m,
+            // 0.4 % at 20 m.
             let most_off = if case.pose().position_m.z > 15.0 { 0.05 * count as f64 } else { 0.0 };
             assert!(
                 off as f64 <= most_off,
@@ -357,7 +365,7 @@ fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
     for ((kind, all), others) in kinds.iter().zip(&shifts).zip(others) {
         let (count, rms, most) = figures(all, 0.99);
         println!("  {kind:?} {count} {rms:.4} {most:.4} {others}");
-        // The disk is seen before blankets, whose shadows on the gaps between them only Mitsuba has.
+        // The disk is seen in front of blankets, whose shadows on the gaps between them only Mitsuba renders.
         let few = if *kind == Kind::Disk { count / 5 } else { count / 20 };
         assert!(
             *kind == Kind::Elsewhere || others <= few,

@@ -1,11 +1,12 @@
-//! Identity by content: two results are of the same thing when the files that they read have the same content, wherever these lie.
+//! Identity by content: two results belong to the same subject if the files that they read have the same
+//! content, regardless of the location of the files.
 
 use crate::support::{Bench, STUDY};
 
 const STARS: &str = "id,ra_deg,dec_deg,hp_mag\n5,100,20,3\n7,101,21,3.5\n";
 const OTHER_STARS: &str = "id,ra_deg,dec_deg,hp_mag\n5,100,20,3\n7,101,21,2.5\n";
 
-/// A folder with a scenario that reads a catalogue.
+/// Writes a directory with a scenario that reads a catalogue.
 fn folder(bench: &Bench, name: &str, stars: &str) {
     std::fs::create_dir_all(bench.path(name)).unwrap();
     bench.write(&format!("{name}/stars.csv"), stars);
@@ -144,7 +145,7 @@ fn answers_of_other_frames_are_not_scored() {
         .boresight("score first first/measurements.csv --clusters second/clusters.parquet")
         .refused(&["second/run.toml", "`seed`"]);
 
-    // Without a record beside them, answers may say where they come from.
+    // Without a record beside them, measurements may state their origin.
     let telemetry = bench.csv("first/telemetry.csv");
     let (time, later) = (&telemetry[1]["time_utc"], &telemetry[2]["time_utc"]);
     let told = hash(&bench, "first").trim_matches('"').to_owned();

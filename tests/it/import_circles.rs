@@ -1,7 +1,8 @@
-//! No file of a crate needs a file that needs it: what two files share is in a third.
+//! No two files of a crate depend on each other: their common items are in a third file.
 //!
-//! A file needs another when its code names an item that the other defines, by whatever import or re-export. A file that
-//! declares modules is not needed by those that only come through it. Calls of methods alone are not seen.
+//! A file depends on another when its code names an item that the other defines, through any import or
+//! re-export. A file that only declares modules on the way to an item is not a dependency. Dependencies
+//! through method calls only are not detected.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -14,16 +15,16 @@ use syn::{Attribute, Expr, ExprLit, Ident, ImplItemFn, Item, ItemUse, Lit, Macro
 /// Index of a module of a crate.
 type ModuleId = usize;
 
-/// What a name in a module stands for.
+/// Meaning of a name in a module.
 enum Meaning {
     /// An item that the module's file defines.
     Item,
     Module(ModuleId),
-    /// Another name, by a `use`.
+    /// Another name, introduced by a `use`.
     Alias(Vec<String>),
 }
 
-/// Where a path leads.
+/// Target of a path.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum PathTarget {
     Module(ModuleId),
@@ -37,21 +38,21 @@ impl PathTarget {
     }
 }
 
-/// A module: a file, or a part of one.
+/// A module: a file, or a part of a file.
 #[derive(Default)]
 struct Module {
     parent: Option<ModuleId>,
     file: PathBuf,
     names: BTreeMap<String, Vec<Meaning>>,
-    /// Paths whose names are all imported (`use a::b::*`).
+    /// Paths with all names imported (`use a::b::*`).
     globs: Vec<Vec<String>>,
-    /// Paths that the code of the module names, those that it only passes on (`pub use`) among them.
+    /// Paths that the code of the module names, including those that it only re-exports (`pub use`).
     mentions: BTreeSet<Vec<String>>,
-    /// Names of the variables of the item that is read.
+    /// Names of the variables of the item being read.
     variables: BTreeSet<String>,
 }
 
-/// The modules of a crate, the first of which is its root. Code of unit tests is left out.
+/// Modules of a crate, the first of which is the root. Code of unit tests is excluded.
 struct Crate {
     modules: Vec<Module>,
 }
@@ -72,7 +73,7 @@ impl Crate {
         self.read_items(parent, file, folder, &items)
     }
 
-    /// Reads a module. Files of the modules that it declares are in `folder`.
+    /// Reads a module. The files of the modules that it declares are in `folder`.
     fn read_items(
         &mut self,
         parent: Option<ModuleId>,
@@ -116,7 +117,7 @@ impl Crate {
         id
     }
 
-    /// Follows a path, as the code of the module `from` has it, to what it names.
+    /// Resolves a path in the code of the module `from` to its targets.
     fn resolve(
         &self,
         from: ModuleId,
@@ -135,7 +136,7 @@ impl Crate {
                 },
             };
             targets = targets.into_iter().flat_map(step).collect();
-            // A function may have the name of a module; only the module has something behind it.
+            // A function may have the name of a module; only a module can be followed by another segment.
             if index + 1 < path.len() && targets.iter().any(PathTarget::is_module) {
                 targets.retain(PathTarget::is_module);
             }
@@ -143,7 +144,7 @@ impl Crate {
         targets
     }
 
-    /// Follows a name to where it is defined. A name that other crates define leads nowhere.
+    /// Resolves a name to its definition. A name defined in another crate has no target.
     fn look_up(
         &self,
         module: ModuleId,
@@ -174,14 +175,14 @@ impl Crate {
         targets
     }
 
-    /// Of each file the files that it needs, each with the paths that lead there.
+    /// Returns for each file the files that it depends on, each with the paths that lead there.
     fn arrows(&self) -> BTreeMap<&Path, BTreeMap<&Path, BTreeSet<String>>> {
         let mut arrows: BTreeMap<_, BTreeMap<_, BTreeSet<_>>> = BTreeMap::new();
         for (id, module) in self.modules.iter().enumerate() {
             let targets = arrows.entry(module.file.as_path()).or_default();
             for path in &module.mentions {
                 for target in self.resolve(id, path, &mut BTreeSet::new()) {
-                    // A module alone is only a part of a path: what is meant is named behind it.
+                    // A module is only a part of a path: the item is named after it.
                     let PathTarget::Item(owner) = target else { continue };
                     let owner = self.modules[owner].file.as_path();
                     if owner != module.file {
@@ -193,7 +194,8 @@ impl Crate {
         arrows
     }
 
-    /// Returns the circles, each as lines that say which file needs what of which other.
+    /// Returns the dependency cycles, each as lines that state which file depends on which items of which
+    /// other file.
     fn circles(&self) -> Vec<String> {
         let arrows = self.arrows();
         let files: Vec<&Path> = arrows.keys().copied().collect();
@@ -226,7 +228,7 @@ impl Module {
     }
 }
 
-/// Collects what a module's code names.
+/// Collects the names in a module's code.
 impl<'ast> Visit<'ast> for Module {
     fn visit_attribute(&mut self, attribute: &'ast Attribute) {
         if let syn::Meta::List(list) = &attribute.meta {
@@ -274,7 +276,7 @@ impl<'ast> Visit<'ast> for Module {
     }
 
     fn visit_pat_ident(&mut self, pattern: &'ast PatIdent) {
-        // Others are constants.
+        // Names in upper case are constants.
         let name = pattern.ident.to_string();
         if name.starts_with(char::is_lowercase) {
             self.variables.insert(name);
@@ -293,7 +295,7 @@ impl<'ast> Visit<'ast> for Module {
     }
 }
 
-/// Returns the paths in a text of tokens, single names among them.
+/// Returns the paths in a text of tokens, including single names.
 fn paths_in(tokens: &str) -> Vec<Vec<String>> {
     let text = tokens.replace(" ::", "::").replace(":: ", "::");
     let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':'));
@@ -301,7 +303,7 @@ fn paths_in(tokens: &str) -> Vec<Vec<String>> {
     words.map(|word| word.split("::").map(str::to_owned).collect()).collect()
 }
 
-/// Returns what `#[path = "..."]` says.
+/// Returns the path in `#[path = "..."]`.
 fn path_attribute(attributes: &[Attribute]) -> Option<String> {
     let mut pairs = attributes.iter().filter_map(|attribute| attribute.meta.require_name_value().ok());
     let value = pairs.find(|pair| pair.path.is_ident("path")).map(|pair| &pair.value);
@@ -311,7 +313,7 @@ fn path_attribute(attributes: &[Attribute]) -> Option<String> {
     }
 }
 
-/// Returns true for what is compiled for unit tests alone.
+/// Returns true for code that is compiled only for unit tests.
 fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| match &attribute.meta {
         syn::Meta::List(list) if list.path.is_ident("cfg") => {
@@ -322,7 +324,7 @@ fn is_test(attributes: &[Attribute]) -> bool {
     })
 }
 
-/// Returns the name by which an item is known in its module, and its attributes.
+/// Returns the name of an item in its module, and its attributes.
 fn name_and_attributes(item: &Item) -> (Option<&Ident>, &[Attribute]) {
     match item {
         Item::Const(item) => (Some(&item.ident), &item.attrs),
@@ -341,7 +343,7 @@ fn name_and_attributes(item: &Item) -> (Option<&Ident>, &[Attribute]) {
     }
 }
 
-/// The roots of all libraries and programs of the workspace.
+/// Returns the root files of all libraries and programs of the workspace.
 fn roots() -> Vec<PathBuf> {
     let is_product = |target: &&Target| target.is_lib() || target.is_cdylib() || target.is_bin();
     let packages = super::architecture::workspace().packages;
@@ -357,7 +359,7 @@ fn no_file_needs_a_file_that_needs_it() {
     assert!(circles.is_empty(), "move what the files share into a file of its own:\n{}", circles.join(""));
 }
 
-/// The circles of a crate of these files.
+/// Returns the dependency cycles of a crate with these files.
 fn circles_of(files: &[(&str, &str)]) -> Vec<String> {
     let folder = tempfile::tempdir().expect("a temporary directory");
     for (name, text) in files {

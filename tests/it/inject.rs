@@ -1,10 +1,10 @@
-//! `boresight run --inject`: the truth in the place of one stage's result.
+//! `boresight run --inject`: the truth instead of one stage's result.
 
 use serde_json::Value;
 
 use crate::support::{Bench, figure};
 
-/// A slice of the fourth day: a cut target, stars enough, hot pixels that nobody knows at first.
+/// A slice of the fourth day: a truncated target, enough stars, and hot pixels that are unknown at first.
 const SLICE: &str = "12000..12060";
 
 fn run(bench: &Bench, stage: &str) -> Value {
@@ -23,13 +23,14 @@ fn each_stage_takes_its_own_error_away_and_is_reported_in_every_file() {
         assert_eq!(score["inject"], stage);
         assert_eq!(bench.json(&format!("run-{stage}/score.json")), score);
         assert!(bench.read(&format!("run-{stage}/run.toml")).contains(&format!("inject = \"{stage}\"")));
-        // Scored again, it still says so.
+        // After a further scoring, the score still states the stage.
         let again = bench.boresight(&format!("score run-{stage} run-{stage}/measurements.csv --json")).done();
         assert_eq!(again.json(), score);
         score
     };
 
-    // The region cuts the image: Dec is off by more than half a pixel (0.012°) until the centre is the true one.
+    // The region truncates the image: Dec has an error of more than half a pixel (0.012°) until the true
+    // centre is used.
     let centroids = injected("centroids");
     assert!(figure(&centroids, "dec_rms_deg") < 0.8 * figure(&own, "dec_rms_deg"));
     let whole = injected("roi");
@@ -37,15 +38,15 @@ fn each_stage_takes_its_own_error_away_and_is_reported_in_every_file() {
     let is_cut = |run: &str| bench.objects(run).iter().any(|object| object.cut > 0.0);
     assert!(is_cut("run-") && !is_cut("run-roi"));
 
-    // Hot pixels and unlisted stars no longer win: hardly a wrong answer is left.
+    // Hot pixels and unlisted stars are no longer mistaken for the target: hardly any wrong result remains.
     let identities = injected("identities");
     assert!(figure(&identities, "wrong_rate") < 0.5 * figure(&own, "wrong_rate"));
 
-    // What is left across the columns, where nothing is cut, is the centroid's own error.
+    // The remaining error across the columns, where nothing is truncated, is that of the centroid.
     let attitude = injected("attitude");
     assert!(figure(&attitude, "ra_rms_deg") < 0.5 * figure(&own, "ra_rms_deg"));
 
-    // At most 0.3″ are taken away: the answers change, and hardly.
+    // At most 0.3″ are removed: the results change only slightly.
     let aberration = injected("aberration");
     let change = figure(&aberration, "ra_rms_deg") - figure(&own, "ra_rms_deg");
     assert!(change != 0.0 && change.abs() < 5e-4, "{change}");

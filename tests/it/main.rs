@@ -1,4 +1,5 @@
-//! The end-to-end tests of the command and its library, one module per suite: `cargo test --test it study_dask::` runs one suite.
+//! End-to-end tests of the command and its library, one module per suite: `cargo test --test it study_dask::`
+//! runs one suite.
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 

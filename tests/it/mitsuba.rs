@@ -1,4 +1,4 @@
-//! The driver of Mitsuba, against programs that pretend to be it and fail in one way each.
+//! The driver of Mitsuba, tested with programs that imitate Mitsuba and fail in one way each.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,8 +16,8 @@ use tempfile::TempDir;
 const HELP: &str =
     "if [ \"$1\" = --help ]; then echo 'Mitsuba version 3.9.1 (Linux)'; echo ' scalar_rgb'; exit 0; fi\n";
 
-/// A folder with a program in the place of Mitsuba, and the images that it may copy: `good.exr` of 4 × 3 px and some that are
-/// no image of the scene.
+/// A directory with a program instead of Mitsuba, and the images that the program may copy: `good.exr` of 4 ×
+/// 3 px and some that are no image of the scene.
 struct FakeMitsuba {
     folder: TempDir,
 }
@@ -38,7 +38,7 @@ impl FakeMitsuba {
         stage
     }
 
-    /// `$STAGE` is the folder; a render adds a line to its file `renders`.
+    /// Writes the script, in which `$STAGE` is the directory; a render adds a line to its file `renders`.
     fn script(&self, body: &str) {
         let path = self.path("mitsuba");
         let text = format!("STAGE='{}'\n{body}\n", self.folder.path().display());
@@ -50,7 +50,8 @@ impl FakeMitsuba {
     }
 
     fn renderer(&self, time_limit_s: f64) -> MitsubaRenderer {
-        // By its shell: a file that was just written cannot be executed while another thread starts a process, which has it open too.
+        // Run by a shell: a file that was just written cannot be executed while another thread is starting a
+        // process, which also has it open.
         self.renderer_of(format!("sh '{}'", self.path("mitsuba").display()), time_limit_s)
     }
 
@@ -206,7 +207,7 @@ fn a_render_that_hangs_is_ended_with_its_children() {
     let child = fs::read_to_string(stage.path("child")).unwrap();
     let process = Path::new("/proc").join(child.trim());
     let ended = || match fs::read_to_string(process.join("stat")) {
-        // A zombie that nobody has waited for yet has ended too.
+        // A zombie that has not been reaped yet has ended too.
         Ok(stat) => stat.contains(") Z "),
         Err(_) => true,
     };

@@ -1,5 +1,6 @@
-//! Mitsuba itself against closed forms: where points fall, and how bright surfaces are. Needs Mitsuba 3.9.1; run with
-//! `cargo test --test it mitsuba_live:: -- --ignored`, its command in `BORESIGHT_MITSUBA` if it is not on the PATH.
+//! Mitsuba itself compared with closed forms: positions of points, and radiance of surfaces. Needs Mitsuba
+//! 3.9.1; run with `cargo test --test it mitsuba_live:: -- --ignored`, with its command in
+//! `BORESIGHT_MITSUBA` if it is not on the PATH.
 
 use std::f64::consts::PI;
 
@@ -44,7 +45,7 @@ fn renderer(samples: u32) -> MitsubaRenderer {
 
 const NIGHT: Lighting = Lighting { sun: None, floodlight: None, fill_radiance: 0.0, sky_radiance: 0.0 };
 
-/// Corners as our projection places them.
+/// Pixel positions of the corners by the project's projection.
 fn projected(facet: &Facet, pose: &Pose, camera: &Camera) -> Vec<PixelPoint> {
     let ideal = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
     let camera_from_target = (ideal * Rotation3::from_scaled_axis(pose.phi_rad).matrix()).transpose();
@@ -68,7 +69,7 @@ fn centroid(polygon: &[PixelPoint]) -> PixelPoint {
     PixelPoint::new(x / area, y / area)
 }
 
-/// Centre of the light in a box about a polygon.
+/// Centroid of the radiance in a box around a polygon.
 fn centre_of_light(image: &RadianceImage, polygon: &[PixelPoint]) -> PixelPoint {
     let range = |of: fn(&PixelPoint) -> f64| {
         let low = polygon.iter().map(of).fold(f64::INFINITY, f64::min);
@@ -87,7 +88,8 @@ fn centre_of_light(image: &RadianceImage, polygon: &[PixelPoint]) -> PixelPoint 
     PixelPoint::new(sx / sum, sy / sum)
 }
 
-/// Half a pixel, a mirrored axis, a wrong sign of the principal point or of an angle would each be 0.5 px and more.
+/// Half a pixel, a mirrored axis, or a wrong sign of the principal point or of an angle would each cause 0.5
+/// px or more.
 #[test]
 #[ignore = "needs Mitsuba 3.9.1"]
 fn squares_at_known_positions_fall_where_the_projection_says() {
@@ -95,7 +97,7 @@ fn squares_at_known_positions_fall_where_the_projection_says() {
     let mut facets = Vec::new();
     for (row, y) in [-0.36, 0.0, 0.36].into_iter().enumerate() {
         for (column, x) in [-0.5, -0.17, 0.17, 0.5].into_iter().enumerate() {
-            // No two at the same height: depth is seen by parallax.
+            // All heights differ: depth becomes visible by parallax.
             let height = 0.08 * (4 * row + column) as f64 - 0.4;
             facets.push(square(Vector3::new(x, y, height), 0.035, 0.8));
         }
@@ -133,7 +135,7 @@ fn squares_at_known_positions_fall_where_the_projection_says() {
     let rms = (sum / f64::from(count)).sqrt();
     println!("{count} squares in nine poses: rms {rms:.4} px");
     assert!(count > 80, "{count}");
-    // 32-bit matrices of Mitsuba: 0.002 to 0.005 px.
+    // Mitsuba uses 32-bit matrices: 0.002 to 0.005 px.
     assert!(rms < 0.01, "{rms}");
 }
 
@@ -168,7 +170,7 @@ fn sun_lamp_fill_and_sky_are_as_bright_as_their_closed_forms() {
     assert_eq!(of(&radiance(&Lighting { sky_radiance: 0.03, ..NIGHT }), 196, 139), 0.0);
     let lit = radiance(&Lighting { floodlight: Some(lamp), ..NIGHT });
     for (x, y) in [(196_usize, 139_usize), (215, 120), (160, 150)] {
-        // What the centre of the pixel sees of the plate, y3 = 0, from d3 = 5.
+        // Point of the plate, y3 = 0, on the ray of the pixel centre, from d3 = 5.
         let place = Vector3::new((x as f64 - 196.3) * 5.0 / 1055.0, -(y as f64 - 139.1) * 5.0 / 1055.0, 0.0);
         let ray = place - lamp.position_m;
         let off_axis = libm::acos(ray.normalize().dot(&lamp.axis));
@@ -197,7 +199,7 @@ fn a_crop_is_the_part_of_the_whole_image_that_it_names() {
         for column in 0..crop.columns {
             let here = cut.radiance[row * crop.columns + column];
             let there = whole.radiance[(crop.y + row) * whole.columns + crop.x + column];
-            // Other samples of the same edge: eight standard deviations of 64 stratified ones.
+            // Different samples of the same edge: eight standard deviations for 64 stratified samples.
             assert!((here - there).abs() < 0.03, "({column}, {row}): {here} {there}");
         }
     }

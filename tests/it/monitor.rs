@@ -1,4 +1,5 @@
-//! `boresight monitor`: what its server answers, to whom, and that it outlives its clients. No browser.
+//! `boresight monitor`: answers of the server, its access rules, and its survival of faulty clients. Without
+//! a browser.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpStream};
@@ -15,10 +16,10 @@ use sim::truth::FrameTruth;
 
 use crate::support::Bench;
 
-/// Longer than the monitor takes on a busy machine for anything that is asked here.
+/// Longer than the monitor takes on a busy machine for any request in this suite.
 const HANGS: Duration = Duration::from_secs(60);
 
-/// A monitor that runs on a thread of its own until it is dropped.
+/// A monitor that runs on a separate thread until it is dropped.
 struct Monitor {
     address: SocketAddr,
     stop: Option<tokio::sync::oneshot::Sender<()>>,
@@ -44,11 +45,11 @@ impl Monitor {
         Self::start(move || live("docking", frames))
     }
 
-    /// Sends bytes as they are, and reads what comes until the server closes.
+    /// Sends raw bytes, and reads the answer until the server closes the connection.
     fn raw(&self, request: &[u8]) -> Vec<u8> {
         let mut stream = TcpStream::connect(self.address).unwrap();
         stream.set_read_timeout(Some(HANGS)).unwrap();
-        // A server that has had enough closes while garbage is still being sent.
+        // A server that has received enough closes the connection while garbage is still being sent.
         let _ = stream.write_all(request);
         let mut answer = Vec::new();
         let _ = stream.read_to_end(&mut answer);
@@ -64,7 +65,7 @@ impl Monitor {
         self.ask("GET", path, &format!("Host: {}\r\n", self.address))
     }
 
-    /// The body of an answer that is one.
+    /// Returns the body of a successful answer.
     fn body(&self, path: &str) -> Vec<u8> {
         let answer = self.get(path);
         assert_eq!(answer.status, 200, "{path}: {}", String::from_utf8_lossy(&answer.body));
@@ -75,7 +76,7 @@ impl Monitor {
         serde_json::from_slice(&self.body(path)).unwrap()
     }
 
-    /// It still answers.
+    /// Checks that the server still answers.
     fn check_alive(&self) {
         assert_eq!(self.get("/api/progress.json").status, 200);
     }
@@ -107,7 +108,7 @@ impl Answer {
     }
 }
 
-/// A run of a built-in scenario by its built-in pipeline.
+/// Feed of a built-in scenario, run with its built-in pipeline.
 fn live(name: &str, frames: std::ops::Range<u64>) -> Feed {
     let source = ScenarioSource::read(name).unwrap();
     let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 4000, sandbox: None };
@@ -122,7 +123,8 @@ fn replay(directory: std::path::PathBuf) -> Feed {
     Feed::new(source.prepare(Options::default()).unwrap(), Measurements::Replay(directory)).unwrap()
 }
 
-/// Every number of a row of the run that the report has too is the same; angles of a replay have changed their unit twice.
+/// Checks that every number in both a row of the run and the report is the same; angles of a replay have been
+/// converted twice.
 fn check_parameters(report: &Value, row: &std::collections::BTreeMap<String, String>) {
     assert_eq!(report["status"], row["status"].as_str());
     let mut compared = 0;
@@ -177,7 +179,7 @@ fn a_far_range_replay_shows_the_measurements_of_the_run_and_the_pictures_of_its_
     assert_eq!(replayed.json("/api/session.json")["mode"], "replay");
 }
 
-/// A number of a frame after which there is none, and a table of answers that was changed.
+/// The largest possible frame number, which has no successor, and a changed table of measurements.
 #[test]
 fn a_run_that_is_damaged_is_not_replayed() {
     let bench = Bench::new();
@@ -244,7 +246,7 @@ fn only_requests_to_the_own_address_from_the_own_page_are_answered() {
     ] {
         assert!([400, 421].contains(&status(format!("Host: {host}\r\n"))), "{host}");
     }
-    // What another page embeds comes without an origin.
+    // A request embedded in another page has no origin header.
     assert_eq!(status(format!("Host: {own}\r\nSec-Fetch-Site: same-origin\r\n")), 200);
     for site in ["cross-site", "same-site"] {
         assert_eq!(status(format!("Host: {own}\r\nSec-Fetch-Site: {site}\r\n")), 403);
@@ -288,7 +290,8 @@ fn headers_without_end_are_refused_with_their_status() {
     let long = format!("X: {}\r\n", "y".repeat(1 << 20));
     for headers in [many, long] {
         let answer = monitor.raw(format!("GET / HTTP/1.1\r\nHost: {own}\r\n{headers}\r\n").as_bytes());
-        // Either it says so, or it closes while the rest is still being sent, and the answer is lost with the connection.
+        // The server either reports the error, or closes the connection while the remainder is still being
+        // sent, and the answer is lost with it.
         let said = String::from_utf8_lossy(&answer[..answer.len().min(12)]).into_owned();
         assert!(said.is_empty() || said == "HTTP/1.1 431", "{said}");
     }
@@ -298,7 +301,7 @@ fn headers_without_end_are_refused_with_their_status() {
 #[test]
 fn connections_that_ask_nothing_do_not_keep_others_out() {
     let monitor = Monitor::docking(24000..24002);
-    // Nearly all that there are.
+    // Nearly all available connections.
     let idle: Vec<_> = (0..200).map(|_| TcpStream::connect(monitor.address).unwrap()).collect();
     let slow: Vec<_> = (0..40)
         .map(|_| {
@@ -394,7 +397,7 @@ fn ten_clients_are_served_the_same_at_the_same_time() {
     let answers: Vec<Vec<Vec<u8>>> = std::thread::scope(|scope| {
         let client = |first: u64| {
             let monitor = &monitor;
-            // Each begins elsewhere, so that they are never at the same frame.
+            // Each client begins at a different frame, and no two are ever at the same frame.
             let path = move |i: u64| format!("/api/frames/{}.gray", 24000 + (first + i) % 20);
             move || (0..20).map(|i| monitor.body(&path(i))).collect::<Vec<_>>()
         };
@@ -415,7 +418,7 @@ fn a_page_that_is_left_alone_leaves_the_processor_alone() {
     monitor.json("/api/frames/24000.json");
     let processed = || monitor.json("/api/progress.json")["processed"].as_u64().unwrap();
     let deadline = Instant::now() + HANGS;
-    // 120 frames ahead of the one that was asked for, and the one that waits there is not counted.
+    // 120 frames ahead of the requested frame; the frame that waits there is not counted.
     while processed() < 24121 {
         assert!(Instant::now() < deadline, "{}", processed());
         std::thread::sleep(Duration::from_millis(20));
@@ -424,7 +427,7 @@ fn a_page_that_is_left_alone_leaves_the_processor_alone() {
     assert_eq!(processed(), 24121);
 }
 
-/// What is compiled has the page or not; either way there is an answer that helps.
+/// A build either contains the page or does not; in both cases the answer is helpful.
 #[test]
 fn the_page_is_served_or_the_command_says_how_it_is_built() {
     if is_page_built() {

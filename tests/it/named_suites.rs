@@ -1,11 +1,11 @@
-//! Suites that scripts, workflows and pages name are there: a filter that chooses no test would pass.
+//! Suites named in scripts, workflows and pages exist: a filter that selects no test would pass.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::supply_chain::{ROOT, kept, read};
 
-/// Text files that name suites; the change log tells of the past.
+/// Text files that name suites; the change log is excluded because it describes the past.
 fn texts() -> Vec<(String, String)> {
     let names_suites = |name: &String| {
         let is_text =
@@ -17,7 +17,8 @@ fn texts() -> Vec<(String, String)> {
     there.map(|name| (read(&name), name)).map(|(text, name)| (name, text)).collect()
 }
 
-/// The package that a file belongs to, by its folder: of `sim/tests/it/main.rs` it is `sim`, of the root's files ``.
+/// Package that a file belongs to, by its directory: `sim` for `sim/tests/it/main.rs`, `` for files of the
+/// root.
 fn package_of(name: &str) -> &str {
     ["sim", "pipeline", "fuzz"]
         .into_iter()
@@ -25,7 +26,7 @@ fn package_of(name: &str) -> &str {
         .unwrap_or("")
 }
 
-/// The words of a text that may be paths or names of suites.
+/// Words of a text that may be paths or names of suites.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_ascii_alphanumeric() || "_/.:-".contains(c))).filter(|word| !word.is_empty())
 }
@@ -51,7 +52,7 @@ fn every_test_file_that_is_named_is_there() {
     assert_eq!(missing, Vec::<String>::new());
 }
 
-/// The tests of the programs `it`, by package, as they are chosen: `suite::name`.
+/// Tests of the programs `it`, by package, in the form in which they are selected: `suite::name`.
 fn tests() -> BTreeMap<&'static str, Vec<String>> {
     let mut tests: BTreeMap<_, Vec<String>> = BTreeMap::new();
     for (name, text) in texts() {
@@ -70,7 +71,7 @@ fn tests() -> BTreeMap<&'static str, Vec<String>> {
     tests
 }
 
-/// `--test NAME` names a program of tests, and what follows it on the line chooses tests of it.
+/// `--test NAME` names a test program, and the words after it on the line select tests of this program.
 #[test]
 fn every_filter_of_a_command_chooses_tests() {
     let tests = tests();
@@ -79,7 +80,7 @@ fn every_filter_of_a_command_chooses_tests() {
     for (name, text) in texts().iter().filter(|(name, _)| name != "tests/saboteurs/run.py") {
         for line in text.lines().filter(|line| line.contains("--test ") && line.contains("cargo")) {
             let (command, rest) = line.split_once("--test ").unwrap();
-            // The command ends where its quotation, comment or line does.
+            // The command ends at the end of its quotation, comment or line.
             let rest = rest.split(['`', '"', '#', ')', '|', ',']).next().unwrap();
             let mut words = rest.split_whitespace();
             let program = words.next().unwrap_or_default();

@@ -1,7 +1,7 @@
-//! Images as an outsider has them: TIFF, PNG and FITS of other makers, a camera file with the least that is needed, a
-//! telemetry table of his own order, no star list.
+//! Images as an external user has them: TIFF, PNG and FITS from other software, a minimal camera file, a
+//! telemetry table with its own column order, no star list.
 //!
-//! The images are simulated ones, so that it is known what is in them, but no file of theirs is Boresight's.
+//! The images are simulated, to have a known content, but none of their files is written by Boresight.
 
 use std::io::Cursor;
 
@@ -12,7 +12,7 @@ use crate::support::{Bench, check_same_files};
 
 type Grey16 = ImageBuffer<Luma<u16>, Vec<u16>>;
 
-/// What the outsider's camera.toml says: nothing that has a default.
+/// Content of the external camera.toml: only keys without a default.
 const CAMERA: &str = "[camera]
 columns = 752
 rows = 580
@@ -28,16 +28,16 @@ theta_deg = 0.0
 psi_deg = 0.0
 ";
 
-/// An image file of the outsider: the extension of its name, and its bytes.
+/// An external image file: the extension of its name, and its bytes.
 type Encode = fn(&Grey16) -> (&'static str, Vec<u8>);
 
-/// A dataset `real` of eight images in the folder `night 1`, made by `encode` from 12-bit values, and the truth about
-/// them in `set`.
+/// Writes a dataset `real` with eight images in the directory `night 1`, made by `encode` from 12-bit values,
+/// and their truth in `set`.
 fn dataset(bit_depth: u8, encode: impl Fn(u64, &Grey16) -> (&'static str, Vec<u8>)) -> Bench {
     let bench = Bench::new();
     bench.scenario("mine.toml", "starting-point", |scenario| {
         scenario["camera"]["radial"] = vec![0.0, 0.0, 0.0].into();
-        // Long exposures, for the stars; and there are too few frames to learn the hot pixels.
+        // Long exposures, for the stars; and too few frames to learn the hot pixels.
         scenario["shutter"] = toml::Table::from_iter([
             ("mode".to_owned(), "fixed".into()),
             ("exposure_s".to_owned(), 0.25.into()),
@@ -63,7 +63,8 @@ fn dataset(bit_depth: u8, encode: impl Fn(u64, &Grey16) -> (&'static str, Vec<u8
     bench
 }
 
-/// The dataset is processed: from the first frame on the target is where it truly is, in the image and on the sky.
+/// Checks that the dataset is processed: from the first frame on, the target is at its true position in the
+/// image and on the sky.
 fn check(bench: &Bench, tolerance_px: f64) {
     let answer = bench.boresight("process real --json").done().json();
     assert_eq!(answer["frames"], 8);
@@ -75,8 +76,9 @@ fn check(bench: &Bench, tolerance_px: f64) {
         let place = truth.target_position.unwrap();
         let off_px = libm::hypot(number("x_px") - place.x, number("y_px") - place.y);
         assert!(off_px < tolerance_px, "frame {}: {off_px} px", truth.frame);
-        // The stars of the built-in catalogue were identified, so the line of sight is better than the telemetry
-        // alone, which knows neither the true mounting (0.03 degrees off) nor its own noise (0.015 degrees an axis).
+        // The stars of the built-in catalogue were identified. The line of sight is therefore better than
+        // from telemetry only, which contains neither the true mounting (0.03 degrees difference) nor its
+        // noise (0.015 degrees per axis).
         assert_eq!(row["attitude"], "stars", "{row:?}");
         let los = Vector3::new(number("los_j2000_x"), number("los_j2000_y"), number("los_j2000_z"));
         let off_deg = los.cross(truth.line_of_sight.vector()).norm().to_degrees();
@@ -93,14 +95,14 @@ fn encoded(image: impl Into<image::DynamicImage>, format: image::ImageFormat) ->
 const TIFF_16: Encode = |image| ("tif", encoded(image.clone(), image::ImageFormat::Tiff));
 const PNG_16: Encode = |image| ("PNG", encoded(image.clone(), image::ImageFormat::Png));
 
-/// Eight bits, as a cheaper camera gives them.
+/// Eight bits, as from a cheaper camera.
 fn png_8(image: &Grey16) -> (&'static str, Vec<u8>) {
     let bits: Vec<u8> = image.iter().map(|dn| (dn >> 4) as u8).collect();
     let image = image::GrayImage::from_raw(image.width(), image.height(), bits).unwrap();
     ("png", encoded(image, image::ImageFormat::Png))
 }
 
-/// The least of a FITS file, card by card: FITS standard 4.0, Sections 3.3 and 4.4.1.
+/// A minimal FITS file, card by card: FITS standard 4.0, Sections 3.3 and 4.4.1.
 fn fits(image: &Grey16, bitpix: i64, more: &[&str], data: Vec<u8>) -> Vec<u8> {
     let mut cards = vec![
         format!("SIMPLE  = {:>20}", "T"),
@@ -118,13 +120,13 @@ fn fits(image: &Grey16, bitpix: i64, more: &[&str], data: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// 16 bits unsigned by the convention of BZERO.
+/// 16 bits unsigned by the BZERO convention.
 const FITS_16: Encode = |image| {
     let data = image.iter().flat_map(|dn| ((i32::from(*dn) - 32768) as i16).to_be_bytes()).collect();
     ("fits", fits(image, 16, &["BZERO   =              32768.0", "BSCALE  =                  1.0"], data))
 };
 
-/// Floating point, as image reduction leaves it.
+/// Floating point, as written by image reduction.
 const FITS_FLOAT: Encode = |image| {
     let data = image.iter().flat_map(|dn| f32::from(*dn).to_be_bytes()).collect();
     ("fit", fits(image, -32, &["OBJECT  = 'TANGO   '"], data))

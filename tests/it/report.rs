@@ -1,4 +1,5 @@
-//! `boresight report`: what a page must hold, that its numbers are those of the files, and that it asks nothing of any network.
+//! `boresight report`: required content of a page, agreement of its numbers with those of the files, and
+//! absence of network requests.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,10 +11,10 @@ use serde_json::Value;
 
 use crate::support::{Bench, STUDY};
 
-/// Longest page, bytes.
+/// Maximum length of a page, bytes.
 const MAX_BYTES: usize = 3_000_000;
 
-/// A page without the charting library in it, which has addresses of its own that it never asks for.
+/// A page without the charting library, which contains addresses that it never requests.
 struct PageText {
     html: String,
     bytes: usize,
@@ -28,7 +29,7 @@ impl PageText {
         Self { html: html[..start].to_owned() + &html[end..], bytes }
     }
 
-    /// The JSON of the script tags of a type, in their order.
+    /// Returns the JSON of the script tags of a type, in order.
     fn documents(&self, tag: &str) -> Vec<Value> {
         let parts = self.html.split(tag).skip(1);
         parts
@@ -45,7 +46,7 @@ impl PageText {
         self.documents(r#"px"><script type="application/json""#)
     }
 
-    /// Whatever every page must be.
+    /// Checks the requirements for every page.
     fn check(&self, sections: &[&str]) {
         assert!(self.bytes < MAX_BYTES, "{} bytes", self.bytes);
         for section in sections {
@@ -65,7 +66,8 @@ impl PageText {
         self.check_what_is_drawn();
     }
 
-    /// A reader meets figures and causes by their words, never by the keys that files have. Settings and names of files stand as they are written.
+    /// Checks that figures and causes appear in words, never as the keys used in files. Settings and names of
+    /// files appear as written.
     fn check_shows_no_keys(&self) {
         const CAUSES: [&str; 10] = [
             "not_reported",
@@ -80,7 +82,7 @@ impl PageText {
             "outside_field",
         ];
         let mut shown = String::new();
-        // Past the data for machines; what charts draw stands in their JSON.
+        // Excludes the machine-readable data; the content of charts is in their JSON.
         for (n, part) in self.html.split("<script").enumerate() {
             let (script, text) = if n == 0 { ("", part) } else { part.split_once("</script>").unwrap() };
             shown += if script.contains("report-data") { "" } else { script };
@@ -95,7 +97,7 @@ impl PageText {
         }
     }
 
-    /// Charts with what is said below them.
+    /// Returns the charts with their captions.
     fn captioned(&self) -> Vec<(String, Value)> {
         let figures = self.html.split("<figure class=\"chart\">").skip(1);
         let captions = figures.map(|figure| {
@@ -105,7 +107,7 @@ impl PageText {
         captions.zip(self.charts()).collect()
     }
 
-    /// No chart leaves out a point that its caption says is drawn.
+    /// Checks that no chart omits a point that its caption describes as drawn.
     fn check_what_is_drawn(&self) {
         for (caption, chart) in self.captioned() {
             let Some((_, words)) = caption.split_once("Drawn: ") else { continue };
@@ -113,7 +115,8 @@ impl PageText {
         }
     }
 
-    /// No attribute and no style names anything outside of the page, and the browser is told to refuse it.
+    /// Checks that no attribute or style refers to anything outside the page, and that the page instructs the
+    /// browser to refuse external content.
     fn check_asks_nothing(&self) {
         assert!(self.html.contains(
             "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:;"
@@ -130,7 +133,8 @@ impl PageText {
     }
 }
 
-/// Holds "2500 of 9000 right answers and 3 of 3 wrong ones" against the points of every panel, rings apart.
+/// Compares a caption such as "2500 of 9000 right answers and 3 of 3 wrong ones" with the points of every
+/// panel, except rings.
 fn check_points(words: &str, chart: &Value) {
     let told: usize = words
         .split(" and ")
@@ -158,7 +162,8 @@ fn the_points_of_a_long_run_lie_as_all_of_its_errors_do() {
     let bench = Bench::new();
     bench.boresight("run argon --frames 40..60 --out run --no-report").done();
     let mut run = FarRangeRun::read(&bench.path("run")).unwrap();
-    // The frames many times over, with errors sharply peaked and long tails: a few of each stretch are far out.
+    // Many copies of the frames, with errors that have a sharp peak and long tails: a few in each stretch are
+    // far out.
     let (verdicts, truths) = (run.verdicts.clone(), run.truths.clone());
     let (outcomes, telemetry) = (run.outcomes.clone(), run.telemetry.clone());
     let right = verdicts.iter().position(|v| matches!(v.verdict, Verdict::Correct { .. })).unwrap();
@@ -210,7 +215,7 @@ fn the_points_of_a_long_run_lie_as_all_of_its_errors_do() {
         let difference = below(&drawn, level) - below(&all, level);
         assert!(difference.abs() < 0.03, "{difference} at {level}");
     }
-    // The extremes of all are there, and are not taken for points of the law.
+    // The extremes of all errors are shown, but not as points of the distribution.
     let rings = numbers(traces.iter().find(|trace| trace["marker"]["symbol"] == "circle-open").unwrap());
     assert!((rings[0] - all[0]).abs() < 1e-5 && (rings[rings.len() - 1] - all[count - 1]).abs() < 1e-5);
 }
@@ -228,7 +233,7 @@ fn the_page_of_a_far_range_run_has_the_papers_figures_and_the_numbers_of_its_sco
     assert!(page.html.contains(&format!("<dt>Range</dt><dd>{least:.2} to {most:.2} km</dd>")));
     let score = bench.json("run/score.json");
     assert_eq!(page.data()["score"], score);
-    // Every kind of miss and of wrong answer has a picture.
+    // Every kind of miss and of wrong result has a picture.
     for (kind, title) in [("misses", "Missed: "), ("wrong", "Wrong: ")] {
         for cause in score[kind].as_object().unwrap().keys() {
             let words = format!("<b>{title}{}", cause.replace('_', " "));
@@ -239,16 +244,16 @@ fn the_page_of_a_far_range_run_has_the_papers_figures_and_the_numbers_of_its_sco
     assert!(page.html.contains("class=\"truth\"") && page.html.contains("class=\"measured\""));
     // Published rates of day 1.
     assert!(page.html.contains("<td>94.92</td>"));
-    // The relative orbit ends where the truth has the target.
+    // The relative orbit ends at the true position of the target.
     let orbit = page.charts().into_iter().find(|chart| chart.to_string().contains("cross-track")).unwrap();
     let last = |panel: usize, axis: &str| {
         orbit["data"][panel][axis].as_array().unwrap().last().unwrap().as_f64().unwrap()
     };
     let squares = [last(0, "x"), last(0, "y"), last(1, "y")].map(|km| km * km);
     let range_km = bench.frames("run").last().unwrap().range_km;
-    // Written to 0.1 m.
+    // Written with a resolution of 0.1 m.
     assert!((squares.iter().sum::<f64>().sqrt() - range_km).abs() < 5e-4, "{squares:?}, {range_km}");
-    // The chart of errors holds those of the detected, frame by frame.
+    // The chart of errors holds the errors of the detected frames, one per frame.
     let errors = page.charts().into_iter().find(|chart| chart.to_string().contains("RA error")).unwrap();
     let drawn: usize = ["right", "wrong"]
         .iter()
@@ -337,10 +342,10 @@ fn the_runs_of_an_error_budget_are_flown_once_and_kept() {
     let files =
         stages.iter().flat_map(|stage| ["run.toml", "score.json"].map(|name| format!("{stage}/{name}")));
     assert_eq!(kept, files.map(Into::into).collect());
-    // The same as flown by hand.
+    // Identical to a manual run.
     bench.boresight("run argon --frames 220..240 --inject attitude --out attitude --no-report").done();
     bench.check_same("attitude/score.json", "run/budget/attitude/score.json");
-    // What is there is not flown again, and is in every later report.
+    // Existing results are not run again, and are in every later report.
     fs::remove_dir_all(bench.path("run/budget/roi")).unwrap();
     bench.boresight("report run --budget all --out again.html").done();
     bench.check_same("run/report.html", "again.html");
@@ -413,7 +418,7 @@ fn the_page_of_requirements_has_table_curves_and_sky() {
     assert_eq!(page.data()["visibility"], bench.json("out/visibility.json"));
     bench.check_same("out/report.html", "beside.html");
     check_same_report(&bench, "out");
-    // The map has the numbers of pointings that count, and no others.
+    // The map contains the numbers of the pointings that count, and no others.
     let map = page.charts().into_iter().find(|chart| chart["data"][0]["type"] == "heatmap").unwrap();
     let sky = bench.csv("out/sky.csv");
     let rounded = |stars: f64| (100.0 * stars).round() as i64;
@@ -497,7 +502,8 @@ fn hostile_text_is_shown_and_not_run() {
     assert_eq!(page.data()["score"], bench.json("run/score.json"));
 }
 
-/// What the command that made a directory wrote is what `report` writes of it.
+/// Checks that the report written by the command that made a directory is the one that `report` writes for
+/// it.
 fn check_same_report(bench: &Bench, directory: &str) {
     bench.boresight(&format!("report {directory} --out once-more.html")).done();
     bench.check_same(&format!("{directory}/report.html"), "once-more.html");

@@ -1,4 +1,4 @@
-//! Render, process and score apart give what `run` gives in one; and what an outsider's table is worth.
+//! Separate render, process and score give the same results as `run`; and the scoring of an external table.
 
 use std::path::PathBuf;
 
@@ -9,10 +9,10 @@ use sim::truth::{FrameTruth, ObjectKind};
 
 use crate::support::{Bench, check_same_files, figure};
 
-/// Past the frames in which the pipeline learns the hot pixels, so that most of them are detected.
+/// After the frames in which the pipeline learns the hot pixels: the target is detected in most of them.
 const FRAMES: &str = "400..430";
 
-/// A run of [`FRAMES`] in `run`.
+/// Returns a bench with a run of [`FRAMES`] in `run`.
 fn with_run() -> Bench {
     let bench = Bench::new();
     bench.boresight(&format!("run argon --frames {FRAMES} --out run")).done();
@@ -29,7 +29,7 @@ fn check_round_trip(format: &str) {
     }
     let score = bench.boresight("score set set/measurements.csv --json").done().json();
     assert_eq!(score, bench.json("run/score.json"));
-    // Otherwise the score would be worth nothing here.
+    // Otherwise the score would have no value for this test.
     assert!(score["figures"]["correct_rate"]["count"].as_u64() > Some(0), "{score}");
 }
 
@@ -89,10 +89,11 @@ fn expected_images_are_the_mean_of_the_frames_and_change_nothing_else() {
         let mean_dn = residuals_dn.iter().sum::<f64>() / n;
         let variance_dn2 = residuals_dn.iter().map(|r| r * r).sum::<f64>() / n;
         assert!(n > 430_000.0, "{n} pixels below saturation");
-        // Five standard errors of the mean: 0.012 DN. A frame against another's expectation, a bias or a rounding
-        // that is forgotten, is beyond it.
+        // Five standard errors of the mean: 0.012 DN. Comparison with the expected image of another frame, or
+        // an omitted bias or rounding, would exceed this.
         assert!(mean_dn.abs() < 5.0 * (variance_dn2 / n).sqrt(), "frame {frame}: {mean_dn} DN");
-        // Read noise of 15 e-, the shot noise of a few electrons of dark current and background, and rounding.
+        // Read noise of 15 e-, the shot noise of a few electrons of dark current and background, and
+        // rounding.
         assert!((1.5..2.0).contains(&variance_dn2.sqrt()), "frame {frame}: {} DN", variance_dn2.sqrt());
     }
 }
@@ -104,7 +105,8 @@ fn a_run_scored_again_has_the_score_it_had() {
     assert_eq!(again, bench.json("run/score.json"));
 }
 
-/// Without the clusters the oracle has less evidence for the causes; the figures do not depend on it.
+/// Without the clusters the oracle has less evidence for the causes; the figures do not depend on the
+/// clusters.
 #[test]
 fn without_clusters_the_figures_are_the_same_and_every_miss_still_has_a_cause() {
     let bench = with_run();
@@ -123,7 +125,7 @@ fn total(counts: &Value) -> u64 {
     counts.as_object().unwrap().values().map(|count| count.as_u64().unwrap()).sum()
 }
 
-/// The score of a table of four columns whose rows an outsider made of the truth.
+/// Score of an external table with four columns, whose rows are made from the truth.
 fn score_of(bench: &Bench, row: impl Fn(&FrameTruth, PixelPoint) -> String) -> Value {
     let mut table = "frame,status,x_px,y_px\n".to_owned();
     for truth in bench.frames("run") {
@@ -134,7 +136,7 @@ fn score_of(bench: &Bench, row: impl Fn(&FrameTruth, PixelPoint) -> String) -> V
     bench.boresight("score run outside.csv --attitude true --json").done().json()
 }
 
-/// The score of the true places, moved.
+/// Score of the true positions, shifted.
 fn score_of_places(bench: &Bench, dx: f64, dy: f64) -> Value {
     score_of(bench, |truth, place| format!("{},detected,{},{}", truth.frame, place.x + dx, place.y + dy))
 }
@@ -146,16 +148,16 @@ fn the_true_positions_are_all_correct_and_without_error() {
     for name in ["ra_within_1px", "ra_within_2px", "dec_within_1px", "dec_within_2px"] {
         assert_eq!(figure(&score, name), 1.0, "{name}");
     }
-    // The true place is projected and brought back: rounding of 1e-13 px, and the tolerance of the iteration that
-    // inverts the distortion, far below a millionth of a pixel (2.4e-8 degrees).
+    // The true position is projected and inverted: rounding of 1e-13 px, and the tolerance of the iteration
+    // that inverts the distortion, far below a millionth of a pixel (2.4e-8 degrees).
     for name in ["ra_rms_deg", "dec_rms_deg"] {
         assert!(figure(&score, name) < 2.4e-8, "{name} {}", figure(&score, name));
     }
     assert_eq!((total(&score["misses"]), total(&score["wrong"])), (0, 0));
 }
 
-/// The mean change of atan(offset) when every place moves by half a pixel: a pinhole of Table 1, degrees. `offset`
-/// gives the distance from the principal point in units of the focal length.
+/// Mean change of atan(offset) when every position moves by half a pixel, for a pinhole camera of Table 1,
+/// degrees. `offset` returns the distance from the principal point in units of the focal length.
 fn half_pixel_deg(bench: &Bench, pixel: f64, offset: impl Fn(PixelPoint) -> f64) -> f64 {
     let frames = bench.frames("run");
     let sum: f64 = frames
@@ -175,7 +177,8 @@ fn a_shift_of_half_a_pixel_is_the_bias_and_nothing_else() {
     for (dx, dy, bias) in [(0.5, 0.0, [ra_deg, 0.0]), (0.0, 0.5, [0.0, dec_deg])] {
         let score = score_of_places(&bench, dx, dy);
         assert_eq!(figure(&score, "correct_rate"), 1.0);
-        // The distortion that the pinhole lacks changes the scale by less than 3 k1 r² = 0.2 % for r < 150 px.
+        // The distortion missing from the pinhole changes the scale by less than 3 k1 r² = 0.2 % for r < 150
+        // px.
         for (name, expected) in ["ra_mean_deg", "dec_mean_deg"].into_iter().zip(bias) {
             let met = figure(&score, name);
             assert!((met - expected).abs() < 0.002 * (ra_deg + dec_deg), "{name} is {met}, not {expected}");
@@ -185,7 +188,8 @@ fn a_shift_of_half_a_pixel_is_the_bias_and_nothing_else() {
     }
 }
 
-/// It had been given the true attitude without a word, and its errors stood beside those of pipelines that had to find theirs.
+/// Regression test: the true attitude used to be applied silently, and the resulting errors were listed
+/// beside those of pipelines that had to determine their attitude.
 #[test]
 fn centroids_have_lines_of_sight_by_the_attitude_that_is_requested_alone() {
     let bench = with_run();
@@ -197,7 +201,7 @@ fn centroids_have_lines_of_sight_by_the_attitude_that_is_requested_alone() {
         for name in ["hit_rate", "correct_rate"] {
             assert_eq!(figure(score, name), 1.0, "{word}");
         }
-        // The target's centre of brightness is a little off its origin.
+        // The target's centre of brightness differs slightly from its origin.
         assert!((figure(score, "centroid_x_mean_px") - 0.5).abs() < 0.1, "{score}");
         assert!(figure(score, "centroid_y_rms_px") < 0.1, "{score}");
         assert_eq!(figure(score, "line_of_sight_rate"), 0.0);
@@ -205,7 +209,7 @@ fn centroids_have_lines_of_sight_by_the_attitude_that_is_requested_alone() {
     for name in ["ra_within_1px", "dec_within_2px", "ra_rms_deg", "dec_mean_deg", "ra_median_deg"] {
         assert!(none["figures"][name]["value"].is_null(), "{name}");
     }
-    // The nominal mounting is 0.03° off, and telemetry has noise.
+    // The nominal mounting has an error of 0.03°, and telemetry has noise.
     let size = |score: &Value| libm::hypot(figure(score, "ra_rms_deg"), figure(score, "dec_rms_deg"));
     assert!(size(&granted) < 0.015 && size(&telemetry) > 0.02, "{} {}", size(&granted), size(&telemetry));
 
@@ -213,13 +217,14 @@ fn centroids_have_lines_of_sight_by_the_attitude_that_is_requested_alone() {
     assert!(table("").contains("No answer has a line of sight"));
     assert!(table("--attitude true").contains("by the attitude `true`"));
 
-    // A pipeline with a line of sight of its own is granted nothing.
+    // For a pipeline with its own line of sight, no attitude is provided.
     let own = bench.boresight("score run run/measurements.csv --attitude true --json").done().json();
     assert_eq!(own, bench.json("run/score.json"));
     assert_eq!((&own["attitude"], figure(&own, "line_of_sight_rate")), (&"own".into(), 1.0));
 }
 
-/// The option of a run is kept in its `run.toml`: whoever scores it again does as the run did, to the bit.
+/// The option of a run is stored in its `run.toml`: scoring the run again uses it as well, with the same
+/// bits.
 #[test]
 fn a_run_keeps_the_attitude_that_it_grants() {
     let bench = Bench::new();
@@ -253,7 +258,7 @@ fn within_a_pixel_means_the_pixel_of_the_scenarios_own_camera() {
         let limit = figures[name]["limit_deg"].as_f64().unwrap();
         assert!((limit / expected - 1.0).abs() < 1e-6, "{name}: {limit}, not {expected}");
     }
-    // The paper's own, which a scenario states, and which go into run.toml with it.
+    // The limits of the paper, which a scenario states, and which are stored with it in run.toml.
     bench.boresight("run argon --frames 0..2 --no-report --out argon").done();
     let figures = &bench.json("argon/score.json")["figures"];
     assert_eq!(

@@ -1,4 +1,4 @@
-//! `boresight run`: its files, its JSON, its table, and that the same frames are the same bits.
+//! `boresight run`: its files, its JSON, its table, and identical bits for identical frames.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -39,7 +39,8 @@ fn a_run_directory_holds_every_file_of_a_run() {
     assert_eq!(files, expected.map(PathBuf::from).into());
 }
 
-/// Timestamps of the truth have no number for second 60, and do not step back: what is inside has that of its end.
+/// Timestamps of the truth cannot represent second 60, and never decrease: a time within it is replaced by
+/// the end of the leap second.
 fn check_times(telemetry: &[String], truth: &[String]) {
     let expected = |text: &String| {
         if text.contains(":60.") { "2017-01-01T00:00:00.000000000Z".to_owned() } else { text.clone() }
@@ -105,7 +106,7 @@ fn run_toml_is_enough_to_repeat_a_run() {
     check_same_files(&bench.tree("first"), &bench.tree("again"));
 }
 
-/// A figure's members, their types, and that its interval holds its value.
+/// Checks the members of a figure, their types, and that its interval contains its value.
 fn check_figure(name: &str, figure: &Value) {
     let members: Vec<_> = figure.as_object().unwrap().keys().collect();
     for expected in ["value", "count", "of", "low", "high"] {
@@ -126,7 +127,7 @@ fn check_figure(name: &str, figure: &Value) {
     }
 }
 
-/// The sum of the counts of an object.
+/// Sum of the counts in an object.
 fn total(counts: &Value) -> u64 {
     counts.as_object().unwrap().values().map(|count| count.as_u64().unwrap()).sum()
 }
@@ -134,7 +135,7 @@ fn total(counts: &Value) -> u64 {
 #[test]
 fn json_prints_one_document_of_the_documented_shape_and_nothing_else() {
     let bench = Bench::new();
-    // Two days, so that there are two groups.
+    // Two days, to have two groups.
     let answer = bench.boresight("run argon --frames 1614..1664 --out run --json").done();
     let score = answer.json();
     assert_eq!(score, bench.json("run/score.json"));
@@ -186,7 +187,7 @@ fn the_table_has_a_column_for_each_day_and_one_for_all() {
     assert!(answer.stdout.contains("Misses by cause") && answer.stdout.contains("results in run"));
 }
 
-/// Frames are made in batches of 8 a thread: 20 frames fill several.
+/// Frames are rendered in batches of 8 per thread: 20 frames fill several batches.
 #[test]
 fn every_file_is_the_same_bytes_at_any_number_of_threads() {
     let bench = Bench::new();
@@ -198,7 +199,7 @@ fn every_file_is_the_same_bytes_at_any_number_of_threads() {
     check_same_files(&bench.tree("1"), &bench.tree("3"));
 }
 
-/// The same frames from a longer and from a shorter run: pixels, telemetry and truth.
+/// Checks that the same frames from a longer and a shorter run agree: pixels, telemetry and truth.
 fn check_slice(scenario: &str, long: &str, slice: std::ops::Range<u64>) {
     let bench = Bench::new();
     bench.boresight(&format!("run {scenario} --frames {long} --out long --save-frames png")).done();
@@ -238,7 +239,8 @@ fn a_slice_of_whole_images_is_that_of_the_whole() {
     check_slice("starting-point", "50..62", 55..58);
 }
 
-/// A camera that suppresses zeros tells pipelines so, in a run as in a dataset: what would look below is refused.
+/// A camera with zero suppression reports it to pipelines, in a run as in a dataset: a pipeline that would
+/// use values below it is rejected.
 #[test]
 fn zero_suppression_is_known_to_pipelines_and_those_that_read_below_it_are_refused() {
     let bench = Bench::new();
@@ -251,7 +253,7 @@ fn zero_suppression_is_known_to_pipelines_and_those_that_read_below_it_are_refus
             table.insert("far_range".into(), thresholds.into());
         });
     };
-    // A pixel passes from 68 DN on.
+    // Pixels from 68 DN on are transmitted.
     scenario("mode = 'constant', low = 0.0165, high = 0.03");
     bench.boresight("run suppressed.toml --frames 300..303 --out run").done();
     assert!(bench.csv("run/measurements.csv").iter().any(|row| row["status"] == "detected"));
@@ -283,7 +285,7 @@ fn the_seed_changes_every_frame_but_not_the_hot_pixels() {
     for (own, other) in telemetry("own").iter().zip(telemetry("other")) {
         assert_ne!(own.telemetry.body_from_icrs, other.telemetry.body_from_icrs, "frame {}", own.frame);
     }
-    // Which ones are high at the moment is a matter of the seed: some are telegraphs.
+    // The seed determines which pixels are currently in the high state: some are telegraph pixels.
     let hot_pixels = |run| -> Vec<(u64, u32)> {
         let objects = bench.objects(run).into_iter().filter(|object| object.kind == ObjectKind::HotPixel);
         objects.map(|object| (object.frame, object.id)).collect()
@@ -305,7 +307,7 @@ fn without_out_each_run_gets_the_next_numbered_directory() {
     check_same_files(&bench.tree("runs/tiny-001"), &bench.tree("runs/tiny-002"));
 }
 
-/// The whole of argon takes a minute: it is ended as soon as it has begun.
+/// A complete run of argon takes a minute: it is ended immediately after its start.
 #[test]
 fn the_bare_command_runs_argon_into_a_numbered_directory() {
     let bench = Bench::new();

@@ -1,8 +1,9 @@
-//! `--sandbox`: a program finds its frames and its own files, and no truth, wherever it looks.
+//! `--sandbox`: a program can read its frames and its own files, but no truth, at any path.
 
 use crate::support::Bench;
 
-/// Answers every frame with what it could reach; the image and a module beside it are read in any case.
+/// A program that answers every frame with a list of everything it could reach; it reads the image and a
+/// module beside it in any case.
 const CURIOUS: &str = r#"
 import json, os, pathlib, socket, sys, tempfile
 import beside
@@ -37,7 +38,7 @@ for line in sys.stdin:
     print(json.dumps({"frame": asked["frame"], "status": "failed: " + ",".join(reached or ["nothing"])}), flush=True)
 "#;
 
-/// What the program reached in a run.
+/// Returns the list that the program could reach in a run.
 fn reached(bench: &Bench, more: &str) -> String {
     let words = format!("run sky.toml --frames 0..2 --no-report {more}");
     let mut words: Vec<&str> = words.split_whitespace().collect();
@@ -61,7 +62,8 @@ fn the_truth_is_out_of_reach() {
     bench.write("beside.py", "WORD = 'own'\n");
     bench.boresight("run sky.toml --frames 0..2 --out earlier --no-report").done();
 
-    // Without it a program may do what its caller may; what Boresight itself says of the run is not handed on.
+    // Without a sandbox a program has the rights of its caller; Boresight's own environment variables are not
+    // passed on.
     let all = reached(&bench, "--out out-1");
     for name in ["earlier truth", "scenario", "command line", "foreign folder", "writing", "network"] {
         assert!(all.contains(name), "{name}: {all}");
@@ -98,7 +100,8 @@ fn a_path_to_be_read_needs_a_sandbox() {
     bench.boresight(words).refused(&["--sandbox"]);
 }
 
-/// Runs its arguments where the kernel knows no Landlock: a seccomp filter answers `landlock_create_ruleset` with ENOSYS.
+/// Runs its arguments as if the kernel had no Landlock: a seccomp filter answers `landlock_create_ruleset`
+/// with ENOSYS.
 const WITHOUT_LANDLOCK: &str = r#"
 import ctypes, os, struct, sys
 
@@ -135,6 +138,6 @@ fn a_kernel_that_cannot_enforce_it_ends_the_command() {
     assert_eq!(refused.status.code(), Some(2), "{told}");
     assert!(told.contains("Landlock"), "{told}");
     assert!(!bench.path("out").exists());
-    // The filter refuses nothing else.
+    // The filter blocks nothing else.
     assert_eq!(run(&["--out", "out"]).status.code(), Some(0));
 }

@@ -1,4 +1,5 @@
-//! `boresight scenario`: the built-in ones are right, the schema says what a scenario may say, and a new one runs.
+//! `boresight scenario`: the built-in scenarios are valid, the schema describes the content of scenarios, and
+//! a new scenario runs.
 
 use boresight::scenario::{BUILT_IN, STARTING_POINT};
 use serde_json::{Value, json};
@@ -13,7 +14,7 @@ fn every_built_in_scenario_passes_its_check() {
         assert_eq!((&check["scenario"], &check["ok"]), (&json!(scenario.name), &json!(true)));
         assert!(check["frames"].as_u64() > Some(0), "{check}");
         if check["world"] == "docking" {
-            // Its target is a built-in one, so that a copy anywhere finds it.
+            // Its target is built in; a copy of the scenario in any directory therefore finds it.
             bench.write("copy.toml", scenario.text);
             let copy = bench.boresight("scenario check copy.toml --json").done().json();
             assert_eq!((&copy["frames"], &copy["marks"]), (&check["frames"], &check["marks"]));
@@ -22,14 +23,15 @@ fn every_built_in_scenario_passes_its_check() {
         assert!(check["stars"].as_u64() > Some(1000), "{check}");
         let bytes = |key: &str| check[key].as_u64().unwrap();
         assert!(bytes("frame_bytes_at_most") <= bytes("whole_image_bytes"), "{check}");
-        // The file alone is as good as the built-in one.
+        // The file on its own is equivalent to the built-in scenario.
         bench.write("copy.toml", scenario.text);
         let copy = bench.boresight("scenario check copy.toml --json").done().json();
         assert_eq!((&copy["frames"], &copy["stars"]), (&check["frames"], &check["stars"]));
     }
 }
 
-/// What follows from the numbers of a scenario, and none of them looks wrong.
+/// A check prints the quantities that follow from the numbers of a scenario, and the built-in scenarios cause
+/// no warning.
 #[test]
 fn a_check_reports_what_follows_from_the_numbers() {
     let bench = Bench::new();
@@ -42,7 +44,7 @@ fn a_check_reports_what_follows_from_the_numbers() {
         let value = value.as_f64().unwrap();
         assert!((value - expected).abs() < tolerance, "{value}, expected {expected}");
     };
-    // 752 × 8.6 µm and 580 × 8.3 µm behind 20.187 mm: 18.2° × 13.6°, 88″ × 85″ a pixel.
+    // 752 × 8.6 µm and 580 × 8.3 µm behind 20.187 mm: 18.2° × 13.6°, 88″ × 85″ per pixel.
     near(&check["field_deg"][0], 18.2, 0.1);
     near(&check["field_deg"][1], 13.6, 0.1);
     near(&check["pixel_arcsec"][0], 87.87, 0.01);
@@ -69,7 +71,7 @@ fn a_check_reports_what_follows_from_the_numbers() {
     );
 }
 
-/// What a run would refuse, a check does not pass.
+/// A scenario that a run would reject does not pass a check.
 #[test]
 fn a_check_asks_the_pipeline_too() {
     let bench = Bench::new();
@@ -83,7 +85,7 @@ fn a_check_asks_the_pipeline_too() {
     bench.boresight("run suppressed.toml --frames 0..1").refused(&["mode is best, expected paper"]);
     bench.write("suppressed.toml", format!("{suppressed}\n[far_range]\nmode = \"paper\"\n"));
     bench.boresight("run suppressed.toml --frames 0..1").refused(&["thresholds.mode is automatic"]);
-    // A program finds its own thresholds.
+    // An external program determines its own thresholds.
     bench.boresight("scenario check suppressed.toml --pipeline exec:true").done();
     bench.boresight("scenario check suppressed.toml --pipeline nobody").refused(&["no pipeline `nobody`"]);
 }
@@ -104,7 +106,7 @@ fn the_list_names_every_built_in_scenario_with_its_frames() {
     }
 }
 
-/// A printed camera takes the place of a scenario's own.
+/// A printed camera replaces that of a scenario.
 #[test]
 fn a_camera_can_be_pasted_into_a_scenario() {
     let bench = Bench::new();
@@ -121,7 +123,7 @@ fn a_camera_can_be_pasted_into_a_scenario() {
     bench.boresight("scenario camera kodak").refused(&["kodak", "uasc-far-range"]);
 }
 
-/// A JSON Schema, read by its own rules and not by the library that made it.
+/// A JSON Schema, interpreted by the rules of JSON Schema and without the library that made it.
 struct Schema(Value);
 
 impl Schema {
@@ -129,12 +131,12 @@ impl Schema {
         Self::for_world("far_range")
     }
 
-    /// Of one world.
+    /// Returns the schema of one world.
     fn for_world(world: &str) -> Self {
         Self(Bench::new().boresight(&format!("scenario schema --world {world}")).done().json())
     }
 
-    /// All alternatives that a schema stands for, its references followed.
+    /// Returns all alternatives of a schema, with its references resolved.
     fn alternatives<'a>(&'a self, schema: &'a Value) -> Vec<&'a Value> {
         let mut all = vec![schema];
         if let Some(reference) = schema["$ref"].as_str() {
@@ -149,7 +151,7 @@ impl Schema {
         all
     }
 
-    /// The schemas that a value of this schema may have under a key.
+    /// Returns the possible schemas of a value under a key.
     fn under<'a>(&'a self, schemas: &[&'a Value], key: &str) -> Vec<&'a Value> {
         let found = schemas.iter().filter_map(|schema| schema["properties"].get(key));
         found.flat_map(|schema| self.alternatives(schema)).collect()
@@ -160,7 +162,7 @@ impl Schema {
         found.flat_map(|schema| self.alternatives(schema)).collect()
     }
 
-    /// Every key of a value, at any depth, is in the schema; the number of keys.
+    /// Checks that every key of a value, at any depth, is in the schema; returns the number of keys.
     fn check_keys(&self, path: &str, value: &toml::Value, schemas: &[&Value]) -> usize {
         match value {
             toml::Value::Table(table) => table
@@ -190,12 +192,12 @@ fn every_key_of_the_built_in_scenarios_is_in_the_schema() {
             &scenario.text.parse::<toml::Table>().unwrap().into(),
             &[&schema.0],
         );
-        // So that a walk that finds nothing does not pass.
+        // A traversal that finds nothing must not pass.
         assert!(keys > 60, "{}: {keys} keys", scenario.name);
     }
 }
 
-/// Every property of a schema and of its definitions, with its path.
+/// Collects every property of a schema and of its definitions, with its path.
 fn properties<'a>(path: &str, schema: &'a Value, found: &mut Vec<(String, &'a Value)>) {
     match schema {
         Value::Object(members) => {
@@ -216,7 +218,7 @@ fn every_property_of_the_schema_is_described_and_units_are_in_the_names() {
     properties("", &schema.0, &mut found);
     assert!(found.len() > 80, "{} properties", found.len());
     for (path, property) in found {
-        // The tag of an enum is described with the alternative that it names.
+        // The tag of an enum is described by the alternative that it names.
         let is_tag = property.get("const").is_some();
         let described = |schema: &&Value| schema["description"].as_str().is_some_and(|text| text.len() > 3);
         assert!(is_tag || schema.alternatives(property).iter().any(described), "{path}: {property}");
@@ -252,7 +254,7 @@ fn a_new_scenario_passes_its_check_and_runs() {
     assert_eq!((&score["scenario"], &score["frames"]), (&json!("mine"), &json!(5)));
 }
 
-/// What a newcomer does next: takes away the number signs.
+/// The next step of a new user: removing the number signs.
 #[test]
 fn the_commented_out_parts_of_a_new_scenario_are_right_too() {
     let bench = Bench::new();
@@ -279,7 +281,7 @@ fn the_commented_out_parts_of_a_new_scenario_are_right_too() {
     bench.boresight("run whole.toml --frames 0..2 --out run").done();
 }
 
-/// Each line that stands for the two of the Gaussian, in their place.
+/// Each alternative line is tested in place of the two lines of the Gaussian.
 #[test]
 fn the_other_point_spread_functions_of_a_new_scenario_are_right_too() {
     let bench = Bench::new();
@@ -298,7 +300,7 @@ fn the_other_point_spread_functions_of_a_new_scenario_are_right_too() {
     }
 }
 
-/// 752 × 580 pixels of 12 bits; 40 regions of 20 × 9 with eight bytes each to say where they are.
+/// 752 × 580 pixels of 12 bits; 40 regions of 20 × 9 with eight bytes each for their position.
 #[test]
 fn a_check_reports_the_telemetry_of_a_frame() {
     let bench = Bench::new();
@@ -315,7 +317,8 @@ fn a_check_reports_the_telemetry_of_a_frame() {
     }
 }
 
-/// Relative paths in a scenario start at its own folder, wherever the command runs.
+/// Relative paths in a scenario refer to the scenario's directory, regardless of the directory in which the
+/// command runs.
 #[test]
 fn a_catalogue_beside_the_scenario_is_found() {
     let bench = Bench::new();

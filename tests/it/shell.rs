@@ -1,4 +1,5 @@
-//! `boresight completions` and `boresight man`, and the book: made of the command itself and of files that are there.
+//! `boresight completions` and `boresight man`, and the book: generated from the command itself and from
+//! existing files.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -33,14 +34,14 @@ fn every_command_has_a_manual_page() {
     }
     let page = bench.read("pages/boresight-study-run.1");
     assert!(page.contains(".TH boresight-study-run") && page.contains("\\-\\-shard"), "{page}");
-    // The synopsis says what an option takes.
+    // The synopsis shows the value that an option takes.
     let page = bench.read("pages/boresight-report.1");
     assert!(page.contains("[\\-\\-budget <all|DIR>]"), "{page}");
-    // Again, into the same folder.
+    // A second time, into the same directory.
     bench.boresight("man --out pages").done();
 }
 
-/// The pages that the book is made of.
+/// Returns the pages of the book.
 fn chapters() -> BTreeSet<String> {
     let summary = std::fs::read_to_string(docs().join("SUMMARY.md")).unwrap();
     summary.split("](").skip(1).map(|rest| rest.split(')').next().unwrap().to_owned()).collect()
@@ -50,7 +51,7 @@ fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
 }
 
-/// The text of a page as the book has it: with what it includes.
+/// Returns the text of a page as it appears in the book, with included files.
 fn page(name: &str) -> String {
     let text = std::fs::read_to_string(docs().join(name)).unwrap();
     let mut pieces = text.split("{{#include ");
@@ -63,7 +64,7 @@ fn page(name: &str) -> String {
     whole
 }
 
-/// A chapter that is missing would be made empty, and a page that no chapter names would never be found.
+/// A missing chapter would be created empty, and a page without a chapter would never be found.
 #[test]
 fn every_page_is_a_chapter_of_the_book() {
     let entries = std::fs::read_dir(docs()).unwrap().map(|entry| entry.unwrap().file_name());
@@ -74,8 +75,8 @@ fn every_page_is_a_chapter_of_the_book() {
     assert_eq!(chapters(), pages);
 }
 
-/// Links from page to page, and to their headings, lead somewhere in the book: it has its chapters, and the files of `docs/` that are no
-/// pages.
+/// Links between pages, and to their headings, have a target in the book: one of its chapters, or one of the
+/// files of `docs/` that are not pages.
 #[test]
 fn links_between_pages_lead_somewhere() {
     let heading = |line: &str| -> String {
@@ -103,7 +104,7 @@ fn links_between_pages_lead_somewhere() {
     assert_eq!(broken, Vec::<String>::new());
 }
 
-/// What a reader copies from a page is accepted.
+/// An example copied from a page is accepted.
 #[test]
 fn the_examples_of_the_pages_are_accepted() {
     let bench = Bench::new();
@@ -112,7 +113,7 @@ fn the_examples_of_the_pages_are_accepted() {
         bench.write("study.toml", first(&page(name)));
         bench.boresight("study check study.toml").done();
     }
-    // The law alone, of fewer pointings than the page's.
+    // Only the detection model, with fewer pointings than on the page.
     let camera = first(&page("tutorial-camera.md")).replace("[sky]", "[sky]\npointings = 500");
     bench.write("camera.toml", camera);
     bench.boresight("visibility camera.toml --frames 0").done();

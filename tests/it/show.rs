@@ -9,19 +9,19 @@ use image::RgbImage;
 use serde_json::Value;
 use sim::truth::{ObjectKind, Visibility};
 
-/// Colours of marks, as the legend has them.
+/// Colours of marks, as in the legend.
 const ORANGE: [u8; 3] = [255, 176, 64];
 const GREEN: [u8; 3] = [110, 236, 130];
 const BLUE: [u8; 3] = [96, 200, 255];
 const SLATE: [u8; 3] = [122, 134, 158];
-/// Pixels that were not transmitted.
+/// Colour of pixels that were not transmitted.
 const NO_DATA: [u8; 3] = [17, 19, 27];
 
 fn run_argon(bench: &Bench) {
     bench.boresight("run argon --frames 10200..10203 --out run --no-report").done();
 }
 
-/// A picture that was drawn, and its document.
+/// Draws a picture, and returns it with its document.
 fn draw(bench: &Bench, words: &str) -> (RgbImage, Value) {
     let document = bench.boresight(&format!("{words} --json")).done().json();
     let file = bench.path(document["file"].as_str().unwrap());
@@ -31,7 +31,7 @@ fn draw(bench: &Bench, words: &str) -> (RgbImage, Value) {
     (image, document)
 }
 
-/// Where a panel or a close-up is in its picture.
+/// Position of a panel or a close-up in its picture.
 struct PanelLocation(Value);
 
 impl PanelLocation {
@@ -39,13 +39,13 @@ impl PanelLocation {
         self.0[name].as_f64().unwrap()
     }
 
-    /// The edges of columns (or rows) of the picture.
+    /// Returns the range of columns (or rows) in the picture.
     fn side(&self, first: &str, length: &str) -> std::ops::Range<u32> {
         let first = self.number(first) as u32;
         first..first + self.number(length) as u32
     }
 
-    /// A point of the frame in the picture; 0 is the edge of its first pixel.
+    /// Returns the position in the picture of a point of the frame; 0 is the edge of its first pixel.
     fn picture_position(&self, at: PixelPoint) -> (f64, f64) {
         let zoom = self.number("zoom");
         let panel =
@@ -53,7 +53,7 @@ impl PanelLocation {
         (panel("left", at.x, "first_column"), panel("top", at.y, "first_row"))
     }
 
-    /// The middle of the pixels of a colour within so many pixels of a point, as a point of the picture.
+    /// Returns the centroid, in the picture, of the pixels of a colour within `reach` pixels of a point.
     fn centre(
         &self,
         image: &RgbImage,
@@ -75,12 +75,12 @@ impl PanelLocation {
     }
 }
 
-/// Whether a pixel has a colour but for a smooth edge.
+/// Returns true if a pixel has a colour, with a tolerance for smooth edges.
 fn is_near(pixel: [u8; 3], colour: [u8; 3]) -> bool {
     pixel.iter().zip(colour).all(|(a, b)| a.abs_diff(b) <= 40)
 }
 
-/// Within a pixel of the picture.
+/// Checks that a position agrees within a pixel of the picture.
 fn check_at(got: Option<(f64, f64)>, expected: (f64, f64), what: &str) {
     let (x, y) = got.unwrap_or_else(|| panic!("{what}: nothing is drawn"));
     assert!(
@@ -95,7 +95,7 @@ fn truth_and_answer_are_drawn_where_the_files_have_them() {
     run_argon(&bench);
     let objects = bench.objects("run");
     let target = objects.iter().find(|o| o.frame == 10201 && o.kind == ObjectKind::Target).unwrap();
-    // Somebody's answer, three pixels off.
+    // An external measurement, with an error of three pixels.
     let answer = PixelPoint::new(target.position.x + 0.3, target.position.y - 3.2);
     let row = format!("10201,detected,{},{}", answer.x, answer.y);
     bench.write("theirs/measurements.csv", format!("frame,status,x_px,y_px\n{row}\n"));
@@ -111,7 +111,7 @@ fn truth_and_answer_are_drawn_where_the_files_have_them() {
         let at = panel.picture_position(answer);
         check_at(panel.centre(&image, GREEN, at, 14.0), at, "answer");
     }
-    // A star with nothing near it.
+    // A star without neighbours.
     let panel = PanelLocation(frame["panel"].clone());
     let shown = |o: &&sim::truth::ObjectTruth| {
         o.frame == 10201 && o.cut < 0.99 && Visibility::from_snr(o.snr) == Visibility::Detectable
@@ -125,7 +125,7 @@ fn truth_and_answer_are_drawn_where_the_files_have_them() {
     });
     let at = panel.picture_position(alone.unwrap().position);
     check_at(panel.centre(&image, BLUE, at, 8.0), at, "star");
-    // What the document counts is what the truth has.
+    // The counts in the document agree with the truth.
     let stars = objects
         .iter()
         .filter(shown)
@@ -176,7 +176,8 @@ fn regions_are_drawn_where_the_telemetry_has_them() {
     };
     let (mut edges, mut beyond) = (0, 0);
     for [x, y, columns, rows] in &windows {
-        // One to one: the line runs over the pixels just outside. Off the middle, where circles are.
+        // At a scale of one to one, the line covers the pixels just outside. Tested away from the middle,
+        // where circles are.
         let side = [(x - 1.0, y + 1.0), (x + columns, y + 1.0), (x + 1.0, y - 1.0), (x + 1.0, y + rows)];
         edges += side.iter().filter(|(x, y)| is(*x, *y, SLATE)).count();
         let outside = [(x - 3.0, y - 3.0), (x + columns + 2.0, y - 3.0)];
@@ -187,7 +188,7 @@ fn regions_are_drawn_where_the_telemetry_has_them() {
     assert!(edges > 3 * count && beyond > count, "{edges} edges of {count} regions, {beyond} corners beyond");
 }
 
-/// A brighter pixel is nowhere darker, and the sky is dark.
+/// A brighter pixel is never drawn darker, and the sky is dark.
 #[test]
 fn the_stretch_rises_with_the_pixels() {
     let bench = Bench::new();
@@ -202,14 +203,15 @@ fn the_stretch_rises_with_the_pixels() {
         let mut greys: Vec<(u16, u8)> = dn
             .enumerate_pixels()
             .map(|(x, y, pixel)| (pixel.0[0], image.get_pixel(left + x, top + y).0))
-            // Away from marks, whose pixels are no greys.
+            // Away from marks, whose pixels are not grey.
             .filter(|(_, [red, green, blue])| red == green && green == blue)
             .map(|(dn, [grey, ..])| (dn, grey))
             .collect();
         greys.sort_unstable();
         let (count, black) = (greys.len(), greys.iter().filter(|(_, grey)| *grey < 60).count());
         assert!(count > 400_000 && 10 * black > 9 * count, "{stretch}: {black} of {count}");
-        // Names and the scale bar are grey too, where their edges are smooth: the median of a value is that of its pixels.
+        // Names and the scale bar also have grey pixels at their smooth edges: the median grey for a value is
+        // that of its image pixels.
         let median = |dn: u16| {
             let of: Vec<u8> = greys.iter().filter(|(of, _)| *of == dn).map(|(_, grey)| *grey).collect();
             of.get(of.len() / 2).copied()
@@ -232,7 +234,7 @@ fn a_dataset_without_answers_shows_truth_and_one_without_truth_pixels() {
     let frame = &document["frames"][0];
     assert_eq!((&frame["verdict"], &frame["cause"]), (&Value::Null, &Value::Null));
     assert!(frame["drawn"].get("answer").is_none() && frame["drawn"]["target"] == 1, "{frame}");
-    // As somebody's camera would give it: no truth, no run.toml.
+    // Like the data of an external camera: no truth, no run.toml.
     for name in ["data/run.toml", "data/SHA256SUMS"] {
         fs::remove_file(bench.path(name)).unwrap();
     }
@@ -245,7 +247,7 @@ fn a_dataset_without_answers_shows_truth_and_one_without_truth_pixels() {
     let (_, document) = draw(&bench, "show data 201");
     let frame = &document["frames"][0];
     assert_eq!((&frame["drawn"], &frame["verdict"]), (&serde_json::json!({ "answer": 1 }), &Value::Null));
-    // Pictures are no images of the dataset.
+    // Pictures are not images of the dataset.
     fs::remove_file(bench.path("data/measurements.csv")).unwrap();
     fs::remove_file(bench.path("data/clusters.parquet")).unwrap();
     bench.boresight("process data").done();
@@ -300,7 +302,7 @@ fn docking_features_lie_where_the_table_has_them() {
     let used = rows.iter().filter(|row| row.kind == "mark" && row.usage == "used").count();
     assert_eq!(frame["drawn"]["used_mark"].as_u64().unwrap() as usize, used);
 
-    // Of a stored image, of a stored video and drawn again the pixels are the same.
+    // From a stored image, from a stored video, and drawn again, the pixels are the same.
     let pixels = |document: &Value, image: &RgbImage| -> Vec<u8> {
         let panel = PanelLocation(document["frames"][0]["panel"].clone());
         let rows = panel.side("top", "height").start..panel.side("top", "height").start + 60;
@@ -317,7 +319,7 @@ fn docking_features_lie_where_the_table_has_them() {
         assert_eq!(document["frames"][0]["pixels"], "stored");
         assert!(pixels(&document, &image) == expected, "{format}");
     }
-    // A dataset without answers.
+    // A dataset without measurements.
     bench.boresight("render docking --frames 21178..21180 --out data").done();
     let (_, document) = draw(&bench, "show data 21178 21179");
     let drawn_marks = &document["frames"][1]["drawn"];
@@ -389,17 +391,17 @@ fn bad_input_is_named() {
     let many = (0..17).map(|_| "10200").collect::<Vec<_>>().join(" ");
     bench.boresight(&format!("show run {many}")).refused(&["17 frames", "1 to 16"]);
 
-    // What a run that was killed leaves.
+    // State left by a killed run.
     fs::rename(bench.path("run/telemetry.csv"), bench.path("run/telemetry.old")).unwrap();
     bench.boresight("show run 10200").refused(&["telemetry.csv is missing", "finished"]);
     fs::rename(bench.path("run/telemetry.old"), bench.path("run/telemetry.csv")).unwrap();
-    // Damage.
+    // A damaged file.
     let truth = bench.path("run/truth/objects.parquet");
     let bytes = fs::read(&truth).unwrap();
     fs::write(&truth, &bytes[..bytes.len() / 2]).unwrap();
     bench.boresight("show run 10200").refused(&["objects.parquet"]);
     fs::write(&truth, bytes).unwrap();
-    // A frame that is neither stored nor can be drawn again.
+    // A frame that is not stored and cannot be drawn again.
     fs::remove_file(bench.path("run/SHA256SUMS")).unwrap();
     fs::remove_file(bench.path("run/run.toml")).unwrap();
     bench.boresight("show run 10200").refused(&["frame 10200", "no image", "run.toml"]);

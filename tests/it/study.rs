@@ -1,4 +1,5 @@
-//! `boresight study`: the same rows however they are made, whatever happens meanwhile, and nothing mixed.
+//! `boresight study`: the rows do not depend on how they are made or on interruptions, and studies are never
+//! mixed.
 
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
@@ -16,7 +17,7 @@ fn bench() -> Bench {
     bench
 }
 
-/// Rows of a study, as its file holds them.
+/// Returns the rows of a study from its file.
 fn rows(bench: &Bench, out: &str) -> Vec<String> {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     let file = fs::File::open(bench.path(out).join("cases.parquet")).unwrap();
@@ -98,11 +99,11 @@ fn two_studies_never_mix() {
     bench.boresight("study run other.toml --out out").refused(&["plan.json", "`hash`", "another study"]);
     bench.boresight("study run study.toml --out out --shards 3").refused(&["`shards`", "`2`", "`3`"]);
     bench.boresight("study run study.toml --out out --pipeline exec:true").refused(&["`hash`"]);
-    // The built-in pipeline by its name is the built-in pipeline.
+    // Naming the built-in pipeline explicitly selects the same pipeline.
     bench.boresight("study run study.toml --out out --pipeline far_range").done();
     check_same_files(&tree, &bench.tree("out"));
 
-    // A shard of another study under the right name is no shard of this one.
+    // A shard of another study under the right name is not a shard of this study.
     bench.boresight("study run other.toml --out theirs --shards 2").done();
     let name = shard("out", "1-of-2.parquet");
     fs::copy(bench.path("").join(shard("theirs", "1-of-2.parquet")), bench.path("").join(&name)).unwrap();
@@ -124,7 +125,7 @@ fn a_replayed_case_is_the_case() {
     let score = bench.boresight(&format!("{words} --out again --json")).done().json();
     assert_eq!(figure(&score, "correct_rate"), worst["value"].as_f64().unwrap());
     assert!(bench.path("again/frames/002000.png").exists());
-    // And the run directory alone makes the run again.
+    // The run can be repeated from the run directory only.
     bench.boresight("run again/run.toml --frames 2000..2002 --out third").done();
     bench.check_same("again/measurements.csv", "third/measurements.csv");
     let refused = bench.boresight("study replay study.toml --case 6");
@@ -132,7 +133,8 @@ fn a_replayed_case_is_the_case() {
     assert!(case < 6);
 }
 
-/// A program is known by the files among its words; a study says of which cases it failed, and each replays with it.
+/// A program is identified by the files among the words of its command; a study reports the cases in which
+/// the program failed, and each can be replayed with it.
 #[test]
 fn programs_are_part_of_a_study() {
     let bench = bench();
@@ -172,7 +174,8 @@ fn a_sweep_has_the_same_draws_at_each_of_its_points() {
     assert_eq!(points.len(), 2);
     assert!(points.iter().all(|point| point["cases"] == 3));
     assert_eq!(summary["draws"], 3);
-    // Both points of three draws: each figure once, and no interval of so few.
+    // Both points have three draws: each figure appears once, and without an interval because there are so
+    // few draws.
     let steps = summary["differences"].as_array().unwrap();
     let step = steps.iter().find(|step| step["figure"] == "stars_mean").unwrap();
     assert_eq!((&step["draws"], &step["low"]), (&3.into(), &Value::Null));
@@ -194,7 +197,7 @@ fn a_sweep_has_the_same_draws_at_each_of_its_points() {
     }
 }
 
-/// Three replications of two draws at two points of a sweep: the independent draws are the replications.
+/// Three replications of two draws at two points of a sweep: the replications are the independent draws.
 #[test]
 fn replications_of_a_design_are_its_independent_draws() {
     let bench = bench();
@@ -204,7 +207,7 @@ fn replications_of_a_design_are_its_independent_draws() {
     let summary = bench.boresight("study run replicated.toml --out out --json").done().json();
     assert_eq!((&summary["cases"], &summary["draws"]), (&12.into(), &3.into()));
     assert!(summary["differences"].as_array().unwrap().iter().all(|step| step["draws"].as_u64() <= Some(3)));
-    // Of one design, those of the design are taken for independent.
+    // With a single design, its draws count as independent.
     bench.write(
         "one.toml",
         fs::read_to_string(bench.path("replicated.toml")).unwrap().replace("replications = 3", ""),
@@ -223,7 +226,7 @@ fn a_study_stops_when_its_figure_is_known_well_enough() {
     };
     bench.write("wide.toml", until("stars_mean", "100.0"));
     bench.write("narrow.toml", until("stars_mean", "1e-6"));
-    // Every target is hit: the interval is narrow, and the scatter is not known.
+    // Every target is hit: the interval is narrow, and the scatter is unknown.
     bench.write("constant.toml", until("hit_rate", "0.2"));
     let cases = |name: &str, shards: u32| {
         let words = format!("study run {name}.toml --out {name}-{shards} --shards {shards} --json");
@@ -231,7 +234,7 @@ fn a_study_stops_when_its_figure_is_known_well_enough() {
         (summary["cases"].as_u64().unwrap(), summary["waited"].as_str().unwrap().to_owned())
     };
     let ended = |cases: u64, waited: &str| (cases, waited.to_owned());
-    // Where it stops does not depend on how it is cut, and what was not needed is not missing.
+    // The stopping point does not depend on the number of shards, and unneeded cases are not missing.
     assert_eq!(cases("wide", 4), ended(16, "narrow_enough"));
     assert_eq!(cases("wide", 5), ended(16, "narrow_enough"));
     bench.check_same("wide-4/cases.parquet", "wide-5/cases.parquet");
@@ -267,7 +270,7 @@ fn a_case_that_makes_no_scenario_is_a_row_with_its_error() {
     assert!((1..12).contains(&errors), "{errors}");
     assert!(summary["errors"][0]["error"].as_str().unwrap().contains("-1"), "{summary}");
     assert_eq!(summary["figures"]["hit_rate"]["cases"], 12 - errors);
-    // The check looks at each value of a choice, whatever case it comes in.
+    // The check tests each value of a choice, regardless of the case in which it occurs.
     bench.boresight("study check some.toml").refused(&["sensor.read_noise_e", "is -1"]);
     // Nothing is run again.
     let again = bench.boresight("study merge some.toml --out out --json").done().json();
@@ -292,7 +295,7 @@ fn a_damaged_plan_is_reported_as_such() {
             "delete it",
         ]);
     }
-    // As the message says.
+    // Following the message.
     fs::remove_file(bench.path("out/plan.json")).unwrap();
     bench.boresight("study run study.toml --out out --shard 2/2").done();
     bench.boresight("study merge study.toml --out out").done();
@@ -300,7 +303,7 @@ fn a_damaged_plan_is_reported_as_such() {
     bench.boresight_words(&missing).refused(&["the pipeline failed", "missing.py"]);
 }
 
-/// Frames by cause add up to the rates of misses and wrong answers.
+/// The numbers of frames by cause add up to the rates of misses and wrong results.
 #[test]
 fn misses_have_their_causes() {
     let bench = bench();
@@ -361,7 +364,8 @@ fn the_plan_holds_the_command_of_every_shard() {
     bench.boresight("study merge study.toml --out out").done();
 }
 
-/// The study of docs/studies.md that draws no dark pixels runs as it stands there, and is refused with thresholds below.
+/// The study of docs/studies.md without drawing of dark pixels runs as printed, and is rejected with
+/// thresholds below the floor.
 #[test]
 fn whole_images_are_drawn_above_a_floor_by_one_word_and_never_read_below() {
     let bench = Bench::new();
@@ -388,7 +392,7 @@ fn whole_images_are_drawn_above_a_floor_by_one_word_and_never_read_below() {
     refused(constant, "{ mode = \"automatic\" }", &["thresholds.mode", "is automatic"]);
 }
 
-/// Every mistake names the file, the field, the value and what was expected.
+/// Every error message names the file, the field, the value and the expected value.
 #[test]
 fn a_study_that_is_wrong_says_where() {
     let bench = Bench::new();
@@ -402,7 +406,8 @@ fn a_study_that_is_wrong_says_where() {
     refused("psf.sigma_px", "psf.sigma", &["case 0", "psf", "sigma"]);
     refused("psf.sigma_px", "psff.sigma_px", &["vary[0].path", "no `psff`"]);
     refused("\"psf.sigma_px\"", "\"title\"", &["vary[0].path", "is `title`", "seed of its own"]);
-    // How cases are scored is no parameter: figures within one limit and another, or by one attitude and another, have no mean.
+    // The scoring of cases is not a parameter: figures with different limits, or with different attitudes,
+    // have no common mean.
     refused("\"psf.sigma_px\"", "\"score.within_deg[0]\"", &["vary[0].path", "is `score.within_deg[0]`"]);
     refused("psf.sigma_px", "schedule[9].count", &["vary[0].path", "has 5 of these"]);
     refused("psf.sigma_px", "sensor.hot_pixels", &["vary[1].path", "sensor.hot_pixels"]);
@@ -442,12 +447,14 @@ fn a_study_that_is_wrong_says_where() {
         "path = \"psf\"\ndistribution = { kind = \"isotropic_attitude\" }",
         &["vary[0].path", "ra_deg", "phi_deg"],
     );
-    // A law that leads out of what a parameter may be: the case and the value in its scenario.
+    // A distribution that leaves the valid range of a parameter: the message names the case and the value in
+    // its scenario.
     refused("mean = 0.8, sigma = 0.1", "mean = -3.0, sigma = 0.1", &["case 0", "psf.sigma_px"]);
     bench.boresight("study check nothing.toml").refused(&["nothing.toml", "no study"]);
 }
 
-/// Requirements are decided at each point of the sweep; they change no row, so that the study is the same one with others.
+/// Requirements are decided at each point of the sweep. They change no row; a study with different
+/// requirements is therefore the same study.
 #[test]
 fn requirements_are_decided_with_their_confidence() {
     let bench = bench();
@@ -462,7 +469,7 @@ fn requirements_are_decided_with_their_confidence() {
     };
     assert!(!verdicts(&met).is_empty());
     assert!(verdicts(&met).iter().all(|verdict| verdict == "met"), "{met}");
-    // The same rows, asked for more: none is run again.
+    // Stricter requirements on unchanged rows: no row is run again.
     with("[[require]]\nfigure = \"hit_rate\"\nat_least = 0.999999\nconfidence = 0.99\n");
     let open = bench.boresight("study merge study.toml --out out --json");
     assert_eq!(open.status, Some(1), "{}", open.stderr);

@@ -1,5 +1,5 @@
-//! The Dask engine with workers that die: every shard once, and the rows those of one process. Needs Python with
-//! `pip install './python[dask]'`, named by `BORESIGHT_PYTHON`; runs in continuous integration.
+//! The Dask engine with workers that die: every shard is made once, with the rows of a single process. Needs
+//! Python with `pip install './python[dask]'`, named by `BORESIGHT_PYTHON`; runs in continuous integration.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -24,7 +24,7 @@ fn python() -> String {
     std::env::var("BORESIGHT_PYTHON").unwrap_or_else(|_| "python3".to_owned())
 }
 
-/// A process that is gone with the value.
+/// A process that is killed when the value is dropped.
 struct Killed(Child);
 
 impl Drop for Killed {
@@ -50,7 +50,7 @@ fn wait_for(what: &str, mut is_so: impl FnMut() -> bool) {
     }
 }
 
-/// The command that runs the study in 20 shards on a cluster.
+/// Returns the command that runs the study in 20 shards on a cluster.
 fn on_dask(bench: &Bench, engine: &str) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("boresight"));
     command
@@ -73,7 +73,7 @@ fn on_dask(bench: &Bench, engine: &str) -> Command {
     command
 }
 
-/// A scheduler on this machine, and its address.
+/// Starts a scheduler on this machine; returns it with its address.
 fn scheduler() -> (Killed, String) {
     let mut child = Command::new(python())
         .args([
@@ -96,12 +96,12 @@ fn scheduler() -> (Killed, String) {
         .map(Result::unwrap)
         .find_map(|line| line.find("tcp://").map(|at| line[at..].trim().to_owned()))
         .expect("the scheduler tells its address");
-    // Somebody must go on reading what it says.
+    // Its output must be read continuously.
     std::thread::spawn(move || lines.for_each(drop));
     (Killed(child), address)
 }
 
-/// A worker in a folder of its own.
+/// Starts a worker in a separate directory.
 fn worker(address: &str, bench: &Bench) -> Killed {
     fs::create_dir_all(bench.path("elsewhere")).unwrap();
     let child = Command::new(python())
@@ -183,7 +183,8 @@ fn a_killed_driver_is_started_again_and_makes_what_is_missing() {
     bench.check_same("out/cases.parquet", "whole/cases.parquet");
 }
 
-/// A program and a scenario by relative paths, and eight workers that are in another folder: all travels to them by its content.
+/// A program and a scenario given by relative paths, and eight workers in another directory: the contents of
+/// all files are sent to the workers.
 #[test]
 #[ignore = "needs Python with Dask; continuous integration runs it"]
 fn a_study_travels_to_eight_workers_in_another_folder() {
@@ -232,7 +233,7 @@ fn a_scheduler_that_dies_is_reported_and_its_shards_are_kept() {
     let parts =
         [format!("the scheduler at {address} does not answer"), "of 20 shards were reported".to_owned()];
     assert!(parts.iter().all(|part| said.contains(part)) && !said.contains("Traceback"), "{said}");
-    // The same command, on a cluster that is there.
+    // Repeats the command on an available cluster.
     let mut again = on_dask(&bench, "dask");
     assert!(again.stderr(Stdio::null()).status().unwrap().success());
     bench.boresight("study run study.toml --out whole --shards 20").done();

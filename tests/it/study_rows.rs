@@ -1,4 +1,4 @@
-//! The rows of a study: each case once, in order, with a seed that no other has.
+//! Rows of a study: each case once, in order, with a unique seed.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -20,7 +20,7 @@ path = "psf.sigma_px"
 distribution = { kind = "normal", mean = 0.8, sigma = 0.1 }
 "#;
 
-/// Cases of one seed would be one case, counted often: every interval would be too narrow.
+/// Cases with the same seed would be a single case, counted repeatedly: every interval would be too narrow.
 #[test]
 fn cases_are_in_order_and_each_has_a_seed_of_its_own() {
     let bench = Bench::new();

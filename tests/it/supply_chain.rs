@@ -1,5 +1,5 @@
-//! What is built is what was locked: every dependency of every language has one version, and where its registry tells one, a hash. Third-party
-//! files in the tree have hashes too.
+//! The build uses only locked dependencies: every dependency of every language has one version and, if its
+//! registry provides one, a hash. Third-party files in the tree have hashes too.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ pub(crate) fn read(name: &str) -> String {
     fs::read_to_string(Path::new(ROOT).join(name)).unwrap()
 }
 
-/// The files that git keeps.
+/// Returns the files tracked by git.
 pub(crate) fn kept() -> Vec<PathBuf> {
     let answer = Command::new("git").args(["-C", ROOT, "ls-files", "-z"]).output().unwrap();
     assert!(answer.status.success(), "{}", String::from_utf8_lossy(&answer.stderr));
@@ -21,7 +21,7 @@ pub(crate) fn kept() -> Vec<PathBuf> {
     names.split_terminator('\0').map(PathBuf::from).collect()
 }
 
-/// Whether it is `name==1.2.3`, an extra in brackets allowed.
+/// Returns true if the requirement is of the form `name==1.2.3`, optionally with an extra in brackets.
 fn is_pinned(requirement: &str) -> bool {
     let is_version =
         |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || ".+!".contains(c));
@@ -73,7 +73,8 @@ fn every_third_party_file_has_the_documented_hash_and_a_licence() {
         }
         assert!(listed.contains(&folder.join("LICENSE")), "{} has no licence", folder.display());
     }
-    // The others are ours: what the files are, and the script that fetches them.
+    // The remaining files belong to the project: descriptions of the files, and the script that downloads
+    // them.
     let ours = ["SHA256SUMS", "README.md", "fetch.py", ".gitattributes"];
     for path in kept.iter().filter(|path| is_third_party(path)) {
         let is_ours = ours.iter().any(|name| path.ends_with(name));
@@ -95,7 +96,7 @@ fn every_package_of_the_page_has_one_version_and_a_hash() {
         assert!(path.starts_with("node_modules/"), "{path} is not of the registry");
         assert!(!text("version").is_empty(), "{path} has no version");
         assert!(text("integrity").starts_with("sha512-"), "{path}: `integrity` is `{}`", text("integrity"));
-        // Where it is told, it is a place of a registry: no repository, no folder.
+        // If present, it is the address of a registry, not of a repository or directory.
         assert!(
             text("resolved").is_empty() || text("resolved").starts_with("https://"),
             "{path}: {}",
@@ -134,7 +135,8 @@ fn every_requirement_of_python_names_one_version() {
     }
 }
 
-/// `pip install` takes lists, our own package or its wheel with constraints, or `name==version`; of cargo, what is locked.
+/// `pip install` accepts lists, the project's own package or wheel with constraints, or `name==version`;
+/// cargo installs locked versions.
 #[test]
 fn what_continuous_integration_installs_is_pinned() {
     let (mut packages, mut tools, mut pages) = (0, 0, 0);
@@ -166,6 +168,6 @@ fn what_continuous_integration_installs_is_pinned() {
             assert!(!line.contains("npm install"), "{file}: npm ci keeps to the lock file: {line}");
         }
     }
-    // So that a way of installing that is not known here does not pass.
+    // An installation method unknown to this test must not pass.
     assert!(packages >= 5 && tools >= 2 && pages >= 2, "{packages} by pip, {tools} by cargo, {pages} by npm");
 }

@@ -1,4 +1,5 @@
-//! What the end-to-end suites share: the command in a directory of its own, what it answers, the truth it writes.
+//! Common parts of the end-to-end suites: the command in a separate directory, its output, and the truth that
+//! it writes.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -13,7 +14,7 @@ use sim::docking::FieldTruth;
 use sim::truth::{FrameTruth, ObjectTruth};
 use tempfile::{TempDir, tempdir};
 
-/// Longer than any command of the suites takes on a busy machine: whatever hangs fails.
+/// Longer than any command of the suites takes on a busy machine: a command that hangs fails.
 const HANGS: Duration = Duration::from_secs(120);
 
 /// A study that takes a second: six cases of two frames.
@@ -32,10 +33,10 @@ path = "sensor.hot_pixels.count"
 distribution = { kind = "integer", min = 0, max = 40 }
 "#;
 
-/// An empty directory in which the command runs: relative paths in arguments start there.
+/// An empty directory in which the command runs: relative paths in arguments refer to it.
 pub(crate) struct Bench {
     directory: TempDir,
-    /// Variables of the environment besides this process's.
+    /// Environment variables in addition to those of this process.
     variables: BTreeMap<&'static str, OsString>,
 }
 
@@ -44,7 +45,7 @@ impl Bench {
         Self { directory: tempdir().unwrap(), variables: BTreeMap::new() }
     }
 
-    /// Sets a variable of the environment of every command from now on.
+    /// Sets an environment variable for every command from now on.
     pub(crate) fn set(&mut self, name: &'static str, value: impl Into<OsString>) {
         self.variables.insert(name, value.into());
     }
@@ -53,7 +54,7 @@ impl Bench {
         self.directory.path().join(name)
     }
 
-    /// Writes a file, with the directories above it.
+    /// Writes a file, and creates its parent directories.
     pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         let path = self.path(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -65,12 +66,12 @@ impl Bench {
         fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
     }
 
-    /// Removes the checksums of a directory: what is changed there is changed on purpose.
+    /// Removes the checksums of a directory: changes there are intentional.
     pub(crate) fn unseal(&self, directory: &str) {
         fs::remove_file(self.path(directory).join("SHA256SUMS")).unwrap();
     }
 
-    /// Replaces the only `old` in a text file.
+    /// Replaces the single occurrence of `old` in a text file.
     pub(crate) fn edit(&self, name: &str, old: &str, new: &str) {
         let text = self.read(name);
         assert_eq!(text.matches(old).count(), 1, "`{old}` in {name}");
@@ -85,7 +86,7 @@ impl Bench {
         self.write(file, table.to_string());
     }
 
-    /// Runs the command with these words, which blanks separate.
+    /// Runs the command with these words, separated by spaces.
     pub(crate) fn boresight(&self, words: &str) -> Answer {
         self.boresight_words(&words.split_whitespace().collect::<Vec<_>>())
     }
@@ -103,7 +104,7 @@ impl Bench {
         }
     }
 
-    /// Every file of a directory by its name there, with its bytes.
+    /// Returns all files of a directory by their relative paths, with their bytes.
     pub(crate) fn tree(&self, name: &str) -> BTreeMap<PathBuf, Vec<u8>> {
         let root = self.path(name);
         let mut files = BTreeMap::new();
@@ -121,24 +122,24 @@ impl Bench {
         files
     }
 
-    /// Two files hold the same bytes.
+    /// Checks that two files contain the same bytes.
     pub(crate) fn check_same(&self, a: &str, b: &str) {
         let bytes = |name| fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
-        // Not assert_eq, which would print both.
+        // assert_eq is not used, because it would print both files.
         assert!(bytes(a) == bytes(b), "{a} and {b} differ");
     }
 
-    /// The truth about each frame of a run directory.
+    /// Returns the truth about each frame of a run directory.
     pub(crate) fn frames(&self, run: &str) -> Vec<FrameTruth> {
         self.table(&format!("{run}/truth/frames.parquet"))
     }
 
-    /// The truth about each field of a docking run directory.
+    /// Returns the truth about each field of a docking run directory.
     pub(crate) fn fields(&self, run: &str) -> Vec<FieldTruth> {
         self.table(&format!("{run}/truth/fields.parquet"))
     }
 
-    /// The truth about each object in each frame of a run directory.
+    /// Returns the truth about each object in each frame of a run directory.
     pub(crate) fn objects(&self, run: &str) -> Vec<ObjectTruth> {
         self.table(&format!("{run}/truth/objects.parquet"))
     }
@@ -147,7 +148,7 @@ impl Bench {
         TableReader::open(&self.path(name)).unwrap().flat_map(|frame| frame.unwrap().1).collect()
     }
 
-    /// The rows of a CSV table, each by the names of its columns.
+    /// Returns the rows of a CSV table, each as a map from column names.
     pub(crate) fn csv(&self, name: &str) -> Vec<BTreeMap<String, String>> {
         csv::Reader::from_path(self.path(name)).unwrap().deserialize().map(Result::unwrap).collect()
     }
@@ -157,14 +158,14 @@ impl Bench {
     }
 }
 
-/// Two directories hold the same files with the same bytes.
+/// Checks that two directories contain the same files with the same bytes.
 pub(crate) fn check_same_files(a: &BTreeMap<PathBuf, Vec<u8>>, b: &BTreeMap<PathBuf, Vec<u8>>) {
     assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
     let differing: Vec<&Path> = a.keys().filter(|name| a[*name] != b[*name]).map(PathBuf::as_path).collect();
     assert!(differing.is_empty(), "{differing:?} differ");
 }
 
-/// What the command said and how it ended.
+/// Output and exit status of the command.
 pub(crate) struct Answer {
     words: String,
     pub(crate) status: Option<i32>,
@@ -173,17 +174,17 @@ pub(crate) struct Answer {
 }
 
 impl Answer {
-    /// Asserts that the command ended well.
+    /// Asserts that the command succeeded.
     pub(crate) fn done(self) -> Self {
         assert_eq!(self.status, Some(0), "boresight {}\n{}", self.words, self.stderr);
         self
     }
 
-    /// Asserts that the command refused bad input with a message that has these parts.
+    /// Asserts that the command rejected invalid input with a message that contains these parts.
     pub(crate) fn refused(self, parts: &[&str]) -> Self {
         assert_eq!(self.status, Some(2), "boresight {}\n{}", self.words, self.stderr);
         assert!(!self.stderr.contains("panicked"), "{}", self.stderr);
-        // Long messages are broken into lines.
+        // Long messages are wrapped.
         let message = self.stderr.replace("\n  | ", " ");
         for part in parts {
             assert!(message.contains(part), "boresight {}: `{part}` in\n{}", self.words, self.stderr);
@@ -191,14 +192,14 @@ impl Answer {
         self
     }
 
-    /// The JSON document that stdout is; anything else there fails.
+    /// Returns the JSON document on stdout; fails if stdout contains anything else.
     pub(crate) fn json(&self) -> Value {
         let document = serde_json::from_str(&self.stdout);
         document.unwrap_or_else(|error| panic!("boresight {}: {error} in\n{}", self.words, self.stdout))
     }
 }
 
-/// The value of a figure of a score.
+/// Returns the value of a figure of a score.
 pub(crate) fn figure(score: &Value, name: &str) -> f64 {
     score["figures"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name} in {score}"))
 }

@@ -1,5 +1,6 @@
-//! `boresight visibility`: the analytic detection model against frames of the simulator, the sky against closed forms and published numbers, the
-//! search for a parameter against simulation on both sides of it, and the command's answers.
+//! `boresight visibility`: the analytic detection model compared with simulated frames, the sky compared with
+//! closed forms and published numbers, the search for a parameter compared with simulation on both sides of
+//! the result, and the command's output.
 
 use std::path::Path;
 
@@ -20,7 +21,7 @@ const MOTION: MotionTable =
     MotionTable { guidance: MotionGuidance::LocalOrbital, semi_major_axis_km: 7130.0 };
 const STILL: MotionTable = MotionTable { guidance: MotionGuidance::Inertial, ..MOTION };
 
-/// A requirement file about ARGON's camera, with lines of its own.
+/// Returns a requirement file for ARGON's camera, with additional lines.
 fn file(lines: &str) -> String {
     format!(
         r#"
@@ -49,16 +50,18 @@ fn camera() -> CameraConfig {
     requirements("").camera
 }
 
-/// Boresights that the Sun leaves free: nearer to it the background is not even over the field, as the detection model takes it to be.
+/// Boresights outside the exclusion angle of the Sun: nearer to the Sun the background is not uniform over
+/// the field, as the detection model assumes.
 fn pointings(count: usize, motion: &MotionTable) -> Vec<Pointing> {
     let sky = SkyTable { sun_exclusion_deg: 40.0, ..SkyTable::default() };
     let all = (0..count).map(|i| Pointing::from_lattice(i, count, motion, &sky).unwrap());
     all.filter(|pointing| pointing.excluded.is_none()).collect()
 }
 
-/// Stars of simulated frames, in bins of their analytic chance: as many are detected as the detection model says, within 4 standard deviations of
-/// a sum of independent events and the share that the detection model leaves out: two stars that make one cluster (`crowded`), and, where a star is
-/// seen by chance alone, a bright neighbour's wings.
+/// Compares the stars of simulated frames, in bins of their analytic probability, with the detection model:
+/// the number of detections agrees within 4 standard deviations of a sum of independent events, plus the
+/// fraction that the model neglects: two stars that form one cluster (`crowded`) and, where a star is
+/// detected only by chance, the wings of a bright neighbour.
 fn check_detection_model(trials: &[StarTrial], crowded: f64, what: &str) {
     for (low, high) in [(0.02, 0.15), (0.15, 0.4), (0.4, 0.6), (0.6, 0.85), (0.85, 0.98), (0.999, 1.1)] {
         let bin: Vec<_> = trials.iter().filter(|trial| (low..high).contains(&trial.chance)).collect();
@@ -96,8 +99,8 @@ fn the_detection_model_is_that_of_simulated_frames_at_thresholds_in_digital_numb
     check_detection_model(&trials(&dark, rule, &MOTION, 1.0), 0.05, "a longer trail");
 }
 
-/// A whole threshold of 53 DN stands for one of 53.0 to 54.0, to which the estimates of a frame's noise come by some hundredths: a
-/// camera whose threshold is not near a whole number agrees.
+/// An integer threshold of 53 DN represents thresholds from 53.0 to 54.0, and the noise estimates of a frame
+/// come within some hundredths of these limits: a camera whose threshold is not close to an integer agrees.
 #[test]
 fn the_detection_model_is_that_of_simulated_frames_at_thresholds_in_standard_deviations() {
     let mut camera = camera();
@@ -110,7 +113,7 @@ fn the_detection_model_is_that_of_simulated_frames_at_thresholds_in_standard_dev
     check_detection_model(&trials(&camera, rule, &STILL, 0.25), 0.02, "six standard deviations");
 }
 
-/// Rates of frames with enough stars, in the interval of a design's analytic probability.
+/// The analytic probability of a design lies in the interval of the rate of frames with enough stars.
 #[test]
 fn enough_stars_are_detected_as_often_as_the_model_predicts() {
     let requirements = requirements("");
@@ -122,13 +125,14 @@ fn enough_stars_are_detected_as_often_as_the_model_predicts() {
         let frames = bench.stars(&pointings(220, &MOTION), exposure_s).unwrap();
         let (enough, of) =
             (frames.iter().filter(|frame| frame.detected >= 10).count() as u64, frames.len() as u64);
-        // Both bounds of 99.9 %.
+        // Two-sided interval of 99.9 %.
         let (low, high) = clopper_pearson(enough, of, 0.999);
         assert!((low..high).contains(&expected), "{exposure_s} s: {enough} of {of}, {expected}");
     }
 }
 
-/// Light of one colour, no vignetting, no distortion, the principal point in the middle: stars to a magnitude are a matter of counting.
+/// A camera with monochromatic light, without vignetting or distortion, and with the principal point in the
+/// middle: the number of stars to a magnitude follows by counting.
 fn plain(side_px: usize, focal_length_mm: f64) -> CameraModel {
     let mut config = camera();
     config.radiometry = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6 };
@@ -147,8 +151,9 @@ fn mean_stars(camera: &CameraModel, magnitude: f64, count: usize) -> f64 {
     sky.fields.iter().map(|field| field.stars.len() as f64).sum::<f64>() / count as f64
 }
 
-/// The mean over an equal-area sky is the number of stars there are times the field's share of the sphere: a rectangle of half angles
-/// with tangents a and b has 4 asin(ab/sqrt((1 + a²)(1 + b²))).
+/// The mean over an equal-area sky is the total number of stars times the field's fraction of the sphere: a
+/// rectangle whose half angles have the tangents a and b has the solid angle 4 asin(ab/sqrt((1 + a²)(1 +
+/// b²))).
 #[test]
 fn the_stars_of_all_fields_add_up_to_the_catalogue() {
     let camera = plain(600, 20.0);
@@ -159,13 +164,14 @@ fn the_stars_of_all_fields_add_up_to_the_catalogue() {
         let stars = sim::catalog::Catalog::hipparcos2();
         let all = stars.stars().iter().filter(|star| star.v_mag() <= magnitude).count() as f64;
         let mean = mean_stars(&camera, magnitude, 8000);
-        // A star is in about 46 of 8000 fields; a lattice errs by some hundredths of that, each star by itself.
+        // A star is in about 46 of 8000 fields; the error of a lattice is some hundredths of this,
+        // independently for each star.
         assert!((mean / (all * share) - 1.0).abs() < 0.004, "V {magnitude}: {mean}, {}", all * share);
     }
 }
 
-/// Liebe (2002, IEEE Trans. Aerosp. Electron. Syst. 38, 587): 6.57 exp(1.08 M) stars brighter than M are in the sky. A fit through
-/// counts, good to some 20 %: 1450, 4280 and 12,600 stars to 5, 6 and 7.
+/// Liebe (2002, IEEE Trans. Aerosp. Electron. Syst. 38, 587): the sky has 6.57 exp(1.08 M) stars brighter
+/// than M. A fit to counts, accurate to about 20 %: 1450, 4280 and 12,600 stars to 5, 6 and 7.
 #[test]
 fn the_density_of_stars_is_that_of_the_literature() {
     let camera = plain(600, 20.0);
@@ -200,7 +206,7 @@ fn a_flight_of_a_prepared_simulator_is_that_of_a_new_one() {
     assert!(made(&flown) == made(&fresh));
 }
 
-/// The answer of the command to a file with these lines, and its exit status.
+/// Returns the JSON output of the command for a file with these lines, and its exit status.
 fn answer(lines: &str, options: &str) -> (Value, Option<i32>) {
     let bench = Bench::new();
     bench.write("r.toml", file(lines));
@@ -240,7 +246,7 @@ find = { parameter = "exposure_s", from = 0.01, to = 0.25 }
     assert_eq!(found["is_monotone"], true);
 }
 
-/// By the detection model alone: a larger aperture or a wider field has more stars.
+/// By the detection model only: a larger aperture or a wider field yields more stars.
 #[test]
 fn the_smallest_aperture_and_the_longest_focal_length_are_found() {
     let (report, status) = answer(
@@ -267,7 +273,7 @@ find = { parameter = "focal_length_mm", want = "largest", from = 10.0, to = 60.0
         let found = &verdict["found"];
         let value = found["value"].as_f64().unwrap();
         assert!((low..high).contains(&value), "{found:#}");
-        // The search looks from fewer boresights than the answer.
+        // The search uses fewer boresights than the final result.
         assert!((found["probability"].as_f64().unwrap() - 0.9).abs() < 0.02, "{found:#}");
     }
 }
@@ -320,8 +326,9 @@ find = { parameter = "aperture_diameter_mm", from = 5.0, to = 15.0 }
     }
 }
 
-/// A Lambert sphere's light falls with the square of the range: from where it is detected it can be told, and its greatest range falls
-/// with the phase angle as the root of Lambert's law.
+/// The flux of a Lambert sphere decreases with the square of the range. The range from which it is detected
+/// is therefore predictable: the greatest range decreases with the phase angle as the square root of
+/// Lambert's law.
 #[test]
 fn the_greatest_range_of_a_sphere_follows_its_phase_law() {
     let (report, _) = answer(
@@ -338,7 +345,7 @@ demand = { kind = "target_detected", from_km = 10.0, to_km = 60.0, phase_max_deg
     );
     let ranges: Vec<f64> =
         (0..2).map(|i| report["target_range"][i]["nominal_km"].as_f64().unwrap()).collect();
-    // Φ(90°) = 1/π; the bisection ends within a part in 300.
+    // Φ(90°) = 1/π; the bisection ends within one part in 300.
     let ratio = ranges[1] / ranges[0] * std::f64::consts::PI.sqrt();
     assert!((ratio - 1.0).abs() < 0.01, "{ranges:?}");
     let verdict = &report["requirements"][0];
@@ -350,7 +357,8 @@ demand = { kind = "target_detected", from_km = 10.0, to_km = 60.0, phase_max_deg
     assert_eq!(verdict["simulated"]["count"], 60, "{verdict:#}");
 }
 
-/// Simulated at a range where the target is often missed: the detection model's rate lies in the interval.
+/// Simulated at a range where the target is often missed: the rate of the detection model lies in the
+/// interval.
 #[test]
 fn the_target_is_detected_as_often_as_the_model_predicts() {
     let lines = r#"
@@ -369,7 +377,8 @@ target = { body = { kind = "lambert_sphere", radius_m = 0.4, albedo = 0.3 }, lig
     let bench = TestBench { camera: &requirements.camera, rule: &rule, motion: &MOTION, seed: 3 };
     let body = requirements.target.as_ref().unwrap();
     let count = bench.target(body, None, &groups[0].aspects, near, 0.1, 200).unwrap();
-    // The background of the target's frames is not the median of the sky: a few electrons, 0.02 of the chance.
+    // The background of the target's frames differs from the median of the sky by a few electrons, 0.02 of
+    // the probability.
     let (low, high) = clopper_pearson(count, 200, 0.999);
     assert!((low - 0.02..high + 0.02).contains(&0.6), "{count} of 200 at {near} km");
 }
@@ -379,17 +388,18 @@ fn the_built_in_example_shows_where_the_stars_are_lost_and_does_not_depend_on_th
     let bench = Bench::new();
     let one = bench.boresight("visibility uasc-far-range --frames 10 --jobs 1 --json --out a");
     let two = bench.boresight("visibility uasc-far-range --frames 10 --jobs 2 --json --out b");
-    // Days 4 and 5 cannot have both.
+    // On days 4 and 5 no exposure both spares the target and leaves ten stars.
     assert_eq!((one.status, two.status), (Some(1), Some(1)), "{}", one.stderr);
     assert_eq!(one.json(), two.json());
     check_same_files(&bench.tree("a"), &bench.tree("b"));
     let report = bench.json("a/visibility.json");
     assert_eq!(report, one.json());
-    // The run of `argon` has ten stars in half of its frames at 7.2 km (docs/visibility.md).
+    // In the run of `argon`, half of the frames have ten stars at 7.2 km (docs/visibility.md).
     let lost_km = report["stars_lost"]["half_of_frames_km"].as_f64().unwrap();
     assert!((6.2..8.2).contains(&lost_km), "{lost_km}");
     let statuses: Vec<_> = report["requirements"].as_array().unwrap().iter().map(|r| &r["status"]).collect();
-    // Ten frames show no 90 %: 0.9^10 = 0.35. All but one are met by the detection model alone, or by none that could be simulated.
+    // Ten frames cannot demonstrate 90 %: 0.9^10 = 0.35. All requirements but one are met only by the
+    // detection model, for this reason or because nothing could be simulated.
     assert_eq!(statuses.iter().filter(|status| **status == "met_law").count(), statuses.len() - 1);
     assert_eq!(bench.csv("a/sky.csv").len(), 10_000);
     for name in ["detection", "limiting_magnitude", "exposure_window", "target_range"] {
@@ -399,7 +409,8 @@ fn the_built_in_example_shows_where_the_stars_are_lost_and_does_not_depend_on_th
     bench.boresight("visibility uasc-far-range --frames 0 --out a").refused(&["not empty"]);
 }
 
-/// What the frames could never show is met by the detection model, and says so; with the frames that it asks for it is shown.
+/// A requirement that the frames could never demonstrate is met by the detection model, and the report states
+/// this; with the number of frames that it requests, the requirement is demonstrated.
 #[test]
 fn too_few_frames_show_nothing() {
     let lines = |frames: u64| {
@@ -412,7 +423,7 @@ fn too_few_frames_show_nothing() {
     let verdict = &report["requirements"][0];
     assert_eq!((status, &verdict["status"]), (Some(0), &"met_law".into()), "{verdict:#}");
     let evidence = verdict["evidence"].as_str().unwrap();
-    // 0.97^98 = 0.0505, 0.97^99 = 0.0490; the number is sought in steps of a tenth.
+    // 0.97^98 = 0.0505, 0.97^99 = 0.0490; the number is searched in steps of a tenth.
     assert!(evidence.contains("too few frames to show it: about 1"), "{evidence}");
     let (report, status) = answer(&lines(110), "");
     let verdict = &report["requirements"][0];
@@ -457,7 +468,8 @@ fn mistakes_are_reported_with_their_position() {
     assert!(bench.boresight("visibility nowhere.toml --json").json()["error"].is_string());
 }
 
-/// The curve of a requirement file is the curve of its parts: backgrounds between two levels are interpolated.
+/// The curve of a requirement file equals the curves of its parts: between two levels, the background is
+/// interpolated.
 #[test]
 fn chances_between_levels_of_the_background_are_those_of_the_level() {
     let model = CameraModel::new(&camera()).unwrap();
@@ -467,7 +479,7 @@ fn chances_between_levels_of_the_background_are_those_of_the_level() {
         let own = Curves::new(&model, &rule, &MOTION, 0.25, [background, background]);
         for ln_e_per_s in [7.5, 8.0, 8.3, 8.6] {
             let (a, b) = (wide.chance(ln_e_per_s, background), own.chance(ln_e_per_s, background));
-            // A tenth of the variance from level to level.
+            // A tenth of the variance between levels.
             assert!((a - b).abs() < 0.01, "{background}, {ln_e_per_s}: {a} {b}");
         }
     }

@@ -1,4 +1,4 @@
-//! The checks on docking pipelines.
+//! Conformance checks of docking pipelines.
 
 use super::{Conformance, Input};
 use crate::Frame;
@@ -7,7 +7,7 @@ use crate::docking::{
     MotionReport,
 };
 
-/// The digital number at a column and a row, of a full scale.
+/// Function of column, row and full scale that returns the digital number of a pixel.
 type Pattern = fn(usize, usize, u16) -> u16;
 
 impl Conformance for Docking {
@@ -57,7 +57,7 @@ impl Conformance for Docking {
             let field = Frame::new(number, columns, rows, setup.bit_depth, image, None)
                 .and_then(|image| Field::new(image, lines, camera.rows))
                 .expect("the image is made with the camera's own size");
-            // The last camera for the later fields: a lens may be changed at any time.
+            // The later fields use the last camera, because the lens may change at any time.
             let camera = if number < 8 { 0 } else { setup.cameras.len() - 1 };
             (name, field, FieldTelemetry { time_s, camera, digitiser: Digitiser::default() })
         });

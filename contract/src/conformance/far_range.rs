@@ -1,4 +1,4 @@
-//! The checks on far-range pipelines.
+//! Conformance checks of far-range pipelines.
 
 use hifitime::Epoch;
 use nalgebra::Vector3;
@@ -84,7 +84,7 @@ impl Conformance for FarRange {
     }
 }
 
-/// Whether a norm is that of a unit; never so for a NaN.
+/// Returns true if a norm is 1 within the tolerance; false for NaN.
 fn is_unit_norm(norm: f64) -> bool {
     (norm - 1.0).abs() < 1e-6
 }

@@ -1,34 +1,38 @@
-//! Checks that any pipeline must pass, whoever wrote it.
+//! Conformance checks for every pipeline, built-in or external.
 
 mod docking;
 mod far_range;
 
 use crate::{Interface, PipelineFactory};
 
-/// A rule of the contract that a pipeline broke.
+/// A violation of a contract rule by a pipeline.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Violation {
-    /// The input that showed it.
+    /// Name of the input that revealed the violation.
     pub input: &'static str,
-    /// What was wrong with the answer.
+    /// Description of the violation.
     pub broken: String,
 }
 
-/// A name, an image and its telemetry.
+/// Name of an input, its image and its telemetry.
 pub type Input<I> = (&'static str, <I as Interface>::Image, <I as Interface>::Telemetry);
 
-/// An interface with the sequence that its pipelines are checked on.
+/// An interface that provides inputs for the conformance checks of its pipelines.
 pub trait Conformance: Interface {
-    /// A short sequence with every kind of image that has broken a pipeline.
+    /// Returns a short sequence with every kind of image that has caused a failure of a pipeline.
     fn inputs(setup: &Self::Setup) -> Vec<Input<Self>>;
 
-    /// What makes an answer unusable, if anything does.
+    /// Returns the reason why an outcome is unusable, or `None` for a sound outcome.
     fn violation(outcome: &Self::Outcome, setup: &Self::Setup) -> Option<String>;
 }
 
-/// Runs the checks: every kind of image is answered without a panic, no answer holds a NaN or what cannot be (a place off the detector,
-/// a negative variance, a setting that no digitiser has), two fresh pipelines give the same answers, and images that are missing,
-/// repeated or hours apart do not disturb it.
+/// Runs the conformance checks:
+///
+/// - every kind of image is answered without a panic;
+/// - no outcome contains NaN or an impossible value (a position off the detector, a negative variance, a
+///   setting that the digitiser does not support);
+/// - two fresh pipelines give the same outcomes;
+/// - missing images, repeated images and gaps of hours cause no failure.
 ///
 /// # Errors
 /// Every violation found, in the order of the inputs.

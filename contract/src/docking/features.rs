@@ -1,50 +1,50 @@
-//! What was recognised in a field: evidence, drawn over the image and used for the cause of a miss.
+//! Features recognised in a field, drawn over the image and used to find the cause of a miss.
 
 use crate::PixelPoint;
 
-/// The target's cross (docking paper, section 3). Coordinates are the camera's pixels, also for a field.
+/// Image of the target's cross (docking paper, section 3). Coordinates are camera pixels, also for a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cross {
-    /// (Xc, Yc) after least squares.
+    /// Centre (Xc, Yc) after least squares.
     pub centre: PixelPoint,
-    /// (Xc, Yc) as first found.
+    /// Centre (Xc, Yc) as first found.
     pub raw_centre: PixelPoint,
-    /// a: slope of the horizontal bar, y rows over x columns.
+    /// Slope a of the horizontal bar, rows y per column x.
     pub slope: f64,
-    /// N1: point pairs on the horizontal bar.
+    /// Number N1 of point pairs on the horizontal bar.
     pub horizontal_pairs: u32,
-    /// N2: point pairs on the vertical bar.
+    /// Number N2 of point pairs on the vertical bar.
     pub vertical_pairs: u32,
 }
 
-/// A circle in the image.
+/// Image of a circular feature.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle {
-    /// (Xo, Yo) after least squares.
+    /// Centre (Xo, Yo) after least squares.
     pub centre: PixelPoint,
-    /// (Xo, Yo) as first found.
+    /// Centre (Xo, Yo) as first found.
     pub raw_centre: PixelPoint,
-    /// R, px.
+    /// Radius R, px.
     pub radius_px: f64,
-    /// N3: points on it that were used.
+    /// Number N3 of points on the circle that were used.
     pub points: u32,
 }
 
-/// What became of a mark of the target.
+/// Use of a target mark in the measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MarkUse {
     /// Measured and used.
     Used,
-    /// Seen, and rejected by the self-checking: shadowed, glinting, cut by something.
+    /// Seen, and rejected by the self-checking: shadowed, glinting or partly hidden.
     Rejected,
     /// Not seen.
     Missing,
-    /// Its predicted place is outside the image.
+    /// Predicted position is outside the image.
     OutOfField,
 }
 
 impl MarkUse {
-    /// The word used in files.
+    /// Returns the name used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Used => "used",
@@ -55,27 +55,27 @@ impl MarkUse {
     }
 }
 
-/// A mark (label) of the target.
+/// Image of a mark (label) of the target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
-    /// Its place in [`crate::docking::TargetModel::marks`], 0-based.
+    /// Index of the mark in [`crate::docking::TargetModel::marks`], from 0.
     pub index: u32,
-    /// Where it was seen, or where it was predicted.
+    /// Observed position, or predicted position if the mark was not seen.
     pub position: PixelPoint,
-    /// What became of it.
+    /// Use of the mark in the measurement.
     pub usage: MarkUse,
 }
 
-/// Everything that was recognised in a field; empty where a pipeline does not tell.
+/// All features recognised in a field; empty if a pipeline does not report them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Features {
     /// The target's cross.
     pub cross: Option<Cross>,
-    /// The circle of the marks.
+    /// Circle through the marks.
     pub circle: Option<Circle>,
-    /// The outline of the station.
+    /// Outline of the station.
     pub station: Option<Circle>,
-    /// The docking unit's disk.
+    /// Disk of the docking unit.
     pub docking_unit: Option<Circle>,
     /// The marks.
     pub marks: Vec<Mark>,

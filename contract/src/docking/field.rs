@@ -1,9 +1,9 @@
-//! One field of television, as it arrives.
+//! One field of interlaced television, as received.
 
 use crate::docking::Digitiser;
 use crate::{ContractError, Frame, OutOfRange};
 
-/// Which rows of the camera an image holds.
+/// Rows of the camera that an image contains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Lines {
     /// Every row: a progressive frame.
@@ -15,7 +15,7 @@ pub enum Lines {
 }
 
 impl Lines {
-    /// The camera's row of the image's row `row`.
+    /// Returns the camera row of row `row` of the image.
     pub fn camera_row(self, row: usize) -> usize {
         match self {
             Self::All => row,
@@ -24,7 +24,7 @@ impl Lines {
         }
     }
 
-    /// Rows of the camera from one row of the image to the next: 1 or 2.
+    /// Returns the number of camera rows between consecutive image rows: 1 or 2.
     pub fn step(self) -> usize {
         match self {
             Self::All => 1,
@@ -32,7 +32,7 @@ impl Lines {
         }
     }
 
-    /// Rows of the image, from the rows of the camera.
+    /// Returns the number of image rows for a number of camera rows.
     pub fn rows(self, camera_rows: usize) -> usize {
         match self {
             Self::All => camera_rows,
@@ -41,7 +41,7 @@ impl Lines {
         }
     }
 
-    /// The word used in files.
+    /// Returns the name used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::All => "all",
@@ -50,13 +50,13 @@ impl Lines {
         }
     }
 
-    /// Reads [`Lines::code`].
+    /// Parses the result of [`Lines::code`].
     pub fn parse(code: &str) -> Option<Self> {
         [Self::All, Self::Even, Self::Odd].into_iter().find(|lines| lines.code() == code)
     }
 }
 
-/// One field: an image and which rows of the camera it holds.
+/// One field: an image and the camera rows that it contains.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Field {
     image: Frame,
@@ -65,10 +65,12 @@ pub struct Field {
 }
 
 impl Field {
-    /// A field of a camera with `camera_rows` rows. The image's number is the field's number in its sequence.
+    /// Creates a field of a camera with `camera_rows` rows. The number of the image is the number of the
+    /// field in its sequence.
     ///
     /// # Errors
-    /// [`ContractError::OutOfRange`] when the image has not as many rows as `lines` of such a camera.
+    /// [`ContractError::OutOfRange`] if the number of image rows differs from the number that `lines` of such
+    /// a camera gives.
     pub fn new(image: Frame, lines: Lines, camera_rows: usize) -> Result<Self, ContractError> {
         if image.rows() != lines.rows(camera_rows) {
             let expected = "half the rows of the camera, or all of them when it is not interlaced";
@@ -77,39 +79,40 @@ impl Field {
         Ok(Self { image, lines, camera_rows })
     }
 
-    /// The digital numbers.
+    /// Returns the image in digital numbers.
     pub fn image(&self) -> &Frame {
         &self.image
     }
 
-    /// The digital numbers, given away without a copy.
+    /// Returns the image in digital numbers by value, without a copy.
     pub fn into_image(self) -> Frame {
         self.image
     }
 
-    /// Which rows of the camera they are.
+    /// Returns the set of camera rows that the field contains.
     pub fn lines(&self) -> Lines {
         self.lines
     }
 
-    /// Rows of the camera.
+    /// Returns the number of camera rows.
     pub fn camera_rows(&self) -> usize {
         self.camera_rows
     }
 
-    /// Number of the field in its sequence.
+    /// Returns the number of the field in its sequence.
     pub fn number(&self) -> u64 {
         self.image.number()
     }
 }
 
-/// What is known of a field besides its pixels.
+/// Telemetry of a field: the data besides its pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FieldTelemetry {
-    /// T of the paper: the field's own moment (middle of its exposure), s since the beginning of the sequence.
+    /// Time T of the paper: the middle of the field's exposure, s since the beginning of the sequence.
     pub time_s: f64,
-    /// Which of [`crate::docking::DockingSetup::cameras`] took it (0-based): a spacecraft may change its lens.
+    /// Index in [`crate::docking::DockingSetup::cameras`] of the camera that took the field, from 0: a
+    /// spacecraft may change its lens.
     pub camera: usize,
-    /// How the video signal was digitised.
+    /// Setting with which the video signal was digitised.
     pub digitiser: Digitiser,
 }

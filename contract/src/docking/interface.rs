@@ -1,9 +1,9 @@
-//! What a docking pipeline receives and answers.
+//! Inputs and outputs of a docking pipeline.
 
 use crate::docking::{DockingOutcome, DockingSolution, Field, FieldTelemetry, NoPose, TargetModel};
 use crate::{Camera, Interface};
 
-/// The interface of docking pipelines: an approach, as the television camera sees it.
+/// Interface of docking pipelines: an approach seen by a television camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Docking;
 
@@ -31,13 +31,13 @@ impl Interface for Docking {
     }
 }
 
-/// What a docking pipeline knows before the first field.
+/// Data that a docking pipeline receives before the first field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DockingSetup {
-    /// The nominal cameras (lenses), at least one; all have the same detector.
+    /// Nominal cameras (lenses), at least one; all have the same detector.
     pub cameras: Vec<Camera>,
-    /// Bits of the digitiser.
+    /// Bit depth of the digitiser.
     pub bit_depth: u8,
-    /// The target's dimensions.
+    /// Dimensions of the target.
     pub target: TargetModel,
 }

@@ -1,7 +1,7 @@
-//! Docking: what the simulator of an approach and a pipeline that monitors it both speak.
+//! Docking: data types shared by the simulator of an approach and the pipelines that monitor it.
 //!
-//! The unit is the *field*: the half-frame of interlaced television, at its own moment. The target's frame, the pose
-//! and the angles are those of Boguslavsky et al. (ICINCO 2004); see `CONVENTIONS.md`.
+//! The unit is the *field*: half of an interlaced television frame, with its own time. The target frame, the
+//! pose and the angles are those of Boguslavsky et al. (ICINCO 2004); see `CONVENTIONS.md`.
 
 mod digitiser;
 mod features;

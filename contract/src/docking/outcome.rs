@@ -1,36 +1,37 @@
-//! A pipeline's answer to one field.
+//! Outcome of a docking pipeline for one field.
 
 use std::fmt;
 
 use crate::docking::{Digitiser, Features, MotionReport, Pose, PoseEstimate};
 
-/// A field that was measured.
+/// Measurement from one field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldMeasurement {
-    /// Pose by the pipeline's own best estimator, at the moment of the field.
+    /// Pose from the pipeline's best estimator, at the time of the field.
     pub best: PoseEstimate,
-    /// Pose by the paper's formulas (3.1), where the pipeline has them and the field allows them.
+    /// Pose from the paper's formulas (3.1); `None` if the pipeline does not implement them or the field does
+    /// not allow them.
     pub paper: Option<Pose>,
 }
 
-/// Why there is no pose in the answer.
+/// Reason why an outcome contains no pose.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum NoPose {
-    /// The image holds no signal: flat, or nothing but noise.
+    /// The image contains no signal: it is flat or pure noise.
     EmptyField,
-    /// So much is saturated that nothing can be told apart.
+    /// Too much of the image is saturated to distinguish anything.
     SaturatedField,
-    /// Nothing in the image has the structure of the target.
+    /// No object in the image has the structure of the target.
     NoTarget,
-    /// More than one thing in the image has the structure of the target.
+    /// More than one object in the image has the structure of the target.
     AmbiguousTarget,
-    /// The target is there, and too much of it lies outside the image.
+    /// The target is visible, but too much of it lies outside the image.
     OutOfField,
-    /// The target is there, and too few of its features are good.
+    /// The target is visible, but too few of its features are usable.
     TooFewFeatures,
-    /// What was found contradicts the structure of the scene (self-checking).
+    /// The recognised features contradict the structure of the scene (self-checking).
     Inconsistent,
-    /// The pipeline failed; the text says how. Counted as an outcome like any other.
+    /// The pipeline failed, with the reason as text. Counted as an outcome like any other.
     Failed(String),
 }
 
@@ -45,7 +46,7 @@ impl NoPose {
         Self::Inconsistent,
     ];
 
-    /// The word used in files.
+    /// Returns the name used in files.
     pub fn code(&self) -> &'static str {
         match self {
             Self::EmptyField => "empty_field",
@@ -59,7 +60,7 @@ impl NoPose {
         }
     }
 
-    /// Reads what [`fmt::Display`] writes, and `failed` alone; `None` for an unknown word.
+    /// Parses the output of [`fmt::Display`], or `failed` without a reason; `None` for an unknown text.
     pub fn parse(text: &str) -> Option<Self> {
         let failed = || if text == "failed" { Some(text) } else { text.strip_prefix("failed: ") };
         let plain = Self::PLAIN.into_iter().find(|reason| reason.code() == text);
@@ -76,24 +77,25 @@ impl fmt::Display for NoPose {
     }
 }
 
-/// The test that a measured pose has failed.
+/// Test that a measured pose failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FailedCheck {
-    /// What the measurement leaves of the image is not noise.
+    /// The residual image, after subtraction of the measurement's model, is more than noise.
     Residuals,
-    /// Cross, ring of marks, docking unit and station's outline do not belong to one scene.
+    /// The cross, the ring of marks, the docking unit and the station's outline do not form one consistent
+    /// scene.
     Features,
-    /// The pose is not on the motion of the fields before.
+    /// The pose deviates from the motion of the previous fields.
     Motion,
-    /// The field is an earlier one, bit for bit: the pose is of another moment.
+    /// The field is bit for bit identical to an earlier one: the pose belongs to another time.
     Repeated,
 }
 
 impl FailedCheck {
-    /// Every one, in the order in which they are tested.
+    /// All tests, in the order in which they are applied.
     pub const ALL: [Self; 4] = [Self::Repeated, Self::Residuals, Self::Features, Self::Motion];
 
-    /// The word used in files, after `doubtful: `.
+    /// Returns the name used in files, after `doubtful: `.
     pub fn code(self) -> &'static str {
         match self {
             Self::Residuals => "residuals",
@@ -105,7 +107,7 @@ impl FailedCheck {
 }
 
 impl fmt::Display for FailedCheck {
-    /// The status of a row in files: `doubtful: ` and [`FailedCheck::code`].
+    /// Writes the status of a row in files: `doubtful: ` and [`FailedCheck::code`].
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "doubtful: {}", self.code())
     }
@@ -114,51 +116,52 @@ impl fmt::Display for FailedCheck {
 impl std::str::FromStr for FailedCheck {
     type Err = ();
 
-    /// Reads what [`fmt::Display`] writes.
+    /// Parses the output of [`fmt::Display`].
     fn from_str(text: &str) -> Result<Self, ()> {
         let code = text.strip_prefix("doubtful: ").ok_or(())?;
         Self::ALL.into_iter().find(|doubt| doubt.code() == code).ok_or(())
     }
 }
 
-/// The pose, less than that, or why not.
+/// Pose, range, or the reason why neither was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DockingSolution {
     /// All six parameters were measured.
     Measured(Box<FieldMeasurement>),
-    /// All six parameters were measured, and the measurement failed a test: a pose to look at, not to rely on.
+    /// All six parameters were measured, but the measurement failed a test: a pose for inspection that must
+    /// not be relied on.
     Doubtful {
-        /// What was measured.
+        /// The doubtful measurement.
         measurement: Box<FieldMeasurement>,
-        /// The test that it failed.
+        /// Test that the measurement failed.
         doubt: FailedCheck,
     },
-    /// The target is not resolved yet: the range alone, from the outline of the station.
+    /// The target is not resolved yet; only the range is measured, from the outline of the station.
     RangeOnly {
-        /// d3, m.
+        /// Range d3, m.
         range_m: f64,
-        /// Its standard deviation, m.
+        /// Standard deviation of the range, m.
         sigma_m: f64,
     },
     /// Nothing was measured.
     NoSolution(NoPose),
 }
 
-/// A pipeline's whole answer to one field.
+/// Complete outcome of a docking pipeline for one field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DockingOutcome {
-    /// The pose, or why not.
+    /// Pose, range, or the reason why neither was measured.
     pub solution: DockingSolution,
-    /// What was recognised.
+    /// Features recognised in the field.
     pub features: Features,
-    /// The motion, when this field ends a portion.
+    /// Motion, if this field ends a portion.
     pub motion: Option<MotionReport>,
-    /// The setting of the digitiser that the pipeline asks for; `None`: as it is.
+    /// Digitiser setting that the pipeline requests; `None` leaves the setting unchanged.
     pub digitiser: Option<Digitiser>,
 }
 
 impl DockingOutcome {
-    /// An answer that has nothing but a reason.
+    /// Creates an outcome without a solution, with its reason.
     pub fn none(reason: NoPose) -> Self {
         Self {
             solution: DockingSolution::NoSolution(reason),
@@ -168,7 +171,7 @@ impl DockingOutcome {
         }
     }
 
-    /// The measurement, if there is one that is not doubtful.
+    /// Returns the measurement if it is present and not doubtful.
     pub fn measurement(&self) -> Option<&FieldMeasurement> {
         match &self.solution {
             DockingSolution::Measured(measurement) => Some(measurement),
@@ -176,7 +179,7 @@ impl DockingOutcome {
         }
     }
 
-    /// The measurement, doubtful or not.
+    /// Returns the measurement if it is present, doubtful or not.
     pub fn any_measurement(&self) -> Option<&FieldMeasurement> {
         match &self.solution {
             DockingSolution::Measured(measurement) | DockingSolution::Doubtful { measurement, .. } => {

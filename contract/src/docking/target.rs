@@ -1,4 +1,4 @@
-//! What a pipeline knows of the target: dimensions, in the target frame.
+//! Dimensions of the target, in the target frame, as known to a pipeline.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 use crate::OutOfRange;
 use crate::bounds::{self, require};
 
-/// The stand-off cross: two perpendicular bars along y1 and y2, their front face at y3 = height.
+/// Stand-off cross: two perpendicular bars along y1 and y2, with the front face at y3 = height.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StandOffCross {
-    /// b: height of the front face over the disk's plane, m.
+    /// Height b of the front face above the disk's plane, m.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub height_m: f64,
-    /// From the centre to the end of a bar, m.
+    /// Distance from the centre to the end of a bar, m.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub half_length_m: f64,
     /// Width of a bar, m.
@@ -37,12 +37,12 @@ pub struct Outline {
     /// Radius, m.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub radius_m: f64,
-    /// h: how far it lies behind the disk's plane, m.
+    /// Distance h of the outline behind the disk's plane, m.
     #[schemars(range(min = -1000, max = 1000))]
     pub depth_m: f64,
 }
 
-/// The target's dimensions as a pipeline is told them.
+/// Dimensions of the target, as a pipeline receives them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TargetModel {
@@ -51,22 +51,24 @@ pub struct TargetModel {
     /// Radius of the dark plate behind the marks, m.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub plate_radius_m: f64,
-    /// r: radius of the circle through the centres of the marks, m.
+    /// Radius r of the circle through the centres of the marks, m.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub mark_circle_radius_m: f64,
-    /// Bright marks in the disk's plane (y3 = 0): corners (y1, y2) in m, counter-clockwise seen from the front.
+    /// Bright marks in the disk's plane (y3 = 0): corners (y1, y2), m, counter-clockwise as seen from the
+    /// front.
     #[schemars(inner(inner(inner(range(min = -1000, max = 1000)))))]
     pub marks: Vec<[[f64; 2]; 4]>,
-    /// The cross that stands off.
+    /// Stand-off cross.
     pub cross: StandOffCross,
-    /// The docking unit's disk.
+    /// Disk of the docking unit.
     pub docking_unit: Outline,
-    /// The outline of the station's end, what is seen before the target is resolved.
+    /// Outline of the station's end, visible before the target is resolved.
     pub station: Outline,
 }
 
 impl TargetModel {
-    /// Checks every number. Nothing of a target is larger or farther away than 1000 m: beyond it the unit is wrong.
+    /// Checks the range of every number. No dimension or distance of a target exceeds 1000 m; a larger value
+    /// indicates a wrong unit.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.
@@ -132,7 +134,7 @@ mod tests {
         refused("target.station.depth_m", |t| t.station.depth_m = 1e9);
     }
 
-    /// A target may have none: whether a pipeline can do without is the pipeline's to say.
+    /// A target may have no marks; each pipeline decides whether it works without them.
     #[test]
     fn a_target_without_marks_is_one() {
         TargetModel { marks: Vec::new(), ..target() }.check().unwrap();

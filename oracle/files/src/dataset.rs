@@ -1,4 +1,4 @@
-//! A directory of images to be processed: ours or anybody's.
+//! A directory of images to be processed, rendered by Boresight or from another source.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -17,37 +17,40 @@ use crate::frame::raw_image::Size;
 use crate::toml_file::toml_table::{self, TomlTable};
 use crate::{FileError, TelemetryRow, parse_utc};
 
-/// `camera.toml`: what a pipeline knows before the first frame, except the stars themselves.
+/// Contents of `camera.toml`: the data that a pipeline receives before the first frame, except the stars.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CameraFile {
-    /// Bits of the analogue-digital converter, 1 to 16.
+    /// Bit depth of the analogue-digital converter, 1 to 16.
     #[schemars(range(min = 1, max = 16))]
     pub bit_depth: u8,
-    /// Magnitude V down to which stars of the built-in catalogue are listed for the pipeline when the dataset has no
-    /// `stars.csv`, −2 to 15; without it, 7.
+    /// Limiting magnitude V of the built-in catalogue's stars that are listed for the pipeline if the dataset
+    /// has no `stars.csv`, −2 to 15; default 7.
     #[serde(default = "default_magnitude_limit")]
     #[schemars(range(min = -2, max = 15))]
     pub magnitude_limit: f64,
-    /// UTC time to which proper motion is applied in the star list, as 2012-04-25T00:00:00Z; without it, the time of
-    /// the first frame.
+    /// UTC time to which proper motion is applied in the star list, for example 2012-04-25T00:00:00Z;
+    /// default: the time of the first frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub star_epoch_utc: Option<String>,
-    /// Gain, bias, read noise and saturation as calibrated; without it, the built-in pipeline cannot fit centroids.
+    /// Calibrated gain, bias, read noise and saturation; without them, the built-in pipeline cannot fit
+    /// centroids.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub readout: Option<Readout>,
-    /// Point-spread function, detector, brightness scale and attitude knowledge as calibrated; what is absent is not known.
+    /// Calibrated point-spread function, detector, brightness scale and attitude knowledge; an absent value
+    /// is unknown.
     #[serde(default, skip_serializing_if = "is_unknown")]
     pub calibration: Calibration,
-    /// Pixels up to this digital number are 0 in the images, whatever they were, 0 to 65535; without it, none.
+    /// Threshold of the zero suppression: pixels up to this digital number are 0 in the images, 0 to 65535;
+    /// default: no zero suppression.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub zero_suppression_dn: Option<u16>,
     /// Nominal camera.
     pub camera: Camera,
-    /// Nominal mounting; without it, the camera's axes are those of the body.
+    /// Nominal mounting; default: the camera axes coincide with the body axes.
     #[serde(default)]
     pub mounting: Mounting,
-    /// Parameters of the built-in pipeline; without it, its defaults.
+    /// Parameters of the built-in pipeline; default: its default parameters.
     #[serde(default)]
     pub far_range: FarRangeConfig,
 }
@@ -64,8 +67,8 @@ impl CameraFile {
     /// Reads and checks the file.
     ///
     /// # Errors
-    /// [`FileError::Io`]; [`FileError::Toml`] with line and column for what is not TOML, for a wrong, unknown or missing
-    /// field, and for a value outside its range.
+    /// [`FileError::Io`]; [`FileError::Toml`] with line and column for invalid TOML, for a wrong, unknown or
+    /// missing field, and for a value outside its range.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         toml_table::read(path)
     }
@@ -73,7 +76,8 @@ impl CameraFile {
     /// Writes the file.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
+    /// [`FileError::OutputTaken`] if the file exists; [`FileError::Io`] if it cannot be written;
+    /// [`FileError::Value`] for a value that could not be read back.
     pub fn write(&self, path: &Path) -> Result<(), FileError> {
         toml_table::write(self, path)
     }
@@ -91,31 +95,32 @@ impl TomlTable for CameraFile {
     }
 }
 
-/// Images with their telemetry and their camera, checked to be all there.
+/// Images with their telemetry and their camera, checked for completeness.
 #[derive(Debug, Clone)]
 pub struct Dataset {
     camera: CameraFile,
     frames: Vec<DatasetFrame>,
 }
 
-/// One frame of a dataset, not read yet.
+/// One frame of a dataset, whose image has not been read yet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DatasetFrame {
-    /// Where the image is.
+    /// Path of the image.
     path: PathBuf,
     row: TelemetryRow,
 }
 
 impl Dataset {
-    /// Opens a directory: `camera.toml`, `telemetry.csv`, and the images that the latter names. No image is read yet,
-    /// but every one is looked for, so that a missing one is known before the first is processed.
+    /// Opens a directory: `camera.toml`, `telemetry.csv`, and the images named in the latter. No image is
+    /// read yet, but the existence of each is checked, so a missing image is reported before the first is
+    /// processed.
     ///
-    /// Images must lie inside the directory, symbolic links resolved: a table from elsewhere cannot make us read
-    /// other files.
+    /// Images must lie inside the directory after symbolic links are resolved: a table from an untrusted
+    /// source cannot make Boresight read other files.
     ///
     /// # Errors
-    /// [`FileError::MissingImage`] that names the frame whose image is not named, not there or not inside; the errors
-    /// of [`CameraFile::read`] and [`crate::read_telemetry`].
+    /// [`FileError::MissingImage`] that names the frame whose image is not named, does not exist or is
+    /// outside the directory; the errors of [`CameraFile::read`] and [`crate::read_telemetry`].
     pub fn open(directory: &Path) -> Result<Self, FileError> {
         let camera = CameraFile::read(&directory.join("camera.toml"))?;
         let table = directory.join("telemetry.csv");
@@ -138,17 +143,17 @@ impl Dataset {
         Ok(Self { camera, frames })
     }
 
-    /// The camera.
+    /// Returns the camera file.
     pub fn camera(&self) -> &CameraFile {
         &self.camera
     }
 
-    /// The frames, ascending; never empty.
+    /// Returns the frames in ascending order; never empty.
     pub fn frames(&self) -> &[DatasetFrame] {
         &self.frames
     }
 
-    /// The time to which proper motion is applied in the star list.
+    /// Returns the time to which proper motion is applied in the star list.
     pub fn star_epoch(&self) -> Option<Epoch> {
         let given = self.camera.star_epoch_utc.as_deref().and_then(|text| parse_utc(text).ok());
         given.or_else(|| self.frames.first().map(|frame| frame.row.telemetry.time))
@@ -157,7 +162,8 @@ impl Dataset {
     /// Reads the image of a frame.
     ///
     /// # Errors
-    /// The errors of [`crate::read_frame`]; [`FileError::Value`] for an image whose size is not the camera's.
+    /// The errors of [`crate::read_frame`]; [`FileError::Value`] for an image whose size differs from that of
+    /// the camera.
     pub fn read(&self, frame: &DatasetFrame) -> Result<Frame, FileError> {
         self.camera.read_image(&frame.path, &frame.row)
     }
@@ -172,11 +178,12 @@ impl CameraFile {
         image.into_frame(path, row.frame, self.bit_depth, row.windows.clone())
     }
 
-    /// Reads the image that a row of a directory's `telemetry.csv` names; `None` where the row names none. Other images of the
-    /// directory may be missing.
+    /// Reads the image that a row of a directory's `telemetry.csv` names; `None` if the row names no image.
+    /// Other images of the directory may be missing.
     ///
     /// # Errors
-    /// [`FileError::Value`] for an image that is missing or outside the directory; the errors of [`Dataset::read`].
+    /// [`FileError::Value`] for an image that is missing or outside the directory; the errors of
+    /// [`Dataset::read`].
     pub fn read_listed(&self, directory: &Path, row: &TelemetryRow) -> Result<Option<Frame>, FileError> {
         let Some(file) = row.file.as_deref() else { return Ok(None) };
         let path = locate_alone(directory, file, &format!("file of frame {}", row.frame))?;
@@ -184,7 +191,8 @@ impl CameraFile {
     }
 }
 
-/// The path of one image that a table names, whatever became of the others; `field` is what messages call it.
+/// Returns the path of one image that a table names, independently of the other images; messages call it
+/// `field`.
 pub(crate) fn locate_alone(directory: &Path, file: &str, field: &str) -> Result<PathBuf, FileError> {
     let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
     locate_image(directory, &root, Some(file)).map_err(|reason| {
@@ -193,7 +201,8 @@ pub(crate) fn locate_alone(directory: &Path, file: &str, field: &str) -> Result<
     })
 }
 
-/// Refuses an image that belongs to two frames (or fields, as `what` says), each given by its number.
+/// Rejects an image that belongs to two frames or fields (`what` is the name in messages), each identified by
+/// its number.
 pub(crate) fn refuse_twice<'a>(
     table: &Path,
     what: &str,
@@ -211,7 +220,8 @@ pub(crate) fn refuse_twice<'a>(
     Ok(())
 }
 
-/// Refuses an image that lies beside the others and that no row of the telemetry names: its row is missing.
+/// Rejects an image in the directories of the named images that no row of the telemetry names: its row is
+/// missing.
 fn refuse_unnamed(table: &Path, frames: &[DatasetFrame]) -> Result<(), FileError> {
     let named: BTreeSet<&Path> = frames.iter().map(|frame| frame.path.as_path()).collect();
     let extension = |path: &Path| path.extension().map(|e| e.to_ascii_lowercase());
@@ -231,23 +241,23 @@ fn refuse_unnamed(table: &Path, frames: &[DatasetFrame]) -> Result<(), FileError
 }
 
 impl DatasetFrame {
-    /// Number of the frame.
+    /// Returns the number of the frame.
     pub fn number(&self) -> u64 {
         self.row.frame
     }
 
-    /// What the spacecraft tells about it.
+    /// Returns the telemetry of the frame.
     pub fn telemetry(&self) -> &Telemetry {
         &self.row.telemetry
     }
 
-    /// Where its image is.
+    /// Returns the path of the image.
     pub fn path(&self) -> &Path {
         &self.path
     }
 }
 
-/// The path of an image that a row of a table names, or what is wrong with it.
+/// Returns the path of an image that a table row names, or the reason why it is invalid.
 pub(crate) fn locate_image(
     directory: &Path,
     root: &Path,

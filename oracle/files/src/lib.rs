@@ -1,8 +1,9 @@
-//! Reading and writing: frames, tables, directories.
+//! Reading and writing of frames, tables and directories.
 //!
-//! Every reader takes files of anybody's making. It answers with a [`FileError`] that names the file, the place,
-//! the value and what was expected; it does not panic, and it allocates no more than the length of the file and
-//! [`contract::Camera::MAX_SIDE_PX`] justify. No writer overwrites.
+//! Every reader accepts files from untrusted sources. It returns a [`FileError`] that names the file, the
+//! location, the value and the expected value. It does not panic, and it allocates no more memory than the
+//! length of the file and [`contract::Camera::MAX_SIDE_PX`] justify. Writers do not overwrite files, except
+//! for [`WholeFile::replace`], which replaces an earlier file of the same kind.
 
 #![cfg_attr(
     not(test),

@@ -1,4 +1,4 @@
-//! Made by hand: samples, of frames of one day that are neighbours and all of them right, and reports.
+//! Hand-made test data: samples of consecutive, all correct frames of one day, and reports.
 use indexmap::IndexMap;
 use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 use toml::Table;
@@ -37,20 +37,20 @@ pub(super) fn unit(number: u64, verdict: &str, cause: Option<&str>) -> UnitVerdi
     }
 }
 
-/// A figure of which every unit has at most one value.
+/// A figure in which every unit has at most one value.
 pub(super) fn figure(name: &str, reduction: Reduction, values: &[Option<f64>]) -> FigureTerms {
     let term = |value: &Option<f64>| value.map_or(Term::default(), |sum| Term { sum, of: 1 });
     FigureTerms::from_terms(name, reduction, values.iter().map(term).collect())
 }
 
-/// As many frames as the figures have terms.
+/// A sample with one frame per term of the figures.
 pub(super) fn sample(figures: Vec<FigureTerms>) -> Sample {
     let count = figures.first().map_or(0, |figure| figure.terms.len() as u64);
     let units = (0..count).map(|number| unit(number, "correct", None)).collect();
     Sample { identity: identity(), table: UnitTable { units, figures } }
 }
 
-/// A report of figures with these verdicts, and with the same numbers whatever they are.
+/// A report of figures with the given verdicts; the numbers are the same for every verdict.
 pub(super) fn report(figures: &[(&str, FigureVerdict)]) -> GateReport {
     let of = |verdict| FigureReport {
         verdict,
@@ -105,7 +105,7 @@ pub(super) fn hits(bits: &[u8]) -> Sample {
     sample(vec![rate("hit_rate", bits)])
 }
 
-/// A baseline of which each frame is a block.
+/// A baseline with one frame per block.
 pub(super) fn baseline(sample: Sample) -> Baseline {
     Baseline::new(sample, "a test", Some(1)).unwrap()
 }
@@ -118,11 +118,11 @@ pub(super) fn refusal(before: Sample, after: &Sample, options: &CompareOptions) 
     compare(&baseline(before), after, options).unwrap_err().to_string()
 }
 
-/// Twelve frames, eight of them lost and one won.
+/// Twelve frames; from `BEFORE` to `AFTER` eight are lost and one is won.
 pub(super) const BEFORE: [u8; 12] = [1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 0];
 pub(super) const AFTER: [u8; 12] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 0];
 
-/// Units of groups of so many each, numbered through, all of them right.
+/// Units in groups of the given sizes, numbered consecutively, all correct.
 pub(super) fn days(groups: &[(&str, u64)]) -> UnitTable {
     let mut number = 0;
     let mut units = Vec::new();

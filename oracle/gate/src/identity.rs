@@ -1,11 +1,11 @@
-//! What was run, and whether two runs can be compared.
+//! Identity of a run, and the check whether two runs can be compared.
 use files::Failure;
 use run::world_by_name;
 use scenario::identity::first_difference;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-/// What a result is of.
+/// Kind of source that a result is read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SourceKind {
@@ -16,7 +16,7 @@ pub enum SourceKind {
 }
 
 impl SourceKind {
-    /// What its units are called, of a world.
+    /// Returns the plural name of the units in the given world.
     pub fn units(self, world: &str) -> String {
         match self {
             Self::Study => "cases".to_owned(),
@@ -25,7 +25,7 @@ impl SourceKind {
     }
 }
 
-/// All that figures depend on but the pipeline.
+/// Everything that the figures depend on, except the code of the pipeline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Identity {
@@ -35,49 +35,51 @@ pub struct Identity {
     pub world: String,
     /// Name of the scenario or study.
     pub name: String,
-    /// Its seed.
+    /// Seed of the run or study.
     pub seed: u64,
-    /// Version of Boresight that made it.
+    /// Version of Boresight that made the run or study.
     pub version: String,
-    /// SHA-256 of the star catalogue's source, where there are stars.
+    /// SHA-256 of the star catalogue's source; absent for scenarios without stars.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub catalog_sha256: Option<String>,
-    /// The stage whose result was replaced by the truth; absent in an honest run.
+    /// Stage whose result was replaced by the truth; absent if no stage was replaced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inject: Option<String>,
-    /// What drew the scene, where the fast renderer did not.
+    /// Renderer of the scene; absent for the fast renderer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub renderer: Option<String>,
-    /// The first frames, which count in no figure; absent when 0.
+    /// Number of first frames that no figure counts; absent when 0.
     #[serde(default, skip_serializing_if = "score::is_zero")]
     pub warm_up_frames: u64,
-    /// SHA-256 of the resolved scenario without its title, its seed and the pipeline's own parameters; the content of every file that it
-    /// reads stands in the place of its path.
+    /// SHA-256 of the resolved scenario without its title, its seed and the pipeline's parameters. The path
+    /// of every file that the scenario reads is replaced by the file's content.
     pub scenario_sha256: String,
-    /// SHA-256 of what is known of every frame besides its pixels: telemetry as a pipeline gets it, regions that were transmitted included,
-    /// and all files of the truth; of a study, of all seeds and drawn values.
+    /// For a run, SHA-256 of all data of the frames except their pixels: the telemetry as a pipeline receives
+    /// it, including the transmitted regions, and all files of the truth. For a study, SHA-256 of all seeds
+    /// and drawn values.
     pub frames_sha256: String,
-    /// The pipeline's own parameters.
+    /// Parameters of the pipeline.
     pub pipeline: Table,
-    /// The resolved scenario without them.
+    /// The resolved scenario without the pipeline's parameters.
     pub scenario: Table,
 }
 
-/// How a result and a baseline go together.
+/// Pairing of a result with a baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Pairing {
-    /// The frames are the same: each is its own control.
+    /// The frames are identical: each frame is its own control.
     Frames,
-    /// The scenario is the same, the noise is not: each block of the one is held against the same stretch of the other.
+    /// The scenario is the same, but the noise differs: each block of the result is compared with the same
+    /// time span of the baseline.
     Blocks,
 }
 
 impl Identity {
-    /// How `result` is to be held against this baseline.
+    /// Returns the pairing by which `result` is compared with this baseline.
     ///
     /// # Errors
-    /// [`Failure::Usage`] that names the first thing by which they differ and both its values.
+    /// [`Failure::Usage`] that names the first field in which they differ, with both values.
     pub fn pairing(&self, result: &Self) -> Result<Pairing, Failure> {
         let cannot = |field: &str, baseline: &dyn std::fmt::Display, result: &dyn std::fmt::Display| {
             Failure::Usage(format!(
@@ -204,7 +206,7 @@ mod tests {
                 Identity { warm_up_frames: 30, ..base.clone() },
                 ["`score.warm_up_frames`", "`0` in the baseline", "`30` in the result"],
             ),
-            // A digest that nothing in the scenario explains.
+            // A digest that differs although the scenarios are equal.
             (
                 Identity { scenario_sha256: "cd".to_owned(), ..base.clone() },
                 [
@@ -222,7 +224,7 @@ mod tests {
         assert!(message.contains("`study` in the baseline and `run` in the result"), "{message}");
         let named = Identity { name: "another".to_owned(), version: "0.2.0".to_owned(), ..base.clone() };
         assert_eq!(base.pairing(&named).unwrap(), Pairing::Frames);
-        // The same frames of another seed are no pairs: what the pipeline draws is not the same.
+        // Identical frames with different seeds are not paired: the random draws of the pipeline differ.
         assert_eq!(base.pairing(&Identity { seed: 2, ..base.clone() }).unwrap(), Pairing::Blocks);
     }
 

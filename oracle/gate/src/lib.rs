@@ -1,13 +1,16 @@
-//! The gate: whether a result is worse than a baseline, with statistics.
+//! The gate: tests statistically whether a result is worse than a baseline.
 //!
-//! A baseline is a scored run or study, unit by unit (frame, field or case), made by a deliberate command with a reason, small enough to
-//! be committed ([`Baseline`]). A result is the same scenario again, by a pipeline that may have changed ([`read_result`]). Where the frames
-//! are the same, which their digest proves, each is its own control; where only the seed differs, stretches of time are ([`Pairing`]).
-//! Anything else cannot be compared, and [`Identity::pairing`] says by what it differs.
+//! A baseline is a scored run or study, unit by unit (frame, field or case), made by a deliberate command
+//! with a reason, and small enough to be committed ([`Baseline`]). A result is a repetition of the same
+//! scenario by a pipeline that may have changed ([`read_result`]). If the frames are the same, which their
+//! digest proves, each frame is its own control; if only the seed differs, time spans are compared
+//! ([`Pairing`]). No other pair of runs can be compared; the error of [`Identity::pairing`] names the
+//! difference.
 //!
-//! Frames of a sequence are not independent. So both are cut into blocks longer than what is remembered (`blocks`), each figure is reduced
-//! to what each block adds to the difference (`effects`), and those are tested together by exchanging blocks
-//! ([`statistics::joint_test`]). [`compare`] does it all; [`GateReport`] is what it found.
+//! Frames of a sequence are not independent. Therefore baseline and result are cut into blocks longer than
+//! the autocorrelation time (`blocks`), each figure is reduced to the contribution of each block to the
+//! difference (`effects`), and the contributions of all figures are tested jointly by exchanging blocks
+//! ([`statistics::joint_test`]). [`compare`] performs all steps and returns a [`GateReport`].
 
 #![cfg_attr(
     not(test),

@@ -1,4 +1,4 @@
-//! A result: a run directory or a study's, read unit by unit.
+//! Reads a run directory or a study directory unit by unit.
 
 use std::path::Path;
 
@@ -16,11 +16,12 @@ use toml::Table;
 use crate::identity::{Identity, SourceKind};
 use crate::sample::Sample;
 
-/// Reads a run directory (its measurements are scored anew, centroids with `attitude` in place of what the run's scenario says), or the
-/// directory of a study that is complete.
+/// Reads a run directory, or the directory of a complete study. The measurements of a run are scored anew,
+/// centroids with `attitude` instead of the attitude that the run's scenario names.
 ///
 /// # Errors
-/// A [`Failure`] for a directory that is neither, files that cannot be read, or an attitude for a study, whose cases are scored already.
+/// A [`Failure`] if the directory is neither a run nor a complete study, if files cannot be read, or if an
+/// attitude is given for a study, whose cases are already scored.
 pub fn read_result(directory: &Path, attitude: Option<AttitudeChoice>) -> Result<Sample, Failure> {
     let (run_file, cases) = (directory.join("run.toml"), directory.join("cases.parquet"));
     let sample = if run_file.is_file() {
@@ -43,7 +44,7 @@ pub fn read_result(directory: &Path, attitude: Option<AttitudeChoice>) -> Result
     Ok(sample)
 }
 
-/// The resolved scenario of a run, as its file holds it.
+/// Returns the resolved scenario of a run from its `run.toml`.
 fn scenario_of(path: &Path, text: &str) -> Result<Table, Failure> {
     let mut file: Table = toml_file::parse(path, text)?;
     match file.remove("scenario") {
@@ -70,7 +71,8 @@ fn run(directory: &Path, path: &Path, attitude: Option<AttitudeChoice>) -> Resul
         source,
     })?;
     let mut scenario_table = scenario_of(path, &text)?;
-    // How it is scored is compared figure by figure: those that do not depend on it may be.
+    // The scoring settings are compared figure by figure: figures that do not depend on them remain
+    // comparable.
     let score = scenario_table.remove("score");
     let warm_up = score.as_ref().and_then(|score| score.get("warm_up_frames")?.as_integer());
     let split = split(world.code(), scenario_table, &files)?;
@@ -92,7 +94,7 @@ fn run(directory: &Path, path: &Path, attitude: Option<AttitudeChoice>) -> Resul
     Ok(Sample::new(identity, scored.units()))
 }
 
-/// The names of all files of the truth, in their order, each with the digest of its content.
+/// Returns the sorted names of all truth files, each with the digest of its content.
 fn truth_digests(folder: &Path) -> Result<Vec<(String, String)>, Failure> {
     let unreadable = |source| FileError::io(folder, "read", source);
     let mut digests = Vec::new();
@@ -135,7 +137,7 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         catalog_sha256: None,
         inject: None,
         renderer: None,
-        // Those of a study are in its definition or its scenario.
+        // The warm-up frames of a study are in its definition or its scenario.
         warm_up_frames: 0,
         scenario_sha256: sha256_hex(&text),
         frames_sha256: digest.finish(),
@@ -146,8 +148,8 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
     Ok(Sample::new(identity, units_of_cases(&table, attitude.as_ref())))
 }
 
-/// The cases of a study as units: rates over all frames of all cases, amounts as means over the cases, as the study sums them up. Cases
-/// of one draw, at the points of a sweep, are a group.
+/// Converts the cases of a study to units, with the study's own reductions: rates count all frames of all
+/// cases, amounts are means over the cases. Cases of one draw, at the points of a sweep, form a group.
 #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
 fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
     let figure = |(index, name): (usize, &String)| {
@@ -175,7 +177,8 @@ fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
     UnitTable { units: units.collect(), figures: table.figures.iter().enumerate().map(figure).collect() }
 }
 
-/// The digest of what is known of frames. Floating-point numbers are written so that they read back to the same bits.
+/// Digest of the data of all frames. Floating-point numbers are written with enough digits to restore the
+/// same bits.
 #[derive(Default)]
 struct FrameDigest(Sha256);
 
@@ -193,7 +196,8 @@ impl FrameDigest {
 mod tests {
     use super::*;
 
-    /// A rate counts all its frames, an amount has one value a case, and the verdict of a case is how many of its frames were right.
+    /// A rate counts all its frames, an amount has one value per case, and the verdict of a case is its
+    /// number of correct frames.
     #[test]
     fn the_cases_of_a_study_are_units() {
         let figure = |value, count, of| CaseFigure { value, count, of };

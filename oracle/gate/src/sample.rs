@@ -1,19 +1,20 @@
-//! What was run, and what came of each unit: of a result or of a baseline.
+//! Identity and unit table of a result or a baseline.
 use score::{Reduction, UnitTable};
 
 use crate::identity::Identity;
 
-/// A result or a baseline: what was run, and what came of each unit.
+/// A result or a baseline: its identity and the results of its units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
-    /// What was run.
+    /// Identity of the run or study.
     pub identity: Identity,
-    /// What came of it.
+    /// Verdicts and figures, unit by unit.
     pub table: UnitTable,
 }
 
 impl Sample {
-    /// A sample, its terms rounded as baselines keep them: what did not change differs by nothing.
+    /// Creates a sample with its terms rounded as in a baseline file, so that unchanged values differ by
+    /// exactly zero.
     pub fn new(identity: Identity, mut table: UnitTable) -> Self {
         for figure in &mut table.figures {
             let is_rate = figure.reduction == Reduction::Rate;
@@ -25,11 +26,13 @@ impl Sample {
     }
 }
 
-/// To twelve binary digits, four decimal ones: forty times finer than the tolerance of an amount, and half as long in a file.
+/// Rounds to twelve binary digits (four decimal digits). This is forty times finer than the tolerance of an
+/// amount, and takes half the space in a file.
 fn rounded(value: f32) -> f32 {
     const DROPPED: u32 = 12;
     let bits = value.to_bits();
-    // Half of the last digit kept is added, and what is below it cut off; a carry into the exponent is the next power of two.
+    // Adds half of the last kept digit and truncates the digits below. A carry into the exponent gives the
+    // next power of two.
     let up = bits.saturating_add(1 << (DROPPED - 1)) >> DROPPED << DROPPED;
     let rounded = f32::from_bits(up);
     if rounded.is_finite() { rounded } else { value }
@@ -40,7 +43,7 @@ mod tests {
     use super::*;
     use crate::hand_made::{figure, identity};
 
-    /// Of numbers from 1 to 2 the last digit kept is 2⁻¹¹.
+    /// For numbers from 1 to 2 the last kept digit is 2⁻¹¹.
     #[test]
     fn rounding_goes_to_the_nearest_number_that_is_kept() {
         let digit = 1.0 / 2048.0_f32;
@@ -50,7 +53,7 @@ mod tests {
             assert_eq!(rounded(1.0 + digits * digit), 1.0 + kept * digit, "{digits} digits");
             assert_eq!(rounded(-1.0 - digits * digit), -1.0 - kept * digit, "{digits} digits");
         }
-        // The next power of two would be infinite.
+        // Rounded up, the value would be the next power of two, which is infinite.
         assert_eq!(rounded(f32::MAX), f32::MAX);
     }
 
@@ -62,7 +65,7 @@ mod tests {
         let table = UnitTable { units: Vec::new(), figures: vec![rate.clone(), amount] };
         let sample = Sample::new(identity(), table);
         assert_eq!(sample.table.figures[0], rate);
-        // 4097 lies half way between two numbers that are kept, and goes away from nought.
+        // 4097 is halfway between two representable numbers and is rounded away from zero.
         let kept = figure("ra_rms_deg", Reduction::Rms, &[Some(1.0), Some(4098.0), None]);
         assert_eq!(sample.table.figures[1], kept);
     }

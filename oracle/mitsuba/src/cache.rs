@@ -1,4 +1,4 @@
-//! Images by what they are images of.
+//! Cache of rendered images, named by the digest of their inputs.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -11,24 +11,25 @@ use sim::vector::RadianceImage;
 
 use super::{MitsubaError, VARIANT, VERSION};
 
-/// How the names of folders for renderings begin.
+/// Prefix of the names of rendering directories.
 const RENDER: &str = "render-";
-/// The file in such a folder that its process locks.
+/// Name of the file in a rendering directory that the process holds locked.
 const LOCK: &str = "in-use";
 
-/// A folder of images. Several processes may use it at once: an image gets its name when it is complete, and two that
-/// make the same one make the same bits.
+/// A directory of images that several processes may use at once. An image receives its name when it is
+/// complete, and two processes that render the same image produce the same bits.
 #[derive(Debug, Clone)]
 pub(super) struct Cache {
     folder: PathBuf,
 }
 
 impl Cache {
-    /// The folder, made if need be; without one asked for, `boresight/mitsuba` where the user keeps caches
-    /// (`XDG_CACHE_HOME`, `LOCALAPPDATA`, or `.cache` in `HOME`), and without that among temporary files.
+    /// Opens the directory and creates it if necessary. Without `asked_for` it is `boresight/mitsuba` in the
+    /// user's cache directory (`XDG_CACHE_HOME`, `LOCALAPPDATA`, or `.cache` in `HOME`), or in the directory
+    /// for temporary files if none of these is set.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be made.
+    /// [`FileError::Io`] when the directory cannot be created.
     pub(super) fn open(asked_for: Option<&Path>) -> Result<Self, FileError> {
         let folder = asked_for.map_or_else(user_cache_folder, Path::to_owned);
         std::fs::create_dir_all(&folder).map_err(|source| FileError::Io {
@@ -39,11 +40,11 @@ impl Cache {
         Ok(Self { folder })
     }
 
-    /// Where the image of a scene is, once it is made: named by the SHA-256 of all that it depends on.
+    /// Path of the finished image of a scene, named by the SHA-256 of everything that the image depends on.
     pub(super) fn entry_path(&self, scene: &SceneFiles) -> PathBuf {
         let mut hash = Sha256::new();
         let mut part = |bytes: &[u8]| {
-            // With its length before it, no part can pass for the end of the one before.
+            // The length before each part keeps the boundaries of the parts unambiguous.
             hash.update((bytes.len() as u64).to_le_bytes());
             hash.update(bytes);
         };
@@ -57,15 +58,16 @@ impl Cache {
         self.folder.join(hex(hash.finalize()) + ".exr")
     }
 
-    /// A fresh folder beside the images, gone when it is dropped. Those of processes that were killed are removed first.
+    /// Creates a new directory beside the images, which is removed when it is dropped. Directories of killed
+    /// processes are removed first.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be made.
+    /// [`FileError::Io`] when the directory cannot be created.
     pub(super) fn scratch_folder(&self) -> Result<ScratchFolder, FileError> {
         let io = |source| FileError::Io { path: self.folder.clone(), doing: "create a folder in", source };
         self.remove_abandoned();
         let folder = tempfile::Builder::new().prefix(RENDER).tempdir_in(&self.folder).map_err(io)?;
-        // Other processes see the file when it is locked.
+        // The file is locked before other processes can find it under its final name.
         let preliminary = folder.path().join("locking");
         let lock = File::create(&preliminary).map_err(io)?;
         lock.try_lock().map_err(|error| io(error.into()))?;
@@ -73,7 +75,8 @@ impl Cache {
         Ok(ScratchFolder { folder, _lock: lock })
     }
 
-    /// Removes the folders that no process holds the lock of. That it cannot be done is no matter: nothing reads them.
+    /// Removes the rendering directories that no process has locked. A failure to remove them is ignored: no
+    /// process reads them.
     fn remove_abandoned(&self) {
         let entries = std::fs::read_dir(&self.folder).into_iter().flatten().flatten();
         for path in entries.map(|entry| entry.path()) {
@@ -86,22 +89,23 @@ impl Cache {
     }
 }
 
-/// A folder for one rendering. The lock, which ends with the process, tells other processes that it is in use.
+/// A directory for one rendering. Its lock, which ends with the process, marks the directory as in use for
+/// other processes.
 pub(super) struct ScratchFolder {
-    // Dropped first: the lock holds until the folder is gone.
+    // Dropped first: the lock is held until the directory is removed.
     folder: tempfile::TempDir,
     _lock: File,
 }
 
 impl ScratchFolder {
-    /// Where it is.
+    /// Path of the directory.
     pub(super) fn path(&self) -> &Path {
         self.folder.path()
     }
 }
 
-/// Reads an image and judges it: the size of the crop, every radiance finite and not negative. The exit status does not
-/// say so: a reflectance without a value renders with success.
+/// Reads an image and validates it: its size must be that of the crop, and every radiance finite and not
+/// negative. The exit status does not suffice: a scene with an undefined reflectance renders with success.
 pub(super) fn read_validated(
     path: &Path,
     scene: &SceneFiles,

@@ -1,4 +1,4 @@
-//! Finding Mitsuba, and seeing that it is the right one.
+//! Search for Mitsuba, and check of its version.
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -9,7 +9,7 @@ use files::FileError;
 use super::process::{self, ProcessEnd};
 use super::{MitsubaError, VARIANT, VERSION};
 
-/// The environment's name for the command of Mitsuba.
+/// Environment variable that names the command of Mitsuba.
 const VARIABLE: &str = "BORESIGHT_MITSUBA";
 
 /// A command line that starts Mitsuba.
@@ -19,11 +19,12 @@ pub(super) struct MitsubaCommand {
 }
 
 impl MitsubaCommand {
-    /// The command asked for; otherwise that of `BORESIGHT_MITSUBA`; otherwise `mitsuba` on the PATH; otherwise `uvx`,
-    /// which gets the right version.
+    /// Finds the command: `asked_for`; otherwise that of `BORESIGHT_MITSUBA`; otherwise `mitsuba` on the
+    /// PATH; otherwise `uvx`, which downloads the right version.
     ///
     /// # Errors
-    /// [`MitsubaError::NoCommand`] for a text that is no command, [`MitsubaError::Missing`] when there is none of them.
+    /// [`MitsubaError::NoCommand`] for a text that is not a command, [`MitsubaError::Missing`] when none of
+    /// these exists.
     pub(super) fn find(asked_for: Option<&str>) -> Result<Self, MitsubaError> {
         let variable = std::env::var(VARIABLE).ok();
         Self::choose(asked_for, variable.as_deref(), std::env::var_os("PATH").as_deref())
@@ -51,12 +52,12 @@ impl MitsubaCommand {
         Err(MitsubaError::Missing)
     }
 
-    /// The command line as one text.
+    /// Returns the command line as one string.
     pub(super) fn text(&self) -> String {
         self.words.join(" ")
     }
 
-    /// The command, in a folder, without arguments yet.
+    /// Returns the command with `folder` as working directory, without further arguments.
     pub(super) fn in_folder(&self, folder: &Path) -> Command {
         let mut words = self.words.iter();
         let mut command = Command::new(words.next().map_or("", String::as_str));
@@ -64,7 +65,8 @@ impl MitsubaCommand {
         command
     }
 
-    /// Starts it with arguments in a folder; says how it ended and what it wrote (the file).
+    /// Runs Mitsuba with `arguments` in `folder`; returns how the process ended and the log file with its
+    /// output.
     pub(super) fn run(
         &self,
         arguments: &[&str],
@@ -83,10 +85,11 @@ impl MitsubaCommand {
         Ok((end, log))
     }
 
-    /// Asks it for its version and variants.
+    /// Queries the version and the variants of Mitsuba.
     ///
     /// # Errors
-    /// [`MitsubaError::WrongVersion`], [`MitsubaError::VariantMissing`], and those of starting it.
+    /// [`MitsubaError::WrongVersion`], [`MitsubaError::VariantMissing`], and the errors of starting the
+    /// command.
     pub(super) fn check(&self, folder: &Path, limit: Duration) -> Result<(), MitsubaError> {
         let (end, log) = self.run(&["--help"], folder, limit)?;
         if let ProcessEnd::TimeLimit = end {

@@ -1,4 +1,4 @@
-//! Why Mitsuba gives no image.
+//! Reasons why Mitsuba provides no image.
 use std::io;
 
 use files::{Failure, FileError};
@@ -6,85 +6,85 @@ use thiserror::Error;
 
 use super::{VARIANT, VERSION};
 
-/// Why Mitsuba gives no image.
+/// Reason why Mitsuba provides no image.
 #[derive(Debug, Error)]
 pub enum MitsubaError {
-    /// There is no Mitsuba.
+    /// Mitsuba is not installed.
     #[error(
         "Mitsuba is not there: neither `mitsuba` nor `uvx` is on the PATH. Get it with `pip install \
          mitsuba=={VERSION}`, or name its command with --mitsuba or in BORESIGHT_MITSUBA"
     )]
     Missing,
-    /// A command that was asked for and is not one.
+    /// The requested command is not a valid command line.
     #[error("{origin} is `{text}`, expected a command, as `/opt/venv/bin/mitsuba`")]
     NoCommand {
-        /// Where it comes from: `--mitsuba` or `BORESIGHT_MITSUBA`.
+        /// Origin of the text: `--mitsuba` or `BORESIGHT_MITSUBA`.
         origin: &'static str,
-        /// The text.
+        /// The invalid text.
         text: String,
     },
-    /// A command that does not start.
+    /// The command cannot be started.
     #[error("`{command}`, the command of Mitsuba, cannot be started: {source}")]
     Start {
-        /// The command.
+        /// Command line that was to be started.
         command: String,
-        /// The system's reason.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// Another version, or another program.
+    /// The command starts another version, or another program.
     #[error("`{command}` is {found}, expected Mitsuba {VERSION}: `pip install mitsuba=={VERSION}`")]
     WrongVersion {
-        /// The command.
+        /// Command line of the program that was found.
         command: String,
-        /// What it says it is.
+        /// Version or program that was found.
         found: String,
     },
-    /// A Mitsuba without the variant.
+    /// Mitsuba lacks the variant.
     #[error("`{command}` has no variant {VARIANT}; the one of `pip install mitsuba=={VERSION}` has it")]
     VariantMissing {
-        /// The command.
+        /// Command line of Mitsuba.
         command: String,
     },
-    /// It took too long, and was ended with all its processes.
+    /// Mitsuba exceeded the time limit and was killed with all its processes.
     #[error("Mitsuba was ended after {limit_s} s while it was {doing}; its last words: {words}")]
     TimeLimit {
-        /// The limit.
+        /// Time limit, s.
         limit_s: f64,
-        /// What it did.
+        /// Step during which the limit was exceeded.
         doing: String,
-        /// The end of what it wrote.
+        /// Last lines of Mitsuba's output.
         words: String,
     },
-    /// It refused the scene.
+    /// Mitsuba refused the scene.
     #[error("Mitsuba refused the scene while {doing}: {words}")]
     Scene {
-        /// What it did.
+        /// Step during which the scene was refused.
         doing: String,
-        /// The end of what it wrote.
+        /// Last lines of Mitsuba's output.
         words: String,
     },
-    /// It failed in any other way.
+    /// Mitsuba failed for any other reason.
     #[error("Mitsuba ended with {status} while {doing}; its last words: {words}")]
     Failed {
-        /// How it ended.
+        /// Exit status of Mitsuba.
         status: String,
-        /// What it did.
+        /// Step during which Mitsuba failed.
         doing: String,
-        /// The end of what it wrote.
+        /// Last lines of Mitsuba's output.
         words: String,
     },
-    /// It says that it is done, and the image is not one of the scene.
+    /// Mitsuba reports success, but its image does not fit the scene.
     #[error("Mitsuba's image of the layer {layer} {problem}")]
     Image {
-        /// Which kind of light.
+        /// Name of the light layer.
         layer: &'static str,
-        /// What is wrong.
+        /// Description of the fault.
         problem: String,
     },
-    /// A scene that cannot be told to Mitsuba.
+    /// The scene cannot be described to Mitsuba.
     #[error(transparent)]
     Simulation(#[from] sim::SimError),
-    /// A file that cannot be read or written.
+    /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
 }

@@ -1,6 +1,6 @@
-//! Mitsuba 3, the judge of the fast renderer: finds it, runs it, and keeps what it rendered.
+//! Mitsuba 3, the reference for the fast renderer: finds Mitsuba, runs it, and caches its images.
 //!
-//! Mitsuba is a program of its own (`pip install mitsuba==3.9.1`). What it is told is made by [`sim::mitsuba`].
+//! Mitsuba is an external program (`pip install mitsuba==3.9.1`). Its input is made by [`sim::mitsuba`].
 
 #![cfg_attr(
     not(test),
@@ -35,49 +35,51 @@ use sim::scene::docking::{DockingScene, Lighting};
 use sim::vector::RadianceImage;
 pub use version::{VARIANT, VERSION};
 
-/// Threads of a render. With one or two Mitsuba can stop for ever while it writes the image; the bits do not depend on
-/// their number.
+/// Number of threads per rendering. With one or two threads Mitsuba can hang while it writes the image. The
+/// bits of the image do not depend on the number of threads.
 const THREADS: &str = "4";
 
-/// Exit status by which Mitsuba refuses a scene.
+/// Exit status with which Mitsuba refuses a scene.
 const SCENE_REFUSED: i32 = 255;
 
-/// How Mitsuba is to be used.
+/// Options for the use of Mitsuba.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MitsubaOptions {
-    /// Its command, as a shell would split it; `None`: that of `BORESIGHT_MITSUBA`, or `mitsuba`, or `uvx`.
+    /// Command of Mitsuba, split as by a shell; `None`: that of `BORESIGHT_MITSUBA`, or `mitsuba`, or `uvx`.
     pub command: Option<String>,
-    /// Folder of finished images; `None`: the user's cache.
+    /// Directory of finished images; `None`: the user's cache directory.
     pub cache: Option<PathBuf>,
-    /// Longest time that one layer of an image may take, s, greater than 0.
+    /// Time limit per layer of an image, s, greater than 0.
     pub time_limit_s: f64,
-    /// Rays a pixel, and the part of the image.
+    /// Rays per pixel, and the part of the image.
     pub settings: Settings,
 }
 
 impl Default for MitsubaOptions {
-    /// Found by itself, the user's cache, 15 minutes a layer, the whole image with 256 rays a pixel.
+    /// The command is found automatically; the user's cache, 15 minutes per layer, the whole image with 256
+    /// rays per pixel.
     fn default() -> Self {
         Self { command: None, cache: None, time_limit_s: 900.0, settings: Settings::default() }
     }
 }
 
-/// Renders docking scenes with Mitsuba. An image that was rendered before, by any process, is taken from the cache, and
-/// Mitsuba need not be there for it.
+/// Renders docking scenes with Mitsuba. Images that any process has rendered before are read from the cache,
+/// and do not require Mitsuba.
 #[derive(Debug)]
 pub struct MitsubaRenderer {
     options: MitsubaOptions,
     limit: Duration,
     cache: Cache,
-    /// Found and of the right version.
+    /// The command, once it is found and its version checked.
     command: OnceLock<MitsubaCommand>,
 }
 
 impl MitsubaRenderer {
-    /// Opens the cache; Mitsuba is looked for when it is needed.
+    /// Opens the cache. Mitsuba is searched for when it is first needed.
     ///
     /// # Errors
-    /// [`MitsubaError::Simulation`] for a time limit that is none, [`MitsubaError::File`] for a cache that cannot be made.
+    /// [`MitsubaError::Simulation`] for an invalid time limit, [`MitsubaError::File`] for a cache that cannot
+    /// be created.
     pub fn new(options: MitsubaOptions) -> Result<Self, MitsubaError> {
         let limit = Duration::try_from_secs_f64(options.time_limit_s).ok().filter(|limit| !limit.is_zero());
         let limit = limit.ok_or_else(|| {
@@ -88,11 +90,12 @@ impl MitsubaRenderer {
         Ok(Self { options, limit, cache, command: OnceLock::new() })
     }
 
-    /// Mean radiance over each pixel of the camera (or of the crop), as [`sim::vector::Drawer::draw`] gives it.
+    /// Returns the mean radiance over each pixel of the camera (or of the crop), in the form of
+    /// [`sim::vector::Drawer::draw`].
     ///
     /// # Errors
-    /// A [`MitsubaError`]: Mitsuba is missing or another version, it fails or takes too long, its image is none; or a
-    /// scene or a camera that it cannot be told.
+    /// A [`MitsubaError`]: Mitsuba is missing or of another version, it fails or exceeds the time limit, its
+    /// image is invalid, or the scene or the camera cannot be described to it.
     pub fn radiance(
         &self,
         scene: &DockingScene,
@@ -118,7 +121,7 @@ impl MitsubaRenderer {
 
     fn layer(&self, scene: &SceneFiles, layer: &'static str) -> Result<RadianceImage, MitsubaError> {
         let entry_path = self.cache.entry_path(scene);
-        // A file that is there and damaged is made anew.
+        // A damaged file in the cache is rendered anew.
         if let Ok(image) = read_validated(&entry_path, scene, layer) {
             return Ok(image);
         }

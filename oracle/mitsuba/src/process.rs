@@ -1,28 +1,29 @@
-//! A program that runs to its end within a time limit, with all that it starts.
+//! Runs a program to its end, within a time limit, together with the processes it starts.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// How a program ended.
+/// End of a program.
 pub(super) enum ProcessEnd {
-    /// By itself, with this status.
+    /// Exited, with this status.
     Exited(ExitStatus),
-    /// It did not, and was killed.
+    /// Exceeded the time limit, and was killed.
     TimeLimit,
 }
 
-/// Pause between two looks at whether it has ended: nothing beside the seconds that it runs.
+/// Interval at which the state of the process is polled; negligible against its run time of seconds.
 const POLL: Duration = Duration::from_millis(10);
 
-/// Runs a command; both its outputs go to `log`.
+/// Runs a command; its standard output and standard error go to `log`.
 ///
 /// # Errors
-/// That of the operating system, when it cannot be started.
+/// The error of the operating system, when the command cannot be started.
 pub(super) fn run(command: &mut Command, log: &File, limit: Duration) -> io::Result<ProcessEnd> {
     command.stdin(Stdio::null()).stdout(log.try_clone()?).stderr(log.try_clone()?);
-    // The command is often a wrapper around the program: a group of its own, so that both end together.
+    // The command is often a wrapper around the program: a separate process group ensures that both are
+    // killed together.
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(command, 0);
     let mut group = ProcessGroup(command.spawn()?);
@@ -38,17 +39,17 @@ pub(super) fn run(command: &mut Command, log: &File, limit: Duration) -> io::Res
     }
 }
 
-/// A child that is ended with its whole group, whatever way it is left.
+/// A child process that is killed with its whole group when it is dropped.
 struct ProcessGroup(Child);
 
 impl Drop for ProcessGroup {
     fn drop(&mut self) {
-        // A child that was waited for has given its number back.
+        // A child that has been waited for has released its process id.
         if matches!(self.0.try_wait(), Ok(None)) {
             #[cfg(unix)]
             {
                 use rustix::process::{Pid, Signal, kill_process_group};
-                // The only failure is a group that is gone already.
+                // The only possible failure is a group that has already ended.
                 let _ = kill_process_group(Pid::from_child(&self.0), Signal::KILL);
             }
             #[cfg(not(unix))]
@@ -58,7 +59,7 @@ impl Drop for ProcessGroup {
     }
 }
 
-/// All that a program wrote, as far as `limit` bytes from its end, without the colours of a terminal.
+/// Returns the output of a program, at most its last `limit` bytes, without terminal colour codes.
 pub(super) fn written(mut log: &File, limit: u64) -> io::Result<String> {
     let length = log.seek(SeekFrom::End(0))?;
     log.seek(SeekFrom::Start(length.saturating_sub(limit)))?;
@@ -73,7 +74,7 @@ pub(super) fn written(mut log: &File, limit: u64) -> io::Result<String> {
     Ok(plain)
 }
 
-/// The last lines of it that say something, in one.
+/// Returns the last non-empty lines of the output, joined into one.
 pub(super) fn last_output(log: &File) -> String {
     let Ok(text) = written(log, 4096) else { return "unreadable".to_owned() };
     let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();

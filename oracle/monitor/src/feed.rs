@@ -1,4 +1,4 @@
-//! Where frames come from: a live run, or a run directory.
+//! Sources of frames: a live run, or a run directory.
 use std::any::Any;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -13,13 +13,13 @@ use crate::ground::GroundTrack;
 use crate::session::picture::Stretch;
 use crate::session::{PictureOrder, Session};
 
-/// Most frames of a monitored run: what is known of each is kept, some kilobytes.
+/// Maximum number of frames of a monitored run: the data of each are kept, some kilobytes.
 pub const MAX_FRAMES: u64 = 50_000;
 
-/// Takes a scenario if it is of a certain world.
+/// Takes a scenario if it belongs to a certain world.
 type WorldCast = fn(Box<dyn Any>) -> Result<Box<dyn MonitoredWorld>, Box<dyn Any>>;
 
-/// The worlds that the page shows: one line each.
+/// Worlds that the page shows, one line each.
 const WORLDS: [(&str, WorldCast); 2] = [
     (FarRangeMission::CODE, cast_world::<FarRangeMission>),
     (DockingMission::CODE, cast_world::<DockingMission>),
@@ -33,16 +33,16 @@ fn cast_world<W: MonitoredWorld + 'static>(
 
 /// A scenario of a world that the page shows.
 pub(super) trait MonitoredWorld: Send + Sync {
-    /// What lives as long as the monitor.
+    /// Returns the data that live as long as the monitor.
     fn context(&self, measurements: &Measurements) -> Result<MonitorContext, Failure>;
 
-    /// The moment of a frame; `None` where there is no such frame.
+    /// Returns the time of a frame, or `None` if the frame does not exist.
     fn time(&self, frame: u64) -> Option<Epoch>;
 
-    /// What the page is told once: of the session, and of the scene.
+    /// Returns the data that the page receives once: those of the session, and those of the scene.
     fn overview(&self, measurements: &Measurements, context: &MonitorContext) -> Result<[Value; 2], Failure>;
 
-    /// Processes or reads frame after frame, as far as they are wanted.
+    /// Processes or reads consecutive frames, up to the session's goal.
     fn feed(
         &self,
         measurements: &Measurements,
@@ -50,22 +50,22 @@ pub(super) trait MonitoredWorld: Send + Sync {
         session: &Session,
     ) -> Result<(), Failure>;
 
-    /// Has `serve` draw frames again, as PNG.
+    /// Draws frames again by means of `serve`, as grey bytes.
     fn paint(&self, context: &MonitorContext, serve: Serve<'_>) -> Result<(), Failure>;
 }
 
-/// Draws one picture after the other by a function, as they are ordered.
+/// Calls a drawing function for each ordered picture in turn.
 pub(super) type Serve<'a> =
     &'a dyn Fn(&mut dyn FnMut(&PictureOrder) -> Result<Bytes, Failure>) -> Result<(), Failure>;
 
-/// What is monitored.
+/// A monitored scenario with its measurements.
 pub struct Feed {
     pub(super) world: Box<dyn MonitoredWorld>,
     pub(super) measurements: Measurements,
 }
 
 impl Feed {
-    /// A run that `measurements` are made or were made of.
+    /// Creates the feed of a run, with `measurements` that are being made or were made.
     ///
     /// # Errors
     /// [`Failure::Usage`] for a world that the page does not show.
@@ -82,23 +82,23 @@ impl Feed {
     }
 }
 
-/// Who measures.
+/// Source of the measurements.
 pub enum Measurements {
-    /// A pipeline, now, on frames that so many threads make.
+    /// A pipeline that runs now, on frames from several threads.
     Live {
-        /// Builds the pipeline.
+        /// Factory of the pipeline.
         factory: AnyFactory,
-        /// The frames.
+        /// Range of frames.
         frames: Range<u64>,
-        /// Threads.
+        /// Number of threads.
         jobs: usize,
     },
-    /// A pipeline did, in a run whose files are in this directory.
+    /// An earlier run, whose files are in this directory.
     Replay(PathBuf),
 }
 
 impl Measurements {
-    /// The word that the page has for it.
+    /// Returns the name of the mode on the page.
     pub(super) fn mode(&self) -> &'static str {
         match self {
             Self::Live { .. } => "live",
@@ -107,14 +107,15 @@ impl Measurements {
     }
 }
 
-/// What a feed needs that lives as long as the monitor.
+/// Data of a feed that live as long as the monitor.
 pub(super) struct MonitorContext {
     pub(super) ground: Option<GroundTrack>,
     pub(super) stretch: Stretch,
     pub(super) frames: Range<u64>,
 }
 
-/// The frames of a live run, or those of a run directory, which must be without gaps: a run's are.
+/// Returns the frames of a live run, or those of a run directory. The frames of a directory must be
+/// consecutive, as those of a run are.
 pub(super) fn frames<R: Row>(measurements: &Measurements, table: &str) -> Result<Range<u64>, Failure> {
     let frames = match measurements {
         Measurements::Live { frames, .. } => frames.clone(),
@@ -134,7 +135,7 @@ pub(super) fn frames<R: Row>(measurements: &Measurements, table: &str) -> Result
     Ok(frames)
 }
 
-/// First and last frame of a table of the truth.
+/// Returns the frame range of a truth table.
 fn numbers<R: Row>(path: &Path) -> Result<Range<u64>, Failure> {
     let mut frames: Option<Range<u64>> = None;
     for row in TableReader::<R>::open(path)? {
@@ -156,7 +157,7 @@ fn numbers<R: Row>(path: &Path) -> Result<Range<u64>, Failure> {
     frames.ok_or_else(|| Failure::Usage(format!("{}: no frame, expected one or more", path.display())))
 }
 
-/// A file, if it is there.
+/// Returns the path if the file exists.
 pub(super) fn optional(path: &Path) -> Option<PathBuf> {
     path.is_file().then(|| path.to_owned())
 }

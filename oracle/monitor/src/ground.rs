@@ -1,4 +1,4 @@
-//! Where on the Earth the spacecraft and the Sun are overhead.
+//! Sub-satellite and subsolar points on the Earth.
 
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
@@ -9,25 +9,26 @@ use crate::report::Ground;
 
 /// Inclination of the station's orbit, degrees: that of the International Space Station.
 const STATION_INCLINATION_DEG: f64 = 51.6;
-/// Radius of the station's orbit, km: the height of early 2004, about 370 km. Only the period follows from it.
+/// Radius of the station's orbit, km, for the altitude in early 2004, about 370 km. Only the orbital period
+/// depends on it.
 const STATION_RADIUS_KM: f64 = 6748.0;
 /// GM of the Earth, km³/s².
 const GM_KM3_S2: f64 = sim::truth::EARTH_GM_KM3_S2;
 
-/// How far the drawn track reaches back and forth, s, and its step.
+/// Time span of the drawn track before and after a frame, s, and its step, s.
 const REACH_S: f64 = 3000.0;
 const STEP_S: f64 = 60.0;
 
-/// The motion of a spacecraft over the ground.
+/// Source of a spacecraft's ground track.
 #[derive(Debug, Clone)]
 pub(super) enum GroundTrack {
-    /// That of the scenario's chaser.
+    /// Trajectory of the scenario's chaser.
     Chaser(Box<Trajectory>),
     /// A circular orbit.
     Circular(CircularOrbit),
 }
 
-/// A circular orbit: at `epoch` in the direction `radial`, moving along `ahead`.
+/// A circular orbit: at `epoch` the spacecraft is in the direction `radial` and moves along `ahead`.
 #[derive(Debug, Clone)]
 pub(super) struct CircularOrbit {
     epoch: Epoch,
@@ -37,10 +38,13 @@ pub(super) struct CircularOrbit {
 }
 
 impl GroundTrack {
-    /// The orbit of a docking scenario, which names none: the circular one of 51.6° and some 370 km on which the Sun stands over
-    /// the station, at the beginning, where the scene has it. The target is at the aft end: y3 points back along the track,
-    /// y2 to the zenith. Of the two nodes that do, the earlier one in right ascension is taken.
-    /// `None` on the night side, whose scene has no Sun, and where no such orbit has it there.
+    /// Returns an orbit for a docking scenario, which defines none: a circular orbit with an inclination of
+    /// 51.6° and an altitude of about 370 km, on which the direction of the Sun at the start of the scenario
+    /// is that of the scene. The target is docked to at the aft end: y3 points backwards along the track, y2
+    /// to the zenith. Of the two possible nodes the one with the smaller right ascension is taken.
+    ///
+    /// Returns `None` on the night side, where the scene has no Sun, and if no such orbit has the Sun in this
+    /// direction.
     pub(super) fn station(simulator: &DockingSimulator) -> Option<Self> {
         let moment = simulator.field_state(0).ok()?;
         let towards = moment.lighting.sun?.towards.normalize();
@@ -59,7 +63,8 @@ impl GroundTrack {
         let normal = Vector3::new(sin_i * sin_node, -sin_i * cos_node, cos_i);
         let node = Vector3::new(cos_node, sin_node, 0.0);
         let quarter = normal.cross(&node);
-        // Radial · sun = s2 and ahead · sun = −s3 give the angle by which the spacecraft is ahead of the Sun in the plane.
+        // Radial · sun = s2 and ahead · sun = −s3 give the angle in the orbital plane by which the spacecraft
+        // is ahead of the Sun.
         let sun_angle = libm::atan2(sun.dot(&quarter), sun.dot(&node));
         let (sin_u, cos_u) = libm::sincos(sun_angle + libm::atan2(towards.z, towards.y));
         let rate_rad_s = (GM_KM3_S2 / (STATION_RADIUS_KM * STATION_RADIUS_KM * STATION_RADIUS_KM)).sqrt();
@@ -71,7 +76,8 @@ impl GroundTrack {
         }))
     }
 
-    /// The points below the spacecraft and below the Sun; `None` outside the times of the Earth's ephemeris.
+    /// Returns the sub-satellite point and the subsolar point; `None` outside the time span of the Earth's
+    /// ephemeris.
     pub(super) fn ground_at(&self, time: Epoch) -> Option<Ground> {
         Some(Ground {
             spacecraft: point(time, &self.position_km(time)),
@@ -79,7 +85,8 @@ impl GroundTrack {
         })
     }
 
-    /// The track from 50 minutes before to 50 minutes after a time: longitude and latitude, degrees.
+    /// Returns the ground track from 50 minutes before to 50 minutes after a time: longitude and latitude,
+    /// degrees.
     pub(super) fn path(&self, time: Epoch) -> Vec<[f64; 2]> {
         let steps = (REACH_S / STEP_S) as i32;
         (-steps..=steps)
@@ -90,7 +97,8 @@ impl GroundTrack {
             .collect()
     }
 
-    /// Where it is, from the centre of the Earth, ICRS axes; of a circular orbit only the direction counts.
+    /// Position relative to the centre of the Earth, km, ICRS axes; for a circular orbit only its direction
+    /// is meaningful.
     fn position_km(&self, time: Epoch) -> Vector3<f64> {
         match self {
             Self::Chaser(trajectory) => trajectory.states_at(time).chaser.position_km,
@@ -127,9 +135,10 @@ mod tests {
         let elevation = |time| track.position_km(time).normalize().dot(&sun_direction(time).unwrap());
         let moment = simulator.field_state(0).unwrap();
         let towards = moment.lighting.sun.unwrap().towards.normalize();
-        // Rounding of some ten products.
+        // The tolerance covers the rounding of about ten products.
         assert!((elevation(moment.time) - towards.y).abs() < 1e-12);
-        // 370 km up, the Sun is seen down to 19° below the horizontal: the scene is lit to its end, and so is the orbit.
+        // From an altitude of 370 km the Sun is visible down to 19° below the horizontal. The scene is lit
+        // until its end, so the orbit must be, too.
         let end = simulator.field_state(simulator.field_count() - 1).unwrap().time;
         assert!(elevation(end) > -0.32, "{}", elevation(end));
         let GroundTrack::Circular(orbit) = &track else { panic!("a circular orbit") };

@@ -1,9 +1,9 @@
-//! The monitor: what an operator sees of an approach, as a page served on loopback.
+//! The monitor: the operator's view of an approach, as a page served on loopback.
 //!
-//! One frame after the other is simulated and processed ahead of what the page shows, or read from a run directory
-//! (`feed`); what is known of each is kept (`session`), its picture as long as there is room, and drawn anew after that
-//! (`painter`): frame N alone is the frame N of the run. The server (`server`) gives any frame by its number and keeps
-//! nothing of its clients.
+//! Frames are simulated and processed in order ahead of the frame that the page shows, or read from a run
+//! directory (`feed`). The report of each frame is kept (`session`); its picture is kept as long as there is
+//! room, and afterwards drawn anew (`painter`), since frame N can be computed independently of the frames
+//! before it. The server (`server`) provides any frame by its number and keeps no state of its clients.
 
 #![cfg_attr(
     not(test),

@@ -1,29 +1,31 @@
-//! The plan of an approach in the phase chart: range against range rate, with a corridor about it.
+//! Planned approach in the phase chart: range against range rate, with a corridor around it.
 
 use serde::Serialize;
 
-/// Points of a drawn plan.
+/// Approximate number of points of a drawn plan.
 const POINTS: u64 = 1200;
-/// Pieces of the corridor along the range.
+/// Number of segments of the corridor along the range.
 const PIECES: usize = 80;
-/// How much of the range before and behind a point its corridor looks at: holds are not flown to the centimetre.
+/// Fraction of the range, before and behind a point, over which the corridor takes the planned rates; holds
+/// are not flown to the centimetre.
 const NEAR: f64 = 0.06;
-/// By how much of the planned rate the corridor is wider than the plan.
+/// Margin of the corridor on each side, as a fraction of the planned rate.
 const MARGIN: f64 = 0.2;
 
-/// Range and range rate as planned, and what is allowed of the rate.
+/// Planned range and range rate, and the permitted range rates.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Plan {
     range_unit: &'static str,
-    /// One point a moment, in order of time: frame, range and range rate, m/s.
+    /// Points in order of time: frame, range and range rate, m/s.
     points: Vec<(u64, f64, f64)>,
-    /// In order of range: range, least and greatest rate.
+    /// Corridor in order of range: range, smallest and largest permitted rate.
     corridor: Vec<[f64; 3]>,
 }
 
 impl Plan {
-    /// The plan of frames `from` to `to`, of which `at` gives range and range rate. The corridor reaches from the least to
-    /// the greatest rate that the plan has within 6 % of a range, widened by a fifth and by `least_margin_m_s`.
+    /// Creates the plan of `frames`; `at` returns range and range rate of a frame. The corridor extends from
+    /// the smallest to the largest rate that the plan has within 6 % of a range, widened by a fifth and by
+    /// `least_margin_m_s`.
     pub(super) fn new(
         range_unit: &'static str,
         frames: &std::ops::Range<u64>,
@@ -50,7 +52,7 @@ fn corridor(points: &[(u64, f64, f64)], least_margin_m_s: f64) -> Vec<[f64; 3]> 
     if points.is_empty() {
         return Vec::new();
     }
-    // Even in the logarithm: what is near matters most.
+    // Equal steps in the logarithm of the range, because short ranges matter most.
     let ratio = libm::log(greatest / least);
     let piece = |i: usize| least * libm::exp(ratio * i as f64 / PIECES as f64);
     (0..=PIECES)
@@ -70,7 +72,7 @@ fn corridor(points: &[(u64, f64, f64)], least_margin_m_s: f64) -> Vec<[f64; 3]> 
 mod tests {
     use super::*;
 
-    /// From 100 m to 1 m at 1 m/s, one frame a metre.
+    /// From 100 m to 1 m at 1 m/s, one frame per metre.
     #[test]
     fn the_corridor_is_as_wide_as_it_says_about_a_steady_approach() {
         let plan = Plan::new("m", &(0..100), 0.05, |frame| Some([100.0 - frame as f64, -1.0]));

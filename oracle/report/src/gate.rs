@@ -1,4 +1,4 @@
-//! The report of a gate: what changed, and the frames that flipped.
+//! Report of a gate: the figures that changed, and the frames that flipped.
 
 use run::figure_by_name;
 use std::path::Path;
@@ -15,25 +15,26 @@ use crate::page::picture::Picture;
 use crate::page::{Page, Section};
 use crate::worlds::world_report;
 
-/// Flipped frames that are shown as pictures, at most.
+/// Maximum number of flipped frames shown as pictures.
 const MAX_PICTURES: usize = 12;
-/// Flipped frames that are listed, at most.
+/// Maximum number of flipped frames listed.
 const MAX_ROWS: usize = 200;
 
-/// Something that flips happened to, as pictures.
+/// Pictures of flipped frames.
 pub struct FlippedFrames {
-    /// Pictures of them.
+    /// The pictures.
     pictures: Vec<Picture>,
-    /// Why there are none, where there should be.
+    /// Reason why expected pictures are missing.
     reason: Option<String>,
 }
 
 impl FlippedFrames {
-    /// Renders flipped frames of a result anew, from its directory: of every change from one verdict and cause to another the first
-    /// frame, and then more of those that were lost. A study has none: its frames are those of many scenarios.
+    /// Renders flipped frames of a result anew, from its directory: the first frame of every change from one
+    /// verdict and cause to another, and then more of the lost frames. A study has no pictures: its frames
+    /// belong to many scenarios.
     ///
     /// # Errors
-    /// A [`Failure`] when the result cannot be read or a frame not be rendered.
+    /// A [`Failure`] when the result cannot be read or a frame cannot be rendered.
     pub fn render(report: &GateReport, result: &Path) -> Result<Self, Failure> {
         let none = Self { pictures: Vec::new(), reason: None };
         let Some(flips) = &report.flips else { return Ok(none) };
@@ -51,7 +52,7 @@ impl FlippedFrames {
     }
 }
 
-/// Of every change the first unit, lost ones first, then more of the lost.
+/// Selects the first unit of every change, starting with lost ones, then further lost units.
 fn first_flip_of_each_kind(flips: &[Flip]) -> Vec<&Flip> {
     let order = [FlipKind::Lost, FlipKind::Won, FlipKind::Other];
     let mut chosen: Vec<&Flip> = Vec::new();
@@ -78,7 +79,7 @@ fn kind_words(kind: FlipKind) -> &'static str {
     }
 }
 
-/// From which verdict to which.
+/// Describes a change from one verdict to another.
 fn change(flip: &Flip) -> String {
     let words = |verdict: &str, cause: &Option<String>| match cause {
         Some(cause) => format!("{} ({})", display_name(verdict), display_name(cause)),
@@ -87,7 +88,7 @@ fn change(flip: &Flip) -> String {
     format!("{} → {}", words(&flip.baseline, &flip.baseline_cause), words(&flip.result, &flip.result_cause))
 }
 
-/// The page of a gate.
+/// Returns the page of a gate.
 pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
     let worse: Vec<String> = report.worse_figures().map(|name| figure_by_name(name).words).collect();
     let names: Vec<String> = report.changed_figures().map(|name| figure_by_name(name).words).collect();
@@ -128,7 +129,7 @@ pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
     }
 }
 
-/// The report without its list of units, which may be as long as the run.
+/// Returns the report without its list of units, which may be as long as the run.
 fn data(report: &GateReport) -> serde_json::Value {
     let counts = report.flips.as_ref();
     serde_json::json!({
@@ -138,7 +139,7 @@ fn data(report: &GateReport) -> serde_json::Value {
     })
 }
 
-/// Differences with their intervals.
+/// Returns the section on the differences with their intervals.
 fn effects(report: &GateReport) -> Section {
     let mut table = DataTable::new([
         "figure",
@@ -190,7 +191,7 @@ fn effects(report: &GateReport) -> Section {
                        which way is better.";
         section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
     }
-    // What has units of its own stands on one axis in units of its tolerance.
+    // Amounts have different units; on one axis they are shown in units of their tolerances.
     let amounts: Vec<_> = amounts.into_iter().filter(|(_, figure)| figure.tolerance > 0.0).collect();
     if !amounts.is_empty() {
         let (traces, layout) = differences(&amounts, |figure| figure.tolerance, "difference ÷ tolerance");
@@ -200,15 +201,16 @@ fn effects(report: &GateReport) -> Section {
     section.table(table)
 }
 
-/// A figure's name without its unit, which the axis of differences has not.
+/// Returns a figure's name without its unit, because the axis of differences has another unit.
 fn plain_label(name: &str) -> String {
     figure_by_name(name).words
 }
 
-/// A figure of the gate by its name.
+/// A figure of the gate with its name.
 type Compared<'a> = (&'a String, &'a FigureReport);
 
-/// Differences of some figures with their intervals and their tolerances, each divided by its unit.
+/// Returns traces of the differences of some figures with their intervals and tolerances, each divided by its
+/// unit.
 fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &str) -> (Vec<Trace>, Layout) {
     let of = |is: &dyn Fn(FigureVerdict) -> bool, name: &str, colour| {
         let chosen: Vec<_> = shown.iter().filter(|(_, figure)| is(figure.verdict)).collect();
@@ -243,7 +245,7 @@ fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &st
     (traces, axes("", axis))
 }
 
-/// Units that flipped.
+/// Returns the section on the units that flipped.
 fn flipped_units(report: &GateReport, frames: FlippedFrames) -> Section {
     let section = Section::new("flips", format!("{} that flipped", capital(&report.units)));
     let Some(flips) = &report.flips else {

@@ -1,12 +1,13 @@
-//! The report: one HTML file for people, of what a directory of results holds.
+//! The report: one HTML file for the user, made from a directory of results.
 //!
-//! A page ([`Page`]) is computed from what was read, and is the same for the same files: nothing of it comes from a clock or from anywhere
-//! else. Charts are drawn by plotly.js, which the page contains ([`Chart`]), with the numbers in a table behind each; pictures ([`Picture`]) are of frames
-//! that the simulator renders anew, one by one ([`FrameDetail`]). It asks nothing of any network.
+//! A page ([`Page`]) depends only on the files that were read: it contains no clock time and no other input.
+//! Charts are drawn by plotly.js, which the page contains ([`Chart`]), with the numbers in a table behind
+//! each chart. Pictures ([`Picture`]) show frames that the simulator renders anew, one by one
+//! ([`FrameDetail`]). The page needs no network.
 //!
-//! - [`far_range_page`], [`docking_page`]: a run; [`study_page`]: a study; [`visibility_page`]: the answer to requirements; [`gate_page`]: what a
-//!   gate found.
-//! - [`read_report`]: whatever a directory holds; [`write_page`] puts it into a file.
+//! - [`far_range_page`], [`docking_page`]: a run; [`study_page`]: a study; [`visibility_page`]: the
+//!   visibility requirements and their results; [`gate_page`]: the result of a gate.
+//! - [`read_report`]: the page of any directory of results; [`write_page`] writes it to a file.
 
 #![cfg_attr(
     not(test),
@@ -52,7 +53,7 @@ use self::worlds::world_report;
 use files::{AtomicFile, Checksums, Failure, ReplaceableFile, refuse_unfinished};
 use run::{AnyJudgement, IncompleteRun, world_of_run};
 
-/// The report of a directory of results, with the error budget that is kept there.
+/// Returns the report of a directory of results, with the error budget that is stored there.
 ///
 /// # Errors
 /// A [`Failure`] that names the file which is missing or cannot be read.
@@ -66,7 +67,7 @@ pub fn read_report(directory: &Path) -> Result<Page, Failure> {
     Ok(page)
 }
 
-/// The page of a run by its world, which says what of it was not flown.
+/// Returns the page of a run, made by the run's world, with a warning if the run is not complete.
 fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
     refuse_unfinished(directory)?;
     let world = world_of_run(&directory.join("run.toml"))?;
@@ -80,10 +81,10 @@ fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Resul
     Ok(page)
 }
 
-/// Refuses an error budget of what has none.
+/// Refuses an error budget for results that cannot have one.
 ///
 /// # Errors
-/// A [`Failure`] for a directory that is not of a far-range run.
+/// A [`Failure`] for a directory that is not a far-range run.
 pub fn check_budget(directory: &Path) -> Result<(), Failure> {
     if !is_far_range_run(directory)? {
         return Err(Failure::Usage(format!(
@@ -94,11 +95,12 @@ pub fn check_budget(directory: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The report of a far-range run with its error budget: `budget` are directories of runs of the same frames, each with the truth in the
-/// place of one stage's result.
+/// Returns the report of a far-range run with its error budget: `budget` lists directories of runs on the
+/// same frames, each with the truth in place of one stage's result.
 ///
 /// # Errors
-/// As [`read_report`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
+/// Those of [`read_report`]; a [`Failure`] for a directory in `budget` with other frames, or of a run without
+/// replaced stage.
 pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
     check_budget(directory)?;
     let mut run = FarRangeRun::read(directory)?;
@@ -106,29 +108,31 @@ pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, 
     far_range_page(&run, &FrameDetail::open(directory)?)
 }
 
-/// The report of a run that has just been scored. What was scored is read from its files only where it is not at hand; verdicts are taken
-/// out of `scored`.
+/// Returns the report of a run that has just been scored. Scoring results are read from files only if they
+/// are not in `scored`; the verdicts are moved out of `scored`.
 ///
 /// # Errors
-/// As [`read_report`].
+/// Those of [`read_report`].
 pub fn read_run_report(directory: &Path, scored: &mut dyn AnyJudgement) -> Result<Page, Failure> {
     page_of_run(directory, Some(scored))
 }
 
-/// Reports, which a later one replaces.
+/// Earlier reports, which a later report replaces.
 pub const REPORTS: ReplaceableFile<'static> =
     ReplaceableFile { description: "an earlier report of Boresight", matches: &is_report };
 
-/// Whether a file that begins so is a report.
+/// Returns true if a file with this beginning is a report.
 fn is_report(beginning: &[u8]) -> bool {
     let named = br#"<meta name="generator" content="Boresight "#;
     beginning.starts_with(b"<!doctype html>") && beginning.windows(named.len()).any(|window| window == named)
 }
 
-/// Writes a page, at once or not at all; a report that was there is replaced. Returns its length, bytes.
+/// Writes a page completely or not at all; an existing report is replaced. Returns the length of the page,
+/// bytes.
 ///
 /// # Errors
-/// A [`Failure`] when the page cannot be put together, the file not be written, or something else than a report is there.
+/// A [`Failure`] when the page cannot be composed, the file cannot be written, or a file other than a report
+/// exists there.
 pub fn write_page(page: &Page, path: &Path) -> Result<u64, Failure> {
     let html = page.html()?;
     AtomicFile::with_text(path, &html)?.replace(REPORTS)?;

@@ -1,4 +1,4 @@
-//! Which kind of directory it is, and files that several kinds have.
+//! Kinds of result directories, and reading of files that several kinds contain.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -8,25 +8,25 @@ use run::world_of_run;
 use scenario::FarRangeScenario;
 use serde::de::DeserializeOwned;
 
-/// Longest JSON file that is read, bytes.
+/// Maximum size of a JSON file, bytes.
 const LONGEST_JSON: u64 = 1 << 28;
 
-/// What a directory holds.
+/// Kind of a directory of results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResultKind {
-    /// A run: `run.toml`.
+    /// A run, with `run.toml`.
     Run,
-    /// A study: `summary.json`.
+    /// A study, with `summary.json`.
     Study,
-    /// The answer to requirements: `visibility.json`.
+    /// Results of visibility requirements, with `visibility.json`.
     Visibility,
 }
 
 impl ResultKind {
-    /// What `directory` holds, by its files.
+    /// Determines the kind of `directory` from its files.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a directory that holds none of them.
+    /// [`Failure::Usage`] for a directory that contains none of these files.
     pub fn from_directory(directory: &Path) -> Result<Self, Failure> {
         let has = |name: &str| directory.join(name).is_file();
         if has("run.toml") {
@@ -52,13 +52,13 @@ impl ResultKind {
     }
 }
 
-/// Whether a directory is that of a run of the far range.
+/// Returns true if a directory is that of a far-range run.
 pub(super) fn is_far_range_run(directory: &Path) -> Result<bool, Failure> {
     Ok(ResultKind::from_directory(directory)? == ResultKind::Run
         && world_of_run(&directory.join("run.toml"))?.has_scenario::<FarRangeScenario>())
 }
 
-/// A file of a run that is not there.
+/// Returns the failure for a missing file of a run.
 pub(super) fn missing(directory: &Path, name: &str) -> Failure {
     Failure::Usage(format!(
         "{}: is missing, expected the directory of a run: of a rendered dataset there is nothing to report yet",
@@ -66,7 +66,8 @@ pub(super) fn missing(directory: &Path, name: &str) -> Failure {
     ))
 }
 
-/// The rows of some frames of a table, each frame's apart and in the order asked for, in one pass; none where there is no table.
+/// Returns the table rows of each given frame, in the order of `frames`, read in one pass; no rows without a
+/// table.
 pub(super) fn rows_of_each<R: Row + Clone>(
     path: Option<&Path>,
     frames: &[u64],

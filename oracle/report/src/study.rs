@@ -1,4 +1,4 @@
-//! The report of a study: figures with intervals, what they hang on, the worst cases.
+//! Report of a study: figures with intervals, their sensitivities, the worst cases.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -21,20 +21,21 @@ use crate::page::data_table::DataTable;
 use crate::page::{Page, Section};
 use crate::read::read_json;
 
-/// Cases that a chart shows one by one in the table behind it; of more, a summary.
+/// Upper limit on the number of rows of the tables behind the charts. Each row summarises the cases in a
+/// range of the drawn value; cases.parquet has every case.
 const TABLE_BINS: usize = 60;
-/// Drawn values that have a chart of their own, at most.
+/// Maximum number of drawn values with a separate chart.
 const MAX_SCATTERS: usize = 24;
-/// Figures that have a curve over the sweep, at most.
+/// Maximum number of figures with a curve over the sweep.
 const MAX_CURVES: usize = 24;
-/// Colours of the curves of a figure, in turn.
+/// Colours of the curves of a figure, used in turn.
 const CURVES: [&str; 5] = [MEASURED, BESIDE, TRUTH, WRONG, REFERENCE];
 
-/// What a study left in its directory.
+/// Results of a study, read from its directory.
 pub struct StudyResult {
-    /// `summary.json`.
+    /// Content of `summary.json`.
     pub summary: Summary,
-    /// `cases.parquet`; of its figures the one by which the worst cases are the worst.
+    /// Content of `cases.parquet`; the only figure kept is the one that ranks the worst cases.
     pub table: CaseTable,
 }
 
@@ -53,7 +54,7 @@ impl StudyResult {
             )));
         }
         let mut columns = CaseTable::columns_of(&path)?;
-        // The charts show one figure case by case.
+        // The charts show only one figure case by case.
         columns.figures.retain(|figure| *figure == summary.worst_by);
         columns.causes.clear();
         let (table, _) = columns.read(&path)?;
@@ -65,7 +66,7 @@ impl StudyResult {
     }
 }
 
-/// The page of a study.
+/// Returns the page of a study.
 pub fn study_page(study: &StudyResult) -> Page {
     let summary = &study.summary;
     let worst_by = &summary.worst_by;
@@ -123,7 +124,7 @@ pub fn study_page(study: &StudyResult) -> Page {
     }
 }
 
-/// Whether the figure of the stopping rule ended the study.
+/// Describes whether the stopping rule ended the study.
 fn stopped(summary: &Summary) -> &'static str {
     match summary.waited {
         Some(StoppingStatus::NarrowEnough) => "yes",
@@ -135,17 +136,18 @@ fn stopped(summary: &Summary) -> &'static str {
     }
 }
 
-/// What a figure is drawn and written in: rates in percent, others as they are.
+/// Factor from a figure's value to its displayed value: 100 for rates, shown in percent, and 1 for other
+/// figures.
 fn scale(name: &str) -> f64 {
     if figure_by_name(name).is_rate() { 100.0 } else { 1.0 }
 }
 
-/// A number of a figure.
+/// Formats a value of a figure.
 fn number(name: &str, value: f64) -> String {
     if figure_by_name(name).is_rate() { format!("{:.2}\u{a0}%", 100.0 * value) } else { significant(value) }
 }
 
-/// A value with its interval, which a narrow column may have on a line of its own.
+/// Formats a value with its interval; a narrow column may break the line between them.
 fn estimate_text(name: &str, estimate: &Estimate) -> String {
     let bound = |value: f64| number(name, value).replace("\u{a0}%", "");
     let interval = estimate.low.zip(estimate.high);
@@ -153,12 +155,12 @@ fn estimate_text(name: &str, estimate: &Estimate) -> String {
     format!("{}{}", number(name, estimate.value), interval.unwrap_or_default())
 }
 
-/// What a figure is called beside its values.
+/// Returns the label of a figure in a table.
 fn label(key: &str) -> String {
     figure_by_name(key).label_without_percent()
 }
 
-/// Every figure: over all cases, and its quantiles over them.
+/// Returns the section on all figures: the value over all cases, and the quantiles over the cases.
 fn figures(study: &StudyResult) -> Section {
     let summary = &study.summary;
     let mut table = DataTable::new(["figure", "cases", "all", "5 % of cases below", "median", "95 % of cases below"]).caption(
@@ -185,7 +187,7 @@ fn figures(study: &StudyResult) -> Section {
     if rates.is_empty() {
         return section.table(table);
     }
-    // Upwards as the axis goes, so that the first is on top.
+    // In reverse order, since the axis runs upwards: the first rate is on top.
     let column = |pick: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
         rates.iter().rev().map(|(_, all, figure)| rounded(100.0 * pick(all, figure), 4)).collect()
     };
@@ -220,7 +222,7 @@ fn figures(study: &StudyResult) -> Section {
     section.chart(Chart::new(caption, height, data, traces, layout)).table(table)
 }
 
-/// The requirements with their verdicts.
+/// Returns the section on the requirements with their verdicts.
 fn requirements(summary: &Summary) -> Section {
     let mut table = DataTable::new(["requirement", "at", "found", "lower bound", "upper bound", "verdict"]).caption(
         "Each bound holds alone with the confidence of its requirement. Met: the bound towards the limit keeps to it; not met: the other \
@@ -241,7 +243,7 @@ fn requirements(summary: &Summary) -> Section {
     Section::new("requirements", "Requirements").table(table)
 }
 
-/// Why frames were missed or wrong.
+/// Returns the section on the causes of missed and wrong frames.
 fn causes(summary: &Summary) -> Section {
     let mut table = DataTable::new(["cause", "frames", "share of all, %", "cases"])
         .caption("Frames of all cases that count; shares with 95 % intervals.");
@@ -258,7 +260,8 @@ fn causes(summary: &Summary) -> Section {
     Section::new("causes", "Misses and wrong answers by cause").table(table)
 }
 
-/// Every figure as a curve over the sweep, that of the worst cases first, and what each step of the sweep changes.
+/// Returns the section on the sweep: a curve of each figure, starting with the figure that ranks the worst
+/// cases, and the change at each step of the sweep.
 fn sweep(study: &StudyResult) -> Section {
     let summary = &study.summary;
     let has_value = |name: &&String| {
@@ -279,10 +282,11 @@ fn sweep(study: &StudyResult) -> Section {
     section.charts(charts).table(differences(summary))
 }
 
-/// Swept values with a figure there.
+/// Values of a swept parameter, each with the figure at that value.
 type Curve = Vec<(String, Estimate)>;
 
-/// A figure over the swept value that has the most of them, a curve for every combination of the others.
+/// Returns the chart of a figure over the swept parameter with the most values; each combination of the other
+/// parameters has a curve.
 fn curve(summary: &Summary, name: &str) -> Chart {
     let label_of = |path: &str, value: &str| format!("{path} = {value}");
     let values_of = |path: &String| {
@@ -325,7 +329,7 @@ fn curve(summary: &Summary, name: &str) -> Chart {
     )
 }
 
-/// What each step of the sweep changes: all figures.
+/// Returns a table of the changes of all figures at each step of the sweep.
 fn differences(summary: &Summary) -> DataTable {
     let mut table = DataTable::new(["figure", "of", "from", "to", "difference", "draws"]).caption(
         "Points of the sweep that differ in one value, each draw compared with itself; with 95 % intervals. Differences of rates are in \
@@ -352,7 +356,7 @@ fn differences(summary: &Summary) -> DataTable {
     table
 }
 
-/// How figures go with what was drawn.
+/// Returns the section on the correlations of figures with drawn values.
 fn sensitivities(study: &StudyResult) -> Section {
     let correlations = &study.summary.correlations;
     let section = Section::new("sensitivities", "Sensitivities");
@@ -409,7 +413,8 @@ fn sensitivities(study: &StudyResult) -> Section {
     ))
 }
 
-/// Sobol indices of the figure that the worst cases are the worst by; all in the table.
+/// Returns the section on the Sobol indices: a chart for the figure that ranks the worst cases, and a table
+/// for all figures.
 fn indices(study: &StudyResult) -> Section {
     let summary = &study.summary;
     let mut data = DataTable::new(["figure", "drawn value", "first", "low", "high", "total", "low", "high"]);
@@ -457,7 +462,7 @@ fn indices(study: &StudyResult) -> Section {
     ))
 }
 
-/// The worst figure against every drawn value.
+/// Returns charts of the figure that ranks the worst cases against every drawn value.
 fn scatter(study: &StudyResult) -> Section {
     let (summary, table) = (&study.summary, &study.table);
     let name = &summary.worst_by;
@@ -515,7 +520,7 @@ fn scatter(study: &StudyResult) -> Section {
     }
 }
 
-/// The worst cases, with the commands that run them again.
+/// Returns the table of the worst cases, with the commands that repeat them.
 fn worst(study: &StudyResult) -> Section {
     let summary = &study.summary;
     let way = match figure_by_name(&summary.worst_by).sense.better {

@@ -1,4 +1,4 @@
-//! The report of an answer to requirements: the verification table and its curves.
+//! Report of visibility requirements: the verification table and its curves.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::page::data_table::DataTable;
 use crate::page::{Page, Section};
 use crate::read::read_json;
 
-/// Reads the directory that `boresight visibility --out` wrote.
+/// Reads a directory written by `boresight visibility --out`.
 ///
 /// # Errors
 /// A [`Failure`] that names the file which is missing or cannot be read.
@@ -27,7 +27,7 @@ pub fn read_visibility(directory: &Path) -> Result<VisibilityReport, Failure> {
     Ok(report)
 }
 
-/// The page of an answer to requirements.
+/// Returns the page of the results of visibility requirements.
 pub fn visibility_page(report: &VisibilityReport) -> Page {
     let camera = &report.camera;
     let met = report.requirements.iter().filter(|verdict| verdict.status.is_met()).count();
@@ -69,7 +69,7 @@ fn rate_text(simulated: Option<&SimulatedRate>) -> String {
     )
 }
 
-/// The verification table.
+/// Returns the verification table.
 fn requirements(report: &VisibilityReport) -> Section {
     let mut table = DataTable::new([
         "requirement",
@@ -127,7 +127,7 @@ fn requirements(report: &VisibilityReport) -> Section {
     if found.rows.is_empty() { section } else { section.table(found) }
 }
 
-/// Probability of detection against magnitude.
+/// Returns the section on the probability of detection against magnitude.
 fn detection(report: &VisibilityReport) -> Section {
     let section = Section::new("detection", "Detection against magnitude");
     if report.detection.is_empty() {
@@ -182,7 +182,7 @@ fn detection(report: &VisibilityReport) -> Section {
     ))
 }
 
-/// Limiting magnitude and stars against exposure.
+/// Returns the section on limiting magnitude and number of stars against exposure time.
 fn limiting_magnitude(report: &VisibilityReport) -> Section {
     let curve = &report.limiting_magnitude;
     let section = Section::new("limiting-magnitude", "Limiting magnitude against exposure");
@@ -226,7 +226,7 @@ fn limiting_magnitude(report: &VisibilityReport) -> Section {
     ))
 }
 
-/// Stars detected over the whole sky.
+/// Returns the section on the number of detected stars over the whole sky.
 fn sky(report: &VisibilityReport) -> Section {
     let sky = &report.sky;
     let section = Section::new("sky", "Stars over the sky");
@@ -293,7 +293,7 @@ fn sky(report: &VisibilityReport) -> Section {
         .table(worst)
 }
 
-/// Exposures against range.
+/// Returns the section on exposure time against range.
 fn exposure_window(report: &VisibilityReport) -> Section {
     let curve = &report.exposure_window;
     let section = Section::new("exposure-window", "Window of exposures against range");
@@ -346,7 +346,7 @@ fn exposure_window(report: &VisibilityReport) -> Section {
     ))
 }
 
-/// Greatest range by phase angle.
+/// Returns the section on the greatest range by phase angle.
 fn target_range(report: &VisibilityReport) -> Section {
     let curve = &report.target_range;
     let section = Section::new("target-range", "Greatest range of the target");

@@ -1,4 +1,4 @@
-//! The worlds with reports of their own. A run of another world has its figures and verdicts.
+//! Worlds with a specific report. The report of any other world shows only figures and verdicts.
 
 use std::path::Path;
 
@@ -9,22 +9,23 @@ use crate::page::Page;
 use crate::page::picture::RenderedPictures;
 use crate::{docking, far_range};
 
-/// What the report of a world has of its own.
+/// World-specific parts of a report.
 pub(crate) struct WorldReport {
     code: &'static str,
-    /// Makes the page of a run directory and checks that what it read is what was written; of a run of this process from its verdicts, which it may take.
+    /// Makes the page of a run directory and verifies the checksums of the files that it read. For a run of
+    /// this process, the page uses the run's verdicts, which it may move out.
     pub(crate) page: fn(&Path, Option<&mut dyn AnyJudgement>) -> Result<Page, Failure>,
     /// Renders frames of a run directory anew.
     pub(crate) pictures: fn(&Path, &[u64]) -> Result<RenderedPictures, Failure>,
 }
 
-/// One line each.
+/// Worlds with a specific report, one line each.
 const WORLDS: [WorldReport; 2] = [
     WorldReport { code: FarRangeMission::CODE, page: far_range::page, pictures: far_range::pictures },
     WorldReport { code: DockingMission::CODE, page: docking::page, pictures: docking::pictures },
 ];
 
-/// What the report of a world has of its own, by the world's word; `None` for a world that has nothing.
+/// Returns the world-specific parts of a report, by the code of the world; `None` for a world without any.
 pub(crate) fn world_report(code: &str) -> Option<WorldReport> {
     WORLDS.into_iter().find(|world| world.code == code)
 }

@@ -1,49 +1,52 @@
-//! Which frames are made, and making them in order on several threads.
+//! Selection of frames, and their production in order on several threads.
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
 use files::Failure;
 
-/// Which frames are made, on how many threads, and what is kept of their images.
+/// Frames to make, number of threads, and the images to keep.
 #[derive(Debug, Clone)]
 pub struct FrameJobs<F> {
-    /// The frames.
+    /// Range of frames.
     pub frames: Range<u64>,
-    /// Threads that make frames; what is made does not depend on it.
+    /// Number of threads that make frames; the frames do not depend on it.
     pub jobs: usize,
-    /// Images to keep.
+    /// Format of the images to keep; `None` keeps none.
     pub images: Option<F>,
-    /// Whether the noise-free expectation of every frame is kept with the truth, where a world has one.
+    /// Treatment of the noise-free expectation of every frame, in a world that has one.
     pub expectation: Expectation,
 }
 
-/// What becomes of the noise-free expectation of a frame.
+/// Treatment of the noise-free expectation of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expectation {
-    /// Written to `truth/expected/`, electrons, EXR.
+    /// Written to `truth/expected/` with the truth, electrons, EXR.
     Kept,
-    /// Dropped.
+    /// Discarded.
     Dropped,
 }
 
-/// Frames that a thread may be ahead of what is taken, at most: enough to keep threads busy.
+/// Maximum number of frames per thread that are made but not yet taken: enough to keep the threads busy.
 const FRAMES_PER_JOB: u64 = 32;
-/// Bytes of pixels in them, at most, though never less than two frames: few enough that memory stays flat.
+/// Maximum size of the pixels of these frames, bytes, but never fewer than two frames: small enough that
+/// memory use stays constant.
 const BYTES_PER_JOB: u64 = 32 << 20;
 
-/// Frames of each thread that are made or wait to be taken, by the bytes that the pixels of one take.
+/// Returns the number of frames per thread that may be in progress or wait to be taken, from the size of the
+/// pixels of a frame, bytes.
 fn frames_per_job(frame_bytes: u64) -> u64 {
     (BYTES_PER_JOB / frame_bytes.max(1)).clamp(2, FRAMES_PER_JOB)
 }
 
-/// Makes something of each of `frames` on `jobs` threads, each with a workspace of its own, and hands it to `take` in
-/// order, on the caller's thread. The pixels of one take `frame_bytes`, by which it is decided how many may wait.
+/// Calls `make` for each of `frames` on `jobs` threads, each with a separate workspace, and passes the
+/// results to `take` in order, on the caller's thread. The pixels of one result need `frame_bytes`, which
+/// determines how many results may wait.
 ///
-/// No thread waits for another but where `take` is that many frames behind.
+/// Threads wait only if `take` is that many frames behind.
 ///
 /// # Errors
-/// The first failure in the order of the frames; nothing after it is taken.
+/// The first failure in the order of the frames; no later result is taken.
 pub fn process_in_order<W, T: Send>(
     frames: Range<u64>,
     jobs: usize,
@@ -88,7 +91,8 @@ pub fn process_in_order<W, T: Send>(
                 if let Some(result) = early.remove(&frame) {
                     break result;
                 }
-                // All threads are at their end and the frame is not there: one has panicked, which the scope passes on.
+                // All threads have ended without this frame: one of them has panicked, and the scope
+                // propagates the panic.
                 let Ok((number, result)) = waiting.recv() else { return Ok(()) };
                 early.insert(number, result);
             };
@@ -99,23 +103,23 @@ pub fn process_in_order<W, T: Send>(
     })
 }
 
-/// The frames that threads take their next ones from.
+/// Queue of frames from which threads take the next frame.
 struct Queue {
     progress: Mutex<Progress>,
-    /// Told when there may be more to do, or no more at all.
+    /// Notified when another frame may be begun, or when no frame is left.
     moved: Condvar,
 }
 
-/// How far the frames are.
+/// Progress of the frames.
 struct Progress {
-    /// Those that nobody makes yet.
+    /// Frames that no thread has begun.
     left: Range<u64>,
-    /// How many of them may be begun before another one is taken.
+    /// Number of frames that may be begun before another result is taken.
     ahead: u64,
 }
 
 impl Queue {
-    /// The next frame to be made, as soon as it may be; `None` when there is none left.
+    /// Waits until a frame may be begun and returns it; `None` when none is left.
     fn next(&self) -> Option<u64> {
         let mut progress = self.progress();
         while !progress.left.is_empty() && progress.ahead == 0 {
@@ -126,7 +130,7 @@ impl Queue {
         Some(frame)
     }
 
-    /// Lets one frame more be begun.
+    /// Permits one more frame to be begun.
     fn frame_taken(&self) {
         self.progress().ahead += 1;
         self.moved.notify_one();
@@ -137,7 +141,8 @@ impl Queue {
     }
 }
 
-/// Leaves no frame to be made when it is dropped: when something failed or panicked, no thread waits for what will not come.
+/// Empties the queue when it is dropped: after a failure or a panic, no thread waits for frames that will not
+/// come.
 struct QueueCloser<'a>(&'a Queue);
 
 impl Drop for QueueCloser<'_> {
@@ -158,7 +163,7 @@ mod tests {
         assert_eq!([mb(0.0), mb(0.8), mb(2.0), mb(16.0), mb(500.0)], [32, 32, 16, 2, 2]);
     }
 
-    /// Frames, each made after a time of its own.
+    /// Makes frame numbers, each after a different delay.
     fn numbers(
         frames: Range<u64>,
         jobs: usize,
@@ -201,7 +206,7 @@ mod tests {
             begun.fetch_add(1, Ordering::SeqCst);
             Ok(frame)
         };
-        // Two frames of 16 MB a thread.
+        // Two frames of 16 MB per thread.
         let take = |frame| {
             std::thread::sleep(std::time::Duration::from_millis(1));
             let begun = begun.load(Ordering::SeqCst);

@@ -1,4 +1,5 @@
-//! Runs: frames are exposed, processed, scored and written in order, the same way in every world ([`world::World`]).
+//! Runs: frames are exposed, processed, scored and written in order, in the same way for every world
+//! ([`world::World`]).
 
 #![cfg_attr(
     not(test),

@@ -1,4 +1,4 @@
-//! Pieces of a world whose files are tables of text and whose figures are counted unit by unit.
+//! Components for a world whose files are text tables and whose figures are counted unit by unit.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -10,12 +10,12 @@ use score::{Definition, Figure, FigureTerms, UnitTable, UnitVerdict};
 
 use crate::world::{Answers, Judgement, OutcomeOf, Scorer, TelemetryOf, World, paths};
 
-/// The format of a world that keeps its images in one way alone; its word is `csv`.
+/// Image format of a world with a single format, named `csv`.
 #[derive(Debug, Clone, Copy)]
 pub struct CsvImages;
 
 impl CsvImages {
-    /// The word of the format.
+    /// Name of the format.
     pub const WORD: &'static str = "csv";
 }
 
@@ -28,7 +28,7 @@ impl FromStr for CsvImages {
     }
 }
 
-/// Writes answers as one CSV, a row per answer.
+/// Writes outcomes as one CSV file, a row per outcome.
 pub struct CsvAnswers<L>(CsvWriter<L>);
 
 impl<I: Interface, L: CsvLine + for<'a> From<(u64, &'a I::Outcome)>> Answers<I> for CsvAnswers<L> {
@@ -50,19 +50,19 @@ impl<I: Interface, L: CsvLine + for<'a> From<(u64, &'a I::Outcome)>> Answers<I> 
     }
 }
 
-/// A frame of a world with its answer, as its figures are counted of it.
+/// A frame of a world with its outcome, in the form from which figures are counted.
 pub trait ScoredUnit<W: World>: Sized {
-    /// The unit of an answer.
+    /// Creates the unit of an outcome.
     fn new(truth: &W::Truth, telemetry: &TelemetryOf<W>, outcome: &OutcomeOf<W>) -> Self;
 
-    /// The figures of the score, in the order of its file.
+    /// Returns the figures of the score, in the order of its file.
     fn definitions() -> Vec<Definition<'static, Self>>;
 
-    /// Number, group, verdict and cause.
+    /// Returns number, group, verdict and cause.
     fn verdict(&self) -> UnitVerdict;
 }
 
-/// Judges answers whose figures are counted unit by unit.
+/// Scores outcomes whose figures are counted unit by unit.
 pub struct UnitScorer<U>(Vec<U>);
 
 impl<U> Default for UnitScorer<U> {
@@ -96,7 +96,7 @@ impl<W: World<Judgement = UnitJudgement>, U: ScoredUnit<W>> Scorer<W> for UnitSc
     }
 }
 
-/// A run that was scored unit by unit; `score.json` is its figures.
+/// A run that was scored unit by unit; `score.json` contains its figures.
 pub struct UnitJudgement {
     figures: IndexMap<String, Figure>,
     units: UnitTable,

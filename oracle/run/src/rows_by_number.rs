@@ -1,4 +1,4 @@
-//! Rows of a file, taken by the numbers of the frames of the truth.
+//! Access to the rows of a file by the frame numbers of the truth.
 
 use std::iter::Peekable;
 use std::path::Path;
@@ -6,25 +6,25 @@ use std::vec::IntoIter;
 
 use files::{Failure, line_of};
 
-/// Rows in ascending order of their numbers, which must all be numbers of the truth.
+/// Rows in ascending order of their frame numbers, all of which must occur in the truth.
 pub struct RowsByNumber<'a, T> {
     rows: Peekable<IntoIter<(u64, T)>>,
     path: &'a Path,
-    /// Column of the numbers.
+    /// Name of the column with the numbers.
     key: &'static str,
     truth: &'a Path,
 }
 
 impl<'a, T> RowsByNumber<'a, T> {
-    /// The rows of the file `path`, which belong to the frames of the table `truth`.
+    /// Creates the access to the rows of the file `path`, which belong to frames of the table `truth`.
     pub fn new(rows: Vec<(u64, T)>, path: &'a Path, key: &'static str, truth: &'a Path) -> Self {
         Self { rows: rows.into_iter().peekable(), path, key, truth }
     }
 
-    /// The row of a frame, if there is one. Numbers must ascend.
+    /// Returns the row of a frame, if present. The numbers passed must ascend.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a row of an earlier frame, which the truth does not have.
+    /// [`Failure::Usage`] for a row of an earlier frame, which the truth does not contain.
     pub fn take(&mut self, number: u64) -> Result<Option<T>, Failure> {
         let next = self.rows.peek().map(|(next, _)| *next);
         match next.filter(|next| *next < number) {
@@ -33,10 +33,10 @@ impl<'a, T> RowsByNumber<'a, T> {
         }
     }
 
-    /// Makes sure that every row was taken.
+    /// Checks that every row has been taken.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a row of a frame that the truth does not have.
+    /// [`Failure::Usage`] for a row of a frame that the truth does not contain.
     pub fn end(mut self) -> Result<(), Failure> {
         self.rows.next().map_or(Ok(()), |(number, _)| Err(self.unknown_frame(number)))
     }

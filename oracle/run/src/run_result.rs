@@ -1,4 +1,4 @@
-//! What a run gave.
+//! Result of a run.
 
 use std::fmt;
 use std::path::Path;
@@ -8,55 +8,57 @@ use files::{Failure, FileError};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-/// Bytes of a score's file that are read, at most.
+/// Maximum size of a score file, bytes.
 const LONGEST_JSON: u64 = 1 << 28;
 
-/// What a run gave.
+/// Result of a run.
 #[derive(Debug)]
 pub struct RunResult<S> {
-    /// Score and verdicts.
+    /// Score and verdicts of the run.
     pub scored: S,
-    /// The first failure of the pipeline, if it failed at all.
+    /// First failure of the pipeline, if any.
     pub first_failure: Option<FirstFailure>,
-    /// What was not flown, where the pipeline never started. Its failed starts were flown, and are scored.
+    /// Unprocessed frames, if the pipeline never started. The frames of its failed starts were processed, and
+    /// are scored.
     pub incomplete: Option<IncompleteRun>,
 }
 
-/// Answers in a few numbers.
+/// Summary of outcomes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnswerSummary {
-    /// What they are of: a key of a JSON document.
+    /// Subject of the summary: a key of a JSON document.
     pub key: &'static str,
-    /// The numbers, by word.
+    /// Counts by name.
     pub counts: IndexMap<&'static str, u64>,
-    /// The same as a line for people.
+    /// Summary as one line of text.
     pub text: String,
 }
 
-/// What was not flown of a run whose pipeline never started.
+/// Unprocessed part of a run whose pipeline never started.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct IncompleteRun {
-    /// Images that were not flown; 0 of a run that has no more than were flown.
+    /// Number of unprocessed images; 0 if all images of the run were processed.
     pub frames: u64,
-    /// Starts that failed, one for each image that was flown.
+    /// Number of failed starts, one for each processed image.
     pub failed_starts: u32,
-    /// Why the last one failed.
+    /// Reason of the last failed start.
     pub reason: String,
 }
 
 impl IncompleteRun {
-    /// What is missing of a run of so many images.
+    /// Returns the unprocessed part of a run of `images` images.
     pub(crate) fn from_failed_starts(images: u64, FailedStarts { count, reason }: &FailedStarts) -> Self {
         let frames = images.saturating_sub(u64::from(*count));
         Self { frames, failed_starts: *count, reason: reason.clone() }
     }
 
-    /// What was not flown of the run in a directory, as its `score.json` tells; `None` of a complete run, and without that file.
+    /// Returns the unprocessed part of the run in a directory, from its `score.json`; `None` for a complete
+    /// run, or without that file.
     ///
     /// # Errors
     /// A [`Failure`] that names the file when it cannot be read.
     pub fn read_from_directory(directory: &Path) -> Result<Option<Self>, Failure> {
-        /// The part of `score.json` that tells it.
+        /// The relevant part of `score.json`.
         #[derive(Deserialize)]
         struct ScoreDocument {
             #[serde(rename = "not_flown")]
@@ -82,17 +84,17 @@ impl fmt::Display for IncompleteRun {
     }
 }
 
-/// The first image that a pipeline failed at, and why.
+/// First image on which a pipeline failed, and the reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FirstFailure {
     /// Number of the image.
     pub frame: u64,
-    /// The reason.
+    /// Reason of the failure.
     pub reason: String,
 }
 
 impl FirstFailure {
-    /// That of an image, if the pipeline itself failed at it.
+    /// Returns the failure of the pipeline on an image, if it failed.
     pub(crate) fn from_outcome<I: Interface>(frame: u64, outcome: &I::Outcome) -> Option<Self> {
         I::failure(outcome).map(|reason| Self { frame, reason: reason.to_owned() })
     }

@@ -1,4 +1,4 @@
-//! One run over a world: expose, process, score, write.
+//! A run in a world: expose, process, score, write.
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -20,67 +20,71 @@ use crate::any_world::{Options, ScenarioSource};
 use crate::frame_jobs::{FrameJobs, process_in_order};
 use crate::run_result::{AnswerSummary, FirstFailure, IncompleteRun, RunResult};
 
-/// Starts of a pipeline in a row that may fail before a run is over.
+/// Number of consecutive failed starts of a pipeline after which a run ends.
 const MAX_FAILED_STARTS: u32 = 3;
 
-/// The setup that pipelines of a world are built with.
+/// Setup that pipelines of a world are built with.
 pub type SetupOf<W> = <<W as World>::Interface as Interface>::Setup;
-/// An image of a world.
+/// Image of a world.
 pub type ImageOf<W> = <<W as World>::Interface as Interface>::Image;
-/// The telemetry of an image of a world.
+/// Telemetry of an image of a world.
 pub type TelemetryOf<W> = <<W as World>::Interface as Interface>::Telemetry;
-/// A pipeline's answer in a world.
+/// Outcome of a pipeline in a world.
 pub type OutcomeOf<W> = <<W as World>::Interface as Interface>::Outcome;
 
-/// A scenario with its simulator, ready to fly: what a world has of its own. The run itself is the same for every world.
+/// A scenario with its simulator, ready to run: the world-specific parts of a run. The run itself is the same
+/// for every world.
 ///
-/// Exposures are made on any number of threads. They are received and processed one after the other, because an answer may change how
-/// later images are received ([`World::Feedback`]): a closed loop, which no number of threads can change.
+/// Exposures are made on any number of threads. They are received and processed sequentially, because an
+/// outcome may change how later images are received ([`World::Feedback`]): a closed loop, whose result does
+/// not depend on the number of threads.
 pub trait World: Sized + Send + Sync + 'static {
-    /// Its word in files and on the command line. Also the name of its built-in pipeline, and of that pipeline's table in a scenario.
+    /// Code of the world in files and on the command line. It is also the name of the built-in pipeline, and
+    /// of that pipeline's table in a scenario.
     const CODE: &'static str = Self::Scenario::WORLD;
-    /// A commented scenario to begin with.
+    /// Commented scenario as a starting point for the user.
     const STARTING_POINT: &'static str;
-    /// The file of a dataset that tells a pipeline what it knows before the first frame.
+    /// File of a dataset with the data that a pipeline receives before the first frame.
     const SETUP_FILE: &'static str;
-    /// The table of a run directory with a row for every frame of the truth.
+    /// Table of a run directory with one row for every frame of the truth.
     const TRUTH_FILE: &'static str;
-    /// The file beside the measurements that a score reads as well, if it is there.
+    /// File beside the measurements that scoring also reads, if it exists.
     const EVIDENCE_FILE: Option<&'static str> = None;
-    /// The rate by which runs are good or bad, a figure of the score.
+    /// Rate by which runs are judged, a figure of the score.
     const HEADLINE: &'static str;
-    /// Whether a group of frames is apart from the next in time, so that what went wrong in the one says nothing of the other.
+    /// True if consecutive groups of frames are separated in time, so that errors in one group are
+    /// independent of the next.
     const ARE_GROUPS_APART: bool = true;
-    /// How images of a rendered dataset are kept, unless told otherwise.
+    /// Default image format of a rendered dataset.
     const IMAGES: Self::Images;
-    /// The word of the format in which a person looks at images.
+    /// Name of the format for viewing images.
     const PICTURES: &'static str;
 
-    /// Its scenarios.
+    /// Scenarios of the world.
     type Scenario: ScenarioFile;
     /// Parameters of the built-in pipeline.
     type Config;
-    /// What its pipelines receive and answer.
+    /// Input and output of the pipelines.
     type Interface: Protocol;
-    /// Formats in which images are kept.
+    /// Formats in which images are stored.
     type Images: Copy + Sync + FromStr<Err = String>;
-    /// What a thread makes of a frame, before it is received.
+    /// Result of exposing a frame on a thread, before it is received.
     type Exposure: Send;
-    /// What a thread reuses from frame to frame.
+    /// Data that a thread reuses from frame to frame.
     type Workspace<'a>
     where
         Self: 'a;
-    /// The ground truth of a frame.
+    /// Ground truth of a frame.
     type Truth;
-    /// What answers change of later images.
+    /// Effect of outcomes on later images.
     type Feedback: Clone + Default;
     /// Writes frames as a dataset.
     type Dataset<'a>: Dataset<Self>
     where
         Self: 'a;
-    /// Writes answers.
+    /// Writes outcomes.
     type Answers: Answers<Self::Interface>;
-    /// Judges answers.
+    /// Scores outcomes.
     type Scorer<'a>: Scorer<Self>
     where
         Self: 'a;
@@ -90,62 +94,64 @@ pub trait World: Sized + Send + Sync + 'static {
     /// Checks all values of a scenario and prepares its simulator.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the first value that is not allowed, or for an option that the world does not have.
+    /// A [`Failure`] with the location of the first invalid value, or for an option that the world does not
+    /// support.
     fn prepare(source: &ScenarioSource, scenario: &Self::Scenario, options: Options)
     -> Result<Self, Failure>;
 
-    /// The content of `run.toml`.
+    /// Returns the content of `run.toml`.
     fn run_file(&self) -> &RunFile<Self::Scenario>;
 
-    /// The scenario.
+    /// Returns the scenario.
     fn scenario(&self) -> &Self::Scenario {
         &self.run_file().scenario
     }
 
-    /// What a check of the scenario tells: for a machine, and for a person.
+    /// Returns the summary of a scenario check: as JSON, and as text for the user.
     fn summary(&self) -> (Value, String) {
         let (name, frames) = (&self.run_file().name, self.frame_count());
         let text = format!("{name}: {frames} {}s, no mistake found", Self::Interface::IMAGE);
         (json!({ "scenario": name, "ok": true, "world": Self::CODE, "frames": frames }), text)
     }
 
-    /// What is allowed and may not be meant, beside numbers that look wrong by a factor of a thousand.
+    /// Returns warnings about values that are permitted and may be unintended, in addition to those that look
+    /// wrong by a factor of a thousand.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Parameters of the built-in pipeline in a scenario.
+    /// Returns the parameters of the built-in pipeline in a scenario.
     fn config(scenario: &Self::Scenario) -> &Self::Config;
 
-    /// The factory of the built-in pipeline.
+    /// Returns the factory of the built-in pipeline.
     ///
     /// # Errors
     /// [`Failure::Usage`] for a parameter outside its range.
     fn built_in(config: &Self::Config) -> Result<Box<dyn PipelineFactory<Self::Interface> + Send>, Failure>;
 
-    /// Checks that the built-in pipeline can be run on the cameras of a scenario.
+    /// Checks that the built-in pipeline can run with the cameras of a scenario.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the parameter by which it cannot.
+    /// A [`Failure`] with the location of the parameter that prevents it.
     fn check_built_in(_: &ScenarioSource, _: &Self::Scenario) -> Result<(), Failure> {
         Ok(())
     }
 
-    /// Writes an image for a program, with no more beside the pixels than telemetry says.
+    /// Writes an image for an external program, with only pixels and telemetry.
     ///
     /// # Errors
-    /// Why it cannot be written.
+    /// A message with the reason when it cannot be written.
     fn write_image(image: &ImageOf<Self>, telemetry: &TelemetryOf<Self>, path: &Path) -> Result<(), String>;
 
-    /// Refuses a flight that cannot succeed, while nothing has been written.
+    /// Refuses a flight that cannot succeed, before anything is written.
     ///
     /// # Errors
-    /// A [`Failure`] that says why it cannot.
+    /// A [`Failure`] with the reason.
     fn check_frame_jobs(&self, _: &FrameJobs<Self::Images>) -> Result<(), Failure> {
         Ok(())
     }
 
-    /// What a rendered dataset holds for a pipeline, in words.
+    /// Describes the files of a rendered dataset for a pipeline.
     fn files_for_pipelines(_: Self::Images) -> String {
         format!("{} and the {}s", Self::SETUP_FILE, Self::Interface::IMAGE)
     }
@@ -153,7 +159,7 @@ pub trait World: Sized + Send + Sync + 'static {
     /// Refuses a flight whose images cannot be written to standard output.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a format that is no stream, or a world that has none.
+    /// [`Failure::Usage`] for a format that cannot be streamed, or a world without a stream.
     fn check_stream(&self, _: &FrameJobs<Self::Images>) -> Result<(), Failure> {
         let code = Self::CODE;
         Err(Failure::Usage(format!(
@@ -161,22 +167,22 @@ pub trait World: Sized + Send + Sync + 'static {
         )))
     }
 
-    /// Writes images to standard output, in a format that is a stream.
+    /// Writes images to standard output, in a format that can be streamed.
     ///
     /// # Errors
-    /// As [`World::check_stream`]; a [`Failure`] when it cannot be written.
+    /// Those of [`World::check_stream`]; a [`Failure`] when standard output cannot be written.
     fn stream(&self, frame_jobs: &FrameJobs<Self::Images>) -> Result<(), Failure> {
         self.check_stream(frame_jobs)
     }
 
-    /// Opens a dataset for a pipeline: real images, or a rendered one.
+    /// Opens a dataset for a pipeline, of real or rendered images.
     ///
     /// # Errors
-    /// A [`Failure`] with the first thing that is missing or wrong.
+    /// A [`Failure`] with the first missing or wrong item.
     fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure>;
 
-    /// Passes on, for every frame of a run, what a pipeline received besides the image: telemetry, transmitted regions. The default is a
-    /// world without telemetry.
+    /// Passes to `add`, for every frame of a run, the input of a pipeline besides the image: telemetry,
+    /// transmitted regions. The default is that of a world without telemetry.
     ///
     /// # Errors
     /// A [`Failure`] for a file that cannot be read.
@@ -184,47 +190,50 @@ pub trait World: Sized + Send + Sync + 'static {
         Ok(())
     }
 
-    /// The figures of a score. A key that another world has too is the same figure.
+    /// Returns the figures of a score. Figures of several worlds with the same key have the same definition.
     fn figures() -> Vec<FigureSpec>;
 
-    /// All causes that a unit's verdict may have, each as (verdict, cause) in the words of [`score::UnitVerdict`]; a study counts them.
+    /// Returns all causes that a unit's verdict may have, each as (verdict, cause) in the terms of
+    /// [`score::UnitVerdict`]; a study counts them.
     fn causes() -> Vec<(&'static str, &'static str)> {
         Vec::new()
     }
 
-    /// Number of frames of the whole scenario.
+    /// Returns the number of frames of the whole scenario.
     fn frame_count(&self) -> u64;
 
-    /// What a pipeline is told before the first frame.
+    /// Returns the setup that a pipeline receives before the first frame.
     fn setup(&self) -> &SetupOf<Self>;
 
-    /// Memory of the pixels of an exposure, bytes.
+    /// Returns the size of the pixels of an exposure in memory, bytes.
     fn exposure_bytes(&self) -> usize;
 
-    /// A workspace for a thread.
+    /// Creates the workspace of a thread.
     ///
     /// # Errors
-    /// A [`Failure`] when it cannot be made.
+    /// A [`Failure`] when the workspace cannot be created.
     fn workspace(&self) -> Result<Self::Workspace<'_>, Failure>;
 
-    /// Exposes a frame: the same bits whatever was exposed before.
+    /// Exposes a frame; its bits do not depend on earlier exposures.
     ///
     /// # Errors
-    /// A [`Failure`] when there is no such frame.
+    /// A [`Failure`] when the frame does not exist.
     fn expose(&self, workspace: &mut Self::Workspace<'_>, frame: u64) -> Result<Self::Exposure, Failure>;
 
-    /// Image, telemetry and ground truth of an exposure, received as earlier answers have it.
+    /// Returns image, telemetry and ground truth of an exposure, received with the feedback of earlier
+    /// outcomes.
     fn receive(
         exposure: Self::Exposure,
         feedback: &Self::Feedback,
     ) -> (ImageOf<Self>, TelemetryOf<Self>, Self::Truth);
 
-    /// The feedback from the next frame on, after an answer: that of before, unless a world closes the loop.
+    /// Returns the feedback from the next frame on, after an outcome: by default unchanged, for a world
+    /// without a closed loop.
     fn feedback(before: Self::Feedback, _outcome: &OutcomeOf<Self>) -> Self::Feedback {
         before
     }
 
-    /// Writes what is kept of an exposure in files of its own, on the thread that made it.
+    /// Writes the separate files of an exposure, on the thread that made it.
     ///
     /// # Errors
     /// A [`Failure`] when a file cannot be written.
@@ -238,20 +247,21 @@ pub trait World: Sized + Send + Sync + 'static {
         Ok(())
     }
 
-    /// Gives the memory of an image to a workspace.
+    /// Returns the memory of an image to a workspace.
     fn reuse(_: &mut Self::Workspace<'_>, _: ImageOf<Self>) {}
 
-    /// A pipeline that is flown and scored beside that of a run, for comparison; its answers are not written.
+    /// Returns the factory of a second pipeline that processes the same frames and is scored for comparison;
+    /// its outcomes are not written.
     ///
     /// # Errors
-    /// A [`Failure`] when it cannot be configured.
+    /// A [`Failure`] when the pipeline cannot be configured.
     fn comparison_pipeline(
         &self,
     ) -> Result<Option<Box<dyn PipelineFactory<Self::Interface> + Send>>, Failure> {
         Ok(None)
     }
 
-    /// The built-in pipeline with the truth in the place of a stage's result, where the run was asked for it.
+    /// Returns the built-in pipeline with one stage's result replaced by the truth, if the run requests it.
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
@@ -259,7 +269,7 @@ pub trait World: Sized + Send + Sync + 'static {
         Ok(None)
     }
 
-    /// Begins a dataset: writes what does not depend on frames.
+    /// Begins a dataset: writes the files that do not depend on frames.
     ///
     /// # Errors
     /// A [`Failure`] when a file cannot be written.
@@ -269,14 +279,16 @@ pub trait World: Sized + Send + Sync + 'static {
         frame_jobs: &FrameJobs<Self::Images>,
     ) -> Result<Self::Dataset<'a>, Failure>;
 
-    /// A scorer that has seen no frame.
+    /// Returns a scorer without any frame.
     fn scorer(&self) -> Self::Scorer<'_>;
 
-    /// Scores measurements, somebody's or our own, against the truth in `directory`, with what lies beside them: clusters, or motions;
-    /// `attitude` is granted to answers with a centroid alone, in place of what the run's scenario says.
+    /// Scores measurements of an external or a built-in pipeline against the truth in `directory`, with the
+    /// clusters or motions in the file `beside`. `attitude` is granted to measurements that have only a
+    /// centroid; it overrides the run's scenario.
     ///
     /// # Errors
-    /// A [`Failure`] for a file that cannot be read, a row of a frame that the truth does not have, or an attitude in a world without it.
+    /// A [`Failure`] for a file that cannot be read, a row of a frame that the truth does not contain, or an
+    /// attitude in a world without it.
     fn score_files(
         directory: &Path,
         measurements: &Path,
@@ -284,7 +296,7 @@ pub trait World: Sized + Send + Sync + 'static {
         attitude: Option<AttitudeChoice>,
     ) -> Result<Self::Judgement, Failure>;
 
-    /// Makes frames and writes them as a dataset; `done` is called after each.
+    /// Makes frames and writes them as a dataset; `done` is called after each frame.
     ///
     /// # Errors
     /// A [`Failure`] when a file cannot be written.
@@ -305,12 +317,13 @@ pub trait World: Sized + Send + Sync + 'static {
         Ok(directory.seal()?)
     }
 
-    /// Makes frames, has the pipeline process them and scores its answers; writes all of it, as long as `go_on`, asked after each
-    /// frame, does not fail. A scenario is one sequence: the pipeline is built once. With the truth for a stage, the pipeline is the
-    /// built-in one, whatever `factory` builds. Where the pipeline does not start, the run is over after three frames, which are scored.
+    /// Makes frames, processes them with the pipeline, scores its outcomes and writes everything. `go_on` is
+    /// called after each frame; its failure stops the run. A scenario is one sequence: the pipeline is built
+    /// once. If the result of a stage is replaced by the truth, the pipeline is the built-in one, regardless
+    /// of `factory`. If the pipeline does not start, the run ends after three frames, which are scored.
     ///
     /// # Errors
-    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built; what `go_on` says.
+    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built; the error of `go_on`.
     fn run(
         &self,
         directory: &RunDirectory,
@@ -363,11 +376,11 @@ pub trait World: Sized + Send + Sync + 'static {
         Ok(RunResult { scored, first_failure, incomplete })
     }
 
-    /// Makes frames on `jobs` threads, has a fresh pipeline process them, and hands each with its answer to `take`, in order, on
-    /// the caller's thread. Nothing is written.
+    /// Makes frames on `jobs` threads, processes them with a new pipeline, and passes each frame with its
+    /// outcome to `take`, in order, on the caller's thread. No files are written.
     ///
     /// # Errors
-    /// A [`Failure`] when the pipeline cannot be built or does not start, and the first one of `take`.
+    /// A [`Failure`] when the pipeline cannot be built or does not start, and the first failure of `take`.
     fn follow(
         &self,
         frames: Range<u64>,
@@ -391,8 +404,8 @@ pub trait World: Sized + Send + Sync + 'static {
         )
     }
 
-    /// Makes frames on this thread, has the pipeline process them and scores its answers; nothing is written. Where the pipeline does not
-    /// start, it is over after three frames, as [`World::run`].
+    /// Makes frames on this thread, processes them with the pipeline and scores its outcomes; no files are
+    /// written. If the pipeline does not start, scoring ends after three frames, as in [`World::run`].
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
@@ -419,39 +432,39 @@ pub trait World: Sized + Send + Sync + 'static {
     }
 }
 
-/// A dataset for a pipeline, not read yet.
+/// A dataset for a pipeline, before its images are read.
 pub struct OpenDataset<W: World> {
-    /// What a pipeline is told before the first image.
+    /// Setup that a pipeline receives before the first image.
     pub setup: SetupOf<W>,
     /// Parameters of the built-in pipeline.
     pub config: W::Config,
-    /// Number of images, where it is known.
+    /// Number of images, if known.
     pub count: Option<u64>,
-    /// The images, in order.
+    /// Images in order.
     pub images: Images<W>,
 }
 
 /// Images with their telemetry, read one by one.
 pub type Images<W> = Box<dyn Iterator<Item = Result<(ImageOf<W>, TelemetryOf<W>), Failure>>>;
 
-/// An image of a run, and what the pipeline answered.
+/// An image of a run with the outcome of the pipeline.
 pub struct FrameAnswer<W: World> {
-    /// The image, as it was received.
+    /// Image as received.
     pub image: ImageOf<W>,
-    /// What the pipeline was told of it.
+    /// Telemetry that the pipeline received.
     pub telemetry: TelemetryOf<W>,
-    /// The ground truth.
+    /// Ground truth.
     pub truth: W::Truth,
-    /// The pipeline's answer.
+    /// Outcome of the pipeline.
     pub outcome: OutcomeOf<W>,
 }
 
-/// A pipeline that is given the truth as well, for the one stage whose result it replaces.
+/// A pipeline that also receives the truth, for the one stage whose result it replaces.
 pub trait InformedPipeline<W: World> {
-    /// Answers an image.
+    /// Processes an image.
     ///
     /// # Errors
-    /// A [`Failure`] when the truth is none.
+    /// A [`Failure`] when the truth is invalid.
     fn process(
         &mut self,
         image: &ImageOf<W>,
@@ -460,7 +473,7 @@ pub trait InformedPipeline<W: World> {
     ) -> Result<OutcomeOf<W>, Failure>;
 }
 
-/// Writes what a run and a rendered dataset have in common: everything but answers and score.
+/// Writes the files common to a run and a rendered dataset: all except outcomes and score.
 pub trait Dataset<W: World> {
     /// Adds a frame.
     ///
@@ -473,45 +486,45 @@ pub trait Dataset<W: World> {
         truth: W::Truth,
     ) -> Result<(), FileError>;
 
-    /// Completes the files, the telemetry last: it makes a dataset of the directory.
+    /// Completes the files, the telemetry last: it marks the directory as a dataset.
     ///
     /// # Errors
     /// [`FileError`] when a file cannot be written.
     fn finish(self) -> Result<(), FileError>;
 }
 
-/// Writes a pipeline's answers.
+/// Writes the outcomes of a pipeline.
 pub trait Answers<I: Interface>: Sized {
-    /// The files: that of the measurements, which comes first, and those beside it.
+    /// Returns the paths of the files: the measurements first, then the files beside them.
     fn files(measurements: &Path) -> Vec<PathBuf>;
 
     /// Creates the files.
     ///
     /// # Errors
-    /// [`FileError`] when one exists or cannot be created.
+    /// [`FileError`] when a file exists or cannot be created.
     fn create(files: &[PathBuf]) -> Result<Self, FileError>;
 
-    /// Adds an answer.
+    /// Adds an outcome.
     ///
     /// # Errors
     /// [`FileError`] when a file cannot be written.
     fn add(&mut self, number: u64, outcome: &I::Outcome) -> Result<(), FileError>;
 
-    /// All answers so far in a few numbers, where the world has any.
+    /// Returns a summary of all outcomes so far, if the world provides one.
     fn summary(&self) -> Option<AnswerSummary> {
         None
     }
 
-    /// Completes the files, the measurements last: without them, nobody misses the others.
+    /// Completes the files, the measurements last: without them, the other files are not used.
     ///
     /// # Errors
     /// [`FileError`] when a file cannot be written.
     fn finish(self) -> Result<(), FileError>;
 }
 
-/// Judges answers, one after the other.
+/// Scores outcomes one after the other.
 pub trait Scorer<W: World> {
-    /// Judges an answer, as it stands in the files of a run.
+    /// Scores an outcome with the precision of a run's files.
     ///
     /// # Errors
     /// A [`Failure`] for a truth that cannot be scored.
@@ -522,25 +535,25 @@ pub trait Scorer<W: World> {
         outcome: &OutcomeOf<W>,
     ) -> Result<(), Failure>;
 
-    /// The score, with what it was counted from.
+    /// Returns the score with the units from which it was counted.
     fn finish(self) -> W::Judgement;
 }
 
 /// A scored run.
 pub trait Judgement {
-    /// The content of `score.json`.
+    /// Content of `score.json`.
     type Score: Serialize;
 
-    /// The score.
+    /// Returns the score.
     fn score(&self) -> &Self::Score;
 
-    /// The figures over all frames.
+    /// Returns the figures over all frames.
     fn figures(&self) -> &IndexMap<String, Figure>;
 
-    /// The run frame by frame, for a comparison with another.
+    /// Returns the run frame by frame, for a comparison with another run.
     fn units(&self) -> UnitTable;
 
-    /// Takes the judgement of another pipeline on the same frames, to be shown beside this one.
+    /// Adds the scored run of another pipeline on the same frames, to be shown beside this one.
     fn show_comparison(&mut self, _: Self)
     where
         Self: Sized,
@@ -548,7 +561,7 @@ pub trait Judgement {
     }
 }
 
-/// A pipeline at work on a sequence.
+/// A pipeline that processes a sequence.
 struct RunningPipeline<W: World> {
     pipeline: Processor<W>,
     feedback: W::Feedback,
@@ -595,7 +608,7 @@ impl<W: World> RunningPipeline<W> {
     }
 }
 
-/// Refuses to go on with a pipeline that does not start.
+/// Returns an error if the pipeline has repeatedly failed to start.
 fn check_starts(failed: Option<&FailedStarts>) -> Result<(), Failure> {
     match failed.filter(|failed| failed.count >= MAX_FAILED_STARTS) {
         Some(failed) => Err(failed.clone().into()),
@@ -603,7 +616,7 @@ fn check_starts(failed: Option<&FailedStarts>) -> Result<(), Failure> {
     }
 }
 
-/// The content of `score.json`.
+/// Content of `score.json`.
 #[derive(Serialize)]
 struct ScoreFile<'a, S> {
     #[serde(flatten)]
@@ -612,8 +625,8 @@ struct ScoreFile<'a, S> {
     incomplete: Option<&'a IncompleteRun>,
 }
 
-/// Makes frames, saves what is kept of each apart, and hands them to `take`, which gives back their images: later ones are made in
-/// their memory.
+/// Makes frames, saves the separate files of each, and passes them to `take`, which returns their images:
+/// later images reuse their memory.
 fn run_frames<W: World>(
     world: &W,
     directory: &RunDirectory,
@@ -643,10 +656,11 @@ fn run_frames<W: World>(
     )
 }
 
-/// Has a pipeline process images, real ones included, and writes its answers to `measurements` and beside it.
+/// Processes images, including real ones, with a pipeline, and writes its outcomes to `measurements` and the
+/// files beside it.
 ///
 /// # Errors
-/// A [`Failure`] when an image cannot be read, a file not be written, or the pipeline does not start.
+/// A [`Failure`] when an image cannot be read, a file cannot be written, or the pipeline does not start.
 pub fn process<I: Interface, A: Answers<I>>(
     images: impl IntoIterator<Item = Result<(I::Image, I::Telemetry), Failure>>,
     setup: &I::Setup,
@@ -654,7 +668,8 @@ pub fn process<I: Interface, A: Answers<I>>(
     measurements: &Path,
     done: impl Fn(),
 ) -> Result<AnswerCount, Failure> {
-    // Under other names until all is done, so that a run that fails leaves nothing in the way of the next one.
+    // The files have other names until all outcomes are written, so that a failed run leaves no files that
+    // block the next run.
     let files = A::files(measurements);
     let partial = PartialFiles::for_paths(&files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let waiting: Vec<PathBuf> = (0..files.len()).map(|index| partial.path(index).to_owned()).collect();
@@ -663,10 +678,10 @@ pub fn process<I: Interface, A: Answers<I>>(
     Ok(processed)
 }
 
-/// Has a pipeline process images, and hands its answers to a writer.
+/// Processes images with a pipeline, and passes its outcomes to a writer.
 ///
 /// # Errors
-/// As [`process`].
+/// Those of [`process`].
 pub fn process_into<I: Interface, A: Answers<I>>(
     images: impl IntoIterator<Item = Result<(I::Image, I::Telemetry), Failure>>,
     setup: &I::Setup,
@@ -694,21 +709,21 @@ pub fn process_into<I: Interface, A: Answers<I>>(
     Ok(processed)
 }
 
-/// What [`process`] did.
+/// Result of [`process`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnswerCount {
-    /// Images answered.
+    /// Number of processed images.
     pub frames: u64,
-    /// The first failure of the pipeline, if it failed at all.
+    /// First failure of the pipeline, if any.
     pub first_failure: Option<FirstFailure>,
-    /// The answers in a few numbers, where the world has any.
+    /// Summary of the outcomes, if the world provides one.
     pub summary: Option<AnswerSummary>,
 }
 
-/// Refuses to grant an attitude in a world whose answers are not lines of sight.
+/// Refuses to grant an attitude in a world whose measurements are not lines of sight.
 ///
 /// # Errors
-/// [`Failure::Usage`] when one is asked for.
+/// [`Failure::Usage`] when an attitude is requested.
 pub fn refuse_attitude(attitude: Option<AttitudeChoice>) -> Result<(), Failure> {
     attitude.map_or(Ok(()), |_| {
         Err(Failure::Usage("--attitude is given, expected with a run of the far range alone".to_owned()))
@@ -719,7 +734,7 @@ pub(crate) fn unscorable(error: score::ScoreError) -> Failure {
     Failure::Usage(format!("the truth cannot be scored: {error}"))
 }
 
-/// As many files as a writer of answers has.
+/// Returns the paths of exactly as many files as a writer of outcomes has.
 pub(crate) fn paths<const N: usize>(files: &[PathBuf]) -> Result<[&Path; N], FileError> {
     let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
     let count = paths.len();

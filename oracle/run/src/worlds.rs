@@ -1,4 +1,4 @@
-//! The register of worlds.
+//! Registry of worlds.
 
 use std::collections::HashMap;
 use std::sync::{LazyLock, PoisonError, RwLock};
@@ -11,16 +11,16 @@ use crate::any_world::AnyWorld;
 use crate::any_world::erased::ErasedWorld;
 use crate::{DockingMission, FarRangeMission};
 
-/// The world of a scenario that names none.
+/// World of a scenario that names none.
 pub const FIRST: &dyn AnyWorld = &ErasedWorld::<FarRangeMission>::NEW;
 
-/// The worlds that there are: one line each.
+/// Built-in worlds, one line each.
 const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &ErasedWorld::<DockingMission>::NEW];
 
-/// Worlds of somebody's own.
+/// Worlds registered by external code.
 static REGISTERED: RwLock<Vec<&'static dyn AnyWorld>> = RwLock::new(Vec::new());
 
-/// The figures of all worlds, by their keys.
+/// Figures of all worlds, by key.
 static FIGURES: LazyLock<RwLock<HashMap<String, FigureSpec>>> =
     LazyLock::new(|| RwLock::new(BUILT_IN.into_iter().flat_map(by_key).collect()));
 
@@ -28,28 +28,29 @@ fn by_key(world: &'static dyn AnyWorld) -> impl Iterator<Item = (String, FigureS
     world.figures().into_iter().map(|figure| (figure.name.clone(), figure))
 }
 
-/// Adds a world for the rest of the process, as in `register(&ErasedWorld::<MyWorld>::NEW)`: every command, study and gate then has it.
+/// Registers a world for the rest of the process, as in `register(&Of::<MyWorld>::NEW)`: every command, study
+/// and gate then supports it.
 pub fn register(world: &'static dyn AnyWorld) {
     FIGURES.write().unwrap_or_else(PoisonError::into_inner).extend(by_key(world));
     REGISTERED.write().unwrap_or_else(PoisonError::into_inner).push(world);
 }
 
-/// The figure of a key, of whatever world; a key that no world has is [`FigureSpec::unknown`].
+/// Returns the figure with this key, of any world; [`FigureSpec::unknown`] for a key that no world has.
 pub fn figure_by_name(key: &str) -> FigureSpec {
     let figures = FIGURES.read().unwrap_or_else(PoisonError::into_inner);
     figures.get(key).cloned().unwrap_or_else(|| FigureSpec::unknown(key))
 }
 
-/// Every world.
+/// Returns all worlds.
 pub fn worlds() -> Vec<&'static dyn AnyWorld> {
     let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
     BUILT_IN.into_iter().chain(registered.iter().copied()).collect()
 }
 
-/// The world of a word.
+/// Returns the world with this code.
 ///
 /// # Errors
-/// A message that names the word and those that there are.
+/// A message that names the unknown code and the existing ones.
 pub fn world_by_name(word: &str) -> Result<&'static dyn AnyWorld, String> {
     let worlds = worlds();
     worlds.iter().copied().find(|world| world.code() == word).ok_or_else(|| {
@@ -61,7 +62,7 @@ pub fn world_by_name(word: &str) -> Result<&'static dyn AnyWorld, String> {
     })
 }
 
-/// The JSON Schema of scenario files, from the types that read them: of one world, or of any.
+/// Returns the JSON Schema of scenario files, from the types that read them: of one world, or of all.
 pub fn json_schema(world: Option<&dyn AnyWorld>) -> Schema {
     let mut generator = SchemaGenerator::default();
     match world {

@@ -5,24 +5,24 @@ use std::sync::LazyLock;
 use super::FarRangeScenario;
 use crate::run_file::ScenarioFile;
 
-/// A file of the folder `scenarios/`, embedded.
+/// A file of the directory `scenarios/`, embedded in the binary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BuiltIn {
     /// Name on the command line.
     pub name: &'static str,
-    /// The TOML text.
+    /// TOML text of the file.
     pub text: &'static str,
 }
 
-/// Every built-in scenario, by name.
+/// Built-in scenarios, by name.
 pub const BUILT_IN: &[BuiltIn] = &[
     BuiltIn { name: "argon", text: include_str!("../../../scenarios/argon.toml") },
     BuiltIn { name: "docking", text: DOCKING },
     BuiltIn { name: "starting-point", text: STARTING_POINT },
 ];
 
-/// Whether a scenario flies what the built-in `argon` flies, the same orbits and the same images, and counts errors within the same
-/// limits. Only then do the figures that the paper publishes stand beside its own.
+/// Returns true if a scenario has the same orbits and images as the built-in `argon`, and counts errors
+/// within the same limits. Only then are the figures published in the paper shown beside its figures.
 pub fn is_argon(scenario: &FarRangeScenario) -> bool {
     static ARGON: LazyLock<Option<FarRangeScenario>> = LazyLock::new(|| {
         let built_in = BUILT_IN.iter().find(|built_in| built_in.name == "argon")?;
@@ -35,9 +35,9 @@ pub fn is_argon(scenario: &FarRangeScenario) -> bool {
     })
 }
 
-/// The approach to the station, a comment on every line: the built-in `docking`, and what `scenario new --world docking`
-/// writes.
+/// Approach to the station, with a comment on every line: the built-in `docking`, and the output of `scenario
+/// new --world docking`.
 pub const DOCKING: &str = include_str!("../../../scenarios/docking.toml");
 
-/// A small scenario with a comment on every line: what `scenario new` writes unless told otherwise.
+/// Small scenario with a comment on every line: the default output of `scenario new`.
 pub const STARTING_POINT: &str = include_str!("../../../scenarios/starting-point.toml");

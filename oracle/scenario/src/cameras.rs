@@ -1,8 +1,8 @@
-//! Camera models to start from: the tables `[camera]` and `[sensor]` of a scenario.
+//! Camera models for new scenarios: the tables `[camera]` and `[sensor]`.
 
 use super::BuiltIn;
 
-/// Every built-in camera, by name: text to be pasted into a scenario, each value with its source.
+/// Built-in cameras, by name: text to be pasted into a scenario, each value with its source.
 pub const CAMERAS: &[BuiltIn] = &[
     BuiltIn {
         name: "cmos-star-tracker",
@@ -40,8 +40,8 @@ mod tests {
         }
     }
 
-    /// Two dark frames of each camera have the mean and the noise that its figures give, seen through a converter of half
-    /// an electron a digital number, so that rounding hides nothing.
+    /// Two dark frames of each camera have the mean and the noise that follow from its parameters. The
+    /// converter has half an electron per digital number, so that rounding hides nothing.
     #[test]
     fn dark_frames_have_the_figures_of_their_camera() {
         let seed = Seed { seed: 5, case: 0 };
@@ -66,7 +66,8 @@ mod tests {
             let mean_dn = frames[0].iter().sum::<f64>() / n;
             let (gain, dark_e) = (sensor.gain_e_per_dn, sensor.dark_current_e_per_s * exposure_s);
             let row_e = sensor.line_noise.row_e;
-            // What does not average out over the pixels: the noise of 400 rows, the offsets of 400 columns.
+            // Noise that does not average out over the pixels: that of 400 rows, and the offsets of 400
+            // columns.
             let lines_e = libm::hypot(row_e, sensor.fixed_pattern.column_offset_e) / 20.0;
             let error_e = (mean_dn - sensor.bias_dn) * gain - dark_e;
             // The pattern of the dark current averages out over 160,000 pixels.
@@ -77,7 +78,7 @@ mod tests {
             let read_e = sensor.read_noise_e;
             let noise_e2 = dark_e + read_e * read_e + row_e * row_e;
             let expected = noise_e2 / (gain * gain) + 1.0 / 12.0;
-            // 160,000 differences know a variance to 0.35 %, those of 400 rows to 7 %.
+            // 160,000 differences determine a variance to 0.35 %, those of 400 rows to 7 %.
             let tolerance = 5.0 * (0.0035 + 0.07 * row_e * row_e / noise_e2);
             assert!((variance / expected - 1.0).abs() < tolerance, "{name}: {variance} and {expected} DN²");
         }

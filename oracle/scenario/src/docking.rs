@@ -1,4 +1,4 @@
-//! The docking world: an approach as the television camera sees it.
+//! Docking world: an approach imaged by a television camera.
 
 use pipeline::docking::DockingConfig;
 use schemars::JsonSchema;
@@ -10,34 +10,34 @@ use sim::truth::approach::ApproachConfig;
 
 use crate::scenario_file;
 
-/// A docking scenario, as a TOML file holds it. Units are in the names; unknown keys are errors.
+/// A docking scenario, in the form of its TOML file. Units are in the names; unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DockingScenario {
-    /// The world, "docking".
+    /// Code of the world, "docking".
     pub world: DockingWorld,
-    /// What it is, in one line.
+    /// Title of the scenario, one line.
     pub title: String,
-    /// Seed of every random draw.
+    /// Seed of all random draws.
     #[schemars(range(max = u64::MAX))]
     pub seed: u64,
-    /// The moment of the first field, UTC, as in 2004-01-31T13:13:00Z.
+    /// Time of the first field, UTC, as in 2004-01-31T13:13:00Z.
     pub start_utc: String,
-    /// Name of a built-in target, or the path of a target file, starting from the scenario's folder.
+    /// Name of a built-in target, or path of a target file, relative to the scenario's directory.
     pub target: String,
-    /// How the camera moves.
+    /// Motion of the camera.
     pub approach: ApproachConfig,
-    /// The cameras (lenses), in the order of use, 1 to 8, all with the same columns and rows.
+    /// Cameras (lenses), in the order of use, 1 to 8, all with the same columns and rows.
     pub cameras: Vec<CameraConfig>,
-    /// What all lenses do to the image.
+    /// Image degradation common to all lenses.
     #[serde(default)]
     pub lens: LensConfig,
-    /// The light.
+    /// Illumination.
     pub lighting: LightingConfig,
-    /// The television chain.
+    /// Television chain.
     #[serde(default)]
     pub television: TelevisionConfig,
-    /// How answers are scored; nothing of it is simulated.
+    /// Scoring of outcomes, without effect on the simulation.
     #[serde(default, skip_serializing_if = "DockingScoreConfig::is_default")]
     pub score: DockingScoreConfig,
     /// Parameters of the pipeline `docking`.
@@ -45,12 +45,12 @@ pub struct DockingScenario {
     pub docking: DockingConfig,
 }
 
-/// How answers are scored.
+/// Scoring of outcomes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DockingScoreConfig {
-    /// The first so many fields, in which the pipeline starts up, are a group of their own, `warm-up`; all other figures but the latency
-    /// leave them out.
+    /// Number of first fields, in which the pipeline starts up. They form a separate group, `warm-up`; all
+    /// other figures except the latency exclude them.
     #[serde(default, skip_serializing_if = "crate::zero::is_zero")]
     #[schemars(range(min = 0, max = 1_u64 << 40))]
     pub warm_up_frames: u64,
@@ -62,7 +62,7 @@ impl DockingScoreConfig {
     }
 }
 
-/// The one world of a [`DockingScenario`].
+/// World of a [`DockingScenario`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DockingWorld {
@@ -80,7 +80,7 @@ impl DockingScenario {
         }
     }
 
-    /// What the simulator needs of it.
+    /// Returns the input of the simulator.
     pub fn simulation(&self) -> DockingSimulation {
         DockingSimulation {
             seed: self.seed,

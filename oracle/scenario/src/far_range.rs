@@ -1,4 +1,4 @@
-//! The far-range world: star fields with a distant spacecraft.
+//! Far-range world: star fields with a distant spacecraft.
 
 use clap::ValueEnum;
 use contract::{
@@ -17,66 +17,68 @@ use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, O
 
 use crate::scenario_file;
 
-/// A far-range scenario, as a TOML file holds it. Units are in the names; unknown keys are errors.
+/// A far-range scenario, in the form of its TOML file. Units are in the names; unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FarRangeScenario {
-    /// The world, "far_range"; what a scenario is without this key.
-    // Never written: resolved scenarios, and their hashes, are those from before there was another world.
+    /// Code of the world, "far_range", which is the default.
+    // Never written, so that resolved scenarios and their hashes are the same as before other worlds existed.
     #[serde(default, skip_serializing)]
     pub world: FarRangeWorld,
-    /// What it is, in one line.
+    /// Title of the scenario, one line.
     pub title: String,
-    /// Seed of every random draw but the detector's fixed pattern.
+    /// Seed of all random draws except the detector's fixed pattern.
     #[schemars(range(max = u64::MAX))]
     pub seed: u64,
-    /// Which stars are drawn.
+    /// Stars that are drawn.
     #[serde(default)]
     pub catalog: CatalogConfig,
-    /// Which stars the pipeline is told of.
+    /// Stars in the list for the pipeline.
     pub star_list: StarListConfig,
     /// Orbits of target and chaser.
     pub orbit: OrbitConfig,
-    /// When images are taken, group by group.
+    /// Times of the images, group by group.
     pub schedule: Vec<GroupConfig>,
-    /// Where the chaser points, and how well.
+    /// Pointing of the chaser, and its accuracy.
     pub attitude: AttitudeConfig,
-    /// What telemetry knows of the attitude.
+    /// Attitude errors of the telemetry.
     pub knowledge: KnowledgeConfig,
-    /// How the camera sits on the chaser, in truth and by calibration.
+    /// Mounting of the camera on the chaser, true and by calibration.
     pub mounting: MountingConfig,
     /// Geometry of the camera.
     pub camera: Camera,
-    /// Point spread function of the optics.
+    /// Point-spread function of the optics.
     pub psf: PsfConfig,
-    /// What of the optics changes over the field: vignetting, sharpness; absent: nothing.
+    /// Variation of the optics over the field: vignetting, sharpness; absent: none.
     #[serde(default)]
     pub optics: OpticsConfig,
-    /// From magnitudes to photoelectrons.
+    /// Conversion from magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
-    /// Light without a source in the field: zodiacal light, faint stars, stray light; absent: none.
+    /// Background without a source in the field: zodiacal light, faint stars, stray light; absent: none.
     #[serde(default)]
     pub background: BackgroundConfig,
-    /// The detector.
+    /// Detector.
     pub sensor: SensorConfig,
-    /// The law of the exposure time.
+    /// Control of the exposure time.
     pub shutter: ShutterConfig,
     /// Regions of interest kept on board; absent: whole images are transmitted.
     pub roi: Option<RoiConfig>,
-    /// Zero suppression of whole images: pixels up to this digital number, 0 to 65535, are transmitted as 0, and only those above it
-    /// are drawn; absent: every pixel is. A pipeline must not look below it.
+    /// Zero suppression of whole images: pixels up to this digital number, 0 to 65535, are transmitted as 0,
+    /// and only pixels above it are drawn; absent: every pixel is. A pipeline must not use values below it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub zero_suppression_dn: Option<u16>,
-    /// The target spacecraft as a source of light.
+    /// Target spacecraft as a light source.
     pub target: TargetConfig,
-    /// Whether the Moon and the planets are drawn, "on" or "off" (the default). They are in no star list.
+    /// Drawing of the Moon and the planets, "on" or "off" (the default). They are in no star list.
     #[serde(default = "off")]
     pub solar_system: Switch,
-    /// How answers are scored; nothing of it is simulated.
-    // Not written where it says nothing: resolved scenarios, and their hashes, are those from before there was such a table.
+    /// Scoring of outcomes, without effect on the simulation.
+    // Not written when it has default values, so that resolved scenarios and their hashes are the same as
+    // before the table existed.
     #[serde(default, skip_serializing_if = "ScoreConfig::is_default")]
     pub score: ScoreConfig,
-    /// Calibration given to the pipeline, in place of the numbers that follow from the tables above; absent: all of those.
+    /// Calibration given to the pipeline, which overrides the values derived from the tables above; absent:
+    /// all values are derived.
     #[serde(default, skip_serializing_if = "is_nothing_stated")]
     pub calibration: Calibration,
     /// Parameters of the pipeline `far_range`.
@@ -84,19 +86,21 @@ pub struct FarRangeScenario {
     pub far_range: FarRangeConfig,
 }
 
-/// How answers are scored.
+/// Scoring of outcomes.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScoreConfig {
-    /// What "within one pixel" and "within two" mean on both axes, degrees, ascending, each 1e-6 to 180; absent: one and two pixels of the
-    /// camera, each axis by its own scale.
+    /// Angular limits of "within one pixel" and "within two" on both axes, degrees, ascending, each 1e-6 to
+    /// 180; absent: one and two pixels of the camera, each axis with its own scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1e-6, max = 180)))]
     pub within_deg: Option<[f64; 2]>,
-    /// The attitude that is granted to answers with a centroid alone; absent: none, and they have no line of sight.
+    /// Attitude granted to measurements that have only a centroid; absent: none, and these measurements have
+    /// no line of sight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude: Option<AttitudeChoice>,
-    /// The first so many frames, in which the pipeline starts up, are a group of their own, `warm-up`; all other figures leave them out.
+    /// Number of first frames, in which the pipeline starts up. They form a separate group, `warm-up`; all
+    /// other figures exclude them.
     #[serde(default, skip_serializing_if = "crate::zero::is_zero")]
     #[schemars(range(min = 0, max = 1_u64 << 40))]
     pub warm_up_frames: u64,
@@ -107,10 +111,10 @@ impl ScoreConfig {
         *self == Self::default()
     }
 
-    /// Checks every number.
+    /// Checks all values.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first that is not allowed.
+    /// [`OutOfRange`] for the first invalid value.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "score")?;
         let Some([one, two]) = self.within_deg else { return Ok(()) };
@@ -118,7 +122,7 @@ impl ScoreConfig {
     }
 }
 
-/// The attitude that the score grants to answers with a centroid alone.
+/// Attitude that the score grants to measurements that have only a centroid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum AttitudeChoice {
@@ -128,7 +132,7 @@ pub enum AttitudeChoice {
     True,
 }
 
-/// The one world of a [`FarRangeScenario`].
+/// World of a [`FarRangeScenario`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FarRangeWorld {
@@ -145,7 +149,7 @@ fn off() -> Switch {
     Switch::Off
 }
 
-/// The star list uploaded to the pipeline.
+/// Star list uploaded to the pipeline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StarListConfig {
@@ -154,10 +158,11 @@ pub struct StarListConfig {
     pub magnitude_limit: f64,
 }
 
-/// Standard deviation of the nominal mounting about each axis, arcsec: a calibration on ground and the launch after it.
+/// Standard deviation of the nominal mounting about each axis, arcsec: calibration on ground followed by the
+/// launch.
 const MOUNTING_SIGMA_ARCSEC: f64 = 180.0;
 
-/// Reflectance of a spacecraft of which nothing else is known.
+/// Reflectance assumed for a spacecraft of unknown reflectance.
 const GREY_REFLECTANCE: f64 = 0.25;
 
 /// Colour B − V of the Sun, mag (Ramírez et al. 2012, ApJ 752, 5: 0.653).
@@ -178,7 +183,7 @@ impl FarRangeScenario {
         catalog.into_iter().chain(psf).collect()
     }
 
-    /// What the simulator needs of it.
+    /// Returns the input of the simulator.
     pub fn simulation(&self) -> Simulation {
         Simulation {
             seed: self.seed,
@@ -202,11 +207,11 @@ impl FarRangeScenario {
         }
     }
 
-    /// The calibration given to a pipeline: what follows from optics, detector, radiometry and knowledge of the attitude, with the stated numbers
-    /// in place of those.
+    /// Returns the calibration given to a pipeline: values derived from optics, detector, radiometry and
+    /// attitude knowledge, overridden by the stated values.
     ///
-    /// The point-spread function follows for Gaussian ones alone, the brightness scale for a radiometry that is allowed. The nominal mounting counts as
-    /// known to 180″ about each axis.
+    /// The point-spread function is derived only for Gaussian ones, the brightness scale only for a valid
+    /// radiometry. The nominal mounting is assumed to be known to 180″ about each axis.
     pub fn calibration(&self) -> Calibration {
         let psf = match self.psf {
             PsfConfig::Gaussian { sigma_px } => {
@@ -220,7 +225,8 @@ impl FarRangeScenario {
         let knowledge = &self.knowledge;
         let slow_period_s = knowledge.drift.periods_s.iter().copied().fold(f64::INFINITY, f64::min);
         let derived = Calibration {
-            // A calibration has narrower ranges than a scenario: a width beyond them is left out, other numbers end there.
+            // The ranges of a calibration are narrower than those of a scenario: a point-spread function
+            // outside them is left out, other values are clamped.
             psf: psf.filter(|psf| bounds::check(psf, "psf").is_ok()),
             full_well_e: Some(self.sensor.full_well_e.clamp(1.0, 1e9)),
             spill_fraction: Some(self.sensor.blooming.map_or(0.0, |blooming| blooming.spill_fraction)),
@@ -241,7 +247,8 @@ impl FarRangeScenario {
         derived.replaced_by(self.calibration)
     }
 
-    /// Size and brightness of the target to a factor of two: a Lambert sphere of its size at a phase of 90° (of plates with a reflectance of 0.25).
+    /// Returns size and brightness of the target, to a factor of two: those of a Lambert sphere of the same
+    /// size at a phase angle of 90° (for plates, with a reflectance of 0.25).
     fn target_calibration(&self) -> Option<TargetCalibration> {
         let radiometry = Radiometry::new(&self.radiometry).ok()?;
         let sunlit = |radius_m: f64, reflectance: f64| {
@@ -265,10 +272,12 @@ impl FarRangeScenario {
         })
     }
 
-    /// How the detector's electrons become digital numbers, as its calibration tells a pipeline.
+    /// Returns the conversion of the detector's electrons to digital numbers, in the form of the calibration
+    /// for a pipeline.
     pub fn readout(&self) -> Readout {
         let sensor = &self.sensor;
-        // At the full well the read noise still moves a pixel: it counts as full from five standard deviations below.
+        // Read noise can lower a pixel at full well: a pixel counts as full from five standard deviations
+        // below.
         let full_dn =
             sensor.bias_dn + (sensor.full_well_e - 5.0 * sensor.read_noise_e) / sensor.gain_e_per_dn;
         Readout {

@@ -1,4 +1,4 @@
-//! What the frames of a scenario depend on, apart from what says who measures them and with which noise.
+//! Parts of a scenario that determine its frames, separated from title, seed and pipeline parameters.
 
 use files::Failure;
 use files::sha256::sha256_hex;
@@ -6,19 +6,19 @@ use toml::{Table, Value};
 
 use crate::run_file::{FileDigests, content};
 
-/// A scenario, apart from what says who measures it and with which noise.
+/// A scenario separated into the parts that determine its frames and the parameters of the pipeline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Split {
-    /// The parameters of the world's own pipeline.
+    /// Parameters of the world's built-in pipeline.
     pub pipeline: Table,
-    /// The scenario without them, its title and its seed.
+    /// Scenario without pipeline parameters, title and seed.
     pub scenario: Table,
-    /// SHA-256 of that scenario, hexadecimal.
+    /// SHA-256 of `scenario`, hexadecimal.
     pub scenario_sha256: String,
 }
 
-/// Takes title, seed and the parameters of the pipeline of `world` out of a resolved scenario, and puts the content of `files` in the place
-/// of their paths.
+/// Removes title, seed and the parameters of the pipeline of `world` from a resolved scenario, and replaces
+/// the paths of `files` by the digests of their contents.
 ///
 /// # Errors
 /// [`Failure::Usage`] for a scenario that cannot be written as TOML.
@@ -41,7 +41,8 @@ pub fn split(world: &str, mut scenario: Table, files: &FileDigests) -> Result<Sp
     Ok(Split { pipeline, scenario, scenario_sha256: sha256_hex(&text) })
 }
 
-/// Where two values differ first, as `.psf.sigma_px` or `.schedule[2].count`, and what stands there.
+/// Returns the first difference of two values: its path, as `.psf.sigma_px` or `.schedule[2].count`, and the
+/// two values there.
 pub fn first_difference(a: &Value, b: &Value) -> Option<(String, String, String)> {
     let missing = || "none".to_owned();
     match (a, b) {
@@ -80,7 +81,7 @@ mod tests {
     fn what_differs_first_is_named_down_to_its_position() {
         let value = |text: &str| Value::Table(text.parse().unwrap());
         for (a, b, at, of_a, of_b) in [
-            // Neither has what the other has; by name, not by place.
+            // Each table lacks a key of the other; keys are compared by name, not by position.
             ("b = 1\na = 1", "b = 2\na = 2", ".a", "1", "2"),
             ("a = 1", "a = 1\nb = 2", ".b", "none", "2"),
             ("a = 1\nb = 2", "a = 1", ".b", "2", "none"),
@@ -105,7 +106,7 @@ mod tests {
         let scenario: Table = "[psf]\nsigma_px = 0.8\n[[schedule]]\ncount = 3\n".parse().unwrap();
         assert_eq!(split.scenario, scenario);
         assert_eq!(split.scenario_sha256, sha256_hex(toml::to_string(&scenario).unwrap()));
-        // Of the other world's pipeline it is no part.
+        // For the other world the table is not pipeline parameters and stays in the scenario.
         let other = super::split("docking", table, &FileDigests::new()).unwrap();
         assert!(other.pipeline.is_empty() && other.scenario.contains_key("far_range"));
     }

@@ -1,4 +1,4 @@
-//! Scenarios: what to run, in words. Each world has a type of its own.
+//! Scenarios: text files that describe a run. Each world has its own type.
 
 #![cfg_attr(
     not(test),

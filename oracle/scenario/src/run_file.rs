@@ -1,4 +1,4 @@
-//! `run.toml`: enough to repeat a run.
+//! `run.toml`: the data needed to repeat a run.
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::path::Path;
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{FarRangeScenario, Stage};
 
-// For `scenario_file!`.
+// Used by `scenario_file!`.
 #[doc(hidden)]
 pub use {
     files::Failure,
@@ -22,12 +22,13 @@ pub use {
 /// SHA-256 of the files that a scenario reads, hexadecimal, by their roles ([`ScenarioFile::paths`]).
 pub type FileDigests = BTreeMap<String, String>;
 
-/// What stands for a file where only its content matters.
+/// Returns the digest text that replaces a file's path where only its content matters.
 pub fn content(sha256: &str) -> String {
     format!("sha256:{sha256}")
 }
 
-/// What was run: the resolved scenario of one world with all defaults, and what else the frames depend on.
+/// Description of a run: the resolved scenario of one world with all defaults, and all other inputs of the
+/// frames.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunFile<S = FarRangeScenario> {
@@ -38,97 +39,97 @@ pub struct RunFile<S = FarRangeScenario> {
     /// SHA-256 of the star catalogue's source, hexadecimal; absent in a world without stars.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub catalog_sha256: Option<String>,
-    /// SHA-256 of the resolved scenario as it stands below, the path of every file replaced by its content (`sha256:` and the digits),
-    /// hexadecimal: the same wherever the files lie.
+    /// SHA-256 of the resolved scenario below, with the path of every file replaced by its digest (`sha256:`
+    /// and the digits), hexadecimal: independent of the location of the files.
     pub hash: String,
-    /// The stage whose result was replaced by the truth; absent in an honest run.
+    /// Stage whose result was replaced by the truth; absent if no stage was replaced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inject: Option<Stage>,
-    /// The files that the scenario reads: SHA-256 by role.
+    /// SHA-256 of the files that the scenario reads, by role.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub files: FileDigests,
-    /// How the scene was drawn, where the fast renderer did not.
+    /// Settings of Mitsuba; absent for the fast renderer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mitsuba: Option<MitsubaRecord>,
-    /// The scenario.
+    /// Scenario of the run.
     pub scenario: S,
 }
 
-/// What images by Mitsuba depend on besides the scenario: the table `[mitsuba]` of `run.toml`.
+/// Settings, besides the scenario, that images by Mitsuba depend on: the table `[mitsuba]` of `run.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MitsubaRecord {
-    /// Its version.
+    /// Version of Mitsuba.
     pub version: String,
-    /// Its variant.
+    /// Variant of Mitsuba.
     pub variant: String,
-    /// Rays a pixel.
+    /// Number of rays per pixel.
     pub rays_per_px: u32,
 }
 
-/// A scenario of one world as its files hold it. [`scenario_file!`](crate::scenario_file) implements it.
+/// A scenario of one world in the form of its files. [`scenario_file!`](crate::scenario_file) implements it.
 ///
-/// Reading a scenario is the largest code of the program. These methods are not generic, so that it is compiled where the type is, once per
-/// world, and not in every crate that reads a run.
+/// Reading a scenario is the largest code of the program. These methods are not generic, so that the code is
+/// compiled in the crate of the type, once per world, and not in every crate that reads a run.
 pub trait ScenarioFile: Clone + Debug + Send + Sync + 'static {
-    /// The word of its world: the key `world` of its files.
+    /// Code of the world: the key `world` of its files.
     const WORLD: &'static str;
 
-    /// Reads the text of a scenario, which came from `file`.
+    /// Parses the text of a scenario, which was read from `file`.
     ///
     /// # Errors
-    /// A [`TomlError`] with the place of the first mistake.
+    /// A [`TomlError`] with the location of the first mistake.
     fn parse(file: &Path, text: &str) -> Result<Self, Box<TomlError>>;
 
-    /// Reads the text of a `run.toml`, which came from `file`.
+    /// Parses the text of a `run.toml`, which was read from `file`.
     ///
     /// # Errors
-    /// A [`TomlError`] with the place of the first mistake.
+    /// A [`TomlError`] with the location of the first mistake.
     fn parse_run(file: &Path, text: &str) -> Result<RunFile<Self>, Box<TomlError>>;
 
-    /// The scenario as TOML, all defaults written out.
+    /// Returns the scenario as TOML, including defaults.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a value that TOML does not have.
+    /// [`Failure::Usage`] for a value that TOML cannot express.
     fn to_toml(&self) -> Result<String, Failure>;
 
-    /// The text of a `run.toml`.
+    /// Returns the text of a `run.toml`.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a value that TOML does not have.
+    /// [`Failure::Usage`] for a value that TOML cannot express.
     fn run_to_toml(run: &RunFile<Self>) -> Result<String, Failure>;
 
-    /// All its values, defaults included.
+    /// Returns all values of the scenario, including defaults.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when they cannot be written as JSON.
+    /// [`Failure::Usage`] when the values cannot be written as JSON.
     fn to_json(&self) -> Result<Value, Failure>;
 
-    /// The JSON Schema of its files.
+    /// Returns the JSON Schema of the scenario's files.
     fn schema(generator: SchemaGenerator) -> Schema;
 
-    /// The same as a part of another schema.
+    /// Returns the JSON Schema of the scenario's files as a part of another schema.
     fn subschema(generator: &mut SchemaGenerator) -> Schema;
 
-    /// What it is, in one line.
+    /// Returns the title of the scenario, one line.
     fn title(&self) -> &str;
 
-    /// Seed of its random draws.
+    /// Returns the seed of the random draws.
     fn seed(&self) -> u64;
 
-    /// Gives it another seed.
+    /// Sets the seed of the random draws.
     fn set_seed(&mut self, seed: u64);
 
-    /// The paths of the files that it reads, which start from the folder of its file, each under its role: the place of its key, as in
-    /// `psf.path`. The default is a scenario that reads none.
+    /// Returns the paths of the files that the scenario reads, relative to the directory of its file, each
+    /// with its role: the path of its key, as in `psf.path`. The default is a scenario that reads no files.
     fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
         Vec::new()
     }
 }
 
-/// Implements [`ScenarioFile`](crate::run_file::ScenarioFile) for a type with serde's traits, `JsonSchema` and fields `title` and
-/// `seed`: `scenario_file!(MyScenario, "my_world")`. Of a scenario that reads files, a method gives their paths:
-/// `scenario_file!(MyScenario, "my_world", paths_of_files)`.
+/// Implements [`ScenarioFile`](crate::run_file::ScenarioFile) for a type with serde's traits, `JsonSchema`
+/// and fields `title` and `seed`: `scenario_file!(MyScenario, "my_world")`. For a scenario that reads files,
+/// a method returns their paths: `scenario_file!(MyScenario, "my_world", paths_of_files)`.
 #[macro_export]
 macro_rules! scenario_file {
     ($scenario:ty, $world:literal $(, $paths:ident)?) => {
@@ -188,7 +189,7 @@ macro_rules! scenario_file {
 }
 
 impl<S> RunFile<S> {
-    /// The same run with its scenario in another form.
+    /// Converts the scenario of a run to another form.
     pub fn map<T>(self, form: impl FnOnce(S) -> T) -> RunFile<T> {
         let Self { name, version, catalog_sha256, hash, inject, files, mitsuba, scenario } = self;
         RunFile { name, version, catalog_sha256, hash, inject, files, mitsuba, scenario: form(scenario) }
@@ -196,7 +197,7 @@ impl<S> RunFile<S> {
 }
 
 impl<S: ScenarioFile> RunFile<S> {
-    /// The file of a run that is about to start.
+    /// Creates the file of a run that is about to start.
     ///
     /// # Errors
     /// [`Failure::Usage`] when the scenario cannot be written as TOML.
@@ -219,15 +220,16 @@ impl<S: ScenarioFile> RunFile<S> {
         })
     }
 
-    /// The scenario with the content of every file in the place of its path: equal for runs of the same files, wherever they lie.
+    /// Returns the scenario with the path of every file replaced by the digest of its content: equal for runs
+    /// with the same files, regardless of their location.
     pub fn identity(&self) -> S {
         with_contents(&self.scenario, &self.files)
     }
 
-    /// Writes the file, at once or not at all.
+    /// Writes the file completely or not at all.
     ///
     /// # Errors
-    /// [`Failure`] when it cannot be written.
+    /// [`Failure`] when the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Failure> {
         let text = S::run_to_toml(self)?;
         Ok(AtomicFile::with_text(path, &text)?.commit_new()?)
@@ -236,7 +238,8 @@ impl<S: ScenarioFile> RunFile<S> {
     /// Reads the file.
     ///
     /// # Errors
-    /// [`Failure`] with the place of the first mistake, or when the scenario is no longer the one that was run.
+    /// [`Failure`] with the location of the first mistake, or when the scenario is no longer the one that was
+    /// run.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let text = toml_file::read_text(path).map_err(|source| FileError::Io {
             path: path.to_owned(),
@@ -260,7 +263,7 @@ impl<S: ScenarioFile> RunFile<S> {
     }
 }
 
-/// A scenario with the content of every file of `files` in the place of its path.
+/// Returns a scenario with the path of every file in `files` replaced by the digest of its content.
 fn with_contents<S: ScenarioFile>(scenario: &S, files: &FileDigests) -> S {
     let mut scenario = scenario.clone();
     for (role, path) in scenario.paths() {
@@ -271,7 +274,8 @@ fn with_contents<S: ScenarioFile>(scenario: &S, files: &FileDigests) -> S {
     scenario
 }
 
-/// Whether a version is this one or one before it: what a later one writes may mean something else.
+/// Returns true if a version is this version or an earlier one; the files of a later version may have another
+/// meaning.
 fn is_known(version: &str) -> bool {
     let numbers = |text: &str| -> Option<[u64; 3]> {
         let parts: Result<Vec<u64>, _> = text.split('.').map(str::parse).collect();

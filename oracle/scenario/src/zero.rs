@@ -1,6 +1,6 @@
-//! A number that is left out of files when it is 0.
+//! Numbers that are omitted from files when they are 0.
 
-/// Whether a number need not be written: files are as they were before there was such a number.
+/// Returns true if a number is omitted from files, which are then the same as before the number existed.
 pub(super) fn is_zero(number: &u64) -> bool {
     *number == 0
 }

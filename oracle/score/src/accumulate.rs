@@ -1,4 +1,4 @@
-//! From frames to figures.
+//! Accumulation of frames into figures.
 
 use std::sync::Arc;
 
@@ -20,81 +20,81 @@ use super::verdict::{FrameVerdict, MistakenObject, Unproject, Verdict, judge};
 use crate::covariance::consistency;
 use crate::covariance::image_state::ImageState;
 
-/// What the score needs besides the frames.
+/// Inputs of the score besides the frames.
 pub struct ScoreContext<'a> {
     /// Name of the scenario.
     pub scenario: String,
-    /// Its seed.
+    /// Seed of the scenario.
     pub seed: u64,
     /// Version of Boresight.
     pub version: String,
-    /// The stage whose result was replaced by the truth, if one was.
+    /// Stage whose result was replaced by the truth, if any.
     pub inject: Option<String>,
-    /// Columns of the detector.
+    /// Number of columns of the detector.
     pub columns: usize,
-    /// Rows of the detector.
+    /// Number of rows of the detector.
     pub rows: usize,
-    /// What "within one pixel" and "within two" mean.
+    /// Angular limits of "within one pixel" and "within two".
     pub limits: WithinLimits,
-    /// From the first frame on, so many numbers of frames belong to the pipeline's start-up: their verdicts are a group of their own
-    /// ([`WARM_UP`]), and all other figures leave them out.
+    /// Number of frame numbers, from the first frame on, in which the pipeline starts up: their verdicts form
+    /// a separate group ([`WARM_UP`]), and all other figures exclude them.
     pub warm_up_frames: u64,
     /// Inverse projection of the true camera.
     pub unproject: Box<Unproject<'a>>,
 }
 
-/// Name of the group of the frames in which the pipeline starts up.
+/// Name of the group of frames in which the pipeline starts up.
 pub const WARM_UP: &str = "warm-up";
 
-/// A score and the verdicts that it counts.
+/// A score and the verdicts from which it was counted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FarRangeJudgement {
-    /// The figures.
+    /// Figures of the run.
     pub score: Score,
-    /// One verdict a frame, in order.
+    /// One verdict per frame, in order.
     pub verdicts: Vec<FrameVerdict>,
-    /// What "within one pixel" and "within two" mean in it.
+    /// Angular limits of "within one pixel" and "within two".
     pub limits: WithinLimits,
-    /// The published figures of the same scenario, where there are any.
+    /// Published figures of the same scenario, if any.
     pub published: Option<&'static Table2>,
-    /// The score of the pipeline's best mode on the same frames, where it was flown beside the paper's.
+    /// Score of the pipeline's best mode on the same frames, if the run compares it with the paper's mode.
     pub best_mode: Option<Box<Score>>,
 }
 
-/// A truth that cannot be scored.
+/// Error for a truth that cannot be scored.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ScoreError {
-    /// A frame that does not come after the one before: it would be counted twice, or out of time.
+    /// A frame that does not follow the previous frame: it would be counted twice, or out of order.
     #[error("frame {frame} follows frame {previous}, expected frames in ascending order, each once")]
     Order {
-        /// The frame before.
+        /// Number of the previous frame.
         previous: u64,
-        /// The frame met.
+        /// Number of the frame.
         frame: u64,
     },
-    /// A value that no frame has.
+    /// A value that is impossible for a frame.
     #[error("frame {frame}: `{field}` is {value}, expected {expected}")]
     Impossible {
-        /// The frame.
+        /// Number of the frame.
         frame: u64,
         /// Column of the truth.
         field: &'static str,
-        /// The value met.
+        /// Value in the truth.
         value: String,
-        /// What is possible.
+        /// Possible values.
         expected: &'static str,
     },
     /// An object of another frame.
     #[error("an object of frame {object} is given with frame {frame}")]
     ForeignObject {
-        /// The frame scored.
+        /// Number of the scored frame.
         frame: u64,
-        /// The frame of the object.
+        /// Number of the object's frame.
         object: u64,
     },
 }
 
-/// Refuses what no frame has: figures of it would be numbers all the same.
+/// Refuses impossible values, from which figures could still be computed.
 fn check_possible(truth: &FrameTruth, objects: &[ObjectTruth]) -> Result<(), ScoreError> {
     let check = |field, value: f64, expected, is_possible: bool| {
         let impossible =
@@ -130,12 +130,12 @@ fn check_possible(truth: &FrameTruth, objects: &[ObjectTruth]) -> Result<(), Sco
 ///     inject: None,
 ///     columns: 752,
 ///     rows: 580,
-///     limits: WithinLimits::from_degrees([0.024, 0.048]),
+///     limits: WithinLimits::of_degrees([0.024, 0.048]),
 ///     warm_up_frames: 0,
 ///     unproject: Box::new(|_| Some(contract::Direction::z())),
 /// };
 /// let scored = Scorer::new(context).finish();
-/// assert_eq!(scored.score.figures["hit_rate"].value, None); // of no frame: nothing, and no NaN
+/// assert_eq!(scored.score.figures["hit_rate"].value, None); // without frames: no value rather than NaN
 /// ```
 pub struct Scorer<'a> {
     context: ScoreContext<'a>,
@@ -143,17 +143,19 @@ pub struct Scorer<'a> {
 }
 
 impl<'a> Scorer<'a> {
-    /// A scorer that has seen no frame.
+    /// Creates a scorer without frames.
     pub fn new(context: ScoreContext<'a>) -> Self {
         Self { context, verdicts: Vec::new() }
     }
 
-    /// Judges the next frame. `objects` are those of this frame, target included; `outcome` is `None` when the
-    /// measurements have no row for it; `granted` is the attitude for an answer that has a centroid alone.
+    /// Scores the next frame. `objects` are the objects of this frame, including the target; `outcome` is
+    /// `None` when the measurements have no row for the frame; `granted` is the attitude for a measurement
+    /// that has only a centroid.
     ///
     /// # Errors
-    /// [`ScoreError::Order`] unless the number is larger than the one before, [`ScoreError::ForeignObject`] when an
-    /// object belongs to another frame. The frame is then not counted.
+    /// [`ScoreError::Order`] unless the frame number is larger than the previous one,
+    /// [`ScoreError::ForeignObject`] when an object belongs to another frame, [`ScoreError::Impossible`] for
+    /// an impossible value. The frame is then not counted.
     pub fn add(
         &mut self,
         truth: &FrameTruth,
@@ -199,8 +201,8 @@ impl<'a> Scorer<'a> {
         Ok(self.verdicts.push_mut(verdict))
     }
 
-    /// The figures over all frames. Each group is one sequence for the statistics, even where another one
-    /// interrupts it.
+    /// Returns the figures over all frames. For the statistics each group is one sequence, even if another
+    /// group interrupts it.
     pub fn finish(self) -> FarRangeJudgement {
         let mut groups: IndexMap<&str, Vec<&FrameVerdict>> = IndexMap::new();
         for verdict in &self.verdicts {
@@ -236,14 +238,14 @@ impl<'a> Scorer<'a> {
     }
 }
 
-/// The figures of every score, in their order.
+/// Returns the figures of every score, in order.
 pub fn figures() -> Vec<FigureSpec> {
     let limits = WithinLimits::from_degrees([0.0; 2]);
     definitions(&limits).into_iter().map(|definition| definition.figure).chain([settling::spec()]).collect()
 }
 
-/// The frames of each group in order of time, with those of the warm-up in the group that they precede: what a start is, with no regard to
-/// what other figures count.
+/// Returns the frames of each group in order of time, including the warm-up frames that precede the group,
+/// regardless of the frames that other figures exclude. The figure of the start-up is computed from them.
 fn from_the_start(verdicts: &[FrameVerdict]) -> IndexMap<&str, Vec<&FrameVerdict>> {
     let mut starts: IndexMap<&str, Vec<&FrameVerdict>> = IndexMap::new();
     let mut warm_up = Vec::new();
@@ -259,7 +261,7 @@ fn from_the_start(verdicts: &[FrameVerdict]) -> IndexMap<&str, Vec<&FrameVerdict
     starts
 }
 
-/// The attitude that the lines of sight of some frames rest on.
+/// Returns the attitude that the lines of sight of some frames are based on.
 fn attitude_of(frames: &[FrameVerdict]) -> Option<String> {
     let of = |frame: &FrameVerdict| Some(frame.verdict.error()?.line_of_sight.map(|error| error.attitude));
     let is_own = |used: &Option<AttitudeUsed>| *used == Some(AttitudeUsed::Own);
@@ -269,7 +271,8 @@ fn attitude_of(frames: &[FrameVerdict]) -> Option<String> {
     attitude_word(own, centroids, granted.map(AttitudeUsed::code))
 }
 
-/// The score of some sequences of frames taken together; `starts` are the same with the warm-up.
+/// Returns the score of several sequences of frames taken together; `starts` are these sequences including
+/// the warm-up.
 fn group_score(
     sequences: &[&[&FrameVerdict]],
     starts: &[&[&FrameVerdict]],
@@ -313,7 +316,7 @@ fn group_score(
     }
 }
 
-/// How often each word occurs, in the order of `words`; those that do not occur are left out.
+/// Counts the occurrences of each word, in the order of `words`, without the words that do not occur.
 pub(super) fn counts(
     words: &[&str],
     occurrences: impl Iterator<Item = &'static str>,
@@ -326,7 +329,7 @@ pub(super) fn counts(
     counts
 }
 
-/// The figures of a far-range score, in their order.
+/// Returns the figures of a far-range score, in order.
 fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> {
     let of_all = |name: &str, words: &str, holds: fn(&FrameVerdict) -> bool| {
         Definition::rate(name, words, move |frame: &FrameVerdict| Some(holds(frame)))
@@ -396,8 +399,8 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
 }
 
 impl UnitTable {
-    /// The frames of a far-range run, from their verdicts, with what each adds to every figure but the frames until settled, which only
-    /// a whole sequence has.
+    /// Converts the verdicts of a far-range run to units with their contributions to every figure, except the
+    /// number of frames until settled, which is defined only for a complete sequence.
     pub fn from_frames(frames: &[FrameVerdict], limits: &WithinLimits) -> Self {
         let unit = |frame: &FrameVerdict| {
             let row = frame.row();

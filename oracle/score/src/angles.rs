@@ -1,4 +1,4 @@
-//! The error of a line of sight, as two angles in the camera system.
+//! Error of a line of sight, as two angles in the camera system.
 
 use contract::{Angle, Camera, CameraFrame, Covariance2, Direction, Icrs, Measurement, PixelPoint, Rotation};
 use nalgebra::Vector3;
@@ -6,17 +6,19 @@ use sim::truth::FrameTruth;
 
 use crate::covariance::normalised_error::NormalisedError;
 
-/// What "within one pixel" and "within two" mean: an error counts as within a limit when it is strictly smaller.
+/// Angular limits of "within one pixel" and "within two": an error is within a limit if it is strictly
+/// smaller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WithinLimits {
-    /// Across columns ("RA"): of one pixel and of two, degrees.
+    /// Limits across columns ("RA") for one pixel and two, degrees.
     pub ra_deg: [f64; 2],
-    /// Across rows ("Dec"): of one pixel and of two, degrees.
+    /// Limits across rows ("Dec") for one pixel and two, degrees.
     pub dec_deg: [f64; 2],
 }
 
 impl WithinLimits {
-    /// One and two pixels of a camera at its principal point, without distortion, each axis by its own scale.
+    /// Returns one and two pixels of a camera at its principal point, without distortion, each axis with its
+    /// own scale.
     pub fn from_pixels(camera: &Camera) -> Self {
         let (across_columns, across_rows) = camera.focal_length_px();
         let of = |focal_length_px: f64| {
@@ -25,25 +27,25 @@ impl WithinLimits {
         Self { ra_deg: of(across_columns), dec_deg: of(across_rows) }
     }
 
-    /// The same two angles for both axes, degrees.
+    /// Returns the same two angles for each axis, degrees.
     pub fn from_degrees(limits: [f64; 2]) -> Self {
         Self { ra_deg: limits, dec_deg: limits }
     }
 }
 
-/// The attitude that turns a measured line of sight into the camera, or a centroid into a line of sight.
+/// Attitude that converts a measured line of sight to the camera frame, or a centroid to a line of sight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AttitudeUsed {
-    /// The pipeline's own: it gives a line of sight.
+    /// Attitude of the pipeline, which states a line of sight.
     Own,
-    /// The measured one of telemetry, with the nominal mounting, granted to a centroid.
+    /// Measured attitude of telemetry, with the nominal mounting, granted to a centroid.
     Telemetry,
-    /// The true one, granted to a centroid.
+    /// True attitude, granted to a centroid.
     True,
 }
 
 impl AttitudeUsed {
-    /// The word used in files.
+    /// Returns the name used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Own => "own",
@@ -53,9 +55,10 @@ impl AttitudeUsed {
     }
 }
 
-/// What attitude the lines of sight of a run rest on, in a word: `own`, `telemetry`, `true`; `own and …` where answers differ, `none`
-/// where none of them has a line of sight. `own` and `centroids`: whether there are detections with a line of sight of their own, and with
-/// a centroid alone; `granted` is what the latter are given. `None` of nothing detected.
+/// Returns the attitude that the lines of sight of a run are based on: `own`, `telemetry`, `true`; `own and
+/// …` if measurements differ, `none` if no measurement has a line of sight. `own` is true if there are
+/// detections with a line of sight of the pipeline, `centroids` if there are detections with only a centroid;
+/// `granted` is the attitude granted to the latter. Returns `None` without detections.
 pub fn attitude_word(own: bool, centroids: bool, granted: Option<&str>) -> Option<String> {
     let own_code = own.then_some(AttitudeUsed::Own.code());
     let words: Vec<&str> = own_code.into_iter().chain(granted.filter(|_| centroids)).collect();
@@ -66,7 +69,8 @@ pub fn attitude_word(own: bool, centroids: bool, granted: Option<&str>) -> Optio
     }
 }
 
-/// What a reader of figures of RA and Dec must know of an [`attitude_word`]; nothing where lines of sight are the pipeline's own.
+/// Returns a note for readers of RA and Dec figures about an [`attitude_word`]; `None` if all lines of sight
+/// are those of the pipeline.
 pub fn attitude_note(word: Option<&str>) -> Option<String> {
     match word? {
         "own" => None,
@@ -79,34 +83,36 @@ pub fn attitude_note(word: Option<&str>) -> Option<String> {
     }
 }
 
-/// The attitude that the score grants to answers that have a centroid alone.
+/// Attitude that the score grants to measurements that have only a centroid.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum GrantedAttitude {
-    /// None: they have no line of sight.
+    /// No attitude: these measurements have no line of sight.
     #[default]
     None,
-    /// The measured one: the camera's, from telemetry and the nominal mounting.
+    /// Measured attitude of the camera, from telemetry and the nominal mounting.
     Telemetry(Rotation<CameraFrame, Icrs>),
-    /// The true one.
+    /// True attitude.
     True,
 }
 
-/// Errors of an answer, measured minus true.
+/// Errors of a measurement, measured minus true.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnswerError {
-    /// Of its centroid from the centre of the target's light, px across columns and rows; of a target without light in the image, from
-    /// where its line of sight meets the image. `None` behind the camera.
+    /// Error of the centroid relative to the centroid of the target's flux, px across columns and rows; for a
+    /// target without flux in the image, relative to the projection of its line of sight. `None` if that is
+    /// behind the camera.
     pub centroid_px: Option<[f64; 2]>,
-    /// Of its line of sight; `None` when it has none and no attitude is granted.
+    /// Error of the line of sight; `None` if there is no line of sight and no attitude is granted.
     pub line_of_sight: Option<LineOfSightError>,
-    /// That of the centroid in units of its covariance; `None` where the answer states none.
+    /// Error of the centroid in units of its covariance; `None` if the measurement states none.
     pub centroid_normalised: Option<NormalisedError>,
-    /// That of a line of sight of its own in units of its covariance; `None` where the answer states none.
+    /// Error of the pipeline's line of sight in units of its covariance; `None` if the measurement states
+    /// none.
     pub line_of_sight_normalised: Option<NormalisedError>,
 }
 
 impl AnswerError {
-    /// The errors of a measurement, in units of the covariances that it states too.
+    /// Computes the errors of a measurement, also in units of the covariances that it states.
     pub fn from_measurement(
         measurement: &Measurement,
         centroid_px: Option<[f64; 2]>,
@@ -131,30 +137,30 @@ impl AnswerError {
 /// Error of a measured line of sight: two angles in the true camera frame, measured minus true, each in
 /// [−180°, 180°].
 ///
-/// The paper calls them right ascension and declination, but takes them in the camera system, where the angles of
-/// its Eq. 3 would be singular at the boresight. They are atan2(X, Z) and atan2(Y, Z).
+/// The paper calls them right ascension and declination, but measures them in the camera system, where the
+/// angles of its Eq. 3 would be singular at the boresight. They are atan2(X, Z) and atan2(Y, Z).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineOfSightError {
-    /// Across columns ("RA"): positive when the measured target lies to the right of the true one.
+    /// Error across columns ("RA"): positive when the measured target is to the right of the true one.
     pub ra: Angle,
-    /// Across rows ("Dec"): positive when the measured target lies below the true one.
+    /// Error across rows ("Dec"): positive when the measured target is below the true one.
     pub dec: Angle,
-    /// The attitude that it rests on.
+    /// Attitude that the line of sight is based on.
     pub attitude: AttitudeUsed,
 }
 
 impl LineOfSightError {
-    /// The error of a measurement.
+    /// Computes the error of a measurement.
     ///
     /// The measured direction in the true camera frame is
-    /// - true camera_from_icrs · line of sight, when the pipeline gives a line of sight, so that an error of its
-    ///   attitude counts;
-    /// - true camera_from_icrs · measured camera_from_icrs⁻¹ · `unproject(position)` when the attitude of telemetry is granted to a
-    ///   measurement in the image only;
-    /// - `unproject(position)` with the true camera when the true attitude is.
+    /// - true camera_from_icrs · line of sight, when the pipeline states a line of sight; the error then
+    ///   includes that of the pipeline's attitude;
+    /// - true camera_from_icrs · measured camera_from_icrs⁻¹ · `unproject(position)`, when the attitude of
+    ///   telemetry is granted to a measurement that has only a centroid;
+    /// - `unproject(position)` with the true camera, when the true attitude is granted.
     ///
-    /// `None` when there is no such direction, or no finite one: no line of sight and no attitude granted, a line of sight that is not a
-    /// number, or no direction that has its image at that position.
+    /// Returns `None` when this direction does not exist or is not finite: without line of sight and granted
+    /// attitude, for a line of sight that is NaN, or if no direction is imaged at the position.
     pub fn from_measurement(
         measurement: &Measurement,
         truth: &FrameTruth,
@@ -174,7 +180,7 @@ impl LineOfSightError {
         Self::between(&measured, &camera_from_icrs.rotate(truth.line_of_sight.vector()), attitude)
     }
 
-    /// Measured minus true, for two vectors in the camera frame.
+    /// Computes the difference, measured minus true, of two vectors in the camera frame.
     fn between(measured: &Vector3<f64>, truth: &Vector3<f64>, attitude: AttitudeUsed) -> Option<Self> {
         let error = Self {
             ra: difference(libm::atan2(measured.x, measured.z), libm::atan2(truth.x, truth.z)),
@@ -185,7 +191,7 @@ impl LineOfSightError {
     }
 }
 
-/// a − b, brought into [−π, π]: a target behind the camera lies near the cut of atan2.
+/// Returns a − b, wrapped to [−π, π]: a target behind the camera is near the branch cut of atan2.
 fn difference(a: f64, b: f64) -> Angle {
     use std::f64::consts::PI;
     let d = a - b;
@@ -207,7 +213,7 @@ mod tests {
         Measurement::new(position, line_of_sight)
     }
 
-    /// The error of a line of sight of the pipeline's own.
+    /// Error of a line of sight stated by the pipeline.
     fn own(line_of_sight: Direction<Icrs>, truth: &FrameTruth) -> LineOfSightError {
         let measurement = measured(CENTRE, Some(line_of_sight));
         LineOfSightError::from_measurement(&measurement, truth, &unproject, GrantedAttitude::None).unwrap()
@@ -238,7 +244,7 @@ mod tests {
         }
     }
 
-    /// A pipeline that knows the pixel exactly and turns it to the sky with a wrong attitude.
+    /// The pipeline measures the pixel exactly, but converts it to the sky with a wrong attitude.
     #[test]
     fn an_error_of_the_attitude_counts_in_the_line_of_sight_and_not_in_the_pixel() {
         let truth = tilted(0);
@@ -252,11 +258,11 @@ mod tests {
         let granted = of(GrantedAttitude::True).unwrap();
         assert!(granted.ra.radians().abs() < 1e-12);
         assert_eq!(granted.attitude, AttitudeUsed::True);
-        // The measured attitude of telemetry counts like one of the pipeline's own.
+        // The measured attitude of telemetry counts like an attitude of the pipeline.
         let granted = of(GrantedAttitude::Telemetry(wrong_attitude)).unwrap();
         assert!((granted.ra.radians() + 0.001).abs() < 1e-9);
         assert_eq!(granted.attitude, AttitudeUsed::Telemetry);
-        // A line of sight of its own is what the pipeline says, whatever is granted to others.
+        // A line of sight stated by the pipeline is used unchanged, regardless of the granted attitude.
         let error = LineOfSightError::from_measurement(
             &measured(CENTRE, Some(line_of_sight)),
             &truth,
@@ -266,7 +272,7 @@ mod tests {
         assert_eq!(error, Some(own(line_of_sight, &truth)));
     }
 
-    /// What it had been given silently, the true attitude, leaves nothing of an error but the image's.
+    /// With the true attitude, which was formerly granted silently, only the error in the image remains.
     #[test]
     fn a_centroid_has_no_line_of_sight_unless_an_attitude_is_granted() {
         let of = |granted| {
@@ -279,7 +285,8 @@ mod tests {
     #[test]
     fn a_pixel_of_each_axis_has_the_angle_of_its_own_scale() {
         let limits = WithinLimits::from_pixels(&camera());
-        // 8.6 and 8.3 µm at 20.187 mm: the paper's 0.024° are 0.983 px across columns and 1.019 px across rows.
+        // 8.6 and 8.3 µm at 20.187 mm: the paper's 0.024° are 0.983 px across columns and 1.019 px across
+        // rows.
         for (limits, px) in [(limits.ra_deg, 0.983), (limits.dec_deg, 1.019)] {
             assert!((0.024 / limits[0] - px).abs() < 5e-4, "{limits:?}");
             assert!((0.048 / limits[1] - px).abs() < 5e-4, "{limits:?}");
@@ -325,7 +332,7 @@ mod tests {
         let between =
             |measured, truth| LineOfSightError::between(&measured, &truth, AttitudeUsed::Own).unwrap();
         let ra = |measured, truth| between(measured, truth).ra.radians();
-        // Seen from the camera's back, what lies to the right has the smaller angle.
+        // Behind the camera, a direction further to the right has the smaller angle.
         assert!((ra(behind(1e-6), behind(-1e-6)) + 2e-6).abs() < 1e-12);
         assert!((ra(behind(-1e-6), behind(1e-6)) - 2e-6).abs() < 1e-12);
         assert_eq!(ra(behind(0.0), Vector3::z()), std::f64::consts::PI);

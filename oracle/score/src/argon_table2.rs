@@ -1,26 +1,26 @@
-//! The figures that the far-range paper reports.
+//! Figures published in the far-range paper.
 
 use super::{Score, names};
 
-/// The rows of the paper's Table 2, in percent: the days 1 to 5, then all of them.
+/// Rows of the paper's Table 2, in percent: the days 1 to 5, then all days.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Table2 {
     /// Number of images.
     pub images: [u32; 6],
-    /// Images with a detected target, of all images.
+    /// Images with a detected target, as a fraction of all images.
     pub hit_rate: [f64; 6],
-    /// RA error < 0.024°, of the images with a detected target.
+    /// RA error < 0.024°, as a fraction of the images with a detected target.
     pub ra_within_1px: [f64; 6],
-    /// RA error < 0.048°, of the same.
+    /// RA error < 0.048°, as a fraction of the images with a detected target.
     pub ra_within_2px: [f64; 6],
-    /// Dec error < 0.024°, of the same.
+    /// Dec error < 0.024°, as a fraction of the images with a detected target.
     pub dec_within_1px: [f64; 6],
-    /// Dec error < 0.048°, of the same.
+    /// Dec error < 0.048°, as a fraction of the images with a detected target.
     pub dec_within_2px: [f64; 6],
 }
 
-/// Benninghoff, Tzschichholz, Boge and Gaias, far-range image processing for an uncooperative target, Table 2: the
-/// ARGON experiment of PRISMA, 23–27 April 2012.
+/// Table 2 of Benninghoff, Tzschichholz, Boge and Gaias, far-range image processing for an uncooperative
+/// target: the ARGON experiment of PRISMA, 23–27 April 2012.
 pub const ARGON_TABLE_2: Table2 = Table2 {
     images: [1634, 2978, 3319, 5415, 2731, 16077],
     hit_rate: [94.92, 94.99, 92.22, 92.63, 96.41, 93.86],
@@ -31,7 +31,7 @@ pub const ARGON_TABLE_2: Table2 = Table2 {
 };
 
 impl Table2 {
-    /// The rates of Table 2 by the names of their figures, in percent.
+    /// Returns the rates of Table 2 by the names of their figures, in percent.
     pub fn rates(&self) -> [(&'static str, [f64; 6]); 5] {
         [
             (names::HIT_RATE, self.hit_rate),
@@ -42,8 +42,8 @@ impl Table2 {
         ]
     }
 
-    /// How far the 30 cells of a score are from these, in points; `None` unless it has five groups and a value in
-    /// every cell.
+    /// Returns the differences of the 30 cells of a score from this table, in percentage points; `None`
+    /// unless the score has five groups and a value in every cell.
     pub fn distance(&self, score: &Score) -> Option<Table2Distance> {
         if score.groups.len() != 5 {
             return None;
@@ -62,12 +62,12 @@ impl Table2 {
     }
 }
 
-/// How far a score is from a published table.
+/// Distance of a score from a published table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Table2Distance {
-    /// Mean absolute difference of the cells, points of percent.
+    /// Mean absolute difference of the cells, percentage points.
     pub mean_points: f64,
-    /// Greatest absolute difference, points of percent.
+    /// Largest absolute difference of the cells, percentage points.
     pub worst_points: f64,
 }
 
@@ -77,7 +77,8 @@ mod tests {
     use crate::{Figure, GroupScore};
     use indexmap::IndexMap;
 
-    /// The days weighted by their images must give the last column: a check of the transcription.
+    /// The mean of the days, weighted by their images, must equal the last column: a check of the
+    /// transcription.
     #[test]
     fn the_days_add_up_to_the_whole() {
         let table = ARGON_TABLE_2;
@@ -88,14 +89,14 @@ mod tests {
         };
         let images = std::array::from_fn(|day| f64::from(table.images[day]));
         let detected = std::array::from_fn(|day| f64::from(table.images[day]) * table.hit_rate[day]);
-        // Two decimals, rounded on both sides.
+        // The tolerance covers the rounding of both sides to two decimals.
         assert!(all(images, table.hit_rate) < 0.01);
         for rates in [table.ra_within_1px, table.ra_within_2px, table.dec_within_1px, table.dec_within_2px] {
             assert!(all(detected, rates) < 0.01, "{rates:?}");
         }
     }
 
-    /// A score whose cells are those of the table, but for what `off` adds to a figure of a column, in points.
+    /// A score whose cells are those of the table plus `off` for a figure and a column, in percentage points.
     fn score(off: impl Fn(&str, usize) -> f64) -> Score {
         let figure = |points: f64| {
             let value = Some(points / 100.0);
@@ -136,7 +137,7 @@ mod tests {
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
         let own = ARGON_TABLE_2.distance(&score(|_, _| 0.0)).unwrap();
         assert!(near(own.mean_points, 0.0) && near(own.worst_points, 0.0), "{own:?}");
-        // Two cells, one too low and one of the whole too high.
+        // Two cells differ: one is too low, and one in the column of all days is too high.
         let off = |name: &str, column: usize| match (name, column) {
             (names::HIT_RATE, 2) => -6.0,
             (names::DEC_WITHIN_2PX, 5) => 1.5,
@@ -156,7 +157,7 @@ mod tests {
         assert_eq!(ARGON_TABLE_2.distance(&empty), None);
     }
 
-    /// The script that fits the scenario has the table too, without its last column.
+    /// The script that fits the scenario contains the same table, without its last column.
     #[test]
     fn the_calibration_has_the_same_table_and_at_most_twelve_free_parameters() {
         let script = include_str!("../../../scenarios/argon_calibrate.py");

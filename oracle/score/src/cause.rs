@@ -1,66 +1,72 @@
-//! Why the target was not taken: every miss and every wrong answer has exactly one cause.
+//! Causes of losing the target: every miss and every wrong measurement has exactly one cause.
 
 use contract::{Cluster, Label, NoSolution, Outcome, Solution};
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
 
 use super::cluster_members::{covers, holds, merged_with, target};
 
-/// Why the target was not taken. When several hold, the first in this order is the cause:
+/// Cause of a miss or of a wrong measurement. When several apply, the first in this order is taken:
 ///
-/// 1. there is no row ([`Cause::NotReported`]): nothing else is known about the answer;
-/// 2. what no pipeline could have helped, by the truth alone: [`Cause::OutsideField`], [`Cause::InEclipse`],
-///    [`Cause::TooFaint`], [`Cause::CutByRoi`];
-/// 3. the reason that the pipeline itself gives: [`Cause::PipelineFailed`], [`Cause::SaturatedFrame`],
+/// 1. there is no row ([`Cause::NotReported`]), and thus no further information about the outcome;
+/// 2. by the truth only, a cause that no pipeline could have avoided: [`Cause::OutsideField`],
+///    [`Cause::InEclipse`], [`Cause::TooFaint`], [`Cause::CutByRoi`];
+/// 3. the reason that the pipeline states: [`Cause::PipelineFailed`], [`Cause::SaturatedFrame`],
 ///    [`Cause::NoPreviousFrame`], and an empty frame as [`Cause::BelowThreshold`];
-/// 4. when the pipeline tells its clusters, the label of the one nearest to the target and within its reach of
-///    max(`radius_px`, 1.5) px, along its columns by `bloom_px` farther; where there is none, a cluster at a star, planet, the Moon, a hot pixel or track that touches the target
-///    (distance up to the sum of the reaches), and where that is missing too, [`Cause::BelowThreshold`];
-/// 5. by the truth alone, the visible star, planet, Moon, hot pixel or track that touches the target;
+/// 4. if the pipeline reports its clusters, the label of the cluster that is nearest to the target and within
+///    its reach of max(`radius_px`, 1.5) px, along its columns by `bloom_px` farther; without such a cluster,
+///    a cluster at a star, planet, the Moon, a hot pixel or cosmic-ray hit that touches the target (distance
+///    up to the sum of the reaches); without that, [`Cause::BelowThreshold`];
+/// 5. by the truth only, the visible star, planet, Moon, hot pixel or cosmic-ray hit that touches the target;
 /// 6. [`Cause::Unexplained`].
 ///
-/// A wrong answer whose chosen cluster holds the target but more light of a star, planet, the Moon, a hot pixel or track was merged with it.
+/// A wrong measurement whose chosen cluster holds the target, but contains more electrons of a star, planet,
+/// the Moon, a hot pixel or a cosmic-ray hit, has merged with that object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Cause {
     /// The measurements have no row for the frame.
     NotReported,
     /// The centre of the target's image is off the detector, or the target is behind the camera.
     OutsideField,
-    /// The Earth's shadow is on the target, wholly or in part, and it is not detectable.
+    /// The target is wholly or partly in the Earth's shadow and not detectable.
     InEclipse,
-    /// In sunlight, but not detectable: its signal-to-noise ratio is below 5.
+    /// The target is in sunlight, but not detectable: its signal-to-noise ratio is below 5.
     TooFaint,
-    /// More than half of its electrons lie outside the transmitted regions.
+    /// More than half of the target's electrons are outside the transmitted regions.
     CutByRoi,
-    /// The pipeline failed, or its answer is no direction.
+    /// The pipeline failed, or its measurement is not a direction.
     PipelineFailed,
-    /// So much of the frame is saturated that the pipeline gave up.
+    /// The pipeline gave up because a large part of the frame is saturated.
     SaturatedFrame,
-    /// The pipeline had no previous frame to measure motion against.
+    /// The pipeline had no previous frame from which to measure motion.
     NoPreviousFrame,
-    /// Its image touches a visible star's: one cluster, which was taken for the star or for another place.
+    /// The target's image touches that of a visible star: they form one cluster, which was mistaken for the
+    /// star or measured at another position.
     MergedWithStar,
-    /// Its image touches a visible planet's: one cluster, which was taken for another place.
+    /// The target's image touches that of a visible planet: they form one cluster, which was measured at
+    /// another position.
     MergedWithPlanet,
-    /// Its image touches the visible Moon's: one cluster, which was taken for another place.
+    /// The target's image touches that of the visible Moon: they form one cluster, which was measured at
+    /// another position.
     MergedWithMoon,
-    /// Its cluster was labelled as a star though no visible star touches it: a wrong identification.
+    /// The target's cluster was labelled as a star although no visible star touches it: a wrong
+    /// identification.
     TakenForStar,
-    /// Its cluster was labelled as a hotspot, or it touches a hot pixel.
+    /// The target's cluster was labelled as a hotspot, or it touches a hot pixel.
     TakenForHotspot,
-    /// The track of a charged particle touches it.
+    /// A cosmic-ray hit touches the target.
     MergedWithCosmicRay,
-    /// Its cluster was a candidate, and another one won.
+    /// The target's cluster was a candidate, but another candidate was chosen.
     LostMotionTest,
-    /// Its cluster was not linked to the previous frame.
+    /// The target's cluster was not linked to the previous frame.
     NotLinked,
-    /// It is detectable, yet the pipeline found no cluster where it is.
+    /// The target is detectable, but the pipeline found no cluster at its position.
     BelowThreshold,
-    /// None of the above.
+    /// Any other cause.
     Unexplained,
 }
 
 impl Cause {
-    /// Every cause, in the order of precedence.
+    /// All causes, in order of precedence.
     pub const ALL: [Self; 18] = [
         Self::NotReported,
         Self::OutsideField,
@@ -82,7 +88,7 @@ impl Cause {
         Self::Unexplained,
     ];
 
-    /// The word used in files.
+    /// Returns the name used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::NotReported => "not_reported",
@@ -106,17 +112,18 @@ impl Cause {
         }
     }
 
-    /// Reads [`Cause::code`].
+    /// Parses a [`Cause::code`].
     pub fn parse(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|cause| cause.code() == code)
     }
 
-    /// Whether no pipeline could have found the target: it is outside the field, in eclipse, too faint or cut away.
+    /// Returns true if no pipeline could have found the target: it is outside the field, in eclipse, too
+    /// faint or cut off.
     pub fn is_undetectable(self) -> bool {
         matches!(self, Self::OutsideField | Self::InEclipse | Self::TooFaint | Self::CutByRoi)
     }
 
-    /// Why the target was lost in an image that it shares with a brighter object of this kind.
+    /// Returns the cause of losing the target in an image that it shares with a brighter object of this kind.
     pub(super) fn from_brighter_object(kind: ObjectKind) -> Self {
         match kind {
             ObjectKind::Star => Self::MergedWithStar,
@@ -136,7 +143,7 @@ pub(super) struct Detector {
     pub rows: usize,
 }
 
-/// The cause, by the precedence told at [`Cause`].
+/// Returns the cause, by the precedence defined at [`Cause`].
 pub(super) fn cause(
     truth: &FrameTruth,
     objects: &[ObjectTruth],
@@ -153,7 +160,7 @@ pub(super) fn cause(
         .unwrap_or(Cause::Unexplained)
 }
 
-/// What no pipeline could have helped.
+/// Returns a cause that no pipeline could have avoided.
 fn undetectable_cause(truth: &FrameTruth, target: Option<&ObjectTruth>, detector: Detector) -> Option<Cause> {
     let in_field = truth.target_position.is_some_and(|at| at.is_on_detector(detector.columns, detector.rows));
     if !in_field {
@@ -167,7 +174,7 @@ fn undetectable_cause(truth: &FrameTruth, target: Option<&ObjectTruth>, detector
     }
 }
 
-/// The reason that the pipeline gives, where it is a reason for the whole frame.
+/// Returns the reason stated by the pipeline, if it applies to the whole frame.
 fn pipeline_reason(solution: &Solution) -> Option<Cause> {
     match solution {
         Solution::NoSolution(NoSolution::Failed(_)) => Some(Cause::PipelineFailed),
@@ -178,7 +185,8 @@ fn pipeline_reason(solution: &Solution) -> Option<Cause> {
     }
 }
 
-/// The label of the cluster at the target's place; `None` when the clusters are not told or say nothing.
+/// Returns the cause from the label of the cluster at the target's position; `None` if no clusters are
+/// reported or their labels give no cause.
 fn cause_by_label(
     target: &ObjectTruth,
     neighbour: Option<&ObjectTruth>,
@@ -202,9 +210,10 @@ fn cause_by_label(
         Some(Label::Hotspot) => Some(Cause::TakenForHotspot),
         Some(Label::Candidate) => Some(Cause::LostMotionTest),
         Some(Label::Unlinked) => Some(Cause::NotLinked),
-        // The pipeline says that it took this cluster, and the verdict that it did not: left to the truth.
+        // The pipeline states that it chose this cluster, but the verdict states otherwise: the cause is
+        // determined from the truth.
         Some(Label::Target) => None,
-        // A brighter neighbour draws the centre of a common cluster out of the target's reach.
+        // A brighter neighbour shifts the centre of a common cluster out of the target's reach.
         None => Some(
             neighbour
                 .filter(|other| clusters.iter().any(|cluster| holds(cluster.position, other)))
@@ -223,7 +232,7 @@ mod tests {
 
     const DETECTOR: Detector = Detector { columns: COLUMNS, rows: ROWS };
 
-    /// The cause for a detectable target in sunlight, alone but for `others`.
+    /// Returns the cause for a detectable target in sunlight, with no objects besides `others`.
     fn cause_with(outcome: &Outcome, others: &[ObjectTruth]) -> Cause {
         let objects: Vec<_> = [target_with(1000.0)].into_iter().chain(others.iter().cloned()).collect();
         cause(&frame(0), &objects, Some(outcome), DETECTOR)

@@ -1,69 +1,74 @@
-//! Which objects of the truth a cluster of bright pixels holds.
+//! Association of clusters of bright pixels with objects of the truth.
 
 use contract::PixelPoint;
 use sim::truth::{ObjectKind, ObjectTruth, Visibility};
 
-/// Least reach of an object, px: the image of a point spreads over its neighbours, and the centre of a faint one
-/// is measured no better.
+/// Smallest reach of an object, px: the image of a point source spreads over neighbouring pixels, and the
+/// centre of a faint object is not measured more accurately.
 const MIN_REACH_PX: f64 = 1.5;
 
-/// Share of an object's radius within which the brightness centre of its image lies, whatever part of it is cut away:
-/// the centre of half a disk of radius R is 4R/(3π) = 0.42 R from the disk's.
+/// Fraction of an object's radius within which the centroid of its image lies, whichever part of the image is
+/// cut off: the centroid of half a disk of radius R is 4R/(3π) = 0.42 R from the centre of the disk.
 const CENTRE_SHARE: f64 = 0.5;
 
-/// How far the visible image of an object reaches from its centre: max(`radius_px`, 1.5), px; along its columns by `bloom_px`
-/// farther.
+/// Reach of an object's visible image from its centre: max(`radius_px`, 1.5), px. Along columns the image
+/// extends `bloom_px` farther.
 fn reach_px(object: &ObjectTruth) -> f64 {
-    // `max` drops a NaN.
+    // `max` ignores a NaN.
     object.radius_px.max(MIN_REACH_PX)
 }
 
-/// Distance of two places, px, from which along the columns up to `bloom_px` is forgiven: that of a place from a line.
+/// Returns the distance of two positions, px, with up to `bloom_px` along the columns ignored: the distance
+/// of a position from a vertical line.
 fn distance_px(a: PixelPoint, b: PixelPoint, bloom_px: f64) -> f64 {
-    // `max` drops a NaN.
+    // `max` ignores a NaN.
     libm::hypot(a.x - b.x, ((a.y - b.y).abs() - bloom_px.max(0.0)).max(0.0))
 }
 
-/// The electrons that arrive on the ground: those outside the transmitted regions cannot be chosen.
+/// Returns the electrons that are transmitted to the ground: a pipeline cannot use those outside the
+/// transmitted regions.
 pub(super) fn transmitted_electrons(object: &ObjectTruth) -> f64 {
     object.electrons * (1.0 - object.cut)
 }
 
-/// The objects that a cluster with its centre at `position` can be of: those that it holds, and of which something was transmitted.
+/// Returns the objects that a cluster with its centre at `position` can belong to: those that it holds and
+/// that are at least partly transmitted.
 pub(super) fn members(position: PixelPoint, objects: &[ObjectTruth]) -> impl Iterator<Item = &ObjectTruth> {
     objects.iter().filter(move |object| holds(position, object) && transmitted_electrons(object) > 0.0)
 }
 
-/// Whether a cluster with its centre at `position` holds the object: it lies within max(`radius_px`/2, 1.5) px of its centre,
-/// or, where wells overflowed, of the line that reaches `bloom_px`/2 from the centre up and down its column.
+/// Returns true if a cluster with its centre at `position` holds the object: the cluster is within
+/// max(`radius_px`/2, 1.5) px of the object's centre or, where full wells overflowed, of the line that
+/// extends `bloom_px`/2 from the centre up and down its column.
 pub(super) fn holds(position: PixelPoint, object: &ObjectTruth) -> bool {
     distance_px(position, object.position, CENTRE_SHARE * object.bloom_px)
         <= (CENTRE_SHARE * object.radius_px).max(MIN_REACH_PX)
 }
 
-/// Whether a cluster with its centre at `position` lies on the visible image of the object: within its reach.
+/// Returns true if a cluster with its centre at `position` is on the visible image of the object, that is,
+/// within its reach.
 pub(super) fn covers(position: PixelPoint, object: &ObjectTruth) -> bool {
     distance_px(position, object.position, object.bloom_px) <= reach_px(object)
 }
 
-/// The object that a cluster with its centre at `position` belongs to: of those that it holds, the one with the most
-/// transmitted electrons; `None` when it holds none.
+/// Returns the object that a cluster with its centre at `position` belongs to: of the objects that the
+/// cluster holds, the one with the most transmitted electrons; `None` if it holds no object.
 pub fn brightest_member(position: PixelPoint, objects: &[ObjectTruth]) -> Option<&ObjectTruth> {
     brightest(members(position, objects))
 }
 
-/// Whether the images of two objects touch, so that they may be one cluster.
+/// Returns true if the images of two objects touch, so that they may form one cluster.
 pub(super) fn touch(a: &ObjectTruth, b: &ObjectTruth) -> bool {
     distance_px(a.position, b.position, a.bloom_px + b.bloom_px) <= reach_px(a) + reach_px(b)
 }
 
-/// The target of a frame, if the truth has one.
+/// Returns the target of a frame, if the truth contains it.
 pub(super) fn target(objects: &[ObjectTruth]) -> Option<&ObjectTruth> {
     objects.iter().find(|object| object.kind == ObjectKind::Target)
 }
 
-/// The visible thing that the target's image may have merged with: of all other objects that touch it and are not
-/// invisible, the one with the most transmitted electrons.
+/// Returns the object whose image may have merged with the target's: of all other objects that touch the
+/// target and are not invisible, the one with the most transmitted electrons.
 pub(super) fn merged_with<'a>(target: &ObjectTruth, objects: &'a [ObjectTruth]) -> Option<&'a ObjectTruth> {
     brightest(objects.iter().filter(|other| {
         other.kind != ObjectKind::Target
@@ -73,7 +78,8 @@ pub(super) fn merged_with<'a>(target: &ObjectTruth, objects: &'a [ObjectTruth]) 
     }))
 }
 
-/// Transmitted electrons of all objects but the target that belong to the cluster at `position`, or whose images touch the target's.
+/// Returns the transmitted electrons of all objects, except the target, that the cluster at `position` holds
+/// or whose images touch the target's.
 pub(super) fn other_electrons(position: PixelPoint, target: &ObjectTruth, objects: &[ObjectTruth]) -> f64 {
     objects
         .iter()
@@ -83,7 +89,7 @@ pub(super) fn other_electrons(position: PixelPoint, target: &ObjectTruth, object
         .sum()
 }
 
-/// The object with the most transmitted electrons; the first of equals.
+/// Returns the object with the most transmitted electrons; the first of several equal ones.
 pub(super) fn brightest<'a>(objects: impl Iterator<Item = &'a ObjectTruth>) -> Option<&'a ObjectTruth> {
     objects.reduce(
         |best, other| {
@@ -114,7 +120,7 @@ mod tests {
         assert_eq!(brightest(stars.iter()).map(|star| star.id), Some(2));
     }
 
-    /// A star that bleeds 40 px up and down from the centre.
+    /// A star that blooms 40 px up and down from the centre.
     fn bleeding() -> ObjectTruth {
         ObjectTruth { radius_px: 6.0, bloom_px: 34.0, ..star_at(3, CENTRE, 1e6) }
     }
@@ -139,7 +145,7 @@ mod tests {
         let at = |x_px: f64, y_px: f64| ObjectTruth { position: beside(x_px, y_px), ..target_with(500.0) };
         assert!(touch(&at(0.0, 41.4), &bleeding()) && !touch(&at(0.0, 41.6), &bleeding()));
         assert!(touch(&at(-7.4, 30.0), &bleeding()) && !touch(&at(8.0, 30.0), &bleeding()));
-        // Two columns side by side whose ends meet.
+        // Two adjacent columns whose ends meet.
         let above = ObjectTruth { position: beside(5.0, -78.0), ..bleeding() };
         assert!(touch(&above, &bleeding()) && covers(beside(5.0, -40.0), &above));
     }

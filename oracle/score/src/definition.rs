@@ -1,26 +1,26 @@
-//! What a figure is: the values that every frame has for it, and how they are summed up.
+//! Definition of a figure: the values of each frame, and their reduction to one number.
 
 use super::figure_spec::{Better, FigureSpec, Kind, Sense};
 use super::report::Figure;
 
-/// How a figure sums up the values of the frames.
+/// Reduction of the values of all frames to a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reduction {
-    /// The share of the values that are not 0: values are 0 or 1, any number of them a frame.
+    /// Fraction of non-zero values; values are 0 or 1, any number per frame.
     Rate,
-    /// The mean of the values, at most one a frame.
+    /// Mean of the values, at most one per frame.
     Mean,
-    /// The root mean square of the values, at most one a frame.
+    /// Root mean square of the values, at most one per frame.
     Rms,
-    /// The median of the values, at most one a frame.
+    /// Median of the values, at most one per frame.
     Median,
 }
 
 impl Reduction {
-    /// Every one.
+    /// All reductions.
     pub const ALL: [Self; 4] = [Self::Rate, Self::Mean, Self::Rms, Self::Median];
 
-    /// The word used in files.
+    /// Returns the name used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Rate => "rate",
@@ -30,28 +30,30 @@ impl Reduction {
         }
     }
 
-    /// Reads [`Reduction::code`].
+    /// Parses a [`Reduction::code`].
     pub fn parse(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|reduction| reduction.code() == code)
     }
 }
 
-/// The values of one unit (a frame, a field) for a figure, added to the list.
+/// Function that appends the values of one unit (a frame, a field) for a figure to the list.
 type Values<'a, U> = Box<dyn Fn(&U, &mut Vec<f64>) + 'a>;
 
-/// The definition of a figure over units of the type `U`: score and gate both count by it, tables and reports show it by its words.
+/// Definition of a figure over units of the type `U`. Score and gate count by it; tables and reports show its
+/// words.
 pub struct Definition<'a, U> {
-    /// What the figure is.
+    /// Name, words, unit and sense of the figure.
     pub figure: FigureSpec,
-    /// How its values are summed up.
+    /// Reduction of the values.
     pub reduction: Reduction,
-    /// Of a rate of errors "within" something: the limit, degrees.
+    /// Limit of a rate of errors "within" a limit, degrees; `None` for other figures.
     pub limit_deg: Option<f64>,
     values: Values<'a, U>,
 }
 
 impl<'a, U> Definition<'a, U> {
-    /// A rate of the units for which `holds` says something; more is better unless [`Definition::with_direction`] says otherwise.
+    /// Creates a rate over the units for which `holds` returns a value; more is better unless changed by
+    /// [`Definition::best`].
     pub fn rate(
         name: impl Into<String>,
         words: impl Into<String>,
@@ -62,7 +64,7 @@ impl<'a, U> Definition<'a, U> {
         })
     }
 
-    /// A rate of values, 0 or 1, of which a unit may have several.
+    /// Creates a rate of values, 0 or 1, of which a unit may have several.
     pub fn pooled(
         name: impl Into<String>,
         words: impl Into<String>,
@@ -73,8 +75,9 @@ impl<'a, U> Definition<'a, U> {
         Self { figure, reduction: Reduction::Rate, limit_deg: None, values: Box::new(values) }
     }
 
-    /// A mean, median or root mean square of the units that have a value, in the unit `unit`: an error's, of which a root mean square is
-    /// the better the less it is, a mean or median the nearer to 0, unless [`Definition::with_direction`] says otherwise.
+    /// Creates a mean, median or root mean square over the units that have a value, in the unit `unit`. The
+    /// values are assumed to be errors: a root mean square is better when smaller, a mean or median when
+    /// nearer to 0, unless changed by [`Definition::best`].
     pub fn amount(
         name: impl Into<String>,
         words: impl Into<String>,
@@ -88,27 +91,27 @@ impl<'a, U> Definition<'a, U> {
         Self { figure, reduction, limit_deg: None, values }
     }
 
-    /// The same with another direction.
+    /// Sets the direction that is better.
     #[must_use]
     pub fn with_direction(mut self, better: Better) -> Self {
         self.figure.sense.better = better;
         self
     }
 
-    /// The same, one of lines of sight.
+    /// Marks the figure as one of lines of sight, which depends on an attitude.
     #[must_use]
     pub fn resting_on_attitude(mut self) -> Self {
         self.figure.rests_on_attitude = true;
         self
     }
 
-    /// The same, of errors below a limit, degrees.
+    /// Sets the limit of a rate of errors below a limit, degrees.
     #[must_use]
     pub fn with_limit_deg(self, limit_deg: f64) -> Self {
         Self { limit_deg: Some(limit_deg), ..self }
     }
 
-    /// The figure over some sequences of units, each in order of time.
+    /// Computes the figure over several sequences of units, each in order of time.
     pub fn figure(&self, sequences: &[&[&U]]) -> Figure {
         let collected: Vec<Vec<f64>> = sequences
             .iter()
@@ -130,7 +133,7 @@ impl<'a, U> Definition<'a, U> {
         Figure { limit_deg: self.limit_deg, ..figure }
     }
 
-    /// What one unit adds to the figure.
+    /// Returns the contribution of one unit to the figure.
     pub fn term(&self, unit: &U) -> Term {
         let mut values = Vec::new();
         (self.values)(unit, &mut values);
@@ -138,43 +141,45 @@ impl<'a, U> Definition<'a, U> {
     }
 }
 
-/// What one unit adds to a figure.
+/// Contribution of one unit to a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Term {
-    /// The sum of its values; 0 without any.
+    /// Sum of the unit's values; 0 without values.
     pub sum: f64,
-    /// How many they are.
+    /// Number of the unit's values.
     pub of: u32,
 }
 
-/// The terms of all units for one figure.
+/// Contributions of all units to one figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureTerms {
     /// Name of the figure.
     pub name: String,
-    /// How its values are summed up.
+    /// Reduction of the values.
     pub reduction: Reduction,
-    /// Of a rate of errors "within" something: the limit, degrees.
+    /// Limit of a rate of errors "within" a limit, degrees; `None` for other figures.
     pub limit_deg: Option<f64>,
-    /// Of a figure of lines of sight: the attitude that they rest on ([`crate::attitude_word`]).
+    /// Attitude that the lines of sight of the figure are based on ([`crate::attitude_word`]); `None` for
+    /// figures without lines of sight.
     pub attitude: Option<String>,
-    /// One a unit, in their order.
+    /// One term per unit, in order.
     pub terms: Vec<Term>,
 }
 
 impl FigureTerms {
-    /// The same figure with the attitude that its lines of sight rest on, if `figure`, which it is of, is one of lines of sight.
+    /// Sets the attitude that the lines of sight are based on, if `figure`, the specification of this figure,
+    /// is one of lines of sight.
     #[must_use]
     pub fn with_attitude(self, figure: &FigureSpec, attitude: Option<&String>) -> Self {
         Self { attitude: attitude.filter(|_| figure.rests_on_attitude).cloned(), ..self }
     }
 
-    /// The terms of units by a definition.
+    /// Computes the terms of units by a definition.
     pub fn new<U>(definition: &Definition<'_, U>, units: &[U]) -> Self {
         Self::from_counted_units(definition, units, |_| true)
     }
 
-    /// The terms of units by a definition; those that are not counted have no value.
+    /// Computes the terms of units by a definition; units that are not counted have no value.
     pub fn from_counted_units<U>(
         definition: &Definition<'_, U>,
         units: &[U],
@@ -186,31 +191,31 @@ impl FigureTerms {
         Self { limit_deg: definition.limit_deg, ..counted }
     }
 
-    /// Terms that were counted, of a figure without a limit that rests on no attitude.
+    /// Creates a figure from computed terms, without a limit and without an attitude.
     pub fn from_terms(name: &str, reduction: Reduction, terms: Vec<Term>) -> Self {
         Self { name: name.to_owned(), reduction, limit_deg: None, attitude: None, terms }
     }
 }
 
-/// What became of one unit, for a list of those that changed.
+/// Verdict on one unit, for a list of changed units.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnitVerdict {
     /// Number of the frame, the field or the case.
     pub number: u64,
-    /// Name of the group that it belongs to.
+    /// Name of the unit's group.
     pub group: String,
-    /// The verdict's word.
+    /// Name of the verdict.
     pub verdict: String,
-    /// Why it was missed, or wrong in what.
+    /// Cause of a miss, or kind of error of a wrong measurement.
     pub cause: Option<String>,
 }
 
-/// A scored run, unit by unit: what a comparison of two runs needs.
+/// A scored run, unit by unit, as needed to compare two runs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct UnitTable {
-    /// The units, by number.
+    /// Units, by number.
     pub units: Vec<UnitVerdict>,
-    /// What they say of each figure.
+    /// Terms of the units for each figure.
     pub figures: Vec<FigureTerms>,
 }
 

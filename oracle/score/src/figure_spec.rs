@@ -1,83 +1,86 @@
-//! What a figure is for people and comparisons: words, unit, kind, and which way is better. Each [`Definition`](crate::Definition) has one.
+//! Label, unit, kind and better direction of a figure, for display and for comparisons. Each
+//! [`Definition`](crate::Definition) has one.
 
 use std::fmt;
 
-/// What is counted.
+/// Kind of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// So many of so many; from 0 to 1 in files, in percent where people read it.
+    /// Fraction of a count: from 0 to 1 in files, in percent for display.
     Rate,
-    /// A mean, a median, a root mean square, in its unit everywhere.
+    /// Mean, median or root mean square, in the same unit in files and for display.
     Amount,
 }
 
-/// Which way is better.
+/// Direction in which a figure improves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Better {
-    /// More of it.
+    /// Larger values are better.
     More,
-    /// Less of it.
+    /// Smaller values are better.
     Less,
-    /// Nearer to a value: no bias is 0, honest sigmas have a NEES of 1.
+    /// Values nearer to this one are better: 0 for a bias, 1 for the NEES, which is 1 when σ is correct.
     Near(f64),
 }
 
-/// Kind and direction of a figure.
+/// Kind of a figure, and the direction in which it improves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sense {
-    /// What is counted.
+    /// Kind of the figure.
     pub kind: Kind,
-    /// Which way is better.
+    /// Direction in which the figure improves.
     pub better: Better,
 }
 
-/// A figure without its values.
+/// Description of a figure, without its values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureSpec {
-    /// Its key in files and options.
+    /// Key of the figure in files and options.
     pub name: String,
-    /// What it is called where people read it.
+    /// Label for display.
     pub words: String,
-    /// The unit in which people read it; none for a number without one.
+    /// Unit for display; `None` for a dimensionless figure.
     pub unit: Option<&'static str>,
-    /// Kind and direction.
+    /// Kind of the figure, and the direction in which it improves.
     pub sense: Sense,
-    /// Whether it is one of lines of sight, which rest on an attitude ([`crate::attitude_word`]).
+    /// True if the figure is about lines of sight, which depend on an attitude ([`crate::attitude_word`]).
     pub rests_on_attitude: bool,
 }
 
 impl FigureSpec {
-    /// An amount without a unit, which rests on no attitude.
+    /// Creates an amount without a unit that does not depend on an attitude.
     pub fn amount(name: impl Into<String>, words: impl Into<String>, better: Better) -> Self {
         let sense = Sense { kind: Kind::Amount, better };
         Self { name: name.into(), words: words.into(), unit: None, sense, rests_on_attitude: false }
     }
 
-    /// A figure that no world defines, as a file of another version may name one: an amount, best at 0.
+    /// Creates a figure that no world defines, such as one from a file of another version: an amount, best at
+    /// 0.
     pub fn unknown(name: &str) -> Self {
         Self::amount(name, name.replace('_', " "), Better::Near(0.0))
     }
 
-    /// Whether it is written in percent.
+    /// Returns true if the figure is a rate, which is displayed in percent.
     pub fn is_rate(&self) -> bool {
         self.sense.kind == Kind::Rate
     }
 
-    /// The label beside values that are written with their percent sign, and without any other unit.
+    /// Returns the label for values that are written with a percent sign: without the unit %, with any other
+    /// unit.
     pub fn label_without_percent(&self) -> String {
         if self.unit == Some("%") { self.words.clone() } else { self.to_string() }
     }
 }
 
 impl fmt::Display for FigureSpec {
-    /// The words, and after a comma the unit.
+    /// Writes the label, then a comma and the unit, if there is one.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.words)?;
         self.unit.map_or(Ok(()), |unit| write!(f, ", {unit}"))
     }
 }
 
-/// A limit of an error as people read it, to three significant digits: `0.024°`, `0.0236°`.
+/// Formats the limit of an error for display, to three significant digits: `0.024°`, `0.0236°`.
 pub fn angle(degrees: f64) -> String {
     let rounded: f64 = format!("{degrees:.2e}").parse().unwrap_or(degrees);
     format!("{rounded}°")
@@ -111,7 +114,7 @@ mod tests {
         is("stars_mean", "stars mean", Better::More);
     }
 
-    /// Keys tell kind and unit to whoever reads a file; declarations say the same.
+    /// The declared kind and unit agree with those that the key implies.
     #[test]
     fn no_figure_is_shown_by_its_key_or_says_another_unit_than_its_key() {
         const UNITS: [(&str, &str); 5] =
@@ -123,13 +126,13 @@ mod tests {
             assert_eq!(figure.is_rate(), is_rate, "{name}");
             let unit = UNITS.iter().find(|(ending, _)| name.ends_with(ending)).map(|(_, unit)| *unit);
             assert_eq!(figure.unit, unit.or(is_rate.then_some("%")), "{name}");
-            // A bias is the only amount that is best at nought.
+            // A bias is the only amount that is best at 0.
             let is_bias = name.contains("_mean_") || name.contains("_median_");
             assert_eq!(figure.sense.better == Better::Near(0.0), is_bias, "{name}");
         }
     }
 
-    /// A file names a figure by its key alone, whatever its world.
+    /// A file names a figure by its key only, without its world.
     #[test]
     fn a_key_is_the_same_figure_in_both_worlds() {
         for figure in figures() {

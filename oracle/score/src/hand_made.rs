@@ -1,4 +1,5 @@
-//! A scene made by hand: a camera of 752 × 580 px with pixels of 0.024° looking at the target in its centre.
+//! Hand-made test scene: a camera of 752 × 580 px with pixels of 0.024° and the target in the centre of the
+//! image.
 
 use contract::{
     Camera, CameraFrame, Cluster, Direction, Icrs, Label, Measurement, Outcome, PixelPoint, Rotation,
@@ -12,10 +13,10 @@ pub(crate) const COLUMNS: usize = 752;
 pub(crate) const ROWS: usize = 580;
 pub(crate) const CENTRE: PixelPoint = PixelPoint::new(395.0, 288.0);
 
-/// Tangent of one pixel's angle, 0.024°.
+/// Tangent of the angle of one pixel, 0.024°.
 pub(crate) const PIXEL: f64 = 0.024 * std::f64::consts::PI / 180.0;
 
-/// The paper's camera.
+/// Returns the camera of the far-range paper.
 pub(crate) fn camera() -> Camera {
     Camera {
         columns: COLUMNS,
@@ -39,12 +40,13 @@ pub(crate) fn unproject(point: PixelPoint) -> Option<Direction<CameraFrame>> {
     Some(direction_at(point))
 }
 
-/// A frame of `day 1`: target in the centre, sunlit, detectable; camera axes along those of ICRS.
+/// Returns the truth of a frame of `day 1`: target in the centre, sunlit, detectable; camera axes parallel to
+/// those of ICRS.
 pub(crate) fn frame(frame: u64) -> FrameTruth {
     looking(frame, Rotation::identity())
 }
 
-/// The same with a camera that is turned about all three axes.
+/// Returns the truth of a frame as [`frame`] does, but with the camera rotated about all three axes.
 pub(crate) fn tilted(frame: u64) -> FrameTruth {
     looking(frame, Rotation::from_rotation_vector(Vector3::new(0.4, -0.9, 0.6)))
 }
@@ -110,7 +112,7 @@ pub(crate) fn cluster(position: PixelPoint, label: Label) -> Cluster {
     Cluster { position, size: 2.0, pixels: 9, label }
 }
 
-/// An answer from the image alone.
+/// Returns an outcome with a centroid only, without a line of sight.
 pub(crate) fn detected_at(position: PixelPoint) -> Outcome {
     Outcome {
         solution: Solution::Detected(Measurement::new(position, None)),

@@ -1,14 +1,14 @@
-//! The score: a pure function of the truth and of what a pipeline said.
+//! The score: a pure function of the ground truth and of a pipeline's outcomes.
 //!
-//! Every frame is counted exactly once and gets one [`Verdict`]. Two notions are kept apart:
+//! Every frame is counted exactly once and gets one [`Verdict`]. The score distinguishes two notions:
 //!
-//! - *Detected*, as the far-range paper counts it: the pipeline says that it has a target, rightly or wrongly.
-//!   The accuracy figures of the paper (its Table 2) are counted over these.
-//! - *Correct*: most of the light in the cluster that it chose comes from the target, by the table of truth.
+//! - *Detected*, as counted in the far-range paper: the pipeline reports a target, rightly or wrongly. The
+//!   accuracy figures of the paper (its Table 2) are counted over these frames.
+//! - *Correct*: according to the truth table, most electrons of the chosen cluster come from the target.
 //!
-//! The verdict needs nothing but the truth and the reported position and line of sight, so that anybody's
-//! measurement file gets the same figures as a built-in run. Only the *cause* of a miss profits from the labelled
-//! clusters that a pipeline may tell; without them it rests on the truth alone.
+//! The verdict depends only on the truth and on the reported position and line of sight. A measurement file
+//! of an external pipeline therefore gets the same figures as a built-in run. Only the *cause* of a miss also
+//! uses the labelled clusters that a pipeline may report; without them the cause follows from the truth only.
 
 #![cfg_attr(
     not(test),

@@ -1,4 +1,4 @@
-//! What `score.json` holds.
+//! Content of `score.json`.
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use statistics::{
@@ -7,96 +7,105 @@ use statistics::{
 
 /// Names of the far-range figures. Rates are fractions from 0 to 1.
 pub mod names {
-    /// Detected, of all frames.
+    /// Detected frames, as a fraction of all frames.
     pub const HIT_RATE: &str = "hit_rate";
-    /// Missed, of all frames.
+    /// Missed frames, as a fraction of all frames.
     pub const MISS_RATE: &str = "miss_rate";
-    /// Correct, of all frames.
+    /// Correct frames, as a fraction of all frames.
     pub const CORRECT_RATE: &str = "correct_rate";
-    /// Wrong, of all frames.
+    /// Wrong frames, as a fraction of all frames.
     pub const WRONG_RATE: &str = "wrong_rate";
-    /// Answers with a line of sight of their own, of the detected.
+    /// Frames whose measurement states a line of sight, as a fraction of the detected frames.
     pub const LINE_OF_SIGHT_RATE: &str = "line_of_sight_rate";
-    /// |RA error| below the limit of one pixel, of the detected with a line of sight.
+    /// Frames with an |RA error| below the limit of one pixel, as a fraction of the detected frames with a
+    /// line of sight.
     pub const RA_WITHIN_1PX: &str = "ra_within_1px";
-    /// |RA error| below the limit of two pixels, of the same.
+    /// Frames with an |RA error| below the limit of two pixels, as a fraction of the detected frames with a
+    /// line of sight.
     pub const RA_WITHIN_2PX: &str = "ra_within_2px";
-    /// |Dec error| below the limit of one pixel, of the same.
+    /// Frames with a |Dec error| below the limit of one pixel, as a fraction of the detected frames with a
+    /// line of sight.
     pub const DEC_WITHIN_1PX: &str = "dec_within_1px";
-    /// |Dec error| below the limit of two pixels, of the same.
+    /// Frames with a |Dec error| below the limit of two pixels, as a fraction of the detected frames with a
+    /// line of sight.
     pub const DEC_WITHIN_2PX: &str = "dec_within_2px";
-    /// Root mean square of the RA error of the correct with a line of sight, degrees.
+    /// Root mean square of the RA error over correct measurements with a line of sight, degrees.
     pub const RA_RMS_DEG: &str = "ra_rms_deg";
-    /// Root mean square of the Dec error of the correct with a line of sight, degrees.
+    /// Root mean square of the Dec error over correct measurements with a line of sight, degrees.
     pub const DEC_RMS_DEG: &str = "dec_rms_deg";
-    /// Mean RA error (bias) of the correct with a line of sight, degrees.
+    /// Mean RA error (bias) over correct measurements with a line of sight, degrees.
     pub const RA_MEAN_DEG: &str = "ra_mean_deg";
-    /// Mean Dec error (bias) of the correct with a line of sight, degrees.
+    /// Mean Dec error (bias) over correct measurements with a line of sight, degrees.
     pub const DEC_MEAN_DEG: &str = "dec_mean_deg";
-    /// Median RA error of the correct with a line of sight, degrees.
+    /// Median RA error over correct measurements with a line of sight, degrees.
     pub const RA_MEDIAN_DEG: &str = "ra_median_deg";
-    /// Median Dec error of the correct with a line of sight, degrees.
+    /// Median Dec error over correct measurements with a line of sight, degrees.
     pub const DEC_MEDIAN_DEG: &str = "dec_median_deg";
-    /// Root mean square of the centroid's error across columns, of the correct, px.
+    /// Root mean square of the centroid error across columns over correct measurements, px.
     pub const CENTROID_X_RMS_PX: &str = "centroid_x_rms_px";
-    /// Root mean square of the centroid's error across rows, of the correct, px.
+    /// Root mean square of the centroid error across rows over correct measurements, px.
     pub const CENTROID_Y_RMS_PX: &str = "centroid_y_rms_px";
-    /// Mean error of the centroid across columns (bias), of the correct, px.
+    /// Mean centroid error across columns (bias) over correct measurements, px.
     pub const CENTROID_X_MEAN_PX: &str = "centroid_x_mean_px";
-    /// Mean error of the centroid across rows (bias), of the correct, px.
+    /// Mean centroid error across rows (bias) over correct measurements, px.
     pub const CENTROID_Y_MEAN_PX: &str = "centroid_y_mean_px";
-    /// Median error of the centroid across columns, of the correct, px.
+    /// Median centroid error across columns over correct measurements, px.
     pub const CENTROID_X_MEDIAN_PX: &str = "centroid_x_median_px";
-    /// Median error of the centroid across rows, of the correct, px.
+    /// Median centroid error across rows over correct measurements, px.
     pub const CENTROID_Y_MEDIAN_PX: &str = "centroid_y_median_px";
-    /// Mean number of identified stars, over the frames whose answer tells it.
+    /// Mean number of identified stars, over the frames whose outcome states this number.
     pub const STARS_MEAN: &str = "stars_mean";
-    /// Beginning of the figures of the centroid's covariance, `centroid_nees_mean`, `centroid_within_1sigma_rate`,
-    /// `centroid_within_3sigma_rate`.
+    /// Prefix of the figures about the centroid's covariance: `centroid_nees_mean`,
+    /// `centroid_within_1sigma_rate`, `centroid_within_3sigma_rate`.
     pub const CENTROID: &str = "centroid";
-    /// Beginning of the same figures of the covariance of the line of sight.
+    /// Prefix of the corresponding figures about the covariance of the line of sight.
     pub const LINE_OF_SIGHT: &str = "line_of_sight";
-    /// Mean of eᵀ C⁻¹ e / 2 of the centroid, of the correct with its covariance.
+    /// Mean NEES of the centroid, eᵀ C⁻¹ e / 2, over correct measurements with a centroid covariance.
     pub const CENTROID_NEES_MEAN: &str = "centroid_nees_mean";
-    /// Components of the centroid's error within one standard deviation, of the same.
+    /// Fraction of the centroid's error components within one standard deviation, over correct measurements
+    /// with a centroid covariance.
     pub const CENTROID_WITHIN_1SIGMA_RATE: &str = "centroid_within_1sigma_rate";
-    /// Components of the centroid's error within three standard deviations, of the same.
+    /// Fraction of the centroid's error components within three standard deviations, over correct
+    /// measurements with a centroid covariance.
     pub const CENTROID_WITHIN_3SIGMA_RATE: &str = "centroid_within_3sigma_rate";
-    /// Mean of eᵀ C⁻¹ e / 2 of the line of sight, of the correct with its covariance.
+    /// Mean NEES of the line of sight, eᵀ C⁻¹ e / 2, over correct measurements with a covariance of the line
+    /// of sight.
     pub const LINE_OF_SIGHT_NEES_MEAN: &str = "line_of_sight_nees_mean";
-    /// Components of the error of the line of sight within one standard deviation, of the same.
+    /// Fraction of the error components of the line of sight within one standard deviation, over correct
+    /// measurements with a covariance of the line of sight.
     pub const LINE_OF_SIGHT_WITHIN_1SIGMA_RATE: &str = "line_of_sight_within_1sigma_rate";
-    /// Components of the error of the line of sight within three standard deviations, of the same.
+    /// Fraction of the error components of the line of sight within three standard deviations, over correct
+    /// measurements with a covariance of the line of sight.
     pub const LINE_OF_SIGHT_WITHIN_3SIGMA_RATE: &str = "line_of_sight_within_3sigma_rate";
-    /// Frames before the first 20 correct answers in a row.
+    /// Number of frames before the first 20 consecutive correct measurements.
     pub const FRAMES_UNTIL_SETTLED: &str = "frames_until_settled";
-    /// Attitude solved from the stars of the frame itself, of all frames.
+    /// Frames whose attitude was solved from their stars, as a fraction of all frames.
     pub const ATTITUDE_FROM_STARS_RATE: &str = "attitude_from_stars_rate";
 }
 
-/// One figure, with what it was counted over and its 95 % interval. Nothing in it is ever NaN: what cannot be said
-/// is `None` (null).
+/// One figure, with the number of values it was computed from and its 95 % interval. No number is ever NaN:
+/// an undefined one is `None` (null).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
-    /// The value; `None` when it is counted over nothing.
+    /// Value; `None` if there is nothing to count.
     pub value: Option<f64>,
-    /// How many count: the value of a rate is `count`/`of`. For a mean, the same as `of`.
+    /// Numerator of a rate, whose value is `count`/`of`; equal to `of` in other figures.
     pub count: u64,
-    /// How many it is counted over.
+    /// Number of values that the figure is computed from.
     pub of: u64,
-    /// How many independent frames these are worth (see [`effective_size`]); 0 when `of` is 0.
+    /// Effective number of independent values (see [`effective_size`]); 0 when `of` is 0.
     pub effective: f64,
     /// Lower limit of the 95 % interval.
     pub low: Option<f64>,
     /// Upper limit of the 95 % interval.
     pub high: Option<f64>,
-    /// Of a rate of errors "within" something: the limit, degrees. Absent in other figures.
+    /// Limit, degrees, of a rate of errors "within" a limit; absent in other figures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit_deg: Option<f64>,
 }
 
 impl Figure {
-    /// A rate. Each inner list is one sequence in order of time.
+    /// Computes a rate. Each inner list is one sequence in order of time.
     pub fn rate(sequences: &[Vec<bool>]) -> Self {
         let numbers: Vec<Vec<f64>> = sequences
             .iter()
@@ -109,12 +118,12 @@ impl Figure {
         Self::new(value, count, of, effective, value.and_then(|rate| wilson(rate, effective)))
     }
 
-    /// A mean. Each inner list is one sequence of finite values in order of time.
+    /// Computes a mean. Each inner list is one sequence of finite values in order of time.
     pub fn mean(sequences: &[Vec<f64>]) -> Self {
         Self::location(sequences, effective_size(sequences), mean, mean_interval)
     }
 
-    /// A root mean square.
+    /// Computes a root mean square of sequences as in [`Figure::mean`].
     pub fn rms(sequences: &[Vec<f64>]) -> Self {
         let squares: Vec<Vec<f64>> =
             sequences.iter().map(|sequence| sequence.iter().map(|x| x * x).collect()).collect();
@@ -122,7 +131,7 @@ impl Figure {
         Self::location(sequences, effective_size(&squares), rms, rms_interval)
     }
 
-    /// A median.
+    /// Computes a median of sequences as in [`Figure::mean`].
     pub fn median(sequences: &[Vec<f64>]) -> Self {
         Self::location(sequences, effective_size(&below_median(sequences)), median, median_interval)
     }
@@ -155,81 +164,88 @@ fn mean(sequences: &[Vec<f64>]) -> Option<f64> {
     (n > 0).then(|| sequences.iter().flatten().sum::<f64>() / n as f64)
 }
 
-/// What a reader must know of frames that are left out of the figures; nothing where there are none. `images`: frames or fields.
+/// Returns a note for the reader about the frames that the figures leave out; `None` if there are none.
+/// `images` is "frames" or "fields".
 pub fn warm_up_note(frames: u64, images: &str) -> Option<String> {
     (frames > 0).then(|| {
         format!("The first {frames} {images}, the pipeline's start-up, are the group `warm-up` and count in no other figure.")
     })
 }
 
-/// Whether a number need not be written: files are as they were before there was such a number.
+/// Returns true for 0, which is left out of files; files in which the number is 0 are thus the same as before
+/// the number was introduced.
 pub fn is_zero(number: &u64) -> bool {
     *number == 0
 }
 
-/// The score of a run: the content of `score.json`. Figures and groups keep their order in the file; groups are in
-/// the order of their first frame.
+/// Score of a run: the content of `score.json`. Figures and groups keep their order in the file; groups are
+/// in the order of their first frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// Name of the scenario.
     pub scenario: String,
-    /// Its seed.
+    /// Seed of the scenario.
     pub seed: u64,
-    /// Version of Boresight that made the score.
+    /// Version of Boresight that computed the score.
     pub version: String,
-    /// The stage whose result was replaced by the truth: with one, this is no score of the pipeline. Absent without.
+    /// Stage of the pipeline whose result was replaced by the truth; absent if none was. A score with an
+    /// injected stage is not a score of the pipeline.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inject: Option<String>,
-    /// The attitude that the lines of sight rest on: `own`, `telemetry` or `true`, `own and …` where answers differ, `none` where no
-    /// answer has one ([`crate::attitude_word`]). Absent when nothing is detected.
+    /// Attitude that the lines of sight depend on: `own`, `telemetry` or `true`, `own and …` where
+    /// measurements differ, `none` where no measurement has a line of sight ([`crate::attitude_word`]).
+    /// Absent when no frame is detected.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude: Option<String>,
-    /// The first frames, in which the pipeline starts up: they are in the group `warm-up` and in no other number. Absent when 0.
+    /// Number of first frames, during which the pipeline starts up; they count only in the group `warm-up`.
+    /// Absent when 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub warm_up_frames: u64,
-    /// Number of frames: detected and missed, each counted once.
+    /// Number of frames, detected and missed, each counted once.
     pub frames: u64,
     /// Figures over all frames, by name (see [`names`] for far range).
     pub figures: IndexMap<String, Figure>,
-    /// The same for each group (day, portion).
+    /// Scores of each group (day, portion).
     pub groups: IndexMap<String, GroupScore>,
-    /// Misses by [`crate::Cause::code`]; causes that did not occur are left out.
+    /// Number of misses by [`crate::Cause::code`]; causes that did not occur are left out.
     pub misses: IndexMap<String, u64>,
-    /// Wrong answers, by the cause that kept the target itself from being taken.
+    /// Number of wrong measurements, by the cause that kept the target from being chosen.
     pub wrong: IndexMap<String, u64>,
-    /// Wrong answers, by what was taken: `star`, `planet`, `moon`, `hot_pixel`, `cosmic_ray`, `nothing`.
+    /// Number of wrong measurements, by the object chosen instead: `star`, `planet`, `moon`, `hot_pixel`,
+    /// `cosmic_ray`, `nothing`.
     pub wrong_taken: IndexMap<String, u64>,
-    /// Honesty of the covariances by the state of the image and by the source of the attitude. Absent where no correct answer has a
-    /// covariance.
+    /// Consistency of the covariances by the state of the target's image and by the source of the attitude.
+    /// Absent where no correct measurement has a covariance.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub consistency: Vec<ConsistencyRow>,
 }
 
-/// Honesty of the covariances in one kind of frames: a row of `consistency` in `score.json`.
+/// Consistency of the covariances in one class of frames: a row of `consistency` in `score.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ConsistencyRow {
-    /// What the frames are told apart by: `image` or `attitude`.
+    /// Criterion that divides the frames into classes: `image` or `attitude`.
     pub by: String,
-    /// Of `image`: [`crate::ImageState::code`]; of `attitude`: [`contract::AttitudeSource::code`], or `unstated`.
+    /// Class: [`crate::ImageState::code`] for `image`; [`contract::AttitudeSource::code`] or `unstated` for
+    /// `attitude`.
     pub value: String,
-    /// Correct answers of this kind with a covariance.
+    /// Number of correct measurements of this class with a covariance.
     pub frames: u64,
-    /// The figures of consistency over them, by name.
+    /// Figures of consistency over these measurements, by name.
     pub figures: IndexMap<String, Figure>,
 }
 
-/// The score of one group of frames.
+/// Score of one group of frames.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GroupScore {
     /// Number of frames.
     pub frames: u64,
     /// Figures by name.
     pub figures: IndexMap<String, Figure>,
-    /// Misses by cause.
+    /// Number of misses by cause.
     pub misses: IndexMap<String, u64>,
-    /// Wrong answers by cause.
+    /// Number of wrong measurements by cause.
     pub wrong: IndexMap<String, u64>,
-    /// Wrong answers by what was taken.
+    /// Number of wrong measurements by the object chosen instead.
     pub wrong_taken: IndexMap<String, u64>,
 }
 
@@ -292,12 +308,13 @@ mod tests {
         }
     }
 
-    /// What is summed up decides what the values are worth: of a median whether they are below it, not how far.
+    /// The effective size of a median follows from whether each value is below the median, not from its
+    /// distance to the median.
     #[test]
     fn a_median_has_an_effective_number_of_its_own() {
         let series = [vec![0.0, 1.0, 2.0, 3.0, 4.0, 3.0, 5.0, 5.0, 5.0, 3.0, 9.0, 5.0, 5.0, 6.0, 8.0, 5.0]];
         let figure = Figure::median(&series);
-        // Worked out apart from this code: see `values_at_the_median_are_not_below_it`.
+        // Computed independently of this code: see `values_at_the_median_are_not_below_it`.
         assert!((figure.effective - 4.287).abs() < 5e-4, "{figure:?}");
         assert!((figure.effective - Figure::mean(&series).effective).abs() > 0.1);
     }

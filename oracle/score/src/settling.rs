@@ -1,23 +1,25 @@
-//! How long a pipeline takes to settle.
+//! Number of frames that a pipeline takes to settle.
 
 use super::figure_spec::{Better, FigureSpec};
 use super::report::{Figure, names};
 use super::verdict::{FrameVerdict, Verdict};
 
-/// Correct answers in a row that show that a pipeline has settled. One that is right in 80 % of the frames by chance has as many in a row
-/// once in a hundred starts, one that is right in 99 % four times in five.
+/// Number of consecutive correct measurements that show that a pipeline has settled. A pipeline that is right
+/// by chance in 80 % of the frames starts with such a run once in a hundred times, one that is right in 99 %
+/// four times in five.
 const SETTLED_FRAMES: usize = 20;
 
-/// What the figure is.
+/// Returns the description of the figure.
 pub(super) fn spec() -> FigureSpec {
     FigureSpec::amount(names::FRAMES_UNTIL_SETTLED, "frames until settled", Better::Less)
 }
 
-/// Mean number of frames before the first [`SETTLED_FRAMES`] correct answers in a row, over the sequences that have as many frames at
-/// all. It has no value when one of these never settles: a mean of the others would be too good.
+/// Computes the mean number of frames before the first [`SETTLED_FRAMES`] consecutive correct measurements,
+/// over the sequences that have at least this many frames. The figure has no value when one of these
+/// sequences never settles: the mean of the remaining ones would be too good.
 ///
-/// Frames without an answer in which no pipeline could have found the target (outside the field, in eclipse, too faint, cut away) are
-/// left out: they count for nothing and interrupt nothing.
+/// Frames without a measurement in which no pipeline could have found the target (outside the field, in
+/// eclipse, too faint, cut away) are left out: they neither count nor interrupt a run.
 pub(super) fn figure(sequences: &[&[&FrameVerdict]]) -> Figure {
     let starts = sequences.iter().map(|frames| answers(frames)).filter(|start| start.len() >= SETTLED_FRAMES);
     let waits: Option<Vec<Vec<f64>>> =
@@ -25,7 +27,7 @@ pub(super) fn figure(sequences: &[&[&FrameVerdict]]) -> Figure {
     Figure::mean(&waits.unwrap_or_default())
 }
 
-/// Whether each frame was answered correctly, of those that count.
+/// Returns true for each correct frame and false for each other one; frames that do not count are left out.
 fn answers(frames: &[&FrameVerdict]) -> Vec<bool> {
     let is_correct = |frame: &&FrameVerdict| match frame.verdict {
         Verdict::Missed { cause } if cause.is_undetectable() => None,
@@ -35,7 +37,8 @@ fn answers(frames: &[&FrameVerdict]) -> Vec<bool> {
     frames.iter().filter_map(is_correct).collect()
 }
 
-/// Frames before the first run of correct answers; `None` without one.
+/// Returns the number of frames before the first [`SETTLED_FRAMES`] consecutive correct ones; `None` if there
+/// is no such run.
 fn wait(correct: &[bool]) -> Option<usize> {
     correct.windows(SETTLED_FRAMES).position(|run| run.iter().all(|correct| *correct))
 }
@@ -59,7 +62,8 @@ mod tests {
     const LOST: Verdict = Verdict::Missed { cause: Cause::LostMotionTest };
     const ECLIPSE: Verdict = Verdict::Missed { cause: Cause::InEclipse };
 
-    /// The value of sequences of so many frames with a verdict.
+    /// Returns the figure's value for sequences that are given as pairs of a number of frames and their
+    /// verdict.
     fn value(sequences: &[&[(usize, Verdict)]]) -> Option<f64> {
         let frames = |stretches: &&[(usize, Verdict)]| -> Vec<FrameVerdict> {
             let verdicts =
@@ -97,7 +101,7 @@ mod tests {
             value(&[&[(30, ECLIPSE), (3, LOST), (10, CORRECT), (30, ECLIPSE), (10, CORRECT)]]),
             Some(3.0)
         );
-        // Nor do they make a sequence long enough.
+        // Frames in eclipse do not count towards the required length of a sequence either.
         assert_eq!(value(&[&[(30, ECLIPSE), (19, CORRECT)]]), None);
     }
 

@@ -1,4 +1,4 @@
-//! The verdict on one frame.
+//! Verdict on one far-range frame.
 
 use std::sync::Arc;
 
@@ -12,59 +12,62 @@ use super::cluster_members::{brightest, members, target, transmitted_electrons};
 use crate::covariance::image_state::ImageState;
 use crate::covariance::normalised_error::NormalisedError;
 
-/// The true camera's inverse projection: the direction whose image is at a point, `None` where there is none.
+/// Inverse projection of the true camera: the direction whose image is at a given point, `None` if there is
+/// none.
 pub type Unproject<'a> = dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>> + 'a;
 
-/// What the oracle says about one frame: exactly one of three.
+/// Verdict of the oracle on one frame: exactly one of three.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Verdict {
-    /// The pipeline has no target. An answer whose place is not on the detector, or whose line of sight is no direction, is no
-    /// answer and is missed too.
+    /// The pipeline reports no target. A measurement whose position is off the detector, or whose line of
+    /// sight is not a direction, also counts as missed.
     Missed {
-        /// Why.
+        /// Cause of the miss.
         cause: Cause,
     },
-    /// The pipeline has the target.
+    /// The pipeline found the target.
     ///
     /// An object belongs to the chosen cluster when its true centre lies within max(`radius_px`/2, 1.5) px of
-    /// the reported position, along the columns by `bloom_px`/2 farther. The answer is correct when the target belongs to it and more than half of the electrons
-    /// of all that belongs to it (stars, hot pixels and tracks of particles included) are the target's. Only transmitted electrons
-    /// count: electrons × (1 − cut).
+    /// the reported position, along the columns up to `bloom_px`/2 farther. The measurement is correct when
+    /// the target belongs to the cluster and contributes more than half of the electrons of all objects that
+    /// belong to it (including stars, hot pixels and cosmic-ray hits). Only transmitted electrons count:
+    /// electrons × (1 − cut).
     Correct {
-        /// Error of the answer.
+        /// Error of the measurement.
         error: AnswerError,
     },
-    /// The pipeline has a target that is not one: detected by the paper's count, and wrong.
+    /// The pipeline reports a target that is another object, or none: detected in the sense of the paper, and
+    /// wrong.
     Wrong {
-        /// Error of the answer, from the true target.
+        /// Error of the measurement, relative to the true target.
         error: AnswerError,
-        /// What was taken for the target.
+        /// Object chosen instead of the target.
         taken: MistakenObject,
-        /// Why the target itself was not taken.
+        /// Cause why the target was not chosen.
         cause: Cause,
     },
 }
 
-/// What was taken for the target: of the objects that belong to the chosen cluster, without the target, the one
-/// with the most transmitted electrons.
+/// Object chosen instead of the target: among the objects that belong to the chosen cluster, other than the
+/// target, the one with the most transmitted electrons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MistakenObject {
-    /// The star of this number in the catalogue.
+    /// A star, by its number in the catalogue.
     Star(u32),
-    /// The planet of this number, 1 to 8.
+    /// A planet, by its number, 1 to 8.
     Planet(u32),
     /// The Moon.
     Moon,
-    /// The hot pixel of this number: row × columns + column.
+    /// A hot pixel, by its number: row × columns + column.
     HotPixel(u32),
-    /// The track of this number in the frame.
+    /// A cosmic-ray hit, by its number in the frame.
     CosmicRay(u32),
-    /// Nothing of the truth is there: noise, or a place of its own making.
+    /// No object of the truth lies at the reported position: noise, or an invented position.
     Nothing,
 }
 
 impl MistakenObject {
-    /// The word used in files; the number has a column of its own.
+    /// Returns the word used in files; the number has a separate column.
     pub fn code(self) -> &'static str {
         match self {
             Self::Star(_) => "star",
@@ -76,7 +79,8 @@ impl MistakenObject {
         }
     }
 
-    /// The number of the star, planet, hot pixel or track; 0 for the Moon.
+    /// Returns the number of the star, planet, hot pixel or cosmic-ray hit; 0 for the Moon, `None` for
+    /// [`MistakenObject::Nothing`].
     pub fn id(self) -> Option<u32> {
         match self {
             Self::Star(id) | Self::Planet(id) | Self::HotPixel(id) | Self::CosmicRay(id) => Some(id),
@@ -87,7 +91,7 @@ impl MistakenObject {
 }
 
 impl Verdict {
-    /// The word used in files.
+    /// Returns the word used in files.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Missed { .. } => "missed",
@@ -96,12 +100,12 @@ impl Verdict {
         }
     }
 
-    /// Whether the pipeline says that it has a target, rightly or wrongly.
+    /// Returns true if the pipeline reports a target, rightly or wrongly.
     pub fn is_detected(&self) -> bool {
         !matches!(self, Self::Missed { .. })
     }
 
-    /// The error of a detected target, right or wrong.
+    /// Returns the error of a detected target, correct or wrong.
     pub fn error(&self) -> Option<AnswerError> {
         match self {
             Self::Missed { .. } => None,
@@ -109,33 +113,34 @@ impl Verdict {
         }
     }
 
-    /// The error of its line of sight, where it has one.
+    /// Returns the error of the line of sight, if there is one.
     pub fn line_of_sight_error(&self) -> Option<LineOfSightError> {
         self.error()?.line_of_sight
     }
 }
 
-/// The verdict on one frame, with what else the figures need.
+/// Verdict on one frame, with the further data that the figures need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameVerdict {
     /// Number of the frame.
     pub frame: u64,
-    /// Name of the group it belongs to.
+    /// Name of the frame's group.
     pub group: Arc<str>,
-    /// Whether it is one of the first frames, in which the pipeline starts up: it counts in no figure but its group's.
+    /// True if the frame is among the first ones, during which the pipeline starts up; it counts only in the
+    /// figures of its group.
     pub is_warm_up: bool,
     /// The verdict.
     pub verdict: Verdict,
-    /// What is left of the target's image; `None` unless the answer is correct.
+    /// State of the target's image in the chosen cluster; `None` unless the measurement is correct.
     pub image: Option<ImageState>,
-    /// Stars that the pipeline identified; `None` when it did not answer the frame.
+    /// Number of stars that the pipeline identified; `None` if there is no outcome for the frame.
     pub n_stars: Option<u32>,
-    /// Where the attitude of its answer comes from, if it says so.
+    /// Source of the attitude, if the outcome states it.
     pub attitude_source: Option<AttitudeSource>,
 }
 
 impl FrameVerdict {
-    /// The verdict as a row of a table.
+    /// Returns the verdict as a row of a table.
     pub fn row(&self) -> VerdictRow<'_> {
         let (taken, cause) = match self.verdict {
             Verdict::Missed { cause } => (None, Some(cause)),
@@ -173,7 +178,7 @@ impl FrameVerdict {
     }
 }
 
-/// A [`FrameVerdict`] in words and numbers, for CSV and JSON; the names of the fields are those of the columns.
+/// A [`FrameVerdict`] in words and numbers, for CSV and JSON; the field names are the column names.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VerdictRow<'a> {
     /// Number of the frame.
@@ -186,39 +191,40 @@ pub struct VerdictRow<'a> {
     pub cause: Option<&'static str>,
     /// [`MistakenObject::code`], when wrong.
     pub taken: Option<&'static str>,
-    /// Number of the star or hot pixel taken.
+    /// [`MistakenObject::id`], when wrong.
     pub taken_id: Option<u32>,
     /// Error of the centroid across columns, px, when detected.
     pub centroid_x_error_px: Option<f64>,
     /// Error of the centroid across rows, px, when detected.
     pub centroid_y_error_px: Option<f64>,
-    /// Error of the line of sight across columns, degrees, where there is one.
+    /// Error of the line of sight across columns, degrees, if there is a line of sight.
     pub ra_error_deg: Option<f64>,
-    /// Error of the line of sight across rows, degrees, where there is one.
+    /// Error of the line of sight across rows, degrees, if there is a line of sight.
     pub dec_error_deg: Option<f64>,
-    /// [`crate::AttitudeUsed::code`] of the line of sight.
+    /// [`crate::AttitudeUsed::code`] of the attitude that the line of sight depends on.
     pub line_of_sight: Option<&'static str>,
-    /// Stars identified; empty when the frame was not answered.
+    /// Number of identified stars; empty if there is no outcome for the frame.
     pub n_stars: Option<u32>,
     /// [`AttitudeSource::code`].
     pub attitude_source: Option<&'static str>,
     /// [`ImageState::code`], when correct.
     pub image: Option<&'static str>,
-    /// Error of the centroid across columns over its standard deviation, where the answer states one.
+    /// Error of the centroid across columns over its standard deviation, if the measurement states one.
     pub centroid_x_over_sigma: Option<f64>,
     /// Error of the centroid across rows over its standard deviation.
     pub centroid_y_over_sigma: Option<f64>,
-    /// eᵀ C⁻¹ e / 2 of the centroid.
+    /// NEES of the centroid, eᵀ C⁻¹ e / 2.
     pub centroid_nees: Option<f64>,
-    /// Error of the line of sight across columns over its standard deviation, where the answer states one.
+    /// Error of the line of sight across columns over its standard deviation, if the measurement states one.
     pub ra_over_sigma: Option<f64>,
     /// Error of the line of sight across rows over its standard deviation.
     pub dec_over_sigma: Option<f64>,
-    /// eᵀ C⁻¹ e / 2 of the line of sight.
+    /// NEES of the line of sight, eᵀ C⁻¹ e / 2.
     pub line_of_sight_nees: Option<f64>,
 }
 
-/// Judges one frame. `objects` are those of this frame; `outcome` is `None` when there is no row for it.
+/// Determines the verdict on one frame. `objects` are the objects of this frame; `outcome` is `None` when the
+/// measurements have no row for the frame.
 pub(super) fn judge(
     truth: &FrameTruth,
     objects: &[ObjectTruth],
@@ -253,13 +259,13 @@ pub(super) fn judge(
     }
 }
 
-/// What the cluster at the reported position holds.
+/// Content of the cluster at the reported position.
 enum ClusterContent<'a> {
-    /// Mostly the target.
+    /// The target, with more than half of the electrons.
     Target,
-    /// The target, and more of others, of which this is the brightest.
+    /// The target, and at least as many electrons of other objects; the value is the brightest of these.
     TargetOutshone(&'a ObjectTruth),
-    /// No target; the brightest of what is there.
+    /// No target; the value is the brightest object of the cluster, if any.
     Other(Option<&'a ObjectTruth>),
 }
 
@@ -393,7 +399,7 @@ mod tests {
         assert_eq!(verdict(&objects, &detected_at(PixelPoint::new(1.0, f64::INFINITY))), missed);
     }
 
-    /// It has a centroid, whatever the camera images there.
+    /// The measurement has a centroid, whether or not the camera images a direction there.
     #[test]
     fn an_answer_without_a_direction_is_judged_by_its_centroid() {
         let nowhere = judge(
@@ -415,7 +421,7 @@ mod tests {
         target.position = PixelPoint::new(CENTRE.x + 0.75, CENTRE.y - 0.25);
         let error = |objects: &[ObjectTruth]| verdict(objects, &detected_at(right_of_target(1.0))).error();
         assert_eq!(error(&[target]).unwrap().centroid_px, Some([0.25, 0.25]));
-        // Without light in the image: where the line of sight meets it.
+        // Without target electrons in the image, the reference is the image point of the true line of sight.
         assert_eq!(error(&[]).unwrap().centroid_px, Some([1.0, 0.0]));
     }
 
@@ -440,7 +446,7 @@ mod tests {
             other => panic!("{other:?}"),
         };
         assert_eq!(taken(&[target_with(1000.0), cut.clone()]), MistakenObject::Nothing);
-        // Nor did it outshine a target of which nothing is left.
+        // Nor does an object that is cut away entirely outshine a target that is cut away entirely.
         let gone = ObjectTruth { position: far, cut: 1.0, ..target_with(1000.0) };
         assert_eq!(taken(&[gone, cut]), MistakenObject::Nothing);
     }
@@ -460,7 +466,8 @@ mod tests {
         assert_eq!(taken.map(MistakenObject::id), [Some(7), Some(5), Some(0), Some(99), Some(2), None]);
     }
 
-    /// Outshone is who is there and has less than another: what the pipeline says of the cluster does not count then.
+    /// A target in the cluster with fewer electrons than another object is outshone, regardless of the
+    /// pipeline's label of the cluster.
     #[test]
     fn a_target_outshone_by_a_star_is_merged_whatever_its_cluster_is_called() {
         let place = right_of_target(0.5);
@@ -470,7 +477,7 @@ mod tests {
             other => panic!("{other:?}"),
         };
         assert_eq!(cause(target_with(1000.0)), Cause::MergedWithStar);
-        // Without light it is not there, and the reason is sought elsewhere.
+        // A target without electrons is not in the cluster; the cause then follows from the label.
         assert_eq!(cause(target_with(0.0)), Cause::LostMotionTest);
     }
 

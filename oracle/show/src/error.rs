@@ -1,14 +1,14 @@
-//! Why a picture cannot be drawn.
+//! Errors of drawing a picture.
 
 use thiserror::Error;
 
-/// Most panels of a contact sheet.
+/// Largest number of panels of a contact sheet.
 pub const MAX_PANELS: usize = 16;
 
-/// Why a picture cannot be drawn.
+/// Reason why a picture cannot be drawn.
 #[derive(Debug, Error)]
 pub enum ShowError {
-    /// Too few or too many frames for a picture.
+    /// No panel, or too many panels for a picture.
     #[error("{0} frames are asked for, expected 1 to {MAX_PANELS}")]
     PanelCount(usize),
     /// A view without pixels, or a canvas that cannot be allocated.
@@ -19,7 +19,7 @@ pub enum ShowError {
         /// Height, px.
         height: usize,
     },
-    /// The encoder refused.
+    /// The PNG encoder failed.
     #[error("the picture cannot be encoded: {0}")]
     Encode(String),
 }

@@ -1,8 +1,10 @@
-//! Annotated pictures of frames: pixels, true objects, the pipeline's answer, transmitted regions, a scale bar and a legend.
+//! Annotated pictures of frames: pixels, true objects, the pipeline's outcome, transmitted regions, a scale
+//! bar and a legend.
 //!
-//! [`picture`] is a pure function of [`Panel`]s: one frame is drawn large, with a close-up and a table beside it; several become a
-//! contact sheet. [`encode`] writes the result as a PNG with a palette, which names this program in a text chunk; [`is_boresight_picture`]
-//! recognises that chunk. Nothing here reads or writes files.
+//! [`picture`] is a pure function of [`Panel`]s: a single frame is drawn large, with a close-up and a table
+//! beside it; several frames form a contact sheet. [`encode`] returns the picture as a PNG with a palette,
+//! which names this program in a text chunk; [`is_boresight_picture`] recognises this chunk. This crate
+//! neither reads nor writes files.
 //!
 //! Positions are pixels of the frame: the centre of the first pixel is (0, 0).
 

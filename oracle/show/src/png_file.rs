@@ -1,4 +1,4 @@
-//! The picture as a PNG: a palette of 256 colours, and a text chunk that names what made it.
+//! PNG encoding of a picture, with a palette of 256 colours and a text chunk that names the program.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -10,22 +10,23 @@ use crate::ShowError;
 use crate::canvas::colour::{ACCENTS, BACKGROUND, NO_DATA, Rgb};
 use crate::layout::Picture;
 
-/// Keyword of the chunk, one of those of the PNG standard.
+/// Keyword of the text chunk, defined by the PNG standard.
 const KEYWORD: &str = "Software";
-/// How its text begins.
+/// Beginning of the chunk's text.
 const PROGRAM: &str = "boresight show";
-/// Shades of each accent, between it and black: what smooth edges on a dark sky are made of.
+/// Number of shades between each accent and black, for smooth edges on a dark sky.
 const SHADES: usize = 19;
-/// Colours of a palette.
+/// Number of colours of a palette.
 const COLOURS: usize = 256;
-/// Most bytes of text that are read of a PNG.
+/// Largest amount of text that is read from a PNG, bytes.
 const MAX_TEXT: usize = 1 << 20;
 
-/// The bytes of a PNG. They depend on the picture, its title and the version of Boresight alone. A picture of more than 256 colours
-/// keeps about a hundred greys, and smooth edges get the nearest colour: the noise of a frame takes most of the bytes.
+/// Encodes a picture as a PNG. The bytes depend only on the picture, its title and the version of Boresight.
+/// A picture of more than 256 colours is reduced to about a hundred greys, and its smooth edges to the
+/// nearest colour: the noise of a frame takes most of the bytes.
 ///
 /// # Errors
-/// [`ShowError::Encode`] when the encoder refuses.
+/// [`ShowError::Encode`] when the encoder fails.
 pub fn encode(picture: &Picture, title: &str) -> Result<Vec<u8>, ShowError> {
     let error = |error: png::EncodingError| ShowError::Encode(error.to_string());
     let (palette, indices) = indexed(&picture.rgb);
@@ -41,7 +42,7 @@ pub fn encode(picture: &Picture, title: &str) -> Result<Vec<u8>, ShowError> {
     encoder.set_compression(Compression::High);
     let software = format!("{PROGRAM} {}", env!("CARGO_PKG_VERSION"));
     encoder.add_text_chunk(KEYWORD.to_owned(), software).map_err(error)?;
-    // The chunk holds Latin-1 alone.
+    // The chunk holds only Latin-1 characters.
     let latin: String = title.chars().map(|c| if (' '..='\u{ff}').contains(&c) { c } else { '?' }).collect();
     encoder.add_text_chunk("Title".to_owned(), latin).map_err(error)?;
     let mut writer = encoder.write_header().map_err(error)?;
@@ -50,21 +51,21 @@ pub fn encode(picture: &Picture, title: &str) -> Result<Vec<u8>, ShowError> {
     Ok(bytes)
 }
 
-/// Whether the beginning of a file is that of a PNG of [`encode`].
+/// Returns true if these bytes begin a PNG that [`encode`] made.
 pub fn is_boresight_picture(bytes: &[u8]) -> bool {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: MAX_TEXT });
     let Ok(info) = decoder.read_header_info() else { return false };
     if info.color_type != ColorType::Indexed {
         return false;
     }
-    // Reads the chunks before the pixels.
+    // Reads the chunks that precede the pixels.
     decoder.read_info().is_ok_and(|reader| {
         let chunks = &reader.info().uncompressed_latin1_text;
         chunks.iter().any(|chunk| chunk.keyword == KEYWORD && chunk.text.starts_with(PROGRAM))
     })
 }
 
-/// A palette, and the index of each pixel in it.
+/// Returns a palette, and the index of each pixel in it.
 fn indexed(pixels: &[Rgb]) -> (Vec<Rgb>, Vec<u8>) {
     let mut known: HashMap<Rgb, u8> = HashMap::new();
     let mut palette: Vec<Rgb> = Vec::new();
@@ -81,7 +82,7 @@ fn indexed(pixels: &[Rgb]) -> (Vec<Rgb>, Vec<u8>) {
     (palette, pixels.iter().map(|pixel| known.get(pixel).copied().unwrap_or(0)).collect())
 }
 
-/// Pixels in the colours of a palette that is the same for all pictures.
+/// Reduces pixels to the nearest colours of a palette that is common to all pictures.
 fn quantised(pixels: &[Rgb]) -> (Vec<Rgb>, Vec<u8>) {
     let palette = palette();
     let mut nearest: HashMap<Rgb, u8> = HashMap::new();
@@ -99,7 +100,7 @@ fn quantised(pixels: &[Rgb]) -> (Vec<Rgb>, Vec<u8>) {
     (palette, indices)
 }
 
-/// Shades of every accent, and greys for the rest.
+/// Returns the common palette: shades of every accent, and greys in the remaining entries.
 fn palette() -> Vec<Rgb> {
     let mut palette = vec![BACKGROUND, NO_DATA];
     for accent in ACCENTS.into_iter().filter(|colour| ![BACKGROUND, NO_DATA].contains(colour)) {

@@ -1,27 +1,32 @@
-//! How many independent frames a sequence is worth.
+//! Effective number of independent frames in a sequence.
 
-/// The longest lag looked at, frames: bounds the work on very long sequences. A memory longer than this is
+/// Largest lag evaluated, frames: bounds the work for very long sequences. A longer correlation is
 /// underestimated.
 const MAX_LAG: usize = 4096;
 
-/// The effective sample size: the number n_eff of independent values whose mean would scatter as much as the mean
-/// of these. Each inner list is one sequence in order of time; sequences are independent of one another.
+/// Returns the effective sample size n_eff: the number of independent values whose mean would scatter as much
+/// as the mean of `sequences`. Each inner list is one sequence in order of time; sequences are independent of
+/// one another.
 ///
-/// The scatter of a sequence's mean is γ₀ τ / n, with the integrated autocorrelation time
-/// τ = 1 + 2 Σ ρ_k summed by the initial monotone sequence estimator of Geyer (1992), Statistical Science 7,
-/// 473–483: the sums γ_2m + γ_2m+1 of neighbouring autocovariances are added while they are positive, none of them
-/// larger than the one before. Autocovariances are taken about the sequence's own mean, for the sequences are
-/// strata: that day 1 differs from day 5 is no reason to know the mean over both days less well. The scatters of
-/// the sequences add up as Σ (n_i/n)² γ₀ᵢ τᵢ/nᵢ, and n_eff is the variance of all values over that sum.
+/// The variance of a sequence's mean is γ₀ τ / n, with the integrated autocorrelation time τ = 1 + 2 Σ ρ_k,
+/// summed by the initial monotone sequence estimator of Geyer (1992), Statistical Science 7, 473–483: the
+/// sums γ_2m + γ_2m+1 of neighbouring autocovariances are added while they are positive, each limited to the
+/// sum before it. Autocovariances are taken about the mean of each sequence, because the sequences are
+/// strata: a difference between day 1 and day 5 does not make the mean over both days less certain. The
+/// variances of the sequences add up as Σ (n_i/n)² γ₀ᵢ τᵢ/nᵢ, and n_eff is the variance of all values over
+/// this sum.
 ///
-/// - Never above n: sequences that alternate are not credited with more than they are, τ is at least 1.
-/// - A sequence in which nothing varies tells nothing about its correlation; it counts as independent, so a whole
-///   series without variation has n_eff = n. Its interval is a lower bound of what is not known.
-/// - A slow trend within a sequence looks like a long memory and lowers n_eff: the interval is then too wide.
-/// - Sequences must be many times longer than their memory, or it cannot be seen. Measured on a rate of 0.9 with
-///   τ = 9: the interval of 95 % holds the truth in 96 % of the series of 4500 values, and in 86 % of those of 200.
+/// - n_eff never exceeds n: τ is at least 1, also for sequences that alternate.
+/// - A sequence without variation contains no information about its correlation; it counts as independent,
+///   and a whole series without variation has n_eff = n. Its interval is a lower bound of the unknown
+///   uncertainty.
+/// - A slow trend within a sequence resembles a long correlation and lowers n_eff: the interval is then too
+///   wide.
+/// - Sequences must be many times longer than their correlation, or it remains undetected. Measured on a rate
+///   of 0.9 with τ = 9: the interval of 95 % contains the truth in 96 % of the series of 4500 values, and in
+///   86 % of those of 200.
 ///
-/// 0 for no value at all; otherwise from 1 to n.
+/// Returns 0 without any value; otherwise from 1 to n.
 pub fn effective_size(sequences: &[Vec<f64>]) -> f64 {
     let n = sequences.iter().map(Vec::len).sum::<usize>() as f64;
     if n == 0.0 {
@@ -39,10 +44,11 @@ pub fn effective_size(sequences: &[Vec<f64>]) -> f64 {
     if variance_of_mean > 0.0 { (variance / variance_of_mean).clamp(1.0, n) } else { n }
 }
 
-/// γ₀ τ / n of one sequence; 0 when nothing varies in it.
+/// Returns the variance of a sequence's mean, γ₀ τ / n; 0 when all values are equal.
 fn variance_of_sequence_mean(sequence: &[f64]) -> f64 {
     let Some(first) = sequence.first() else { return 0.0 };
-    // Compared exactly: rounding would make the variance of a constant series positive, and its τ a random number.
+    // The comparison is exact: rounding would make the variance of a constant series positive, and its τ a
+    // random number.
     if sequence.iter().all(|x| x == first) {
         return 0.0;
     }
@@ -75,7 +81,7 @@ mod tests {
         Seed { seed: 1992, case: 0 }.stream(0, Effect::PixelNoise, place)
     }
 
-    /// A two-state Markov chain of rate `p` whose autocorrelation is `rho` to the power of the lag.
+    /// Draws a two-state Markov chain of rate `p` whose autocorrelation is `rho` to the power of the lag.
     fn markov(p: f64, rho: f64, n: usize, random: &mut Stream) -> Vec<f64> {
         let mut state = uniform(random) < p;
         (0..n)
@@ -89,7 +95,7 @@ mod tests {
             .collect()
     }
 
-    /// Worked out apart from this code, by the definition above.
+    /// Expected values computed independently of this code, from the definition above.
     #[test]
     fn short_series_count_as_worked_out_by_the_definition() {
         let a = vec![5.0, 6.0, 8.0, 7.0, 9.0, 4.0, 3.0, 5.0, 4.0, 2.0, 3.0, 6.0];
@@ -109,12 +115,12 @@ mod tests {
             let mut random = stream(place);
             let values = (0..10_000).map(|_| f64::from(u8::from(uniform(&mut random) < 0.9))).collect();
             let ratio = effective_size(&[values]) / 10_000.0;
-            // The first few autocorrelations scatter by 1/sqrt(n) = 0.01 each.
+            // The first few autocorrelations have a standard deviation of 1/sqrt(n) = 0.01 each.
             assert!((0.9..=1.0).contains(&ratio), "{ratio}");
         }
     }
 
-    /// For an autoregression of first order τ = (1 + ρ)/(1 − ρ), in closed form.
+    /// A first-order autoregression has τ = (1 + ρ)/(1 − ρ) in closed form.
     #[test]
     fn an_autoregression_counts_as_its_closed_form_says() {
         for rho in [0.3, 0.6, 0.9] {
@@ -128,7 +134,8 @@ mod tests {
                 })
                 .collect();
             let got = effective_size(&[values]);
-            // τ of 100,000 values scatters by sqrt(4 · lags/n), about 5 % for the longest memory here.
+            // The relative standard deviation of τ over 100,000 values is sqrt(4 · lags/n), about 5 % for the
+            // longest correlation here.
             assert!((got / expected - 1.0).abs() < 0.15, "ρ = {rho}: {got}, expected {expected}");
         }
     }
@@ -147,12 +154,12 @@ mod tests {
                 })
                 .count();
             let coverage = covered as f64 / trials as f64;
-            // 95 % nominal; the count scatters by 0.9 %.
+            // 95 % nominal; the standard deviation of the observed coverage is 0.9 %.
             assert!((0.90..=0.99).contains(&coverage), "p = {p}, ρ = {rho}: {coverage}");
         }
     }
 
-    /// The null control of the test above: without the effective size the same interval fails it.
+    /// Null control of the test above: the same interval without the effective size fails to cover the truth.
     #[test]
     fn an_interval_that_takes_correlated_frames_for_independent_does_not_cover() {
         let trials = 200;

@@ -1,25 +1,26 @@
-//! One-sided bounds of rates, means and quantiles of values in clusters: what a requirement is decided by.
+//! One-sided bounds of rates, means and quantiles of values in clusters, used to decide a requirement.
 //!
-//! Each bound is asked at a size: 1 for the clusters that are known, more for the bound that so many times as many clusters of the same
-//! kind would give.
+//! Each bound is computed for a relative size: 1 for the given clusters; larger for the bound expected from
+//! this many times as many clusters of the same kind.
 
 use statrs::function::beta::beta_reg;
 
 use super::clusters::{ClusterSum, LEAST_CLUSTERS, Ratio, independent_trials, non_empty, t_quantile};
 use super::quantile::{ClusterValue, independent_values};
 
-/// Two one-sided bounds: the value is at least `low` with the confidence that was asked for, and at most `high` with the same.
+/// Two one-sided bounds: the value is at least `low` with the requested confidence, and at most `high` with
+/// the same confidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// Lower bound; absent where too few clusters are known.
+    /// Lower bound; absent if there are too few clusters.
     pub low: Option<f64>,
-    /// Upper bound.
+    /// Upper bound; absent if there are too few clusters.
     pub high: Option<f64>,
 }
 
-/// Bounds of a rate over clusters: those of Clopper & Pearson (1934) for the number of independent trials that would scatter as the
-/// clusters do (Korn & Graubard 1998, Survey Methodology 24, 193–201). They hold with the confidence at least. `None` where nothing is
-/// counted.
+/// Computes the bounds of a rate over clusters: those of Clopper & Pearson (1934) for the number of
+/// independent trials that would scatter as much as the clusters (Korn & Graubard 1998, Survey Methodology
+/// 24, 193–201). The true confidence is at least `confidence`. `None` if there is nothing to count.
 pub fn cluster_rate_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
     let counted = non_empty(clusters);
     let ratio = Ratio::new(&counted)?;
@@ -30,7 +31,8 @@ pub fn cluster_rate_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) 
     Some(Bounds { low: Some(low), high: Some(high) })
 }
 
-/// Bounds of a mean over clusters, Σ sum / Σ of, by Student's t. `None` below [`LEAST_CLUSTERS`].
+/// Computes the bounds of a mean over clusters, Σ sum / Σ of, by Student's t. `None` for fewer than
+/// [`LEAST_CLUSTERS`].
 pub fn cluster_mean_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
     let counted = non_empty(clusters);
     if counted.len() < LEAST_CLUSTERS {
@@ -41,9 +43,10 @@ pub fn cluster_mean_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) 
     Some(Bounds { low: Some(ratio.value - half), high: Some(ratio.value + half) })
 }
 
-/// Bounds of the quantile `p` of values in clusters, sorted by value: order statistics of as many independent values as scatter about
-/// the quantile like the clusters, the next one outwards. Values that do not exist may stand at the ends as infinities. A bound that would
-/// lie beyond the smallest or the largest value is absent; at a `size` above 1 it is then that value.
+/// Computes the bounds of the quantile `p` of values in clusters, sorted by value: order statistics of the
+/// number of independent values that would scatter about the quantile as much as the clusters do, rounded
+/// outwards. Infinities at the ends may stand for missing values. A bound beyond the smallest or the largest
+/// value is absent; at a `size` above 1 it is that value.
 pub fn cluster_quantile_bounds(
     sorted: &[ClusterValue],
     p: f64,
@@ -52,7 +55,7 @@ pub fn cluster_quantile_bounds(
 ) -> Option<Bounds> {
     let count = sorted.len();
     let n = (independent_values(sorted, p)? * size).floor();
-    // The largest rank that P(at least that many are below the quantile) allows, and the smallest.
+    // Largest and smallest rank that P(at least this many values are below the quantile) allows.
     let at_least = |rank: f64| if rank <= 0.0 { 1.0 } else { beta_reg(rank, n - rank + 1.0, p) };
     let first_below = |limit: f64| {
         let (mut low, mut high) = (0.0, n + 1.0);
@@ -72,7 +75,7 @@ pub fn cluster_quantile_bounds(
     Some(Bounds { low: at(low), high: at(high) })
 }
 
-/// The number below which a value of the beta distribution falls with the probability `p`.
+/// Returns the value below which the beta distribution has the probability `p`.
 fn beta_quantile(a: f64, b: f64, p: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
@@ -87,7 +90,8 @@ mod tests {
     use super::*;
     use sim::randomness::{Effect, Seed, Stream, normal, uniform};
 
-    /// scipy 1.17: beta.ppf(0.05, k, n − k + 1) and beta.ppf(0.95, k + 1, n − k), as for trials without clusters.
+    /// scipy 1.17: beta.ppf(0.05, k, n − k + 1) and beta.ppf(0.95, k + 1, n − k), as for trials without
+    /// clusters.
     #[test]
     fn rates_of_single_trials_have_the_exact_bounds() {
         for (count, n, low, high) in [
@@ -103,7 +107,8 @@ mod tests {
         }
     }
 
-    /// The textbook's 59 runs for the 95 % quantile with a confidence of 95 %: 0.95⁵⁹ = 0.0485, 0.95⁵⁸ = 0.0510.
+    /// The textbook's 59 runs for a bound of the 95 % quantile with a confidence of 95 %: 0.95⁵⁹ = 0.0485,
+    /// 0.95⁵⁸ = 0.0510.
     #[test]
     fn the_bound_of_a_quantile_exists_from_59_values_on() {
         let values = |n: usize| -> Vec<ClusterValue> { (0..n).map(|i| (i, i as f64)).collect() };
@@ -113,12 +118,14 @@ mod tests {
         assert_eq!(of(58, 0.05, 1.0).low, None);
         assert_eq!(of(59, 0.05, 1.0).low, Some(0.0));
         assert_eq!(of(30, 0.95, 2.0).high, Some(29.0));
-        // scipy 1.17: binom.cdf(k − 1, 93, 0.95): the second largest of 93 (0.9508), not of 92 (0.9483).
+        // scipy 1.17: binom.cdf(k − 1, n, 0.95) allows the second largest of 93 values (0.9508), but not of
+        // 92 (0.9483).
         assert_eq!(of(93, 0.95, 1.0).high, Some(91.0));
         assert_eq!(of(92, 0.95, 1.0).high, Some(91.0));
     }
 
-    /// How often a bound at 95 % is on the wrong side of the truth, of 2,000 studies: [low above it, high below it].
+    /// Returns the fraction of 2,000 studies in which a bound at 95 % is on the wrong side of the truth: [low
+    /// above it, high below it].
     fn wrong(truth: f64, bounds: impl Fn(&mut Stream) -> Option<Bounds>) -> [f64; 2] {
         let mut wrong = [0.0; 2];
         for study in 0..2000 {
@@ -130,7 +137,7 @@ mod tests {
         wrong
     }
 
-    /// 5 % are allowed; a count of 2,000 scatters by 0.5 %.
+    /// 5 % are allowed; the standard deviation of the fraction in 2,000 studies is 0.5 %.
     #[test]
     fn bounds_are_wrong_as_seldom_as_they_say() {
         let rate = wrong(0.95, |random| {

@@ -1,7 +1,8 @@
 //! Exact one-sided bounds of a rate.
 
-/// The one-sided bounds of Clopper & Pearson (1934, Biometrika 26, 404) of a rate seen in `count` of `n` independent trials: the
-/// rates at which so many or more, and so many or fewer, come with the probability 1 − `confidence`. (0, 1) of no trial.
+/// Returns the one-sided bounds of Clopper & Pearson (1934, Biometrika 26, 404) of a rate observed as `count`
+/// of `n` independent trials: the rates at which `count` or more, and `count` or fewer, have the probability
+/// 1 − `confidence`. (0, 1) without any trial.
 pub fn clopper_pearson(count: u64, n: u64, confidence: f64) -> (f64, f64) {
     if n == 0 {
         return (0.0, 1.0);
@@ -12,7 +13,7 @@ pub fn clopper_pearson(count: u64, n: u64, confidence: f64) -> (f64, f64) {
     (low, high)
 }
 
-/// P(K ≥ `count`) of `n` independent trials of probability `p`.
+/// Returns P(K ≥ `count`) for `n` independent trials of probability `p`.
 pub fn binomial_at_least(count: u64, n: u64, p: f64) -> f64 {
     if count == 0 {
         return 1.0;
@@ -30,7 +31,7 @@ pub fn binomial_at_least(count: u64, n: u64, p: f64) -> f64 {
         let ln_ways = libm::lgamma(trials + 1.0) - libm::lgamma(k + 1.0) - libm::lgamma(trials - k + 1.0);
         libm::exp(ln_ways + k * ln_p + (trials - k) * ln_q)
     };
-    // The shorter tail has fewer terms and more digits.
+    // The shorter tail has fewer terms and loses fewer digits.
     if count as f64 > trials * p {
         (count..=n).map(term).sum::<f64>().min(1.0)
     } else {
@@ -38,7 +39,7 @@ pub fn binomial_at_least(count: u64, n: u64, p: f64) -> f64 {
     }
 }
 
-/// The root of a growing function on [0, 1].
+/// Finds the root of an increasing function on [0, 1].
 fn root(f: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
@@ -73,7 +74,7 @@ mod tests {
         assert_eq!(clopper_pearson(0, 0, 0.95), (0.0, 1.0));
     }
 
-    /// 0.05^(1/100): all of a hundred.
+    /// The lower bound of 100 successes in 100 trials is 0.05^(1/100).
     #[test]
     fn all_of_a_hundred_have_their_closed_form() {
         let (low, high) = clopper_pearson(100, 100, 0.95);
@@ -94,7 +95,8 @@ mod tests {
         }
     }
 
-    /// One less everything below it would leave nothing but rounding. scipy: binom.sf(59, 100, 0.2).
+    /// Computed as 1 minus the other tail, this probability would be rounding error only. scipy: binom.sf(59,
+    /// 100, 0.2).
     #[test]
     fn a_small_tail_keeps_its_digits() {
         assert!((binomial_at_least(60, 100, 0.2) / 2.515819199533466e-18 - 1.0).abs() < 1e-9);

@@ -1,34 +1,36 @@
-//! Estimates from values that come in clusters: cases that share a draw go together, and only the clusters are independent.
+//! Estimates from clustered values: cases that share a draw form a cluster, and only the clusters are
+//! independent.
 //!
-//! Ratios, rates and differences are linearised, with one residual a cluster (Cochran 1977, Sampling Techniques, 6.3 and 9A), and their
-//! intervals take Student's t with one degree of freedom less than there are clusters. All intervals are of 95 %.
+//! Ratios, rates and differences are linearised, with one residual per cluster (Cochran 1977, Sampling
+//! Techniques, 6.3 and 9A). Their intervals use Student's t with one degree of freedom fewer than there are
+//! clusters. All intervals are of 95 %.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Interval, Z_95, normal_quantile, wilson};
 
-/// Fewer clusters than this have no interval.
+/// Smallest number of clusters for which an interval is computed.
 pub const LEAST_CLUSTERS: usize = 5;
 /// Probability outside a two-sided interval.
 pub(super) const OUTSIDE: f64 = 0.05;
 
-/// What a cluster adds to a ratio Σ `sum` / Σ `of`.
+/// Contribution of a cluster to a ratio Σ `sum` / Σ `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ClusterSum {
-    /// Of a rate, how many count; of a mean, the sum of the values.
+    /// Number of successes of a rate, or sum of the values of a mean.
     pub sum: f64,
-    /// How many it is counted over.
+    /// Number of trials or values.
     pub of: f64,
 }
 
-/// A ratio with the residual of each of its clusters.
+/// Ratio with the residual of each of its clusters.
 pub(super) struct Ratio {
     pub(super) value: f64,
     residuals: Vec<f64>,
 }
 
 impl Ratio {
-    /// `None` when nothing is counted.
+    /// Computes the ratio; `None` when the sum of `of` is 0.
     pub(super) fn new(clusters: &[ClusterSum]) -> Option<Self> {
         let (sum, of) = clusters.iter().fold((0.0, 0.0), |(s, n), c| (s + c.sum, n + c.of));
         let value = (of > 0.0).then(|| sum / of)?;
@@ -48,18 +50,18 @@ fn variance_of_mean(residuals: &[f64]) -> f64 {
     residuals.iter().map(|r| r * r).sum::<f64>() / (n * (n - 1.0))
 }
 
-/// The 97.5 % quantile of Student's t for so many clusters, of which there are two or more.
+/// Returns the 97.5 % quantile of Student's t for two or more clusters.
 pub(super) fn t_95(clusters: usize) -> f64 {
     t_quantile(clusters as f64, 1.0 - 0.5 * OUTSIDE)
 }
 
-/// The quantile `p` of Student's t for so many clusters, more than one.
+/// Returns the quantile `p` of Student's t for more than one cluster.
 pub(super) fn t_quantile(clusters: f64, p: f64) -> f64 {
     StudentsT::new(0.0, 1.0, clusters - 1.0).map_or_else(|_| normal_quantile(p), |t| t.inverse_cdf(p))
 }
 
-/// The interval of a mean over clusters, Σ sum / Σ of ± t s. Clusters without a value are left out. `None` below
-/// [`LEAST_CLUSTERS`].
+/// Computes the interval of a mean over clusters, Σ sum / Σ of ± t s. Clusters without a value are left out.
+/// `None` below [`LEAST_CLUSTERS`].
 pub fn cluster_mean_interval(clusters: &[ClusterSum]) -> Option<Interval> {
     let counted = non_empty(clusters);
     if counted.len() < LEAST_CLUSTERS {
@@ -70,17 +72,19 @@ pub fn cluster_mean_interval(clusters: &[ClusterSum]) -> Option<Interval> {
     Some(Interval { low: ratio.value - half, high: ratio.value + half })
 }
 
-/// The interval of a rate over clusters: Wilson's with the number of independent trials that would scatter as the clusters do, less by
-/// (z/t)² as that number is itself estimated (Korn & Graubard 1998, Survey Methodology 24, 193–201). Clusters of one trial are
-/// independent trials. Clusters that are all alike tell nothing of their scatter: they count as one trial each when all or none of their
-/// trials count, and in full otherwise. `None` where nothing is counted.
+/// Computes the interval of a rate over clusters: Wilson's interval for the number of independent trials that
+/// would scatter as much as the clusters, divided by (t/z)² because this number is itself estimated (Korn &
+/// Graubard 1998, Survey Methodology 24, 193–201). Clusters of one trial are independent trials. Clusters
+/// with equal rates contain no information about their scatter: each counts as one trial when all or none of
+/// the trials are successes, and with all its trials otherwise. `None` if there is no trial.
 pub fn cluster_rate_interval(clusters: &[ClusterSum]) -> Option<Interval> {
     let counted = non_empty(clusters);
     let ratio = Ratio::new(&counted)?;
     wilson(ratio.value, independent_trials(&counted, &ratio))
 }
 
-/// How many independent trials scatter as the clusters do; see [`cluster_rate_interval`].
+/// Returns the number of independent trials that would scatter as much as the clusters; see
+/// [`cluster_rate_interval`].
 pub(super) fn independent_trials(counted: &[ClusterSum], ratio: &Ratio) -> f64 {
     let n = counted.len();
     let trials: f64 = counted.iter().map(|cluster| cluster.of).sum();
@@ -105,7 +109,8 @@ pub(super) fn non_empty(clusters: &[ClusterSum]) -> Vec<ClusterSum> {
     clusters.iter().copied().filter(|cluster| cluster.of > 0.0).collect()
 }
 
-/// The interval of the difference of two means, second less first, over clusters that have both. `None` below [`LEAST_CLUSTERS`].
+/// Computes the interval of the difference of two means, second minus first, over clusters with values of
+/// both. `None` below [`LEAST_CLUSTERS`].
 pub fn mean_difference_interval(pairs: &[(ClusterSum, ClusterSum)]) -> Option<Interval> {
     if pairs.len() < LEAST_CLUSTERS {
         return None;
@@ -117,9 +122,9 @@ pub fn mean_difference_interval(pairs: &[(ClusterSum, ClusterSum)]) -> Option<In
     Some(Interval { low: difference - half, high: difference + half })
 }
 
-/// The interval of the difference of two rates, second less first, of the same clusters: from the intervals of both and the correlation of
-/// their residuals (Newcombe 1998, Statistics in Medicine 17, 2635–2650, method 8; for clusters Zou & Donner 2008, 27, 1693–1702). `None`
-/// below [`LEAST_CLUSTERS`].
+/// Computes the interval of the difference of two rates of the same clusters, second minus first, from the
+/// interval of each rate and the correlation of their residuals (Newcombe 1998, Statistics in Medicine 17,
+/// 2635–2650, method 8; for clusters Zou & Donner 2008, 27, 1693–1702). `None` below [`LEAST_CLUSTERS`].
 pub fn rate_difference_interval(pairs: &[(ClusterSum, ClusterSum)]) -> Option<Interval> {
     if pairs.len() < LEAST_CLUSTERS {
         return None;
@@ -155,7 +160,8 @@ pub(super) mod tests {
     use super::*;
     use sim::randomness::{Effect, Seed, Stream, normal, uniform};
 
-    /// Share of `studies` whose interval holds the truth; a study without an interval is none.
+    /// Returns the fraction of intervals that contain the truth, over `studies` studies; studies without an
+    /// interval are left out.
     pub(in super::super) fn coverage(
         studies: u64,
         truth: f64,
@@ -168,12 +174,14 @@ pub(super) mod tests {
         held as f64 / intervals.len() as f64
     }
 
-    /// A binomial count of 2,000 at 95 % scatters by 0.5 %: two of them within the 93 to 97 % that are wanted.
+    /// The coverage in 2,000 studies at 95 % has a standard deviation of 0.5 %: the required 93 to 97 % allow
+    /// four times this deviation.
     pub(in super::super) fn check_coverage(name: &str, coverage: f64) {
         assert!((0.93..=0.97).contains(&coverage), "{name}: {coverage}");
     }
 
-    /// 40 draws of four points: the share of a point's 25 frames that count is that of its draw, 0.6 to 1, less 0.1 a point.
+    /// Draws 40 clusters of four sweep points with 25 frames each: the success probability is a draw between
+    /// 0.6 and 1, minus 0.1 per point.
     fn swept_rates(random: &mut Stream) -> Vec<[ClusterSum; 4]> {
         let mut points = || {
             let of_draw = 0.6 + 0.4 * uniform(random);
@@ -201,7 +209,7 @@ pub(super) mod tests {
         });
         check_coverage("at one point", rate);
         for seldom in [0.03, 0.1] {
-            // A whole case fails, or none of its frames.
+            // Either all frames of a case fail, or none.
             let rate = coverage(2000, seldom, |random| {
                 let mut fails = || f64::from(u8::from(uniform(random) < seldom)) * 50.0;
                 cluster_rate_interval(

@@ -1,25 +1,29 @@
-//! Tests and intervals by exchanging blocks: what two runs may differ by if they are the same.
+//! Tests and intervals by exchanging blocks: the difference between two runs that random variation explains.
 //!
-//! Two runs are cut into the same blocks. If neither is worse, then it is chance which of the two outcomes of a block is the one's and
-//! which the other's: exchanging them changes the sign of the block's difference and not its law. So the differences as they are compare
-//! with themselves under signs drawn by chance. This is exact for any number of blocks and any law of the differences that is symmetric
-//! under the null hypothesis, and right for many blocks without that (it is the wild cluster bootstrap with the null imposed; Cameron,
-//! Gelbach & Miller 2008, Review of Economics and Statistics 90, 414–427, who recommend it where blocks are few). With blocks of one frame
-//! and hits for values it is McNemar's exact test.
+//! Both runs are cut into the same blocks. If neither run is worse, it is random which of the two results of
+//! a block belongs to which run: exchanging the results changes the sign of the block's difference, but not
+//! its distribution. The observed differences are therefore compared with the same differences under random
+//! signs. This test is exact for any number of blocks and any distribution of the differences that is
+//! symmetric under the null hypothesis, and asymptotically correct for many blocks otherwise (it is the wild
+//! cluster bootstrap with the null imposed; Cameron, Gelbach & Miller 2008, Review of Economics and
+//! Statistics 90, 414–427, who recommend it for few blocks). With blocks of one frame and hits as values it
+//! is McNemar's exact test.
 
 use rand::Rng;
 use sim::randomness::{Effect, Seed};
 
-/// Up to so many blocks all exchanges are gone through.
+/// Largest number of blocks for which all exchanges are evaluated.
 const MAX_EXHAUSTED: usize = 13;
-/// Exchanges drawn where there are more, besides the one that changes nothing.
+/// Number of random exchanges for more blocks, in addition to the identity.
 const DRAWN: usize = 9_999;
-/// Sets that an interval takes of those drawn: its ends are quantiles that scatter by a twentieth of its width.
+/// Number of random sets used for an interval: its ends are quantiles with a standard deviation of a
+/// twentieth of its width.
 const FOR_AN_INTERVAL: usize = 1_999;
-/// What statistics may differ by and still be equal: sums of the same numbers with other signs are rounded differently.
+/// Tolerance within which two statistics are equal: sums of the same numbers with other signs are rounded
+/// differently.
 const TIE: f64 = 1e-9;
 
-/// Sets of blocks: in a test those that are exchanged, in an interval those that are taken. The first set is empty.
+/// Sets of blocks: those that a test exchanges, or those that an interval includes. The first set is empty.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Exchanges {
     blocks: usize,
@@ -28,7 +32,8 @@ pub struct Exchanges {
 }
 
 impl Exchanges {
-    /// All sets of up to 13 blocks; of more, 9999 that are drawn, the same ones for the same number of blocks, and the empty one.
+    /// Creates all sets of up to 13 blocks. For more blocks, creates the empty set and 9999 random ones,
+    /// which depend only on the number of blocks.
     pub fn new(blocks: usize) -> Self {
         let words = blocks.div_ceil(64).max(1);
         if blocks <= MAX_EXHAUSTED {
@@ -45,7 +50,8 @@ impl Exchanges {
         self.blocks
     }
 
-    /// How many sets besides the empty one an interval takes: all, or some of those drawn.
+    /// Returns the number of sets, besides the empty one, that an interval uses: all, or some of the random
+    /// ones.
     fn for_an_interval(&self) -> usize {
         if self.blocks <= MAX_EXHAUSTED { self.bits.len() - 1 } else { FOR_AN_INTERVAL }
     }
@@ -55,7 +61,7 @@ impl Exchanges {
     }
 }
 
-/// One set of blocks.
+/// Set of blocks.
 #[derive(Clone, Copy)]
 struct ExchangeSet<'a> {
     words: &'a [u64],
@@ -67,17 +73,18 @@ impl ExchangeSet<'_> {
     }
 }
 
-/// What the blocks say of one figure: by how much each makes the second run worse than the first.
+/// Effects of the blocks on one figure: the amount by which each block makes the second run worse than the
+/// first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockEffects {
-    /// One number a block; their sum is the effect.
+    /// One effect per block; their sum is the total effect.
     pub effects: Vec<f64>,
 }
 
 impl BlockEffects {
-    /// Of the effect that some exchange gives: it over the root of the sum of squares, which no exchange changes. Of hits and misses it
-    /// is the statistic of McNemar's test for blocks (Yang, Sun & Hardin 2010, Biometrical Journal 52, 638–652). 0 where no block
-    /// differs.
+    /// Returns the test statistic of an exchange's effect: the effect over the root of the sum of squares,
+    /// which is the same for every exchange. For hits and misses it is the statistic of McNemar's test for
+    /// blocks (Yang, Sun & Hardin 2010, Biometrical Journal 52, 638–652). 0 if no block differs.
     fn statistic(effect: f64, root_of_squares: f64) -> f64 {
         if root_of_squares > 0.0 { effect / root_of_squares } else { 0.0 }
     }
@@ -87,36 +94,41 @@ impl BlockEffects {
     }
 }
 
-/// The test of one figure among several.
+/// Test result of one figure among several.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FigureTest {
     /// Effect over the root of the sum of squares of the blocks' effects.
     pub statistic: f64,
-    /// Probability of as large a statistic under the null hypothesis, for this figure alone.
+    /// Probability under the null hypothesis of a statistic at least as large, for this figure only.
     pub p: f64,
-    /// The same, adjusted for all figures together.
+    /// Probability under the null hypothesis of a statistic at least as large, adjusted for all figures
+    /// together.
     pub adjusted_p: f64,
 }
 
-/// The test of several figures together.
+/// Joint test of several figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointTest {
-    /// One a figure, in their order.
+    /// Test result of each figure, in the order of the figures.
     pub figures: Vec<FigureTest>,
-    /// What the largest statistic of all figures exceeds with a probability of at most `alpha` under the null hypothesis.
+    /// Critical value: the largest statistic of all figures exceeds it with a probability of at most `alpha`
+    /// under the null hypothesis.
     pub critical: f64,
 }
 
-/// Tests each figure against "the effect is at most 0": the largest statistic of all figures under common exchanges, stepping down
-/// (Westfall & Young 1993; Romano & Wolf 2005, Journal of the American Statistical Association 100, 94–108). The probability that any
-/// figure without an effect has an adjusted p ≤ `alpha` is at most `alpha`, whatever the others do. Figures that go together cost
-/// little: two that always agree count as one, where Holm's correction would count two.
+/// Tests each figure against "the effect is at most 0", by the largest statistic of all figures under common
+/// exchanges, stepping down (Westfall & Young 1993; Romano & Wolf 2005, Journal of the American Statistical
+/// Association 100, 94–108). The probability that any figure without an effect has an adjusted p ≤ `alpha` is
+/// at most `alpha`, regardless of the effects on the remaining figures. Correlated figures need little
+/// correction: two that always agree count as one, where Holm's correction would count two.
 ///
-/// A p is the share of exchanges that give as large a statistic; of drawn ones the identity is one, so that p is never 0 (Phipson & Smyth
-/// 2010, Statistical Applications in Genetics and Molecular Biology 9, 39).
+/// A p is the fraction of exchanges that give a statistic at least as large. The identity is among the random
+/// exchanges, hence p is never 0 (Phipson & Smyth 2010, Statistical Applications in Genetics and Molecular
+/// Biology 9, 39).
 pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -> JointTest {
     let roots: Vec<f64> = figures.iter().map(BlockEffects::root_of_squares).collect();
-    // Block by block, all figures side by side: one pass over the blocks gives all sums of an exchange.
+    // Stored block by block, with all figures of a block together: one pass over the blocks computes all sums
+    // of an exchange.
     let rows: Vec<f64> = (0..exchanges.blocks)
         .flat_map(|block| figures.iter().map(move |figure| figure.effects[block]))
         .collect();
@@ -132,7 +144,8 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
     };
     let mut observed = vec![0.0; figures.len()];
     statistics(ExchangeSet { words: &vec![0; exchanges.words] }, &mut observed);
-    // From the largest statistic down: where each stands, and at each exchange the largest of it and those below it.
+    // Figures in descending order of their statistic: each is compared, at each exchange, with the largest
+    // statistic of itself and those after it.
     let mut order: Vec<usize> = (0..figures.len()).collect();
     order.sort_by(|a, b| observed[*b].total_cmp(&observed[*a]).then(a.cmp(b)));
     let (mut alone, mut together) = (vec![0u64; figures.len()], vec![0u64; figures.len()]);
@@ -162,13 +175,13 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
         tested[figure].adjusted_p = least;
     }
     largest.sort_by(f64::total_cmp);
-    // The smallest value that at most alpha · count of the exchanges reach lies just above the one before them.
+    // Only values just above the critical one are reached by at most alpha · count of the exchanges.
     let reached = (alpha * count).floor() as usize;
     let critical = largest.len().checked_sub(reached + 1).map_or(0.0, |place| largest[place].max(0.0));
     JointTest { figures: tested, critical }
 }
 
-/// Whether a statistic is as large as the observed one, but for rounding.
+/// Returns true if a statistic is at least as large as the observed one, within rounding.
 fn reaches(statistic: f64, observed: f64) -> bool {
     statistic >= observed - TIE * (1.0 + observed.abs())
 }
@@ -176,16 +189,16 @@ fn reaches(statistic: f64, observed: f64) -> bool {
 /// Number of sets of blocks that [`interval_by_sets`] passes to its function at a time.
 pub const SETS: usize = 8;
 
-/// Returns the 95 % interval for the difference of two runs: the 2.5 % and 97.5 % quantiles of the difference over sets of
-/// blocks, each block in a set with probability ½ (typical values; Hartigan 1969, Journal of the American Statistical
-/// Association 64, 1303–1317).
+/// Returns the 95 % interval for the difference of two runs: the 2.5 % and 97.5 % quantiles of the difference
+/// over sets of blocks, each block in a set with probability ½ (typical values; Hartigan 1969, Journal of the
+/// American Statistical Association 64, 1303–1317).
 ///
-/// A bootstrap with weights 0 and 2 gives the same interval, as does the inversion of the test by exchanges. It is exact for
-/// the mean of at least six symmetric independent differences; with fewer blocks it is the whole range of the sets, whose
-/// confidence is below 95 %.
+/// A bootstrap with weights 0 and 2 gives the same interval, as does the inversion of the test by exchanges.
+/// It is exact for the mean of at least six symmetric independent differences; with fewer blocks it is the
+/// whole range of the sets, whose confidence is below 95 %.
 ///
-/// `differences` receives for each block its weight, 0 or 1, in each of [`SETS`] sets, and returns the difference of each
-/// set, if it has one. Returns `None` if most sets have none.
+/// `differences` receives for each block its weight, 0 or 1, in each of [`SETS`] sets, and returns the
+/// difference of each set, if it has one. Returns `None` if most sets have none.
 pub fn interval_by_sets(
     exchanges: &Exchanges,
     differences: impl Fn(&[[f64; SETS]]) -> [Option<f64>; SETS],
@@ -206,7 +219,7 @@ pub fn interval_by_sets(
         return None;
     }
     values.sort_by(f64::total_cmp);
-    // n values cut the line into n + 1 parts, each equally likely to contain the truth.
+    // n values divide the line into n + 1 intervals, each equally likely to contain the truth.
     let part = 0.025 * (values.len() + 1) as f64;
     let low = (part.floor() as usize).clamp(1, values.len()) - 1;
     Some(super::Interval { low: values[low], high: values[values.len() - 1 - low] })
@@ -238,7 +251,8 @@ mod tests {
         })
     }
 
-    /// Of seven powers of two every set has a sum of its own, 1 to 127: the third from either end is left as limit.
+    /// With seven powers of two every set has a different sum, 1 to 127: the limits are the third sums from
+    /// either end.
     #[test]
     fn an_interval_by_sets_leaves_a_fortieth_at_either_end() {
         let sum = |taken: &[bool]| {
@@ -251,17 +265,18 @@ mod tests {
         };
         let interval = interval_one_by_one(&Exchanges::new(7), |taken| Some(sum(taken))).unwrap();
         assert_eq!((interval.low, interval.high), (3.0, 125.0));
-        // Of fewer than six blocks the whole range.
+        // For fewer than six blocks the interval is the whole range.
         let interval = interval_one_by_one(&Exchanges::new(5), |taken| Some(sum(taken))).unwrap();
         assert_eq!((interval.low, interval.high), (1.0, 31.0));
-        // A difference that most sets do not have is none: 63 of 127 are too few, 64 are enough.
+        // A difference without a value for most sets has no interval: values for 63 of 127 sets are too few,
+        // 64 are enough.
         let below = |limit: f64| {
             interval_one_by_one(&Exchanges::new(7), |taken| Some(sum(taken)).filter(|sum| *sum < limit))
         };
         assert!(below(64.0).is_none() && below(65.0).is_some());
     }
 
-    /// Of 1999 drawn sets the fiftieth from either end.
+    /// The limits of 1999 random sets are the fiftieth values from either end.
     #[test]
     fn an_interval_by_drawn_sets_leaves_fifty_less_one_at_either_end() {
         let calls = std::cell::Cell::new(0.0);
@@ -288,7 +303,7 @@ mod tests {
         }
     }
 
-    /// Of nine discordant pairs eight were lost: McNemar's exact test is that of a fair coin, (9 + 1)/2⁹.
+    /// Eight of nine discordant pairs were lost: McNemar's exact test is that of a fair coin, (9 + 1)/2⁹.
     #[test]
     fn with_single_frames_it_is_mcnemars_exact_test() {
         let mut pairs = vec![1.0; 8];
@@ -298,7 +313,8 @@ mod tests {
         assert_eq!(test.figures[0].p, test.figures[0].adjusted_p);
     }
 
-    /// scipy 1.17.1, `permutation_test((x,), mean, permutation_type="samples", alternative="greater")`, all 2¹⁰ signs.
+    /// scipy 1.17.1, `permutation_test((x,), mean, permutation_type="samples", alternative="greater")`, all
+    /// 2¹⁰ signs.
     #[test]
     fn few_blocks_are_exchanged_in_every_way() {
         let x = [0.31, -0.12, 0.45, 0.08, 0.27, -0.05, 0.36, 0.11, 0.02, 0.19];
@@ -317,7 +333,7 @@ mod tests {
         assert_eq!(nothing.figures[0], FigureTest { statistic: 0.0, p: 1.0, adjusted_p: 1.0 });
     }
 
-    /// Of effects that are powers of two every exchange has a sum of its own, 31, 29, 27, … of five blocks.
+    /// With effects that are powers of two every exchange has a different sum: 31, 29, 27, … for five blocks.
     #[test]
     fn the_critical_value_is_reached_by_more_than_alpha_and_exceeded_by_no_more() {
         let powers = effects(&[1.0, 2.0, 4.0, 8.0, 16.0]);
@@ -327,7 +343,8 @@ mod tests {
         }
     }
 
-    /// 0.1 + 0.2 - 0.3 is 0 but for its rounding, and so is the same with all signs turned: five of the eight exchanges reach it.
+    /// 0.1 + 0.2 - 0.3 is 0 apart from rounding, and so is its negative: five of the eight exchanges reach
+    /// it.
     #[test]
     fn exchanges_that_rounding_alone_separates_are_equal() {
         let test = test_of(&[effects(&[0.1, 0.2, -0.3])], 0.05);
@@ -341,7 +358,7 @@ mod tests {
         assert!(reaches(-0.9e-9, 0.0) && !reaches(-1.1e-9, 0.0));
     }
 
-    /// A figure that repeats another, with any scale, costs nothing.
+    /// A figure that is a multiple of another one needs no further correction.
     #[test]
     fn figures_that_agree_count_as_one() {
         let x = [0.31, -0.12, 0.45, 0.08, 0.27, -0.05, 0.36, 0.11, 0.02, 0.19];
@@ -364,7 +381,7 @@ mod tests {
         assert!(tested.is_sorted_by(|a, b| a.adjusted_p <= b.adjusted_p));
     }
 
-    /// Share of 1000 sets of figures without an effect of which the test finds one.
+    /// Returns the number of false alarms in 1000 sets of figures without an effect.
     fn false_alarms(blocks: usize, draw: impl Fn(&mut sim::randomness::Stream) -> [f64; 8]) -> u32 {
         let exchanges = Exchanges::new(blocks);
         (0..1000)
@@ -379,7 +396,8 @@ mod tests {
             .count() as u32
     }
 
-    /// Binomial of 1000 at 0.05: standard deviation 6.9; three of them above.
+    /// Binomial distribution of 1000 at 0.05: standard deviation 6.9; the limit is three of them above the
+    /// mean.
     #[test]
     fn the_family_has_the_level_that_it_says_with_few_blocks_and_wild_distributions() {
         let correlated = |random: &mut sim::randomness::Stream| {
@@ -405,7 +423,8 @@ mod tests {
         assert!(false_alarms(8, correlated) >= 29, "the test is not asleep");
     }
 
-    /// 95 % nominal for the mean of as few as eight blocks; the share of 1000 scatters by 0.7 %.
+    /// 95 % nominal for the mean of as few as eight blocks; the standard deviation of the coverage in 1000
+    /// trials is 0.7 %.
     #[test]
     fn the_interval_of_few_blocks_covers_the_truth() {
         for (blocks, heavy) in [(8, false), (8, true), (30, false), (30, true)] {

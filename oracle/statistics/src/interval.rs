@@ -1,9 +1,10 @@
 //! Confidence intervals of 95 %.
 
-/// The 97.5 % quantile of the standard normal law: every interval is two-sided with a confidence of 95 %.
+/// 97.5 % quantile of the standard normal distribution: every interval is two-sided with a confidence of 95
+/// %.
 pub const Z_95: f64 = 1.959_963_984_540_054;
 
-/// A two-sided confidence interval of 95 %.
+/// Two-sided confidence interval of 95 %.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// Lower limit.

@@ -1,10 +1,10 @@
-//! Confidence intervals for sequences whose frames are not independent.
+//! Confidence intervals for sequences of dependent frames.
 //!
-//! Neighbouring frames show almost the same scene, so 1000 of them hold less evidence than 1000 throws of a coin.
-//! Every interval here is of 95 % and is widened by the effective sample size ([`effective_size`]). Rates take
-//! the score interval of Wilson ([`wilson`]), means the normal law, medians the order statistics. Frames that are independent by
-//! construction take the exact bounds of Clopper and Pearson ([`clopper_pearson`]). Two runs are compared by exchanging blocks of
-//! them ([`joint_test`]).
+//! Neighbouring frames show almost the same scene. 1000 of them therefore contain less information than 1000
+//! independent trials. Every interval here is of 95 % and is widened by the effective sample size
+//! ([`effective_size`]). Rates use the score interval of Wilson ([`wilson`]), means the normal distribution,
+//! medians the order statistics. Frames that are independent by construction use the exact bounds of Clopper
+//! and Pearson ([`clopper_pearson`]). Two runs are compared by exchanging blocks of frames ([`joint_test`]).
 
 #![cfg_attr(
     not(test),

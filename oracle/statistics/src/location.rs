@@ -1,11 +1,12 @@
 //! Intervals of means, root mean squares and medians.
 //!
-//! The normal law with the effective size: honest from some twenty effective values on, too narrow below.
+//! They use the normal distribution with the effective size, which is accurate from about twenty effective
+//! values on and too narrow below.
 
 use super::{Interval, Z_95, effective_size, wilson};
 
-/// The interval of a mean: mean ± z s/√n_eff, with s² the sample variance. Sequences as in [`effective_size`].
-/// `None` for fewer than two values.
+/// Computes the interval of a mean: mean ± z s/√n_eff, with s² the sample variance. Sequences as in
+/// [`effective_size`]. `None` for fewer than two values.
 pub fn mean_interval(sequences: &[Vec<f64>]) -> Option<Interval> {
     let n = sequences.iter().map(Vec::len).sum::<usize>();
     if n < 2 {
@@ -18,8 +19,8 @@ pub fn mean_interval(sequences: &[Vec<f64>]) -> Option<Interval> {
     Some(Interval { low: mean - half, high: mean + half })
 }
 
-/// The interval of a root mean square: the root of the interval of the mean square, its lower end at least 0.
-/// `None` for fewer than two values.
+/// Computes the interval of a root mean square: the root of the interval of the mean square, its lower limit
+/// at least 0. `None` for fewer than two values.
 pub fn rms_interval(sequences: &[Vec<f64>]) -> Option<Interval> {
     let squares: Vec<Vec<f64>> =
         sequences.iter().map(|sequence| sequence.iter().map(|x| x * x).collect()).collect();
@@ -27,28 +28,30 @@ pub fn rms_interval(sequences: &[Vec<f64>]) -> Option<Interval> {
     Some(Interval { low: interval.low.max(0.0).sqrt(), high: interval.high.max(0.0).sqrt() })
 }
 
-/// The median; of an even number of values the mean of the middle two. `None` for no value.
+/// Returns the median; for an even number of values the mean of the middle two. `None` without any value.
 pub fn median(sequences: &[Vec<f64>]) -> Option<f64> {
     let sorted = sorted(sequences);
     let upper = *sorted.get(sorted.len() / 2)?;
     Some(if sorted.len() % 2 == 1 { upper } else { f64::midpoint(sorted[sorted.len() / 2 - 1], upper) })
 }
 
-/// The interval of a median: the values at the ranks that the interval of the rate ½ gives, with the effective
-/// size of "is it below the median". Needs no law of the values. `None` for fewer than three values: between two the median lies half
-/// of the time, however far it scatters.
+/// Computes the interval of a median: the values at the ranks given by the interval of the rate ½, with the
+/// effective size of the flags "below the median". Makes no assumption about the distribution of the values.
+/// `None` for fewer than three values: the median lies between two values only half of the time, regardless
+/// of their scatter.
 pub fn median_interval(sequences: &[Vec<f64>]) -> Option<Interval> {
     if sequences.iter().map(Vec::len).sum::<usize>() < 3 {
         return None;
     }
     let ranks = wilson(0.5, effective_size(&below_median(sequences)))?;
     let sorted = sorted(sequences);
-    // Of the rate ½ both bounds are between 0 and 1: there is a value at either.
+    // Both bounds of the rate ½ lie strictly between 0 and 1, where a value exists.
     let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied();
     Some(Interval { low: at(ranks.low)?, high: at(ranks.high)? })
 }
 
-/// Whether each value is below the median, 1 or 0: of what the effective size of a median is.
+/// Returns 1 for each value below the median and 0 for each other one: the series whose effective size the
+/// median uses.
 pub fn below_median(sequences: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let below = |median: f64| {
         let of = |sequence: &Vec<f64>| sequence.iter().map(|x| f64::from(u8::from(*x < median))).collect();
@@ -68,7 +71,8 @@ mod tests {
     use super::*;
     use sim::randomness::{Effect, Seed, normal};
 
-    /// Two short series whose effective size is 17.201 of 20; intervals worked out apart from this code.
+    /// Two short series whose effective size is 17.201 of 20; the intervals were computed independently of
+    /// this code.
     #[test]
     fn intervals_of_short_series_are_those_of_their_definitions() {
         let series = [
@@ -78,7 +82,7 @@ mod tests {
         for (interval, low, high) in [
             (mean_interval(&series), 2.763_956_261_526_683, 5.036_043_738_473_317),
             (rms_interval(&series), 3.061_350_299_818_731, 5.659_340_451_130_305),
-            // Values number 5 and 14 of 0 1 1 2 2 2 3 3 3 3 4 4 4 5 5 6 6 7 8 9, from number 0 on.
+            // Values number 5 and 14, counted from 0, of 0 1 1 2 2 2 3 3 3 3 4 4 4 5 5 6 6 7 8 9.
             (median_interval(&series), 2.0, 5.0),
         ] {
             let met = interval.unwrap();
@@ -87,15 +91,17 @@ mod tests {
         assert!(mean_interval(&[vec![1.0]]).is_none() && mean_interval(&[vec![1.0], vec![3.0]]).is_some());
     }
 
-    /// Seven of sixteen values are the median, 5. What is below it is worth 4.287 independent values, and the interval is 2 to 6; what is
-    /// above it, at it, or not above it is worth 9 or more, and would leave 3 to 5. Worked out apart from this code.
+    /// Seven of sixteen values equal the median, 5. The flags "below the median" have an effective size of
+    /// 4.287 and the interval is 2 to 6; the flags "above", "at" or "not above the median" have one of 9 or
+    /// more and would give 3 to 5. Computed independently of this code.
     #[test]
     fn values_at_the_median_are_not_below_it() {
         let series = [vec![0.0, 1.0, 2.0, 3.0, 4.0, 3.0, 5.0, 5.0, 5.0, 3.0, 9.0, 5.0, 5.0, 6.0, 8.0, 5.0]];
         assert_eq!(median_interval(&series), Some(Interval { low: 2.0, high: 6.0 }));
     }
 
-    /// Share of 500 series (autoregressions with ρ = 0.7, mean 1, standard deviation 2) whose interval holds `truth`.
+    /// Returns the fraction of 500 series (autoregressions with ρ = 0.7, mean 1, standard deviation 2) whose
+    /// interval contains `truth`.
     fn coverage(truth: f64, interval: impl Fn(&[Vec<f64>]) -> Option<Interval>) -> f64 {
         let trials = 500;
         let covered = (0..trials)
@@ -118,7 +124,7 @@ mod tests {
 
     #[test]
     fn the_nominal_intervals_of_correlated_errors_cover_the_truth() {
-        // 95 % nominal; the share scatters by 1 %.
+        // 95 % nominal; the standard deviation of the fraction is 1 %.
         for (name, coverage) in [
             ("mean", coverage(1.0, mean_interval)),
             ("rms", coverage(5f64.sqrt(), rms_interval)),

@@ -1,8 +1,8 @@
-//! The quantile of the standard normal law.
+//! Quantile of the standard normal distribution.
 
-/// The number below which a normal number of mean 0 and standard deviation 1 falls with the probability `p` in (0, 1): the
-/// algorithm AS 241 (PPND16) of Wichura (1988), Applied Statistics 37, 477–484, good to about 1 part in 10¹⁶. On `libm`, so
-/// that values drawn by it are the same bits on every machine.
+/// Returns the quantile of the standard normal distribution (mean 0, standard deviation 1) for the
+/// probability `p` in (0, 1), by the algorithm AS 241 (PPND16) of Wichura (1988), Applied Statistics 37,
+/// 477–484, accurate to about 1 part in 10¹⁶. Uses `libm`, which makes draws bit-identical on every machine.
 pub fn normal_quantile(p: f64) -> f64 {
     let q = p - 0.5;
     if q.abs() <= 0.425 {
@@ -15,7 +15,7 @@ pub fn normal_quantile(p: f64) -> f64 {
     if q < 0.0 { -size } else { size }
 }
 
-/// Coefficients of numerator and denominator, from the constant on.
+/// Coefficients of numerator and denominator, in ascending order from the constant.
 type Rational = ([f64; 8], [f64; 8]);
 
 fn polynomial((numerator, denominator): &Rational, r: f64) -> f64 {
@@ -23,7 +23,7 @@ fn polynomial((numerator, denominator): &Rational, r: f64) -> f64 {
     horner(numerator) / horner(denominator)
 }
 
-/// |p − 1/2| ≤ 0.425, in 0.180625 − (p − 1/2)².
+/// Approximation for |p − 1/2| ≤ 0.425, in 0.180625 − (p − 1/2)².
 const CENTRE: Rational = (
     [
         3.387_132_872_796_366_5,
@@ -47,7 +47,7 @@ const CENTRE: Rational = (
     ],
 );
 
-/// Nearer to 0 or 1, in √(−ln tail) − 1.6 up to 5.
+/// Approximation nearer to 0 or 1, in √(−ln tail) − 1.6, for √(−ln tail) up to 5.
 const FLANK: Rational = (
     [
         1.423_437_110_749_683_5,
@@ -71,7 +71,7 @@ const FLANK: Rational = (
     ],
 );
 
-/// Beyond, in √(−ln tail) − 5.
+/// Approximation for √(−ln tail) above 5, in √(−ln tail) − 5.
 const TAIL: Rational = (
     [
         6.657_904_643_501_103,

@@ -1,16 +1,16 @@
-//! The interval of a rate.
+//! Interval of a rate.
 
 use super::{Interval, Z_95};
 
-/// The score interval of Wilson (1927) for a rate observed over `n` independent trials:
+/// Computes the score interval of Wilson (1927) for a rate observed over `n` independent trials:
 ///
 /// (p + z²/2n ± z √(p(1−p)/n + z²/4n²)) / (1 + z²/n).
 ///
-/// `n` may be an effective size and need not be whole. The limits lie in [0, 1] for every input with `rate` in
-/// [0, 1] and `n` > 0, a rate of 0 has the lower limit 0 and a rate of 1 the upper limit 1. `None` when `n` is
-/// not positive: nothing was observed.
+/// `n` may be an effective size and need not be an integer. The limits lie in [0, 1] for every input with
+/// `rate` in [0, 1] and `n` > 0; a rate of 0 has the lower limit 0 and a rate of 1 the upper limit 1. `None`
+/// when `n` is not positive, since there is no observation.
 pub fn wilson(rate: f64, n: f64) -> Option<Interval> {
-    // Negated, so that a NaN says nothing as well.
+    // Tests for valid input and negates the result, which also excludes NaN.
     if !(n > 0.0 && (0.0..=1.0).contains(&rate)) {
         return None;
     }
@@ -46,8 +46,8 @@ mod tests {
         check(1, 29, 0.0061, 0.1718, 5e-5);
     }
 
-    /// scipy 1.17.1: `scipy.stats.binomtest(k, n).proportion_ci(0.95, 'wilson')`. Both sides round a dozen
-    /// operations on numbers up to 1.
+    /// scipy 1.17.1: `scipy.stats.binomtest(k, n).proportion_ci(0.95, 'wilson')`. The tolerance covers the
+    /// rounding of about a dozen operations on numbers up to 1, here and in scipy.
     #[test]
     fn wilson_agrees_with_scipy() {
         check(0, 1, 0.0, 0.793_450_685_622_762_6, 1e-14);

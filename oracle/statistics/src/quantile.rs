@@ -5,17 +5,18 @@ use statrs::function::beta::beta_reg;
 use super::Interval;
 use super::clusters::{ClusterSum, OUTSIDE, Ratio, independent_trials, non_empty};
 
-/// A value and the number of the cluster that it belongs to.
+/// Number of a cluster, and a value that belongs to it.
 pub type ClusterValue = (usize, f64);
 
-/// The interval of the quantile `p` of values in clusters, sorted by value: from fractional order statistics (Hutson 1999, Journal of
-/// Statistical Computation and Simulation 63, 91–103) of as many independent values as scatter about the quantile like the clusters.
-/// `None` where a limit would lie beyond the smallest or the largest value: too few are known.
+/// Computes the interval of the quantile `p` of values in clusters, sorted by value: from fractional order
+/// statistics (Hutson 1999, Journal of Statistical Computation and Simulation 63, 91–103) for the number of
+/// independent values that would scatter about the quantile as much as the clusters. `None` where a limit
+/// would lie beyond the smallest or the largest value, because there are too few values.
 pub fn cluster_quantile_interval(sorted: &[ClusterValue], p: f64) -> Option<Interval> {
     let count = sorted.len();
     let n = independent_values(sorted, p)?;
     let rank = |probability: f64| {
-        // P(at least r of n are below the quantile) falls with r.
+        // P(at least r of n are below the quantile) decreases with r.
         let (mut low, mut high) = (0.0, n + 1.0);
         for _ in 0..60 {
             let r = 0.5 * (low + high);
@@ -32,7 +33,8 @@ pub fn cluster_quantile_interval(sorted: &[ClusterValue], p: f64) -> Option<Inte
     Some(Interval { low: at(rank(1.0 - 0.5 * OUTSIDE))?, high: at(rank(0.5 * OUTSIDE))? })
 }
 
-/// How many independent values scatter about the quantile `p` as these do.
+/// Returns the number of independent values that would scatter about the quantile `p` as much as these
+/// values.
 pub(super) fn independent_values(sorted: &[ClusterValue], p: f64) -> Option<f64> {
     let count = sorted.len();
     let clusters = sorted.iter().map(|(cluster, _)| cluster + 1).max()?;
@@ -55,7 +57,7 @@ mod tests {
     use super::*;
     use sim::randomness::{Stream, normal};
 
-    /// Draws of `points` values each: the draw's own number and one of the value's.
+    /// Draws clusters of `points` values each: the sum of a random number per cluster and one per value.
     fn values(random: &mut Stream, draws: usize, points: usize) -> Vec<ClusterValue> {
         let mut values = Vec::new();
         for draw in 0..draws {

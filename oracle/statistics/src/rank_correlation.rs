@@ -3,9 +3,11 @@
 use super::clusters::{LEAST_CLUSTERS, t_95};
 use super::{Interval, Z_95};
 
-/// Spearman's rank correlation of values in clusters, (cluster, x, y), and its interval: Fisher's transformation with the variance of
-/// Bonett & Wright (2000, Psychometrika 65, 23–28) for as many independent pairs as the correlation scatters like over the clusters, by
-/// its influence function. `None` for fewer than four pairs, and where x or y never varies; no interval below [`LEAST_CLUSTERS`].
+/// Computes Spearman's rank correlation of values in clusters, (cluster, x, y), and its interval: Fisher's
+/// transformation with the variance of Bonett & Wright (2000, Psychometrika 65, 23–28) for the number of
+/// independent pairs whose correlation would scatter as much as over the clusters, according to its influence
+/// function. `None` for fewer than four pairs, or if x or y never varies; no interval below
+/// [`LEAST_CLUSTERS`].
 pub fn cluster_rank_correlation(values: &[(usize, f64, f64)]) -> Option<(f64, Option<Interval>)> {
     let count = values.len() as f64;
     if count < 4.0 {
@@ -22,7 +24,8 @@ pub fn cluster_rank_correlation(values: &[(usize, f64, f64)]) -> Option<(f64, Op
     let product = mean(&x.centred, &y.centred);
     let r = (product / spread).clamp(-1.0, 1.0);
 
-    // By how much a pair moves the correlation: ranks move with it, and so do the spreads where values are equal.
+    // Influence of each pair on the correlation: the pair changes the ranks, and with equal values also the
+    // spread of the ranks.
     let (y_above_x, x_above_y) = (x.mean_above(&y.centred), y.mean_above(&x.centred));
     let (x_above_x, y_above_y) = (x.mean_above(&x.centred), y.mean_above(&y.centred));
     let clusters = values.iter().map(|(cluster, ..)| cluster + 1).max().unwrap_or_default();
@@ -50,7 +53,7 @@ pub fn cluster_rank_correlation(values: &[(usize, f64, f64)]) -> Option<(f64, Op
         let of_clusters = sums.iter().map(|sum| sum * sum).sum::<f64>() * n as f64 / (n as f64 - 1.0);
         (if of_clusters > 0.0 { count * squares / of_clusters } else { n as f64 }, t_95(n))
     };
-    // Of a perfect order no interval can be told by this transformation: it has no width.
+    // A perfect order has no interval by this transformation: its width would be 0.
     let z = libm::atanh(r.clamp(-1.0 + 1e-12, 1.0 - 1e-12));
     let half = quantile * ((1.0 + 0.5 * r * r) / (pairs - 3.0)).sqrt();
     let interval = (pairs > 3.0)
@@ -58,11 +61,11 @@ pub fn cluster_rank_correlation(values: &[(usize, f64, f64)]) -> Option<(f64, Op
     Some((r, interval))
 }
 
-/// Values by their ranks; equal ones share the mean of theirs.
+/// Values replaced by their ranks; equal values share their mean rank.
 struct RankedValues {
-    /// Rank less the middle rank, over the number of values.
+    /// Rank minus the middle rank, over the number of values.
     centred: Vec<f64>,
-    /// Places of the values in ascending order, cut where they differ.
+    /// Indices of the values in ascending order, in groups of equal values.
     order: Vec<Vec<usize>>,
 }
 
@@ -83,7 +86,8 @@ impl RankedValues {
         Self { centred, order }
     }
 
-    /// For each value: the sum of `weights` of the larger values and half of those of equal ones, over the number of values.
+    /// Returns for each value the sum of `weights` of the larger values plus half of those of equal ones,
+    /// over the number of values.
     fn mean_above(&self, weights: &[f64]) -> Vec<f64> {
         let count = weights.len() as f64;
         let mut means = vec![0.0; weights.len()];
@@ -121,7 +125,7 @@ mod tests {
         assert!(cluster_rank_correlation(&few).is_some_and(|(_, interval)| interval.is_none()));
     }
 
-    /// The swept value is the same set in every draw.
+    /// Every draw has the same set of swept values.
     #[test]
     fn correlations_with_the_swept_value_hold_their_truth() {
         let triples = |random: &mut Stream, draws: usize| {
@@ -141,7 +145,7 @@ mod tests {
         check_coverage("a swept value", held);
     }
 
-    /// Of a normal law with Pearson's correlation ρ, Spearman's is 6/π asin(ρ/2).
+    /// For a normal distribution with Pearson's correlation ρ, Spearman's is 6/π asin(ρ/2).
     #[test]
     fn correlations_over_draws_hold_their_truth() {
         for (points, draws, noise) in [(1, 40, 1.0), (4, 40, 1.0), (4, 40, 0.2), (3, 200, 2.0)] {

@@ -1,4 +1,4 @@
-//! A study in a folder: what is missing of it is made, shard by shard, until it is done.
+//! A study in a directory: missing shards are run, one after another, until the study is complete.
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -17,7 +17,7 @@ use crate::findings::summary::Summary;
 use crate::shard::record::StudyRecord;
 use crate::shard::{Plan, ShardManifest, ShardStore};
 
-/// A study, the pipeline that it tries, and the folder of its results.
+/// A study, the pipeline under test, and the directory of the results.
 pub struct Campaign<'a> {
     study: &'a Study,
     pipeline: &'a dyn StudyPipeline,
@@ -25,8 +25,8 @@ pub struct Campaign<'a> {
     starts: StartCounter,
 }
 
-/// What is known of the pipeline's starts in the cases that were run: where it starts in none of the first
-/// [`MAX_FAILED_CASES`], it would start in none.
+/// Record of the pipeline's starts in the cases that were run: a pipeline that starts in none of the first
+/// [`MAX_FAILED_CASES`] is assumed to start in none.
 #[derive(Debug, Default)]
 struct StartCounter {
     has_started: AtomicBool,
@@ -34,9 +34,9 @@ struct StartCounter {
 }
 
 impl StartCounter {
-    /// Counts a case, and refuses to go on where there were too many without a start.
+    /// Counts a case, and returns an error after too many cases without a start.
     fn add(&self, case: &CaseResult, cases: u64) -> Result<(), Failure> {
-        // Of a study of fewer cases none can be run: rows of errors alone are no study.
+        // A study of fewer cases, none of which can be run, also fails: rows of errors only are not a study.
         let most = if case.row.error.is_some() { MAX_FAILED_CASES.min(cases) } else { MAX_FAILED_CASES };
         if case.has_started || self.has_started.load(Ordering::Relaxed) {
             self.has_started.store(true, Ordering::Relaxed);
@@ -57,17 +57,17 @@ impl StartCounter {
     }
 }
 
-/// A case that a campaign knows.
+/// A case that a campaign has completed.
 #[derive(Debug, Clone, Copy)]
 pub enum CaseOutcome<'a> {
-    /// It was in a shard that is there already.
+    /// The case was read from an existing shard or its journal.
     Kept(&'a CaseRow),
-    /// It was run now.
+    /// The case was run now.
     Run(&'a CaseResult),
 }
 
 impl CaseOutcome<'_> {
-    /// Its row.
+    /// Returns the row of the case.
     pub fn row(&self) -> &CaseRow {
         match self {
             Self::Kept(row) => row,
@@ -77,11 +77,13 @@ impl CaseOutcome<'_> {
 }
 
 impl<'a> Campaign<'a> {
-    /// Opens a folder for a study, new or with a part of it; in `shards` pieces, or as many as its plan says, or of about 32 cases. Nothing
-    /// is written before study and pipeline are known to go together.
+    /// Opens a directory for a study, new or partly complete. The study has `shards` shards, or as many as
+    /// the directory's plan states, or shards of about 32 cases. Nothing is written before study and pipeline
+    /// are known to be compatible.
     ///
     /// # Errors
-    /// A [`Failure`] for a pipeline that is not there, and a folder that holds another study, or the same one in other pieces.
+    /// A [`Failure`] for a missing pipeline, and for a directory that holds another study, or the same study
+    /// in other shards.
     pub fn open(
         study: &'a Study,
         pipeline: &'a dyn StudyPipeline,
@@ -94,10 +96,10 @@ impl<'a> Campaign<'a> {
         Ok(Self { study, pipeline, store: ShardStore::open(out, plan)?, starts: StartCounter::default() })
     }
 
-    /// Opens a folder that holds a plan of the study.
+    /// Opens a directory that holds a plan of the study.
     ///
     /// # Errors
-    /// As [`Campaign::open`], and [`Failure::Usage`] where there is no plan.
+    /// The errors of [`Campaign::open`], and [`Failure::Usage`] if there is no plan.
     pub fn reopen(study: &'a Study, pipeline: &'a dyn StudyPipeline, out: &Path) -> Result<Self, Failure> {
         if ShardStore::planned_shards(out).is_none() {
             return Err(Failure::Usage(format!(
@@ -108,15 +110,17 @@ impl<'a> Campaign<'a> {
         Self::open(study, pipeline, out, None)
     }
 
-    /// Its folder.
+    /// Returns the directory of the results.
     pub fn store(&self) -> &ShardStore {
         &self.store
     }
 
-    /// A shard, made if it is missing or damaged; `done` is told of each of its cases.
+    /// Returns a shard, and runs it first if it is missing or damaged; `done` is called with each of its
+    /// cases.
     ///
     /// # Errors
-    /// The [`Failure`] of the first case that has one, or of files; [`Failure::Usage`] where the pipeline starts in none of the first cases.
+    /// The [`Failure`] of the first case that has one, or of files; [`Failure::Usage`] where the pipeline
+    /// starts in none of the first cases.
     pub fn shard(
         &self,
         shard: u64,
@@ -136,7 +140,7 @@ impl<'a> Campaign<'a> {
         rows.extend(run_cases(self.study, cases, self.pipeline, workers, |case| {
             done(CaseOutcome::Run(case));
             self.starts.add(case, self.study.cases())?;
-            // A pipeline that did not start may do so another time.
+            // A case whose pipeline did not start is not recorded: a later attempt may succeed.
             if case.has_started { Ok(journal.add(&case.row)?) } else { Ok(()) }
         })?);
         rows.sort_by_key(|row| row.case);
@@ -146,10 +150,11 @@ impl<'a> Campaign<'a> {
         Ok((table, manifest))
     }
 
-    /// All cases, or as many as the stopping rule asks for; what is missing is made, and `done` is told of each case.
+    /// Returns all cases, or as many as the stopping rule requires; runs the missing ones, and calls `done`
+    /// with each case.
     ///
     /// # Errors
-    /// As [`Campaign::shard`].
+    /// The errors of [`Campaign::shard`].
     pub fn run(
         &self,
         workers: Workers<'_>,
@@ -165,17 +170,18 @@ impl<'a> Campaign<'a> {
         self.gather()
     }
 
-    /// All cases, or as many as the stopping rule asks for, of the shards that are there.
+    /// Returns all cases of the existing shards, or as many as the stopping rule requires.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when shards are missing or damaged, or files are there that are none of the plan's.
+    /// [`Failure::Usage`] when shards are missing or damaged, or the directory holds files that do not belong
+    /// to the plan.
     pub fn merge(&self) -> Result<CaseFile, Failure> {
         self.store.check_foreign()?;
         self.gather()
     }
 
-    /// What to say of the shards that are not there, of which one is known. That one is not looked for again: another process may have
-    /// made it since, and the table would still be without it.
+    /// Returns the error for the missing shards, of which `first` is known to be missing. `first` is not read
+    /// again: another process may have written it since, and the table would still lack it.
     fn missing(&self, first: u64) -> Result<Failure, Failure> {
         let shards = self.store.plan().shards;
         let mut missing = vec![first.to_string()];
@@ -190,7 +196,8 @@ impl<'a> Campaign<'a> {
         )))
     }
 
-    /// Writes the cases of the shards in order, up to where the stopping rule stops. Shards are read on all threads, some at a time.
+    /// Writes the cases of the shards in order, until the stopping rule ends the study. Shards are read on
+    /// all threads, a limited number at a time.
     fn gather(&self) -> Result<CaseFile, Failure> {
         let empty = self.study.table();
         let mut stopping = StoppingRule::new(self.study);
@@ -199,7 +206,7 @@ impl<'a> Campaign<'a> {
             Ok(self.store.read(*shard, &empty)?.map(|(table, _)| table))
         };
         let path = self.store.write_cases(&empty, |cases| {
-            // Enough that no thread waits for long, and few in memory.
+            // Number of shards that keeps every thread busy, with few shards in memory.
             for some in shards.chunks(4 * rayon::current_num_threads()) {
                 let tables: Result<Vec<_>, Failure> = some.par_iter().map(read).collect();
                 for (shard, table) in some.iter().zip(tables?) {
@@ -219,7 +226,8 @@ impl<'a> Campaign<'a> {
         Ok(CaseFile::open(&path, empty, self.study.cases_together())?)
     }
 
-    /// Sums up the cases that were gathered, and writes the summary beside them; `path` is the study's file, for its commands.
+    /// Summarises the gathered cases, and writes the summary beside them; `path` is the study's file, used in
+    /// the commands that the summary states.
     ///
     /// # Errors
     /// A [`Failure`] of files.

@@ -1,4 +1,5 @@
-//! `cases.parquet` of a study: written a shard at a time and read a column at a time, so that no more than a few columns are in memory.
+//! `cases.parquet` of a study: written a shard at a time and read a column at a time, which keeps only a few
+//! columns in memory.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -8,12 +9,12 @@ use score::{attitude_word, names};
 
 use crate::cases::{BATCH_ROWS, CAUSE, CaseFigure, CaseTable, SET, cells, texts};
 
-/// Rows whose encoded bytes are held before they are written.
+/// Number of rows whose encoded bytes are held before they are written.
 const ROW_GROUP_ROWS: usize = 1 << 17;
-/// Cases with an error that are named.
+/// Largest number of cases with an error that are listed.
 const MAX_ERRORS: usize = 10;
 
-/// Writes the rows of a study.
+/// Writer of the rows of a study.
 pub(crate) struct CaseWriter<'a>(ParquetWriter<&'a File>);
 
 impl<'a> CaseWriter<'a> {
@@ -37,26 +38,27 @@ impl<'a> CaseWriter<'a> {
     }
 }
 
-/// All cases of a study, from number 0 on, in their file.
+/// All cases of a study, from number 0 on, in a Parquet file.
 #[derive(Debug)]
 pub struct CaseFile {
     path: PathBuf,
-    /// The columns, without rows.
+    /// Columns of the table, without rows.
     empty: CaseTable,
-    /// The number of each case's independent draw.
+    /// Number of the independent group (draw or replication) that each case belongs to.
     pub(crate) draws: Vec<usize>,
-    /// Frames that count of each case.
+    /// Number of frames of each case that count.
     pub(crate) frames: Vec<u64>,
-    /// Whether each case cannot be run.
+    /// True for each case that cannot be run.
     pub(crate) has_error: Vec<bool>,
-    /// The first of the cases that cannot be run, each with the reason.
+    /// Numbers of the first cases that cannot be run, each with the reason.
     pub(crate) errors: Vec<(u64, String)>,
-    /// Cases in which the pipeline itself failed.
+    /// Number of cases in which the pipeline failed.
     pub(crate) failed_cases: u64,
 }
 
 impl CaseFile {
-    /// Opens a file with the columns of `empty`, of whose cases `together` at a time belong together.
+    /// Opens a file with the columns of `empty`; every `together` successive cases form one group,
+    /// independent of the other groups.
     pub(crate) fn open(path: &Path, empty: CaseTable, together: u64) -> Result<Self, FileError> {
         let (draws, frames, has_error, errors) = Default::default();
         let mut cases =
@@ -79,27 +81,27 @@ impl CaseFile {
         Ok(cases)
     }
 
-    /// Number of cases.
+    /// Returns the number of cases.
     pub fn count(&self) -> u64 {
         self.frames.len() as u64
     }
 
-    /// Names of the figures.
+    /// Returns the names of the figures.
     pub(crate) fn figures(&self) -> &[String] {
         &self.empty.figures
     }
 
-    /// Names of the causes.
+    /// Returns the names of the causes.
     pub(crate) fn causes(&self) -> &[String] {
         &self.empty.causes
     }
 
-    /// Names of what was drawn.
+    /// Returns the names of the drawn values.
     pub(crate) fn drawn_columns(&self) -> impl Iterator<Item = &String> {
         self.empty.drawn.keys()
     }
 
-    /// The numbers of a figure, case by case; `None` of a figure that is not recorded.
+    /// Reads the values of a figure for every case; `None` if the figure is not recorded.
     pub(crate) fn figure(&self, name: &str) -> Result<Option<Vec<CaseFigure>>, FileError> {
         if !self.empty.figures.iter().any(|figure| figure == name) {
             return Ok(None);
@@ -120,7 +122,7 @@ impl CaseFile {
         Ok(Some(figures))
     }
 
-    /// Frames by a cause, case by case.
+    /// Reads the number of frames with a given cause for every case.
     pub(crate) fn cause(&self, name: &str) -> Result<Vec<CaseFigure>, FileError> {
         let (path, name) = (&self.path, format!("{CAUSE}{name}"));
         let mut counts = Vec::with_capacity(self.frames.len());
@@ -132,7 +134,7 @@ impl CaseFile {
         Ok(counts.into_iter().zip(&self.frames).map(figure).collect())
     }
 
-    /// The numbers of a drawn value, case by case; `None` for what is no number.
+    /// Reads the values of a drawn parameter for every case; `None` if its values are not numbers.
     pub(crate) fn numbers(&self, name: &str) -> Result<Option<Vec<f64>>, FileError> {
         if self.empty.drawn.get(name) != Some(&true) {
             return Ok(None);
@@ -146,7 +148,7 @@ impl CaseFile {
         Ok(Some(numbers))
     }
 
-    /// What was drawn for some cases, as a person reads it.
+    /// Reads the drawn values of some cases, formatted for display.
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
     pub(crate) fn drawn_texts(&self, cases: &[usize]) -> Result<Vec<Vec<String>>, FileError> {
         let mut table =
@@ -169,7 +171,7 @@ impl CaseFile {
         Ok(shown)
     }
 
-    /// The attitude that the lines of sight of the cases rest on, as [`CaseTable::attitude`].
+    /// Returns the attitude that the lines of sight of the cases depend on, as [`CaseTable::attitude`] does.
     pub(crate) fn attitude(&self, granted: Option<&str>) -> Result<Option<String>, FileError> {
         let Some(figure) = self.figure(names::LINE_OF_SIGHT_RATE)? else { return Ok(None) };
         let (own, of) = figure.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));

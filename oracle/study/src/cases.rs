@@ -1,4 +1,4 @@
-//! The rows of a study: a case each, with what was drawn and what came of it.
+//! Rows of a study: one per case, with its drawn values and its results.
 
 use std::collections::HashMap;
 use std::io::Write;
@@ -14,17 +14,17 @@ use score::{attitude_word, names};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-/// A drawn value.
+/// Drawn value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum DrawnValue {
     /// A number.
     Number(f64),
-    /// Anything else, as JSON.
+    /// Any other value, as JSON.
     Text(String),
 }
 
 impl DrawnValue {
-    /// As a person reads it.
+    /// Formats the value for display.
     pub fn display_text(&self) -> String {
         match self {
             Self::Number(number) => number.to_string(),
@@ -33,82 +33,86 @@ impl DrawnValue {
     }
 }
 
-/// A figure of a case.
+/// Figure of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CaseFigure {
-    /// The value; `None` when it is counted over nothing.
+    /// Value; `None` if there is nothing to count.
     pub value: Option<f64>,
-    /// How many count: of a rate, `value` is `count`/`of`.
+    /// Numerator of a rate, whose `value` is `count`/`of`.
     pub count: u64,
-    /// How many it is counted over.
+    /// Number of values that the figure is computed from.
     pub of: u64,
 }
 
-/// A case and what came of it.
+/// A case and its results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseRow {
     /// Number of the case.
     pub case: u64,
-    /// Seed of its scenario.
+    /// Seed of the case's scenario.
     pub seed: u64,
-    /// Whether the pipeline itself failed, at one frame or more: it crashed, gave no answer in time, or none that can be read.
+    /// True if the pipeline failed at one frame or more: it crashed, exceeded its time limit, or returned an
+    /// unreadable outcome.
     pub has_failed: bool,
-    /// Why the case cannot be run, where its values make no scenario: it has no frames, and counts in no figure.
+    /// Reason why the case cannot be run, if its values do not form a valid scenario: it then has no frames,
+    /// and counts in no figure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
-    /// Frames that count.
+    /// Number of frames that count.
     pub frames: u64,
     /// Drawn values, in the order of the table's columns.
     pub drawn: Vec<DrawnValue>,
     /// Figures, in the order of the table's columns.
     pub figures: Vec<CaseFigure>,
-    /// Frames by cause, in the order of the table's columns.
+    /// Number of frames by cause, in the order of the table's columns.
     pub causes: Vec<u32>,
 }
 
 table! {
-    /// The columns that every study has.
+    /// Columns that every study has.
     struct CaseHead: parquet(case) {
         /// number of the case; ascending
         case: u64,
-        /// seed of its scenario
+        /// seed of the case's scenario
         seed: u64,
-        /// whether the pipeline itself failed at one frame or more: it crashed, gave no answer in time, or none that can be read
+        /// true if the pipeline failed at one frame or more: it crashed, exceeded its time limit, or returned
+        /// an unreadable outcome
         has_failed: bool,
-        /// why the case cannot be run; null where it can
+        /// reason why the case cannot be run; null if it can
         error: Option<String>,
-        /// frames that count
+        /// number of frames that count
         frames: u64,
     }
 }
 
-/// The columns of `cases.parquet` that every study has.
+/// Returns the columns of `cases.parquet` that every study has.
 pub fn case_columns() -> Vec<FieldDeclaration> {
     CaseHead::declarations()
 }
 
-/// Rows with their columns.
+/// Table of cases: rows and the names of their columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaseTable {
-    /// Names of what is drawn, and whether they are numbers.
+    /// Names of the drawn values, each with true if its values are numbers.
     pub drawn: IndexMap<String, bool>,
     /// Names of the figures.
     pub figures: Vec<String>,
-    /// Names of the causes of misses and wrong answers, as in `missed.cut_by_roi`.
+    /// Names of the causes of misses and wrong measurements, as in `missed.cut_by_roi`.
     pub causes: Vec<String>,
-    /// The rows, by number of the case.
+    /// Rows, in ascending order of the case number.
     pub rows: Vec<CaseRow>,
 }
 
-/// Before the name of a drawn value's column.
+/// Prefix of the column name of a drawn value.
 pub(super) const SET: &str = "set.";
-/// Before the name of a cause's column.
+/// Prefix of the column name of a cause.
 pub(super) const CAUSE: &str = "cause.";
-/// Rows read at a time.
+/// Number of rows read at a time.
 pub(super) const BATCH_ROWS: usize = 8192;
 
 impl CaseTable {
-    /// SHA-256 of the rows and the names of their columns, hexadecimal: what a table says, however it is encoded.
+    /// Returns the SHA-256 of the rows and the names of their columns, hexadecimal: a hash of the content,
+    /// independent of the encoding.
     pub fn sha256(&self) -> String {
         let mut hash = Sha256::new();
         let mut text = |text: &str| {
@@ -146,8 +150,8 @@ impl CaseTable {
         hex(hash.finalize())
     }
 
-    /// Writes the rows as Parquet: `case`, `seed`, `has_failed`, `error`, `frames`, `set.PATH` for what was drawn, NAME, NAME.count, NAME.of
-    /// for each figure, and `cause.VERDICT.CAUSE` for each cause.
+    /// Writes the rows as Parquet: `case`, `seed`, `has_failed`, `error`, `frames`, `set.PATH` for each drawn
+    /// value, NAME, NAME.count, NAME.of for each figure, and `cause.VERDICT.CAUSE` for each cause.
     ///
     /// # Errors
     /// [`FileError`], of `path`, when the file cannot be written.
@@ -180,7 +184,7 @@ impl CaseTable {
                     DrawnValue::Number(number) => Some(*number),
                     DrawnValue::Text(_) => None,
                 };
-                // A word among numbers has no number: the writer refuses the column.
+                // A text in a column of numbers has no value: the writer then rejects the column.
                 Column::from_values(name, false, f64::values(cells.map(number).collect()))
             } else {
                 Column::texts(name, cells.map(DrawnValue::display_text))
@@ -200,7 +204,7 @@ impl CaseTable {
         columns
     }
 
-    /// The columns of a file of cases, without its rows.
+    /// Reads the columns of a file of cases, without its rows.
     ///
     /// # Errors
     /// [`FileError`] for a file that cannot be read or is damaged.
@@ -224,7 +228,7 @@ impl CaseTable {
         })
     }
 
-    /// Reads a table with these columns, and what was written beside the rows.
+    /// Reads a table with these columns, and the notes that were written beside the rows.
     ///
     /// # Errors
     /// [`FileError`] for a file that cannot be read, is damaged, or has other columns.
@@ -293,13 +297,14 @@ impl CaseTable {
         Ok(())
     }
 
-    /// A table of the same columns.
+    /// Returns a table with the same columns and other rows.
     pub fn with_rows(&self, rows: Vec<CaseRow>) -> Self {
         Self { drawn: self.drawn.clone(), figures: self.figures.clone(), causes: self.causes.clone(), rows }
     }
 
-    /// The number of each row's draw, from 0 in their order: points of a sweep have the draws of all other values in common, and the seed
-    /// by which they are known. Rows of different draws are independent.
+    /// Returns the number of each row's draw, counted from 0 in the order of the rows. The points of a sweep
+    /// share the draws of all other values, and the seed that identifies them. Rows of different draws are
+    /// independent.
     pub fn draws(&self) -> Vec<usize> {
         let mut known = HashMap::new();
         self.rows
@@ -311,22 +316,22 @@ impl CaseTable {
             .collect()
     }
 
-    /// The numbers of a figure, case by case.
+    /// Returns the values of a figure for every case.
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
     pub fn figure(&self, name: &str) -> Option<Vec<CaseFigure>> {
         let index = self.figures.iter().position(|figure| figure == name)?;
         Some(self.rows.iter().map(|row| row.figures[index]).collect())
     }
 
-    /// The attitude that the lines of sight of the cases rest on, where the figures recorded tell ([`score::attitude_word`]); `granted` is
-    /// what the scenario grants to centroids.
+    /// Returns the attitude that the lines of sight of the cases depend on, if it follows from the recorded
+    /// figures ([`score::attitude_word`]); `granted` is the attitude that the scenario grants to centroids.
     pub fn attitude(&self, granted: Option<&str>) -> Option<String> {
         let figure = self.figure(names::LINE_OF_SIGHT_RATE)?;
         let (own, of) = figure.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
         attitude_word(own > 0, of > own, granted)
     }
 
-    /// The numbers of a drawn value, case by case; `None` for what is no number.
+    /// Returns the values of a drawn parameter for every case; `None` if they are not numbers.
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
     pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
         let index = self.drawn.get_index_of(name)?;
@@ -340,7 +345,7 @@ impl CaseTable {
 
 #[cfg(test)]
 impl CaseRow {
-    /// A case of these figures, of which nothing was drawn.
+    /// Creates a case with these figures and without drawn values.
     pub(super) fn from_figures(case: u64, seed: u64, figures: Vec<CaseFigure>) -> Self {
         let (drawn, causes) = (Vec::new(), Vec::new());
         Self { case, seed, has_failed: false, error: None, frames: 1, drawn, figures, causes }
@@ -349,14 +354,14 @@ impl CaseRow {
 
 #[cfg(test)]
 impl CaseTable {
-    /// Cases of these figures, of which nothing was drawn.
+    /// Creates a table of cases with these figures and without drawn values.
     pub(super) fn from_rows(figures: &[&str], rows: Vec<CaseRow>) -> Self {
         let figures = figures.iter().map(|name| (*name).to_owned()).collect();
         Self { drawn: IndexMap::new(), figures, causes: Vec::new(), rows }
     }
 }
 
-/// The values of a column of a batch.
+/// Returns the values of a column of a batch.
 pub(super) fn cells<'a, T: Cell>(
     path: &Path,
     batch: &'a [Column],
@@ -367,7 +372,7 @@ pub(super) fn cells<'a, T: Cell>(
     found.and_then(|column| T::cells(column.values())).ok_or_else(|| no_column(path, name, column_type))
 }
 
-/// The texts of a column of a batch.
+/// Returns the texts of a column of a batch.
 pub(super) fn texts<'a>(path: &Path, batch: &'a [Column], name: &str) -> Result<&'a TextCells, FileError> {
     match batch.iter().find(|column| column.name() == name).map(Column::values) {
         Some(ColumnValues::Utf8(texts)) => Ok(texts),

@@ -1,15 +1,16 @@
-//! Studies: a pipeline over everything that can vary (Monte Carlo, sweeps, designs of experiments).
+//! Studies of a pipeline over all parameters that can vary (Monte Carlo, sweeps, designs of experiments).
 //!
-//! A study is a scenario and the distributions of some of its parameters ([`StudyFile`]). Case k is a scenario of its own: its values are
-//! drawn from the address (seed of the study, k), so that any shard, in any order, on any machine, gives the same rows. What
-//! is made of a case is one row of a table ([`CaseRow`]): the values drawn, and every figure of its score.
+//! A study is a scenario and the distributions of some of its parameters ([`StudyFile`]). Case k is a
+//! separate scenario: its values are drawn from the address (seed of the study, k), and any shard, in any
+//! order, on any machine, gives the same rows. Each case results in one row of a table ([`CaseRow`]): the
+//! drawn values, and every figure of its score.
 //!
-//! - [`StudyFile`], [`Distribution`], [`DesignKind`]: what is asked for.
-//! - [`Study`]: what was asked for, checked; makes the scenario of a case.
-//! - [`StudyPipeline`]: what is tried; built anew for every case.
+//! - [`StudyFile`], [`Law`], [`DesignKind`]: definition of a study, as a file states it.
+//! - [`Study`]: a checked study; creates the scenario of a case.
+//! - [`StudyPipeline`]: pipeline under test; created anew for every case.
 //! - [`evaluate`]: simulates, processes and scores a case.
-//! - [`Campaign`]: a study in a folder; makes what is missing of it.
-//! - [`ShardStore`]: shards as files, each written at once or not at all; what is missing, what is whole.
+//! - [`Campaign`]: a study in a directory; runs the missing shards.
+//! - [`ShardStore`]: shards as files, each written atomically; reports missing and complete ones.
 //! - [`Summary`]: figures with intervals, sensitivities, the worst cases.
 
 #![cfg_attr(

@@ -1,4 +1,4 @@
-//! A merge of a million cases: its time and its memory.
+//! Time and memory of merging a million cases.
 
 use std::fs;
 use std::time::Instant;
@@ -28,7 +28,7 @@ path = "sensor.read_noise_e"
 distribution = { kind = "uniform", min = 5.0, max = 45.0 }
 "#;
 
-/// A made-up case of ten frames.
+/// Returns an artificial case of ten frames.
 fn row(table: &CaseTable, case: u64) -> CaseRow {
     let mut random = Seed { seed: 3, case }.stream(0, Effect::StudyParameter, 0);
     let drawn = [0.6 + 0.4 * uniform(&mut random), 5.0 + 40.0 * uniform(&mut random)];
@@ -55,7 +55,7 @@ fn row(table: &CaseTable, case: u64) -> CaseRow {
     }
 }
 
-/// Peak resident memory since the last call of [`forget_peak`], MB (10⁶ bytes); Linux.
+/// Returns the peak resident memory since the last call of [`forget_peak`], MB (10⁶ bytes); Linux.
 fn peak_mb() -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
@@ -66,7 +66,8 @@ fn forget_peak() {
     fs::write("/proc/self/clear_refs", "5").unwrap();
 }
 
-/// `cargo test --release -p boresight-study a_merge_of_many_cases -- --ignored --nocapture`; `SCALE_CASES` sets another number of cases.
+/// `cargo test --release -p boresight-study a_merge_of_many_cases -- --ignored --nocapture`; `SCALE_CASES`
+/// sets another number of cases.
 #[test]
 #[ignore = "minutes"]
 fn a_merge_of_many_cases_keeps_little_of_each() {

@@ -1,4 +1,4 @@
-//! The verification of requirements: each by the analytic detection model, and by simulated frames.
+//! Verification of requirements, each by the analytic detection model and by simulated frames.
 use std::cell::RefCell;
 use std::path::Path;
 use std::rc::Rc;
@@ -19,18 +19,20 @@ use crate::requirement::definition::Requirements;
 use crate::requirement::{Demand, Extreme, FindTable, Parameter, Requirement, SkyStatistic};
 use crate::sky::Pointing;
 
-/// Factor of a step by which a value is moved that all boresights do not agree with, and most of such steps.
+/// Factor by which a found value is changed per step while the full set of boresights does not meet the
+/// requirement; [`POLISH_STEPS`] is the largest number of steps.
 const POLISH: f64 = 1.005;
 const POLISH_STEPS: usize = 8;
 
-/// Verifies all requirements and computes the curves. `progress` is told what is being looked at.
+/// Verifies all requirements and computes the curves. `progress` is called with the name of each item before
+/// it is computed.
 ///
 /// # Errors
-/// A [`Failure`] when the camera, the target or a simulation cannot be made.
+/// A [`Failure`] when the camera, the target or a simulation cannot be created.
 pub fn assess(requirements: &Requirements, progress: impl Fn(&str)) -> Result<VisibilityReport, Failure> {
     let file = &requirements.file;
     let pointings = file.sky.pointings as usize;
-    // One sky for all exposures that are looked at.
+    // All exposures use the same sky.
     let finds = file.requirements.iter().filter_map(|requirement| requirement.find.as_ref());
     let exposures = finds.filter(|find| find.parameter == Parameter::ExposureS).map(|find| find.to);
     let longest_s = exposures.fold(file.exposure.max_s, f64::max);
@@ -78,14 +80,15 @@ pub fn assess(requirements: &Requirements, progress: impl Fn(&str)) -> Result<Vi
 struct Assessment<'a> {
     requirements: &'a Requirements,
     design: &'a Design<'a>,
-    /// Frames over the sky that were made already, with their exposures.
+    /// Simulated frames over the sky, with their exposures, kept for reuse.
     frames: RefCell<Vec<(f64, Rc<Vec<StarFrame>>)>>,
 }
 
-/// A rate as far from the detection model's as chance brings it in one of five hundred results disagrees with it.
+/// Confidence of each bound outside which a simulated rate disagrees with the model: random variation causes
+/// this in one of five hundred results.
 const DISAGREEMENT: f64 = 0.999;
 
-/// What was simulated where the detection model gives the probability `model`, in words; whether the two disagree, too.
+/// Describes the simulated rate where the model predicts `law`, including whether the two disagree.
 fn simulation_text(simulated: Option<&SimulatedRate>, model: f64) -> String {
     let Some(s) = simulated else { return "not simulated".to_owned() };
     let (low, high) = clopper_pearson(s.count, s.of, DISAGREEMENT);
@@ -99,12 +102,13 @@ fn simulation_text(simulated: Option<&SimulatedRate>, model: f64) -> String {
     )
 }
 
-/// What binds where the detection model says met and the frames do not.
+/// Binding limit when the model meets a requirement but the frames do not.
 const REFUTED: &str = "simulation: fewer frames meet it than the analytic law says";
-/// Frames at which it is given up to say how many would decide.
+/// Largest number of frames for which the number needed for a decision is computed.
 const MAX_FRAMES: u64 = 10_000;
 
-/// What detection model and simulation say together: simulation may refute or confirm the detection model within its confidence.
+/// Returns the combined result of model and simulation: the simulation may refute or confirm the model at its
+/// confidence.
 fn status(asked: f64, reached: f64, simulated: Option<&SimulatedRate>) -> Status {
     match simulated {
         _ if reached < asked => Status::NotMet,
@@ -116,12 +120,13 @@ fn status(asked: f64, reached: f64, simulated: Option<&SimulatedRate>) -> Status
     }
 }
 
-/// Even if all of so few frames met it, their lower bound would be below what is asked for.
+/// Returns true if the lower bound would be below the required rate even if all simulated frames met it.
 fn cannot_show(asked: f64, simulated: &SimulatedRate) -> bool {
     clopper_pearson(simulated.of, simulated.of, simulated.confidence).0 < asked
 }
 
-/// How many frames would show what these did not; empty where these are enough.
+/// Describes the number of frames needed to show that the requirement is met; empty if the simulated frames
+/// are enough.
 fn frames_in_words(status: Status, asked: f64, reached: f64, simulated: Option<&SimulatedRate>) -> String {
     let Some(s) = simulated else { return String::new() };
     if !(status == Status::NotDecided || status == Status::MetModel) {
@@ -143,7 +148,7 @@ impl<'a> Assessment<'a> {
         Self { requirements, design, frames: RefCell::default() }
     }
 
-    /// Whether the camera as it is meets a requirement.
+    /// Determines whether the given camera, unchanged, meets a requirement.
     fn as_it_is(&self, requirement: &Requirement) -> Result<Verdict, Failure> {
         let file = &self.requirements.file;
         let demand = &requirement.demand;
@@ -179,7 +184,7 @@ impl<'a> Assessment<'a> {
         })
     }
 
-    /// The value of a parameter that meets a requirement.
+    /// Finds the value of a parameter that meets a requirement.
     fn find(&self, requirement: &Requirement, find: &FindTable) -> Result<Verdict, Failure> {
         let file = &self.requirements.file;
         let demand = &requirement.demand;
@@ -258,7 +263,7 @@ impl<'a> Assessment<'a> {
         Ok(Verdict {
             status,
             reached: reached.probability,
-            // Room of the camera as it is.
+            // Margin of the given camera.
             margin: own.map(|own| if find.want == Extreme::Largest { value - own } else { own - value }),
             evidence,
             simulated,
@@ -280,7 +285,8 @@ impl<'a> Assessment<'a> {
         })
     }
 
-    /// A value that the search found from some boresights, moved until all of them agree that the detection model is met; a few steps at most.
+    /// Changes a value found with a subset of the boresights, by at most a few steps, until the detection
+    /// model meets the requirement over all boresights.
     fn polished(&self, demand: &Demand, find: &FindTable, found: f64, asked: f64) -> Result<f64, Failure> {
         let inwards = if find.want == Extreme::Largest { 1.0 / POLISH } else { POLISH };
         let mut value = found;
@@ -293,7 +299,7 @@ impl<'a> Assessment<'a> {
         Ok(value)
     }
 
-    /// What a value of a parameter reaches by the detection model.
+    /// Returns the result of the detection model for a value of a parameter.
     fn model_at(
         &self,
         demand: &Demand,
@@ -308,7 +314,7 @@ impl<'a> Assessment<'a> {
         Ok(design.reached(demand, exposure_s)?)
     }
 
-    /// What a value of a parameter reaches, by the detection model and by simulation.
+    /// Returns the results of detection model and simulation for a value of a parameter.
     fn at_value(
         &self,
         demand: &Demand,
@@ -328,8 +334,8 @@ impl<'a> Assessment<'a> {
         Ok((reached, simulated))
     }
 
-    /// Frames of what a demand speaks of, at the worst of it. A limiting magnitude is not simulated by frames of its own: the stars
-    /// of the sky's frames stand beside the detection curve.
+    /// Simulates the frames that a demand concerns, at its worst conditions. A limiting magnitude has no
+    /// separate frames: the stars in the frames of the sky are shown beside the detection curve.
     fn simulate(
         &self,
         demand: &Demand,
@@ -370,7 +376,7 @@ impl<'a> Assessment<'a> {
         }))
     }
 
-    /// How many frames have enough stars; `None` when no pointing counts.
+    /// Returns the number of frames with enough stars; `None` when no pointing counts.
     fn enough_stars(&self, exposure_s: f64, n_min: u32, over: SkyStatistic) -> Result<Option<u64>, Failure> {
         let frames = match over {
             SkyStatistic::Sky => self.star_frames(exposure_s)?,
@@ -380,7 +386,7 @@ impl<'a> Assessment<'a> {
         Ok((!frames.is_empty()).then_some(enough))
     }
 
-    /// Frames of stars at pointings that count, spread over the sky.
+    /// Simulates frames of stars at pointings that count, spread over the sky.
     fn star_frames(&self, exposure_s: f64) -> Result<Rc<Vec<StarFrame>>, Failure> {
         if let Some((_, known)) = self.frames.borrow().iter().find(|(known, _)| *known == exposure_s) {
             return Ok(Rc::clone(known));
@@ -396,7 +402,7 @@ impl<'a> Assessment<'a> {
         Ok(frames)
     }
 
-    /// Frames of stars, all at the pointing with the least chance of enough of them.
+    /// Simulates frames of stars, all at the pointing with the smallest probability of enough stars.
     fn frames_of_the_worst(&self, exposure_s: f64, n_min: u32) -> Result<Vec<StarFrame>, Failure> {
         let seen = self.design.stars(exposure_s, n_min)?;
         let counted = self.design.sky()?.usable_fields().zip(&seen);
@@ -416,7 +422,7 @@ impl<'a> Assessment<'a> {
         }
     }
 
-    /// The room of a camera as it is: in magnitudes, in kilometres, in exposures, or as a probability.
+    /// Returns the margin of the given camera, with its unit: percentage points, magnitudes or kilometres.
     fn margin(
         &self,
         demand: &Demand,
@@ -460,7 +466,7 @@ impl<'a> Assessment<'a> {
     }
 }
 
-/// Three digits that count.
+/// Formats a number to three significant digits.
 pub fn digits(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !size.is_finite() {
@@ -470,7 +476,7 @@ pub fn digits(value: f64) -> String {
     format!("{value:.places$}")
 }
 
-/// The content of the files that a camera reads.
+/// Returns the SHA-256 of each file that a camera reads.
 fn digests(requirements: &Requirements) -> Result<FileDigests, Failure> {
     let mut digests = FileDigests::new();
     let catalog = match &requirements.camera.catalog.source {

@@ -1,4 +1,4 @@
-//! The camera that requirements are about: its description, and what the simulator prepares of it.
+//! Camera that requirements are about: its description, and the simulator models prepared from it.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,27 +16,27 @@ use sim::truth::EARTH_GM_KM3_S2;
 use crate::detection_model::pixel::PixelThreshold;
 use crate::requirement::{MotionTable, Parameter};
 
-/// A camera as the simulator is told of it.
+/// Description of a camera for the simulator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraConfig {
-    /// Geometry.
+    /// Geometry of the camera.
     pub camera: Camera,
-    /// The detector.
+    /// Detector of the camera.
     pub sensor: SensorConfig,
-    /// Point-spread function, in pixels.
+    /// Point-spread function, px.
     pub psf: PsfConfig,
-    /// What of the optics changes over the field.
+    /// Optical effects that vary over the field.
     pub optics: OpticsConfig,
-    /// From magnitudes to photoelectrons.
+    /// Conversion of magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
-    /// Light without a source in the field.
+    /// Background without a source in the field.
     pub background: BackgroundConfig,
-    /// The stars that there are.
+    /// Star catalogue.
     pub catalog: CatalogConfig,
 }
 
 impl CameraConfig {
-    /// The value of a parameter; `None` of what it does not have.
+    /// Returns the value of a parameter; `None` for a parameter that the camera does not have.
     pub fn value(&self, parameter: Parameter) -> Option<f64> {
         match (parameter, &self.radiometry) {
             (Parameter::FocalLengthMm, _) => Some(self.camera.focal_length_mm),
@@ -47,8 +47,8 @@ impl CameraConfig {
         }
     }
 
-    /// The same camera with another value of a parameter; an exposure, or the aperture of one whose aperture is not known, changes
-    /// nothing.
+    /// Returns the camera with another value of a parameter. An exposure changes nothing, nor does an
+    /// aperture if the aperture of the camera is unknown.
     #[must_use]
     pub fn with(&self, parameter: Parameter, value: f64) -> Self {
         let mut changed = self.clone();
@@ -63,29 +63,29 @@ impl CameraConfig {
     }
 }
 
-/// A camera, prepared by the simulator's own models.
+/// A camera, prepared by the models of the simulator.
 #[derive(Debug)]
 pub struct CameraModel {
-    /// As it was described.
+    /// Description of the camera.
     pub config: CameraConfig,
-    /// Where directions fall.
+    /// Projection of directions to the detector.
     pub projection: Projection,
-    /// How light spreads over pixels.
+    /// Point-spread function.
     pub psf: Psf,
-    /// What the optics lose over the field.
+    /// Losses of the optics over the field.
     pub vignetting: Vignetting,
-    /// From magnitudes to photoelectrons a second.
+    /// Conversion of magnitudes to photoelectrons per second.
     pub radiometry: Radiometry,
-    /// Smooth light; `None` when all of it is off.
+    /// Smooth background; `None` when all its parts are off.
     pub background: Option<Background>,
-    /// Dark current of an ordinary pixel, electrons a second.
+    /// Dark current of an ordinary pixel, electrons per second.
     pub dark_e_per_s: f64,
-    /// Laws of its pixels against the thresholds that were asked for: each takes longer than what is then made of it.
+    /// Cache of pixel detection models by threshold, DN: computing a model takes longer than evaluating it.
     thresholds: Mutex<BTreeMap<u32, Arc<PixelThreshold>>>,
 }
 
 impl CameraModel {
-    /// Checks and prepares a camera. Paths in it start at the current folder.
+    /// Checks and prepares a camera. Its paths are relative to the current directory.
     ///
     /// # Errors
     /// [`SimError`] for the first value that is not allowed.
@@ -96,7 +96,7 @@ impl CameraModel {
         let background = Background::new(&config.background, &config.camera, &projection, &radiometry)?
             .map(|background| background.vignetted(&vignetting));
         config.sensor.check()?;
-        // The dark current is a matter of the detector's temperature, which a sensor of one pixel has as well.
+        // The dark current depends on the detector's temperature; a sensor of one pixel suffices.
         let dark_e_per_s = Sensor::new(
             &SensorConfig {
                 hot_pixels: Default::default(),
@@ -119,29 +119,30 @@ impl CameraModel {
         })
     }
 
-    /// The detection model of its pixels against a threshold, DN, whole and not negative.
+    /// Returns the detection model of the camera's pixels for a threshold, DN, a non-negative integer.
     pub fn threshold(&self, threshold_dn: f64) -> Arc<PixelThreshold> {
-        // Whoever panicked while making a law has left the others whole.
+        // A thread that panicked while computing one model leaves the other models intact.
         let mut known = self.thresholds.lock().unwrap_or_else(PoisonError::into_inner);
         let threshold = || Arc::new(PixelThreshold::new(&self.config.sensor, threshold_dn));
         Arc::clone(known.entry(threshold_dn.max(0.0) as u32).or_insert_with(threshold))
     }
 
-    /// The trail, px along x, that the orbital motion draws of what is not at rest in an exposure: at the boresight, from where it
-    /// grows towards the edge of a wide field.
+    /// Returns the length of the trail, px along x, that the orbital motion causes for an object that is not
+    /// at rest during an exposure. It applies at the boresight and grows towards the edge of a wide field.
     pub fn trail_px(&self, motion: &MotionTable, exposure_s: f64) -> f64 {
         let (x_px_per_rad, _) = self.projection.plate_scale_px_per_rad();
         mean_motion_rad_s(motion.semi_major_axis_km) * exposure_s * x_px_per_rad
     }
 }
 
-/// Mean motion of a circular orbit without the Earth's oblateness, rad/s.
+/// Returns the mean motion of a circular orbit without the Earth's oblateness, rad/s.
 pub fn mean_motion_rad_s(semi_major_axis_km: f64) -> f64 {
     let a = semi_major_axis_km;
     (EARTH_GM_KM3_S2 / (a * a * a)).sqrt()
 }
 
-/// The points of an image that stands at `centre` in the middle of an exposure and moves by `trail_px` along x meanwhile.
+/// Returns the points of an image that is at `centre` in the middle of an exposure and moves by `trail_px`
+/// along x during the exposure.
 pub(super) fn moving_point(centre: PixelPoint, trail_px: f64) -> Vec<ImagePoint> {
     let mut points = Vec::new();
     let at = |side: f64| PixelPoint::new(centre.x + side * trail_px, centre.y);

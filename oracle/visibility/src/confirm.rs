@@ -1,4 +1,4 @@
-//! Confirmation by simulation: frames of the simulator, looked at by the detector of the far-range method.
+//! Confirmation by simulation: frames of the simulator, processed by the detector of the far-range method.
 
 use contract::{Body, CameraFrame, Frame, PipelineFactory, PixelPoint, Rotation, Setup};
 use files::Failure;
@@ -24,21 +24,23 @@ use crate::sky::Pointing;
 use crate::sky::star_count::{Curves, star_trail_px};
 use crate::target::{Aspect, Setting, along_track};
 
-/// A cluster belongs to an object whose true place is at most this far from its centre, px, half of the object's trail besides.
+/// Largest distance from a cluster's centre to the true position of its object, px, to which half of the
+/// object's trail is added.
 const MATCH_PX: f64 = 2.5;
-/// Jitter of the camera from frame to frame, arcsec, so that a target that it points at lies anywhere within a pixel.
+/// Jitter of the camera from frame to frame, arcsec, which spreads a target that the camera points at over
+/// all positions within a pixel.
 const DITHER_ARCSEC: f64 = 300.0;
-/// A number that tells the draws of target frames from those of star frames.
+/// Offset of the case number that separates the draws of target frames from those of star frames.
 const TARGET_FRAMES: u64 = 1 << 32;
 
-/// The camera on the test bench.
+/// Test bench of the camera.
 #[derive(Debug, Clone, Copy)]
 pub struct Bench<'a> {
-    /// The camera.
+    /// Camera under test.
     pub camera: &'a CameraConfig,
-    /// When something counts as detected.
+    /// Rule for counting an object as detected.
     pub rule: &'a DetectionRule,
-    /// How it is carried.
+    /// Motion of the camera.
     pub motion: &'a MotionTable,
     /// Seed of all draws.
     pub seed: u64,
@@ -47,28 +49,28 @@ pub struct Bench<'a> {
 /// A star of a simulated frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StarTrial {
-    /// Johnson V.
+    /// Johnson V magnitude.
     pub magnitude: f64,
-    /// The chance that the analytic detection model gives it.
+    /// Detection probability according to the analytic model.
     pub chance: f64,
-    /// Whether the detector found it.
+    /// True if the detector found the star.
     pub is_detected: bool,
 }
 
 /// A simulated frame of stars.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StarFrame {
-    /// Stars that the detector found.
+    /// Number of stars that the detector found.
     pub detected: u32,
     /// All stars on the detector.
     pub stars: Vec<StarTrial>,
 }
 
 impl Bench<'_> {
-    /// One frame at each boresight.
+    /// Simulates one frame at each boresight.
     ///
     /// # Errors
-    /// A [`Failure`] when the simulation cannot be made.
+    /// A [`Failure`] when the simulation cannot be created.
     pub fn stars(&self, pointings: &[Pointing], exposure_s: f64) -> Result<Vec<StarFrame>, Failure> {
         let model = CameraModel::new(self.camera)?;
         let mut background = [f64::INFINITY, 0.0_f64];
@@ -100,10 +102,11 @@ impl Bench<'_> {
         })
     }
 
-    /// Frames of the target from `range_km`, in each of the aspects in turn, `count` in all: how many show it.
+    /// Simulates `count` frames of the target from `range_km`, distributed over the aspects; returns the
+    /// number of frames in which it is detected.
     ///
     /// # Errors
-    /// A [`Failure`] when the simulation cannot be made.
+    /// A [`Failure`] when the simulation cannot be created.
     pub fn target(
         &self,
         body: &TargetConfig,
@@ -132,7 +135,8 @@ impl Bench<'_> {
         Ok(shown.into_iter().filter(|shown| *shown).count() as u64)
     }
 
-    /// Makes the one frame of each flight and tells what `look` makes of it, in the order of the flights, on all threads.
+    /// Simulates the one frame of each flight on all threads, and returns the results of `look` in the order
+    /// of the flights.
     fn expose<T: Send>(
         &self,
         flights: &[Simulation],
@@ -157,7 +161,7 @@ impl Bench<'_> {
             for flight in flights {
                 simulator.fly(flight)?;
                 let exposure = simulator.camera()?.expose(0)?;
-                // A pipeline that has seen nothing: every frame stands for itself.
+                // A new pipeline per frame, without history: every frame is independent.
                 let mut pipeline = factory.build(&setup)?;
                 let clusters = clusters(&pipeline.process(&exposure.frame, &exposure.telemetry));
                 made.push(look(&ProcessedFrame {
@@ -173,12 +177,12 @@ impl Bench<'_> {
         Ok(pieces.into_iter().flatten().collect())
     }
 
-    /// The detector, as the far-range method has it.
+    /// Returns the configuration of the far-range method's detector.
     fn pipeline(&self) -> FarRangeConfig {
         let full_scale_dn = f64::from(self.camera.sensor.full_scale_dn());
         let thresholds = match *self.rule {
             DetectionRule::Dn { low_dn, high_dn } => {
-                // Halves, so that rounding cannot move a threshold by one.
+                // Adding 0.5 prevents rounding from changing a threshold by one.
                 let share = |dn: u16| (f64::from(dn) + 0.5) / full_scale_dn;
                 ThresholdConfig::Constant { low: share(low_dn), high: share(high_dn) }
             }
@@ -189,7 +193,7 @@ impl Bench<'_> {
         FarRangeConfig { thresholds, max_clusters: 2000, ..FarRangeConfig::default() }
     }
 
-    /// A flight that looks from a place of the sky's lattice; the target is out of sight.
+    /// Returns a flight that points at a node of the sky's lattice; the target is out of sight.
     fn towards(&self, pointing: &Pointing, exposure_s: f64, number: u64) -> Result<Simulation, Failure> {
         let boresight = *pointing.boresight.vector();
         let x = pointing.camera_from_icrs.inverse().rotate(&Vector3::x());
@@ -198,13 +202,14 @@ impl Bench<'_> {
             MotionGuidance::Inertial => (boresight, x, inertial(pointing)),
         };
         let elements = circular(radial, transverse, self.motion)?;
-        // The target behind the camera, or, with the Earth behind it, at right angles.
+        // The target is behind the camera, or, if the Earth is behind the camera, at right angles to the
+        // boresight.
         let orbit = orbit(pointing.time, &elements, 10_000.0);
         let invisible = TargetConfig::Beacon { magnitude_at_1_km: 30.0 };
         Ok(self.flight(pointing.time, orbit, guidance, 0.0, invisible, exposure_s, number))
     }
 
-    /// A flight that looks at the target in an aspect.
+    /// Returns a flight that points at the target in a given aspect.
     fn at_target(
         &self,
         body: &TargetConfig,
@@ -242,8 +247,8 @@ impl Bench<'_> {
         Ok(self.flight(time, orbit, guidance, DITHER_ARCSEC, body, exposure_s, number))
     }
 
-    /// An orbit on which the target, `range_km` ahead, is seen at a phase angle. With R and T in the middle between both, the Sun is
-    /// at sin φ R − cos φ T.
+    /// Returns an orbit on which the target, `range_km` ahead, is seen at a phase angle. With R and T halfway
+    /// between chaser and target, the Sun is at sin φ R − cos φ T.
     fn at_phase(&self, time: Epoch, phase_deg: f64, range_km: f64) -> Result<OrbitConfig, Failure> {
         let centre = Observer::new(time, Vector3::new(7000.0, 0.0, 0.0), Vector3::zeros())?;
         let sun = *centre.sun().vector();
@@ -255,7 +260,7 @@ impl Bench<'_> {
         Ok(orbit(time, &elements, -range_km * 1000.0))
     }
 
-    /// A scenario of one frame.
+    /// Returns a simulation of one frame.
     #[allow(clippy::too_many_arguments, reason = "each is a part of a flight, and they are met once")]
     fn flight(
         &self,
@@ -297,7 +302,7 @@ impl Bench<'_> {
     }
 }
 
-/// What a frame shows, and what is in it.
+/// A simulated frame with its true objects and detected clusters.
 struct ProcessedFrame<'a> {
     frame: &'a Frame,
     objects: &'a [ObjectTruth],
@@ -305,11 +310,11 @@ struct ProcessedFrame<'a> {
     clusters: &'a [PixelPoint],
 }
 
-/// Which of the objects were found: each cluster is the nearest one's, within a distance.
+/// Returns true for each object that was found: a cluster counts for the brightest object within a distance.
 fn found(clusters: &[PixelPoint], objects: &[&ObjectTruth], match_px: f64) -> Vec<bool> {
     let mut found = vec![false; objects.len()];
     for cluster in clusters {
-        // Of several within the distance the brightest made the cluster.
+        // If several objects are within the distance, the cluster is attributed to the brightest.
         let near = objects.iter().enumerate().filter(|(_, o)| o.position.distance(*cluster) <= match_px);
         if let Some((index, _)) = near.max_by(|(_, a), (_, b)| a.electrons.total_cmp(&b.electrons)) {
             found[index] = true;
@@ -322,7 +327,7 @@ fn clusters(outcome: &contract::Outcome) -> Vec<PixelPoint> {
     outcome.clusters.iter().map(|cluster| cluster.position).collect()
 }
 
-/// A circular orbit with these radial and transverse unit vectors.
+/// Returns a circular orbit with these radial and transverse unit vectors.
 fn circular(
     radial: Vector3<f64>,
     transverse: Vector3<f64>,
@@ -357,7 +362,7 @@ fn local_orbital() -> Guidance {
     Guidance::LocalOrbital { phi_deg: 0.0, theta_deg: 0.0, psi_deg: 0.0 }
 }
 
-/// A guidance that gives the attitude of a pointing.
+/// Returns a guidance that gives the attitude of a pointing.
 fn inertial(pointing: &Pointing) -> Guidance {
     Guidance::Inertial {
         ra_deg: pointing.boresight.ra().degrees(),
@@ -366,7 +371,7 @@ fn inertial(pointing: &Pointing) -> Guidance {
     }
 }
 
-/// The body with its attitude fixed in the orbital frame.
+/// Returns the body with its attitude fixed in the orbital frame.
 fn turned(body: &TargetConfig, [phi_deg, theta_deg, psi_deg]: [f64; 3]) -> TargetConfig {
     match body {
         TargetConfig::Plates { boxes, plates, .. } => TargetConfig::Plates {

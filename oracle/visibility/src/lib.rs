@@ -1,18 +1,22 @@
-//! Requirements: which camera sees enough stars, and the target.
+//! Requirements on a camera: which camera detects enough stars, and the target.
 //!
-//! A file of requirements ([`RequirementFile`]) names a camera and what is demanded of it. The answer ([`VisibilityReport`]) is
-//! computed from the simulator's models of light by an analytic detection model, and confirmed by frames of the simulator that the detector of the
-//! far-range method has looked at: so a mistake of the detection model is seen by the simulation, and what no number of frames could search is
-//! found by the detection model.
+//! A file of requirements ([`RequirementFile`]) names a camera and the demands on it. The report
+//! ([`VisibilityReport`]) is computed from the simulator's radiometric models by an analytic detection model,
+//! and confirmed by simulated frames that the detector of the far-range method has processed. The simulation
+//! thus reveals an error of the detection model, and the model covers conditions that no number of frames
+//! could search.
 //!
-//! - [`RequirementFile`], [`Requirements`]: what is asked; read and checked.
+//! - [`RequirementFile`], [`Requirements`]: the requirements as a file states them; read and checked.
 //! - [`CameraModel`]: the camera, prepared by the simulator's models.
-//! - [`PixelThreshold`], [`ImageShares`], [`DetectionCurve`]: the detection model: of a pixel, of an image, of stars.
-//! - [`Sky`], [`Curves`], [`at_least`]: stars in the field at every boresight, and how many of them are detected.
+//! - [`PixelThreshold`], [`ImageShares`], [`DetectionCurve`]: the detection model: of a pixel, of an image,
+//!   of stars.
+//! - [`Sky`], [`Curves`], [`at_least`]: stars in the field at every boresight, and the number of them that is
+//!   detected.
 //! - [`TargetModel`], [`TargetObservation`]: the target by range, phase angle and attitude.
-//! - [`Design`]: one camera and what it reaches of a demand; [`search`]: the parameter that reaches it; [`binding`]: why none does.
+//! - [`Design`]: one camera and its result for a demand; [`search`]: the parameter value that meets it;
+//!   [`binding`]: the constraint that prevents this.
 //! - [`Bench`]: simulated frames.
-//! - [`assess`]: all of it, into a [`VisibilityReport`]; [`write_report`]: its files.
+//! - [`assess`]: combines all of these into a [`VisibilityReport`]; [`write_report`]: writes its files.
 
 #![cfg_attr(
     not(test),

@@ -1,4 +1,5 @@
-//! The target as the camera sees it: how bright, how large, how likely detected, and which exposure just does not over-expose it.
+//! The target as the camera observes it: brightness, size, detection probability, and longest exposure
+//! without over-exposure.
 use contract::{CameraFrame, Direction, Icrs, OutOfRange, PixelPoint, Rotation, Target};
 use hifitime::{Epoch, Unit};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -15,40 +16,41 @@ use crate::requirement::{DetectionRule, ExposureTable, MotionGuidance, MotionTab
 
 /// Astronomical unit, km (IAU 2012 Resolution B2).
 const AU_KM: f64 = 149_597_870.7;
-/// Points that a body's image is made of, at most: it is looked at many times.
+/// Largest number of points that a body's image consists of; limited because the image is computed many
+/// times.
 const POINTS: usize = 1 << 10;
 
-/// How the body is lit and turned at one moment, whatever the range.
+/// Illumination and attitude of the body at one time, independent of the range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aspect {
-    /// From the camera to the body, unit vector.
+    /// Unit vector from the camera to the body.
     line_of_sight: Vector3<f64>,
-    /// From the body to the Sun, km.
+    /// Vector from the body to the Sun, km.
     sun_km: Vector3<f64>,
     sunlit_fraction: f64,
     target_from_icrs: Option<Rotation<Target, Icrs>>,
     /// Angle Sun–target–camera, degrees.
     pub phase_deg: f64,
-    /// What a simulation needs to show it so.
+    /// Conditions under which a simulation has this aspect.
     pub setting: Setting,
 }
 
-/// Where in a simulation an aspect is met.
+/// Conditions under which a simulation has a given aspect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Setting {
-    /// At a phase angle; the body turned by Euler angles 123 from the axes R, T, N of its orbit, degrees.
+    /// A phase angle, with the body rotated by Euler angles 123 from the axes R, T, N of its orbit, degrees.
     Phase {
-        /// φ, θ, ψ.
+        /// Euler angles φ, θ, ψ, degrees.
         turn_deg: [f64; 3],
     },
-    /// At a moment of the scenario's orbit.
+    /// A time on the scenario's orbit.
     Moment {
-        /// When.
+        /// Time of the aspect.
         time: Epoch,
     },
 }
 
-/// The body, and all the ways in which it may be lit.
+/// The target body, with all its aspects.
 #[derive(Debug, Clone)]
 pub struct TargetModel {
     body: Spacecraft,
@@ -56,10 +58,11 @@ pub struct TargetModel {
 }
 
 impl TargetModel {
-    /// The body in a light.
+    /// Prepares the body under a given illumination.
     ///
     /// # Errors
-    /// [`SimError`] for a body, an orbit or a time that is not allowed, and for an orbit of which no moment is sunlit.
+    /// [`SimError`] for a body, an orbit or a time that is not allowed, and for an orbit that is never
+    /// sunlit.
     pub fn new(
         body: &TargetConfig,
         light: &TargetLight,
@@ -84,13 +87,13 @@ impl TargetModel {
         Ok(Self { body: prepared, aspects })
     }
 
-    /// The aspects up to a phase angle, all without one.
+    /// Returns the aspects up to a phase angle; all aspects without one.
     pub fn aspects(&self, phase_max_deg: Option<f64>) -> Vec<Aspect> {
         let within = |aspect: &&Aspect| phase_max_deg.is_none_or(|most| aspect.phase_deg <= most + 1e-9);
         self.aspects.iter().filter(within).copied().collect()
     }
 
-    /// What the camera sees of it from `range_km`.
+    /// Returns the appearance of the target to the camera from `range_km`.
     pub fn signal(&self, camera: &CameraModel, aspect: &Aspect, range_km: f64) -> TargetSignal {
         let chaser_km = -aspect.line_of_sight * range_km;
         let sun_km = aspect.sun_km;
@@ -106,28 +109,30 @@ impl TargetModel {
     }
 }
 
-/// What the camera sees of the target, which it looks at.
+/// Appearance of the target to a camera that points at it.
 #[derive(Debug, Clone)]
 pub struct TargetSignal {
-    /// Photoelectrons a second.
+    /// Photoelectrons per second.
     pub e_per_s: f64,
-    /// Those of its brightest pixel, as the shutter control knows it.
+    /// Photoelectrons per second of the brightest pixel, as the shutter control computes them.
     pub peak_e_per_s: f64,
-    /// V magnitude; `None` when no light comes from it.
+    /// V magnitude; `None` when the target reflects no light.
     pub magnitude: Option<f64>,
     centre: PixelPoint,
     appearance: Appearance,
 }
 
 impl TargetSignal {
-    /// The longest exposure that does not over-expose it, s; longer than any when no light comes from it.
+    /// Returns the longest exposure that does not over-expose the target, s; practically unlimited when the
+    /// target reflects no light.
     pub fn longest_s(&self, camera: &CameraModel, exposure: &ExposureTable) -> f64 {
         exposure.target_level * camera.config.sensor.saturation_e() / self.peak_e_per_s.max(1e-30)
     }
 }
 
 impl Aspect {
-    /// From a point of the body frame, m, to the image of a camera that looks at its origin from `range_km`.
+    /// Returns the map from a point of the body frame, m, to the image of a camera that points at its origin
+    /// from `range_km`.
     fn projector<'a>(
         &'a self,
         camera: &'a CameraModel,
@@ -141,7 +146,8 @@ impl Aspect {
         }
     }
 
-    /// The chance that the target is detected in one exposure, over a background of light.
+    /// Returns the probability that the target is detected in one exposure, over a background of
+    /// `background_e_per_s`.
     pub fn chance(
         &self,
         signal: &TargetSignal,
@@ -175,21 +181,22 @@ impl Aspect {
     }
 }
 
-/// A camera that watches a target.
+/// Observation conditions of a target: camera, detection rule, motion and background.
 #[derive(Debug, Clone, Copy)]
 pub struct TargetObservation<'a> {
-    /// The camera.
+    /// Camera that observes the target.
     pub camera: &'a CameraModel,
-    /// When something counts as detected.
+    /// Rule for counting an object as detected.
     pub rule: &'a DetectionRule,
-    /// What smears.
+    /// Motion of the camera, which smears the image.
     pub motion: &'a MotionTable,
-    /// Light of the background, electrons a second and pixel.
+    /// Background, electrons per second and pixel.
     pub background_e_per_s: f64,
 }
 
 impl TargetObservation<'_> {
-    /// The chance that the target is detected from a range, all aspects being equally likely; 0 of none.
+    /// Returns the probability that the target is detected from a range, with all aspects equally likely; 0
+    /// without aspects.
     pub fn chance(&self, target: &TargetModel, aspects: &[Aspect], range_km: f64, exposure_s: f64) -> f64 {
         let of = |aspect: &Aspect| {
             let signal = target.signal(self.camera, aspect, range_km);
@@ -200,7 +207,8 @@ impl TargetObservation<'_> {
     }
 }
 
-/// Quantiles of the longest exposure that does not over-expose the target, over aspects, s, each cut to what the camera can command.
+/// Returns the longest exposure that does not over-expose the target, s, for each aspect, in ascending order;
+/// not limited to the exposures that the camera can command.
 pub(super) fn longest_exposures_s(
     camera: &CameraModel,
     target: &TargetModel,
@@ -214,22 +222,24 @@ pub(super) fn longest_exposures_s(
     all
 }
 
-/// The longest exposure that leaves the target not over-exposed with a probability, s, of sorted ones.
+/// Returns the longest exposure, s, that does not over-expose the target with a given probability, from
+/// sorted exposures.
 pub(super) fn longest_with(sorted_s: &[f64], probability: f64) -> f64 {
-    // So many of the aspects may be over-exposed.
+    // Number of aspects that may be over-exposed.
     let spared = ((1.0 - probability) * sorted_s.len() as f64 + 1e-9).floor() as usize;
     sorted_s.get(spared.min(sorted_s.len().saturating_sub(1))).copied().unwrap_or(0.0)
 }
 
-/// A camera that looks along a direction, at any roll.
+/// Returns the attitude of a camera that points along a direction, at an arbitrary roll.
 fn looking_along(line_of_sight: &Vector3<f64>) -> Rotation<CameraFrame, Icrs> {
     let axis = if line_of_sight.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let x = line_of_sight.cross(&axis).normalize();
     Rotation::from_axes(&x, &line_of_sight.cross(&x), line_of_sight)
 }
 
-/// Number `i` of `count` attitudes at a phase angle: super-Fibonacci spirals, which spread rotations evenly (Alexa 2022, Proc. CVPR,
-/// 8291). The line of sight is T of the body's orbit, the Sun towards R.
+/// Returns attitude `i` of `count` at a phase angle, from super-Fibonacci spirals, which spread rotations
+/// evenly (Alexa 2022, Proc. CVPR, 8291). The line of sight is along T of the body's orbit, the Sun is on the
+/// side of R.
 fn at_phase(phase_deg: f64, i: u32, count: u32) -> Aspect {
     let (sin, cos) = libm::sincos(phase_deg.to_radians());
     let (s, n) = (f64::from(i) + 0.5, f64::from(count));
@@ -250,20 +260,23 @@ fn at_phase(phase_deg: f64, i: u32, count: u32) -> Aspect {
     }
 }
 
-/// The scenario's orbit with the camera purely along the track, `range_km` behind or ahead as in the scenario, without manoeuvres.
+/// Returns the scenario's orbit with the camera purely along the track, `range_km` behind or ahead as in the
+/// scenario, without manoeuvres.
 pub(super) fn along_track(orbit: &OrbitConfig, range_km: f64) -> OrbitConfig {
     let side = if orbit.relative.a_dlambda_m > 0.0 { 1.0 } else { -1.0 };
     let relative = RelativeElements { a_dlambda_m: side * range_km * 1000.0, ..RelativeElements::default() };
     OrbitConfig { relative, manoeuvres: Vec::new(), ..orbit.clone() }
 }
 
-/// Moments of the scenario, evenly spread over its frames, at which the target is wholly sunlit.
+/// Returns the aspects at times of the scenario, evenly spread over its frames, at which the target is fully
+/// sunlit.
 fn along_orbit(
     body: &Spacecraft,
     scenario: &FarRangeScenario,
     moments: u32,
 ) -> Result<Vec<Aspect>, SimError> {
-    /// A range at which the geometry is taken: the camera is a degree or less of the orbit away.
+    /// Range at which the geometry is computed, km: the camera and the target are at most a degree of the
+    /// orbit apart.
     const RANGE_KM: f64 = 10.0;
     let trajectory = Trajectory::new(&along_track(&scenario.orbit, RANGE_KM))?;
     let schedule = Schedule::new(&scenario.schedule)?;

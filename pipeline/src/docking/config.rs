@@ -1,4 +1,4 @@
-//! All parameters of the docking method.
+//! Parameters of the docking method.
 
 use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
@@ -13,24 +13,25 @@ use super::preprocessing::region::RegionConfig;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DockingConfig {
-    /// Where the target is looked for: a window given from outside, and prediction from field to field.
+    /// Region in which the target is searched for: a window given externally, and prediction from field to
+    /// field.
     pub region: RegionConfig,
     /// Automatic contrast and brightness of the digitiser.
     pub auto_contrast: AutoContrastConfig,
     /// Thresholds of the edge-based method.
     pub edges: EdgeConfig,
-    /// Least difference between cross and plate, in 255ths of full scale, 2 to 200.
+    /// Smallest difference between cross and plate, in 255ths of full scale, 2 to 200.
     #[schemars(range(min = 2, max = 200))]
     pub min_contrast: f64,
-    /// Most candidates for the cross that are examined in a field, 1 to 200.
+    /// Largest number of candidates for the cross that are examined in a field, 1 to 200.
     #[schemars(range(min = 1, max = 200))]
     pub max_candidates: u32,
-    /// Fields of a portion, measured or not, 3 to 1000; ten in the paper.
+    /// Number of fields in a portion, measured or not, 3 to 1000; ten in the paper.
     #[schemars(range(min = 3, max = 1000))]
     pub portion_fields: u32,
-    /// Motion from the poses of the best estimator.
+    /// Motion estimation from the poses of the best estimator.
     pub motion: MotionConfig,
-    /// Motion by portions of the paper's formulas.
+    /// Motion estimation by portions, with the paper's formulas.
     pub paper_portions: PaperPortionConfig,
 }
 
@@ -53,7 +54,7 @@ impl DockingConfig {
     /// Checks every parameter.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range, by its path.
+    /// [`OutOfRange`] for the first parameter outside its range, with its path.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "")?;
         self.region.check()?;

@@ -1,9 +1,9 @@
-//! The monitoring of a docking approach (Boguslavsky, Sazonov, Sokolov, Smirnov, Saigiraev, ICINCO 2004).
+//! Monitoring of a docking approach (Boguslavsky, Sazonov, Sokolov, Smirnov, Saigiraev, ICINCO 2004).
 //!
-//! A field of television is searched for the target's cross and marks (a region predicted from the fields before,
-//! regions of the binary image, edges, and a scan by structure, one backing up the other), the cross's bars and the
-//! circle of the marks are measured by least squares, and pose and motion follow. A chapter of the paper is a folder
-//! here, and a step of it a file.
+//! The target's cross and marks are searched for in a television field. The methods back up each other: a
+//! region predicted from previous fields, regions of the binary image, edges, and a structural scan. The
+//! cross's bars and the circle of the marks are measured by least squares; pose and motion follow. Each
+//! chapter of the paper is a directory here, and each step a file.
 
 mod config;
 mod cross_and_circle;

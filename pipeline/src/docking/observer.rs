@@ -1,4 +1,4 @@
-//! One field: recognised, measured, checked.
+//! Processing of one field: recognition, measurement, checks.
 
 use contract::bounds::require;
 use contract::docking::{
@@ -27,7 +27,7 @@ use super::preprocessing::region::{FeaturePositions, Prediction, Rectangle, Trac
 use super::preprocessing::view::{Lens, View};
 use crate::PipelineError;
 
-/// Recognises and measures field after field; remembers where the target was.
+/// Recognition and measurement of successive fields, with memory of the target's position.
 #[derive(Debug)]
 pub(crate) struct Observer {
     config: DockingConfig,
@@ -38,25 +38,26 @@ pub(crate) struct Observer {
     fit: ModelFit,
     outlines: OutlineTrack,
     orientation: Orientation,
-    /// What was told of the range, which a loss of the target does not erase.
+    /// Ranges reported so far. Kept when the target is lost.
     ranges: RangeMemory,
 }
 
-/// What a field gave.
+/// Result of one field.
 pub(crate) struct FieldObservation {
     pub(crate) solution: DockingSolution,
-    /// What the paper's formulas are made of, where cross and circle were measured.
+    /// Inputs to the paper's formulas, where cross and circle were measured.
     pub(crate) paper: Option<PaperMeasurement>,
     pub(crate) features: Features,
-    /// The part of the pose's covariance that is the same error in the fields of seconds.
+    /// Part of the pose's covariance due to errors that are common to the fields of several seconds.
     pub(crate) common: Matrix6<f64>,
-    /// Whether only one of the two ways to a pose has one, cross and circle or the best estimator: it needs the motion's confirmation.
+    /// True if only one of the two methods (cross and circle, best estimator) gave a pose. Such a pose must
+    /// be confirmed by the motion.
     pub(crate) is_backup: bool,
-    /// Blur across the lines that the best estimator found, px.
+    /// Blur across the lines by the best estimator, px.
     pub(crate) blur_px: f64,
-    /// The range by the station's outline, which the motion takes too.
+    /// Range by the station's outline, which is also an input to the motion.
     pub(crate) outline: Option<OutlineRange>,
-    /// Where brightness and contrast are to be judged.
+    /// Region in which brightness and contrast are judged.
     pub(crate) region: Rectangle,
 }
 
@@ -75,7 +76,7 @@ impl FieldObservation {
     }
 }
 
-/// A field and what it was taken with.
+/// Field with its time and camera.
 struct FieldInput<'a> {
     field: &'a Field,
     view: &'a View<'a>,
@@ -84,7 +85,7 @@ struct FieldInput<'a> {
 }
 
 impl Observer {
-    /// Nothing seen yet.
+    /// Creates an observer without any field.
     ///
     /// # Errors
     /// [`PipelineError`] when a camera or the target's dimensions are not allowed.
@@ -110,7 +111,7 @@ impl Observer {
         })
     }
 
-    /// Measures a field, or says why not.
+    /// Measures a field, or returns the reason why it has no pose.
     pub(crate) fn observe(
         &mut self,
         field: &Field,
@@ -146,7 +147,8 @@ impl Observer {
         observed
     }
 
-    /// About where the target is predicted; else within the outline of a station that is followed; else in the whole field.
+    /// Searches for the target near its predicted position, else within the outline of a tracked station,
+    /// else in the whole field.
     fn acquire(&mut self, input: &FieldInput, lens: &Lens) -> FieldObservation {
         let max_gap_s = self.config.region.max_gap_s;
         let predicted = self.track.predict(input.time_s, input.camera, lens.focal_px(), max_gap_s);
@@ -177,7 +179,7 @@ impl Observer {
         }
     }
 
-    /// The answer while the station's outline is followed and its target not yet resolved.
+    /// Returns the result while the station's outline is tracked and its target is not yet resolved.
     fn within_outline(
         &mut self,
         input: &FieldInput,
@@ -229,7 +231,8 @@ impl Observer {
         Recognition { view, lens, model: &self.target, shapes: &self.shapes, config: &self.config }
     }
 
-    /// The target about where the fields before have it: cross and marks, or what is left of them about the predicted pose.
+    /// Finds the target near its position by previous fields: cross and marks, or their visible remainder
+    /// near the predicted pose.
     fn track_target(
         &mut self,
         input: &FieldInput,
@@ -250,7 +253,7 @@ impl Observer {
         }
     }
 
-    /// The answer from cross and marks.
+    /// Returns the result from cross and marks.
     fn measure(
         &mut self,
         input: &FieldInput,
@@ -270,7 +273,8 @@ impl Observer {
         let paper = measurement.pose(&target)?;
         let seen = orientation::assess(input.view, lens, &self.target, cross, plane, &unit);
         if self.orientation.is_turned(input.time_s, seen) {
-            // It is followed, so that nearer, where nothing in the field tells, it is known.
+            // A turned target is tracked too, so its state is still available at short range, where the field
+            // does not show it.
             self.remember(input, lens, paper);
             return Ok(FieldObservation::without_solution(NoPose::Inconsistent));
         }
@@ -278,7 +282,7 @@ impl Observer {
         features.station = evidence::station(input.view, lens, &self.target, target_features);
         let mut fitted = self.fit.fit(input.field, lens.model(), &self.target, &paper);
         if fitted.is_err() {
-            // At large angles the paper's pose is farther off than a fit finds back from.
+            // At large angles the paper's pose is too far off for the fit to converge.
             fitted = self.fit.fit(input.field, lens.model(), &self.target, &measurement.aimed_pose(&target)?);
         }
         let by_features = paper_sigma::estimate(&measurement, &target, cross.seed.half_length_px)?;
@@ -288,7 +292,8 @@ impl Observer {
                 let doubt = self_check::fit(&self.target, lens.focal_px(), &fitted, &by_features);
                 (fitted.estimate, fitted.common, doubt, false, fitted.blur_px[1])
             }
-            // Cross and marks are there and of one target: the paper's pose is worse than the best one, and better than none.
+            // Cross and marks are present and consistent: the paper's pose is worse than the best one, but
+            // better than none.
             Err(_) => (by_features, Matrix6::zeros(), None, true, 0.0),
         };
         let outline = self_check::outline(input.view, lens, &self.target, cross, plane);
@@ -317,7 +322,7 @@ impl Observer {
         })
     }
 
-    /// The answer from what the best estimator found about the predicted pose.
+    /// Returns the result of the best estimator near the predicted pose.
     fn observation_from_fit(
         &mut self,
         input: &FieldInput,
@@ -336,7 +341,8 @@ impl Observer {
             paper: None,
             features: Features { marks: fitted.marks.clone(), ..Features::default() },
             common: fitted.common,
-            // Where cross and marks should be seen and are not, the prediction may have led the fit to something else.
+            // If cross and marks should be visible but are not, the prediction may have led the fit to
+            // another object.
             is_backup: !near_edge,
             blur_px: fitted.blur_px[1],
             outline: None,
@@ -353,5 +359,5 @@ impl Observer {
     }
 }
 
-/// A field of which more than this share is at full scale shows nothing.
+/// Share of full-scale pixels above which a field is considered saturated.
 const MAX_SATURATED_SHARE: f64 = 0.6;

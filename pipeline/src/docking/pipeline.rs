@@ -1,4 +1,4 @@
-//! The steps tied together: a field in, pose and motion out.
+//! Steps of the method combined: from a field to pose and motion.
 
 use contract::docking::{
     Docking, DockingOutcome, DockingSetup, DockingSolution, FailedCheck, Field, FieldTelemetry, MotionReport,
@@ -14,14 +14,14 @@ use super::preprocessing::view::View;
 use super::repeats::RepeatDetector;
 use crate::PipelineError;
 
-/// Builds pipelines by the docking method.
+/// Factory of pipelines by the docking method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DockingFactory {
     config: DockingConfig,
 }
 
 impl DockingFactory {
-    /// With a configuration.
+    /// Creates a factory from a configuration.
     ///
     /// # Errors
     /// Those of [`DockingConfig::check`].
@@ -44,7 +44,7 @@ impl PipelineFactory<Docking> for DockingFactory {
     }
 }
 
-/// The docking method on a sequence of fields.
+/// Docking method applied to a sequence of fields.
 #[derive(Debug)]
 pub struct DockingPipeline {
     config: DockingConfig,
@@ -56,7 +56,7 @@ pub struct DockingPipeline {
     paper: PaperPortions,
 }
 
-/// The fields of a portion so far.
+/// Fields of the current portion.
 #[derive(Debug, Clone, Default)]
 struct Portion {
     fields: u32,
@@ -65,7 +65,7 @@ struct Portion {
 }
 
 impl DockingPipeline {
-    /// A pipeline that has seen no field.
+    /// Creates a pipeline without any field.
     ///
     /// # Errors
     /// [`PipelineError`] when the configuration, a camera or the target's dimensions are not allowed.
@@ -83,9 +83,9 @@ impl DockingPipeline {
         })
     }
 
-    /// Adds a field to its portion; the motion, when the portion is complete.
+    /// Adds a field to its portion. Returns the motion when the portion is complete.
     fn add(&mut self, time_s: f64, paper: Option<PaperMeasurement>) -> Option<MotionReport> {
-        // A sequence that begins anew has no motion from before.
+        // A new sequence inherits no motion.
         if self.portion.last_time_s.is_some_and(|last| time_s <= last || time_s - last > MAX_PORTION_GAP_S)
             || !time_s.is_finite()
         {
@@ -106,7 +106,7 @@ impl DockingPipeline {
         MotionReport::from_estimates(self.motion.report(), paper)
     }
 
-    /// Tests a pose against the fields before, and brings its covariance to their scatter.
+    /// Tests a pose against previous fields, and scales its covariance to their scatter.
     fn test(&mut self, field: &Field, time_s: f64, observed: FieldObservation) -> FieldObservation {
         let is_repeated = self.repeats.is_repeated(field);
         let outline = observed.outline.filter(|_| !is_repeated);
@@ -161,14 +161,15 @@ impl Pipeline<Docking> for DockingPipeline {
     }
 }
 
-/// A picture with more blur across its lines may have been blurred as a whole frame: a line then shows as much of its neighbours, which are of
-/// the other field's moment, as of its own. A lens in focus and a television's aperture make 0.6 to 0.9 px.
+/// Blur across the lines, px, above which an image may have been blurred as a whole frame. A line then
+/// contains as much of its neighbours, which belong to the other field's time, as of its own signal. A lens
+/// in focus and a television's aperture cause 0.6 to 0.9 px.
 const MIXING_BLUR_PX: f64 = 1.2;
 
-/// Half of the time between the fields of a frame, s, at 50 fields a second.
+/// Half of the time between the fields of a frame at 50 fields per second, s.
 const MIXED_S: f64 = 0.01;
 
-/// After a longer gap the motion of the portion before says nothing, s.
+/// Longest gap across which the motion of the previous portion remains valid, s.
 const MAX_PORTION_GAP_S: f64 = 30.0;
 
 #[cfg(test)]
@@ -200,13 +201,14 @@ mod tests {
             let outcome = answer(&scene.field(Lines::Even));
             let measurement = outcome.measurement().unwrap_or_else(|| panic!("{range_m}: {outcome:?}"));
             let pose = measurement.paper.unwrap();
-            // R to a tenth of a pixel.
+            // R is accurate to a tenth of a pixel.
             let tolerance = 0.15 / (0.25 * 1055.0 / range_m) * range_m;
             assert!((pose.position_m.z - range_m).abs() < tolerance, "{range_m}: {pose:?}");
             assert!((pose.phi_rad.z + roll_rad).abs() < 0.01, "{range_m}: {pose:?}");
             let cross = outcome.features.cross.unwrap();
             assert!(cross.centre.distance(cross.raw_centre) < 1.5);
-            // The best estimator may reject marks of a scene whose cross has no side faces; found they are.
+            // The scene's cross has no side faces, so the best estimator may reject marks; they are found
+            // nevertheless.
             let found = |usage| matches!(usage, MarkUse::Used | MarkUse::Rejected);
             assert!(outcome.features.marks.iter().filter(|m| found(m.usage)).count() >= 11);
         }
@@ -220,7 +222,7 @@ mod tests {
         let again = pipeline.process(&scene.field(Lines::Even), &synthetic::telemetry(0.02));
         assert!(matches!(again.solution, DockingSolution::Doubtful { doubt: FailedCheck::Repeated, .. }));
         let pose = |outcome: &DockingOutcome| outcome.any_measurement().unwrap().paper.unwrap().position_m;
-        // The same pixels from another start: within the pairs that change sides.
+        // Identical pixels from another start: the results differ only by the edge pairs that change sides.
         assert!((pose(&first) - pose(&again)).norm() < 0.02, "{} {}", pose(&first), pose(&again));
     }
 

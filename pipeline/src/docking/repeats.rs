@@ -1,20 +1,22 @@
-//! Fields that come again bit for bit: a digitiser or a network that shows an old one in the place of a lost one.
+//! Detection of fields that are repeated bit for bit: a digitiser or a network may substitute an old field
+//! for a lost one.
 
 use std::collections::VecDeque;
 
 use contract::docking::{Field, Lines};
 
-/// Fields that are remembered: a second of television is longer than any buffer that is known to repeat.
+/// Number of fields in memory: a second of television is longer than any buffer that is known to repeat.
 const MEMORY: usize = 50;
 
-/// The last fields.
+/// Digests of the last fields.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RepeatDetector {
     last: VecDeque<(Lines, u64)>,
 }
 
 impl RepeatDetector {
-    /// Takes a field; whether it was there before. Noise makes no two fields alike by chance: of a field's pixels 64 bits of a sum are kept.
+    /// Adds a field. Returns true if an identical field was among the last ones. Because of noise, no two
+    /// fields are identical by chance; fields are compared by a 64-bit digest of their pixels.
     pub(crate) fn is_repeated(&mut self, field: &Field) -> bool {
         let seen = (field.lines(), digest(field.image().dn()));
         let is_repeated = self.last.contains(&seen);
@@ -26,7 +28,7 @@ impl RepeatDetector {
     }
 }
 
-/// FNV-1a (Fowler, Noll & Vo 1991) over the pixels, in four lanes.
+/// Returns the FNV-1a digest (Fowler, Noll & Vo 1991) of the pixels, in four lanes.
 fn digest(dn: &[u16]) -> u64 {
     const PRIME: u64 = 0x0000_0100_0000_01B3;
     let mut lanes = [0xCBF2_9CE4_8422_2325_u64, 1, 2, 3];

@@ -1,4 +1,4 @@
-//! A target drawn by simple means, for the tests of this module: seen head on, area by area, point by point.
+//! Simply rendered target for the tests of this module: seen head on, area by area, point by point.
 
 use contract::docking::{
     Digitiser, DockingSetup, Field, FieldTelemetry, Lines, Outline, StandOffCross, TargetModel,
@@ -13,7 +13,7 @@ use super::preprocessing::view::Lens;
 pub(crate) const COLUMNS: usize = 768;
 pub(crate) const ROWS: usize = 576;
 
-/// 40° across 768 px, without distortion.
+/// Returns a camera of 40° across 768 px, without distortion.
 pub(crate) fn camera() -> Camera {
     Camera {
         columns: COLUMNS,
@@ -32,7 +32,7 @@ pub(crate) fn lens() -> Lens {
     Lens::new(&camera()).unwrap()
 }
 
-/// Twelve radial marks, a cross, a docking unit below.
+/// Returns a target with twelve radial marks, a cross, and a docking unit below.
 pub(crate) fn target() -> TargetModel {
     let marks = (0..12)
         .map(|i| {
@@ -66,24 +66,24 @@ pub(crate) fn telemetry(time_s: f64) -> FieldTelemetry {
     FieldTelemetry { time_s, camera: 0, digitiser: Digitiser::default() }
 }
 
-/// A target before a station before the sky. Grey values are 8-bit.
+/// Target in front of a station in front of the sky. Grey values are 8-bit.
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
-    /// d3.
+    /// Distance d3, m.
     pub(crate) range_m: f64,
-    /// Turn of the image, towards increasing rows.
+    /// Rotation of the image towards increasing rows, rad.
     pub(crate) roll_rad: f64,
-    /// The disk's centre in the ideal image.
+    /// Position of the disk's centre in the ideal image, px.
     pub(crate) disk_px: Vector2<f64>,
-    /// How far the cross is seen from the disk's centre, px.
+    /// Offset of the cross from the disk's centre, px.
     pub(crate) parallax_px: Vector2<f64>,
-    /// Whether there is a cross.
+    /// True if there is a cross.
     pub(crate) cross: bool,
-    /// A second target, at this place.
+    /// Position of a second target, px.
     pub(crate) second_px: Option<Vector2<f64>>,
-    /// Shadow over everything on the plate to the right of this place (y1, m).
+    /// Position (y1, m) to the right of which everything on the plate is in shadow.
     pub(crate) shadow_from_m: f64,
-    /// Standard deviation of the noise, about, DN.
+    /// Approximate standard deviation of the noise, DN.
     pub(crate) noise_dn: f64,
 }
 
@@ -156,7 +156,7 @@ impl Scene {
         }
     }
 
-    /// Every row of the camera, blurred with a standard deviation of 0.7 px.
+    /// Returns every row of the camera, blurred with a standard deviation of 0.7 px.
     fn rows(&self) -> Vec<f64> {
         const FINE: usize = 3;
         let (model, plane, cross, camera) = (target(), self.plane(), self.cross(), camera());
@@ -188,7 +188,7 @@ impl Scene {
         blur(&blur(&sharp, 1), COLUMNS)
     }
 
-    /// The field as digitised.
+    /// Returns the digitised field.
     pub(crate) fn field(&self, lines: Lines) -> Field {
         let rows = self.rows();
         let mut state = 0x2545_f491_4f6c_dd1d_u64;
@@ -210,12 +210,12 @@ impl Scene {
     }
 }
 
-/// A field from its digital numbers.
+/// Creates a field from its digital numbers.
 pub(crate) fn plain(dn: Vec<u16>, lines: Lines) -> Field {
     Field::new(Frame::new(0, COLUMNS, lines.rows(ROWS), 8, dn, None).unwrap(), lines, ROWS).unwrap()
 }
 
-/// A field of a grey value a pixel.
+/// Creates a field from a function that returns the grey value of a pixel.
 pub(crate) fn drawn(lines: Lines, grey: impl Fn(usize, usize) -> u16) -> Field {
     let dn =
         (0..lines.rows(ROWS) * COLUMNS).map(|i| grey(i % COLUMNS, lines.camera_row(i / COLUMNS))).collect();

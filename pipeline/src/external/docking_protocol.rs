@@ -1,4 +1,4 @@
-//! The lines exchanged with an external docking pipeline: JSON, one object a line, UTF-8.
+//! Lines exchanged with an external docking pipeline: JSON, one object per line, UTF-8.
 //!
 //! Greeting, to the process (metres; `marks` are corners y1, y2 in the disk's plane):
 //! ```json
@@ -6,23 +6,23 @@
 //!  "bit_depth": 8, "target": {"name": "progress", "mark_circle_radius_m": 0.25, "marks": [[[0, 0], [0, 0], [0, 0], [0, 0]]],
 //!  "cross": {"height_m": 0.3, "...": 0}, "...": 0}}
 //! ```
-//! and its answer: `{"boresight_pipeline": 1, "name": "my pipeline"}`.
+//! The answer to it: `{"boresight_pipeline": 1, "name": "my pipeline"}`.
 //!
-//! A field, to the process (`image` is a grey PNG that is removed after the answer; its row k is the camera's row k, 2k or
-//! 2k + 1 for `lines` `all`, `even` or `odd`):
+//! Field, to the process (`image` is a grey PNG that is removed after the answer; its row k is the camera's
+//! row k, 2k or 2k + 1 for `lines` `all`, `even` or `odd`):
 //! ```json
 //! {"field": 12, "image": "/tmp/12.png", "lines": "even", "time_s": 0.24, "camera": 0, "contrast": 1.0, "brightness": 0.0}
 //! ```
-//! and its answer, angles in degrees, in which the standard deviations may be left out and a setting of the digitiser may
-//! be asked for:
+//! The answer to it, with angles in degrees. The standard deviations and the requested digitiser setting
+//! (`contrast`, `brightness`) are optional:
 //! ```json
 //! {"field": 12, "status": "measured", "d_m": [0.1, -0.2, 9.7], "phi_deg": [0.1, 0.0, 1.2],
 //!  "sigma_d_m": [0.02, 0.02, 0.01], "sigma_phi_deg": [0.1, 0.1, 0.05], "contrast": 1.4, "brightness": -0.1}
 //! ```
-//! or the range alone, `{"field": 12, "status": "range_only", "range_m": 310, "sigma_range_m": 4}`, or the reason of none,
-//! `{"field": 12, "status": "no_target"}`: the words are those of [`contract::docking::NoPose::code`], and `failed: `
-//! followed by a reason. A key that is not known makes an answer unusable. A line is at most
-//! [`super::protocol::MAX_LINE_BYTES`] long.
+//! Alternatively, the answer is the range only, `{"field": 12, "status": "range_only", "range_m": 310,
+//! "sigma_range_m": 4}`, or the reason why there is no solution, `{"field": 12, "status": "no_target"}`. The
+//! reasons are those of [`contract::docking::NoPose::code`], and `failed: ` followed by a reason. An unknown
+//! key makes an answer unusable. A line has at most [`super::protocol::MAX_LINE_BYTES`] bytes.
 
 use std::path::Path;
 
@@ -107,10 +107,10 @@ impl Protocol for Docking {
     }
 }
 
-/// The outcome that an answer to field `number` says.
+/// Returns the outcome stated by an answer to field `number`.
 ///
 /// # Errors
-/// Why the answer cannot be used.
+/// The reason why the answer cannot be used.
 pub fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
     let answer: Answer = parse(answer)?;
     if answer.field != number {

@@ -1,25 +1,26 @@
-//! What goes to an external pipeline, and what comes back.
+//! Interface for the lines sent to an external pipeline and received from it.
 
 use std::path::Path;
 
 use contract::Interface;
 use hifitime::Epoch;
 
-/// Writes a time as UTC in ISO 8601 with `Z`, as the caller's files have it: leap seconds are its business.
+/// Function that writes a time as UTC in ISO 8601 with `Z`, as in the caller's files. The caller is
+/// responsible for leap seconds.
 pub type WriteTime = fn(Epoch) -> String;
 
-/// What an external pipeline of an interface is told and answers, line by line.
+/// Lines sent to an external pipeline of an interface, and its answers.
 pub trait Protocol: Interface {
-    /// Extension of the images' files.
+    /// Extension of the image files.
     const EXTENSION: &'static str;
 
-    /// The greeting line.
+    /// Returns the greeting line.
     ///
     /// # Errors
     /// The reason why there is none.
     fn greeting(setup: &Self::Setup) -> Result<Vec<u8>, String>;
 
-    /// The line of an image that lies at `path`.
+    /// Returns the line for an image stored at `path`.
     ///
     /// # Errors
     /// The reason why there is none.
@@ -30,9 +31,9 @@ pub trait Protocol: Interface {
         path: &Path,
     ) -> Result<Vec<u8>, String>;
 
-    /// The outcome that an answer to the image of a number says.
+    /// Returns the outcome stated by an answer to image `number`.
     ///
     /// # Errors
-    /// Why the answer cannot be used.
+    /// The reason why the answer cannot be used.
     fn outcome(answer: &[u8], number: u64, setup: &Self::Setup) -> Result<Self::Outcome, String>;
 }

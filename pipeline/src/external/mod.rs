@@ -1,16 +1,18 @@
-//! Somebody else's pipeline, run as a process.
+//! External pipeline, run as a process.
 //!
-//! The process is given one JSON line on its standard input for each frame, and answers with one JSON line on its
-//! standard output. The lines are described at [`protocol`], those of docking at [`docking_protocol`]. Whatever the process does wrong is an outcome with a
-//! reason, never an error of the run:
+//! For each frame, the process receives one JSON line on its standard input and answers with one JSON line on
+//! its standard output. The lines are described in [`protocol`], those of docking in [`docking_protocol`].
+//! Any fault of the process is an outcome with a reason, never an error of the run:
 //!
-//! - an answer that cannot be used (garbage, a number that is missing, not finite or off the detector, the wrong
-//!   frame) costs its frame; the next one is asked all the same;
-//! - a process that does not start, speaks another version or greets wrongly is ended and started again for the next frame, until it has
-//!   greeted once; whoever runs the sequence looks at [`contract::Pipeline::failed_starts`] and gives up;
-//! - a process that has greeted, and then dies, takes too long, floods its output or speaks out of turn is ended with all its children, and
-//!   every later frame of the sequence says why: it has a memory, and a second one would be another;
-//! - memory beyond its limit is refused to it, and what it then says or how it ends is its answer.
+//! - An answer that cannot be used (garbage, a number that is missing, not finite or off the detector, the
+//!   wrong frame) costs its frame only; the next frame is sent regardless.
+//! - A process that does not start, uses another version or greets incorrectly is ended and started again for
+//!   the next frame, until it has greeted once. The caller that runs the sequence checks
+//!   [`contract::Pipeline::failed_starts`] and gives up.
+//! - A process that has greeted, and then dies, takes too long, floods its output or answers without a
+//!   request is ended with all its children, and every later frame of the sequence states the reason. It is
+//!   not restarted, because a new process would lack the memory of previous frames.
+//! - Memory beyond its limit is refused. The subsequent answer or exit of the process is its result.
 //!
 //! There is no shell: the command is split into words by the rules of POSIX quoting, and run.
 
@@ -35,36 +37,37 @@ use contract::{ContractError, FailedStarts, Interface, Pipeline, PipelineFactory
 
 use process::{Fault, Process};
 
-/// Writes an image (far range: FITS of 16 bits, BZERO 32768; docking: grey PNG) at a path that does not exist yet; the error is a text
-/// for the outcome.
+/// Function that writes an image (far range: FITS of 16 bits, BZERO 32768; docking: grey PNG) to a path that
+/// does not exist yet. The error is a text for the outcome.
 pub type WriteImage<I> =
     dyn Fn(&<I as Interface>::Image, &<I as Interface>::Telemetry, &Path) -> Result<(), String> + Send + Sync;
 
-/// Memory of a process, MB (10⁶ bytes), where nobody says how much.
+/// Default memory limit of a process, MB (10⁶ bytes).
 pub const DEFAULT_MEMORY_MB: u64 = 4000;
 
-/// Builds pipelines that are processes, one process a sequence.
+/// Factory of pipelines that run as processes, one process per sequence.
 pub struct ExternalFactory<I: Protocol> {
-    /// The command, words quoted as in a POSIX shell; no shell runs it.
+    /// Command, with words quoted as in a POSIX shell; no shell runs it.
     pub command: String,
     /// Longest time from start to greeting, s, above 0 to 1e6.
     pub start_timeout_s: f64,
     /// Longest time for one frame, s, above 0 to 1e6.
     pub timeout_s: f64,
-    /// Most memory of the process, and of each one that it starts, MB (10⁶ bytes), 1 to 1e6. Heeded on Linux alone.
+    /// Largest memory of the process, and of each process that it starts, MB (10⁶ bytes), 1 to 1e6. Effective
+    /// on Linux only.
     pub memory_mb: u64,
-    /// What the process may reach of the file system and the network; none: all that this process may.
+    /// Access of the process to file system and network. `None` grants the same access as this process has.
     pub sandbox: Option<Sandbox>,
-    /// An existing directory for images; each is removed after its answer.
+    /// Existing directory for images; each image is removed after its answer.
     pub scratch_dir: PathBuf,
-    /// Writes an image.
+    /// Function that writes an image.
     pub write_image: Arc<WriteImage<I>>,
-    /// Writes a time.
+    /// Function that writes a time.
     pub write_time: WriteTime,
 }
 
 impl<I: Protocol> ExternalFactory<I> {
-    /// A factory with 30 s to start, 10 s a frame and 4 GB.
+    /// Creates a factory with 30 s to start, 10 s per frame and 4 GB.
     pub fn new(
         command: impl Into<String>,
         scratch_dir: PathBuf,
@@ -77,11 +80,11 @@ impl<I: Protocol> ExternalFactory<I> {
         Self { command, start_timeout_s, timeout_s, memory_mb, sandbox, scratch_dir, write_image, write_time }
     }
 
-    /// Checks the command and the limits, before anything is started.
+    /// Checks the command and the limits without starting a process.
     ///
     /// # Errors
-    /// [`ContractError::CannotBuild`] for a command that is empty or ends inside a quotation, a program that is not there, a limit
-    /// outside its range, or a sandbox that the system does not have.
+    /// [`ContractError::CannotBuild`] for a command that is empty or ends inside a quotation, a program that
+    /// does not exist, a limit outside its range, or a sandbox that the system does not support.
     pub fn check(&self) -> Result<(), ContractError> {
         self.plan()?.check_program()?;
         let cannot_build = |reason| ContractError::CannotBuild { pipeline: name(&self.command), reason };
@@ -110,14 +113,14 @@ impl<I: Protocol> fmt::Debug for ExternalFactory<I> {
     }
 }
 
-/// What a factory's command and limits come to.
+/// Command and limits of a factory in checked form.
 struct ProcessPlan {
     program: String,
     arguments: Vec<String>,
     start_limit: Duration,
     frame_limit: Duration,
     memory_bytes: u64,
-    /// With the folder of the images.
+    /// Sandbox, with the directory of the images.
     sandbox: Option<(Sandbox, PathBuf)>,
 }
 
@@ -153,7 +156,7 @@ impl ProcessPlan {
         })
     }
 
-    /// Refuses a program that is not there.
+    /// Refuses a program that does not exist.
     fn check_program(&self) -> Result<(), ContractError> {
         match which::which(&self.program) {
             Ok(_) => Ok(()),
@@ -169,7 +172,7 @@ impl ProcessPlan {
         }
     }
 
-    /// Starts the process and greets it; the reason when either does not succeed.
+    /// Starts the process and greets it. Returns the reason when either fails.
     fn start(&self, greeting: Result<Vec<u8>, String>) -> Result<Process, String> {
         let mut process =
             Process::start(&self.program, &self.arguments, self.memory_bytes, self.sandbox.as_ref())
@@ -185,7 +188,7 @@ impl ProcessPlan {
     }
 }
 
-/// The name of the pipeline of a command.
+/// Returns the name of a command's pipeline.
 fn name(command: &str) -> String {
     format!("exec:{command}")
 }
@@ -195,8 +198,8 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
         name(&self.command)
     }
 
-    /// Starts the process and greets it. One that does not start or greets wrongly gives a pipeline whose first answer says so: only a
-    /// command or a limit that cannot be meant is refused.
+    /// Starts the process and greets it. If the process does not start or greets incorrectly, the pipeline's
+    /// first answer reports this; only an invalid command or limit is an error.
     fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
         let plan = self.plan()?;
         Ok(Box::new(ExternalPipeline::<I> {
@@ -212,11 +215,11 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
     }
 }
 
-/// One sequence with one process.
+/// One sequence processed by one process.
 struct ExternalPipeline<I: Protocol> {
-    /// Until the first image comes.
+    /// Result of the first start, kept until the first image.
     first_start: Option<Result<Process, String>>,
-    /// Once it has greeted; or why it was ended since.
+    /// Process after its greeting, or the reason why it was ended afterwards.
     process: Option<Result<Process, String>>,
     failed_starts: Option<FailedStarts>,
     setup: I::Setup,
@@ -271,13 +274,14 @@ impl<I: Protocol> ExternalPipeline<I> {
     }
 }
 
-/// Number of this sequence in this run: several write their images side by side.
+/// Returns a sequence number unique within this run, because several sequences write their images to the same
+/// directory.
 fn next_sequence() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// Where the images of a sequence are put.
+/// Location of a sequence's images.
 struct Images {
     directory: PathBuf,
     sequence: u64,
@@ -296,14 +300,14 @@ impl Images {
     }
 }
 
-/// A file that is removed when it has served.
+/// Image file, removed when dropped.
 struct Image {
     path: PathBuf,
 }
 
 impl Drop for Image {
     fn drop(&mut self) {
-        // It may never have been written, and the process may have removed it: nothing is lost in either case.
+        // The file may never have been written, or the process may have removed it; both are harmless.
         let _ = std::fs::remove_file(&self.path);
     }
 }

@@ -1,4 +1,4 @@
-//! A child process that is asked and answers line by line, within limits of time and size.
+//! Child process that answers requests line by line, within limits of time and size.
 
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -13,8 +13,8 @@ use super::group;
 use super::protocol::{MAX_LINE_BYTES, harmless};
 use super::sandbox::Sandbox;
 
-/// A running child. Three threads of its own move its lines, so that no pipe, full or empty, can stop the caller for
-/// longer than a limit.
+/// Running child. Three threads move its lines, so a full or empty pipe cannot block the caller for longer
+/// than a limit.
 pub(super) struct Process {
     child: Child,
     /// Lines for the child; `None` once its input is closed.
@@ -24,7 +24,7 @@ pub(super) struct Process {
     errors_reader: JoinHandle<()>,
 }
 
-/// What the child did, in order.
+/// Events of the child, in order.
 enum Event {
     Line(Vec<u8>),
     LineTooLong,
@@ -32,33 +32,34 @@ enum Event {
     InputClosed,
 }
 
-/// Why a child is ended.
+/// Reason for ending a child.
 pub(super) enum Fault {
-    /// It broke the protocol; the text says how.
+    /// Violation of the protocol, with a description.
     Broken(String),
-    /// It gave no answer within this time.
+    /// No answer within this time.
     Late(Duration),
-    /// It closed a pipe, and probably ended; the text says which.
+    /// Pipe closed by the child, which has probably ended; the text names the pipe.
     Closed(&'static str),
 }
 
-/// Beginning of the variables of the environment that are this program's own.
+/// Prefix of this program's environment variables.
 const OWN_VARIABLES: &str = "BORESIGHT_";
 
-/// Unread lines kept at most: a child that floods its output is stopped by its full pipe.
+/// Largest number of unread lines kept: a child that floods its output is blocked by its full pipe.
 const UNREAD_LINES: usize = 4;
 
-/// Time to see how a child that closed a pipe ends, or to end by itself when its input is closed.
+/// Time allowed for a child to end after it closed a pipe or after its input was closed.
 const GRACE: Duration = Duration::from_millis(300);
 
-/// Pause between two looks at whether a child has ended.
+/// Interval between checks if a child has ended.
 const POLL: Duration = Duration::from_millis(2);
 
 impl Process {
-    /// Starts a program, whose memory is limited to so many bytes; in a sandbox with the folder of the images, if there is one.
+    /// Starts a program with its memory limited to `memory_bytes`, and in a sandbox with the directory of the
+    /// images, if one is given.
     ///
     /// # Errors
-    /// That of the operating system, when it cannot be started or limited.
+    /// The error of the operating system, when the program cannot be started or limited.
     pub(super) fn start(
         program: &str,
         arguments: &[String],
@@ -68,7 +69,7 @@ impl Process {
         let mut command = Command::new(program);
         command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         for (name, _) in std::env::vars_os() {
-            // Ours may name scenarios, runs and caches.
+            // This program's variables may name scenarios, runs and caches.
             if name.to_string_lossy().starts_with(OWN_VARIABLES) {
                 command.env_remove(name);
             }
@@ -89,7 +90,7 @@ impl Process {
         }
     }
 
-    /// Sends a line and waits for the child's line, no longer than `limit`.
+    /// Sends a line and waits for the child's answer, for at most `limit`.
     pub(super) fn exchange(&mut self, request: Vec<u8>, limit: Duration) -> Result<Vec<u8>, Fault> {
         match self.events.try_recv() {
             Err(TryRecvError::Empty) => {}
@@ -118,7 +119,8 @@ impl Process {
         }
     }
 
-    /// Ends the child and its descendants; says what happened, with the last of its error output.
+    /// Ends the child and its descendants. Returns a description of the fault, with the last lines of the
+    /// child's error output.
     pub(super) fn end(&mut self, fault: Fault) -> String {
         let ended_by_itself = match fault {
             Fault::Broken(_) => false,
@@ -129,14 +131,14 @@ impl Process {
         let mut text = match (fault, status) {
             (Fault::Broken(text), _) => text,
             (Fault::Late(limit), None) => format!("it gave no answer within {} s", limit.as_secs_f64()),
-            // One of its children holds its pipes open, so that they did not tell.
+            // A descendant holds the pipes open, so they did not report the end.
             (Fault::Late(limit), Some(status)) => {
                 format!("it gave no answer within {} s, and had ended with {status}", limit.as_secs_f64())
             }
             (Fault::Closed(_), Some(status)) => format!("it ended with {status}"),
             (Fault::Closed(pipe), None) => format!("it closed {pipe}"),
         };
-        // The pipe is closed by the kill; a descendant that left the group may hold it open for ever.
+        // The kill closes the pipe, but a descendant that left the group may hold it open for ever.
         let deadline = Instant::now() + GRACE;
         while !self.errors_reader.is_finished() && Instant::now() < deadline {
             std::thread::sleep(POLL);
@@ -170,9 +172,9 @@ impl Process {
 }
 
 impl Drop for Process {
-    /// Closes the child's input, gives it a moment to end, and ends what is left of it.
+    /// Closes the child's input, waits briefly for the child to end, and kills its remaining processes.
     fn drop(&mut self) {
-        // None: it was ended, reaped, and its number may be somebody else's by now.
+        // `None`: the child was ended and reaped, and its identifier may belong to another process.
         if self.requests.take().is_some() {
             self.ends_within(GRACE);
             self.kill();
@@ -180,7 +182,7 @@ impl Drop for Process {
     }
 }
 
-/// The caller's ends of a child's pipes.
+/// Caller's ends of a child's pipes.
 struct Pipes {
     requests: SyncSender<Vec<u8>>,
     events: Receiver<Event>,
@@ -224,17 +226,17 @@ fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> std::io::Result<Jo
     std::thread::Builder::new().name(name.to_owned()).spawn(work)
 }
 
-/// Reads lines until the output ends, a line is too long, or nobody listens.
+/// Reads lines until the output ends, a line is too long, or the receiver is gone.
 fn read_lines(mut output: impl BufRead, events: &SyncSender<Event>) {
     loop {
         let mut line = Vec::new();
-        // An error of a pipe is its end, as far as anybody can tell.
+        // An error of a pipe cannot be distinguished from its end.
         let read = (&mut output).take(MAX_LINE_BYTES as u64 + 1).read_until(b'\n', &mut line).unwrap_or(0);
         let event = match read {
             0 => Event::OutputClosed,
             _ if line.last() == Some(&b'\n') => Event::Line(line),
             n if n > MAX_LINE_BYTES => Event::LineTooLong,
-            // The last line of an output may lack its end.
+            // The last line of an output may lack its line end.
             _ => Event::Line(line),
         };
         let is_last = !matches!(event, Event::Line(_));
@@ -244,18 +246,18 @@ fn read_lines(mut output: impl BufRead, events: &SyncSender<Event>) {
     }
 }
 
-/// Writes lines until there are no more, or the child does not take them.
+/// Writes lines until there are no more, or the child closes its input.
 fn write_lines(mut input: impl Write, requests: &Receiver<Vec<u8>>, events: &SyncSender<Event>) {
     for line in requests {
         if input.write_all(&line).and_then(|()| input.flush()).is_err() {
-            // Nobody listens when the child is being ended.
+            // The receiver is gone when the child is being ended.
             let _ = events.send(Event::InputClosed);
             return;
         }
     }
 }
 
-/// Reads error output until it ends, so that it never blocks the child, and keeps its tail.
+/// Reads error output until it ends, so it never blocks the child, and keeps its tail.
 fn read_errors(mut output: impl Read, errors: &Mutex<Tail>) {
     let mut buffer = [0; 4096];
     while let Ok(read @ 1..) = output.read(&mut buffer) {
@@ -263,7 +265,7 @@ fn read_errors(mut output: impl Read, errors: &Mutex<Tail>) {
     }
 }
 
-/// The last bytes of a stream.
+/// Last bytes of a stream.
 #[derive(Default)]
 struct Tail {
     bytes: VecDeque<u8>,
@@ -279,7 +281,7 @@ impl Tail {
         self.bytes.drain(..excess);
     }
 
-    /// The last lines in one, bytes that are not text replaced.
+    /// Returns the last lines joined into one, with bytes that are not text replaced.
     fn last_lines(&mut self) -> String {
         let text = String::from_utf8_lossy(self.bytes.make_contiguous());
         let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();

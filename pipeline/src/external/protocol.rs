@@ -1,36 +1,36 @@
-//! The lines exchanged with an external pipeline: JSON, one object a line, UTF-8.
+//! Lines exchanged with an external pipeline: JSON, one object per line, UTF-8.
 //!
-//! Greeting, to the process (the star list is the uploaded one; directions are unit vectors along the axes of ICRS,
-//! without aberration; quaternions are Hamilton's, scalar first, v_cam = q v_sc q*):
+//! Greeting, to the process (the star list is the uploaded one; directions are unit vectors along the axes of
+//! ICRS, without aberration; quaternions are Hamilton's, scalar first, v_cam = q v_sc q*):
 //! ```json
 //! {"boresight_pipeline": 1, "camera": {"columns": 752, "rows": 580, "focal_length_mm": 20.187, "...": 0},
 //!  "q_cam_sc": [1, 0, 0, 0], "bit_depth": 12, "readout": {"gain_e_per_dn": 10, "...": 0},
 //!  "calibration": {"full_well_e": 40000, "...": 0}, "stars": [{"id": 11767, "icrs": [0, 0, 1], "magnitude": 1.97}]}
 //! ```
-//! (`readout` and `calibration` are left out where they are not known)
-//! and its answer:
+//! (`readout` and `calibration` are absent if unknown.) The answer to it:
 //! ```json
 //! {"boresight_pipeline": 1, "name": "my pipeline"}
 //! ```
-//! A frame, to the process (`image` is a FITS file of 16 bits that is removed after the answer; `windows` are the
-//! transmitted regions as [x, y, columns, rows], `null` when the whole image was transmitted; the velocity is the
-//! one about the Earth, `null` when not known):
+//! Frame, to the process (`image` is a FITS file of 16 bits that is removed after the answer; `windows` are
+//! the transmitted regions as [x, y, columns, rows], `null` when the whole image was transmitted; the
+//! velocity is the one about the Earth, `null` if unknown):
 //! ```json
 //! {"frame": 12, "image": "/tmp/12.fits", "windows": null, "telemetry": {"time_utc": "2012-04-25T00:00:00.000000000Z",
 //!  "exposure_s": 0.25, "q_sc_j2000": [1, 0, 0, 0], "v_orbital_j2000_km_s": [7.5, 0, 0]}}
 //! ```
-//! and its answer, in which a detection has a place in pixels (the centre of the first pixel is 0, 0), and may have a
-//! line of sight, the attitude of the camera, the number of stars identified and the covariances of the place, px, and of the line of
-//! sight, degrees, each as two standard deviations and their correlation:
+//! The answer to it. A detection has a position in pixels (the centre of the first pixel is 0, 0). Optional
+//! are a line of sight, the attitude of the camera, the number of stars identified, and the covariances of
+//! the position, px, and of the line of sight, degrees, each as two standard deviations and their
+//! correlation:
 //! ```json
 //! {"frame": 12, "status": "detected", "x_px": 395.2, "y_px": 288.1, "los_j2000": [1, 0, 0],
 //!  "q_cam_j2000": [1, 0, 0, 0], "n_stars": 14, "sigma_x_px": 0.05, "sigma_y_px": 0.04, "correlation_xy": 0.1,
 //!  "sigma_ra_deg": 0.002, "sigma_dec_deg": 0.002, "correlation_ra_dec": 0}
 //! ```
-//! or no target: `{"frame": 12, "status": "no_target"}`. The other words for it are those of
-//! [`contract::NoSolution::code`], and `failed: ` followed by a reason. A key that is not known makes an answer
-//! unusable, so that a misspelt one does not pass for a missing one. A line is at most
-//! [`MAX_LINE_BYTES`] long.
+//! Without a target, the answer is `{"frame": 12, "status": "no_target"}`. Other reasons are those of
+//! [`contract::NoSolution::code`], and `failed: ` followed by a reason. An unknown key makes an answer
+//! unusable; otherwise a misspelt key would be treated as missing. A line has at most [`MAX_LINE_BYTES`]
+//! bytes.
 
 use std::path::Path;
 
@@ -43,7 +43,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Protocol, WriteTime};
 
-/// Version of the protocol, first in every greeting.
+/// Version of the protocol, the first key of every greeting.
 pub const VERSION: u32 = 1;
 
 /// Longest line that a process may write, 1 MiB.
@@ -78,7 +78,7 @@ struct Star {
 #[derive(Deserialize)]
 struct GreetingAnswer {
     boresight_pipeline: u32,
-    /// Asked for, so that a log can be read; nothing depends on it.
+    /// Name of the pipeline. Required to make logs readable; otherwise unused.
     #[serde(rename = "name")]
     _name: String,
 }
@@ -117,7 +117,7 @@ struct Answer {
     correlation_ra_dec: Option<f64>,
 }
 
-/// The status of an answer that has a target.
+/// Status of an answer with a target.
 const DETECTED: &str = "detected";
 
 impl Answer {
@@ -138,7 +138,7 @@ impl Answer {
 /// Checks the answer to the greeting.
 ///
 /// # Errors
-/// Why the answer cannot be used.
+/// The reason why the answer cannot be used.
 pub fn check_greeting(answer: &[u8]) -> Result<(), String> {
     let answer: GreetingAnswer = parse(answer)?;
     if answer.boresight_pipeline == VERSION {
@@ -196,10 +196,10 @@ impl Protocol for FarRange {
     }
 }
 
-/// The outcome that an answer to frame `number`, of a detector of `size_px` (columns, rows), says.
+/// Returns the outcome stated by an answer to frame `number`, for a detector of `size_px` (columns, rows).
 ///
 /// # Errors
-/// Why the answer cannot be used.
+/// The reason why the answer cannot be used.
 pub fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Outcome, String> {
     let answer: Answer = parse(answer)?;
     if answer.frame != number {
@@ -266,7 +266,7 @@ fn measurement(answer: &Answer, (columns, rows): (usize, usize)) -> Result<Measu
     })
 }
 
-/// The covariance that three keys of an answer say, if they say one.
+/// Returns the covariance given by three keys of an answer, if any.
 fn covariance(
     keys: [&str; 3],
     said: [Option<f64>; 3],
@@ -295,7 +295,7 @@ pub(super) fn line(value: &impl Serialize) -> Result<Vec<u8>, String> {
     Ok(line)
 }
 
-/// A path as the text of a line.
+/// Returns a path as text for a line.
 pub(super) fn utf8(path: &Path) -> Result<&str, String> {
     path.to_str().ok_or_else(|| format!("the path {} is not UTF-8", path.display()))
 }
@@ -306,7 +306,7 @@ pub(super) fn parse<'a, T: Deserialize<'a>>(line: &'a [u8]) -> Result<T, String>
     })
 }
 
-/// The beginning of a text, for a message.
+/// Returns the beginning of a text, for a message.
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 200;
     let text = text.trim_end();
@@ -314,8 +314,8 @@ pub(super) fn shortened(text: &str) -> String {
     harmless(&beginning.map_or_else(|| text.to_owned(), |beginning| format!("{beginning}…")))
 }
 
-/// A text that orders nothing of a terminal: what a message quotes of a file or a program may hold escape sequences, which are shown as
-/// numbers. Lines and tabs stay.
+/// Returns a text without control characters. Text quoted from a file or a program may contain escape
+/// sequences for terminals, which are replaced by their code numbers. Line breaks and tabs remain.
 pub fn harmless(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for character in text.chars() {

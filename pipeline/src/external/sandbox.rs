@@ -1,20 +1,21 @@
-//! What an external pipeline may reach: its frames, its own files, the system; not the truth.
+//! Access of an external pipeline: its frames, its files and the system, but not the truth.
 //!
-//! The kernel enforces it (Landlock, Linux 5.13 and later) for the process and all that it starts.
+//! Enforced by the kernel (Landlock, Linux 5.13 and later) for the process and all processes that it starts.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
 
-/// Refuses a program all files but its own and the system's.
+/// Restriction of a program to its files and those of the system.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sandbox {
-    /// Files and folders that it may read besides.
+    /// Additional readable files and directories.
     pub readable: Vec<PathBuf>,
-    /// Files and folders that it may not read although its own files lie beside them: scenarios, results.
+    /// Files and directories that remain unreadable although they are beside the program's files: scenarios,
+    /// results.
     pub hidden: Vec<PathBuf>,
 }
 
-/// Folders of the system: programs, libraries, their settings and what describes the machine.
+/// System directories: programs, libraries, their settings and descriptions of the machine.
 #[cfg(target_os = "linux")]
 const SYSTEM: [&str; 14] = [
     "/usr",
@@ -33,7 +34,7 @@ const SYSTEM: [&str; 14] = [
     "/proc/meminfo",
 ];
 
-/// Devices that hold nothing, and those that compute.
+/// Devices without stored data, and devices for computation.
 #[cfg(target_os = "linux")]
 const DEVICES: [&str; 11] = [
     "/dev/null",
@@ -49,11 +50,11 @@ const DEVICES: [&str; 11] = [
     "/dev/nvidia-uvm",
 ];
 
-/// Last part of the path of a folder of programs; what they need lies beside it.
+/// Last path components of directories of programs, whose dependencies are beside them.
 #[cfg(target_os = "linux")]
 const PROGRAMS: [&str; 4] = ["bin", "sbin", "shims", "scripts"];
 
-/// The file that says that a folder holds a run.
+/// File that marks a directory as a run.
 #[cfg(target_os = "linux")]
 const RUN_FILE: &str = "run.toml";
 
@@ -67,18 +68,19 @@ mod landlocked {
     use super::*;
 
     impl Sandbox {
-        /// Whether the kernel can enforce it.
+        /// Checks if the kernel can enforce the sandbox.
         ///
         /// # Errors
-        /// What is missing.
+        /// A description of the missing feature.
         pub fn check() -> Result<(), String> {
             rules().map(drop)
         }
 
-        /// Starts a command in it. Images lie in `scratch`, where the command has a folder of its own for temporary files.
+        /// Starts a command in the sandbox. Images are in `scratch`, which also contains a directory for the
+        /// command's temporary files.
         ///
         /// # Errors
-        /// That of the operating system, when it cannot be started or restricted.
+        /// The error of the operating system, when the command cannot be started or restricted.
         pub(in super::super) fn spawn(
             &self,
             command: &mut Command,
@@ -89,13 +91,14 @@ mod landlocked {
             std::fs::create_dir_all(&temporary)?;
             command.env("TMPDIR", &temporary);
             let readable = self.grants(command, scratch);
-            // A restriction holds for a thread and what it starts, for good.
+            // A restriction applies permanently to a thread and the processes that it starts, hence a
+            // separate thread.
             let restricted = || {
                 let mut rules = rules().map_err(std::io::Error::other)?;
                 for path in &readable.whole {
                     rules = allow(rules, path, AccessFs::from_read(NEWEST))?;
                 }
-                // An interpreter lists the folder of a program to find its modules.
+                // Interpreters list the directory of a program to find its modules.
                 for path in &readable.listed {
                     rules = allow(rules, path, AccessFs::ReadDir.into())?;
                 }
@@ -112,7 +115,7 @@ mod landlocked {
             std::thread::scope(|scope| scope.spawn(restricted).join()).unwrap_or_else(|_| ended())
         }
 
-        /// All that the command may read.
+        /// Returns everything that the command may read.
         fn grants(&self, command: &Command, scratch: &Path) -> Readable {
             let mut grants =
                 Readable { whole: SYSTEM.iter().map(PathBuf::from).collect(), listed: Vec::new() };
@@ -142,7 +145,7 @@ mod landlocked {
             grants
         }
 
-        /// Grants what lies in a folder, but for runs and what is hidden.
+        /// Grants access to the contents of a directory, except runs and hidden entries.
         fn grant_folder(&self, folder: &Path, grants: &mut Readable) {
             grants.listed.push(folder.to_owned());
             let canonical = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
@@ -161,22 +164,22 @@ mod landlocked {
         }
     }
 
-    /// What a command may read.
+    /// Paths that a command may read.
     struct Readable {
-        /// With all that lies in them.
+        /// Paths readable with all their contents.
         whole: Vec<PathBuf>,
-        /// Their names, and those in folders below.
+        /// Directories of which only the names, including those of subdirectories, are readable.
         listed: Vec<PathBuf>,
     }
 
-    /// Newest rights that are known; a kernel that does not know them all enforces those that it knows.
+    /// Newest supported version of the access rights. An older kernel enforces the rights that it supports.
     const NEWEST: ABI = ABI::V6;
-    /// Oldest rights without which nothing is started.
+    /// Oldest version of the access rights with which a process is started.
     const OLDEST: ABI = ABI::V1;
     const MISSING: &str =
         "the kernel has no Landlock (Linux 5.13 and later, switched on), expected it for a sandbox";
 
-    /// Nothing allowed yet: no file, no TCP, no signal to other processes.
+    /// Returns rules that allow nothing: no file, no TCP, no signal to other processes.
     fn rules() -> Result<RulesetCreated, String> {
         let missing = |_| MISSING.to_owned();
         Ruleset::default()
@@ -191,7 +194,7 @@ mod landlocked {
             .map_err(missing)
     }
 
-    /// Allows a path that is there.
+    /// Allows a path, if it exists.
     fn allow(
         rules: RulesetCreated,
         path: &Path,
@@ -202,7 +205,8 @@ mod landlocked {
         rules.add_rule(PathBeneath::new(path_fd, access)).map_err(std::io::Error::other)
     }
 
-    /// What the programs of a folder need: its parent where the folder is called as those of programs are, unless that is a home or the root.
+    /// Returns the directory that the programs of a directory need: its parent if the directory has a typical
+    /// name for programs and the parent is neither a home directory nor the root; else the directory itself.
     fn prefix(programs: &Path) -> PathBuf {
         let is_of_programs = PROGRAMS.iter().any(|name| programs.ends_with(name));
         let home = std::env::home_dir();
@@ -217,7 +221,7 @@ mod landlocked {
 
 #[cfg(not(target_os = "linux"))]
 impl Sandbox {
-    /// Whether the kernel can enforce it.
+    /// Checks if the kernel can enforce the sandbox.
     ///
     /// # Errors
     /// Always.

@@ -1,4 +1,4 @@
-//! The correction of stellar aberration at the boresight (section 2.5, Eqs. 18 to 24).
+//! Correction of stellar aberration at the boresight (section 2.5, Eqs. 18 to 24).
 
 use contract::{CameraFrame, Icrs, Rotation};
 use hifitime::Epoch;
@@ -16,8 +16,9 @@ const OBLIQUITY_DEG: f64 = 23.439_096;
 /// GPS time of 2000-01-01 12:00 UTC, s.
 const GPS_AT_2000_S: f64 = 630_763_213.0;
 
-/// Velocity of the Earth about the Sun, km/s along the axes of ICRS, on a circle (Eq. 19): v (−sin Φ,
-/// cos Φ cos β, cos Φ sin β) with Φ = 1.75337 + 1.99106e-7 t_E. Within 1.7 % of the true one.
+/// Returns the velocity of the Earth about the Sun, km/s along the axes of ICRS, for a circular orbit (Eq.
+/// 19): v (−sin Φ, cos Φ cos β, cos Φ sin β) with Φ = 1.75337 + 1.99106e-7 t_E. Within 1.7 % of the true
+/// velocity.
 pub(super) fn annual_velocity_km_s(time: Epoch) -> Vector3<f64> {
     let elapsed_s = time.to_gpst_seconds() - GPS_AT_2000_S;
     let (sin_phi, cos_phi) = libm::sincos(1.75337 + 1.99106e-7 * elapsed_s);
@@ -25,14 +26,15 @@ pub(super) fn annual_velocity_km_s(time: Epoch) -> Vector3<f64> {
     EARTH_SPEED_KM_S * Vector3::new(-sin_phi, cos_phi * cos_beta, cos_phi * sin_beta)
 }
 
-/// The rotation q of the paper, by which vectors of the camera frame as they appear become vectors as they are:
+/// Returns the rotation q of the paper, which converts apparent to true vectors in the camera frame:
 /// R_cam_j2000 = R(q) · A, with A solved from apparent stars.
 ///
-/// It turns every direction as aberration turns the boresight, exact there to first order in v/c. Stars 9° from it
-/// are left off by up to 0.3″ when the velocity is across the boresight, and by up to 4″ when it is along it (a change
-/// of scale, which is the same on all sides and leaves the attitude alone). `orbital_km_s` is the velocity about the
-/// Earth along the axes of ICRS; without it the annual part alone is corrected (Eq. 18). `None` for a velocity that is
-/// not finite or beyond light.
+/// All directions are rotated like the boresight, for which the correction is exact to first order in v/c.
+/// Stars 9° away have a residual of up to 0.3″ when the velocity is across the boresight, and up to 4″ when
+/// it is along the boresight (a symmetric change of scale without effect on the attitude). `orbital_km_s` is
+/// the velocity about the Earth along the axes of ICRS; without it, only the annual part is corrected (Eq.
+/// 18). Returns `None` for a velocity that is not finite, or whose component across the boresight is at least
+/// twice the speed of light.
 pub fn aberration_correction(
     time: Epoch,
     orbital_km_s: Option<Vector3<f64>>,
@@ -53,8 +55,9 @@ pub fn aberration_correction(
     })
 }
 
-/// Direction in which a star is seen, of a unit vector along the axes of ICRS without aberration: s + v/c, normalised. Exact to (v/c)², a
-/// milliarcsecond; the annual part is [`annual_velocity_km_s`]. An orbital velocity that is not finite counts as unknown.
+/// Returns the apparent direction of a star, from its unit vector along the axes of ICRS without aberration:
+/// s + v/c, normalised. Exact to (v/c)², a milliarcsecond. The annual part is [`annual_velocity_km_s`]. A
+/// non-finite orbital velocity is treated as unknown.
 pub(super) fn apparent_direction(
     time: Epoch,
     orbital_km_s: Option<Vector3<f64>>,
@@ -82,14 +85,14 @@ mod tests {
 
     #[test]
     fn the_earth_moves_towards_the_apex() {
-        // The Earth moves to the ecliptic longitude of the Sun minus 90°: at the March equinox of 2012
-        // (20 March 5:14 UTC) to 270°, at the June solstice (20 June 23:09) to 0°.
+        // The Earth moves towards the ecliptic longitude of the Sun minus 90°: at the March equinox of 2012
+        // (20 March 5:14 UTC) towards 270°, at the June solstice (20 June 23:09) towards 0°.
         for (time, longitude_deg) in [(day(2012, 3, 20), 270.0), (day(2012, 6, 21), 0.0)] {
             let beta = OBLIQUITY_DEG.to_radians();
             let (sin, cos) = libm::sincos(f64::to_radians(longitude_deg));
             let apex = Vector3::new(cos, sin * libm::cos(beta), sin * libm::sin(beta));
             let got = annual_velocity_km_s(time).normalize();
-            // The equation of the centre (1.9°) is what a circle leaves out; the hour of day adds up to 0.5°.
+            // A circular orbit neglects the equation of the centre (1.9°); the hour of day adds up to 0.5°.
             let angle = libm::acos(got.dot(&apex).clamp(-1.0, 1.0)).to_degrees();
             assert!(angle < 2.5, "{time}: {angle}°");
         }
@@ -99,7 +102,7 @@ mod tests {
     fn the_annual_velocity_is_that_of_an_ephemeris() {
         // Heliocentric velocity at J2000 by ERFA's epv00, au/day.
         let expected = Vector3::new(-0.017_207_62, -0.002_898_17, -0.001_256_39) * 1731.457;
-        // 1.66 % of 29.8 km/s, as the paper says, and its epoch 64 s off J2000.
+        // 1.66 % of 29.8 km/s, as stated in the paper, whose epoch is 64 s off J2000.
         assert!((annual_velocity_km_s(day(2000, 1, 1)) - expected).norm() < 0.6);
     }
 
@@ -113,11 +116,11 @@ mod tests {
                 q.angle_to(&Rotation::identity()).arcsec()
             })
             .fold(0.0, f64::max);
-        // v/c = 20.49″, reached where the boresight is across the velocity.
+        // v/c = 20.49″, reached when the boresight is across the velocity.
         assert!((largest - 20.49).abs() < 0.1, "{largest}″");
     }
 
-    /// The exact aberration of special relativity: where an observer with velocity β sees a direction.
+    /// Returns the exact relativistic aberration: the direction seen by an observer with velocity β.
     fn apparent(u: &Vector3<f64>, beta: &Vector3<f64>) -> Vector3<f64> {
         let gamma = 1.0 / (1.0 - beta.norm_squared()).sqrt();
         let along = u.dot(beta);
@@ -145,8 +148,8 @@ mod tests {
             let before = solved.angle_to(&truth);
             let after =
                 (aberration_correction(time, Some(orbital), &solved).unwrap() * solved).angle_to(&truth);
-            // The stars are spread symmetrically by 5.7°: the mean over them differs from the boresight in the
-            // second order, less than 1 % of 25″.
+            // The stars are spread symmetrically by 5.7°: their mean aberration differs from that of the
+            // boresight in second order, less than 1 % of 25″.
             assert!(after < Angle::from_arcsec(0.3), "{}″", after.arcsec());
             assert!(before > Angle::from_arcsec(5.0), "{}″", before.arcsec());
         }

@@ -1,9 +1,9 @@
-//! The minimum-cost assignment between two sets in which most pairs are forbidden.
+//! Minimum-cost assignment between two sets in which most pairs are forbidden.
 
 use pathfinding::kuhn_munkres::kuhn_munkres_min;
 use pathfinding::matrix::Matrix;
 
-/// A pair that may be linked, and its cost, finite and not negative.
+/// Allowed pair with its cost, finite and not negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct AllowedPair {
     pub(super) row: usize,
@@ -11,15 +11,16 @@ pub(super) struct AllowedPair {
     pub(super) cost: f64,
 }
 
-/// The column of each row, or `None`: as many links as the allowed pairs permit, and of all ways to have that
-/// many the one of least total cost (Kuhn–Munkres with an infinite cost for every other pair; section 2.2).
+/// Returns the column assigned to each row, or `None`: the largest number of links that the allowed pairs
+/// permit and, among the assignments with that number, the one of least total cost (Kuhn–Munkres with an
+/// infinite cost for every other pair; section 2.2).
 ///
-/// The allowed pairs fall apart into connected components, since a cluster reaches only what is near it; each
-/// is solved alone, which is exact and turns one large cubic problem into many tiny ones. The worst case, one
-/// component of n × m clusters, costs O(n³).
+/// The allowed pairs form connected components, since a cluster is linked only to nearby ones. Each component
+/// is solved separately, which is exact and replaces one large cubic problem by many tiny ones. The worst
+/// case, one component of n × m clusters, costs O(n³).
 ///
-/// Costs are rounded to integers at 2⁻³⁰ of the largest of their component: sums of integers are exact and
-/// the answer does not depend on the order of additions.
+/// Costs are rounded to integers at 2⁻³⁰ of the largest of their component: sums of integers are exact, and
+/// the result does not depend on the order of additions.
 pub(super) fn assign(rows: usize, columns: usize, pairs: &[AllowedPair]) -> Vec<Option<usize>> {
     let mut column_of_row = vec![None; rows];
     for component in components(rows, columns, pairs) {
@@ -31,9 +32,9 @@ pub(super) fn assign(rows: usize, columns: usize, pairs: &[AllowedPair]) -> Vec<
     column_of_row
 }
 
-/// The pairs of each connected component, components in the order of their first pair.
+/// Returns the pairs of each connected component, in the order of the components' first pairs.
 fn components(rows: usize, columns: usize, pairs: &[AllowedPair]) -> Vec<Vec<AllowedPair>> {
-    // Union-find over rows and, after them, columns.
+    // Union-find over the rows, followed by the columns.
     let mut parent: Vec<usize> = (0..rows + columns).collect();
     fn root(parent: &mut [usize], mut node: usize) -> usize {
         while parent[node] != node {
@@ -59,7 +60,7 @@ fn components(rows: usize, columns: usize, pairs: &[AllowedPair]) -> Vec<Vec<All
     components
 }
 
-/// Solves one component and writes its links.
+/// Solves one component and stores its links.
 fn solve(pairs: &[AllowedPair], column_of_row: &mut [Option<usize>]) {
     let distinct = |of: fn(&AllowedPair) -> usize| {
         let mut all: Vec<usize> = pairs.iter().map(of).collect();
@@ -68,14 +69,14 @@ fn solve(pairs: &[AllowedPair], column_of_row: &mut [Option<usize>]) {
         all
     };
     let (rows, columns) = (distinct(|pair| pair.row), distinct(|pair| pair.column));
-    // The library wants no more rows than columns.
+    // The library requires at most as many rows as columns.
     let transposed = rows.len() > columns.len();
     let (short, long) = if transposed { (&columns, &rows) } else { (&rows, &columns) };
 
     const RESOLUTION: f64 = (1u32 << 30) as f64;
     let largest = pairs.iter().fold(0.0, |most, pair| f64::max(most, pair.cost));
     let scale = if largest > 0.0 { RESOLUTION / largest } else { 0.0 };
-    // Dearer than all links of the component together: one forbidden pair more is never worth it.
+    // Larger than the cost of all links of the component, so an additional forbidden pair never pays.
     let forbidden = (short.len() as i64 + 1) * ((1 << 30) + 1);
     let mut costs = Matrix::new(short.len(), long.len(), forbidden);
     let place = |of: &[usize], value: usize| of.binary_search(&value).unwrap_or_else(|place| place);
@@ -101,7 +102,7 @@ mod tests {
         AllowedPair { row, column, cost }
     }
 
-    /// Most links, then least cost, by trying everything.
+    /// Returns the largest number of links and its least cost, by exhaustive search.
     fn brute_force(row: usize, rows: usize, used: u32, pairs: &[AllowedPair]) -> (usize, f64) {
         if row == rows {
             return (0, 0.0);

@@ -1,19 +1,19 @@
-//! The camera's attitude from stars, and the filtered mounting (section 2.4, Eqs. 14 to 16).
+//! Camera attitude from stars, and the filtered mounting (section 2.4, Eqs. 14 to 16).
 
 use contract::{Body, CameraFrame, Direction, Icrs, Rotation};
 use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// When and how the mounting of the camera is calibrated with stars.
+/// Parameters of the calibration of the camera's mounting with stars.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AttitudeConfig {
-    /// n_min: least number of identified stars for a solution, 2 to 1000000; the paper takes 10.
+    /// Smallest number of identified stars for a solution (n_min), 2 to 1000000; 10 in the paper.
     #[schemars(range(min = 2, max = 1000000))]
     pub min_stars: u32,
-    /// λ of Eq. 16, the weight of the old estimate, 0 to below 1. Near 1 it smooths over about 1/(1 − λ) solutions;
-    /// 0 takes each solution as it is. (The paper's text says the opposite of its equation.)
+    /// Weight λ of the old estimate in Eq. 16, 0 to below 1. Values near 1 average over about 1/(1 − λ)
+    /// solutions; 0 uses each solution unfiltered. (The paper's text contradicts its equation.)
     #[schemars(range(min = 0), extend("exclusiveMaximum" = 1))]
     pub filter_lambda: f64,
 }
@@ -24,7 +24,7 @@ impl Default for AttitudeConfig {
     }
 }
 
-/// A star as seen by the camera and as listed, with its weight ω, above 0.
+/// Star direction in the camera and in the list, with its weight ω, above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StarPair {
     pub(super) camera: Direction<CameraFrame>,
@@ -32,14 +32,14 @@ pub(super) struct StarPair {
     pub(super) weight: f64,
 }
 
-/// Least gap between the two largest eigenvalues, a unit of weight: below it the directions are all one direction, and
-/// the turn about it is free. Stars one pixel apart (4e-4 rad) give about 1e-7.
+/// Smallest gap between the two largest eigenvalues, per unit of weight. Below it, all directions coincide
+/// and the rotation about them is undetermined. Stars one pixel apart (4e-4 rad) give about 1e-7.
 const LEAST_GAP: f64 = 1e-10;
 
-/// The rotation A that minimises J(A) = Σ ω ‖r_cam − A r_icrs‖² (Eq. 14), by Davenport's q-method;
+/// Returns the rotation A that minimises J(A) = Σ ω ‖r_cam − A r_icrs‖² (Eq. 14), by Davenport's q-method;
 /// `None` when the stars do not determine it.
 ///
-/// Σ ω r_cam · (q r_icrs q*) is the quadratic form qᵀ K q; its greatest value on unit quaternions is at the
+/// Σ ω r_cam · (q r_icrs q*) is the quadratic form qᵀ K q; on unit quaternions, it is largest at the
 /// eigenvector of K's largest eigenvalue.
 pub(super) fn solve_q_method(stars: &[StarPair]) -> Option<Rotation<CameraFrame, Icrs>> {
     let b: Matrix3<f64> =
@@ -53,7 +53,7 @@ pub(super) fn solve_q_method(stars: &[StarPair]) -> Option<Rotation<CameraFrame,
         (0, i) | (i, 0) => z[i - 1],
         (i, j) => b[(i - 1, j - 1)] + b[(j - 1, i - 1)] - if i == j { trace } else { 0.0 },
     });
-    // A bound on the sweeps: a NaN among the directions must not turn into an endless loop.
+    // The limit on the sweeps prevents an endless loop if a direction is NaN.
     let eigen = SymmetricEigen::try_new(k, f64::EPSILON, 1000)?;
     let mut order = [0, 1, 2, 3];
     order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
@@ -67,7 +67,7 @@ pub(super) fn solve_q_method(stars: &[StarPair]) -> Option<Rotation<CameraFrame,
     ))))
 }
 
-/// The estimate of the camera's mounting: nominal until the first solution, filtered from then on.
+/// Estimate of the camera's mounting: nominal until the first solution, filtered afterwards.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MountingFilter {
     camera_from_body: Rotation<CameraFrame, Body>,
@@ -80,15 +80,15 @@ impl MountingFilter {
         Self { camera_from_body: nominal, lambda, has_solution: false }
     }
 
-    /// The current estimate.
+    /// Returns the current estimate.
     pub(super) fn camera_from_body(&self) -> Rotation<CameraFrame, Body> {
         self.camera_from_body
     }
 
-    /// Takes in an attitude of the camera solved from stars: Eq. 15, then Eq. 16.
+    /// Updates the estimate with a camera attitude solved from stars: Eq. 15, then Eq. 16.
     ///
-    /// The first solution replaces the nominal mounting: filtering against a ground calibration would keep its
-    /// error for 1/(1 − λ) solutions.
+    /// The first solution replaces the nominal mounting, because filtering would keep the error of the ground
+    /// calibration for 1/(1 − λ) solutions.
     pub(super) fn update(
         &mut self,
         camera_from_icrs: Rotation<CameraFrame, Icrs>,
@@ -104,8 +104,8 @@ impl MountingFilter {
     }
 }
 
-/// Eq. 16: λ q + (1 − λ) q_new, normalised. A quaternion and its opposite are one rotation, so the new one is
-/// given the sign of the old one first.
+/// Computes Eq. 16: λ q + (1 − λ) q_new, normalised. A quaternion and its negative are the same rotation, so
+/// the new one is first given the sign of the old one.
 fn mix(
     old: Rotation<CameraFrame, Body>,
     new: Rotation<CameraFrame, Body>,
@@ -168,7 +168,7 @@ mod tests {
             q in unit_quaternion(),
             seen in proptest::collection::vec(proptest::array::uniform2(-0.16..0.16f64), 8..20),
         ) {
-            // The field of view of the paper's camera: ±9°.
+            // Field of view of the paper's camera: ±9°.
             let attitude = Rotation::from_wxyz(q).unwrap();
             let got = solve_q_method(&pairs(attitude, &seen)).unwrap();
             // Rounding (2e-16) over the relative gap of eigenvalues of such a field (about 1e-2).
@@ -178,7 +178,8 @@ mod tests {
 
     #[test]
     fn noise_is_averaged_in_the_least_squares_sense() {
-        // Opposite errors at opposite stars are a roll, equal ones a tilt: the tilt is their mean.
+        // Opposite errors of opposite stars are a roll, equal errors a tilt; the tilt is the mean of the
+        // errors.
         let truth = Rotation::identity();
         let mut stars = pairs(truth, &[[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]]);
         for star in &mut stars {
@@ -193,18 +194,18 @@ mod tests {
 
     #[test]
     fn a_star_counts_as_much_as_its_weight() {
-        // Four stars, one of which is off: the tilt is the weighted mean.
+        // Four stars, two of them off: the tilt is the weighted mean.
         let mut stars = pairs(Rotation::identity(), &[[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]]);
         for (star, weight) in stars.iter_mut().zip([3.0, 3.0, 1.0, 1.0]) {
             star.weight = weight;
         }
-        // The heavy pair agrees on a tilt of 1e-4 towards x, the light one on none.
+        // The pair with large weight agrees on a tilt of 1e-4 towards x, the pair with small weight on zero.
         for star in &mut stars[..2] {
             let v = *star.camera.vector();
             star.camera = direction(v.x + 1e-4, v.y, v.z);
         }
         let tilt = solve_q_method(&stars).unwrap().rotate(&Vector3::z()).x;
-        // Weighted mean 0.75e-4; the curvature of the field (1 %) is left out.
+        // Weighted mean 0.75e-4; the curvature of the field (1 %) is neglected.
         assert!((tilt - 0.75e-4).abs() < 2e-6, "{tilt}");
     }
 

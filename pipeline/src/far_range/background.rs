@@ -1,39 +1,40 @@
-//! The brightness of the background and its noise, from a histogram.
+//! Brightness of the background and its noise, from a histogram.
 
 use contract::{Frame, Window};
 
 /// Level and noise of the background, DN.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Background {
-    /// Median, interpolated inside its bin.
+    /// Median, interpolated within its bin, DN.
     pub(super) median_dn: f64,
-    /// Standard deviation, from the distance between the median and the 16th percentile: stars brighten pixels,
-    /// nothing darkens them, so the lower side is the noise alone.
+    /// Standard deviation, from the difference between the median and the 16th percentile, DN. Stars only
+    /// brighten pixels, so the lower side is pure noise.
     pub(super) sigma_dn: f64,
 }
 
-/// Estimates [`Background`]; owns the histogram, so that a frame allocates nothing.
+/// Estimator of [`Background`] with a reusable histogram, so a frame needs no allocation.
 #[derive(Debug, Default)]
 pub(super) struct BackgroundEstimator {
     counts: Vec<[u32; TABLES]>,
 }
 
-/// Pixels side by side are counted in tables of their own: one after the other in the same bin each would wait for the one before.
+/// Number of tables. Adjacent pixels are counted in different tables; otherwise each increment of a bin would
+/// have to wait for the previous one.
 const TABLES: usize = 4;
 
-/// Rows are left out until about this many pixels remain: the median of 32768 pixels is known to 0.7 % of the
-/// noise, and the histogram of a whole frame would cost more than its detection.
+/// Approximate number of pixels sampled; excess rows are skipped. The median of 32768 pixels is accurate to
+/// 0.7 % of the noise, and a histogram of the whole frame would cost more than its detection.
 const SAMPLE_PIXELS: usize = 32_768;
 
 /// Fraction of a normal distribution below its mean minus one standard deviation.
 const BELOW_ONE_SIGMA: f64 = 0.158_655_253_931_457;
 
-/// Noise of rounding to whole DN, 1/√12: no frame has less.
+/// Noise of rounding to integer DN, 1/√12: the lower limit of the noise.
 const QUANTISATION_DN: f64 = 0.288_675_134_594_812_9;
 
 impl BackgroundEstimator {
-    /// The background of the transmitted pixels (pixels outside the windows mean nothing); `None` when none was
-    /// transmitted. Windows that overlap count their common pixels more than once.
+    /// Estimates the background of the transmitted pixels (pixels outside the windows have no meaning).
+    /// Returns `None` when none was transmitted. Pixels common to several windows are counted more than once.
     pub(super) fn estimate(&mut self, frame: &Frame) -> Option<Background> {
         let full_scale = frame.full_scale_dn();
         self.counts.clear();
@@ -57,7 +58,7 @@ impl BackgroundEstimator {
         }
         let rank = |fraction: f64| fraction * sampled as f64;
         let [(lower_bin, lower), (_, median_dn)] = self.at_ranks([BELOW_ONE_SIGMA, 0.5].map(rank))?;
-        // A lower percentile in the first bin is cut by the converter, not by the noise.
+        // A lower percentile in the first bin is clipped by the converter and does not represent the noise.
         let sigma_dn = if lower_bin > 0 {
             median_dn - lower
         } else {
@@ -67,8 +68,8 @@ impl BackgroundEstimator {
         Some(Background { median_dn, sigma_dn: sigma_dn.max(QUANTISATION_DN) })
     }
 
-    /// The bins that hold the pixels of some ranks, in ascending order, and the values there, interpolated inside each (bin n covers n ± 0.5);
-    /// `None` without any pixels.
+    /// Returns the bins that contain the pixels of given ranks, in ascending order, and the values there,
+    /// interpolated within each bin (bin n covers n ± 0.5). Returns `None` without any pixels.
     fn at_ranks<const N: usize>(&self, ranks: [f64; N]) -> Option<[(usize, f64); N]> {
         let (mut found, mut next) = ([(0, 0.0); N], 0);
         let mut below = 0.0;
@@ -98,7 +99,8 @@ impl BackgroundEstimator {
 mod tests {
     use super::*;
 
-    /// Rounded normal deviates by the inverse of the normal distribution on an even grid, with no generator.
+    /// Returns rounded normal deviates by the inverse of the normal distribution on an even grid, without a
+    /// random generator.
     fn normal_dn(n: usize, mean: f64, sigma: f64) -> Vec<u16> {
         let mut values: Vec<u16> = (0..n)
             .map(|i| {
@@ -113,7 +115,7 @@ mod tests {
                 (mean + sigma * low).round().max(0.0) as u16
             })
             .collect();
-        // Spread over the frame: rows are sampled.
+        // Spread over the frame, because rows are sampled.
         let len = values.len();
         for i in 0..len {
             values.swap(i, (i * 7919) % len);
@@ -130,7 +132,7 @@ mod tests {
     fn level_and_noise_of_a_normal_background_come_back() {
         for sigma in [0.8, 1.5, 10.0] {
             let got = estimate(normal_dn(10_000, 100.3, sigma), None).unwrap();
-            // Linear interpolation inside bins of 1 DN, coarse when the noise is less than a bin.
+            // Linear interpolation within bins of 1 DN, which is coarse when the noise is less than a bin.
             let with_rounding = (sigma * sigma + 1.0 / 12.0).sqrt();
             assert!((got.median_dn - 100.3).abs() < 0.06, "{got:?}");
             assert!((got.sigma_dn / with_rounding - 1.0).abs() < 0.1, "{got:?}");
@@ -142,7 +144,7 @@ mod tests {
         let mut dn = normal_dn(10_000, 100.0, 3.0);
         dn.iter_mut().step_by(50).for_each(|v| *v = 3000);
         let got = estimate(dn, None).unwrap();
-        // 2 % of stars move the median and the 16th percentile by about 0.03 σ each.
+        // 2 % of stars shift the median and the 16th percentile by about 0.03 σ each.
         assert!((got.median_dn - 100.0).abs() < 0.2 && (got.sigma_dn - 3.0).abs() < 0.2, "{got:?}");
     }
 

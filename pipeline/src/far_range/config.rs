@@ -1,4 +1,4 @@
-//! All parameters of the far-range method.
+//! Parameters of the far-range method.
 
 use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
@@ -12,7 +12,7 @@ use super::identify::IdentificationConfig;
 use super::threshold::ThresholdConfig;
 use super::track::TrackingConfig;
 
-/// Parameters of the far-range method; every one has a default.
+/// Parameters of the far-range method; all have defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FarRangeConfig {
@@ -22,10 +22,11 @@ pub struct FarRangeConfig {
     pub best: BestConfig,
     /// Thresholds I1 and I2 of detection.
     pub thresholds: ThresholdConfig,
-    /// What weights the pixels of a cluster: `intensity` as in the paper, or `above_background`.
+    /// Weights of the pixels of a cluster: `intensity` as in the paper, or `above_background`.
     pub weights: Weights,
-    /// Most clusters kept in a frame, those of the largest weighted size, 1 to 2000. Bounds the time of linking, which
-    /// grows with the cube of the clusters that could all be linked with each other.
+    /// Largest number of clusters kept in a frame, those of the largest weighted size, 1 to 2000. Bounds the
+    /// time of linking, which increases with the cube of the number of clusters that could all be linked with
+    /// each other.
     #[schemars(range(min = 1, max = 2000))]
     pub max_clusters: u32,
     /// Identification of stars.
@@ -34,12 +35,12 @@ pub struct FarRangeConfig {
     pub tracking: TrackingConfig,
     /// Hotspots of the detector.
     pub hotspots: HotspotConfig,
-    /// The camera's attitude from stars.
+    /// Camera attitude from stars.
     pub attitude: AttitudeConfig,
-    /// Whether the attitude from stars is corrected for aberration.
+    /// Aberration correction of the attitude from stars: `correct` or `ignore`.
     pub aberration: AberrationConfig,
-    /// Longest time between two frames that are linked, s, above 0 to 1e9. After a longer gap, or when time does
-    /// not advance, tracking starts anew.
+    /// Longest time between two linked frames, s, above 0 to 1e9. After a longer gap, or when time does not
+    /// advance, tracking starts anew.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e9))]
     pub max_gap_s: f64,
 }
@@ -48,21 +49,21 @@ pub struct FarRangeConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
-    /// Attitude from prior and stars, hypotheses about the target, fitted images (docs/best-mode.md).
+    /// Attitude from prior and stars, hypotheses for the target, fitted images (docs/best-mode.md).
     #[default]
     Best,
-    /// The paper's method.
+    /// Method of the paper.
     Paper,
 }
 
-/// Whether aberration is corrected.
+/// Treatment of aberration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AberrationConfig {
-    /// Eqs. 18 to 24.
+    /// Corrected by Eqs. 18 to 24.
     #[default]
     Correct,
-    /// Left in the attitude.
+    /// Not corrected: remains in the attitude.
     Ignore,
 }
 
@@ -88,7 +89,7 @@ impl FarRangeConfig {
     /// Checks every parameter.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range, by its path.
+    /// [`OutOfRange`] for the first parameter outside its range, with its path.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "")?;
         self.thresholds.check()?;
@@ -97,10 +98,11 @@ impl FarRangeConfig {
         Ok(())
     }
 
-    /// Checks that a camera whose pixels up to `zero_suppression_dn` arrive as 0 hides none that the pipeline looks at.
+    /// Checks that zero suppression, which transmits pixels up to `zero_suppression_dn` as 0, affects no
+    /// pixel that the pipeline uses.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the parameter by which it would.
+    /// [`OutOfRange`] for the conflicting parameter.
     pub fn check_suppression(
         &self,
         zero_suppression_dn: Option<u16>,
@@ -172,7 +174,7 @@ mod tests {
                 r#"{{"mode": "paper", "thresholds": {{"mode": "constant", "low": {low}, "high": 0.03}}{more}}}"#
             )
         };
-        // Full scale is 4095: 0.0165 is 67.6 DN, a pixel passes from 68 on.
+        // Full scale is 4095: 0.0165 is 67.6 DN, so a pixel passes from 68 on.
         assert_eq!(checked(&constant(0.0165, "")), Ok(()));
         let expected = "thresholds.low is 0.016, 65 DN, expected zero_suppression_dn or more: below it pixels arrive as 0";
         assert_eq!(checked(&constant(0.016, "")), Err(expected.to_owned()));

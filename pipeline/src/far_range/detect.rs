@@ -6,22 +6,22 @@ use serde::{Deserialize, Serialize};
 
 use super::threshold::Thresholds;
 
-/// What weights the pixels of a cluster in Eqs. 1 and 2.
+/// Weights of the pixels of a cluster in Eqs. 1 and 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Weights {
-    /// The intensity I in [0, 1], as printed. The background under the cluster weights it too and pulls the
+    /// Intensity I in [0, 1], as printed. The background under the cluster also contributes and pulls the
     /// centre towards the middle of the set of pixels: a bias wherever the set is not symmetric.
     #[default]
     Intensity,
-    /// The intensity above the frame's median, never below 0.
+    /// Intensity above the frame's median, at least 0.
     AboveBackground,
 }
 
-/// A cluster: connected pixels (8 neighbours), each above I1 and at least one above I2.
+/// Cluster: connected pixels (8 neighbours), each above I1 and at least one above I2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Blob {
-    /// Brightness centre c (Eq. 1).
+    /// Centre of brightness c (Eq. 1).
     pub(super) centre: PixelPoint,
     /// Weighted size s (Eq. 2), in units of full scale.
     pub(super) size: f64,
@@ -29,33 +29,34 @@ pub(super) struct Blob {
     pub(super) pixels: u32,
 }
 
-/// Finds clusters. Owns its buffers: a frame of the same size as the last one allocates nothing.
+/// Detector of clusters. Its buffers are reused, so a frame of the same size as the previous one needs no
+/// allocation.
 #[derive(Debug, Default)]
 pub(super) struct Detector {
-    /// One bit a pixel: in a cluster of this frame.
+    /// Flags of pixels in a cluster of this frame, one bit per pixel.
     marked: Vec<u64>,
-    /// Pixels of all clusters of the frame, one cluster after the other; the queue of the fill as well.
+    /// Pixels of all clusters of the frame, one cluster after the other. Also the queue of the fill.
     members: Vec<u32>,
     blobs: Vec<Blob>,
-    /// Where the pixels of each cluster begin among the members.
+    /// Index among the members of the first pixel of each cluster.
     first_members: Vec<usize>,
     bright: BrightChunks,
 }
 
-/// Which chunks of the pixels of a frame hold a bright one.
+/// Chunks of a frame that contain a bright pixel.
 #[derive(Debug, Default)]
 struct BrightChunks {
-    /// One bit a chunk, the lowest of a word first.
+    /// Flags of the chunks, one bit per chunk, lowest bit of a word first.
     words: Vec<u64>,
-    /// Pixels of full scale.
+    /// Number of pixels at full scale.
     saturated: usize,
 }
 
-/// Chunks of a word.
+/// Number of chunks per word.
 const OF_A_WORD: usize = u64::BITS as usize;
 
 impl BrightChunks {
-    /// Makes them those in which a pixel is above `above_dn`, or of full scale.
+    /// Finds the chunks with a pixel above `above_dn` or at full scale.
     fn find(&mut self, frame: &Frame, above_dn: u16) {
         let full_scale = frame.full_scale_dn();
         let count = frame.dn().len().div_ceil(CHUNK);
@@ -74,11 +75,11 @@ impl BrightChunks {
         self.saturated = self.chunks(frame).map(|(_, chunk)| of_full_scale(chunk)).sum();
     }
 
-    /// Index of the first pixel of each of them, and its pixels, in the order of the frame.
+    /// Returns the index of the first pixel and the pixels of each bright chunk, in the order of the frame.
     fn chunks<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = (usize, &'a [u16])> {
         let dn = frame.dn();
         self.words.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(move |(i, &word)| {
-            // Each word is the one before without its lowest one.
+            // Each word is the previous one without its lowest set bit.
             std::iter::successors(Some(word), |word| Some(word & word.wrapping_sub(1)))
                 .take_while(|word| *word != 0)
                 .map(move |word| {
@@ -89,12 +90,12 @@ impl BrightChunks {
     }
 }
 
-/// The bright chunks of an image, on the widest registers of the machine.
+/// Search for the bright chunks of an image, on the widest registers of the machine.
 struct FindBright<'a> {
     words: &'a mut [u64],
     dn: &'a [u16],
     columns: usize,
-    /// Where pixels were transmitted, if not everywhere: all others are 0.
+    /// Transmitted regions; all other pixels are 0. `None` if all pixels were transmitted.
     windows: Option<&'a [Window]>,
     from_dn: u16,
 }
@@ -129,31 +130,33 @@ impl pulp::WithSimd for FindBright<'_> {
     }
 }
 
-/// Whether one of some pixels is `dn` or more: without an early exit, for all of them at once.
+/// Returns true if any of the pixels is `dn` or more. Compares all of them at once, without an early exit.
 #[inline(always)]
 fn holds_from(dn: u16, pixels: &[u16]) -> bool {
     pixels.iter().fold(false, |any, &pixel| any | (pixel >= dn))
 }
 
-/// Pixels compared at once while looking for one above I2; a multiple of any vector's length.
+/// Number of pixels compared at once in the search for pixels above I2; a multiple of any vector's length.
 const CHUNK: usize = 32;
 
-/// The same in a chunk that has one; if there is one among them, they are looked at one by one.
+/// Number of pixels compared at once within a bright chunk. If any of them is above the threshold, they are
+/// tested one by one.
 const FEW: usize = 8;
 
 impl Detector {
-    /// Looks over a frame, the next one of [`Detector::detect`] with these thresholds; tells how many pixels are of full scale.
+    /// Scans a frame for the following [`Detector::detect`] with the same thresholds. Returns the number of
+    /// pixels at full scale.
     pub(super) fn find_bright(&mut self, frame: &Frame, thresholds: Thresholds) -> usize {
         self.bright.find(frame, thresholds.high_dn);
         self.bright.saturated
     }
 
-    /// The clusters of the frame that was looked over, in the order of their first bright pixel row by row, and no more than
-    /// `max_clusters` of them: those of the largest weighted size are kept.
+    /// Returns the clusters of the scanned frame, in the order of their first bright pixel row by row. Keeps
+    /// at most `max_clusters`, those of the largest weighted size.
     ///
-    /// Pixels outside the frame's windows are 0 and so never above a threshold.
-    /// `base_dn` is taken off every pixel before it weights (0 for [`Weights::Intensity`]); a cluster with no
-    /// weight left is dropped.
+    /// Pixels outside the frame's windows are 0 and therefore never above a threshold. `base_dn` is
+    /// subtracted from every pixel before weighting (0 for [`Weights::Intensity`]); a cluster without any
+    /// remaining weight is dropped.
     pub(super) fn detect(
         &mut self,
         frame: &Frame,
@@ -194,24 +197,26 @@ impl Detector {
         &self.blobs
     }
 
-    /// The pixels of cluster `i` of the last frame, as indices into its image.
+    /// Returns the pixels of cluster `i` of the last frame, as indices into its image.
     pub(super) fn members(&self, i: usize) -> &[u32] {
         let first = self.first_members[i];
         &self.members[first..first + self.blobs[i].pixels as usize]
     }
 
-    /// The pixels of all clusters of the last frame, those dropped included, as indices into its image.
+    /// Returns the pixels of all clusters of the last frame, including dropped ones, as indices into its
+    /// image.
     pub(super) fn pixels_in_clusters(&self) -> impl Iterator<Item = usize> {
         self.members.iter().map(|&index| index as usize)
     }
 
-    /// Whether a pixel of the last frame belongs to any cluster, those dropped included.
+    /// Returns true if a pixel of the last frame belongs to any cluster, including dropped ones.
     pub(super) fn is_in_cluster(&self, index: usize) -> bool {
         self.is_marked(index)
     }
 
     /// Collects the pixels connected to `seed` through pixels above `low_dn`, without recursion: the list of
-    /// members is its own queue. Their cluster by Eqs. 1 and 2; `None` when nothing of it is above `base_dn`.
+    /// members is also the queue. Returns their cluster by Eqs. 1 and 2, or `None` when none of the pixels is
+    /// above `base_dn`.
     fn take(&mut self, frame: &Frame, seed: usize, low_dn: u16, base_dn: f64) -> Option<Blob> {
         let (columns, rows) = (frame.columns(), frame.rows());
         let (dn, full_scale) = (frame.dn(), frame.full_scale_dn());
@@ -221,7 +226,7 @@ impl Detector {
         self.mark(seed);
         while let Some(&index) = self.members.get(next) {
             next += 1;
-            // In 32 bits: a division of 64 takes longer.
+            // Uses 32 bits, because a 64-bit division takes longer.
             let (x, y) = ((index % columns as u32) as usize, (index / columns as u32) as usize);
             let weight = (f64::from(dn[index as usize].min(full_scale)) - base_dn).max(0.0);
             sum += weight;
@@ -250,22 +255,23 @@ impl Detector {
 
     fn mark(&mut self, index: usize) {
         self.marked[index / 64] |= 1 << (index % 64);
-        // Below 16384² pixels an index fits.
+        // An index fits in 32 bits below 16384² pixels.
         self.members.push(index as u32);
     }
 }
 
-/// The `max_clusters` largest clusters, in the order of the frame.
+/// Returns the indices of the `max_clusters` largest clusters, in the order of the frame.
 fn largest(blobs: &[Blob], max_clusters: usize) -> Vec<usize> {
     let mut by_size: Vec<usize> = (0..blobs.len()).collect();
-    // Equal sizes: the first one in the frame stays.
+    // Among equal sizes, the first cluster in the frame is kept.
     by_size.sort_by(|&a, &b| blobs[b].size.total_cmp(&blobs[a].size).then(a.cmp(&b)));
     by_size.truncate(max_clusters);
     by_size.sort_unstable();
     by_size
 }
 
-/// Number of transmitted pixels; overlapping windows count no more than the image holds.
+/// Returns the number of transmitted pixels. With overlapping windows, it is limited to the number of pixels
+/// of the image.
 pub(super) fn transmitted_pixels(frame: &Frame) -> usize {
     let all = frame.columns() * frame.rows();
     frame.windows().map_or(all, |windows| {
@@ -278,7 +284,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A 12-bit frame drawn in characters: '.' 0, digits hundreds of DN, '#' full scale.
+    /// Returns a 12-bit frame drawn in characters: '.' 0, digits hundreds of DN, '#' full scale.
     fn drawn(rows: &[&str]) -> Frame {
         let dn = rows
             .iter()
@@ -389,14 +395,14 @@ mod tests {
     #[test]
     fn saturated_pixels_are_counted() {
         let frame = drawn(&["##.", "9.#"]);
-        // With every threshold, full scale itself included.
+        // For every threshold, including full scale.
         for high_dn in [0, 400, 4094, 4095, u16::MAX] {
             let thresholds = Thresholds { low_dn: 0, high_dn };
             assert_eq!(Detector::default().find_bright(&frame, thresholds), 3);
         }
     }
 
-    /// A frame with windows is looked at in their chunks alone: that is all that is not 0.
+    /// Only the chunks of its windows are examined in a frame with windows; all other pixels are 0.
     #[test]
     fn windows_and_the_whole_of_what_they_hold_are_the_same() {
         let windows: Vec<Window> =
@@ -420,7 +426,7 @@ mod tests {
     }
 
     proptest! {
-        /// The witness: labels spread from pixel to neighbour until nothing changes.
+        /// Reference: labels spread from pixel to neighbour until nothing changes.
         #[test]
         fn clusters_are_the_connected_components(
             columns in 1usize..12,

@@ -10,39 +10,42 @@ use serde::{Deserialize, Serialize};
 use super::detect::Blob;
 use super::track::Track;
 
-/// How hotspots are told from a target that hardly moves.
+/// Method to distinguish hotspots from a target that hardly moves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "mode", rename_all = "snake_case", deny_unknown_fields)]
 pub enum HotspotConfig {
-    /// A cluster tracked over more than `n_min` frames whose mean velocity is below `v_min_px_per_s`.
+    /// Hotspots are clusters tracked over more than `n_min` frames with a mean velocity below
+    /// `v_min_px_per_s`.
     ///
-    /// With a camera that points at the target this can swallow the target. With Eq. 10 as printed (no `n_max`)
-    /// it does so after one orbit: the target is back at its first pixel and its mean velocity is nearly 0.
+    /// With a camera that points at the target, this can remove the target. With Eq. 10 as printed (no
+    /// `n_max`), it does so after one orbit, when the target is back at its first pixel and its mean velocity
+    /// is nearly 0.
     Automatic {
-        /// N_min: frames that a cluster must be tracked back, 0 to 1000000.
+        /// Number of frames N_min over which a cluster must have been tracked, 0 to 1000000.
         #[serde(default = "default_n_min")]
         #[schemars(range(min = 0, max = 1000000))]
         n_min: u32,
-        /// v_min: mean velocity below which a cluster is a hotspot, px/s, 0 to 1000; the paper's typical value
+        /// Mean velocity v_min below which a cluster is a hotspot, px/s, 0 to 1000; the paper's typical value
         /// is 0.001.
         #[serde(default = "default_v_min")]
         #[schemars(range(min = 0, max = 1000))]
         v_min_px_per_s: f64,
-        /// Steps that the mean velocity is taken over, the last ones, above `n_min`, at most 10000; `null`: Eq. 10 as
-        /// printed, the mean over the whole track.
+        /// Number of last steps over which the mean velocity is computed, above `n_min`, at most 10000;
+        /// `null`: Eq. 10 as printed, the mean over the whole track.
         #[serde(default = "default_n_max")]
         #[schemars(range(min = 1, max = 10000))]
         n_max: Option<u32>,
-        /// Whether the pixel of a hotspot stays marked for the rest of the sequence. If not, a hot pixel that
-        /// drops below the threshold once is a candidate again until it has been tracked for `n_min` frames.
+        /// True if the pixel of a hotspot remains marked until the end of the sequence. Otherwise a hot pixel
+        /// that once drops below the threshold is a candidate again until it has been tracked for `n_min`
+        /// frames.
         #[serde(default = "default_keep_pixels")]
         keep_pixels: bool,
     },
-    /// No hotspot is looked for; recommended with target pointing when no list is known.
+    /// No search for hotspots; recommended with target pointing when no list is known.
     Off,
-    /// Known hotspots; nothing else is one.
+    /// Only known hotspots.
     List {
-        /// Pixels as (column, row), the first pixel is (0, 0).
+        /// Pixels as (column, row), with the first pixel at (0, 0).
         #[schemars(extend("items" = {
             "type": "array",
             "items": { "type": "integer", "minimum": 0, "maximum": 16383 },
@@ -84,7 +87,7 @@ impl HotspotConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first number outside its range.
     pub(super) fn check(&self) -> Result<(), OutOfRange> {
         if let Self::Automatic { n_min, n_max: Some(n_max), .. } = *self {
             let expected = "greater than hotspots.n_min, at most 10000";
@@ -93,7 +96,7 @@ impl HotspotConfig {
         Ok(())
     }
 
-    /// How many steps a mean velocity is taken over; `None`: all of them.
+    /// Returns the number of steps over which a mean velocity is computed; `None` means all steps.
     pub(super) fn n_max(&self) -> Option<u32> {
         match self {
             Self::Automatic { n_max, .. } => *n_max,
@@ -102,18 +105,19 @@ impl HotspotConfig {
     }
 }
 
-/// What is known about hotspots at a frame: the configuration and the marked pixels.
+/// Hotspots at a frame: the configuration and the marked pixels.
 #[derive(Debug)]
 pub(super) struct Hotspots {
     config: HotspotConfig,
-    /// (row, column), in order, so that a search looks at few rows.
+    /// Marked pixels as (row, column), sorted to limit a search to a few rows.
     marked: BTreeSet<(i64, i64)>,
 }
 
-/// The centre of a hotspot's cluster stays this near to its pixel even when neighbours rise above I1, px.
+/// Largest distance of the centre of a hotspot's cluster from its pixel, even when neighbours exceed I1, px.
 const MARK_RADIUS_PX: f64 = 1.0;
 
-/// A hot pixel and its neighbours: a larger cluster on a marked pixel is something else that passes over it.
+/// Largest size of a hotspot's cluster, pixels: a hot pixel and its neighbours. A larger cluster on a marked
+/// pixel is another object that passes over it.
 const MARK_MAX_PIXELS: u32 = 9;
 
 impl Hotspots {
@@ -127,7 +131,7 @@ impl Hotspots {
         Self { config, marked }
     }
 
-    /// Whether a cluster sits on a marked pixel.
+    /// Returns true if a cluster is on a marked pixel.
     pub(super) fn is_marked(&self, blob: &Blob) -> bool {
         if blob.pixels > MARK_MAX_PIXELS {
             return false;
@@ -139,8 +143,8 @@ impl Hotspots {
         (y - 1..=y + 1).any(|row| self.marked.range((row, x - 1)..=(row, x + 1)).any(near))
     }
 
-    /// Whether a track is a hotspot by its history: N > N_min and ‖v‖ < v_min. Marks its pixel when pixels are
-    /// kept.
+    /// Returns true if a track is a hotspot by its history: N > N_min and ‖v‖ < v_min. Marks its pixel if the
+    /// configuration keeps pixels.
     pub(super) fn is_hotspot(&mut self, track: &Track) -> bool {
         let HotspotConfig::Automatic { n_min, v_min_px_per_s, keep_pixels, .. } = self.config else {
             return false;

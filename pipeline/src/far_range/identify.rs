@@ -7,15 +7,16 @@ use serde::{Deserialize, Serialize};
 use super::detect::Blob;
 use crate::CameraModel;
 
-/// Which clusters count as which stars.
+/// Parameters of the identification of clusters as stars.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct IdentificationConfig {
-    /// Greatest distance between a predicted star and its cluster, px, 0 to 1000. Too small loses stars to the
-    /// errors of attitude, mounting and aberration (0.3 px); too large takes the target for a star near it.
+    /// Largest distance between a predicted star and its cluster, px, 0 to 1000. If too small, stars are lost
+    /// by the errors of attitude, mounting and aberration (0.3 px); if too large, the target is mistaken for
+    /// a star near it.
     #[schemars(range(min = 0, max = 1000))]
     pub radius_px: f64,
-    /// Faintest star of the list that is looked for, visual magnitude, −30 to 30.
+    /// Magnitude of the faintest stars of the list that are used, visual, −30 to 30.
     #[schemars(range(min = -30, max = 30))]
     pub max_magnitude: f64,
 }
@@ -28,36 +29,37 @@ impl Default for IdentificationConfig {
 
 impl IdentificationConfig {}
 
-/// A listed star and where it should be in the frame.
+/// Listed star with its predicted position in the frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PredictedStar {
     pub(super) star: ListedStar,
     pub(super) position: PixelPoint,
 }
 
-/// The star list, cut to the magnitudes looked for, and the cone that holds the field of view.
+/// Star list, limited to the magnitudes used, and the cone that contains the field of view.
 #[derive(Debug)]
 pub(super) struct StarList {
     stars: Vec<ListedStar>,
-    /// From the south to the north: the sine of the declination of a star, and its place among them.
+    /// Sine of the declination and index of each star, from south to north.
     by_declination: Vec<(f64, u32)>,
     cos_cone: f64,
 }
 
-/// Widening of the cone's cosine, so that rounding leaves no star of the corners out.
+/// Margin on the cone's cosine, so rounding excludes no star at the corners.
 const CONE_MARGIN: f64 = 1e-4;
 
-/// Of the sine of a declination, far more than rounding makes of it.
+/// Margin on the sine of a declination, far larger than its rounding error.
 const ROUNDING: f64 = 1e-9;
 
-/// The sine of the declination and the place of each star, from the south to the north.
+/// Returns the sine of the declination and the index of each star, from south to north.
 ///
-/// In two steps, because a sky of stars is sorted for every case of a study: into belts of the same area, and within each.
+/// Sorts in two steps, into belts of equal area and within each belt, because a full sky is sorted for every
+/// case of a study.
 fn by_declination(stars: &[ListedStar]) -> Vec<(f64, u32)> {
     let belts = stars.len().clamp(1, 1 << 14);
     let sine = |star: &ListedStar| star.direction.vector().z;
     let belt = |star: &ListedStar| ((0.5 * (sine(star) + 1.0) * belts as f64) as usize).min(belts - 1);
-    // Where the stars of each belt begin.
+    // Index of the first star of each belt.
     let mut next = vec![0; belts + 1];
     stars.iter().for_each(|star| next[belt(star) + 1] += 1);
     (0..belts).for_each(|i| next[i + 1] += next[i]);
@@ -83,20 +85,21 @@ impl StarList {
         Self { stars, by_declination, cos_cone: (model.cos_half_field() - CONE_MARGIN).max(0.0) }
     }
 
-    /// The listed star of this number.
+    /// Returns the listed star with this number.
     pub(super) fn by_id(&self, id: u32) -> Option<ListedStar> {
         self.stars.iter().find(|star| star.id == id).copied()
     }
 
-    /// Eq. 4: the listed stars in front of the camera and inside Ω, with their pixels. Aberration is left out:
-    /// at 0.3 px it is a fraction of any sensible radius.
+    /// Returns the listed stars in front of the camera and inside Ω, with their pixel positions (Eq. 4).
+    /// Aberration is neglected: 0.3 px is a fraction of any sensible radius.
     pub(super) fn predict(
         &self,
         camera_from_icrs: &Rotation<CameraFrame, Icrs>,
         model: &CameraModel,
     ) -> Vec<PredictedStar> {
         let matrix = camera_from_icrs.matrix();
-        // The z component in the camera is the cosine of the angle to the boresight: one product rejects most stars.
+        // The z component in the camera frame is the cosine of the angle to the boresight: one product
+        // rejects most stars.
         let boresight = matrix.row(2).transpose();
         let mut near: Vec<_> = self
             .in_declination_band(boresight.z)
@@ -113,11 +116,12 @@ impl StarList {
             .collect()
     }
 
-    /// The stars of the declinations that the cone about a direction of the declination with the sine `z` has.
+    /// Returns the stars within the range of declinations covered by the cone about a direction whose
+    /// declination has the sine `z`.
     fn in_declination_band(&self, z: f64) -> &[(f64, u32)] {
         let (cos_cone, sin_cone) = (self.cos_cone, (1.0 - self.cos_cone * self.cos_cone).max(0.0).sqrt());
         let (middle, half) = (z * cos_cone, (1.0 - z * z).max(0.0).sqrt() * sin_cone + ROUNDING);
-        // A cone with a pole in it has all declinations up to that pole.
+        // A cone that contains a pole covers all declinations up to that pole.
         let from = if z <= -cos_cone { f64::NEG_INFINITY } else { middle - half };
         let to = if z >= cos_cone { f64::INFINITY } else { middle + half };
         let before = |limit: f64| self.by_declination.partition_point(|&(sine, _)| sine < limit);
@@ -125,11 +129,11 @@ impl StarList {
     }
 }
 
-/// For each cluster the predicted star it is marked as (an index into `predicted`).
+/// Returns for each cluster the index into `predicted` of the star that it is identified as.
 ///
-/// Pairs within the radius are taken nearest first; at equal distance the brighter star wins, then the smaller
-/// number. A cluster is at most one star, and a star at most one cluster. Clusters for which `excluded` is true
-/// are no stars.
+/// Pairs within the radius are assigned nearest first; at equal distance the brighter star wins, then the
+/// smaller number. A cluster is at most one star, and a star at most one cluster. Clusters for which
+/// `excluded` is true are not identified.
 pub(super) fn identify(
     blobs: &[Blob],
     excluded: &[bool],
@@ -139,7 +143,7 @@ pub(super) fn identify(
     let mut pairs = Vec::new();
     for (i, (blob, _)) in blobs.iter().zip(excluded).enumerate().filter(|(_, (_, excluded))| !**excluded) {
         for (k, candidate) in predicted.iter().enumerate() {
-            // A square before the distance: most pairs are far apart.
+            // Compares columns before the distance, because most pairs are far apart.
             if (candidate.position.x - blob.centre.x).abs() <= radius_px {
                 let distance = candidate.position.distance(blob.centre);
                 if distance <= radius_px {
@@ -177,7 +181,8 @@ mod tests {
         ListedStar { id, direction, magnitude }
     }
 
-    /// Boresight along +x of ICRS, columns towards growing right ascension, rows towards the north.
+    /// Returns an attitude with the boresight along +x of ICRS, columns towards increasing right ascension,
+    /// rows towards north.
     fn camera_from_icrs() -> Rotation<CameraFrame, Icrs> {
         use nalgebra::Vector3;
         Rotation::from_axes(&Vector3::y(), &Vector3::z(), &Vector3::x())
@@ -198,7 +203,8 @@ mod tests {
     #[test]
     fn a_star_is_predicted_by_eq_4() {
         let got = predict(&[star(1, 1.0, 0.0, 3.0)]);
-        // f tan 1° = 20.187 mm / 8.6 µm · 0.017455 = 40.97 px to the right, less than 0.01 px of distortion.
+        // f tan 1° = 20.187 mm / 8.6 µm · 0.017455 = 40.97 px to the right, with less than 0.01 px of
+        // distortion.
         assert!((got[0].position.x - (395.0 + 40.97)).abs() < 0.01, "{got:?}");
         assert!((got[0].position.y - 288.0).abs() < 1e-9);
     }
@@ -217,7 +223,7 @@ mod tests {
         assert_eq!(ids, [1, 6]);
     }
 
-    /// Wherever the camera looks, the poles included: a grid of a degree and a half over the whole sky.
+    /// Boresights from pole to pole, with stars on a grid of one and a half degrees over the whole sky.
     #[test]
     fn no_star_is_passed_over_and_their_order_is_the_lists() {
         let model = argon();

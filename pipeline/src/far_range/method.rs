@@ -1,4 +1,4 @@
-//! The far-range pipeline by its mode, and its factory.
+//! Far-range pipeline in either mode, and its factory.
 
 use contract::{ContractError, FarRange, Frame, Outcome, Pipeline, PipelineFactory, Setup, Telemetry};
 
@@ -8,7 +8,7 @@ use super::overrides::Overrides;
 use super::pipeline::PaperPipeline;
 use crate::PipelineError;
 
-/// The far-range pipeline on one sequence of frames, in the mode of its configuration.
+/// Far-range pipeline for one sequence of frames, in the mode of its configuration.
 #[derive(Debug)]
 pub struct FarRangePipeline(Method);
 
@@ -19,11 +19,12 @@ enum Method {
 }
 
 impl FarRangePipeline {
-    /// A pipeline before its first frame.
+    /// Creates a pipeline before its first frame.
     ///
     /// # Errors
-    /// Those of the checks of configuration, camera, readout and calibration; [`contract::OutOfRange`] for thresholds below the zero suppression
-    /// of the camera, and for the best mode with one.
+    /// Those of the checks of configuration, camera, readout and calibration; [`contract::OutOfRange`] for
+    /// parameters that conflict with a camera's zero suppression: thresholds below it, automatic thresholds,
+    /// weights above the background, or the best mode.
     pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         Ok(Self(match config.mode {
             Mode::Paper => Method::Paper(Box::new(PaperPipeline::new(config, setup)?)),
@@ -31,7 +32,7 @@ impl FarRangePipeline {
         }))
     }
 
-    /// [`Pipeline::process`] with results of single steps given from outside; for an error budget.
+    /// Performs [`Pipeline::process`] with given results of single steps, for an error budget.
     pub fn process_with(
         &mut self,
         frame: &Frame,
@@ -51,14 +52,14 @@ impl Pipeline<FarRange> for FarRangePipeline {
     }
 }
 
-/// Builds [`FarRangePipeline`] pipelines.
+/// Factory of [`FarRangePipeline`] pipelines.
 #[derive(Debug, Clone, Default)]
 pub struct FarRangeFactory {
     config: FarRangeConfig,
 }
 
 impl FarRangeFactory {
-    /// A factory of pipelines with this configuration.
+    /// Creates a factory of pipelines with this configuration.
     ///
     /// # Errors
     /// Those of [`FarRangeConfig::check`].

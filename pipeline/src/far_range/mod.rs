@@ -1,9 +1,9 @@
-//! The far-range method (Benninghoff, Tzschichholz, Boge, Gaias: image processing of the ARGON experiment).
+//! Far-range method (Benninghoff, Tzschichholz, Boge, Gaias: image processing of the ARGON experiment).
 //!
-//! Clusters of bright pixels are detected, identified as stars with a list and the spacecraft's attitude, linked
-//! from frame to frame, and the one that moves unlike the others is the target; its line of sight comes from the
-//! camera's attitude, calibrated with the stars. One step of the paper is one file here; equation numbers are the
-//! paper's.
+//! Clusters of bright pixels are detected, identified as stars with a list and the spacecraft's attitude, and
+//! linked from frame to frame. The cluster whose motion differs from that of all others is the target; its
+//! line of sight follows from the camera's attitude, calibrated with the stars. Each step of the paper is one
+//! file here; equation numbers are the paper's.
 
 mod aberration;
 mod assignment;

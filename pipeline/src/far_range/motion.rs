@@ -1,21 +1,21 @@
-//! The target by motion segmentation (section 2.3, Eqs. 11 to 13).
+//! Selection of the target by motion segmentation (section 2.3, Eqs. 11 to 13).
 
 use contract::PixelPoint;
 
-/// A cluster as motion segmentation sees it.
+/// Cluster as an input of motion segmentation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ClusterMotion {
-    /// Centre now, c_i.
+    /// Centre in the current frame, c_i.
     pub(super) centre: PixelPoint,
     /// Centre in the previous frame, c_prev(i); `None` when the cluster is not linked.
     pub(super) previous: Option<PixelPoint>,
-    /// Whether the cluster may be the target: neither a star nor a hotspot.
+    /// True if the cluster may be the target: neither a star nor a hotspot.
     pub(super) is_candidate: bool,
 }
 
-/// The target (an index into `movers`): of the linked candidates the one whose displacement Δp_i (Eq. 11) differs
-/// most from the average over all linked clusters, stars and hotspots included (Eqs. 12 and 13); the first one
-/// when several differ alike. `None` without a linked candidate.
+/// Returns the target (an index into `movers`): the linked candidate whose displacement Δp_i (Eq. 11) differs
+/// most from the average over all linked clusters, including stars and hotspots (Eqs. 12 and 13). If several
+/// differ equally, returns the first. Returns `None` without a linked candidate.
 pub(super) fn select_target(movers: &[ClusterMotion]) -> Option<usize> {
     let displacement = |mover: &ClusterMotion| mover.previous.map(|previous| mover.centre.distance(previous));
     let linked: Vec<f64> = movers.iter().filter_map(displacement).collect();
@@ -50,8 +50,8 @@ mod tests {
 
     #[test]
     fn the_average_is_over_all_linked_clusters() {
-        // Over the candidates alone (0 and 4) both would differ by 2, and the first would win. Over all of them
-        // (0, 4, 0, 0) the average is 1, and the second wins.
+        // With an average over only the candidates (0 and 4), both would differ by 2, and the first would
+        // win. Over all clusters (0, 4, 0, 0) the average is 1, and the second wins.
         let movers = [mover(0.0, true), mover(4.0, true), mover(0.0, false), mover(0.0, false)];
         assert_eq!(select_target(&movers), Some(1));
     }

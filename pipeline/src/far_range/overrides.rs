@@ -1,33 +1,36 @@
-//! The seam of an error budget: results of single steps, put in the place of the pipeline's own.
+//! Interface for an error budget: given results of single steps that replace the pipeline's results.
 
 use contract::{CameraFrame, Direction, Icrs, ListedStar, PixelPoint, Rotation};
 
-/// What one frame is processed with instead of the pipeline's own results; nothing by default. The pipeline has no truth
-/// and asks for none: whoever calls [`super::FarRangePipeline::process_with`] answers for where these come from, and an answer made
-/// with any of them is not the pipeline's own.
+/// Given results for the processing of one frame, which replace the pipeline's results; empty by default. The
+/// pipeline has no access to the truth. The caller of [`super::FarRangePipeline::process_with`] is
+/// responsible for the origin of these results, and an outcome obtained with any of them does not represent
+/// the pipeline.
 #[derive(Clone, Copy, Default)]
 pub struct Overrides<'a> {
-    /// The centre of the cluster whose brightness centre (Eq. 1) is told, for all later steps; `None` leaves it.
+    /// Function that returns the centre to use in all later steps for a cluster, from its centre of
+    /// brightness (Eq. 1); `None` leaves the centre unchanged.
     pub centroid: Option<&'a dyn Fn(PixelPoint) -> Option<PixelPoint>>,
-    /// What the cluster with this centre is, in the place of identification with the star list and of the search for
-    /// hotspots.
+    /// Function that returns the identity of the cluster with this centre. Replaces identification with the
+    /// star list and the search for hotspots.
     pub identity: Option<&'a dyn Fn(PixelPoint) -> Identity>,
-    /// The camera's attitude, in the prediction of stars (Eq. 4), in tracking (Eq. 5) and in the line of sight (Eq. 17).
+    /// Camera attitude for the prediction of stars (Eq. 4), tracking (Eq. 5) and the line of sight (Eq. 17).
     pub camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
-    /// Where a listed star is seen, aberration included, in Eq. 14; the attitude is then not corrected for aberration.
+    /// Apparent direction of a listed star, including aberration, for Eq. 14. The attitude is then not
+    /// corrected for aberration.
     pub apparent: Option<ApparentPlace<'a>>,
 }
 
-/// Where a listed star is seen.
+/// Function that returns the apparent direction of a listed star.
 pub type ApparentPlace<'a> = &'a dyn Fn(&ListedStar) -> Direction<Icrs>;
 
-/// What a cluster is.
+/// Identity of a cluster.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Identity {
-    /// The star of this number.
+    /// Star with this number.
     Star(u32),
-    /// A hotspot of the detector.
+    /// Hotspot of the detector.
     Hotspot,
-    /// Neither: a candidate for the target.
+    /// Neither star nor hotspot: a candidate for the target.
     Neither,
 }

@@ -1,4 +1,4 @@
-//! The paper's mode: its steps in order, and what it remembers from frame to frame.
+//! Paper mode: sequence of its steps, and its state between frames.
 
 use contract::{
     AttitudeSource, Body, CameraFrame, Cluster, Frame, Icrs, Label, ListedStar, Measurement, NoSolution,
@@ -20,10 +20,10 @@ use super::track::{Track, expected_position, link};
 use super::usable::unusable;
 use crate::{CameraModel, PipelineError};
 
-/// The far-range method on one sequence of frames.
+/// Far-range method for one sequence of frames.
 ///
-/// A frame whose image is empty or saturated leaves what is remembered as it was: the next frame is linked across
-/// it. A frame counts as saturated when more than half of its transmitted pixels are at full scale.
+/// A frame whose image is empty or saturated leaves the state unchanged: the next frame is linked across it.
+/// A frame counts as saturated when more than half of its transmitted pixels are at full scale.
 #[derive(Debug)]
 pub(super) struct PaperPipeline {
     config: FarRangeConfig,
@@ -36,22 +36,22 @@ pub(super) struct PaperPipeline {
     detector: Detector,
 }
 
-/// What is remembered of the previous frame.
+/// State kept from the previous frame.
 #[derive(Debug)]
 struct PreviousFrame {
     time: Epoch,
     body_from_icrs: Rotation<Body, Icrs>,
-    /// The camera's attitude where it was given from outside.
+    /// Camera attitude, if it was given by an override.
     camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
     tracks: Vec<Track>,
 }
 
 impl PaperPipeline {
-    /// A pipeline that has seen no frame.
+    /// Creates a pipeline before its first frame.
     ///
     /// # Errors
-    /// Those of [`FarRangeConfig::check`] and of the camera's check; [`contract::OutOfRange`] for thresholds below the zero suppression of the
-    /// camera.
+    /// Those of [`FarRangeConfig::check`] and of the camera's check; [`contract::OutOfRange`] for parameters
+    /// that conflict with a camera's zero suppression.
     pub(super) fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         config.check()?;
         config.check_suppression(setup.zero_suppression_dn, setup.bit_depth)?;
@@ -68,7 +68,7 @@ impl PaperPipeline {
         })
     }
 
-    /// The clusters of a frame (section 2.1), or why there are none.
+    /// Returns the clusters of a frame (section 2.1), or the reason why there are none.
     fn detect(&mut self, frame: &Frame) -> Result<Vec<Blob>, NoSolution> {
         let above_background = self.config.weights == Weights::AboveBackground;
         let background = if above_background || self.config.thresholds.needs_background() {
@@ -86,7 +86,7 @@ impl PaperPipeline {
         if blobs.is_empty() { Err(NoSolution::EmptyFrame) } else { Ok(blobs) }
     }
 
-    /// Takes the stars of a frame into the mounting (section 2.4) if there are enough of them.
+    /// Updates the mounting with the stars of a frame (section 2.4) if there are enough stars.
     fn calibrate(
         &mut self,
         seen: &[(Blob, ListedStar)],
@@ -112,7 +112,7 @@ impl PaperPipeline {
         };
         let solved = match self.config.aberration {
             AberrationConfig::Correct if overrides.apparent.is_none() => {
-                // A velocity that cannot be is one that is not known: the annual part is corrected.
+                // An impossible velocity counts as unknown: only the annual part is corrected.
                 aberration_correction(telemetry.time, telemetry.velocity_km_s, &apparent)
                     .or_else(|| aberration_correction(telemetry.time, None, &apparent))
                     .map_or(apparent, |correction| correction * apparent)
@@ -123,7 +123,7 @@ impl PaperPipeline {
         AttitudeSource::Stars
     }
 
-    /// What each cluster is known to be before its motion is looked at (section 2.1).
+    /// Identifies each cluster before its motion is examined (section 2.1).
     fn identify(
         &self,
         blobs: &[Blob],
@@ -138,7 +138,7 @@ impl PaperPipeline {
             };
             return blobs.iter().map(identities).collect();
         }
-        // A marked hotspot near a star would be taken for it and spoil the attitude.
+        // A marked hotspot near a star would be matched to the star and spoil the attitude.
         let is_marked: Vec<bool> = blobs.iter().map(|blob| self.hotspots.is_marked(blob)).collect();
         let predicted = self.stars.predict(camera_from_icrs, &self.model);
         identify(blobs, &is_marked, &predicted, self.config.identification.radius_px)
@@ -152,8 +152,9 @@ impl PaperPipeline {
             .collect()
     }
 
-    /// Links clusters to the previous frame (section 2.2). `None` when there is none to link to: at the first
-    /// frame, after a gap, and when time does not advance. What is remembered is used up: this frame takes its place.
+    /// Links clusters to the previous frame (section 2.2). Returns `None` if there is no frame to link to: at
+    /// the first frame, after a gap, and when time does not advance. Consumes the stored previous frame; the
+    /// current frame replaces it.
     fn link(
         &mut self,
         blobs: &[Blob],
@@ -177,41 +178,42 @@ impl PaperPipeline {
             })
             .collect();
         let links = link(blobs, &previous.tracks, &expected, &self.config.tracking);
-        // Each goes on in one cluster at most.
+        // Each previous track continues in at most one cluster.
         let before =
             links.into_iter().map(|link| link.map(|i| std::mem::take(&mut previous.tracks[i]))).collect();
         Some(ClusterLinks { dt_s, before })
     }
 }
 
-/// The previous track of each cluster, `dt_s` seconds ago.
+/// Previous track of each cluster, `dt_s` seconds ago.
 struct ClusterLinks {
     dt_s: f64,
     before: Vec<Option<Track>>,
 }
 
 impl ClusterLinks {
-    /// That of so many clusters which are all new.
+    /// Links of `clusters` clusters that are all new.
     fn none(clusters: usize) -> Self {
         Self { dt_s: 0.0, before: vec![None; clusters] }
     }
 }
 
-/// What a cluster is known to be before its motion is looked at.
+/// Identity of a cluster before its motion is examined.
 #[derive(Debug, Clone, Copy)]
 enum PriorIdentity {
-    /// A star; `listed` unless the list does not hold it.
+    /// Star; `listed` is `None` if the star list does not hold it.
     Star { id: u32, listed: Option<ListedStar> },
-    /// A hotspot.
+    /// Hotspot.
     Hotspot,
-    /// No star and no hotspot, on somebody's word.
+    /// Neither star nor hotspot, as stated by an override.
     NoStarNorHotspot,
-    /// Nothing: its motion may show it to be a hotspot.
+    /// Unidentified: its motion may show that it is a hotspot.
     Nothing,
 }
 
 impl PaperPipeline {
-    /// [`contract::Pipeline::process`] with results of single steps given from outside; for an error budget.
+    /// Processes a frame like [`contract::Pipeline::process`], with results of single steps supplied from
+    /// outside; for an error budget.
     pub(super) fn process_with(
         &mut self,
         frame: &Frame,

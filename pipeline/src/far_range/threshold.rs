@@ -1,4 +1,4 @@
-//! The thresholds I1 and I2 of detection (section 2.1).
+//! Detection thresholds I1 and I2 (section 2.1).
 
 use contract::bounds::require;
 use contract::{Frame, OutOfRange};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::background::Background;
 
-/// Where the thresholds I1 (every pixel of a cluster) and I2 (at least one pixel of it) come from.
+/// Source of the thresholds I1 (every pixel of a cluster) and I2 (at least one pixel of a cluster).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "mode", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ThresholdConfig {
@@ -20,22 +20,23 @@ pub enum ThresholdConfig {
         #[schemars(range(min = 0, max = 1))]
         high: f64,
     },
-    /// From the frame: I1 = b + low_sigmas · σ and I2 = b + max(high_sigmas · σ, star_fraction · (p − b)), with
-    /// the background's median b and noise σ and the brightest pixel p; both are kept within the lower half of
-    /// the range between background and full scale, so that a noisy frame still lets bright stars through.
-    /// The paper names these inputs and gives no formula; this one is ours.
+    /// Computed from the frame: I1 = b + low_sigmas · σ and I2 = b + max(high_sigmas · σ, star_fraction · (p
+    /// − b)), with the background's median b and noise σ and the brightest pixel p. Both thresholds are
+    /// limited to the lower half of the range between background and full scale, so that bright stars still
+    /// pass in a noisy frame. The paper names these inputs and gives no formula; this formula is ours.
     Automatic {
         /// I1 above the background, in standard deviations of its noise, 0 to 1000.
         #[serde(default = "default_low_sigmas")]
         #[schemars(range(min = 0, max = 1000))]
         low_sigmas: f64,
-        /// I2 above the background, in standard deviations of its noise, `low_sigmas` to 1000. At 6, a frame of
-        /// half a million pixels of normal noise has no false cluster.
+        /// I2 above the background, in standard deviations of its noise, `low_sigmas` to 1000. At 6, a frame
+        /// of half a million pixels of normal noise has no false cluster.
         #[serde(default = "default_high_sigmas")]
         #[schemars(range(min = 0, max = 1000))]
         high_sigmas: f64,
-        /// Least I2 above the background as a fraction of the brightest pixel's height above it, 0 to 1. Above 0
-        /// it hides what is much fainter than the brightest object: fewer ghosts, fewer stars.
+        /// Minimum of I2 above the background, as a fraction of the brightest pixel's height above the
+        /// background, 0 to 1. Values above 0 hide objects much fainter than the brightest object: fewer
+        /// ghosts, fewer stars.
         #[serde(default)]
         #[schemars(range(min = 0, max = 1))]
         star_fraction: f64,
@@ -60,7 +61,7 @@ impl Default for ThresholdConfig {
     }
 }
 
-/// The thresholds of one frame: a pixel passes when its DN is greater.
+/// Thresholds of one frame: a pixel passes when its DN is greater.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Thresholds {
     /// I1, DN.
@@ -69,14 +70,14 @@ pub(super) struct Thresholds {
     pub(super) high_dn: u16,
 }
 
-/// Part of the range between background and full scale that automatic thresholds may rise to.
+/// Upper limit of automatic thresholds, as a fraction of the range between background and full scale.
 const HIGHEST_AUTOMATIC: f64 = 0.5;
 
 impl ThresholdConfig {
-    /// Checks every number.
+    /// Checks the ranges of all values.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first value outside its range.
     pub(super) fn check(&self) -> Result<(), OutOfRange> {
         match *self {
             Self::Constant { low, high } => {
@@ -89,12 +90,12 @@ impl ThresholdConfig {
         }
     }
 
-    /// Whether the thresholds need the frame's background.
+    /// Returns true if the thresholds depend on the frame's background.
     pub(super) fn needs_background(&self) -> bool {
         matches!(self, Self::Automatic { .. })
     }
 
-    /// The thresholds of a frame. A background that is needed and missing counts as zero.
+    /// Computes the thresholds of a frame. A required background that is missing counts as zero.
     pub(super) fn for_frame(&self, frame: &Frame, background: Option<Background>) -> Thresholds {
         let full_scale = f64::from(frame.full_scale_dn());
         let (low, high) = match *self {
@@ -112,7 +113,7 @@ impl ThresholdConfig {
                 (low.min(highest), high.min(highest))
             }
         };
-        // DN > t and DN > floor(t) say the same of whole DN; the cast saturates.
+        // For integer DN, DN > t and DN > floor(t) are equivalent; the cast saturates.
         Thresholds { low_dn: low.floor() as u16, high_dn: high.floor() as u16 }
     }
 }

@@ -1,4 +1,4 @@
-//! Tracking: linking the clusters of two frames (section 2.2, Eqs. 5 to 10).
+//! Tracking: links the clusters of two frames (section 2.2, Eqs. 5 to 10).
 
 use std::collections::VecDeque;
 
@@ -11,12 +11,13 @@ use super::assignment::{AllowedPair, assign};
 use super::detect::Blob;
 use crate::CameraModel;
 
-/// How alike two clusters of successive frames must be to be linked.
+/// Similarity that two clusters of successive frames must have to be linked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrackingConfig {
-    /// Δp_max: greatest distance between where a cluster is expected and where it is, px, above 0 to 20000.
-    /// Must cover the motion of the target between two frames; what is larger links unlisted stars as well.
+    /// Δp_max: greatest distance between the expected and the observed position of a cluster, px, above 0
+    /// to 20000. Must cover the motion of the target between two frames; a larger value links unlisted stars as
+    /// well.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 20000))]
     pub max_displacement_px: f64,
     /// Δs_max: greatest change of the weighted size, in units of full scale, above 0 to 1e9.
@@ -37,35 +38,35 @@ impl Default for TrackingConfig {
 }
 
 impl TrackingConfig {
-    /// Checks every number.
+    /// Checks the ranges of all values.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first value outside its range.
     pub(super) fn check(&self) -> Result<(), OutOfRange> {
         let expected = "0 to 1e6, and not 0 with the other weight";
         require("tracking.weight_size", self.weight_size, expected, |v| v + self.weight_displacement > 0.0)
     }
 }
 
-/// A cluster of the previous frame and its history.
+/// Cluster of the previous frame and its history.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Track {
-    /// c_prev.
+    /// c_prev: centre in the previous frame.
     pub(super) centre: PixelPoint,
-    /// s_prev.
+    /// s_prev: weighted size in the previous frame.
     pub(super) size: f64,
-    /// Whether it was marked as a star.
+    /// True if the cluster was marked as a star.
     pub(super) is_star: bool,
-    /// N: images that it can be tracked back.
+    /// N: number of images that the cluster can be tracked back.
     pub(super) length: u32,
     /// Mean velocity, px/s along columns and rows (Eq. 10).
     pub(super) velocity_px_per_s: [f64; 2],
-    /// The velocities that a bounded mean is taken over, oldest first; empty where the mean is unbounded.
+    /// Velocities of the bounded mean, oldest first; empty if the mean is unbounded.
     steps_px_per_s: VecDeque<[f64; 2]>,
 }
 
 impl Track {
-    /// A track that begins with this cluster.
+    /// Starts a track at this cluster.
     pub(super) fn new(blob: &Blob, is_star: bool) -> Self {
         Self {
             centre: blob.centre,
@@ -77,10 +78,10 @@ impl Track {
         }
     }
 
-    /// The track with one frame more, `dt_s` seconds later.
+    /// Extends the track by one frame, `dt_s` seconds later.
     ///
-    /// Without `n_max` the mean velocity is Eq. 10 as printed, over the whole track. With it, it is the same mean
-    /// over the last `n_max` steps only: what lies farther back, a jump to another object for instance, is
+    /// Without `n_max` the mean velocity is Eq. 10 as printed, over the whole track. With `n_max` the mean
+    /// covers only the last `n_max` steps: earlier steps, for instance a jump to another object, are
     /// forgotten altogether.
     pub(super) fn extended(self, blob: &Blob, is_star: bool, dt_s: f64, n_max: Option<u32>) -> Self {
         let step = [(blob.centre.x - self.centre.x) / dt_s, (blob.centre.y - self.centre.y) / dt_s];
@@ -114,8 +115,9 @@ impl Track {
     }
 }
 
-/// Where the cluster of a track is expected in the current frame: a star where the change of attitude takes it
-/// (Eqs. 5a, 5b, 6), anything else where it was. `None` for a star that the camera cannot see any more.
+/// Expected position of a track's cluster in the current frame. A star moves with the change of attitude
+/// (Eqs. 5a, 5b, 6); any other cluster stays at its previous position. `None` for a star that the camera no
+/// longer sees.
 pub(super) fn expected_position(
     track: &Track,
     icrs_from_camera_before: &Rotation<Icrs, CameraFrame>,
@@ -129,7 +131,8 @@ pub(super) fn expected_position(
     model.project(&(*camera_from_icrs_now * star))
 }
 
-/// The similarity μ of two clusters (Eqs. 7 to 9), smaller for more alike; `None` (∞) beyond the thresholds.
+/// Similarity μ of two clusters (Eqs. 7 to 9), smaller for more similar clusters; `None` (∞) beyond the
+/// thresholds.
 pub(super) fn similarity(
     expected: PixelPoint,
     previous_size: f64,
@@ -145,15 +148,15 @@ pub(super) fn similarity(
     Some((wp * displacement + ws * size_change) / (wp + ws))
 }
 
-/// For each cluster the previous track it is linked to (an index into `tracks`): the assignment of least total μ.
-/// `expected` holds one place a track.
+/// Returns for each cluster the previous track to which it is linked (an index into `tracks`), by the
+/// assignment of least total μ. `expected` holds one position per track.
 pub(super) fn link(
     blobs: &[Blob],
     tracks: &[Track],
     expected: &[Option<PixelPoint>],
     config: &TrackingConfig,
 ) -> Vec<Option<usize>> {
-    // By columns of the image: most pairs are far apart, and are never met.
+    // Sorted by image column: most pairs are far apart and are never compared.
     let mut positions: Vec<(usize, PixelPoint)> =
         expected.iter().enumerate().filter_map(|(column, position)| Some((column, (*position)?))).collect();
     positions.sort_unstable_by(|(_, a), (_, b)| a.x.total_cmp(&b.x));
@@ -202,7 +205,7 @@ mod tests {
         let before: Rotation<Body, Icrs> = Rotation::from_rotation_vector(Vector3::new(1.0, 2.0, 0.5));
         let now = Rotation::from_rotation_vector(Vector3::new(0.01, -0.02, 0.03)) * before;
         let (camera_before, camera_now) = (camera_from_body * before, camera_from_body * now);
-        // Truth: one direction of the sky, seen twice.
+        // Truth: one direction of the sky, projected at both attitudes.
         let sky: Direction<Icrs> =
             camera_before.inverse() * Direction::from_vector(Vector3::new(0.02, 0.03, 1.0)).unwrap();
         let seen_before = model.project(&(camera_before * sky)).unwrap();
@@ -216,7 +219,7 @@ mod tests {
             seen_now.distance(seen_before) > 20.0,
             "the attitude must change for this test to say anything"
         );
-        // Anything else is expected where it was.
+        // Any other cluster is expected at its previous position.
         assert_eq!(expect(false), seen_before);
     }
 
@@ -264,7 +267,7 @@ mod tests {
             track = track.extended(&blob(x, 0.0, 1.0), false, 2.0, None);
             assert_eq!(track.length, i as u32 + 1);
         }
-        // The mean of 0.5, 1 and 3 px/s.
+        // Mean of 0.5, 1 and 3 px/s.
         assert!((track.speed_px_per_s() - 1.5).abs() < 1e-15);
     }
 
@@ -272,7 +275,7 @@ mod tests {
     fn a_bounded_memory_forgets_the_first_frames() {
         let run = |n_max: Option<u32>| {
             let mut track = track(0.0, 0.0, false);
-            // There and back: 100 frames at +1 px/s, 100 at −1 px/s.
+            // Back and forth: 100 frames at +1 px/s, 100 at −1 px/s.
             for i in 1..=200 {
                 let x = if i <= 100 { f64::from(i) } else { f64::from(200 - i) };
                 track = track.extended(&blob(x, 0.0, 1.0), false, 1.0, n_max);

@@ -1,10 +1,10 @@
-//! Frames that cannot be processed at all.
+//! Check for frames that cannot be processed at all.
 
 use contract::{Frame, Telemetry};
 
 use crate::CameraModel;
 
-/// Why a frame and its telemetry cannot be processed; `None` when they can.
+/// Returns the reason why a frame and its telemetry cannot be processed; `None` if they can.
 pub(super) fn unusable(frame: &Frame, telemetry: &Telemetry, model: &CameraModel) -> Option<String> {
     let (columns, rows) = model.size_px();
     if (frame.columns(), frame.rows()) != (columns, rows) {

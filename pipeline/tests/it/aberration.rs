@@ -1,4 +1,4 @@
-//! The correction of aberration on an image of stars that special relativity has moved.
+//! Correction of aberration, tested on an image of stars displaced according to special relativity.
 
 use boresight_pipeline::far_range::{AberrationConfig, FarRangeConfig, FarRangeFactory, Mode, Weights};
 use contract::{
@@ -10,12 +10,13 @@ use nalgebra::Vector3;
 
 use crate::table_1::{COLUMNS, ROWS, camera, pixel};
 
-/// The boresight along the x axis of the sky, across the motion of the Earth at the time of [`telemetry`].
+/// Attitude with the boresight along the x axis of the sky, perpendicular to the motion of the Earth at the
+/// time of [`telemetry`].
 fn camera_from_icrs() -> Rotation<CameraFrame, Icrs> {
     Rotation::from_axes(&Vector3::y(), &Vector3::z(), &Vector3::x())
 }
 
-/// A grid of stars over the field, each moved by up to half a step so that it looks like no other.
+/// Grid of stars over the field, each displaced by up to a quarter of a step so that the pattern is unique.
 fn stars() -> Vec<ListedStar> {
     let jitter = |k: u32, salt: u32| f64::from((k * 7919 + salt * 104_729) % 97) / 97.0 - 0.5;
     let direction = |k: u32| {
@@ -26,7 +27,8 @@ fn stars() -> Vec<ListedStar> {
     (0..42).map(|k| ListedStar { id: k, direction: direction(k), magnitude: 4.0 }).collect()
 }
 
-/// At the March equinox of 2012: the Sun is seen at the ecliptic longitude 0, so that the Earth moves towards 270°.
+/// Telemetry at the March equinox of 2012: the Sun appears at the ecliptic longitude 0, so that the Earth
+/// moves towards 270°.
 fn telemetry() -> Telemetry {
     Telemetry {
         time: Epoch::from_gregorian_utc(2012, 3, 20, 5, 14, 0, 0),
@@ -36,12 +38,13 @@ fn telemetry() -> Telemetry {
     }
 }
 
-/// Mean speed of the Earth 29.78 km/s, obliquity 23.44°.
+/// Velocity of the camera from the Earth's mean speed of 29.78 km/s and the obliquity of 23.44°.
 fn velocity_km_s() -> Vector3<f64> {
     telemetry().velocity_km_s.unwrap() - 29.78 * Vector3::new(0.0, 0.9175, 0.3978)
 }
 
-/// Stars where they are seen: s + v/c, of unit length, to the square of v/c (2 mas).
+/// Image with the stars at their apparent positions: s + v/c, normalised, correct to the square of v/c (2
+/// mas).
 fn image() -> Vec<u16> {
     let mut dn = vec![100.0; COLUMNS * ROWS];
     for star in stars() {
@@ -57,7 +60,7 @@ fn image() -> Vec<u16> {
     dn.iter().map(|value| value.round() as u16).collect()
 }
 
-/// How far the boresight that the pipeline finds is from the true one, arcsec.
+/// Angle between the boresight that the pipeline finds and the true boresight, arcsec.
 fn error_arcsec(aberration: AberrationConfig) -> f64 {
     let config = FarRangeConfig {
         mode: Mode::Paper,
@@ -83,8 +86,8 @@ fn error_arcsec(aberration: AberrationConfig) -> f64 {
 
 #[test]
 fn the_correction_takes_the_aberration_out_and_without_it_the_boresight_is_off_by_v_over_c() {
-    // The brightness centres of 42 stars: some hundredths of 87″ each. The Earth's speed is up to 1.7 % (0.3″) from its mean and its
-    // direction up to 1° (0.4″) from that of a circle.
+    // Errors: the brightness centres of 42 stars, some hundredths of 87″ each; the Earth's speed, up to 1.7 %
+    // (0.3″) from its mean; its direction, up to 1° (0.4″) from that of a circular orbit.
     let tolerance_arcsec = 1.5;
     let across = velocity_km_s() - Vector3::x() * velocity_km_s().x;
     let expected = (across.norm() / 299_792.458).to_degrees() * 3600.0;

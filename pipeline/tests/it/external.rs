@@ -1,4 +1,4 @@
-//! External pipelines: the example of the documentation, and processes that misbehave in every way known.
+//! External pipelines: the example of the documentation, and processes that misbehave in every known way.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -36,7 +36,8 @@ fn setup() -> Setup {
     }
 }
 
-/// A frame of level 100 with bright squares of 2 × 2 pixels at the given first pixels.
+/// Frame of level 100 with bright squares of 2 × 2 pixels; each square is given by its first pixel and its
+/// level.
 fn frame(number: u64, squares: &[(usize, usize, u16)]) -> (Frame, Telemetry) {
     let mut dn = vec![100; COLUMNS * ROWS];
     for &(x, y, level) in squares {
@@ -53,7 +54,7 @@ fn frame(number: u64, squares: &[(usize, usize, u16)]) -> (Frame, Telemetry) {
     (Frame::new(number, COLUMNS, ROWS, 12, dn, None).unwrap(), telemetry)
 }
 
-/// The smallest FITS file: 16 bits, BZERO 32768.
+/// Writes a minimal FITS file: 16 bits, BZERO 32768.
 fn write_fits(frame: &Frame, _: &Telemetry, path: &Path) -> Result<(), String> {
     let cards = [
         ("SIMPLE", "T".to_owned()),
@@ -91,7 +92,8 @@ impl Bench {
         Self { scratch, factory }
     }
 
-    /// A Python program that has `hello()` to greet as it should, `ask()` for the next request, and `say(text)`.
+    /// Runs a Python program that can call `hello()` to send a valid greeting, `ask()` to read the next
+    /// request, and `say(text)`.
     fn python(body: &str) -> Self {
         let mut bench = Self::command("");
         let program = format!(
@@ -129,7 +131,7 @@ fn reason(outcome: &Outcome) -> String {
     }
 }
 
-/// Waits until a program has written a file: its sign that it has come so far.
+/// Waits until a program has written a file, the sign that it has reached this point.
 fn wait_for_text(path: &Path) {
     let deadline = Instant::now() + Duration::from_secs(20);
     while std::fs::read_to_string(path).unwrap_or_default().is_empty() {
@@ -138,7 +140,8 @@ fn wait_for_text(path: &Path) {
     }
 }
 
-/// The first frame fails because of `expected`, and so does every later one.
+/// Checks that the first frame fails with a reason that contains `expected`, and that the next fails with an
+/// identical reason.
 fn dies(bench: &Bench, expected: &str) {
     let mut pipeline = bench.build();
     let first = reason(&process(&mut *pipeline, 0));
@@ -156,13 +159,13 @@ fn example() -> Bench {
 fn the_example_finds_what_stays_among_what_streams() {
     let bench = example();
     let mut pipeline = bench.build();
-    // A target that creeps by 1 px a frame, and a brighter star that moves by 12 px.
+    // A target that creeps by 1 px per frame, and a brighter star that moves by 12 px.
     let at = |i: u64| frame(i, &[(30 + i as usize, 20, 1000), (5 + 12 * i as usize, 40, 3000)]);
     let outcomes: Vec<Outcome> = (0..4).map(at).map(|(f, t)| pipeline.process(&f, &t)).collect();
     assert_eq!(outcomes[0].solution, Solution::NoSolution(NoSolution::NoPreviousFrame));
     for (i, outcome) in outcomes.iter().enumerate().skip(1) {
         let position = outcome.measurement().unwrap_or_else(|| panic!("frame {i}: {outcome:?}")).position;
-        // The centre of a flat square of two pixels, exactly.
+        // Exact centre of a uniform square, two pixels wide.
         assert_eq!((position.x, position.y), (30.5 + i as f64, 20.5));
     }
     assert_eq!(bench.images_left(), Vec::<PathBuf>::new());
@@ -215,14 +218,15 @@ fn a_program_that_hangs_is_ended_with_its_children() {
     );
     bench.factory.timeout_s = 0.3;
     let mut pipeline = bench.build();
-    // The child must be there before it can be ended: its number is written before the first request is read.
+    // The child must exist before it can be ended: its process id is written before the first request is
+    // read.
     let child = bench.scratch.path().join("child");
     wait_for_text(&child);
     let start = Instant::now();
     assert!(reason(&process(&mut *pipeline, 0)).contains("at frame 0, it gave no answer within 0.3 s"));
     assert!(start.elapsed() < Duration::from_secs(5));
     let number = std::fs::read_to_string(&child).unwrap();
-    // Gone, or a zombie that whoever adopts orphans has not yet reaped.
+    // Ended, or a zombie that its adoptive parent has not yet reaped.
     let is_running = || {
         std::fs::read_to_string(format!("/proc/{number}/stat"))
             .is_ok_and(|stat| !stat.rsplit(')').next().unwrap_or_default().trim_start().starts_with('Z'))
@@ -288,7 +292,8 @@ fn a_flood_of_lines_is_stopped() {
         Bench::python("hello()\nask()\nwhile True:\n    say('{\"frame\": 0, \"status\": \"no_target\"}')");
     let mut pipeline = bench.build();
     assert!(matches!(process(&mut *pipeline, 0).solution, Solution::NoSolution(NoSolution::NoTarget)));
-    // A line in the pipe before the request is noticed as such; one just after it is an answer to the wrong frame.
+    // A line in the pipe before the request is recognised as unsolicited; a line just after the request
+    // counts as an answer to the wrong frame.
     let stopped = (1..1000).find_map(|number| {
         let reason = reason(&process(&mut *pipeline, number));
         reason.contains("it wrote a line without being asked").then_some(reason)
@@ -313,7 +318,7 @@ fn a_program_that_does_not_read_a_long_greeting_is_ended() {
     bench.factory.start_timeout_s = 0.3;
     let mut setup = setup();
     let direction = contract::Direction::from_unit(nalgebra::Vector3::z());
-    // A megabyte and more, which no pipe holds.
+    // More than a megabyte, larger than any pipe buffer.
     setup.stars = (0..30_000).map(|id| contract::ListedStar { id, direction, magnitude: 5.0 }).collect();
     let mut pipeline = bench.factory.build(&setup).unwrap();
     assert!(reason(&process(&mut *pipeline, 0)).contains("it gave no answer within 0.3 s"));

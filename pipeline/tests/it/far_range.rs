@@ -1,5 +1,5 @@
-//! The far-range pipeline on small hand-made sequences: stars that move with the attitude, a target that creeps, a
-//! hotspot that stays.
+//! The far-range pipeline on short synthetic sequences: stars that move with the attitude, a target that
+//! creeps, a stationary hotspot.
 
 use boresight_pipeline::far_range::{
     AberrationConfig, AttitudeConfig, FarRangeConfig, FarRangeFactory, FarRangePipeline, HotspotConfig,
@@ -16,7 +16,8 @@ use nalgebra::Vector3;
 use crate::table_1::{COLUMNS, ROWS, camera, pixel};
 
 const INTERVAL_S: f64 = 15.0;
-/// Between two columns of stars, which stream along y: nothing merges with it, nor with the target.
+/// Pixel between two columns of stars, which stream along y: neither stars nor the target merge with the
+/// hotspot.
 const HOTSPOT: (usize, usize) = (660, 100);
 
 fn ray(point: PixelPoint) -> Vector3<f64> {
@@ -28,12 +29,12 @@ fn nominal() -> Rotation<CameraFrame, Body> {
     Rotation::from_rotation_vector(Vector3::new(0.1, -0.2, 0.3))
 }
 
-/// The real mounting, 0.03° from the nominal one: about 1.3 px.
+/// True mounting, 0.03° from the nominal mounting: about 1.3 px.
 fn mounting() -> Rotation<CameraFrame, Body> {
     Rotation::from_rotation_vector(Vector3::new(4e-4, -3e-4, 2e-4)) * nominal()
 }
 
-/// Attitude at frame `i`: the camera turns by 0.3° about its x axis from frame to frame, 12 px.
+/// Attitude at frame `i`: the camera turns about its x axis by 0.3° (12 px) per frame.
 fn camera_from_icrs(i: u64) -> Rotation<CameraFrame, Icrs> {
     Rotation::<CameraFrame, CameraFrame>::from_rotation_vector(Vector3::new(0.0053 * i as f64, 0.0, 0.0))
         * Rotation::from_rotation_vector(Vector3::new(0.7, -0.4, 1.1))
@@ -58,7 +59,7 @@ fn target(i: u64) -> PixelPoint {
     PixelPoint::new(290.3 + 0.8 * i as f64, 250.7 - 0.5 * i as f64)
 }
 
-/// A Gaussian image of a point, σ 0.8 px, added to a frame.
+/// Adds the Gaussian image of a point source, σ 0.8 px, to a frame.
 fn add_point(dn: &mut [f64], at: PixelPoint, total_dn: f64) {
     for y in (at.y - 5.0).max(0.0) as usize..(at.y + 6.0).clamp(0.0, ROWS as f64) as usize {
         for x in (at.x - 5.0).max(0.0) as usize..(at.x + 6.0).clamp(0.0, COLUMNS as f64) as usize {
@@ -78,7 +79,7 @@ fn telemetry(i: u64) -> Telemetry {
 }
 
 fn image(i: u64) -> Vec<u16> {
-    // A background of 100 ± 1 DN in a fixed pattern that is no cluster.
+    // Background of 100 ± 1 DN in a fixed pattern that forms no cluster.
     let mut dn: Vec<f64> =
         (0..COLUMNS * ROWS).map(|k| 100.0 + ((k * 31 + i as usize) % 3) as f64 - 1.0).collect();
     for star in stars() {
@@ -116,12 +117,12 @@ fn setup() -> Setup {
 const READOUT: Readout =
     Readout { gain_e_per_dn: 10.0, bias_dn: 90.0, read_noise_e: 10.0, saturation_dn: 4095 };
 
-/// The best mode.
+/// Configuration of the best mode.
 fn best() -> FarRangeConfig {
     FarRangeConfig { mode: Mode::Best, ..config() }
 }
 
-/// The paper's mode. The hotspot is known; the sequence has no aberration.
+/// Configuration of the paper's mode. The hotspot is listed; the sequence has no aberration.
 fn config() -> FarRangeConfig {
     FarRangeConfig {
         mode: Mode::Paper,
@@ -163,7 +164,8 @@ fn the_target_is_found_in_every_frame_but_the_first() {
     for (outcome, i) in outcomes.iter().zip(0..).skip(1) {
         let measurement =
             outcome.measurement().unwrap_or_else(|| panic!("frame {i}: {:?}", outcome.solution));
-        // The threshold cuts the tails of the image at its pixels: a few hundredths of a pixel.
+        // The threshold cuts off the tails of the image in steps of a pixel: an error of a few hundredths of
+        // a pixel.
         let error = measurement.position.distance(target(i));
         assert!(error < 0.05, "frame {i}: {error} px");
         assert_eq!(label_at(outcome, target(i)), Some(Label::Target));
@@ -193,10 +195,10 @@ fn the_stars_take_the_error_out_of_the_mounting() {
     for (outcome, i) in run(config(), 4).iter().zip(0..) {
         assert_eq!(outcome.attitude_source, Some(AttitudeSource::Stars));
         let attitude = outcome.camera_from_icrs.unwrap();
-        // The mounting is off by 111″. Centroids are good to some hundredths of a pixel of 87″, over 20 stars; roll is
-        // worse by the inverse of the field, ten times.
+        // The mounting is off by 111″. Centroids are accurate to some hundredths of a pixel of 87″, over 20
+        // stars; roll is ten times worse, by the inverse of the field.
         assert!(attitude.angle_to(&camera_from_icrs(i)).arcsec() < 10.0);
-        // The first frame has none before it to tell the target by.
+        // The first frame has no previous frame by which to identify the target.
         if i > 0 {
             let measurement = outcome.measurement().unwrap();
             let truth = camera_from_icrs(i).inverse() * Direction::from_unit(ray(target(i)));
@@ -230,8 +232,8 @@ fn a_hotspot_wins_until_it_is_old_enough_to_be_known() {
     let hotspots =
         HotspotConfig::Automatic { n_min: 3, v_min_px_per_s: 0.001, n_max: Some(10), keep_pixels: true };
     let outcomes = run(FarRangeConfig { hotspots, ..config() }, 8);
-    // Stars move by 12 px, the target by 0.9 px, the hotspot by 0: it differs most. It is linked to its fourth
-    // previous frame, N = 4 > 3, at frame 4.
+    // Stars move by 12 px, the target by 0.9 px, the hotspot by 0: the hotspot differs most. At frame 4 it is
+    // linked back over four frames, N = 4 > 3.
     for (outcome, i) in outcomes.iter().zip(0..) {
         assert_eq!(is_target(outcome, i), i >= 4, "frame {i}: {:?}", outcome.solution);
     }
@@ -331,11 +333,11 @@ fn the_best_mode_finds_the_same_targets_and_knows_better_where_they_are() {
             most.max(measurement.map_or(f64::INFINITY, |found| found.position.distance(target(i))))
         })
     };
-    // Images are sampled at pixel centres here, not integrated: with the width free that makes no difference. What is left
-    // is the pattern of ±1 DN and the rounding.
+    // These images are sampled at pixel centres, not integrated over pixels; with a free width this makes no
+    // difference. The remaining error comes from the pattern of ±1 DN and the rounding.
     assert!(worst(&best) < 0.01 && worst(&best) < 0.5 * worst(&paper), "{} {}", worst(&best), worst(&paper));
     for (best, i) in best.iter().zip(0..) {
-        // From the first frame on, which has no motion.
+        // Includes the first frame, for which no motion is known.
         assert!(is_target(best, i), "frame {i}: {:?}", best.solution);
         let error = best.camera_from_icrs.unwrap().angle_to(&camera_from_icrs(i)).arcsec();
         assert!(error < 0.5, "frame {i}: {error}″");
@@ -366,7 +368,8 @@ fn a_calibration_that_cannot_be_is_refused_by_name() {
 fn a_given_attitude_predicts_tracks_and_points_instead_of_the_mounting() {
     let mut pipeline = FarRangePipeline::new(config(), &setup()).unwrap();
     for i in 0..3 {
-        // Telemetry half a turn off: nothing can be identified or tracked with it.
+        // Telemetry attitude wrong by 18°, more than the height of the field: it allows no identification and
+        // no tracking.
         let wrong = Telemetry { body_from_icrs: telemetry(60).body_from_icrs, ..telemetry(i) };
         let overrides = Overrides { camera_from_icrs: Some(camera_from_icrs(i)), ..Overrides::default() };
         let outcome = pipeline.process_with(&frame(i), &wrong, &overrides);
@@ -385,7 +388,8 @@ fn given_identities_and_centres_stand_for_the_pipelines_own() {
     let mut pipeline =
         FarRangePipeline::new(FarRangeConfig { hotspots: HotspotConfig::Off, ..config() }, &setup()).unwrap();
     for i in 0..3 {
-        // The target is called a hotspot, and the hotspot nothing: it is the target then.
+        // The target is declared a hotspot, and the hotspot neither star nor hotspot: the pipeline then
+        // reports the hotspot as the target.
         let identity = |centre: PixelPoint| {
             if centre.distance(target(i)) < 1.0 {
                 Identity::Hotspot

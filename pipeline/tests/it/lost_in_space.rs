@@ -1,4 +1,5 @@
-//! The best mode without a prior attitude, on drawn images: whatever the telemetry says, the stars give the attitude.
+//! The best mode without a prior attitude, on synthetic images: the stars give the attitude, independently of
+//! the telemetry.
 
 use boresight_pipeline::far_range::{
     AberrationConfig, AttitudePrior, BestConfig, FarRangeConfig, FarRangePipeline, Mode,
@@ -12,7 +13,8 @@ use nalgebra::Vector3;
 
 use crate::table_1::{COLUMNS, ROWS, camera, pixel};
 
-/// 20,000 stars on a spiral from pole to pole (Saff & Kuijlaars 1997), jittered; magnitudes 2 to 7, more of the faint ones.
+/// Star list of 20,000 stars on a spiral from pole to pole (Saff & Kuijlaars 1997), jittered; magnitudes 2 to
+/// 7, with more faint stars than bright ones.
 fn sky() -> Vec<ListedStar> {
     let fraction = |v: f64| v - v.floor();
     (0..20_000_u32)
@@ -54,7 +56,7 @@ fn pipeline(prior: AttitudePrior) -> FarRangePipeline {
     FarRangePipeline::new(config, &setup()).unwrap()
 }
 
-/// Gaussians of 0.8 px on a background of 40 and 41 DN.
+/// Frame with Gaussian stars of σ 0.8 px on a background of 40 and 41 DN.
 fn image(attitude: Rotation<CameraFrame, Icrs>) -> Frame {
     let mut dn: Vec<f64> = (0..COLUMNS * ROWS).map(|i| 40.0 + (i * 7919 % 2) as f64).collect();
     for star in sky() {
@@ -99,12 +101,13 @@ fn the_stars_give_the_attitude_that_telemetry_does_not() {
         let outcome = process(AttitudePrior::None, &image(attitude));
         assert_eq!(outcome.attitude_source, Some(AttitudeSource::Stars));
         let error = outcome.camera_from_icrs.unwrap().angle_to(&attitude).degrees() * 3600.0;
-        // Twelve stars of 0.05 px at about 200 px from the middle: 15″ about the boresight.
+        // Twelve stars with an error of 0.05 px each, about 200 px from the image centre: 15″ about the
+        // boresight.
         assert!(error < 45.0, "{error} arcsec");
     }
 }
 
-/// So the attitudes above are not those of the telemetry.
+/// Confirms that the attitudes of the test above are not those of the telemetry.
 #[test]
 fn about_a_false_prior_the_same_images_have_no_true_attitude() {
     for attitude in attitudes() {
@@ -116,7 +119,7 @@ fn about_a_false_prior_the_same_images_have_no_true_attitude() {
 #[test]
 fn a_frame_without_stars_has_no_attitude() {
     let mut dn: Vec<u16> = (0..COLUMNS * ROWS).map(|i| 40 + (i * 7919 % 2) as u16).collect();
-    // Three sources, 3 × 3 pixels each.
+    // Three sources of 3 × 3 pixels each.
     for (x, y) in [(100, 100), (400, 300), (600, 200)] {
         for i in 0..9 {
             dn[(y + i / 3) * COLUMNS + x + i % 3] = 300;

@@ -1,4 +1,5 @@
-//! The pipelines from outside, one module per suite: `cargo test -p boresight-pipeline --test it external::` runs one suite.
+//! Tests of the pipelines through their public interface, one module per suite: `cargo test -p
+//! boresight-pipeline --test it external::` runs one suite.
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 

@@ -1,4 +1,4 @@
-//! The camera of Table 1 without distortion: projection is then one line, which the tests do on their own.
+//! Camera of Table 1 without distortion: its projection is one line, which the tests compute independently.
 
 use contract::{Camera, PixelPoint};
 use nalgebra::Vector3;
@@ -20,7 +20,7 @@ pub(crate) fn camera() -> Camera {
     }
 }
 
-/// Where a direction in the camera frame is seen.
+/// Pixel position of a direction in the camera frame.
 pub(crate) fn pixel(direction: Vector3<f64>) -> PixelPoint {
     let (fx, fy) = (20.187e3 / 8.6, 20.187e3 / 8.3);
     PixelPoint::new(395.0 + fx * direction.x / direction.z, 288.0 + fy * direction.y / direction.z)

@@ -1,11 +1,11 @@
-//! What a field of the scenario `docking` costs, by range, lens and step: drawing, and the television chain with every
-//! artefact. It counts the time of the processor, not of the clock, and of several rounds the least: what else runs on the
-//! machine is not in it. Linux only.
+//! Measures the cost of a field of the scenario `docking`, by range, lens and step: drawing, and the
+//! television chain with every artefact. It measures processor time, not elapsed time, and reports the least
+//! of several rounds, which excludes other load on the machine. Linux only.
 //!
 //! `cargo run --release -p boresight-research --bin docking_speed [RANGE_M]`
 //!
-//! A step cannot be timed from outside: it costs what a field costs with it more than without it. The sum is of the whole field
-//! and no sum of differences.
+//! A step cannot be timed from outside: its cost is the difference between a field with and a field without
+//! it. The sum is measured on the whole field; it is not a sum of differences.
 #![allow(clippy::unwrap_used, reason = "it fails by panicking, as a test does")]
 
 use std::path::Path;
@@ -21,15 +21,15 @@ const FIELDS: u64 = 20;
 const ROUNDS: usize = 5;
 const RANGES_M: [f64; 9] = [500.0, 200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0];
 
-/// What this thread has had of a processor, ms.
+/// Processor time of this thread, ms.
 fn processor_ms() -> f64 {
-    // The count is brought up to date when the scheduler looks.
+    // The kernel updates the counter when the scheduler runs.
     std::thread::yield_now();
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
     text.split_whitespace().next().unwrap().parse::<f64>().unwrap() / 1e6
 }
 
-/// The least time of a field over the rounds, ms.
+/// Least time per field over the rounds, ms.
 fn least_ms(fields: &[FieldState], mut work: impl FnMut(&FieldState)) -> f64 {
     let round = || {
         let start = processor_ms();
@@ -42,7 +42,7 @@ fn least_ms(fields: &[FieldState], mut work: impl FnMut(&FieldState)) -> f64 {
 fn simulation() -> DockingSimulation {
     let text = include_str!("../../../scenarios/docking.toml");
     let mut scenario: toml::Table = toml::from_str(text).unwrap();
-    // What says how the simulation is run, not what is simulated.
+    // Keys about the execution of the simulation, not about its content.
     for key in ["world", "title", "docking"] {
         scenario.remove(key);
     }
@@ -55,14 +55,14 @@ fn fields_at(simulator: &DockingSimulator, range_m: f64) -> Vec<FieldState> {
     (first..first + FIELDS).map(|field| simulator.field_state(field).unwrap()).collect()
 }
 
-/// The time to draw a scene, ms, and the last image.
+/// Time to draw a scene, ms, and the last image.
 fn drawing_ms(drawer: &mut Drawer, scene: &DockingScene, fields: &[FieldState]) -> (f64, RadianceImage) {
     let mut image = RadianceImage::default();
     let ms = least_ms(fields, |field| drawer.draw(scene, &field.lighting, &field.state.pose, &mut image));
     (ms, image)
 }
 
-/// The time of all that follows the drawing, without the digitiser, ms.
+/// Time of all steps after the drawing, except the digitiser, ms.
 fn chain_ms(simulation: &DockingSimulation, fields: &[FieldState], image: &RadianceImage) -> f64 {
     let simulator = DockingSimulator::new(simulation, Path::new(".")).unwrap();
     let mut workspace = simulator.workspace().unwrap();
@@ -71,7 +71,7 @@ fn chain_ms(simulation: &DockingSimulation, fields: &[FieldState], image: &Radia
     })
 }
 
-/// A simulation whose television does nothing but scale the light.
+/// Simulation whose television only scales the signal.
 fn bare(simulation: &DockingSimulation) -> DockingSimulation {
     let mut bare = simulation.clone();
     bare.television =

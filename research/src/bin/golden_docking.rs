@@ -1,5 +1,5 @@
-//! Makes the images of golden/docking with Mitsuba, into the folder named: `golden_docking FOLDER [CASE]`. Called by
-//! golden/docking/make.py, which keeps the reason; images that are there are replaced.
+//! Makes the images of golden/docking with Mitsuba in the given directory: `golden_docking FOLDER [CASE]`.
+//! Called by golden/docking/make.py, which keeps the reason; existing images are replaced.
 #![allow(clippy::unwrap_used, reason = "a tool of the developers: it stops at the first thing that is wrong")]
 
 #[path = "../../../tests/it/golden_docking/cases.rs"]
@@ -26,7 +26,7 @@ fn main() -> Result<(), MitsubaError> {
         let renderer = MitsubaRenderer::new(MitsubaOptions { settings, ..MitsubaOptions::default() })?;
         let image = renderer.radiance(&scene, &case.lighting(&cases), &case.pose(), &case.camera(&cases))?;
         let path = folder.join(&case.name).with_extension("exr");
-        // No writer replaces a file; this program is asked for nothing else.
+        // The writers refuse to replace a file, but replacing files is the purpose of this program.
         let _ = std::fs::remove_file(&path);
         write_radiance(&path, &image)?;
         println!("{}: {} x {} px", case.name, image.columns, image.rows);

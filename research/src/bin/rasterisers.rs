@@ -1,10 +1,10 @@
-//! How far tiny-skia's edges are from their places and what its pictures cost, at several oversamplings, beside the fast
-//! renderer: the figures behind the choice in ARCHITECTURE.md.
+//! Position errors of tiny-skia's edges and the cost of its pictures, at several oversamplings, beside the
+//! fast renderer: the figures behind the choice in ARCHITECTURE.md.
 //!
 //! `cargo run --release -p boresight-research --bin rasterisers`
 #![allow(clippy::unwrap_used, reason = "it fails by panicking, as a test does")]
 
-// The scenes name the simulator as its own tests do.
+// The scenes refer to the simulator by the name that its own tests use.
 extern crate sim as boresight_sim;
 
 #[allow(dead_code, reason = "it uses a part of it")]
@@ -37,7 +37,8 @@ fn path(polygons: &[Vec<[f64; 2]>], oversampling: usize) -> Option<Path> {
     builder.finish()
 }
 
-/// The largest error of a pixel's coverage at 100 poses, tiny-skia's and ours: of an edge through the pixel, its place, px.
+/// Returns the largest error of a pixel's coverage at 100 poses, for tiny-skia and for the fast renderer. For
+/// an edge through the pixel it equals the error of the edge's position, px.
 fn worst(oversampling: usize, smooth: bool) -> (f64, f64) {
     let camera = small();
     let scene = scene(vec![part("plate", vec![flat(&CORNERS, 0.0, 1.0)])]);
@@ -67,8 +68,8 @@ fn worst(oversampling: usize, smooth: bool) -> (f64, f64) {
     (theirs, ours)
 }
 
-/// Least milliseconds of three that tiny-skia takes for the facets of the target at 5 m, without shadows, in bands of 16 rows, and the box
-/// filter.
+/// Least of three times that tiny-skia takes for the facets of the target at 5 m, without shadows, in bands
+/// of 16 rows, and for the box filter, ms.
 fn milliseconds(oversampling: usize, smooth: bool) -> f64 {
     const BAND: usize = 16;
     let camera = camera(1055.0);
@@ -131,8 +132,8 @@ fn milliseconds(oversampling: usize, smooth: bool) -> f64 {
     (0..3).map(|_| picture()).fold(f64::INFINITY, f64::min)
 }
 
-/// Least milliseconds of the fast renderer for an image of the target, in the Sun and in the lamp's light too, and with a Sun that
-/// moves from image to image.
+/// Least time of the fast renderer for an image of the target, ms: with a fixed Sun, with a Sun that moves
+/// from image to image, and with a moving lamp and no Sun.
 fn ours(range: f64) -> [f64; 3] {
     const IMAGES: usize = 60;
     let scene = TargetFile::built_in("progress").unwrap().scene();

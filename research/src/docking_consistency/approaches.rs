@@ -1,4 +1,4 @@
-//! Random approaches through the built-in pipeline.
+//! Random approaches measured by the built-in pipeline.
 
 use std::error::Error;
 use std::path::Path;
@@ -20,23 +20,23 @@ use sim::truth::approach::{
 use crate::docking_random::in_field::{are_inside, corners};
 use crate::docking_random::{camera, random_sun};
 
-/// The target.
+/// Name of the target.
 const TARGET: &str = "progress";
-/// Standard deviation of the lens's point spread, px.
+/// Standard deviation of the lens's point-spread function, px.
 const BLUR_PX: f64 = 0.7;
-/// Fields of a portion, and fields a second.
+/// Number of fields in a portion, and fields per second.
 pub const PORTION_FIELDS: u64 = 10;
 const FIELD_RATE_HZ: f64 = 50.0;
-/// Lateral offset at most, as a part of d3; angles at most, degrees.
+/// Maximum lateral offset, as a fraction of d3; maximum angles, degrees.
 const OFFSET: f64 = 0.03;
 const ANGLE_DEG: f64 = 3.0;
-/// Lateral velocity at most, m/s; angular rates at most, degrees a second.
+/// Maximum lateral velocity, m/s; maximum angular rates, degrees per second.
 const LATERAL_M_S: f64 = 0.03;
 const RATE_DEG_S: f64 = 0.2;
-/// How far the corners of marks and cross stay from the border, px.
+/// Distance of the corners of marks and cross from the image border, at least, px.
 const MARGIN_PX: f64 = 4.0;
 
-/// A lens, and between which d3 its approaches begin, m.
+/// Lens, and the range of d3 in which its approaches start, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
     /// Name in the tables.
@@ -53,16 +53,16 @@ impl Lens {
     ];
 }
 
-/// How the camera moves.
+/// Motion of the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Course {
     /// d and φ linear in time.
     Steady,
-    /// A glide with swings of up to 0.5 % of d3 and 0.3°, of 5 to 20 s.
+    /// Glide with swings of up to 0.5 % of d3 and 0.3°, with periods of 5 to 20 s.
     Swinging,
 }
 
-/// What all approaches have in common.
+/// Settings that all approaches share.
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// Seed of all draws.
@@ -76,7 +76,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Interlaced television with noise of a standard deviation in DN, and nothing else.
+    /// Plan with interlaced television whose only artefact is noise of a standard deviation in DN.
     pub fn noise_only(seed: u64, portions: u64, noise_dn: f64) -> Self {
         let noise = VideoNoiseConfig { sigma_dn8: noise_dn };
         let television = TelevisionConfig { noise, ..TelevisionConfig::default() };
@@ -92,12 +92,12 @@ impl Plan {
     }
 }
 
-/// A report at the end of a portion, with the truth.
+/// Report at the end of a portion, with the truth.
 #[derive(Debug, Clone)]
 pub struct Portion {
-    /// Its number in the approach, from 0.
+    /// Number of the portion in the approach, from 0.
     pub number: u64,
-    /// Since the report before, or the beginning, s.
+    /// Time since the previous report or the start, s.
     pub interval_s: f64,
     /// Ground truth at the time of the report.
     pub truth: ApproachState,
@@ -106,7 +106,7 @@ pub struct Portion {
 }
 
 impl Portion {
-    /// The motion by one of the estimators, where it has one.
+    /// Returns the motion by one of the estimators, if it has one.
     pub fn motion(&self, estimator: Estimator) -> Option<&Motion> {
         match estimator {
             Estimator::Exact => self.report.best.as_ref(),
@@ -115,16 +115,16 @@ impl Portion {
     }
 }
 
-/// Whose motion.
+/// Estimator of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Estimator {
-    /// The built-in pipeline's own least squares.
+    /// The least squares of the built-in pipeline.
     Exact,
     /// The formulas of the paper.
     Paper,
 }
 
-/// An approach, measured.
+/// Measured approach.
 #[derive(Debug, Clone)]
 pub struct MeasuredApproach {
     /// Lens of the camera.
@@ -135,12 +135,13 @@ pub struct MeasuredApproach {
     pub fields: Vec<(ApproachState, PoseEstimate)>,
 }
 
-/// Flies the approach of a number: even ones with the narrow lens, odd ones with the wide.
+/// Simulates and measures the approach of a number: even numbers with the narrow lens, odd ones with the wide
+/// lens.
 pub fn simulate(plan: &Plan, number: u64) -> Result<MeasuredApproach, Box<dyn Error + Send + Sync>> {
     let lens = Lens::ALL[(number % 2) as usize];
     let (approach, sun) = draw(plan, &lens, number)?;
     let simulation = DockingSimulation {
-        // The noise of a field is addressed by seed and field, so seeds differ.
+        // The noise of a field is addressed by seed and field, so each approach has another seed.
         seed: (plan.seed << 32) ^ number,
         start_utc: "2004-01-31T13:04:00Z".to_owned(),
         target: TARGET.to_owned(),
@@ -178,7 +179,8 @@ pub fn simulate(plan: &Plan, number: u64) -> Result<MeasuredApproach, Box<dyn Er
     Ok(approaches)
 }
 
-/// Course and Sun of an approach, drawn again until marks and cross are in the field from beginning to end.
+/// Draws course and Sun of an approach, again until marks and cross are in the field at the start, the middle
+/// and the end.
 fn draw(plan: &Plan, lens: &Lens, number: u64) -> Result<(ApproachConfig, SunConfig), SimError> {
     let mut stream = Seed { seed: plan.seed, case: 0 }.stream(number, Effect::AttitudeControl, 0);
     let target = sim::scene::docking::TargetFile::built_in(TARGET).ok_or(contract::OutOfRange::new(
@@ -206,7 +208,7 @@ fn within((low, high): (f64, f64), stream: &mut Stream) -> f64 {
     low + (high - low) * uniform(stream)
 }
 
-/// d3 uniform in its logarithm, so that near and far have their share.
+/// Draws d3 uniformly in its logarithm, to represent both near and far ranges.
 fn start_m(lens: &Lens, stream: &mut Stream) -> f64 {
     let (near, far) = lens.start_m;
     near * libm::exp(libm::log(far / near) * uniform(stream))

@@ -1,4 +1,4 @@
-//! Errors against what their covariances say.
+//! Errors compared with the stated covariances.
 
 use boresight::score::docking::ApproachParameters;
 use boresight::score::docking::consistency::{nees, within_3_sigma};
@@ -8,27 +8,27 @@ use sim::truth::approach::ApproachState;
 
 use super::approaches::{Estimator, MeasuredApproach};
 
-/// The parameters of a motion, in the order of [`Errors`].
+/// Parameters of a motion, in the order of [`Errors`].
 pub const NAMES: [&str; 16] =
     ["d1", "d2", "d3", "d1'", "d2'", "d3'", "φ1", "φ2", "φ3", "φ1'", "φ2'", "φ3'", "ρ", "u", "α", "β"];
 
-/// (d, d'), (φ, φ'), (d, φ).
+/// Groups of parameters: (d, d'), (φ, φ'), (d, φ).
 pub const GROUPS: [&str; 3] = ["position", "attitude", "joint"];
 
-/// The first portion that is judged: the one before has no prior.
+/// First portion that is judged: the portion before it has no prior.
 const FIRST_PORTION: u64 = 1;
 
-/// Errors of one motion and what it says of them.
+/// Errors of one motion and its stated standard deviations.
 #[derive(Debug, Clone)]
 pub struct Errors {
-    /// Standard deviations told.
+    /// Stated standard deviations.
     pub sigmas: [f64; 16],
     within: [Option<bool>; 16],
     nees: [Option<f64>; 3],
 }
 
 impl Errors {
-    /// `None` where ρ, α or β have no derivatives.
+    /// Computes the errors of a motion; `None` where ρ, α or β have no derivatives.
     pub fn from_motion(motion: &Motion, truth: &ApproachState) -> Option<Self> {
         let reported = ApproachParameters::from_motion(&motion.pose, &motion.velocity_m_s);
         let true_values = ApproachParameters::from_motion(&truth.pose, &truth.velocity_m_s);
@@ -66,7 +66,7 @@ fn stacked(a: &Vector3<f64>, b: &Vector3<f64>) -> Vector6<f64> {
     Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
 }
 
-/// The covariance of (d, φ).
+/// Covariance of (d, φ).
 fn pose_covariance(motion: &Motion) -> Matrix6<f64> {
     let mut covariance = Matrix6::zeros();
     covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&motion.position_covariance.fixed_view::<3, 3>(0, 0));
@@ -76,24 +76,24 @@ fn pose_covariance(motion: &Motion) -> Matrix6<f64> {
     covariance
 }
 
-/// NEES over 6 of a field's pose.
+/// NEES of a field's pose, divided by 6.
 fn field_nees(truth: &ApproachState, estimate: &PoseEstimate) -> Option<f64> {
     let d = estimate.pose.position_m - truth.pose.position_m;
     let phi = estimate.pose.phi_rad - truth.pose.phi_rad;
     nees(&stacked(&d, &phi), &estimate.covariance)
 }
 
-/// A mean over approaches.
+/// Mean over approaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mean {
-    /// The mean.
+    /// Mean value.
     pub value: f64,
     /// Standard error, from the scatter between approaches: portions of one approach are not independent.
     pub error: f64,
 }
 
 impl Mean {
-    /// Of sums and numbers, one pair an approach; `None` of nothing.
+    /// Computes the mean from the sum and the count of each approach; `None` if all counts are 0.
     fn from_values(approaches: &[(f64, f64)]) -> Option<Self> {
         let (sum, count) = approaches.iter().fold((0.0, 0.0), |(s, n), (a, b)| (s + a, n + b));
         if count <= 0.0 {
@@ -105,23 +105,23 @@ impl Mean {
     }
 }
 
-/// What a set of approaches shows of one estimator, from the second portion on.
+/// Statistics of one estimator over a set of approaches, from the second portion on.
 #[derive(Debug, Clone)]
 pub struct Tally {
     /// Number of portions.
     pub portions: usize,
     /// Share of errors within 3σ, by parameter.
     pub within: [Option<Mean>; 16],
-    /// The same of all parameters together.
+    /// Share of errors within 3σ, of all parameters together.
     pub within_all: Option<Mean>,
-    /// NEES over its dimension.
+    /// NEES over its dimension, by group.
     pub nees: [Option<Mean>; 3],
-    /// The same of a field's pose.
+    /// NEES over its dimension, of a field's pose.
     pub field_nees: Option<Mean>,
 }
 
 impl Tally {
-    /// Statistics of one estimator over these approaches.
+    /// Computes the statistics of one estimator over these approaches.
     pub fn from_approaches(approaches: &[MeasuredApproach], estimator: Estimator) -> Self {
         let errors: Vec<Vec<Errors>> =
             approaches.iter().map(|approaches| errors(approaches, estimator)).collect();
@@ -156,7 +156,7 @@ impl Tally {
     }
 }
 
-/// Of the portions of an approach that are judged.
+/// Errors of the judged portions of an approach.
 pub fn errors(approaches: &MeasuredApproach, estimator: Estimator) -> Vec<Errors> {
     approaches
         .portions

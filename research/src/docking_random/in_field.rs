@@ -1,4 +1,4 @@
-//! Whether marks and cross of a docking target are in the field.
+//! Test that marks and cross of a docking target are in the field.
 
 use contract::Camera;
 use contract::docking::{Pose, TargetModel};
@@ -13,7 +13,8 @@ pub fn corners(target: &TargetModel) -> Vec<Vector3<f64>> {
     marks.chain(cross.into_iter().map(|(x, y)| Vector3::new(x, y, b))).collect()
 }
 
-/// Whether all of them are at least `margin_px` from the border of the image of a camera without distortion.
+/// Returns true if all corners are at least `margin_px` from the border of the image of a camera without
+/// distortion.
 pub fn are_inside(camera: &Camera, pose: &Pose, corners: &[Vector3<f64>], margin_px: f64) -> bool {
     let (focal_x_px, focal_y_px) = camera.focal_length_px();
     corners.iter().all(|corner| {

@@ -13,7 +13,7 @@ const PIXEL_UM: f64 = 8.3;
 const COLUMNS: usize = 768;
 const ROWS: usize = 576;
 
-/// A camera of this focal length without distortion, its axis through the middle of the image.
+/// Camera of this focal length without distortion, with its axis through the image centre.
 pub fn camera(focal_px: f64) -> Camera {
     Camera {
         columns: COLUMNS,
@@ -28,9 +28,10 @@ pub fn camera(focal_px: f64) -> Camera {
     }
 }
 
-/// A Sun at rest, uniform over the cap within 60° of the target's normal, by two draws of the stream.
+/// Draws a fixed Sun direction, uniform over the cap within 60° of the target's normal, with two draws of the
+/// stream.
 pub fn random_sun(stream: &mut Stream) -> SunConfig {
-    // Uniform over the cap: uniform in the cosine, which begins at cos 60°.
+    // Uniform over the cap: uniform in the cosine, from cos 60° on.
     let cosine = 0.5 + 0.5 * uniform(stream);
     let around = 2.0 * std::f64::consts::PI * uniform(stream);
     let sine = (1.0 - cosine * cosine).sqrt();

@@ -1,4 +1,4 @@
-//! Single progressive fields of random poses at one range through one lens: blur and noise, and nothing else.
+//! Single progressive fields of random poses at one range through one lens, with blur and noise only.
 
 use std::path::Path;
 
@@ -13,14 +13,14 @@ use sim::randomness::{Seed, Stream, uniform};
 use sim::television::{Interlace, TelevisionConfig, VideoNoiseConfig};
 use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig};
 
-/// The target.
+/// Name of the target.
 pub const TARGET: &str = "progress";
 /// Standard deviation of the video noise, DN.
 pub const NOISE_DN: f64 = 2.0;
-/// Standard deviation of the lens's point spread, px.
+/// Standard deviation of the lens's point-spread function, px.
 pub const BLUR_PX: f64 = 0.7;
 
-/// A row of a table: a lens and a distance.
+/// Row of a table: a lens and a distance.
 #[derive(Debug, Clone, Copy)]
 pub struct Row {
     /// Name in the table and on the command line.
@@ -32,22 +32,23 @@ pub struct Row {
 }
 
 impl Row {
-    /// A row of the wide lens.
+    /// Creates a row of the wide lens.
     pub const fn wide(name: &'static str, range_m: f64) -> Self {
         Self { name, focal_px: 1055.0, range_m }
     }
 
-    /// A row of the narrow lens.
+    /// Creates a row of the narrow lens.
     pub const fn narrow(name: &'static str, range_m: f64) -> Self {
         Self { name, focal_px: 2917.0, range_m }
     }
 
-    /// The seed of its draws.
+    /// Seed of the row's draws.
     pub fn seed(&self, seed: u64) -> Seed {
         Seed { seed, case: self.focal_px as u64 * 1000 + self.range_m as u64 }
     }
 
-    /// A pose at its d3: lateral offsets uniform within a part `offset` of d3, angles within `angle_deg`.
+    /// Draws a pose at the row's d3: lateral offsets uniform within a fraction `offset` of d3, angles within
+    /// `angle_deg`.
     pub fn random_pose(&self, offset: f64, angle_deg: f64, stream: &mut Stream) -> Pose {
         let mut symmetric = || 2.0 * uniform(stream) - 1.0;
         let d = self.range_m;
@@ -55,7 +56,7 @@ impl Row {
         Pose { position_m, phi_rad: Vector3::from_fn(|_, _| angle_deg.to_radians() * symmetric()) }
     }
 
-    /// The simulator of the one field of a pose, case `number` of a table.
+    /// Creates the simulator of the single field of a pose, case `number` of a table.
     pub fn simulator(
         &self,
         camera: &Camera,
@@ -65,7 +66,8 @@ impl Row {
         (seed, number): (u64, u64),
     ) -> Result<DockingSimulator, SimError> {
         let simulation = DockingSimulation {
-            // Noise is addressed by seed and number of the field, which is 0 in every case: so seeds differ.
+            // Noise is addressed by seed and number of the field, which is 0 in every case, so each case has
+            // another seed.
             seed: (seed << 32) ^ (self.seed(seed).case << 16) ^ number,
             start_utc: "2004-01-31T13:04:00Z".to_owned(),
             target: TARGET.to_owned(),

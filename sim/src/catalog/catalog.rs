@@ -1,4 +1,4 @@
-//! A catalogue: stars in ascending order of their numbers, and the hash of where they came from.
+//! Star catalogue: stars in ascending order of their numbers, and the hash of their source.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,7 +15,7 @@ use super::{CatalogError, CatalogStar, hipparcos, read};
 use crate::memo::Memo;
 use crate::regular_file;
 
-/// Stars in ascending order of id, each id once. A copy shares them.
+/// Stars in ascending order of id, each id once. Copies share the stars.
 #[derive(Debug, Clone)]
 pub struct Catalog {
     stars: Arc<[CatalogStar]>,
@@ -26,18 +26,18 @@ pub struct Catalog {
 
 impl PartialEq for Catalog {
     fn eq(&self, other: &Self) -> bool {
-        // The index follows from the stars.
+        // The index is derived from the stars.
         let Self { stars, sha256, exclusions, index: _ } = self;
         *stars == other.stars && *sha256 == other.sha256 && *exclusions == other.exclusions
     }
 }
 
-/// Cuts of the embedded catalogue.
+/// Selections from the embedded catalogue.
 static EMBEDDED: Memo<CatalogConfig, Catalog> = Memo::new();
 
 impl Catalog {
     /// The embedded Hipparcos-2: 117 955 stars (van Leeuwen 2007, A&A 474, 653; CDS I/311), with the radial
-    /// velocities of the near and fast ones (`radial_velocity.rs` tells which, and from where).
+    /// velocities of near and fast stars (`radial_velocity.rs` lists them and their sources).
     ///
     /// ```
     /// use boresight_sim::catalog::Catalog;
@@ -53,16 +53,17 @@ impl Catalog {
         Self { stars: stars.into(), sha256, exclusions, index: Arc::default() }
     }
 
-    /// Reads a user's catalogue. The format is told by name and content: a name ending in `.csv` is CSV with
-    /// named columns; otherwise a first line that begins with `H|` is hip_main.dat (I/239), and one of at least
-    /// 171 plain characters (of the 276 published) without a bar or a comma is hip2.dat (I/311).
+    /// Reads a catalogue file of the user. Name and content determine the format: a name ending in `.csv` is
+    /// CSV with named columns; otherwise a first line that begins with `H|` is hip_main.dat (I/239), and a
+    /// first line of at least 171 plain characters (of the 276 published) without a bar or a comma is
+    /// hip2.dat (I/311).
     ///
-    /// Stars that hip_main.dat lists without a position or without Hp are left out and told by
-    /// [`Catalog::exclusions`]; any other flaw is an error. The two Hipparcos formats have no radial velocities and get those of the
-    /// embedded catalogue.
+    /// Stars that hip_main.dat lists without a position or without Hp are left out and reported by
+    /// [`Catalog::exclusions`]; any other flaw is an error. The two Hipparcos formats have no radial
+    /// velocities and receive those of the embedded catalogue.
     ///
     /// # Errors
-    /// [`CatalogError`] with the file, the line and the place in it.
+    /// [`CatalogError`] with the file, the line and the position in the line.
     pub fn read(path: &Path) -> Result<Self, CatalogError> {
         let bytes = regular_file::read(path, MAX_BYTES)
             .map_err(|source| CatalogError::Io { path: path.to_path_buf(), source })?;
@@ -70,14 +71,14 @@ impl Catalog {
         Ok(Self::new(unique(path, rows)?, hex(&Sha256::digest(&bytes)), exclusions))
     }
 
-    /// The stars that a scenario asks for: the source, cut at the magnitude and to the cone. `base_dir` is
-    /// where a relative path starts.
+    /// Loads the stars that a scenario requests: the source, limited to the magnitude and to the cone. A
+    /// relative path starts at `base_dir`.
     ///
-    /// The cone is taken at the catalogue's epoch: give it a margin for proper motion (at most 10.4″ a year).
-    /// The hash is that of the whole source.
+    /// The cone is applied at the catalogue's epoch: add a margin for proper motion (at most 10.4″ per year).
+    /// The hash covers the whole source.
     ///
     /// # Errors
-    /// [`CatalogError`] when the source cannot be read. The configuration is taken as checked.
+    /// [`CatalogError`] if the source cannot be read. The configuration must have been checked.
     pub fn load(config: &CatalogConfig, base_dir: &Path) -> Result<Self, CatalogError> {
         match &config.source {
             CatalogSource::Hipparcos2 => {
@@ -102,17 +103,17 @@ impl Catalog {
         Self::new(stars, self.sha256, self.exclusions)
     }
 
-    /// The stars, in ascending order of id.
+    /// Stars, in ascending order of id.
     pub fn stars(&self) -> &[CatalogStar] {
         &self.stars
     }
 
-    /// The star of a number.
+    /// Returns the star with this number.
     pub fn star(&self, id: u32) -> Option<&CatalogStar> {
         self.stars.binary_search_by_key(&id, |star| star.id).ok().and_then(|index| self.stars.get(index))
     }
 
-    /// The index over the stars' directions at the catalogue's epoch, made when it is first asked for.
+    /// Index of the stars' directions at the catalogue's epoch, built on first use.
     pub fn index(&self) -> &ConeIndex {
         self.index.get_or_init(|| ConeIndex::new(&self.stars))
     }
@@ -122,7 +123,7 @@ impl Catalog {
         &self.sha256
     }
 
-    /// The stars of the file that are not in the catalogue, in the order of the file.
+    /// Stars of the file that are not in the catalogue, in the order of the file.
     pub fn exclusions(&self) -> &[Exclusion] {
         &self.exclusions
     }
@@ -130,13 +131,13 @@ impl Catalog {
 
 #[cfg(test)]
 impl Catalog {
-    /// A catalogue of these stars, in ascending order of id.
+    /// Creates a catalogue of these stars, in ascending order of id.
     pub(crate) fn from_stars(stars: Vec<CatalogStar>) -> Self {
         Self::new(stars, String::new(), Vec::new())
     }
 }
 
-/// The stars of the rows (line, star), in ascending order of id.
+/// Returns the stars of the rows (line, star), in ascending order of id.
 fn unique(path: &Path, rows: Vec<(usize, CatalogStar)>) -> Result<Vec<CatalogStar>, CatalogError> {
     let mut line_of_id = HashMap::with_capacity(rows.len());
     for (line, star) in &rows {
@@ -150,7 +151,7 @@ fn unique(path: &Path, rows: Vec<(usize, CatalogStar)>) -> Result<Vec<CatalogSta
     Ok(stars)
 }
 
-/// Largest catalogue that is read, bytes: ten times hip_main.dat.
+/// Maximum size of a catalogue that is read, bytes: ten times hip_main.dat.
 const MAX_BYTES: u64 = 1 << 29;
 
 #[cfg(test)]

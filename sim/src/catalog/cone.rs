@@ -1,4 +1,4 @@
-//! The search for the stars within a cone.
+//! Search for the stars within a cone.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::RangeInclusive;
@@ -7,34 +7,33 @@ use contract::{Angle, Direction, Icrs};
 
 use super::CatalogStar;
 
-/// Bands of equal height in z, hence of equal area.
+/// Number of bands of equal height in z, hence of equal area.
 const BANDS: usize = 64;
-/// Cells of a band, equal in right ascension: at 118 000 stars a cell holds 14 of them.
+/// Number of cells in a band, of equal width in right ascension: with 118 000 stars a cell holds 14 stars.
 const CELLS: usize = 128;
-/// How much wider than the cone the search for candidates is, rad. It covers every rounding error here, and
-/// costs nothing: whether a candidate is inside is decided by [`within_cone`] alone.
+/// Margin by which the search for candidates is wider than the cone, rad. It covers every rounding error of
+/// the search, and costs nothing: [`within_cone`] decides whether a candidate is inside.
 const MARGIN_RAD: f64 = 1e-7;
 
-/// An index over directions on a grid of z and right ascension.
+/// Index of directions on a grid of z and right ascension.
 ///
-/// The answers are those of a test of every star, in all cases: the poles, α = 0, radii from 0 to 180° and
+/// The results equal those of testing every star, in all cases: the poles, α = 0, radii from 0 to 180° and
 /// beyond.
 #[derive(Debug, Clone)]
 pub struct ConeIndex {
     /// Direction and index of each star, sorted by cell.
     entries: Vec<(Direction<Icrs>, u32)>,
-    /// Where the entries of each cell start; one more at the end.
+    /// Start of each cell's entries, and the total count as last element.
     starts: Vec<u32>,
 }
 
 impl ConeIndex {
-    /// The index of the stars' directions at the catalogue's epoch.
+    /// Indexes the stars' directions at the catalogue's epoch.
     pub fn new(stars: &[CatalogStar]) -> Self {
         Self::from_directions(stars.iter().map(CatalogStar::direction))
     }
 
-    /// The index of any directions, at most 2³² − 1 of them: those of stars moved to another epoch, for
-    /// example.
+    /// Indexes any directions, at most 2³² − 1, for example those of stars moved to another epoch.
     pub fn from_directions(directions: impl IntoIterator<Item = Direction<Icrs>>) -> Self {
         let mut celled: Vec<(usize, Direction<Icrs>, u32)> = directions
             .into_iter()
@@ -44,7 +43,7 @@ impl ConeIndex {
                 (band(v.z) * CELLS + cell(libm::atan2(v.y, v.x)), direction, index)
             })
             .collect();
-        // Stable: within a cell the stars stay in the order of their indices.
+        // A stable sort: within a cell the stars stay in the order of their indices.
         celled.sort_by_key(|(cell, ..)| *cell);
         let mut starts = vec![0_u32; BANDS * CELLS + 1];
         for (cell, ..) in &celled {
@@ -57,15 +56,15 @@ impl ConeIndex {
         Self { entries, starts }
     }
 
-    /// Indices of the stars within `radius` of `centre`, ascending; the boundary belongs to the cone. A
-    /// negative radius holds nothing, one of 180° or more everything.
+    /// Returns the indices of the stars within `radius` of `centre`, ascending; the boundary belongs to the
+    /// cone. A negative radius holds no star, a radius of 180° or more every star.
     pub fn within(&self, centre: &Direction<Icrs>, radius: Angle) -> Vec<usize> {
         let mut found = Vec::new();
         self.within_into(centre, radius, &mut found);
         found
     }
 
-    /// As [`ConeIndex::within`], into a buffer that is cleared first and can be used again.
+    /// Writes the result of [`ConeIndex::within`] to a buffer, which is cleared first and can be reused.
     pub fn within_into(&self, centre: &Direction<Icrs>, radius: Angle, found: &mut Vec<usize>) {
         found.clear();
         if radius.radians().is_nan() || radius.radians() < 0.0 {
@@ -92,14 +91,14 @@ impl ConeIndex {
     }
 }
 
-/// Whether a star lies in the cone: the definition that the index must reproduce.
+/// Returns true if a star lies in the cone: the definition that the index must reproduce.
 pub(super) fn within_cone(centre: &Direction<Icrs>, star: &Direction<Icrs>, radius: Angle) -> bool {
     radius.radians() >= 0.0 && Cone::new(centre, radius).contains(star)
 }
 
-/// A cone, ready to be compared with many stars.
+/// Cone prepared for comparison with many stars.
 ///
-/// Up to 90° the chord to the centre is compared, beyond that the chord to the antipode: a dot product would
+/// Up to 90° the chord to the centre is compared, beyond 90° the chord to the antipode: a dot product would
 /// lose half of the digits near 0 and 180°.
 enum Cone {
     NearCentre { centre: [f64; 3], chord_squared: f64 },
@@ -137,10 +136,10 @@ impl Cone {
     }
 }
 
-/// The part of the grid that holds every star of a cone.
+/// Part of the grid that holds every star of a cone.
 struct Candidates {
     bands: RangeInclusive<usize>,
-    /// First and last cell; it runs through α = ±180° when the first is after the last.
+    /// First and last cell; the interval crosses α = ±180° if the first is after the last.
     cells: (usize, usize),
 }
 
@@ -148,13 +147,14 @@ impl Candidates {
     fn from_centre(centre: &Direction<Icrs>, radius: Angle) -> Self {
         let (dec, radius) = (centre.dec().radians(), (radius.radians() + MARGIN_RAD).min(PI));
         let (low, high) = (dec - radius, dec + radius);
-        // The sine is flat at the poles, where a declination says little about z: the ends are exact there.
+        // The sine is flat at the poles, where a declination determines z poorly: the end bands are exact
+        // there.
         let bottom = if low <= -FRAC_PI_2 { 0 } else { band(libm::sin(low)) };
         let top = if high >= FRAC_PI_2 { BANDS - 1 } else { band(libm::sin(high)) };
         let cells = if low <= -FRAC_PI_2 || high >= FRAC_PI_2 {
             (0, CELLS - 1)
         } else {
-            // The meridians that touch the circle: sin Δα = sin r / cos δ; no pole inside means r < 90° −
+            // Meridians that touch the circle: sin Δα = sin r / cos δ; without a pole inside, r < 90° −
             // |δ|.
             let half_width = libm::asin((libm::sin(radius) / libm::cos(dec)).min(1.0)) + MARGIN_RAD;
             let ra = libm::atan2(centre.vector().y, centre.vector().x);
@@ -168,13 +168,13 @@ fn band(z: f64) -> usize {
     (((z + 1.0) * (BANDS as f64 / 2.0)) as usize).min(BANDS - 1)
 }
 
-/// The cell of a right ascension within a turn and a half of 0. Cell 0 starts at −180°.
+/// Cell of a right ascension within one and a half turns of 0. Cell 0 starts at −180°.
 fn cell(ra: f64) -> usize {
     let turns = ra / TAU + 0.5;
     (((turns - turns.floor()) * CELLS as f64) as usize).min(CELLS - 1)
 }
 
-/// Sorts distinct indices below `count`. Many of them go through a bitmap, which is faster than comparing.
+/// Sorts distinct indices below `count`. Large sets are sorted with a bitmap, which is faster than comparing.
 fn sort(indices: &mut Vec<usize>, count: usize) {
     if indices.len() < count / 512 {
         indices.sort_unstable();
@@ -206,7 +206,7 @@ mod tests {
         Direction::from_ra_dec(Angle::from_degrees(ra_deg), Angle::from_degrees(dec_deg))
     }
 
-    /// Every star tested, none left to an index.
+    /// Tests every star, without an index.
     fn brute_force(stars: &[Direction<Icrs>], centre: &Direction<Icrs>, radius: Angle) -> Vec<usize> {
         (0..stars.len()).filter(|index| within_cone(centre, &stars[*index], radius)).collect()
     }
@@ -225,8 +225,8 @@ mod tests {
         })
     }
 
-    /// Places where an index goes wrong: poles and their neighbourhood, the seam of right ascension, a cell's
-    /// edge.
+    /// Directions at which an index may fail: poles and their neighbourhood, the seam of right ascension, the
+    /// edges of cells.
     fn directions() -> impl Strategy<Value = Direction<Icrs>> {
         let ra =
             prop_oneof![Just(0.0), Just(180.0), 359.999..360.0_f64, 179.999..180.001_f64, 0.0..360.0_f64];
@@ -267,7 +267,7 @@ mod tests {
             check(&stars, &centre, radius);
         }
 
-        /// The radius is the exact separation of a star, where rounding decides.
+        /// The radius is the exact separation of a star, where rounding decides the result.
         #[test]
         fn a_star_on_the_boundary_is_treated_alike(stars in prop::collection::vec(directions(), 1..40), centre in directions()) {
             check(&stars, &centre, centre.separation(&stars[0]));
@@ -280,7 +280,7 @@ mod tests {
         }
     }
 
-    /// The definition itself, against angles that are known.
+    /// Tests the definition of a cone against known angles.
     #[test]
     fn a_cone_holds_what_is_nearer_than_its_radius() {
         for (separation, inside) in [(9.999999, true), (10.000001, false)] {

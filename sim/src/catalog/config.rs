@@ -1,10 +1,10 @@
-//! What a scenario says about its catalogue.
+//! Catalogue settings of a scenario.
 
 use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Which stars a scenario draws.
+/// Selection of the stars that a scenario draws.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CatalogConfig {
@@ -12,16 +12,16 @@ pub struct CatalogConfig {
     /// hip_main.dat (CDS I/239) or a CSV file with named columns. A relative path starts at the scenario.
     #[serde(default)]
     pub source: CatalogSource,
-    /// Faintest star drawn, Johnson V, mag, −2 to 30; without it all stars are.
+    /// Faintest star drawn, Johnson V, mag, −2 to 30; without a limit all stars are drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -2, max = 30))]
     pub magnitude_limit: Option<f64>,
-    /// Only the stars in this cone; without it those of the whole sky.
+    /// Only the stars in this cone are drawn; without a cone those of the whole sky.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cone: Option<ConeConfig>,
 }
 
-/// A circle on the sky at the catalogue's epoch, J1991.25; its boundary belongs to it.
+/// Circle on the sky at the catalogue's epoch, J1991.25, including its boundary.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConeConfig {
@@ -36,14 +36,14 @@ pub struct ConeConfig {
     pub radius_deg: f64,
 }
 
-/// Where the stars come from. In a file it is one string.
+/// Source of the stars, written as one string in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum CatalogSource {
     /// The embedded Hipparcos-2.
     #[default]
     Hipparcos2,
-    /// A file of the user's.
+    /// Catalogue file of the user.
     File(String),
 }
 
@@ -64,7 +64,7 @@ impl From<CatalogSource> for String {
     }
 }
 
-// Written out: the derive does not know that the enum is one string in a file.
+// Written by hand: the derive cannot express that the enum is one string in a file.
 impl JsonSchema for CatalogSource {
     fn inline_schema() -> bool {
         true
@@ -80,7 +80,7 @@ impl JsonSchema for CatalogSource {
 }
 
 impl CatalogConfig {
-    /// Checks every number.
+    /// Checks the ranges of all values.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.

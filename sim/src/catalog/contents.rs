@@ -1,17 +1,17 @@
-//! What a file of stars gives.
+//! Contents of a file of stars.
 
 use super::CatalogStar;
 
-/// What a file holds: stars with the line each stands in, and the stars left out.
+/// Stars with the line of each star, and the stars left out.
 pub(super) type CatalogContents = (Vec<(usize, CatalogStar)>, Vec<Exclusion>);
 
-/// A star that a file lists and that the catalogue does not hold.
+/// Star that a file lists and the catalogue omits.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Exclusion {
     /// Line in the file, counted from 1.
     pub line: usize,
     /// Number of the star.
     pub id: u32,
-    /// Why it is left out.
+    /// Reason for the omission.
     pub reason: &'static str,
 }

@@ -1,85 +1,85 @@
-//! What can be wrong with a catalogue.
+//! Errors of a catalogue.
 
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Why a catalogue cannot be used.
+/// Reason why a catalogue cannot be used.
 #[derive(Debug, Error)]
 pub enum CatalogError {
-    /// The file cannot be read at all.
+    /// The file cannot be read.
     #[error("catalogue {}: {source}", path.display())]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// The file is none of the formats known.
+    /// The file has none of the known formats.
     #[error(
         "catalogue {}: the format is not known; expected CSV (name ending in .csv), hip2.dat (I/311) or \
          hip_main.dat (I/239)",
         path.display()
     )]
     UnknownFormat {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// A field that is not what it should be.
+    /// A field has an invalid value.
     #[error(
         "catalogue {}, line {line}, column {column}: {field} is `{value}`, expected {expected}",
         path.display()
     )]
     Field {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Line, counted from 1.
         line: usize,
-        /// First character of the field in its line, counted from 1.
+        /// Position of the field's first character in its line, counted from 1.
         column: usize,
         /// Name of the field in its format.
         field: &'static str,
-        /// What stands there.
+        /// Text of the field.
         value: String,
-        /// What is allowed there.
+        /// Allowed values.
         expected: &'static str,
     },
-    /// A line that does not have the shape of its format.
+    /// A line does not have the structure of its format.
     #[error("catalogue {}, line {line}: {problem}", path.display())]
     Line {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Line, counted from 1.
         line: usize,
-        /// What is wrong.
+        /// Description of the problem.
         problem: String,
     },
-    /// A column of a CSV file that means nothing here.
+    /// A column of a CSV file has an unknown name.
     #[error("catalogue {}: the column `{name}` is not known, did you mean `{nearest}`?", path.display())]
     UnknownColumn {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The name met.
+        /// Name of the column.
         name: String,
-        /// The known name that is most like it.
+        /// Known name that is most similar.
         nearest: &'static str,
     },
-    /// A CSV file without a column that every catalogue needs.
+    /// A CSV file lacks a column that every catalogue needs.
     #[error("catalogue {}: the column {name} is missing", path.display())]
     MissingColumn {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The column, or the columns of which one is needed.
+        /// Name of the column, or the columns of which at least one is required.
         name: &'static str,
     },
-    /// Two stars of one number.
+    /// Two stars have the same number.
     #[error("catalogue {}, line {line}: the id {id} was already given in line {first_line}", path.display())]
     DuplicateId {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Line of the second star, counted from 1.
         line: usize,
-        /// The number.
+        /// Number of the stars.
         id: u32,
         /// Line of the first star, counted from 1.
         first_line: usize,

@@ -1,7 +1,7 @@
 //! The embedded Hipparcos-2 (van Leeuwen 2007, A&A 474, 653; CDS I/311).
 //!
-//! `sim/data/make_hipparcos2.py` makes the bytes and describes their format; every printed digit of hip2.dat
-//! is kept.
+//! `sim/data/make_hipparcos2.py` generates the bytes and describes their format; every printed digit of
+//! hip2.dat is kept.
 
 use super::hex::hex;
 use super::{CatalogStar, radial_velocity};
@@ -11,7 +11,7 @@ static BYTES: &[u8] = include_bytes!("../../data/hipparcos2.bin");
 const HEADER: usize = 48;
 const SHA256: std::ops::Range<usize> = 16..48;
 const RECORD: usize = 29;
-/// Marks a colour that the catalogue does not have.
+/// Marker of a colour that the catalogue lacks.
 const UNKNOWN: i64 = -32768;
 
 /// SHA-256 of hip2.dat, in hexadecimal.
@@ -19,7 +19,8 @@ pub(super) fn sha256() -> String {
     hex(&BYTES[SHA256])
 }
 
-/// All stars, in ascending order of HIP. The bytes are ours, and a test reads every one of them.
+/// All stars, in ascending order of HIP. The bytes are part of this crate, and a test reads every one of
+/// them.
 pub(super) fn stars() -> Vec<CatalogStar> {
     let (records, _) = BYTES[HEADER..].as_chunks::<RECORD>();
     records.iter().map(star).collect()
@@ -42,8 +43,8 @@ fn star(record: &[u8; RECORD]) -> CatalogStar {
     }
 }
 
-/// The number of which `integer` is the printed digits: a division by a power of ten is correctly rounded, so
-/// it is the float that a reader of the text would get.
+/// Returns the number whose printed digits are `integer`: a division by a power of ten is correctly rounded,
+/// so the result equals the float that a parser of the text would return.
 fn scaled(integer: i64, power_of_ten: f64) -> f64 {
     integer as f64 / power_of_ten
 }
@@ -56,7 +57,7 @@ fn unsigned<const START: usize, const SIZE: usize>(record: &[u8; RECORD]) -> u64
 
 fn signed<const START: usize, const SIZE: usize>(record: &[u8; RECORD]) -> i64 {
     let unused = 64 - 8 * SIZE as u32;
-    // The shift up and down again extends the sign.
+    // Shifting up and down again extends the sign.
     (unsigned::<START, SIZE>(record) << unused) as i64 >> unused
 }
 
@@ -93,8 +94,8 @@ mod tests {
         }
     }
 
-    /// Sums over the whole catalogue, made from hip2.dat with Python's exact integers: a single wrong digit
-    /// shows.
+    /// Checks sums over the whole catalogue, computed from hip2.dat with Python's exact integers: a single
+    /// wrong digit makes it fail.
     #[test]
     fn the_sums_over_all_stars_are_those_of_the_text() {
         let stars = stars();
@@ -112,7 +113,7 @@ mod tests {
         assert_eq!(stars.iter().filter(|star| star.b_v.is_none()).count(), 1143);
     }
 
-    /// Three lines of hip2.dat as printed.
+    /// Checks three lines of hip2.dat as printed.
     #[test]
     fn a_star_has_the_printed_numbers() {
         let stars = stars();

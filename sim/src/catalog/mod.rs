@@ -1,4 +1,4 @@
-//! Star catalogues: the embedded Hipparcos-2, a user's file, and the search in a cone.
+//! Star catalogues: the embedded Hipparcos-2, a catalogue file of the user, and the search in a cone.
 
 #[allow(clippy::module_inception, reason = "the file of the type `Catalog`, which the module is named after")]
 mod catalog;

@@ -1,18 +1,18 @@
 //! Johnson V from the Hipparcos magnitude Hp.
 
-/// Range of B−V for which the transformation was made, mag.
+/// Range of B−V for which the transformation was derived, mag.
 const COLOUR_RANGE: (f64, f64) = (-0.25, 2.0);
 
 /// V − Hp of a star without a colour, mag: the mean of the transformation over the stars of Hipparcos-2 that
-/// have one. It scatters by 0.06 mag.
+/// have a colour. It scatters by 0.06 mag.
 const MEAN_V_MINUS_HP: f64 = -0.107;
 
-/// Johnson V from Hp and Johnson B−V, mag (Harmanec 1998, A&A 335, 173):
-/// V = Hp − 0.2964 (B−V) + 0.1110 (B−V)² + 0.0157 (B−V)³ + 0.0072.
+/// Johnson V from Hp and Johnson B−V, mag (Harmanec 1998, A&A 335, 173): V = Hp − 0.2964 (B−V) + 0.1110
+/// (B−V)² + 0.0157 (B−V)³ + 0.0072.
 ///
 /// The paper's term 0.0050 (U−B) is left out, because Hipparcos has no U−B: at most 0.01 mag. The relation
-/// was made for B−V from −0.25 to 2.0, V brighter than 8 and reddening below 1; a bluer or redder star gets
-/// the offset of the nearest end, and a star without colour the mean offset, −0.107.
+/// was derived for B−V from −0.25 to 2.0, V brighter than 8 and reddening below 1; a bluer or redder star
+/// gets the offset of the nearest end, and a star without colour the mean offset, −0.107.
 ///
 /// Accuracy, against the V of the 41 000 stars of I/239 brighter than about 8: median −0.003, half of the
 /// stars within 0.006, 95 % within 0.032, 99 % within 0.14 mag. B−V does not follow the molecular bands of M
@@ -75,7 +75,7 @@ mod tests {
         assert!(mean.abs() < 0.015, "mean error {mean:+.4}");
     }
 
-    /// Known and left as it is: the catalogue is drawn as published.
+    /// Known deviation, left uncorrected: the catalogue is drawn as published.
     #[test]
     fn sirius_and_vega_are_as_faint_as_their_published_hp() {
         let catalog = Catalog::hipparcos2();
@@ -104,8 +104,8 @@ mod tests {
             (1.034, -0.162),
         ] {
             let difference = v_mag(0.0, Some(b_v)) - v_minus_hp;
-            // The two were made from different standards: they agree to 0.005 for cool stars and part by up
-            // to 0.02 where B−V is near 0.
+            // The two calibrations were made from different standards: they agree to 0.005 for cool stars and
+            // differ by up to 0.02 where B−V is near 0.
             assert!(difference.abs() < 0.025, "B−V {b_v}: {difference:+.4}");
         }
     }

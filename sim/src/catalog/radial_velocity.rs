@@ -1,19 +1,20 @@
-//! Radial velocities of the near and fast stars, which Hipparcos does not have.
+//! Radial velocities of near and fast stars, which Hipparcos does not have.
 //!
-//! A star's proper motion changes as its distance and its angle to us do: by −2 μ v_r π/A a year, with A =
-//! 4.740 47 km yr/s (perspective acceleration; Schlesinger 1917, AJ 30, 137). Over 25 years that moves a star
-//! by 0.64 mas × μ\[″/yr\] × π\[″\] × v_r\[km/s\] beyond its linear motion: 0.4″ for Barnard's star, less
-//! than 1 mas for all but a few hundred. The table holds stars for which the effect passes 1 mas at their
-//! velocity or at 30 km/s, a common velocity near the Sun, and for which a sourced velocity was at hand.
+//! A star's proper motion changes as its distance from us and its angle change: by −2 μ v_r π/A per year,
+//! with A = 4.740 47 km yr/s (perspective acceleration; Schlesinger 1917, AJ 30, 137). Over 25 years this
+//! moves a star by 0.64 mas × μ\[″/yr\] × π\[″\] × v_r\[km/s\] beyond its linear motion: 0.4″ for Barnard's
+//! star, less than 1 mas for all but a few hundred stars. The table holds stars whose effect exceeds 1 mas at
+//! their velocity or at 30 km/s, a common velocity near the Sun, and for which a sourced velocity was
+//! available.
 //!
-//! It is not complete: 230 stars without a velocity would pass 1 mas at 30 km/s, most of them faint. The
-//! three largest are HIP 67593 (21 mas, of a doubtful solution), HIP 3829 (13 mas: van Maanen's star, a white
-//! dwarf whose published velocities from −38 to +263 km/s disagree by its gravitational redshift and more)
-//! and HIP 57367 (11 mas, a white dwarf too). Without a velocity a star moves linearly. A double star has the
-//! velocity of one component, orbital motion included. CNS3, the oldest source, may be wrong by 10 km/s and
-//! more for M dwarfs.
+//! The table is incomplete: 230 stars without a velocity would exceed 1 mas at 30 km/s, most of them faint.
+//! The three largest effects are those of HIP 67593 (21 mas, of a doubtful solution), HIP 3829 (13 mas: van
+//! Maanen's star, a white dwarf whose published velocities from −38 to +263 km/s disagree by its
+//! gravitational redshift and more) and HIP 57367 (11 mas, also a white dwarf). A star without a velocity
+//! moves linearly. A double star has the velocity of one component, orbital motion included. CNS3, the oldest
+//! source, may be wrong by 10 km/s and more for M dwarfs.
 
-/// Where a velocity is from.
+/// Source of a velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Source {
     /// Gliese & Jahreiß 1991, Preliminary Version of the Third Catalogue of Nearby Stars (CDS V/70A).
@@ -28,12 +29,12 @@ enum Source {
     Simbad,
 }
 
-/// The radial velocity of a star by its HIP number, km/s, positive away.
+/// Radial velocity of a star by its HIP number, km/s, positive for recession.
 pub(super) fn radial_velocity_km_s(hip: u32) -> Option<f64> {
     TABLE.binary_search_by_key(&hip, |(hip, ..)| *hip).ok().map(|row| TABLE[row].1)
 }
 
-/// HIP, radial velocity in km/s, source; in ascending order of HIP.
+/// HIP number, radial velocity in km/s, and source; in ascending order of HIP.
 const TABLE: &[(u32, f64, Source)] = &[
     (439, 22.9, Source::Cns3),
     (1_242, -29.0, Source::Cns3),
@@ -120,7 +121,7 @@ mod tests {
     use super::super::{Catalog, CatalogStar};
     use super::*;
 
-    /// What a radial velocity does to a star's place in 25 years, mas: ½ t² × 2 μ v π/A.
+    /// Effect of a radial velocity on a star's position after 25 years, mas: ½ t² × 2 μ v π/A.
     fn effect_mas(star: &CatalogStar, velocity_km_s: f64) -> f64 {
         let mas = std::f64::consts::PI / 180.0 / 3600.0e3;
         let motion = libm::hypot(star.pm_ra_mas_per_yr, star.pm_dec_mas_per_yr);
@@ -142,25 +143,25 @@ mod tests {
         }
     }
 
-    /// The witness is geometry: the star moved along a straight line in space, with its velocity and without.
+    /// Compares with geometry: a star moved along a straight line in space, with its velocity and without it.
     #[test]
     fn the_effect_is_that_of_a_straight_line_in_space() {
         let catalog = Catalog::hipparcos2();
         let star = catalog.star(87_937).unwrap();
         let mas = std::f64::consts::PI / 180.0 / 3600.0e3;
         let motion = libm::hypot(star.pm_ra_mas_per_yr, star.pm_dec_mas_per_yr) * mas;
-        // Along the line of sight and along the proper motion, in units of the star's distance.
+        // Motion along the line of sight and along the proper motion, in units of the star's distance.
         let approach = star.radial_velocity_km_s / 4.740_47 * (star.parallax_mas * mas);
         let angle_mas = |approach: f64| libm::atan2(25.0 * motion, 1.0 + 25.0 * approach) / mas;
         let shift = angle_mas(approach) - angle_mas(0.0);
-        // Terms of third order: 25 years of approach are 0.0016 of the distance, so 0.2 %.
+        // Third-order terms: 25 years of approach are 0.0016 of the distance, an effect of 0.2 %.
         let effect = effect_mas(star, star.radial_velocity_km_s);
         assert!((shift / effect - 1.0).abs() < 0.002, "{shift} and {effect}");
-        // 0.4″, as the module says.
+        // 0.4″, as the module documentation states.
         assert!((shift - 400.0).abs() < 5.0, "{shift}");
     }
 
-    /// What the module says about its gaps.
+    /// Checks the module documentation's count of missing velocities.
     #[test]
     fn the_stars_without_a_velocity_are_counted() {
         let catalog = Catalog::hipparcos2();

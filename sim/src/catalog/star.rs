@@ -1,13 +1,13 @@
-//! One star of a catalogue.
+//! Star of a catalogue.
 
 use contract::{Angle, Direction, Icrs};
 
 use super::photometry;
 
-/// A star as catalogued: ICRS, epoch J1991.25 (TT).
+/// Star as catalogued: ICRS, epoch J1991.25 (TT).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CatalogStar {
-    /// Hipparcos number, or the number of a user's catalogue.
+    /// Hipparcos number, or the number in the user's catalogue.
     pub id: u32,
     /// Right ascension at J1991.25, rad.
     pub ra_rad: f64,
@@ -19,13 +19,13 @@ pub struct CatalogStar {
     pub pm_ra_mas_per_yr: f64,
     /// Proper motion in declination, mas per Julian year.
     pub pm_dec_mas_per_yr: f64,
-    /// Radial velocity, km/s, positive away; 0 where unknown.
+    /// Radial velocity, km/s, positive for recession; 0 if unknown.
     pub radial_velocity_km_s: f64,
     /// Magnitude in the Hipparcos band.
     pub hp_mag: f64,
-    /// Colour index B−V, mag; NaN never: `None` where unknown.
+    /// Colour index B−V, mag, never NaN; `None` if unknown.
     pub b_v: Option<f64>,
-    /// Colour index V−I, mag; `None` where unknown.
+    /// Colour index V−I, mag; `None` if unknown.
     pub v_i: Option<f64>,
 }
 
@@ -35,7 +35,7 @@ impl CatalogStar {
         Direction::from_ra_dec(Angle::from_radians(self.ra_rad), Angle::from_radians(self.dec_rad))
     }
 
-    /// Johnson V, mag, by [`photometry::v_mag`], whose limits apply.
+    /// Johnson V, mag, computed by [`photometry::v_mag`], whose limits apply.
     pub fn v_mag(&self) -> f64 {
         photometry::v_mag(self.hp_mag, self.b_v)
     }

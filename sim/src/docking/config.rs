@@ -1,4 +1,4 @@
-//! What the simulator of an approach is told.
+//! Configuration of the simulator of a docking approach.
 
 use contract::bounds::{self, require};
 use contract::{Camera, OutOfRange};
@@ -10,55 +10,55 @@ use crate::television::{TelevisionConfig, can_be_written};
 use crate::truth::approach::ApproachConfig;
 use crate::truth::clock::parse_utc_field;
 
-/// Longest name of a camera.
+/// Maximum length of a camera name, characters.
 const MAX_NAME: usize = 16;
 
-/// An approach as its camera sees it: all that the simulator is told.
+/// Input of the simulator of a docking approach, as its camera sees it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DockingSimulation {
-    /// Seed of every random draw.
+    /// Seed of all random draws.
     #[schemars(range(max = u64::MAX))]
     pub seed: u64,
-    /// The moment of the first field, UTC, as in 2004-01-31T13:13:00Z.
+    /// Time of the first field, UTC, for example 2004-01-31T13:13:00Z.
     pub start_utc: String,
-    /// Name of a built-in target, or the path of a target file, starting from the scenario's folder.
+    /// Name of a built-in target, or the path of a target file, relative to the scenario's directory.
     pub target: String,
-    /// How the camera moves.
+    /// Motion of the camera.
     pub approach: ApproachConfig,
-    /// The cameras (lenses), in the order of use, 1 to 8, all with the same columns and rows.
+    /// Cameras (lenses), in the order of use, 1 to 8, all with equal numbers of columns and rows.
     #[schemars(length(min = 1, max = 8))]
     pub cameras: Vec<CameraConfig>,
-    /// What all lenses do to the image.
+    /// Image quality of all lenses.
     #[serde(default)]
     pub lens: LensConfig,
-    /// The light.
+    /// Lighting of the scene.
     pub lighting: LightingConfig,
-    /// The television chain.
+    /// Television chain.
     #[serde(default)]
     pub television: TelevisionConfig,
 }
 
-/// A camera and when it is in use. A field is taken by the first camera of the list whose `until_range_m` is not greater than the range:
-/// a function of the moment alone.
+/// Camera and its range of use. A field is taken by the first camera of the list whose `until_range_m` is not
+/// greater than the range, which depends on the time only.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CameraConfig {
-    /// Its name in the overlay: 1 to 16 of A to Z, 0 to 9, space and . : - + /.
+    /// Name in the overlay: 1 to 16 of A to Z, 0 to 9, space and . : - + /.
     pub name: String,
-    /// Least range at which it is in use, m; decreasing along the list, and 0 for the last.
+    /// Least range at which the camera is in use, m; decreasing along the list, and 0 for the last camera.
     #[serde(default)]
     #[schemars(range(min = 0, max = 1e6))]
     pub until_range_m: f64,
-    /// Geometry.
+    /// Geometry of the camera.
     pub camera: Camera,
 }
 
-/// The lens.
+/// Lens of the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LensConfig {
-    /// Standard deviation of its Gaussian point spread, px, 0 to 10; 0 is a perfect lens.
+    /// Standard deviation of the Gaussian point-spread function, px, 0 to 10; 0 is a perfect lens.
     #[schemars(range(min = 0, max = 10))]
     pub blur_sigma_px: f64,
 }
@@ -70,10 +70,10 @@ impl Default for LensConfig {
 }
 
 impl DockingSimulation {
-    /// Checks every value but the target and what depends on it.
+    /// Checks every value except the target and values that depend on the target.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one that is not allowed.
+    /// [`OutOfRange`] for the first invalid value.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "")?;
         parse_utc_field("start_utc", &self.start_utc)?;
@@ -88,7 +88,7 @@ impl DockingSimulation {
 }
 
 impl CameraConfig {
-    /// Checks it against the camera before it in the list.
+    /// Checks the camera against the previous camera of the list.
     fn check(&self, before: Option<&Self>, last: bool) -> Result<(), OutOfRange> {
         if !(1..=MAX_NAME).contains(&self.name.chars().count()) || !can_be_written(&self.name) {
             let expected = "1 to 16 of A to Z, 0 to 9, space and . : - + /";

@@ -1,4 +1,4 @@
-//! What of the target a camera sees, and what the Sun shines on: exact projections and rays.
+//! Parts of the target that a camera sees and that the Sun illuminates, by exact projections and rays.
 
 use std::f64::consts::PI;
 
@@ -16,14 +16,14 @@ use crate::truth::approach::target_from_camera;
 
 /// Angular radius of the Sun at 1 au, rad (959.63″, Auwers 1891, as in the Astronomical Almanac).
 const SUN_RADIUS_RAD: f64 = 959.63 / 3600.0 * PI / 180.0;
-/// Points on the rim of a circle that are projected.
+/// Number of projected points on the rim of a circle.
 const RIM_POINTS: u32 = 32;
-/// Places on each side of a mark at which its light is looked at.
+/// Number of points along each side of a mark at which its lighting is evaluated.
 const MARK_SAMPLES: u32 = 5;
-/// Points across the Sun's disk at which it is looked whether something hides it.
+/// Number of points across the Sun's disk that are tested for occlusion.
 const SUN_SAMPLES: i32 = 7;
 
-/// A camera with its exact projection.
+/// Camera with its exact projection.
 #[derive(Debug, Clone)]
 pub(super) struct Eye {
     projection: Projection,
@@ -44,18 +44,18 @@ impl Eye {
         })
     }
 
-    /// Image of a direction of the target frame.
+    /// Pixel position of a direction given in the target frame.
     fn image_of_direction(&self, pose: &Pose, direction: &Vector3<f64>) -> Option<PixelPoint> {
         let seen = target_from_camera(pose).transpose() * direction;
         self.projection.project(&Direction::from_vector(seen).ok()?)
     }
 
-    /// Image of a point of the target frame.
+    /// Pixel position of a point given in the target frame.
     pub(super) fn image_of(&self, pose: &Pose, point_m: &Vector3<f64>) -> Option<PixelPoint> {
         self.image_of_direction(pose, &(point_m - pose.position_m))
     }
 
-    /// Images of the glints whose centres are in the picture and that shine.
+    /// Images of the glints that shine and whose centres are in the picture.
     pub(super) fn glints(&self, glints: &[GlintConfig], sun: &Sun, pose: &Pose) -> Vec<GlintImage> {
         let of = |(index, glint): (usize, &GlintConfig)| {
             let centre = self.image_of(pose, &Vector3::from(glint.position_m));
@@ -78,7 +78,7 @@ impl Eye {
     }
 }
 
-/// The target's points, and what stands in the way of light.
+/// Points of the target, and the facets that block light.
 #[derive(Debug, Clone)]
 pub(super) struct TargetGeometry {
     mark_circle_radius_m: f64,
@@ -87,11 +87,11 @@ pub(super) struct TargetGeometry {
     cross_ends: Vec<Vector3<f64>>,
     plate_rim: Vec<Vector3<f64>>,
     plate_points_m: Vec<Vector3<f64>>,
-    /// About the marks and the plate.
+    /// Region around the marks and the plate.
     region: Region,
     shading: Occluders,
     hiding: Occluders,
-    /// What faces the open, and how far it stands out along y3, m.
+    /// Facets that face the open side, and their largest extent along y3, m.
     fronts: Occluders,
     front_m: f64,
 }
@@ -111,7 +111,8 @@ impl TargetGeometry {
         let marks: Vec<[Vector3<f64>; 4]> =
             model.marks.iter().map(|mark| mark.map(|[y1, y2]| Vector3::new(y1, y2, 0.0))).collect();
         let farthest = marks.iter().flatten().map(|corner| corner.norm()).fold(radius, f64::max);
-        // Rings with points as their circumferences, so that each stands for the same area; 96 in all.
+        // Rings whose numbers of points are proportional to their circumferences, so that each point
+        // represents the same area; 96 in all.
         let rings =
             [(0.25, 10), (0.5, 20), (0.75, 30), (0.95, 36)].map(|(share, n)| circle(share * radius, n));
         Self {
@@ -122,7 +123,7 @@ impl TargetGeometry {
             plate_rim: circle(radius, RIM_POINTS),
             plate_points_m: rings.into_iter().flatten().collect(),
             region: Region { centre: Vector3::zeros(), radius_m: farthest },
-            // What lies in or behind the plate's plane cannot shade it.
+            // Facets in or behind the plate's plane cannot shade the plate.
             shading: Occluders::new(scene.parts.iter().filter(|part| part.casts_shadow), |facet| {
                 facet.outer.iter().any(|corner| corner.z > 1e-6)
             }),
@@ -135,15 +136,15 @@ impl TargetGeometry {
         }
     }
 
-    /// Whether a camera at a place, target frame, is in front of all that is drawn: a front between it and the open is that of a body
-    /// that it is in, or behind.
+    /// Returns true if a camera at a position in the target frame is in front of all drawn parts. A front
+    /// facet between the camera and the open side belongs to a body that the camera is in or behind.
     pub(super) fn is_unobstructed(&self, plate_point_m: &Vector3<f64>) -> bool {
         let (camera, ahead) = (Region { centre: *plate_point_m, radius_m: 0.0 }, Vector3::z());
         plate_point_m.z > self.front_m
             || !self.fronts.along_direction(&camera, &ahead).hide(plate_point_m, &ahead)
     }
 
-    /// Image of the centre of the cross, of the disk, and f r/x3.
+    /// Images of the centre of the cross and of the centre of the disk, and f r/x3.
     pub(super) fn centres(
         &self,
         eye: &Eye,
@@ -154,7 +155,7 @@ impl TargetGeometry {
         (eye.image_of(pose, &self.cross_centre), eye.image_of(pose, &Vector3::zeros()), radius_px)
     }
 
-    /// Bit i: mark i is wholly in the picture.
+    /// Bit i is set if mark i is wholly in the picture.
     pub(super) fn marks_in_field(&self, eye: &Eye, pose: &Pose) -> u64 {
         self.bits(|mark| eye.are_all_in_field(pose, mark))
     }
@@ -163,26 +164,26 @@ impl TargetGeometry {
         eye.are_all_in_field(pose, &self.cross_ends)
     }
 
-    /// Whether plate, marks and cross are in the picture.
+    /// Returns true if plate, marks and cross are in the picture.
     pub(super) fn target_in_field(&self, eye: &Eye, pose: &Pose) -> bool {
         self.cross_in_field(eye, pose)
             && eye.are_all_in_field(pose, &self.plate_rim)
             && self.marks.iter().all(|mark| eye.are_all_in_field(pose, mark))
     }
 
-    /// Bit i: some of mark i lacks the light of a source that shines on the target's side.
+    /// Bit i is set if part of mark i is shadowed from a source that shines on the target's side.
     pub(super) fn marks_shadowed(&self, lighting: &Lighting) -> u64 {
         let light = self.plate_lighting(lighting);
         self.bits(|mark| sample_points(mark).any(|plate_point_m| light.is_partly_shadowed(&plate_point_m)))
     }
 
-    /// Bit i: neither the Sun nor the lamp shines on any of mark i.
+    /// Bit i is set if neither the Sun nor the lamp shines on any part of mark i.
     pub(super) fn marks_dark(&self, lighting: &Lighting) -> u64 {
         let light = self.plate_lighting(lighting);
         self.bits(|mark| !sample_points(mark).any(|plate_point_m| light.is_lit(&plate_point_m)))
     }
 
-    /// Bit i: something stands between the camera and some of mark i.
+    /// Bit i is set if an object between the camera and mark i hides part of the mark.
     pub(super) fn marks_hidden(&self, pose: &Pose) -> u64 {
         let hiding = self.hiding.between_region_and_point(&self.region, &pose.position_m);
         self.bits(|mark| {
@@ -190,14 +191,14 @@ impl TargetGeometry {
         })
     }
 
-    /// Share of the plate that the Sun or the lamp shines on.
+    /// Fraction of the plate illuminated by the Sun or the lamp.
     pub(super) fn plate_lit(&self, lighting: &Lighting) -> f64 {
         let light = self.plate_lighting(lighting);
         let lit = self.plate_points_m.iter().filter(|plate_point_m| light.is_lit(plate_point_m)).count();
         lit as f64 / self.plate_points_m.len().max(1) as f64
     }
 
-    /// The light on the plate's front, and what may stand in its way.
+    /// Light sources on the plate's front, with the facets that may block them.
     fn plate_lighting(&self, lighting: &Lighting) -> PlateLighting<'_> {
         let sun = lighting.sun.map(|sun| sun.towards).filter(|towards| towards.z > 0.0);
         let lamp = lighting.floodlight.filter(|lamp| lamp.position_m.z > 0.0 && lamp.intensity > 0.0);
@@ -212,7 +213,7 @@ impl TargetGeometry {
         self.marks.iter().enumerate().fold(0, |bits, (i, mark)| bits | u64::from(holds(mark)) << i)
     }
 
-    /// The Sun as the camera sees it, when some of its disk is in the picture and not hidden.
+    /// Image of the Sun if part of its disk is in the picture and not hidden.
     pub(super) fn sun_image(&self, eye: &Eye, pose: &Pose, sun: &Vector3<f64>) -> Option<SunImage> {
         let centre = eye.image_of_direction(pose, sun)?;
         let radius_px = SUN_RADIUS_RAD * eye.focal_px;
@@ -239,19 +240,19 @@ impl TargetGeometry {
     }
 }
 
-/// The Sun and the lamp, where they shine on the plate's front, each with what may stand in its way.
+/// Sun and lamp if they shine on the plate's front, each with the facets that may block it.
 struct PlateLighting<'a> {
     sun: Option<(Vector3<f64>, NearbyOccluders<'a>)>,
     lamp: Option<(Floodlight, NearbyOccluders<'a>)>,
 }
 
 impl PlateLighting<'_> {
-    /// Whether one of them shines on a place.
+    /// Returns true if one of the sources shines on a point.
     fn is_lit(&self, plate_point_m: &Vector3<f64>) -> bool {
         self.sunlit(plate_point_m) == Some(true) || self.lamplit(plate_point_m) == Some(true)
     }
 
-    /// Whether one of them does not.
+    /// Returns true if one of the sources does not shine on a point.
     fn is_partly_shadowed(&self, plate_point_m: &Vector3<f64>) -> bool {
         self.sunlit(plate_point_m) == Some(false) || self.lamplit(plate_point_m) == Some(false)
     }
@@ -278,7 +279,7 @@ fn circle(radius_m: f64, points: u32) -> Vec<Vector3<f64>> {
         .collect()
 }
 
-/// Places spread over a mark, its border included.
+/// Points spread over a mark, including its border.
 fn sample_points(mark: &[Vector3<f64>; 4]) -> impl Iterator<Item = Vector3<f64>> {
     let [a, b, c, d] = *mark;
     let share = |i: u32| f64::from(i) / f64::from(MARK_SAMPLES - 1);

@@ -1,4 +1,4 @@
-//! Glints: small shiny fittings that mirror the Sun into the camera.
+//! Glints: small shiny fittings that reflect the Sun into the camera.
 
 use std::f64::consts::PI;
 
@@ -11,35 +11,35 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::docking::Sun;
 
-/// A shiny fitting too small to be resolved. Seen from the distance D it gives the light of (irradiance) × `strength_m2` ×
-/// exp(−δ²/2w²)/D², δ the angle from its normal to the bisector of the directions to Sun and camera, w its `lobe_deg`. Nothing
-/// hides or shades it.
+/// Shiny fitting too small to be resolved. Seen from the distance D, its signal is (irradiance) ×
+/// `strength_m2` × exp(−δ²/2w²)/D², with δ the angle from its normal to the bisector of the directions to Sun
+/// and camera, and w its `lobe_deg`. A glint is never hidden or shaded.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GlintConfig {
-    /// Where it is, target frame, m, each −100 to 100.
+    /// Position, target frame, m, each coordinate −100 to 100.
     #[schemars(inner(range(min = -100, max = 100)))]
     pub position_m: [f64; 3],
-    /// Its normal, target frame, of any length but 0.
+    /// Normal, target frame, of any length but 0.
     #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub normal: [f64; 3],
-    /// Mirroring area × concentration, m², 0 to 1: a flat mirror of area A and reflectance ρ whose waviness fills the lobe
-    /// has ρ A/(8π w²), w in radians.
+    /// Reflecting area × concentration, m², 0 to 1: a flat mirror of area A and reflectance ρ whose waviness
+    /// fills the lobe has ρ A/(8π w²), w in radians.
     #[schemars(range(min = 0, max = 1))]
     pub strength_m2: f64,
-    /// w: standard deviation of its normals, degrees, 0.05 to 45.
+    /// w: standard deviation of the normals, degrees, 0.05 to 45.
     #[schemars(range(min = 0.05, max = 45))]
     pub lobe_deg: f64,
 }
 
-/// A glint as a camera sees it.
+/// Image of a glint in a camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GlintImage {
-    /// Its place in `lighting.glints`, 0-based.
+    /// Index in `lighting.glints`, 0-based.
     pub index: usize,
-    /// Where it is, px.
+    /// Pixel position of the centre.
     pub centre: PixelPoint,
-    /// Its light: radiance × px².
+    /// Signal of the glint: radiance × px².
     pub light: f64,
 }
 
@@ -49,13 +49,13 @@ impl GlintConfig {
         require("lighting.glints[].normal (length)", length, "1e-6 to 1e6", |n| (1e-6..=1e6).contains(&n))
     }
 
-    /// Light that reaches a camera at `camera_m`, per solid angle of a pixel seen at the distance 1: irradiance × m²/m².
+    /// Signal in a camera at `camera_m`, for a focal length of 1 px: irradiance × m²/m².
     pub(super) fn intensity_at(&self, sun: &Sun, camera_m: &Vector3<f64>) -> f64 {
         let to_camera = camera_m - Vector3::from(self.position_m);
         let distance2 = to_camera.norm_squared();
         let normal = Vector3::from(self.normal).normalize();
         let bisector = sun.towards + to_camera / distance2.sqrt();
-        // Sun or camera behind it: the bisector alone would not tell.
+        // Sun or camera is behind the glint, which the bisector does not show.
         if !(sun.towards.dot(&normal) > 0.0 && to_camera.dot(&normal) > 0.0) {
             return 0.0;
         }
@@ -65,8 +65,8 @@ impl GlintConfig {
     }
 }
 
-/// Adds a glint to the rows of a field, behind a lens of the blur `sigma_px`: a Gaussian that has the variance of lens and pixel,
-/// 1/12 px² for the latter.
+/// Adds a glint to the rows of a field, behind a lens of the blur `sigma_px`: a Gaussian with the combined
+/// variance of lens and pixel, 1/12 px² for the pixel.
 pub(super) fn add(glint: &GlintImage, sigma_px: f64, signal: &mut [f32], columns: usize, lines: Lines) {
     let variance = sigma_px * sigma_px + 1.0 / 12.0;
     let peak = glint.light / (2.0 * PI * variance);

@@ -1,4 +1,4 @@
-//! The light on the scene as a function of time and pose.
+//! Lighting of the scene as a function of time and pose.
 
 use contract::OutOfRange;
 use contract::bounds::{self, require};
@@ -11,51 +11,53 @@ use super::glint::GlintConfig;
 use crate::scene::docking::{Facet, Floodlight, Lighting, Part, Sun};
 use crate::truth::approach::target_from_camera;
 
-/// How far the corners of a shade may lie off its plane, m.
+/// Maximum distance of a shade's corners from its plane, m.
 const FLATNESS_M: f64 = 1e-6;
 
-/// The light on the scene. Without a Sun it is the night side.
+/// Lighting of the scene. Without a Sun it is the night side.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LightingConfig {
-    /// The Sun; not given: the night side.
+    /// Sun; absent on the night side.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sun: Option<SunConfig>,
-    /// A lamp beside the camera; not given: it is off.
+    /// Lamp beside the camera; absent if the lamp is off.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub floodlight: Option<FloodlightConfig>,
-    /// Radiance of a white surface by the light of Earth and station, alike from everywhere, in the units of irradiance/π,
-    /// 0 to 1e6.
+    /// Radiance of a white surface illuminated by Earth and station, equally from all directions, in the
+    /// units of irradiance/π, 0 to 1e6.
     #[schemars(range(min = 0, max = 1e6))]
     pub fill_radiance: f64,
-    /// Radiance of the sky, same units, 0 to 1e6.
+    /// Radiance of the sky, in the units of irradiance/π, 0 to 1e6.
     #[schemars(range(min = 0, max = 1e6))]
     pub sky_radiance: f64,
-    /// What stands outside the picture between the Sun and the target; at most 64.
+    /// Obstacles outside the picture between the Sun and the target; at most 64.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 64))]
     pub shades: Vec<ShadeConfig>,
-    /// Small shiny fittings that mirror the Sun; at most 64.
+    /// Small shiny fittings that reflect the Sun; at most 64.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 64))]
     pub glints: Vec<GlintConfig>,
 }
 
-/// The Sun in the target frame: s = (cos e sin a, sin e, cos e cos a) of its azimuth a and elevation e, turning about an axis.
+/// Sun in the target frame: s = (cos e sin a, sin e, cos e cos a) for its azimuth a and elevation e, rotating
+/// about an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SunConfig {
-    /// Azimuth at the beginning, from y3 towards y1, degrees, −360 to 360: 0 shines on the disk, 180 on its back.
+    /// Initial azimuth, from y3 towards y1, degrees, −360 to 360: at 0 the Sun shines on the disk, at 180 on
+    /// its back.
     #[schemars(range(min = -360, max = 360))]
     pub azimuth_deg: f64,
-    /// Elevation at the beginning, towards y2, degrees, −90 to 90.
+    /// Initial elevation, towards y2, degrees, −90 to 90.
     #[schemars(range(min = -90, max = 90))]
     pub elevation_deg: f64,
-    /// Rate about the axis, right-handed, degrees per second, −10 to 10; a station in orbit turns by 0.065.
+    /// Rate about the axis, right-handed, degrees per second, −10 to 10; a station in orbit turns at 0.065.
     #[serde(default)]
     #[schemars(range(min = -10, max = 10))]
     pub rate_deg_s: f64,
-    /// Axis of the turn, target frame, of any length but 0.
+    /// Axis of rotation, target frame, of any length but 0.
     #[serde(default = "default_axis")]
     #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub rate_axis: [f64; 3],
@@ -73,20 +75,21 @@ fn default_irradiance() -> f64 {
     std::f64::consts::PI
 }
 
-/// A lamp that is fixed to the camera and shines along its optical axis.
+/// Lamp that is fixed to the camera and shines along its optical axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FloodlightConfig {
-    /// Where it is in the camera frame (along columns, along rows, along the optical axis), m, each −10 to 10.
+    /// Position in the camera frame (along columns, along rows, along the optical axis), m, each −10 to 10.
     #[schemars(inner(range(min = -10, max = 10)))]
     pub offset_m: [f64; 3],
-    /// Radiant intensity on the axis, irradiance × m², 0 to 1e9; white at a distance of √(intensity/π) has the radiance 1.
+    /// Radiant intensity on the axis, irradiance × m², 0 to 1e9; a white surface at a distance of
+    /// √(intensity/π) has the radiance 1.
     #[schemars(range(min = 0, max = 1e9))]
     pub intensity: f64,
     /// Half angle of the full beam, degrees, 0 to 89.
     #[schemars(range(min = 0, max = 89))]
     pub inner_half_angle_deg: f64,
-    /// Half angle at which there is no light any more, degrees, more than the other and at most 89.
+    /// Half angle at which the beam ends, degrees, larger than the inner half angle and at most 89.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 89))]
     pub outer_half_angle_deg: f64,
 }
@@ -102,27 +105,28 @@ impl Default for FloodlightConfig {
     }
 }
 
-/// A flat polygon that no camera sees and that casts its shadow: part of the station or of the spacecraft.
+/// Flat polygon that is invisible to cameras and casts a shadow: part of the station or of the spacecraft.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShadeConfig {
-    /// Its corners in order, target frame, m, each coordinate −1000 to 1000; 3 to 64 of them, in one plane within 1 µm.
+    /// Corners in order, target frame, m, each coordinate −1000 to 1000; 3 to 64 corners, coplanar within 1
+    /// µm.
     #[schemars(length(min = 3, max = 64), inner(inner(range(min = -1000, max = 1000))))]
     pub corners_m: Vec<[f64; 3]>,
 }
 
 impl ShadeConfig {
-    /// The shade as a part of the scene.
+    /// Converts the shade to a part of the scene.
     ///
     /// # Errors
-    /// [`OutOfRange`] for corners that make no flat polygon.
+    /// [`OutOfRange`] for corners that do not form a flat polygon.
     fn part(&self, index: usize) -> Result<Part, OutOfRange> {
         let refused = |expected| {
             let value = format!("{:?}", self.corners_m);
             Err(OutOfRange::new("lighting.shades[].corners_m", value, expected))
         };
         let outer: Vec<Vector3<f64>> = self.corners_m.iter().map(|corner| Vector3::from(*corner)).collect();
-        // Newell's normal: twice the area.
+        // Newell's normal: its length is twice the area.
         let area = outer
             .iter()
             .zip(outer.iter().cycle().skip(1))
@@ -143,10 +147,10 @@ impl ShadeConfig {
 }
 
 impl LightingConfig {
-    /// Checks every number.
+    /// Checks the ranges of all values.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first value outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "lighting")?;
         if let Some(sun) = &self.sun {
@@ -164,10 +168,10 @@ impl LightingConfig {
         self.shade_parts().map(|_| ())
     }
 
-    /// The shades as parts of the scene.
+    /// Converts the shades to parts of the scene.
     ///
     /// # Errors
-    /// [`OutOfRange`] for one that is no flat polygon.
+    /// [`OutOfRange`] for a shade that is not a flat polygon.
     pub(super) fn shade_parts(&self) -> Result<Vec<Part>, OutOfRange> {
         self.shades
             .iter()
@@ -176,7 +180,7 @@ impl LightingConfig {
             .collect()
     }
 
-    /// The light at a moment, for a camera at `pose`.
+    /// Lighting at a time, for a camera at `pose`.
     pub fn lighting_at(&self, time_s: f64, pose: &Pose) -> Lighting {
         Lighting {
             sun: self.sun.map(|sun| Sun { towards: sun.towards(time_s), irradiance: sun.irradiance }),
@@ -228,7 +232,7 @@ mod tests {
     fn the_sun_turns_about_its_axis() {
         let (sin, cos) = libm::sincos(30.0_f64.to_radians());
         assert!((SUN.towards(0.0) - Vector3::new(sin, 0.0, cos)).norm() < 1e-15);
-        // Right-handed about y2: from y3 towards y1, the azimuth grows.
+        // Right-handed about y2: the azimuth increases from y3 towards y1.
         assert!((SUN.towards(120.0) - Vector3::x()).norm() < 1e-15);
         let up = SunConfig { azimuth_deg: 0.0, elevation_deg: 90.0, rate_deg_s: 0.0, ..SUN };
         assert!((up.towards(5.0) - Vector3::y()).norm() < 1e-15);
@@ -239,7 +243,7 @@ mod tests {
         let lamp = FloodlightConfig { offset_m: [0.2, 0.1, 0.3], ..FloodlightConfig::default() };
         let pose = Pose { position_m: Vector3::new(1.0, 2.0, 8.0), phi_rad: Vector3::zeros() };
         let at = lamp.floodlight_at(&pose);
-        // Columns run along y1, rows against y2, the axis against y3.
+        // Columns run along y1, rows opposite to y2, and the optical axis opposite to y3.
         assert!((at.position_m - Vector3::new(1.2, 1.9, 7.7)).norm() < 1e-15);
         assert_eq!(at.axis, -Vector3::z());
         // A positive yaw φ2 turns the axis towards +y1: A's third column is (φ2, φ1, −1) to first order.

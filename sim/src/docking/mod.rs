@@ -1,6 +1,7 @@
-//! The simulator of a docking approach: trajectory → scene → lens → television, one field in one function.
+//! Simulator of a docking approach: trajectory → scene → lens → television, one function per field.
 //!
-//! [`DockingSimulator::expose`] makes one field with its truth: the same bits whatever was made before, on any thread.
+//! [`DockingSimulator::expose`] makes one field with its truth. The result is bit-identical on any thread and
+//! independent of the fields made before.
 
 mod config;
 mod geometry;

@@ -1,32 +1,33 @@
-//! Whether a straight line meets the scene: which marks lie in shadow, and how much of the Sun is hidden.
+//! Intersection of straight lines with the scene: determines the shadowed marks and the hidden part of the
+//! Sun.
 
 use nalgebra::Vector3;
 
 use crate::scene::docking::{Facet, Part};
 
-/// Distance from which on a facet can hide something, m: a point on a surface is not hidden by that surface.
+/// Minimum distance at which a facet can hide a point, m: a point on a surface is not hidden by that surface.
 const CLEARANCE_M: f64 = 1e-6;
 
-/// Facets that hide what is behind them, from whichever side.
+/// Facets that hide objects behind them, from either side.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Occluders {
     plates: Vec<Plate>,
 }
 
-/// Places that are looked at together: all within a distance of a point.
+/// Sphere that contains points which are tested together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Region {
     pub(super) centre: Vector3<f64>,
     pub(super) radius_m: f64,
 }
 
-/// Those of the occluders that can meet a ray from a region.
+/// Occluders that can meet a ray from a region.
 #[derive(Debug, Clone)]
 pub(super) struct NearbyOccluders<'a> {
     plates: Vec<&'a Plate>,
 }
 
-/// A facet, with its boundary as seen along the axis on which its normal is longest.
+/// Facet, with its boundary projected along the axis of the normal's largest component.
 #[derive(Debug, Clone, PartialEq)]
 struct Plate {
     normal: Vector3<f64>,
@@ -35,24 +36,24 @@ struct Plate {
     low: [f64; 2],
     high: [f64; 2],
     rings: Vec<Vec<[f64; 2]>>,
-    /// A sphere about it.
+    /// Centre and radius of a bounding sphere.
     centre: Vector3<f64>,
     radius_m: f64,
 }
 
 impl Occluders {
-    /// The facets of `parts` of which `keep` says so.
+    /// Collects the facets of `parts` for which `keep` returns true.
     pub(super) fn new<'a>(parts: impl IntoIterator<Item = &'a Part>, keep: impl Fn(&Facet) -> bool) -> Self {
         let facets = parts.into_iter().flat_map(|part| &part.facets).filter(|facet| keep(facet));
         Self { plates: facets.filter_map(Plate::new).collect() }
     }
 
-    /// Those that can meet a ray from a region along the unit vector `towards`.
+    /// Selects the occluders that can meet a ray from a region along the unit vector `towards`.
     pub(super) fn along_direction(&self, region: &Region, towards: &Vector3<f64>) -> NearbyOccluders<'_> {
         self.in_capsule(region, towards, f64::INFINITY)
     }
 
-    /// Those that can stand between a region and a point.
+    /// Selects the occluders that can lie between a region and a point.
     pub(super) fn between_region_and_point(
         &self,
         region: &Region,
@@ -63,7 +64,7 @@ impl Occluders {
         self.in_capsule(region, &(way / length.max(f64::MIN_POSITIVE)), length)
     }
 
-    /// Those that meet the capsule about the way of the region's centre.
+    /// Selects the occluders that meet the capsule swept by the region along `towards`.
     fn in_capsule(&self, region: &Region, towards: &Vector3<f64>, length: f64) -> NearbyOccluders<'_> {
         let meets = |plate: &&Plate| {
             let from_region = plate.centre - region.centre;
@@ -76,12 +77,12 @@ impl Occluders {
 }
 
 impl NearbyOccluders<'_> {
-    /// Whether the ray from `from` along the unit vector `towards` meets one of them.
+    /// Returns true if the ray from `from` along the unit vector `towards` meets an occluder.
     pub(super) fn hide(&self, from: &Vector3<f64>, towards: &Vector3<f64>) -> bool {
         self.plates.iter().any(|plate| plate.is_hit_by(from, towards, f64::INFINITY))
     }
 
-    /// Whether one of them stands between two points.
+    /// Returns true if an occluder lies between two points.
     pub(super) fn separate(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> bool {
         let way = to - from;
         let length = way.norm();
@@ -90,7 +91,7 @@ impl NearbyOccluders<'_> {
 }
 
 impl Plate {
-    /// `None` for a facet without corners.
+    /// Creates a plate from a facet; `None` for a facet without corners.
     fn new(facet: &Facet) -> Option<Self> {
         let normal = facet.normal;
         let axes = match normal.iamax() {
@@ -121,11 +122,12 @@ impl Plate {
         })
     }
 
-    /// Whether the ray from `from` along the unit vector `towards` meets the facet nearer than `reach_m`.
+    /// Returns true if the ray from `from` along the unit vector `towards` meets the facet at a distance
+    /// below `reach_m`.
     fn is_hit_by(&self, from: &Vector3<f64>, towards: &Vector3<f64>, reach_m: f64) -> bool {
         let along = self.normal.dot(towards);
         let distance = (self.distance_m - self.normal.dot(from)) / along;
-        // An infinite or undefined distance is a ray in the plane: it meets nothing.
+        // An infinite or undefined distance means a ray parallel to the plane, which meets nothing.
         if !(distance.is_finite() && distance > CLEARANCE_M && distance < reach_m - CLEARANCE_M) {
             return false;
         }
@@ -137,7 +139,7 @@ impl Plate {
     }
 }
 
-/// Whether a polygon encloses a point: the parity of the edges that a half-line crosses.
+/// Returns true if a polygon encloses a point, from the parity of the edges that a half-line crosses.
 fn encloses(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let next = ring.iter().cycle().skip(1);
     ring.iter().zip(next).fold(false, |inside, (p, q)| {
@@ -150,7 +152,7 @@ fn encloses(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
 mod tests {
     use super::*;
 
-    /// A square of side 2 at y3 = 1 with a square hole of side 1.
+    /// Square of side 2 at y3 = 1 with a square hole of side 1.
     fn framed() -> Occluders {
         let square = |half: f64, sign: f64| {
             [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
@@ -171,7 +173,7 @@ mod tests {
     fn a_frame_hides_but_not_through_its_hole_nor_behind() {
         let occluders = framed();
         let region = Region { centre: Vector3::zeros(), radius_m: 3.0 };
-        // With the whole frame within the region's reach nothing is left out.
+        // The region contains the whole frame, so no facet is left out.
         let frame = occluders.along_direction(&region, &Vector3::z());
         let up = Vector3::z();
         for (x, y, hidden) in [(0.75, 0.0, true), (0.0, -0.9, true), (0.2, 0.3, false), (1.1, 0.0, false)] {
@@ -186,7 +188,7 @@ mod tests {
             "it lies beyond"
         );
         assert!(!frame.separate(&Vector3::zeros(), &Vector3::zeros()), "no way at all");
-        // At y3 = 1 it is 0.75 farther along y1.
+        // The ray moves by 0.75 along y1 until y3 = 1.
         assert!(frame.hide(&Vector3::zeros(), &slanting));
         assert!(!frame.hide(&Vector3::new(-0.5, 0.0, 0.0), &slanting));
         assert!(!frame.hide(&Vector3::zeros(), &Vector3::x()), "a ray along the plane");

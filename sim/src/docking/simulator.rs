@@ -1,4 +1,4 @@
-//! A docking simulation, checked and prepared, and how it makes a field.
+//! Docking simulation, checked and prepared, and the computation of a field.
 
 use std::path::Path;
 
@@ -23,14 +23,15 @@ use crate::truth::clock::{format_utc, parse_utc_field};
 use crate::vector::{Drawer, RadianceImage};
 use crate::{exact_toml, regular_file};
 
-/// Largest target file, bytes.
+/// Maximum size of a target file, bytes.
 const MAX_TARGET_BYTES: u64 = 4 << 20;
-/// Fields at which the camera's place is looked at, at most: of longer approaches every so many, the others when they are made.
+/// Maximum number of fields whose camera position is checked in advance. In longer approaches the checked
+/// fields are evenly spaced, and the other fields are checked when they are made.
 const PLACES: usize = 100_000;
-/// Most marks of a target: bits of a truth table's mask.
+/// Maximum number of marks of a target: bits of a mask in the truth table.
 const MAX_MARKS: usize = 64;
 
-/// A docking simulation that was checked and prepared; shared by all threads.
+/// Docking simulation that was checked and prepared; shared by all threads.
 #[derive(Debug, Clone)]
 pub struct DockingSimulator {
     seed: Seed,
@@ -47,42 +48,42 @@ pub struct DockingSimulator {
     field_count: u64,
 }
 
-/// The moment of a field: what there is to be drawn.
+/// State of the scene at the time of a field: the input of the drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldState {
     /// Number of the field.
     pub field: u64,
-    /// Its moment, s since the beginning.
+    /// Time of the field, s since the beginning.
     pub time_s: f64,
-    /// Its moment.
+    /// Time of the field.
     pub time: Epoch,
-    /// The rows that it holds.
+    /// Camera rows that the field holds.
     pub lines: Lines,
-    /// Which camera takes it, 0-based.
+    /// Index of the camera that takes the field, 0-based.
     pub camera: usize,
     /// Pose and rates.
     pub state: ApproachState,
-    /// The light.
+    /// Lighting of the scene.
     pub lighting: Lighting,
 }
 
-/// One field with all that belongs to it.
+/// Field with its truth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldExposure {
-    /// The video signal.
+    /// Video signal.
     pub video: VideoField,
-    /// The truth about it.
+    /// Truth of the field.
     pub truth: FieldTruth,
 }
 
 impl FieldExposure {
-    /// What a pipeline may know of the field besides its pixels, when it is digitised like this.
+    /// Telemetry of the field for a pipeline, if the field is digitised with these settings.
     pub fn telemetry(&self, digitiser: Digitiser) -> FieldTelemetry {
         FieldTelemetry { time_s: self.truth.time_s, camera: self.truth.camera, digitiser }
     }
 }
 
-/// The buffers that fields reuse. One a thread.
+/// Buffers that fields reuse, one workspace per thread.
 #[derive(Debug, Clone)]
 pub struct DockingWorkspace {
     drawers: Vec<Drawer>,
@@ -92,17 +93,17 @@ pub struct DockingWorkspace {
 }
 
 impl DockingWorkspace {
-    /// The light of the last field that was drawn: every row of the camera, before the lens's blur and without glints.
+    /// Radiance of the last drawn field: every row of the camera, before the lens's blur and without glints.
     pub fn radiance(&self) -> &RadianceImage {
         &self.radiance
     }
 }
 
 impl DockingSimulator {
-    /// Checks and prepares a simulation; the target's path starts from `folder`.
+    /// Checks and prepares a simulation; the target's path is relative to `folder`.
     ///
     /// # Errors
-    /// [`SimError`] for the first value that is not allowed, or a target file that cannot be used.
+    /// [`SimError`] for the first invalid value, or a target file that cannot be used.
     pub fn new(simulation: &DockingSimulation, folder: &Path) -> Result<Self, SimError> {
         simulation.check()?;
         let target = target_file(&simulation.target, folder)?;
@@ -117,7 +118,8 @@ impl DockingSimulator {
                 problem: format!("it has {} marks, expected at most {MAX_MARKS}", model.marks.len()),
             });
         }
-        // In front of everything: they are nearer to the Sun than what they shade, and no camera sees them.
+        // Appended in front of all other parts: shades are nearer to the Sun than the shaded parts, and
+        // invisible to cameras.
         scene.parts.extend(simulation.lighting.shade_parts()?);
         let approach = Approach::new(&simulation.approach, target.contact.camera_to_disk_m)?;
         let fields = (approach.duration_s() * simulation.television.field_rate_hz() + 1e-6).floor();
@@ -147,10 +149,10 @@ impl DockingSimulator {
         Ok(simulator)
     }
 
-    /// Seconds since the beginning, pose and rates of a field.
+    /// Returns the seconds since the beginning, the pose and the rates of a field.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a camera that is inside of the target.
+    /// [`OutOfRange`] for a camera inside the target.
     fn state(&self, field: u64) -> Result<(f64, ApproachState), OutOfRange> {
         let time_s = field as f64 / self.television.field_rate_hz();
         let state = self.approach.state_at(time_s);
@@ -162,22 +164,22 @@ impl DockingSimulator {
         Err(OutOfRange::new("approach", value, "a camera in front of the target and of all that is about it"))
     }
 
-    /// Fields from the beginning to the end of the approach.
+    /// Number of fields from the beginning to the end of the approach.
     pub fn field_count(&self) -> u64 {
         self.field_count
     }
 
-    /// Fields a second, Hz.
+    /// Field rate, Hz.
     pub fn field_rate_hz(&self) -> f64 {
         self.television.field_rate_hz()
     }
 
-    /// What is drawn, shades included.
+    /// Drawn scene, including shades.
     pub fn scene(&self) -> &DockingScene {
         &self.scene
     }
 
-    /// What a pipeline knows before the first field.
+    /// Setup that a pipeline receives before the first field.
     pub fn setup(&self) -> DockingSetup {
         DockingSetup {
             cameras: self.cameras.iter().map(|camera| camera.camera.clone()).collect(),
@@ -186,7 +188,7 @@ impl DockingSimulator {
         }
     }
 
-    /// Buffers for a thread.
+    /// Creates the buffers of a thread.
     ///
     /// # Errors
     /// None after [`DockingSimulator::new`], which made the same checks.
@@ -203,22 +205,22 @@ impl DockingSimulator {
         })
     }
 
-    /// What there is to be drawn in a field.
+    /// State of the scene at the time of a field.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] when there is no such field.
+    /// [`SimError::OutOfRange`] if the field does not exist.
     pub fn field_state(&self, field: u64) -> Result<FieldState, SimError> {
         if field >= self.field_count {
             return Err(OutOfRange::new("field", field, "a field of the approach").into());
         }
         let (time_s, state) = self.state(field)?;
         let range_m = state.range_m();
-        // The last one is in use down to 0.
+        // The last camera is in use down to a range of 0.
         let camera = self.cameras.iter().position(|camera| range_m >= camera.until_range_m).unwrap_or(0);
         Ok(FieldState {
             field,
             time_s,
-            // Through whole nanoseconds: the product of hifitime cuts them.
+            // Rounded to integer nanoseconds, because hifitime's product truncates them.
             time: self.start + Duration::from_total_nanoseconds((time_s * 1e9).round() as i128),
             lines: self.television.interlace.lines(field),
             camera,
@@ -227,10 +229,11 @@ impl DockingSimulator {
         })
     }
 
-    /// Draws a field and makes its video signal: the same bits whatever was made before.
+    /// Draws a field and makes its video signal. The result is bit-identical whichever fields were made
+    /// before.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] when there is no such field.
+    /// [`SimError::OutOfRange`] if the field does not exist.
     pub fn expose(&self, workspace: &mut DockingWorkspace, field: u64) -> Result<FieldExposure, SimError> {
         let field_state = self.field_state(field)?;
         workspace.drawers[field_state.camera].draw(
@@ -242,10 +245,11 @@ impl DockingSimulator {
         Ok(self.transmit(workspace, &field_state))
     }
 
-    /// Makes the video signal of a field from an image that somebody else drew, as of [`DockingSimulator::field_state`].
+    /// Makes the video signal of a field from an image drawn elsewhere from [`DockingSimulator::moment`].
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] when there is no such field; [`SimError::Contract`] when the image has not the camera's size.
+    /// [`SimError::OutOfRange`] if the field does not exist; [`SimError::Contract`] if the image differs in
+    /// size from the camera.
     pub fn expose_image(
         &self,
         workspace: &mut DockingWorkspace,
@@ -262,7 +266,7 @@ impl DockingSimulator {
         Ok(self.transmit(workspace, &field_state))
     }
 
-    /// From the light in the workspace to the field and its truth.
+    /// Makes the field and its truth from the radiance in the workspace.
     #[allow(clippy::expect_used, reason = "the blur keeps the rows of the field")]
     fn transmit(&self, workspace: &mut DockingWorkspace, field_state: &FieldState) -> FieldExposure {
         let (eye, pose) = (&self.eyes[field_state.camera], &field_state.state.pose);
@@ -333,7 +337,7 @@ impl DockingSimulator {
     }
 }
 
-/// A built-in target by its name, or the file at a path.
+/// Reads a built-in target by its name, or the file at a path.
 fn target_file(target: &str, folder: &Path) -> Result<TargetFile, SimError> {
     if let Some(built_in) = TargetFile::built_in(target) {
         return Ok(built_in);

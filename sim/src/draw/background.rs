@@ -1,27 +1,28 @@
-//! What is in every pixel of an expected image, in layers.
+//! Background of an expected image, in layers.
 
 use crate::pixel_factors::PixelFactors;
 use crate::smooth_field::SmoothField;
 
-/// The background of every pixel: (light + smooth + field) · response + dark + pattern.
+/// Background of every pixel: (light + smooth + field) · response + dark + pattern.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Background {
-    /// Electrons of flat light.
+    /// Flat background light, electrons.
     pub(super) light_e: f64,
-    /// A smooth field of light and the factor that makes it electrons.
+    /// Smooth field of background light, and the factor that converts it to electrons.
     pub(super) smooth: Option<(SmoothField, f64)>,
-    /// Electrons of light above those, row by row; empty when there are none.
+    /// Further background light by pixel, electrons, row by row; empty if there is none.
     pub(super) field: Vec<f64>,
-    /// Factors of the light; where there are none they are 1.
+    /// Response factors of the light; 1 if absent.
     pub(super) response: Option<PixelFactors>,
-    /// Flat electrons that no response changes.
+    /// Flat electrons to which the response is not applied.
     pub(super) dark_e: f64,
-    /// Electrons that no response changes, and a factor of each pixel for them; where there is no factor there are none.
+    /// Electrons to which the response is not applied, and their factor for each pixel; zero where a factor
+    /// is missing.
     pub(super) pattern: Option<(f64, PixelFactors)>,
 }
 
 impl Background {
-    /// The background of the pixels of row `y` from column `x` on, in an image of `columns`.
+    /// Computes the background of the pixels of row `y` from column `x` on, in an image of `columns`.
     #[inline(always)]
     pub(super) fn span(&self, x: usize, y: usize, columns: usize, out: &mut [f64]) {
         let pixels = y * columns + x..y * columns + x + out.len();
@@ -63,7 +64,7 @@ impl Background {
         }
     }
 
-    /// [`Background::span`] of one pixel of an image of `columns`, by the same steps.
+    /// Computes [`Background::span`] for one pixel of an image of `columns`, by identical steps.
     pub(super) fn electrons_at(&self, x: usize, y: usize, columns: usize) -> f64 {
         let index = y * columns + x;
         let mut electrons = match &self.smooth {
@@ -85,7 +86,7 @@ impl Background {
         }
     }
 
-    /// The background of pixels that all respond alike and have the same dark current, in one pixel of an image of `columns`.
+    /// Background in one pixel of an image of `columns`, for pixels of uniform response and dark current.
     pub(super) fn uniform_response_electrons_at(&self, x: usize, y: usize, columns: usize) -> f64 {
         let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.value_at(x, y));
         let field_e = self.field.get(y * columns + x).copied().unwrap_or(0.0);
@@ -93,31 +94,32 @@ impl Background {
         self.light_e + smooth_e + field_e + (self.dark_e + pattern_e)
     }
 
-    /// No pixel has more.
+    /// Upper bound of the background of all pixels.
     pub(super) fn bound_e(&self) -> f64 {
         let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest());
         self.bound_with(smooth_e, &self.field)
     }
 
-    /// No pixel of a row has more, in an image of `columns`.
+    /// Upper bound of the background of all pixels of a row, in an image of `columns`.
     #[inline(always)]
     pub(super) fn row_bound_e(&self, y: usize, columns: usize) -> f64 {
         let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest_of_row(y));
         self.bound_with(smooth_e, self.field.get(y * columns..(y + 1) * columns).unwrap_or_default())
     }
 
-    /// No pixel has more whose light is at most `smooth_e` and one of `field`.
+    /// Upper bound of the background of pixels with smooth light of at most `smooth_e` and further light from
+    /// `field`.
     #[inline(always)]
     fn bound_with(&self, smooth_e: f64, field: &[f64]) -> f64 {
         let field_e = field.iter().copied().fold(0.0, f64::max);
         let response = self.response.as_ref().map_or(1.0, |response| response.largest().max(1.0));
         let pattern_e =
             self.pattern.as_ref().map_or(0.0, |(electrons, factors)| electrons * factors.largest());
-        // A part in 10^12 for what rounding adds on the way.
+        // Relative margin of 1 in 10^12 for intermediate rounding.
         ((self.light_e + smooth_e + field_e) * response + self.dark_e + pattern_e) * (1.0 + 1e-12)
     }
 
-    /// Whether it may differ from pixel to pixel.
+    /// Returns true if the background may differ from pixel to pixel.
     pub(super) fn is_uneven(&self) -> bool {
         self.smooth.is_some() || !self.field.is_empty() || self.response.is_some() || self.pattern.is_some()
     }

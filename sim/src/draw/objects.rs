@@ -1,18 +1,19 @@
-//! The images of the objects of a frame, and where each of them has light.
+//! Images of the objects of a frame, and the pixels that they cover.
 
 use crate::optics::Stamp;
 
-/// The images of the objects of a frame, by number, and the parts of rows that they cover. Reused from frame to frame.
+/// Images of the objects of a frame, by number, and the parts of rows that they cover. Reused from frame to
+/// frame.
 #[derive(Debug, Clone)]
 pub(super) struct Objects {
-    /// Those after the first `count` are left over from frames before.
+    /// Stamps after the first `count` are left over from earlier frames.
     stamps: Vec<Stamp>,
     count: usize,
-    /// Of each row, the objects that cover some of it, by number.
+    /// Objects that cover part of each row, by number.
     in_row: Vec<Vec<RowSpan>>,
 }
 
-/// The part of a row that an object covers.
+/// Part of a row that an object covers.
 #[derive(Debug, Clone, Copy)]
 struct RowSpan {
     object: usize,
@@ -34,12 +35,13 @@ impl Objects {
         &self.stamps[..self.count]
     }
 
-    /// An old stamp, to be made the image of the next object.
+    /// Takes an old stamp, to be reused for the image of the next object.
     pub(super) fn reuse_stamp(&mut self) -> Stamp {
         self.stamps.get_mut(self.count).map(std::mem::take).unwrap_or_default()
     }
 
-    /// Adds the image of the next object; `cover` is told each part of a row that it covers before.
+    /// Adds the image of the next object; `cover` must have been called before for each part of a row that
+    /// the image covers.
     pub(super) fn push(&mut self, stamp: Stamp) -> &Stamp {
         let object = self.count;
         match self.stamps.get_mut(object) {
@@ -50,24 +52,25 @@ impl Objects {
         &self.stamps[object]
     }
 
-    /// Tells that the next object covers columns `from..to` of a row.
+    /// Records that the next object covers columns `from..to` of a row.
     #[inline(always)]
     pub(super) fn add_span(&mut self, y: usize, from: usize, to: usize) {
         self.in_row[y].push(RowSpan { object: self.count, from, to });
     }
 
-    /// Whether objects cover some of row `y`.
+    /// Returns true if objects cover part of row `y`.
     #[inline(always)]
     pub(super) fn are_in_row(&self, y: usize) -> bool {
         !self.in_row[y].is_empty()
     }
 
-    /// Tells the parts of a row that objects cover, each by its first column and the one after its last.
+    /// Passes to `tell` the parts of a row that objects cover, each as its first column and the column after
+    /// its last.
     pub(super) fn for_each_span(&self, y: usize, mut visit: impl FnMut(usize, usize)) {
         self.in_row[y].iter().for_each(|part| visit(part.from, part.to));
     }
 
-    /// Adds the light of all objects to the pixels of row `y` from column `x` on.
+    /// Adds the electrons of all objects to the pixels of row `y` from column `x` on.
     #[inline(always)]
     pub(super) fn add_to(&self, x: usize, y: usize, out: &mut [f64]) {
         let end = x + out.len();
@@ -83,7 +86,7 @@ impl Objects {
         }
     }
 
-    /// Takes the light of all objects out of a pixel.
+    /// Removes the electrons of all objects from a pixel.
     pub(super) fn empty(&mut self, x: usize, y: usize) {
         let Self { stamps, in_row, .. } = self;
         for part in in_row[y].iter().filter(|part| (part.from..part.to).contains(&x)) {

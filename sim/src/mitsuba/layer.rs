@@ -1,4 +1,4 @@
-//! The light of a scene, one kind an image.
+//! Layers of a scene's light, one image per kind of light.
 
 use contract::bounds::require;
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -7,29 +7,28 @@ use super::matrix::matrix;
 use crate::SimError;
 use crate::scene::docking::{Floodlight, Lighting, Sun};
 
-/// One kind of light. The radiance of a scene is the sum of its layers.
+/// Kind of light. The radiance of a scene is the sum of its layers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Layer {
-    /// Parallel light, once reflected, with shadows.
+    /// Parallel light, reflected once, with shadows.
     Sun(Sun),
-    /// A spotlight, once reflected, with shadows.
+    /// Spotlight, reflected once, with shadows.
     Floodlight(Floodlight),
-    /// Light from everywhere that nothing shades, and the sky itself: surfaces shine by themselves with their
-    /// reflectance × `fill_radiance`.
+    /// Unshadowed light from all directions, and the sky: surfaces emit their reflectance × `fill_radiance`.
     Fill {
-        /// [`Lighting::fill_radiance`].
+        /// Value of [`Lighting::fill_radiance`].
         fill_radiance: f64,
-        /// [`Lighting::sky_radiance`].
+        /// Value of [`Lighting::sky_radiance`].
         sky_radiance: f64,
     },
 }
 
 impl Layer {
-    /// The layers of a lighting, those without light left out.
+    /// Returns the layers of a lighting, without dark layers.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for a number that is not finite or negative, a direction without length, and a cone
-    /// whose angles are not 0 ≤ inner < outer < π/2.
+    /// [`SimError::OutOfRange`] for a number that is not finite or negative, a direction without length, and
+    /// a cone whose angles are not 0 ≤ inner < outer < π/2.
     pub fn from_lighting(lighting: &Lighting) -> Result<Vec<Self>, SimError> {
         let light = |v: f64| v >= 0.0;
         require("lighting.fill_radiance", lighting.fill_radiance, "0 or more", light)?;
@@ -66,12 +65,12 @@ impl Layer {
         }
     }
 
-    /// The emitter that lights the whole scene. `<rgb>`, never `<spectrum>`: the latter would be taken for a
-    /// spectrum relative to D65 and coloured.
+    /// Emitter that lights the whole scene. It uses `<rgb>`, never `<spectrum>`, which would be interpreted
+    /// as a spectrum relative to D65 and be coloured.
     pub(super) fn emitter(&self) -> String {
         match self {
             Self::Sun(Sun { towards, irradiance }) => {
-                // Mitsuba's direction is where the light travels to.
+                // Mitsuba's direction is the direction of propagation.
                 let [x, y, z] = (-towards.normalize()).into();
                 format!(
                     "  <emitter type=\"directional\">\n    <vector name=\"direction\" x=\"{x}\" y=\"{y}\" z=\"{z}\"/>\n    \
@@ -94,7 +93,7 @@ impl Layer {
         }
     }
 
-    /// What a surface of a reflectance is made of.
+    /// Material of a surface of given reflectance.
     pub(super) fn surface(&self, reflectance: f64) -> String {
         match self {
             Self::Sun(_) | Self::Floodlight(_) => {
@@ -106,7 +105,7 @@ impl Layer {
         }
     }
 
-    /// Path length of the integrator: light that a surface reflects once (2), or what shines by itself (1).
+    /// Path length of the integrator: 2 for light that a surface reflects once, 1 for emitting surfaces.
     pub(super) fn max_depth(&self) -> u32 {
         match self {
             Self::Sun(_) | Self::Floodlight(_) => 2,
@@ -115,7 +114,7 @@ impl Layer {
     }
 }
 
-/// A rotation whose third column is along `axis`; the other two do not matter to a cone.
+/// Rotation whose third column is along `axis`; the other two columns are irrelevant to a cone.
 fn axes_along(axis: &Vector3<f64>) -> Rotation3<f64> {
     let up = if axis.x.abs() < 0.5 * axis.norm() { Vector3::x_axis() } else { Vector3::y_axis() };
     Rotation3::face_towards(axis, &Unit::into_inner(up))

@@ -1,8 +1,8 @@
-//! A map of coordinates, as text.
+//! Text form of a coordinate transformation.
 
 use nalgebra::{Rotation3, Vector3};
 
-/// Sixteen numbers, row by row, of the map from an object's own axes to the target frame.
+/// Sixteen numbers, row by row, of the transformation from an object's axes to the target frame.
 pub(super) fn matrix(rotation: &Rotation3<f64>, translation: &Vector3<f64>) -> String {
     let homogeneous = rotation.to_homogeneous().append_translation(translation);
     let rows: Vec<String> =

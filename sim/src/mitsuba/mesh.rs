@@ -11,27 +11,28 @@ use super::Layer;
 use crate::SimError;
 use crate::scene::docking::{DockingScene, Facet, Part, Sun};
 
-/// How far behind the camera a shade is put, m.
+/// Distance of a shade behind the camera, m.
 const BEHIND_CAMERA_M: f64 = 5.0;
 
-/// Below this sine of the Sun's height over the disk's plane a shade would have to be moved so far that Mitsuba's 32-bit
-/// numbers blur its shadow, and what faces a camera is hardly lit.
+/// Least sine of the Sun's elevation over the disk's plane. Below it a shade would have to be moved so far
+/// that Mitsuba's 32-bit numbers blur its shadow, and surfaces that face a camera are hardly lit.
 const LEAST_SUN_HEIGHT: f64 = 0.02;
 
-/// The facets of a part that have the same reflectance.
+/// Facets of a part that have equal reflectance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    /// Name of the file that the scene expects, relative to its own place.
+    /// Name of the file that the scene expects, relative to the scene file.
     pub file: String,
-    /// Name of the shape: place of the part, its name, place of the mesh in it.
+    /// Name of the shape: index of the part, its name, index of the mesh in the part.
     pub id: String,
     /// Lambertian reflectance.
     pub reflectance: f64,
-    /// The file: binary little-endian PLY with 32-bit coordinates, m, target frame.
+    /// File contents: binary little-endian PLY with 32-bit coordinates, m, target frame.
     pub ply: Vec<u8>,
 }
 
-/// One mesh for each visible part and reflectance; of the layer of the Sun, also for each unseen part that casts a shadow.
+/// Returns one mesh for each visible part and reflectance; in the layer of the Sun, also for each invisible
+/// part that casts a shadow.
 pub(super) fn meshes(scene: &DockingScene, layer: &Layer, pose: &Pose) -> Result<Vec<Mesh>, SimError> {
     let mut meshes = Vec::new();
     for (index, part) in scene.parts.iter().enumerate() {
@@ -58,8 +59,8 @@ pub(super) fn meshes(scene: &DockingScene, layer: &Layer, pose: &Pose) -> Result
     Ok(meshes)
 }
 
-/// A shade that no camera sees, moved towards the Sun until it is behind the camera: its shadow stays where it is, and a
-/// camera that looks at the target does not see it. `None` when the Sun is not in front of the disk.
+/// Moves an invisible shade towards the Sun until it is behind the camera. Its shadow does not move, and a
+/// camera that points at the target does not see the shade. `None` if the Sun is not in front of the disk.
 fn moved_behind(part: &Part, sun: &Sun, pose: &Pose) -> Option<Part> {
     let towards = sun.towards.normalize();
     if towards.z < LEAST_SUN_HEIGHT {
@@ -83,12 +84,12 @@ fn moved_behind(part: &Part, sun: &Sun, pose: &Pose) -> Option<Part> {
 }
 
 fn group_by_reflectance(part: &Part) -> Result<Vec<(f64, Triangles)>, SimError> {
-    // Numbers of 0 or more are ordered as their bits are.
+    // Non-negative numbers are ordered like their bits.
     let mut groups: BTreeMap<u64, Triangles> = BTreeMap::new();
     for facet in &part.facets {
         let in_range = |v: f64| (0.0..=1.0).contains(&v);
         require("reflectance of a facet", facet.reflectance, "0 to 1", in_range)?;
-        // −0 and 0 are one reflectance.
+        // −0 and 0 count as one reflectance.
         groups.entry((facet.reflectance + 0.0).to_bits()).or_default().add(facet)?;
     }
     Ok(groups.into_iter().map(|(bits, triangles)| (f64::from_bits(bits), triangles)).collect())
@@ -113,7 +114,7 @@ impl Triangles {
         }
         require("the normal of a facet", facet.normal.norm(), "a unit vector", |v| (v - 1.0).abs() < 1e-6)?;
 
-        // Seen from the front: two axes of the facet's plane that are right-handed with its normal.
+        // Two axes of the facet's plane, seen from the front, that are right-handed with its normal.
         let up = if facet.normal.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() };
         let u = up.cross(&facet.normal).normalize();
         let v = facet.normal.cross(&u);
@@ -126,7 +127,7 @@ impl Triangles {
             let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
             let [p, q, r] = [a, b, c].map(|i| flat[i as usize]);
             let twice_area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
-            // A surface of Mitsuba reflects on the side from which its corners run counter-clockwise.
+            // Mitsuba's surfaces reflect on the side from which their corners run counter-clockwise.
             let face = if twice_area > 0.0 { [a, b, c] } else { [a, c, b] };
             self.faces.push(face.map(|i| base + i));
         }

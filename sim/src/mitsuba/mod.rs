@@ -1,10 +1,11 @@
-//! Docking scenes in the words of Mitsuba 3, the renderer that judges the fast one ([`crate::vector`]).
+//! Docking scenes for Mitsuba 3, the reference renderer for the fast one ([`crate::vector`]).
 //!
-//! Text and meshes, in memory: no process is started here and no file is written. Light adds, so each kind of light is
-//! an image of its own ([`Layer`]); their sum is what [`crate::vector::Drawer`] draws.
+//! The module creates text and meshes in memory: it starts no process and writes no file. Light adds, so each
+//! kind of light is a separate image ([`Layer`]); their sum is the image that [`crate::vector::Drawer`]
+//! draws.
 //!
-//! What Mitsuba is told differs from what the fast renderer does in nothing but method: the same facets and the same
-//! light, sampled by rays. Every visible part casts shadows, because a body cannot do otherwise. A part that no camera sees
+//! The two renderers differ only in method: Mitsuba receives the same facets and the same light, and samples
+//! them by rays. Every visible part casts shadows, because a body cannot do otherwise. An invisible part
 //! shades sunlight from behind the camera, and is left out of the other layers.
 
 mod layer;

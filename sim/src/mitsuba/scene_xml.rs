@@ -1,4 +1,4 @@
-//! The scene file of Mitsuba 3.
+//! Scene file of Mitsuba 3.
 
 use contract::bounds::require;
 use contract::docking::Pose;
@@ -12,25 +12,25 @@ use crate::SimError;
 use crate::scene::docking::DockingScene;
 use crate::truth::approach::target_from_camera;
 
-/// What Mitsuba renders: a scene file, and beside it the meshes that it names.
+/// Input of Mitsuba: a scene file, and the meshes beside it to which it refers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFiles {
-    /// The scene file.
+    /// Text of the scene file.
     pub xml: String,
-    /// The meshes.
+    /// Meshes of the scene.
     pub meshes: Vec<Mesh>,
-    /// The part of the camera's image that is rendered.
+    /// Rendered part of the camera's image.
     pub crop: Crop,
 }
 
 impl SceneFiles {
-    /// A scene as one layer of its light shows it. For Mitsuba 3.9 in the variant `scalar_rgb`; the image has one
-    /// channel of 32-bit radiances, each the mean over its pixel (box filter), in the units of
+    /// Describes a scene under one layer of its light. For Mitsuba 3.9 in the variant `scalar_rgb`; the image
+    /// has one channel of 32-bit radiances, each the mean over its pixel (box filter), in the units of
     /// [`crate::scene::docking::Lighting`].
     ///
     /// # Errors
-    /// [`SimError`] for numbers out of range, and for a camera that Mitsuba has not: one with distortion, or with pixels
-    /// that are not square.
+    /// [`SimError`] for numbers out of range, and for a camera that Mitsuba does not support: one with
+    /// distortion, or with pixels that are not square.
     pub fn new(
         scene: &DockingScene,
         layer: &Layer,
@@ -63,8 +63,9 @@ impl SceneFiles {
     }
 }
 
-/// The camera. Mitsuba's camera frame is x left, y up, z forward, and its first pixel covers 0 to 1: its principal
-/// point is this project's plus half a pixel, and its offset counts from the centre to the left and up.
+/// Camera of Mitsuba. Mitsuba's camera frame is x left, y up, z forward, and its first pixel covers 0 to 1.
+/// Its principal point is this project's plus half a pixel, and its offset counts from the centre to the left
+/// and up.
 fn sensor(pose: &Pose, camera: &Camera, settings: &Settings, crop: &Crop) -> Result<String, OutOfRange> {
     let (fx, fy) = camera.focal_length_px();
     if camera.radial != [0.0; 3] || camera.tangential != [0.0; 2] {
@@ -74,7 +75,7 @@ fn sensor(pose: &Pose, camera: &Camera, settings: &Settings, crop: &Crop) -> Res
             "zeros: the renderer mitsuba has no distortion; set them to 0, or use the renderer fast",
         ));
     }
-    // A part in 10⁹ is a thousandth of a thousandth of a pixel at the border of the largest detector.
+    // A relative difference of 10⁻⁹ is a millionth of a pixel at the border of the largest detector.
     if (fx / fy - 1.0).abs() > 1e-9 {
         return Err(OutOfRange::new(
             "camera.pixel_width_um, camera.pixel_height_um",
@@ -90,7 +91,7 @@ fn sensor(pose: &Pose, camera: &Camera, settings: &Settings, crop: &Crop) -> Res
     let offset_x = (columns / 2.0 - (camera.principal_x_px + 0.5)) / columns;
     let offset_y = (rows / 2.0 - (camera.principal_y_px + 0.5)) / rows;
     let mitsuba_axes = Matrix3::from_diagonal(&Vector3::new(-1.0, -1.0, 1.0));
-    // Both reflect two axes: the product is a rotation.
+    // Both factors reflect two axes, so the product is a rotation.
     let to_world = Rotation3::from_matrix_unchecked(target_from_camera(pose) * mitsuba_axes);
 
     let film: String = [

@@ -1,49 +1,50 @@
-//! How finely a scene is rendered, and which part of its image.
+//! Sampling of a rendered scene, and the rendered part of its image.
 
 use contract::{Camera, OutOfRange};
 
-/// A part of the image, px.
+/// Part of the image, px.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Crop {
     /// First column.
     pub x: usize,
     /// First row.
     pub y: usize,
-    /// Columns.
+    /// Number of columns.
     pub columns: usize,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
 }
 
 impl Crop {
-    /// The whole image of a camera.
+    /// Returns the whole image of a camera.
     pub fn full_frame(camera: &Camera) -> Self {
         Self { x: 0, y: 0, columns: camera.columns, rows: camera.rows }
     }
 }
 
-/// How a scene is rendered.
+/// Settings of the rendering.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Settings {
-    /// Rays a pixel, the square of a number from 1 to 64 (stratified as n × n). With 256 a flat surface has a noise of
-    /// 0.013 % of full scale, a pixel on an edge 0.44 %.
+    /// Rays per pixel, the square of an integer from 1 to 64 (stratified as n × n). With 256 a flat surface
+    /// has a noise of 0.013 % of full scale, a pixel on an edge 0.44 %.
     pub samples: u32,
-    /// The part that is rendered; `None`: all.
+    /// Rendered part; `None`: the whole image.
     pub crop: Option<Crop>,
 }
 
 impl Default for Settings {
-    /// 256 rays a pixel, the whole image.
+    /// 256 rays per pixel, the whole image.
     fn default() -> Self {
         Self { samples: 256, crop: None }
     }
 }
 
 impl Settings {
-    /// Checks them for a camera, and gives the part that is rendered.
+    /// Checks the settings for a camera, and returns the rendered part.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a number of samples that is no square, and a crop that is empty or leaves the image.
+    /// [`OutOfRange`] for a number of samples that is no square, and a crop that is empty or extends beyond
+    /// the image.
     pub fn check(&self, camera: &Camera) -> Result<Crop, OutOfRange> {
         if !(1..=64).any(|side| side * side == self.samples) {
             let expected = "the square of a number from 1 to 64: 16, 64, 256, …";

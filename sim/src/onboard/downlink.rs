@@ -1,25 +1,25 @@
-//! What arrives on the ground: the whole image, or the pixels of its regions.
+//! Transmitted image: the whole image, or the pixels of its regions.
 
 use contract::{Frame, Window};
 
 use crate::SimError;
 use crate::sensor::RawImage;
 
-/// Bytes that say where a region is: its first column and row, its columns and rows, two bytes each.
+/// Size of a region's header, bytes: its first column and row, its columns and rows, two bytes each.
 const REGION_HEADER_BYTES: usize = 8;
 
-/// The frame that arrives: with `windows`, every pixel outside them is 0; without, the whole image.
+/// Returns the transmitted frame: with `windows`, every pixel outside them is 0; without, the whole image.
 ///
 /// # Errors
-/// [`SimError::Contract`] when a window leaves the image.
+/// [`SimError::Contract`] if a window extends beyond the image.
 pub fn downlink(image: &RawImage, number: u64, windows: Option<Vec<Window>>) -> Result<Frame, SimError> {
     downlink_in(None, image, number, windows)
 }
 
-/// [`downlink`] in the memory of `spare`, where there is one of the same size.
+/// Performs [`downlink`] in the memory of `spare`, if it has the size of the image.
 ///
 /// # Errors
-/// As [`downlink`].
+/// Those of [`downlink`].
 pub(crate) fn downlink_in(
     spare: Option<Frame>,
     image: &RawImage,
@@ -50,7 +50,7 @@ pub(crate) fn downlink_in(
     Ok(Frame::new(number, columns, rows, image.bit_depth(), dn, windows)?)
 }
 
-/// The memory of a frame, all zeros: where it had regions, nothing but them has to be cleared.
+/// Clears the memory of a frame to zero: if it had regions, only their pixels have to be cleared.
 fn blank(frame: Frame) -> Vec<u16> {
     let columns = frame.columns();
     let windows = frame.windows().map(<[_]>::to_vec);
@@ -66,9 +66,9 @@ fn blank(frame: Frame) -> Vec<u16> {
     dn
 }
 
-/// Size of a frame in telemetry, bytes: the pixels of each region, packed to the bits of the converter and filled up
-/// to a byte, and eight bytes to say where it is; the whole image needs no such header. Pixels that regions share
-/// are sent with each.
+/// Size of a frame in telemetry, bytes: for each region the pixels, packed to the bits of the converter and
+/// padded to a byte, and a header of eight bytes with its position; the whole image needs no header. Pixels
+/// that regions share are sent with each region.
 pub fn downlink_bytes(frame: &Frame) -> usize {
     let bits = frame.bit_depth();
     match frame.windows() {
@@ -82,7 +82,7 @@ pub fn image_bytes(columns: usize, rows: usize, bit_depth: u8) -> usize {
     (columns * rows * usize::from(bit_depth)).div_ceil(8)
 }
 
-/// Size of a region in telemetry, bytes, with what says where it is.
+/// Size of a region in telemetry, bytes, including its header.
 pub(super) fn region_bytes(columns: usize, rows: usize, bit_depth: u8) -> usize {
     REGION_HEADER_BYTES + image_bytes(columns, rows, bit_depth)
 }
@@ -106,7 +106,7 @@ mod tests {
                 assert_eq!(frame.dn_at(x, y), if sent { (y * 10 + x + 1) as u16 } else { 0 });
             }
         }
-        // 6 pixels of 12 bits are 9 bytes, 18 are 27; two headers of 8.
+        // 6 pixels of 12 bits are 9 bytes, 18 pixels are 27 bytes, and each of the two headers is 8 bytes.
         assert_eq!(downlink_bytes(&frame), 9 + 27 + 16);
     }
 

@@ -1,4 +1,4 @@
-//! On board: shutter control, regions of interest, and what is sent to the ground.
+//! On-board processing: shutter control, regions of interest, and the transmitted image.
 
 mod downlink;
 mod roi;

@@ -1,8 +1,9 @@
-//! Regions of interest: the camera keeps fixed rectangles around bright pixels and drops the rest.
+//! Regions of interest: the camera keeps fixed rectangles around bright pixels and drops all other pixels.
 //!
-//! The camera of the far-range paper (sections 3 and 4) sends regions of fixed size. It scans by rows and meets an
-//! object at its topmost bright row, so the region's place hangs on the top of the object: one taller than the region
-//! keeps its top and loses its bottom. That cuts in y, not in x, and spoils the declination. A scan by columns cuts in x.
+//! The camera of the far-range paper (sections 3 and 4) sends regions of fixed size. It scans by rows and
+//! meets an object at its topmost bright row, so the region's position depends on the top of the object: an
+//! object taller than the region keeps its top and loses its bottom. This truncates the object in y, not in
+//! x, and biases the declination. A scan by columns truncates in x.
 
 use contract::bounds::{self, require};
 use contract::{Camera, OutOfRange, Window};
@@ -13,20 +14,20 @@ use super::downlink::region_bytes;
 use crate::draw::PIECE;
 use crate::sensor::RawImage;
 
-/// The order in which the camera looks at its pixels. It decides which pixel of an object is met first, and is laid at
-/// the anchor, and the order of the regions.
+/// Order in which the camera scans its pixels. It determines the order of the regions, and which pixel of an
+/// object is found first and placed at the anchor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ScanOrder {
-    /// By rows from the top, each from the left.
+    /// By rows from the top, each row from the left.
     #[default]
     Rows,
-    /// By columns from the left, each from the top.
+    /// By columns from the left, each column from the top.
     Columns,
 }
 
 impl ScanOrder {
-    /// What pixels, by column and row, are sorted by.
+    /// Sort key of a pixel, given by column and row.
     fn key(self, (x, y): (usize, usize)) -> (usize, usize) {
         match self {
             Self::Rows => (y, x),
@@ -39,13 +40,14 @@ impl ScanOrder {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RoiConfig {
-    /// Regions in a frame at most, 1 to 10000. Of more objects, those with the brightest pixel are kept.
+    /// Maximum number of regions in a frame, 1 to 10000. If there are more objects, those with the brightest
+    /// pixels are kept.
     #[schemars(range(min = 1, max = 10000))]
     pub count: usize,
-    /// Columns of a region, 1 to the columns of the detector.
+    /// Number of columns of a region, 1 to the columns of the detector.
     #[schemars(range(min = 1, max = Camera::MAX_SIDE_PX))]
     pub columns: usize,
-    /// Rows of a region, 1 to the rows of the detector.
+    /// Number of rows of a region, 1 to the rows of the detector.
     #[schemars(range(min = 1, max = Camera::MAX_SIDE_PX))]
     pub rows: usize,
     /// Column of the region in which the first bright pixel of an object lies, from 0, below `columns`.
@@ -54,15 +56,15 @@ pub struct RoiConfig {
     /// Row of the region in which the first bright pixel of an object lies, from 0, below `rows`.
     #[schemars(range(max = Camera::MAX_SIDE_PX))]
     pub anchor_row: usize,
-    /// A pixel is bright when its digital number is above this, 0 to 65535.
+    /// Threshold above which a pixel is bright, DN, 0 to 65535.
     pub threshold_dn: u16,
-    /// The order of the scan.
+    /// Order of the scan.
     #[serde(default)]
     pub scan: ScanOrder,
 }
 
 impl RoiConfig {
-    /// Checks every number against a detector of `columns` × `rows`.
+    /// Checks all values for a detector of `columns` × `rows`.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.
@@ -79,26 +81,26 @@ impl RoiConfig {
         Ok(())
     }
 
-    /// The most that a frame takes in telemetry, bytes, with a converter of `bit_depth` bits: `count` regions as
-    /// [`super::downlink_bytes`] counts them.
+    /// Maximum size of a frame in telemetry, bytes, with a converter of `bit_depth` bits: `count` regions,
+    /// counted as in [`super::downlink_bytes`].
     pub fn budget_bytes(&self, bit_depth: u8) -> usize {
         self.count * region_bytes(self.columns, self.rows, bit_depth)
     }
 }
 
-/// Finds the regions of a frame, as the camera does. Reused from frame to frame.
+/// Finds the regions of a frame by the camera's method. Reused from frame to frame.
 #[derive(Debug, Clone)]
 pub struct RoiExtractor {
     config: RoiConfig,
-    /// Pixels that belong to an object already met; all false between frames.
+    /// Flags of the pixels that belong to an object already found; all false between frames.
     taken: Vec<bool>,
-    /// The bright pixels of the image, column and row, in the order of the scan.
+    /// Bright pixels of the image, column and row, in the order of the scan.
     bright: Vec<(usize, usize)>,
-    /// Pixels of the object at hand, column and row.
+    /// Pixels of the current object, column and row.
     pixels: Vec<(usize, usize)>,
 }
 
-/// An object as the camera meets it.
+/// Object found by the scan.
 #[derive(Debug, Clone, Copy)]
 struct Blob {
     first: (usize, usize),
@@ -106,7 +108,7 @@ struct Blob {
 }
 
 impl RoiExtractor {
-    /// The extractor for a detector of `columns` × `rows`.
+    /// Creates the extractor for a detector of `columns` × `rows`.
     ///
     /// # Errors
     /// Those of [`RoiConfig::check`].
@@ -120,24 +122,25 @@ impl RoiExtractor {
         })
     }
 
-    /// The digital number that a bright pixel is above.
+    /// Threshold above which a pixel is bright, DN.
     pub(crate) fn threshold_dn(&self) -> u16 {
         self.config.threshold_dn
     }
 
-    /// The regions of an image, in the order of the scan.
+    /// Returns the regions of an image, in the order of the scan.
     ///
-    /// A bright pixel that belongs to no object met before is a new object: the bright pixels connected to it, by
-    /// edges or corners. The region is laid so that this first pixel is at the anchor, and shifted, not shrunk, where
-    /// it would leave the image. Regions of neighbouring objects may overlap. When there are too many, those of the
-    /// brightest peaks are kept; of equal peaks, the one met first.
+    /// A bright pixel that belongs to no object found before starts a new object: the bright pixels connected
+    /// to it by edges or corners. The region is positioned with this first pixel at the anchor, and is
+    /// shifted, not shrunk, if it would extend beyond the image. Regions of neighbouring objects may overlap.
+    /// If there are too many regions, those with the brightest peaks are kept; among equal peaks, the region
+    /// found first.
     pub fn extract(&mut self, image: &RawImage) -> Vec<Window> {
         let runs = image.dn().chunks(PIECE).enumerate().map(|(p, piece)| (p * PIECE, piece));
         self.extract_from(image, runs)
     }
 
-    /// [`RoiExtractor::extract`] of an image that is dark outside of `runs`, each the index of its first pixel and its digital
-    /// numbers, in the order of the image.
+    /// Performs [`RoiExtractor::extract`] on an image that is dark outside `runs`. Each run is the index of
+    /// its first pixel and its digital numbers; runs are in the order of the image.
     pub(crate) fn extract_from<'a>(
         &mut self,
         image: &RawImage,
@@ -145,7 +148,7 @@ impl RoiExtractor {
     ) -> Vec<Window> {
         let mut blobs = self.blobs(image, runs);
         if blobs.len() > self.config.count {
-            // Stable: equal peaks stay in the order of the scan.
+            // A stable sort: equal peaks stay in the order of the scan.
             blobs.sort_by_key(|blob| std::cmp::Reverse(blob.peak_dn));
             blobs.truncate(self.config.count);
             blobs.sort_by_key(|blob| self.config.scan.key(blob.first));
@@ -163,7 +166,7 @@ impl RoiExtractor {
         }
     }
 
-    /// All objects, in the order of the scan.
+    /// Finds all objects, in the order of the scan.
     fn blobs<'a>(&mut self, image: &RawImage, runs: impl Iterator<Item = (usize, &'a [u16])>) -> Vec<Blob> {
         let (columns, rows) = image.size();
         self.taken.resize(columns * rows, false);
@@ -182,7 +185,7 @@ impl RoiExtractor {
         blobs
     }
 
-    /// Makes `bright` the pixels above the threshold, in the order of the scan.
+    /// Fills `bright` with the pixels above the threshold, in the order of the scan.
     fn find_bright<'a>(
         &self,
         columns: usize,
@@ -192,20 +195,20 @@ impl RoiExtractor {
         let RoiConfig { threshold_dn, scan, .. } = self.config;
         bright.clear();
         for (first, run) in runs {
-            // Nearly all are dark.
+            // Nearly all runs are dark.
             if run.iter().fold(0, |peak, &dn| peak.max(dn)) <= threshold_dn {
                 continue;
             }
             let above = run.iter().enumerate().filter(|&(_, &dn)| dn > threshold_dn);
             bright.extend(above.map(|(i, _)| ((first + i) % columns, (first + i) / columns)));
         }
-        // They have been found by rows.
+        // The pixels were found row by row.
         if scan != ScanOrder::Rows {
             bright.sort_unstable_by_key(|&pixel| scan.key(pixel));
         }
     }
 
-    /// Takes the bright pixels connected to `first`.
+    /// Collects the bright pixels connected to `first`.
     fn take_blob(&mut self, image: &RawImage, first: (usize, usize)) -> Blob {
         let (columns, rows) = image.size();
         let dn = image.dn();
@@ -248,7 +251,7 @@ mod tests {
         }
     }
 
-    /// An image of 100 × 50 with bright rectangles (x, y, columns, rows, DN).
+    /// Image of 100 × 50 with bright rectangles (x, y, columns, rows, DN).
     fn image(blobs: &[(usize, usize, usize, usize, u16)]) -> RawImage {
         let mut dn = vec![50; 5000];
         for &(x, y, columns, rows, value) in blobs {
@@ -282,7 +285,7 @@ mod tests {
         assert!((20..25).all(kept) && !(25..29).any(kept));
     }
 
-    /// The first pixel met is the leftmost of the topmost row: the anchor leaves room on both sides.
+    /// The first pixel found is the leftmost of the topmost row: the anchor leaves room on both sides.
     #[test]
     fn a_round_object_is_not_cut_in_x() {
         let found = windows(&config(), &[(32, 20, 2, 1, 200), (31, 21, 4, 1, 200), (30, 22, 6, 7, 200)]);
@@ -290,12 +293,13 @@ mod tests {
         assert!((30..36).all(|x| found[0].contains(x, 22)));
     }
 
-    /// A scan by columns is a scan by rows of the image turned over its diagonal.
+    /// A scan by columns equals a scan by rows of the transposed image.
     #[test]
     fn a_scan_by_columns_meets_the_left_side_first_and_cuts_on_the_right() {
         let by_columns = RoiConfig { scan: ScanOrder::Columns, anchor_column: 1, anchor_row: 3, ..config() };
         let found = windows(&by_columns, &[(30, 20, 9, 3, 200), (20, 30, 1, 1, 300)]);
-        // The left object first, though it is lower; of a wide one the first seven columns are kept.
+        // The left object comes first, although it is lower; of a wide object the first seven columns are
+        // kept.
         assert_eq!(found, [window(19, 27), window(29, 17)]);
         let kept = |x| (20..23).all(|y| found[1].contains(x, y));
         assert!((30..37).all(kept) && !(37..39).any(kept));
@@ -316,7 +320,7 @@ mod tests {
         assert_eq!(found, [window(6, 24), window(26, 19)]);
     }
 
-    /// The budget is what the downlink counts when all regions are there.
+    /// The budget equals the size that the downlink counts when all regions are present.
     #[test]
     fn the_budget_is_that_of_a_frame_with_all_its_regions() {
         for (bit_depth, columns, rows) in [(12, 8, 6), (12, 7, 5), (8, 3, 3), (16, 1, 1)] {
@@ -329,7 +333,7 @@ mod tests {
             let frame = crate::onboard::downlink(&image, 0, Some(found)).unwrap();
             assert_eq!(config.budget_bytes(bit_depth), crate::onboard::downlink_bytes(&frame));
         }
-        // Ten of 8 bytes and 48 pixels of 12 bits.
+        // Ten regions of 8 bytes and 48 pixels of 12 bits.
         assert_eq!(config().budget_bytes(12), 10 * (8 + 72));
     }
 

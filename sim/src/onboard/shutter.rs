@@ -1,43 +1,45 @@
-//! Shutter control: the exposure as a function of the brightest object, without memory.
+//! Shutter control: the exposure time as a function of the brightest object, without memory.
 
 use contract::OutOfRange;
 use contract::bounds::{self, require};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How the exposure is chosen.
+/// Method of choosing the exposure time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "mode", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ShutterConfig {
-    /// Always the same.
+    /// Constant exposure time.
     Fixed {
-        /// Exposure, s, 1e-6 to 1000.
+        /// Exposure time, s, 1e-6 to 1000.
         #[schemars(range(min = 1e-6, max = 1000))]
         exposure_s: f64,
     },
-    /// Shortened as the brightest object grows, so that it is not over-exposed by more than a level.
+    /// Exposure time that is reduced as the brightest object grows, so that its over-exposure does not exceed
+    /// a level.
     Automatic {
-        /// Shortest exposure, s, 1e-6 to `max_s`.
+        /// Shortest exposure time, s, 1e-6 to `max_s`.
         #[schemars(range(min = 1e-6, max = 1000))]
         min_s: f64,
-        /// Longest exposure, s, up to 1000.
+        /// Longest exposure time, s, up to 1000.
         #[schemars(range(min = 1e-6, max = 1000))]
         max_s: f64,
-        /// Level that the brightest object's peak pixel may reach, as a fraction of saturation, above 0, at most 1000. Above 1
-        /// the control lets the object be over-exposed by that factor before it shortens the exposure.
+        /// Level that the brightest object's peak pixel may reach, as a fraction of saturation, above 0, at
+        /// most 1000. With a level above 1 the object may be over-exposed by that factor before the exposure
+        /// time is reduced.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
         target_level: f64,
-        /// Ratio of neighbouring exposures of the ladder that the camera can command, 1.001 to 100.
+        /// Ratio of neighbouring exposure times of the ladder that the camera can command, 1.001 to 100.
         #[schemars(range(min = 1.001, max = 100))]
         step_factor: f64,
-        /// Age of the brightness that the control acts on, s, 0 to 1e5.
+        /// Age of the brightness to which the control responds, s, 0 to 1e5.
         #[schemars(range(min = 0, max = 1e5))]
         lag_s: f64,
     },
 }
 
 impl ShutterConfig {
-    /// Checks every number.
+    /// Checks the ranges of all values.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.
@@ -52,8 +54,9 @@ impl ShutterConfig {
     }
 }
 
-/// A shutter control. What a real one remembers is replaced by what it would have seen: it is given the brightness
-/// at the time of the frame minus [`Shutter::lag_s`], so that any frame can be computed alone.
+/// Shutter control without memory. A real control acts on an earlier measurement; this control receives the
+/// brightness at the time of the frame minus [`Shutter::lag_s`], so that any frame can be computed
+/// independently.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shutter {
     config: ShutterConfig,
@@ -61,7 +64,7 @@ pub struct Shutter {
 }
 
 impl Shutter {
-    /// The control of a camera whose pixels saturate at `saturation_e` electrons.
+    /// Creates the control of a camera whose pixels saturate at `saturation_e` electrons.
     ///
     /// # Errors
     /// [`OutOfRange`] for a number out of range.
@@ -73,7 +76,7 @@ impl Shutter {
         Ok(Self { config: config.clone(), saturation_e })
     }
 
-    /// How long before a frame the brightness is to be taken, s; 0 for a fixed exposure.
+    /// Time before a frame at which the brightness is measured, s; 0 for a fixed exposure.
     pub fn lag_s(&self) -> f64 {
         match self.config {
             ShutterConfig::Fixed { .. } => 0.0,
@@ -81,7 +84,7 @@ impl Shutter {
         }
     }
 
-    /// The longest exposure that it may choose, s.
+    /// Longest exposure time that the control may choose, s.
     pub fn longest_s(&self) -> f64 {
         match self.config {
             ShutterConfig::Fixed { exposure_s } => exposure_s,
@@ -89,7 +92,7 @@ impl Shutter {
         }
     }
 
-    /// The shortest exposure that it may choose, s.
+    /// Shortest exposure time that the control may choose, s.
     pub fn shortest_s(&self) -> f64 {
         match self.config {
             ShutterConfig::Fixed { exposure_s } => exposure_s,
@@ -97,7 +100,8 @@ impl Shutter {
         }
     }
 
-    /// Refuses exposures that last longer than `interval_s`, the time from one frame to the next: a shutter is open once at a time.
+    /// Refuses exposures longer than `interval_s`, the time from one frame to the next: exposures cannot
+    /// overlap.
     ///
     /// # Errors
     /// [`OutOfRange`] for the longest exposure.
@@ -111,16 +115,17 @@ impl Shutter {
         require(path, self.longest_s(), expected, |v| v <= interval_s)
     }
 
-    /// The exposure, s, for the expected electrons a second in the peak pixel of the brightest object in the field
-    /// that the control looks at; `None` when there is none.
+    /// Exposure time, s, for the expected electrons per second in the peak pixel of the brightest object in
+    /// the field at the time that the control uses; `None` if there is no object.
     ///
-    /// The longest of the ladder max_s/factor^n that keeps the peak at or below its level, within [min_s, max_s].
+    /// It is the longest of the ladder max_s/factor^n that keeps the peak at or below its level, within
+    /// [min_s, max_s].
     pub fn exposure_s(&self, peak_rate_e_per_s: Option<f64>) -> f64 {
         match self.config {
             ShutterConfig::Fixed { exposure_s } => exposure_s,
             ShutterConfig::Automatic { min_s, max_s, target_level, step_factor, .. } => {
                 let rate = peak_rate_e_per_s.unwrap_or(0.0);
-                // No light, and a NaN, leave the shutter open.
+                // Zero flux and NaN select the longest exposure.
                 let over_exposed = rate * max_s > target_level * self.saturation_e;
                 if !over_exposed {
                     return max_s;
@@ -156,7 +161,7 @@ mod tests {
         let mut rate = 32_001.0;
         while rate < 3e7 {
             let peak = rate * exposure_s(rate);
-            // The rounding of pow and log: 1e-12 of the level.
+            // Rounding of pow and log: 1e-12 of the level.
             assert!(peak <= 32_000.0 * (1.0 + 1e-12), "{rate}: {peak}");
             assert!(peak > 32_000.0 / 1.19, "{rate}: {peak}");
             rate *= 1.037;

@@ -1,4 +1,4 @@
-//! What of the optics changes over the field of view.
+//! Variation of the optics over the field of view.
 
 use contract::{Camera, OutOfRange, PixelPoint, bounds};
 use schemars::JsonSchema;
@@ -6,20 +6,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::switch::Switch;
 
-/// How transmission and sharpness fall towards the corners. Without it the optics are the same everywhere.
+/// Decrease of transmission and sharpness towards the corners. By default the optics are uniform.
 ///
-/// ρ is the distance from the principal point on the focal plane, over that of the detector's farthest corner.
+/// ρ is the distance from the principal point on the focal plane, over that of the detector's farthest
+/// corner.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OpticsConfig {
-    /// Natural vignetting, `on` or `off`: an even sky falls off by the fourth power of the cosine of the field angle, a star
-    /// by its cosine.
+    /// Natural vignetting, `on` or `off`: a uniform sky decreases with the fourth power of the cosine of the
+    /// field angle, a star with the cosine.
     pub cos_fourth: Switch,
-    /// Mechanical vignetting: v₁, v₂, v₃ of the relative transmission 1 − v₁ρ² − v₂ρ⁴ − v₃ρ⁶, which is above 0 and at most
-    /// 1 up to ρ = 1.
+    /// Mechanical vignetting: v₁, v₂, v₃ of the relative transmission 1 − v₁ρ² − v₂ρ⁴ − v₃ρ⁶, which is above
+    /// 0 and at most 1 up to ρ = 1.
     #[schemars(inner(range(min = -100, max = 100)))]
     pub vignetting: [f64; 3],
-    /// Growth a of the point-spread function: at ρ it is 1 + aρ² times as wide as at the principal point; −0.5 to 5.
+    /// Growth a of the point-spread function: at ρ its width is 1 + aρ² times that at the principal point;
+    /// −0.5 to 5.
     #[schemars(range(min = -0.5, max = 5))]
     pub psf_growth: f64,
 }
@@ -31,13 +33,13 @@ impl Default for OpticsConfig {
 }
 
 impl OpticsConfig {
-    /// Steps of ρ at which the transmission is tried.
+    /// Number of steps of ρ at which the transmission is checked.
     const STEPS: u32 = 1000;
 
-    /// Checks every number.
+    /// Checks the ranges of all values.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first value outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "optics")?;
         let transmission = |i: u32| {
@@ -51,7 +53,7 @@ impl OpticsConfig {
         Err(OutOfRange::new("optics.vignetting", format!("{:?}", self.vignetting), expected))
     }
 
-    /// The transmission that mechanical vignetting leaves at ρ².
+    /// Transmission of mechanical vignetting at ρ².
     pub(super) fn mechanical_transmission(&self, rho2: f64) -> f64 {
         let [v1, v2, v3] = self.vignetting;
         1.0 - rho2 * (v1 + rho2 * (v2 + rho2 * v3))
@@ -80,7 +82,7 @@ impl FieldRadius {
         }
     }
 
-    /// ρ² of a point; that of the corner for what lies farther out, where no pixel is.
+    /// ρ² of a point, limited to that of the corner: there are no pixels farther out.
     pub(super) fn normalised_radius_squared(&self, point: PixelPoint) -> f64 {
         let x_um = (point.x - self.principal.x) * self.pixel_um[0];
         let y_um = (point.y - self.principal.y) * self.pixel_um[1];

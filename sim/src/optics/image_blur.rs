@@ -1,22 +1,24 @@
-//! The lens's point spread on a whole image: a separable Gaussian, only on the rows that are kept.
+//! Point-spread function of the lens for a whole image: a separable Gaussian, applied only to the rows that
+//! are kept.
 
 use contract::docking::Lines;
 
 use crate::simd_kernel::arch;
 
-/// How far a kernel reaches, in its standard deviations: 6e-5 of a Gaussian's light lies beyond on one axis.
+/// Half width of a kernel in standard deviations: 6e-5 of a Gaussian's flux lies beyond it on one axis.
 const REACH_SIGMAS: f64 = 4.0;
 
-/// Values that are summed side by side: few enough for a processor's registers.
+/// Number of values that are summed in parallel: few enough for a processor's registers.
 const LANES: usize = 32;
 
-/// Puts the sum of `kernel[j] × padded[x + j]` over all j, in their order, into `out[x]`. `padded` is `kernel.len()` − 1 longer
-/// than `out`.
+/// Writes the sum of `kernel[j] × padded[x + j]` over all j, in their order, to `out[x]`. `padded` is
+/// `kernel.len()` − 1 longer than `out`.
 pub(crate) fn correlate(padded: &[f32], kernel: &[f32], out: &mut [f32]) {
     arch().dispatch(WeightedSum { kernel, row: |j: usize| &padded[j..], out });
 }
 
-/// Puts the sum of `kernel[j] × row(j)[x]` over all j, in their order, into `out[x]`. Rows may be longer than `out`.
+/// Writes the sum of `kernel[j] × row(j)[x]` over all j, in their order, to `out[x]`. Rows may be longer than
+/// `out`.
 struct WeightedSum<'a, R> {
     kernel: &'a [f32],
     row: R,
@@ -26,7 +28,8 @@ struct WeightedSum<'a, R> {
 impl<'a, R: Fn(usize) -> &'a [f32]> pulp::WithSimd for WeightedSum<'_, R> {
     type Output = ();
 
-    // Inline: only so is it compiled for the registers of the machine. The bits do not depend on them.
+    // Inlining is required to compile this function for the registers of the machine. The result is
+    // bit-identical on all registers.
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
         weighted_sum(self.kernel, self.row, self.out);
@@ -55,7 +58,8 @@ fn weighted_sum<'a>(kernel: &[f32], row: impl Fn(usize) -> &'a [f32], out: &mut 
     }
 }
 
-/// Puts a row into `padded` with its first value repeated `before` times before it and its last one `after` times after it.
+/// Copies a row to `padded`, with its first value repeated `before` times in front and its last value
+/// repeated `after` times at the end.
 pub(crate) fn pad(row: &[f32], before: usize, after: usize, padded: &mut Vec<f32>) {
     padded.clear();
     padded.resize(before, row.first().copied().unwrap_or(0.0));
@@ -63,7 +67,7 @@ pub(crate) fn pad(row: &[f32], before: usize, after: usize, padded: &mut Vec<f32
     padded.resize(before + row.len() + after, row.last().copied().unwrap_or(0.0));
 }
 
-/// A sampled Gaussian of unit sum, out to four standard deviations on each side.
+/// Sampled Gaussian of unit sum, out to four standard deviations on each side.
 pub(crate) fn gaussian_kernel(sigma_px: f64) -> Vec<f32> {
     if sigma_px <= 0.0 {
         return vec![1.0];
@@ -76,11 +80,11 @@ pub(crate) fn gaussian_kernel(sigma_px: f64) -> Vec<f32> {
     weights.iter().map(|w| (w / sum) as f32).collect()
 }
 
-/// Blurs images that are integrated over pixels already by a Gaussian, and keeps the rows of one field.
+/// Blurs pixel-integrated images by a Gaussian, and keeps the rows of one field.
 ///
-/// The image continues beyond its border as it is on it, so that a uniform image stays uniform; inside, light is preserved
-/// (the kernel has unit sum). The kernel is sampled at whole pixels: its variance is that of the Gaussian to 1e-4 px² from
-/// σ = 0.6 px up, and falls short of it below.
+/// The image continues beyond its border with its border values, so that a uniform image stays uniform;
+/// inside, flux is preserved (the kernel has unit sum). The kernel is sampled at integer pixels: its variance
+/// is that of the Gaussian to 1e-4 px² from σ = 0.6 px up, and smaller below.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImageBlur {
     kernel: Vec<f32>,
@@ -89,12 +93,12 @@ pub struct ImageBlur {
 }
 
 impl ImageBlur {
-    /// For a standard deviation in px; 0 leaves images as they are.
+    /// Creates a blur with a standard deviation in px; 0 leaves images unchanged.
     pub fn new(sigma_px: f64) -> Self {
         Self { kernel: gaussian_kernel(sigma_px), column: Vec::new(), padded: Vec::new() }
     }
 
-    /// Blurs the rows `lines` of `image`, row by row `columns` long, into `kept`.
+    /// Blurs the rows `lines` of `image`, whose rows are `columns` long, into `kept`.
     pub fn blur(&mut self, image: &[f32], columns: usize, lines: Lines, kept: &mut Vec<f32>) {
         let columns = columns.max(1);
         let camera_rows = image.len() / columns;
@@ -143,7 +147,7 @@ mod tests {
         let sigma = 0.7;
         let kept = blurred(sigma, &image, n, Lines::All);
         let sum: f64 = kept.iter().map(|v| f64::from(*v)).sum();
-        // Seven roundings of f32 a pass.
+        // Seven f32 roundings per pass.
         assert!((sum - 1000.0).abs() < 1e-3, "{sum}");
         let offset = |i: usize| i as f64 - centre as f64;
         let moment = |power: &dyn Fn(f64, f64) -> f64| {
@@ -152,7 +156,7 @@ mod tests {
                 .map(|(i, v)| power(offset(i % n), offset(i / n)) * f64::from(*v) / 1000.0)
                 .sum::<f64>()
         };
-        // The sampled Gaussian's own variance: Poisson's summation gives 0.49 − 4e-3·…; measured 0.4892.
+        // Variance of the sampled Gaussian: Poisson's summation gives 0.49 − 4e-3·…; measured 0.4892.
         assert!((moment(&|x, _| x * x) - sigma * sigma).abs() < 2e-3);
         assert!((moment(&|_, y| y * y) - sigma * sigma).abs() < 2e-3);
         assert!(moment(&|x, y| x * y).abs() < 1e-6);

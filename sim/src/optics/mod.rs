@@ -1,4 +1,4 @@
-//! Optics: where a direction falls on the detector, and how its light spreads there.
+//! Optics: the position of a direction on the detector, and the spread of its light there.
 
 mod field;
 mod image_blur;

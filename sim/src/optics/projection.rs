@@ -1,9 +1,10 @@
-//! The simulator's camera model: pinhole with Brown's distortion, forwards exactly and backwards by Newton.
+//! Camera model of the simulator: pinhole with Brown's distortion, exact forwards and by Newton's method
+//! backwards.
 //!
-//! The distortion maps the undistorted offset (u, v) from the principal point to the distorted one. In the form
-//! given at [`contract::Camera`] its Jacobian is symmetric, so that the map is the gradient of a potential: where
-//! the Jacobian is positive definite on a convex set, the potential is strictly convex there and no two points
-//! share an image. That is how a camera whose distortion folds inside the detector is recognised.
+//! The distortion maps the undistorted offset (u, v) from the principal point to the distorted offset. In the
+//! form given at [`contract::Camera`] its Jacobian is symmetric, so the map is the gradient of a potential:
+//! where the Jacobian is positive definite on a convex set, the potential is strictly convex there and no two
+//! points share an image. This identifies a camera whose distortion folds inside the detector.
 
 use std::f64::consts::PI;
 
@@ -12,7 +13,7 @@ use nalgebra::Vector3;
 
 use crate::SimError;
 
-/// Directions in the camera frame to pixels and back.
+/// Maps directions in the camera frame to pixels and back.
 ///
 /// ```
 /// use boresight_sim::optics::Projection;
@@ -35,22 +36,23 @@ pub struct Projection {
     focal_y_px: f64,
     principal: PixelPoint,
     distortion: Distortion,
-    /// Radius of undistorted offsets, px, within which the distortion is known to be one-to-one.
+    /// Radius of undistorted offsets, px, within which the distortion is verified to be one-to-one.
     domain_px: f64,
     half_diagonal: Angle,
 }
 
 impl Projection {
-    /// How far beyond the detector's farthest corner the distortion is followed, as a multiple of its distance.
+    /// Limit of the distortion's domain, as a multiple of the distance of the detector's farthest corner.
     const DOMAIN_FACTOR: f64 = 3.0;
-    /// Points on each side of the detector's border that are tried on construction, corners included.
+    /// Number of points on each side of the detector's border that are checked on construction, corners
+    /// included.
     const BORDER_POINTS: usize = 129;
 
-    /// The model of a camera.
+    /// Creates the model of a camera.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for a number out of range, and when the distortion folds inside the detector, so that a
-    /// pixel has no direction or more than one.
+    /// [`SimError::OutOfRange`] for a number out of range, and if the distortion folds inside the detector,
+    /// so that a pixel has no direction or more than one.
     pub fn new(camera: &Camera) -> Result<Self, SimError> {
         camera.check()?;
         let (focal_x_px, focal_y_px) = camera.focal_length_px();
@@ -84,11 +86,11 @@ impl Projection {
         Ok(projection)
     }
 
-    /// Where a direction falls. The point may lie off the detector.
+    /// Returns the pixel position of a direction. The point may lie off the detector.
     ///
-    /// `None` behind the camera (z ≤ 0), and so far off the detector (more than three times its half diagonal, or
-    /// beyond a fold) that the distortion polynomial means nothing: there it could bring a star from outside the
-    /// field back into it.
+    /// `None` behind the camera (z ≤ 0), and so far off the detector (more than three times its half
+    /// diagonal, or beyond a fold) that the distortion polynomial is meaningless: there it could map a star
+    /// from outside the field back into it.
     pub fn project(&self, direction: &Direction<CameraFrame>) -> Option<PixelPoint> {
         let vector = direction.vector();
         if vector.z <= 0.0 {
@@ -103,8 +105,8 @@ impl Projection {
         Some(PixelPoint::new(self.principal.x + distorted.u, self.principal.y + distorted.v))
     }
 
-    /// The direction that falls on a point: the inverse of [`Projection::project`], to 1e-12 px and the rounding
-    /// of the coordinates. `None` where no direction does; never so on the detector.
+    /// Returns the direction that is projected to a point: the inverse of [`Projection::project`], to 1e-12
+    /// px and the rounding of the coordinates. `None` if there is no such direction; never on the detector.
     pub fn unproject(&self, point: PixelPoint) -> Option<Direction<CameraFrame>> {
         let distorted = Offset { u: point.x - self.principal.x, v: point.y - self.principal.y };
         let offset = self.distortion.undistort(distorted)?;
@@ -115,10 +117,11 @@ impl Projection {
         Direction::from_vector(vector).ok()
     }
 
-    /// Where an undistorted offset from the principal point falls, px, for outlines that go on beyond the detector.
+    /// Pixel position of an undistorted offset from the principal point, px, for outlines that extend beyond
+    /// the detector.
     ///
-    /// Beyond the radius within which the distortion is known to be one-to-one it is continued in proportion along the
-    /// ray, so that nothing from there comes back into the image.
+    /// Beyond the radius within which the distortion is verified to be one-to-one it is continued in
+    /// proportion along the ray, so that no point from there returns into the image.
     pub(crate) fn pixel_position(&self, u: f64, v: f64) -> PixelPoint {
         let radius = Offset { u, v }.length();
         let scale = if radius > self.domain_px { self.domain_px / radius } else { 1.0 };
@@ -126,13 +129,13 @@ impl Projection {
         PixelPoint::new(self.principal.x + distorted.u / scale, self.principal.y + distorted.v / scale)
     }
 
-    /// Whether straight lines bend.
+    /// Returns true if the distortion bends straight lines.
     pub(crate) fn is_distorted(&self) -> bool {
         self.domain_px.is_finite()
     }
 
-    /// The largest angle between the boresight and a direction that falls on the detector: the radius of the cone
-    /// that holds the whole field, distortion included.
+    /// Largest angle between the boresight and a direction on the detector: the radius of the cone that holds
+    /// the whole field, distortion included.
     pub fn half_diagonal(&self) -> Angle {
         self.half_diagonal
     }
@@ -148,25 +151,28 @@ impl Projection {
         ])
     }
 
-    /// Pixels a radian at the boresight, along columns and along rows.
+    /// Plate scale at the boresight, pixels per radian, along columns and along rows.
     pub fn plate_scale_px_per_rad(&self) -> (f64, f64) {
         (self.focal_x_px, self.focal_y_px)
     }
 
-    /// Columns and rows of the detector.
+    /// Number of columns and rows of the detector.
     pub fn detector(&self) -> (usize, usize) {
         (self.columns, self.rows)
     }
 
-    /// Whether the distortion is one-to-one at an undistorted offset; not where it has overflowed to NaN.
+    /// Returns true if the distortion is one-to-one at an undistorted offset; false if the offset has
+    /// overflowed to NaN.
     fn is_one_to_one_at(&self, offset: Offset) -> bool {
         offset.length() <= self.domain_px
     }
 
-    /// The largest angle to the boresight on the detector's border; `None` when a point of it has no direction.
+    /// Largest angle to the boresight on the detector's border; `None` if a point of the border has no
+    /// direction.
     ///
-    /// The disk on which the distortion is one-to-one has an image without holes, so when it holds the border it
-    /// holds the detector; and an angle to the boresight has no maximum inside, so the border has the largest.
+    /// The disk on which the distortion is one-to-one has an image without holes, so if the image contains
+    /// the border it contains the detector. An angle to the boresight has no maximum inside, so the largest
+    /// angle is on the border.
     fn border_angle(&self) -> Option<Angle> {
         let (width, height) = (self.columns as f64, self.rows as f64);
         let mut largest = 0.0_f64;
@@ -182,7 +188,7 @@ impl Projection {
     }
 }
 
-/// An offset from the principal point, px.
+/// Offset from the principal point, px.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Offset {
     u: f64,
@@ -195,7 +201,7 @@ impl Offset {
     }
 }
 
-/// The symmetric Jacobian of the distortion.
+/// Symmetric Jacobian of the distortion.
 struct Jacobian {
     uu: f64,
     uv: f64,
@@ -207,7 +213,7 @@ impl Jacobian {
         self.uu * self.vv - self.uv * self.uv
     }
 
-    /// The offset that it takes to `image`.
+    /// Returns the offset that the Jacobian maps to `image`.
     fn solve(&self, image: Offset) -> Offset {
         let determinant = self.determinant();
         Offset {
@@ -229,10 +235,11 @@ struct Distortion {
 }
 
 impl Distortion {
-    /// Rings and rays on which the Jacobian is tried.
+    /// Numbers of rings and rays on which the Jacobian is checked.
     const RINGS: usize = 256;
     const RAYS: usize = 64;
-    /// Newton's method doubles its digits; with the halved steps of a bad start it stays far below this.
+    /// Limit of Newton steps. Each step doubles the digits; even with the halved steps of a bad start the
+    /// number stays far below this limit.
     const MAX_STEPS: usize = 100;
 
     fn distort(&self, Offset { u, v }: Offset) -> Offset {
@@ -260,7 +267,8 @@ impl Distortion {
         }
     }
 
-    /// The undistorted offset, by Newton's method with halved steps; `None` when it does not converge.
+    /// Returns the undistorted offset, by Newton's method with halved steps; `None` if the method does not
+    /// converge.
     fn undistort(&self, distorted: Offset) -> Option<Offset> {
         let residual_at = |at: Offset| {
             let image = self.distort(at);
@@ -272,13 +280,13 @@ impl Distortion {
             if residual == (Offset { u: 0.0, v: 0.0 }) {
                 break;
             }
-            // Of a singular Jacobian the step is no number, and nothing comes closer.
+            // A singular Jacobian gives a step that is not a number, which never reduces the residual.
             let step = self.jacobian(at).solve(residual);
             let mut shorter = (0..20).map(|halvings| 1.0 / f64::from(1_u32 << halvings)).map(|part| {
                 let next = Offset { u: at.u + part * step.u, v: at.v + part * step.v };
                 (next, residual_at(next))
             });
-            // No step that comes closer: either the last bit is reached, or there is no inverse.
+            // No step reduces the residual: either the last bit is reached, or there is no inverse.
             match shorter.find(|(_, left)| left.length() < residual.length()) {
                 Some((next, left)) => (at, residual) = (next, left),
                 None => break,
@@ -287,13 +295,13 @@ impl Distortion {
         (residual.length() <= Self::tolerance_px(distorted)).then_some(at)
     }
 
-    /// What the inverse of an offset may leave: the rounding of its coordinates.
+    /// Residual that the inverse of an offset may leave: the rounding of its coordinates.
     fn tolerance_px(distorted: Offset) -> f64 {
         1e-12 + 8.0 * f64::EPSILON * distorted.length()
     }
 
-    /// The largest radius up to `limit_px` on whose disk the Jacobian is positive definite at every point of a
-    /// polar grid; without distortion, infinity.
+    /// Largest radius up to `limit_px` on whose disk the Jacobian is positive definite at every point of a
+    /// polar grid; infinity without distortion.
     fn one_to_one_radius(&self, limit_px: f64) -> f64 {
         if self.radial == [0.0; 3] && self.tangential == [0.0; 2] {
             return f64::INFINITY;
@@ -319,7 +327,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The camera of the far-range paper, Table 1, with its principal point counted from zero.
+    /// Camera of the far-range paper, Table 1, with its principal point counted from zero.
     fn table_1() -> Camera {
         Camera {
             columns: 752,
@@ -376,7 +384,7 @@ mod tests {
         assert!(point.distance(PixelPoint::new(395.0 + u, 288.0 + v)) < 1e-10);
     }
 
-    /// All five coefficients at once, in rational numbers.
+    /// All five coefficients at once; the expected values are exact rational numbers.
     const BENT: Distortion = Distortion { radial: [3e-8, -2e-14, 5e-21], tangential: [2e-6, -3e-6] };
 
     #[test]
@@ -391,7 +399,8 @@ mod tests {
         }
     }
 
-    /// Newton's method finds the same inverse with wrong slopes, in more steps: so they are held against differences.
+    /// Newton's method would find the inverse even with wrong slopes, in more steps, so the slopes are
+    /// compared with finite differences.
     #[test]
     fn the_jacobian_is_that_of_the_distortion() {
         let strong = Distortion { radial: [3e-7, -2e-12, 4e-18], tangential: [5e-5, -8e-5] };
@@ -412,7 +421,8 @@ mod tests {
         }
     }
 
-    /// r + k1 r³ turns back at r = 1/√(3 |k1|) = 577.35, v + 3 p1 v² at −1/(6 p1) = −166.67; of a grid of 256 rings the last before.
+    /// r + k1 r³ turns back at r = 1/√(3 |k1|) = 577.35, v + 3 p1 v² at −1/(6 p1) = −166.67; the result is
+    /// the last ring before it, on a grid of 256 rings.
     #[test]
     fn the_distortion_is_one_to_one_up_to_its_fold() {
         let radial = Distortion { radial: [-1e-6, 0.0, 0.0], tangential: [0.0; 2] };
@@ -434,7 +444,8 @@ mod tests {
         assert_eq!(solved, Offset { u: 3.0, v: -4.0 });
     }
 
-    /// r (1 + 1e-6 r² + 3.6e-12 r⁴ − 1.25e-17 r⁶) grows up to 600 px; from where Newton's method begins, at 580, its whole step comes no closer.
+    /// r (1 + 1e-6 r² + 3.6e-12 r⁴ − 1.25e-17 r⁶) grows up to 600 px; Newton's method starts at 580, where
+    /// its full step does not reduce the residual.
     #[test]
     fn steps_that_go_too_far_are_halved() {
         let distortion = Distortion { radial: [1e-6, 3.6e-12, -1.25e-17], tangential: [0.0; 2] };
@@ -442,7 +453,7 @@ mod tests {
         assert!((back.u - 462.0).abs() < 1e-9 && back.v == 0.0, "{back:?}");
     }
 
-    /// r − 1e-6 r³ is 384.9 px at most: what lies beyond has no inverse, however near it comes.
+    /// r − 1e-6 r³ is 384.9 px at most: points beyond have no inverse, however close they are to this limit.
     #[test]
     fn what_nothing_falls_on_has_no_inverse() {
         let folded = Distortion { radial: [-1e-6, 0.0, 0.0], tangential: [0.0; 2] };
@@ -452,13 +463,13 @@ mod tests {
         assert!((Distortion::tolerance_px(Offset { u: 600.0, v: -800.0 }) - 2.776e-12).abs() < 1e-15);
     }
 
-    /// A saddle has a positive slope along one axis and turns the other one round.
+    /// A saddle has a positive slope along one axis and reverses the other axis.
     #[test]
     fn a_jacobian_is_positive_definite_when_both_its_eigenvalues_are() {
         assert_eq!(Jacobian { uu: 2.0, uv: 3.0, vv: 4.0 }.determinant(), -1.0);
         let is_positive = |uu, uv, vv| Jacobian { uu, uv, vv }.is_positive_definite();
         assert!(is_positive(1.0, 0.5, 2.0) && is_positive(2.0, -1.0, 1.0));
-        // Eigenvalues of opposite signs, both negative, and one of them nought.
+        // Eigenvalues of opposite signs, both negative, and one of them zero.
         assert!(!is_positive(1.0, 2.0, 1.0) && !is_positive(1.0, 0.0, -1.0) && !is_positive(-1.0, 0.5, -1.0));
         assert!(!is_positive(1.0, 1.0, 1.0) && !is_positive(0.0, 0.0, 1.0));
     }
@@ -476,7 +487,7 @@ mod tests {
             assert!(projection.project(&inside).is_some(), "{u} {v}");
             assert_eq!(projection.project(&along(1.001 * limit * u, 1.001 * limit * v)), None, "{u} {v}");
         }
-        // What comes back from a point so far away is none either.
+        // The inverse of a point so far away does not exist either.
         let pixel = projection.pixel_position(0.999 * limit, 0.0);
         assert!(projection.unproject(pixel).is_some());
         assert_eq!(projection.unproject(PixelPoint::new(pixel.x + 10.0, pixel.y)), None);
@@ -518,14 +529,15 @@ mod tests {
         assert_eq!(projection.project(&direction(1.0, 0.0, 0.0)), None);
     }
 
-    /// Barrel distortion of this strength brings directions beyond its fold at r = 1/sqrt(3 |k1|) = 1826 px back.
+    /// Barrel distortion of this strength maps directions beyond its fold at r = 1/sqrt(3 |k1|) = 1826 px
+    /// back into the image.
     #[test]
     fn a_star_beyond_the_fold_does_not_come_back_into_the_field() {
         let camera = Camera { radial: [-1e-7, 0.0, 0.0], ..table_1() };
         let projection = Projection::new(&camera).unwrap();
         let (fx, _) = camera.focal_length_px();
         assert!(projection.project(&direction(400.0 / fx, 0.0, 1.0)).is_some());
-        // 3100 px (1 − 0.961) = 121 px: on the detector, were the polynomial believed.
+        // 3100 px (1 − 0.961) = 121 px: on the detector, if the polynomial were applied there.
         assert_eq!(projection.project(&direction(3100.0 / fx, 0.0, 1.0)), None);
     }
 
@@ -552,13 +564,15 @@ mod tests {
             }
         }
         assert!(largest <= half_diagonal);
-        // Table 1 has its farthest corner at the upper left: half a pixel (0.0002 rad) from the last one tried.
+        // Table 1 has its farthest corner at the lower left: half a pixel (0.0002 rad) from the last point
+        // tried.
         assert!(half_diagonal - largest < 3e-4);
-        // Half of the diagonal of 18.2° × 13.6° is 11.4°; the principal point is 24 px off the middle.
+        // Half of the diagonal of 18.2° × 13.6° is 11.4°; the principal point is 24 px from the centre.
         assert!((projection.half_diagonal().degrees() - 11.7).abs() < 0.1);
     }
 
-    /// Of a corner of the detector to the right and below the principal point it takes the last point of either side.
+    /// For a corner of the detector to the right of and below the principal point the last point of each side
+    /// is required.
     #[test]
     fn the_half_diagonal_is_that_of_the_farthest_corner_wherever_it_is() {
         for (x, y, corner) in
@@ -583,7 +597,8 @@ mod tests {
             let projection = Projection::new(&camera).unwrap();
             let point = PixelPoint::new(x, y);
             let back = projection.project(&projection.unproject(point).unwrap()).unwrap();
-            // 1e-9 px: Newton's 1e-12 px, and the rounding of a unit vector times f = 2400 px (5e-13 px).
+            // Tolerance of 1e-9 px: Newton's 1e-12 px, and the rounding of a unit vector times f = 2400 px
+            // (5e-13 px).
             prop_assert!(back.distance(point) < 1e-9, "{back:?}");
         }
     }

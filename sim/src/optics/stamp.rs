@@ -1,4 +1,4 @@
-//! The image of one object: a small patch of expected electrons.
+//! Stamp: the image of one object as a small patch of expected electrons.
 
 use contract::{PixelPoint, Window};
 use pulp::Simd;
@@ -7,48 +7,49 @@ use crate::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
 
 /// Expected electrons of one object, in a rectangle of the detector. Reused from object to object.
 ///
-/// A stamp is clipped to the detector: what falls off it is in no pixel and in no sum.
+/// A stamp is clipped to the detector: electrons outside the detector are in no pixel and in no sum.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stamp {
     pub(super) x: usize,
     pub(super) y: usize,
     pub(super) columns: usize,
     pub(super) rows: usize,
-    /// Columns, and zeros after them up to a whole number of [`LANES`]: rows are short, and loops over them want no remainder.
+    /// Number of columns plus trailing zeros up to a multiple of [`LANES`]: rows are short, and loops over
+    /// them need no remainder.
     pub(super) stride: usize,
     pub(super) centre: PixelPoint,
-    /// Row by row.
+    /// Electrons row by row.
     pub(super) electrons: Vec<f64>,
 }
 
-/// What the truth table tells about the image of one object.
+/// Entries of the truth table about the image of one object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StampTruth {
-    /// Sum over its pixels, electrons.
+    /// Sum over the stamp's pixels, electrons.
     pub electrons: f64,
-    /// Its brightest pixel, electrons.
+    /// Electrons of the brightest pixel.
     pub peak_electrons: f64,
-    /// Signal-to-noise ratio of a matched filter that knows the noise: sqrt(Σ s²/(s + b + σ²)), s no more than what a pixel
-    /// still has room for above its background.
+    /// Signal-to-noise ratio of a matched filter with known noise: sqrt(Σ s²/(s + b + σ²)), with s limited to
+    /// the range of a pixel above its background.
     pub snr: f64,
-    /// Distance from the centre to the farthest pixel centre in which it exceeds the noise of the empty
+    /// Distance from the centre to the farthest pixel centre whose signal exceeds the noise of the empty
     /// background, sqrt(b + σ²), px; at least 0.5.
     pub radius_px: f64,
 }
 
 impl Stamp {
-    /// A stamp of nothing.
+    /// Creates an empty stamp.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Makes this the stamp of a single pixel, a hot one for instance.
+    /// Turns this stamp into that of a single pixel, for instance of a hot pixel.
     pub fn set_pixel(&mut self, x: usize, y: usize, electrons: f64) {
         self.reset(PixelPoint::new(x as f64, y as f64), (x, x + 1), (y, y + 1));
         self.electrons[0] = electrons;
     }
 
-    /// Makes this a stamp of zeros over columns `x.0..x.1` and rows `y.0..y.1`; an empty range makes it empty.
+    /// Resets this stamp to zeros over columns `x.0..x.1` and rows `y.0..y.1`; an empty range makes it empty.
     pub(crate) fn reset(&mut self, centre: PixelPoint, x: (usize, usize), y: (usize, usize)) {
         (self.x, self.y) = (x.0, y.0);
         (self.columns, self.rows) = (x.1.saturating_sub(x.0), y.1.saturating_sub(y.0));
@@ -58,8 +59,8 @@ impl Stamp {
         self.electrons.resize(self.stride * self.rows, 0.0);
     }
 
-    /// Makes this the image of an object in an interlaced frame: the rows for which `in_first` holds are those of `first`,
-    /// the others those of `second`. Its centre is the middle between their centres.
+    /// Turns this stamp into the image of an object in an interlaced frame: rows for which `in_first` holds
+    /// are taken from `first`, all other rows from `second`. Its centre is the midpoint of their centres.
     pub(crate) fn weave(&mut self, first: &Self, second: &Self, in_first: impl Fn(usize) -> bool) {
         let fields = [(first, true), (second, false)];
         let windows = || fields.iter().filter_map(|(stamp, _)| stamp.window());
@@ -79,33 +80,33 @@ impl Stamp {
         }
     }
 
-    /// Adds electrons to a pixel; outside the stamp nothing happens.
+    /// Adds electrons to a pixel; does nothing outside the stamp.
     pub(crate) fn add(&mut self, x: usize, y: usize, electrons: f64) {
         if let Some(pixel) = self.pixel_mut(x, y) {
             *pixel += electrons;
         }
     }
 
-    /// Takes the light out of a pixel; outside the stamp nothing happens.
+    /// Sets the electrons of a pixel to zero; does nothing outside the stamp.
     pub(crate) fn empty(&mut self, x: usize, y: usize) {
         if let Some(pixel) = self.pixel_mut(x, y) {
             *pixel = 0.0;
         }
     }
 
-    /// The electrons of a pixel; `None` outside the stamp.
+    /// Electrons of a pixel; `None` outside the stamp.
     fn pixel_mut(&mut self, x: usize, y: usize) -> Option<&mut f64> {
         let is_inside =
             (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y);
         is_inside.then(|| &mut self.electrons[(y - self.y) * self.stride + x - self.x])
     }
 
-    /// Where the light of the undisturbed image has its mean, off the detector included.
+    /// Flux-weighted mean position of the geometric image, including its part off the detector.
     pub fn centre(&self) -> PixelPoint {
         self.centre
     }
 
-    /// The rectangle it covers; `None` when no pixel of the detector is in it.
+    /// Rectangle that the stamp covers; `None` if it contains no pixel of the detector.
     pub fn window(&self) -> Option<Window> {
         (!self.electrons.is_empty()).then_some(Window {
             x: self.x,
@@ -115,35 +116,35 @@ impl Stamp {
         })
     }
 
-    /// Its rows: first column, row, expected electrons.
+    /// Rows of the stamp: first column, row, expected electrons.
     pub fn rows(&self) -> impl Iterator<Item = (usize, usize, &[f64])> {
-        // An empty stamp has rows of no columns; a chunk of zero is not allowed.
+        // An empty stamp has rows without columns; a chunk size of zero is not allowed.
         let rows = self.electrons.chunks_exact(self.stride.max(1)).enumerate();
         rows.map(|(j, row)| (self.x, self.y + j, &row[..self.columns]))
     }
 
-    /// Expected electrons of its row `y` of the detector, which is one of its rows.
+    /// Expected electrons of row `y` of the detector, which must be a row of the stamp.
     #[inline(always)]
     pub(crate) fn row(&self, y: usize) -> &[f64] {
         let start = (y - self.y) * self.stride;
         &self.electrons[start..start + self.columns]
     }
 
-    /// Its rows, with the zeros after them: first column, row, expected electrons.
+    /// Rows of the stamp with their trailing zeros: first column, row, expected electrons.
     #[inline(always)]
     pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = (usize, usize, &mut [f64])> {
         let (x, y) = (self.x, self.y);
         self.electrons.chunks_exact_mut(self.stride.max(1)).enumerate().map(move |(j, row)| (x, y + j, row))
     }
 
-    /// Its columns, without the zeros after them.
+    /// Number of columns, without the trailing zeros.
     pub(crate) fn columns(&self) -> usize {
         self.columns
     }
 
-    /// What the truth table tells, over a flat background of `background_e` electrons a pixel (sky and dark
-    /// current), a readout that adds a noise of `readout_noise_e` to a pixel, and pixels that tell no more than
-    /// `saturation_e` electrons.
+    /// Computes the entries of the truth table, over a flat background of `background_e` electrons per pixel
+    /// (sky and dark current), with a readout noise of `readout_noise_e` per pixel, and pixels that saturate
+    /// at `saturation_e` electrons.
     pub fn truth(&self, background_e: f64, readout_noise_e: f64, saturation_e: f64) -> StampTruth {
         run_widest(Truth { stamp: self, background_e, readout_noise_e, saturation_e })
     }
@@ -153,7 +154,7 @@ impl Stamp {
     fn radius_px(&self, electrons: f64) -> f64 {
         let mut radius2 = 0.25_f64;
         for (j, row) in self.electrons.chunks_exact(self.stride.max(1)).enumerate() {
-            // Of the pixels of a row the first or the last is the farthest.
+            // The farthest pixel of a row is the first or the last.
             let Some((first, last)) = first_and_last_above(row, electrons) else { continue };
             let dy = (self.y + j) as f64 - self.centre.y;
             for i in [first, last] {
@@ -164,8 +165,8 @@ impl Stamp {
         radius2.sqrt()
     }
 
-    /// Distance along the columns from the centre to the farthest pixel centre with more than `electrons`, px; 0 when there is
-    /// none.
+    /// Distance along the columns from the centre to the farthest pixel centre with more than `electrons`,
+    /// px; 0 if there is none.
     pub(crate) fn height_px(&self, electrons: f64) -> f64 {
         self.rows()
             .filter(|(_, _, row)| row.iter().any(|&signal| signal > electrons))
@@ -173,11 +174,11 @@ impl Stamp {
             .fold(0.0, f64::max)
     }
 
-    /// The fraction of its electrons outside every window, in [0, 1]; 0 for an empty stamp.
+    /// Fraction of the stamp's electrons outside every window, in [0, 1]; 0 for an empty stamp.
     pub fn cut(&self, windows: &[Window]) -> f64 {
         let (right, bottom) = (self.x + self.columns, self.y + self.rows);
-        // Most windows of a frame are elsewhere, most stamps in one window or in none. Without an early exit, for many windows
-        // at once.
+        // Most windows of a frame are elsewhere, and most stamps are in one window or in none. There is no
+        // early exit, to test many windows at once.
         let touches = |w: &&Window| {
             (w.x < right) & (self.x < w.x + w.columns) & (w.y < bottom) & (self.y < w.y + w.rows)
         };
@@ -199,8 +200,8 @@ impl Stamp {
         let (top, last) =
             touched.iter().fold((bottom, self.y), |(top, last), w| (top.min(w.y), last.max(w.y + w.rows)));
         for (x, y, row) in self.rows().skip(top.saturating_sub(self.y)).take_while(|(_, y, _)| *y < last) {
-            // From the left: to the end of the windows that hold a pixel, then to the next window that begins, and so on, windows
-            // that overlap counting once.
+            // From the left: to the end of the windows that contain a pixel, then to the start of the next
+            // window, and so on, so that overlapping windows count once.
             let mut from = 0;
             while from < row.len() {
                 let in_row = || touched.iter().filter(|w| w.contains(w.x, y));
@@ -215,7 +216,7 @@ impl Stamp {
                 from = next;
             }
         }
-        // Sums side by side: one after the other each would wait for the one before.
+        // Sums are formed in parallel: in sequence each would wait for the previous one.
         let mut sums = [0.0; LANES];
         for electrons in self.electrons.as_chunks::<LANES>().0 {
             for (sum, electrons) in sums.iter_mut().zip(electrons) {
@@ -227,7 +228,7 @@ impl Stamp {
     }
 }
 
-/// [`Stamp::truth`].
+/// Arguments of [`Stamp::truth`].
 struct Truth<'a> {
     stamp: &'a Stamp,
     background_e: f64,
@@ -244,7 +245,7 @@ impl SimdKernel for Truth<'_> {
         let variance = background_e + readout_noise_e * readout_noise_e;
         let noise_e = variance.sqrt();
         let none = F64x8::splat(simd, 0.0);
-        // Where there is neither light nor noise the quotient is 0, not no number.
+        // Without signal and noise the quotient is 0, not NaN.
         let noise2 = F64x8::splat(simd, variance.max(f64::MIN_POSITIVE));
         let room = F64x8::splat(simd, (saturation_e - background_e).max(0.0));
         let [mut electrons, mut snr2, mut peaks] = [none; 3];
@@ -265,11 +266,11 @@ impl SimdKernel for Truth<'_> {
     }
 }
 
-/// The first and the last of the numbers of a row of a stamp, its padding included, that are above a limit.
+/// Indices of the first and the last value above a limit in a row of a stamp, including its padding.
 #[inline(always)]
 fn first_and_last_above(row: &[f64], limit: f64) -> Option<(usize, usize)> {
     let chunks = row.as_chunks::<LANES>().0;
-    // Without an early exit within a chunk, for all its numbers at once.
+    // No early exit within a chunk, to test all its values at once.
     let any = |chunk: &[f64; LANES]| chunk.iter().fold(false, |any, &number| any | (number > limit));
     let above = |&number: &f64| number > limit;
     let (i, j) = (chunks.iter().position(any)?, chunks.iter().rposition(any)?);
@@ -303,17 +304,17 @@ mod tests {
         assert_eq!(truth.peak_electrons, 100.0);
         let snr = (1e4 / 125.0 + 900.0 / 55.0 + 400.0 / 45.0_f64).sqrt();
         assert!((truth.snr - snr).abs() < 1e-12);
-        // The noise is 5 e⁻: pixels one away exceed it, the diagonal one does not.
+        // The noise is 5 e⁻: pixels at a distance of one exceed it, the diagonal pixel does not.
         assert_eq!(truth.radius_px, 1.0);
     }
 
     #[test]
     fn only_what_a_pixel_has_room_for_is_signal() {
         let stamp = two_by_two();
-        // Room for 40 e⁻ above the background of 9.
+        // The pixels have room for 40 e⁻ above the background of 9.
         let snr = (1600.0 / 65.0 + 900.0 / 55.0 + 400.0 / 45.0_f64).sqrt();
         assert!((stamp.truth(9.0, 4.0, 49.0).snr - snr).abs() < 1e-12);
-        // The background alone fills the pixels: there is an object, and nothing to find.
+        // The background saturates the pixels: the object exists, but it cannot be detected.
         let full = stamp.truth(60.0, 4.0, 49.0);
         assert_eq!((full.snr, full.electrons, full.peak_electrons), (0.0, 150.0, 100.0));
     }
@@ -329,7 +330,7 @@ mod tests {
         assert_eq!(rows[1], (10, 21, vec![0.0, 0.0, 3.0, 4.0]));
         assert_eq!(rows[2], (10, 22, vec![0.0; 4]));
         assert_eq!(woven.centre(), PixelPoint::new(11.5, 20.5));
-        // An image off the detector has no rows to give.
+        // An image off the detector contributes no rows.
         woven.weave(&first, &Stamp::new(), |row| row % 2 == 1);
         assert_eq!(woven.rows().map(|(_, _, row)| row.iter().sum()).collect::<Vec<f64>>(), [0.0, 20.0]);
         woven.weave(&Stamp::new(), &Stamp::new(), |_| true);
@@ -353,7 +354,7 @@ mod tests {
         assert_eq!(stamp.cut(&[window(0, 0, 5, 5)]), 1.0);
         assert_eq!(stamp.cut(&[]), 1.0);
         assert_eq!(stamp.cut(&[window(0, 0, 50, 21)]), 20.0 / 150.0);
-        // Windows that overlap count once.
+        // Overlapping windows count once.
         assert_eq!(stamp.cut(&[window(10, 20, 1, 2), window(10, 20, 1, 1)]), 30.0 / 150.0);
         assert_eq!(Stamp::new().cut(&[]), 0.0);
     }

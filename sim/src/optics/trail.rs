@@ -1,26 +1,27 @@
-//! What an undisturbed image is made of: points of light, and the trail of one that moves.
+//! Geometric images: points of light, and the trail of a moving point.
 
 use contract::PixelPoint;
 
-/// A point of the undisturbed image of an object.
+/// Point of the geometric image of an object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImagePoint {
-    /// Where it is.
+    /// Pixel position of the point.
     pub position: PixelPoint,
-    /// Its share of the light of the object, in [0, 1]; the shares of all points add up to 1.
+    /// Fraction of the object's flux, in [0, 1]; the shares of all points add up to 1.
     pub share: f64,
 }
 
-/// Longest piece of a trail that two points stand for, px. With the two-point rule of Gauss the error of a pixel of a
-/// Gaussian image of 0.5 px or wider is below 1e-3 of its peak, at 0.8 px below 2e-4.
+/// Longest piece of a trail that is represented by two points, px. With the two-point rule of Gauss the error
+/// of a pixel of a Gaussian image of 0.5 px or wider is below 1e-3 of its peak, at 0.8 px below 2e-4.
 const PIECE_PX: f64 = 0.5;
-/// Below this length a trail is a point: it would widen the image by 1e-5 px² in variance.
+/// Length below which a trail is drawn as a point, px: it would widen the image by 1e-5 px² in variance.
 const POINT_PX: f64 = 0.01;
-/// Pieces at most, so that a scenario that turns like a top ends in time; longer trails have gaps.
+/// Maximum number of pieces, to limit the run time of a scenario with fast rotation; longer trails have gaps.
 const PIECES: f64 = 4096.0;
 
-/// The trail of a point that is at `begin`, `middle` and `end` at the begin, middle and end of the exposure, on the
-/// parabola through them: Gauss's two-point rule on equal pieces of time. Appended to `points`, shares adding up to 1.
+/// Appends the trail of a point with positions `begin`, `middle` and `end` at the start, middle and end of
+/// the exposure. It follows the parabola through them by Gauss's two-point rule on equal pieces of time. The
+/// shares of the points added to `points` sum to 1.
 pub fn trail(begin: PixelPoint, middle: PixelPoint, end: PixelPoint, points: &mut Vec<ImagePoint>) {
     let length_px = begin.distance(middle) + middle.distance(end);
     if length_px.is_nan() || length_px < POINT_PX {
@@ -31,7 +32,7 @@ pub fn trail(begin: PixelPoint, middle: PixelPoint, end: PixelPoint, points: &mu
     let offset = 0.5 / 3.0_f64.sqrt();
     for piece in 0..pieces as usize {
         for side in [-offset, offset] {
-            // From −1 at the begin to 1 at the end.
+            // From −1 at the start to 1 at the end.
             let t = 2.0 * (piece as f64 + 0.5 + side) / pieces - 1.0;
             let along = |from: f64, mid: f64, to: f64| {
                 mid + t * 0.5 * (to - from) + t * t * (0.5 * (from + to) - mid)
@@ -75,7 +76,7 @@ mod tests {
             let (ours, truth) = (image(&points), image(&dense));
             let peak = truth.iter().copied().fold(0.0, f64::max);
             for (a, b) in ours.iter().zip(&truth) {
-                // The floor of the stamps acts on each: 1e-9.
+                // The floor of the stamps, 1e-9, affects each of them.
                 assert!((a - b).abs() < 2e-4 * peak + 2e-9, "{a} {b} of {peak} for ({dx}, {dy})");
             }
         }

@@ -1,10 +1,12 @@
-//! Vignetting: how much less light arrives away from the principal point.
+//! Vignetting: the decrease of transmission away from the principal point.
 //!
-//! Natural vignetting is the cos⁴ law of the illuminance by a uniform sky (Reiss 1945, J. Opt. Soc. Am. 35, 283). Three of the
-//! four are the solid angle that a pixel sees, which shrinks as cos³ in a camera without distortion; they concern light
-//! that fills pixels, and the background takes each pixel's solid angle from the camera model. The fourth is the aperture,
-//! foreshortened as cos: it is all that a star loses, and what is here. Mechanical vignetting, the barrel in the way of slanted rays, is an even
-//! polynomial of the image's radius (Goldman 2010, IEEE Trans. PAMI 32, 2276). Both leave the principal point as it is.
+//! Natural vignetting is the cos⁴ law of the illuminance by a uniform sky (Reiss 1945, J. Opt. Soc. Am. 35,
+//! 283). Three of the four factors are the solid angle of a pixel, which decreases as cos³ in a camera
+//! without distortion. They concern light that fills pixels, and the background takes the solid angle of each
+//! pixel from the camera model. The fourth is the aperture, foreshortened as cos: it is the only loss of a
+//! star, and it is the factor applied here. Mechanical vignetting, the obstruction of slanted rays by the
+//! barrel, is an even polynomial of the image radius (Goldman 2010, IEEE Trans. PAMI 32, 2276). Both leave
+//! the principal point unchanged.
 
 use contract::{Camera, PixelPoint};
 
@@ -38,7 +40,7 @@ pub struct Vignetting {
 }
 
 impl Vignetting {
-    /// The vignetting of a camera's optics.
+    /// Creates the vignetting of a camera's optics.
     ///
     /// # Errors
     /// Those of [`OpticsConfig::check`] and [`Projection::new`].
@@ -48,7 +50,8 @@ impl Vignetting {
         Ok(Self { config: config.clone(), radius: FieldRadius::new(camera), projection })
     }
 
-    /// Transmission at a point of the focal plane, in [0, 1]; 0 where no direction falls, never so on the detector.
+    /// Transmission at a point of the focal plane, in [0, 1]; 0 at points without a direction, which never
+    /// occur on the detector.
     pub fn transmission(&self, point: PixelPoint) -> f64 {
         let natural = match self.config.cos_fourth {
             Switch::Off => 1.0,
@@ -114,7 +117,7 @@ mod tests {
         let half = PixelPoint::new(395.0 - 0.5 * 395.5, 288.0 + 0.5 * 291.5);
         let expected = 1.0 - 0.1 * 0.25 - 0.2 * 0.0625 - 0.05 * 0.015_625;
         assert!((vignetting.transmission(half) - expected).abs() < 1e-12);
-        // Off the detector as in the corner.
+        // Points off the detector have the transmission of the corner.
         assert_eq!(vignetting.transmission(PixelPoint::new(-50.0, 650.0)), corner);
     }
 

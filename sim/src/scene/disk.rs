@@ -1,50 +1,55 @@
-//! The image of a sphere: points on a grid over its disk.
+//! Image of a sphere: points on a grid over its disk.
 
 use contract::PixelPoint;
 use nalgebra::{Matrix2, Vector2};
 
 use crate::optics::ImagePoint;
 
-/// Side of a cell in the image, px, where the number of points allows it; else it is a whole number of pixels.
+/// Side of a cell in the image, px, if the number of points allows it; otherwise the side is an integer
+/// number of pixels.
 const FINE_CELL_PX: f64 = 0.5;
-/// Places that are looked at across the lit part, at least.
+/// Minimum number of samples across the lit part of the disk.
 const LIT_SAMPLES: f64 = 4.0;
-/// Places a cell is looked at along each side, at least and at most, and all cells of the image together.
+/// Minimum and maximum number of samples along each side of a cell, and maximum number over all cells of the
+/// image.
 const LEAST_SAMPLES: f64 = 4.0;
 const SAMPLES: f64 = 32.0;
 const ALL_SAMPLES: f64 = (1 << 22) as f64;
 
-/// The disk of a sphere on a plane through its centre, across the line of sight.
+/// Disk of a sphere on the plane through the sphere's centre, perpendicular to the line of sight.
 pub(super) struct Disk<P> {
-    /// From that plane, the centre at its origin, to the image; `None` where there is no image.
+    /// Projection from that plane, with the sphere's centre as origin, to the image; `None` where a point has
+    /// no image.
     pub to_image: P,
     /// Radius of the disk on the plane.
     pub radius: f64,
-    /// Share of its diameter that is in sunlight, 0 to 1.
+    /// Sunlit share of the diameter, 0 to 1.
     pub lit: f64,
-    /// Places along its diameter that are looked at, at least.
+    /// Minimum number of samples along the diameter.
     pub samples_across: f64,
 }
 
 impl<P: Fn(Vector2<f64>) -> Option<PixelPoint>> Disk<P> {
-    /// Half the width and half the height of its image, px; `None` when its centre has no image.
+    /// Half the width and half the height of the disk's image, px; `None` if the disk's centre has no image.
     pub(super) fn half_sides_px(&self) -> Option<[f64; 2]> {
         Some(self.half_sides_by(&self.scale()?))
     }
 
-    /// Radius of its image, px: that of the circle of the same area.
+    /// Radius of the circle with the area of the disk's image, px.
     pub(super) fn radius_px(&self) -> Option<f64> {
         Some(self.radius_by(&self.scale()?))
     }
 
-    /// Appends the points of its undisturbed image: `count_limit` points or so at most, their shares adding up to 1 as far as
-    /// the image has a place for them. `light` is what a place of the plane sends to the camera, from equal areas. Nothing when
-    /// no light comes from it.
+    /// Appends the points of the disk's undistorted image: about `count_limit` points at most. Their shares
+    /// add up to 1, except for the share of points without an image. `light` is the radiance of a point of
+    /// the plane towards the camera, per unit area of the plane. Appends nothing if the radiance is zero
+    /// everywhere.
     ///
-    /// The points stand on a grid in step with the pixels. Whatever the PSF, the pixels' shares of all points of such a grid add
-    /// up to the same in every pixel: an even disk is drawn even. A cell at limb or terminator counts by the part of it that is
-    /// lit, at the mean of its light. Only of a disk with more than `count_limit` pixels are the cells larger than
-    /// a pixel, and show as grains where the PSF is narrow.
+    /// The points stand on a grid aligned with the pixels. For every PSF, the shares that all points of such
+    /// a grid contribute add up to the same sum in every pixel, so a uniform disk has a uniform image. A cell
+    /// at the limb or the terminator is weighted by its lit part and stands at the radiance-weighted mean of
+    /// its positions. The cells are larger than a pixel only for a disk with more than `count_limit` pixels;
+    /// they then show as grains where the PSF is narrow.
     pub(super) fn image(
         &self,
         light: impl Fn(&Vector2<f64>) -> f64,
@@ -58,7 +63,7 @@ impl<P: Fn(Vector2<f64>) -> Option<PixelPoint>> Disk<P> {
         let sides_px = self.half_sides_by(&scale);
         let (cell_px, samples) = self.cells(self.radius_by(&scale), count_limit);
 
-        // Cells lie between the edges of pixels, which are at half numbers.
+        // Cells start at pixel edges, which are at half-integer positions.
         let cells = |at: f64, half_px: f64| {
             let first = ((at - half_px + 0.5) / cell_px).floor();
             let last = ((at + half_px + 0.5) / cell_px).floor();
@@ -82,7 +87,8 @@ impl<P: Fn(Vector2<f64>) -> Option<PixelPoint>> Disk<P> {
                 if sum > 0.0 {
                     let share = sum / (samples * samples) as f64;
                     total += share;
-                    // The grid is laid by a linear map; its distortion over the disk is in the place of each point.
+                    // The grid is laid out by a linear map; the position of each point includes the
+                    // distortion over the disk.
                     points.extend((self.to_image)(mean / sum).map(|position| ImagePoint { position, share }));
                 }
             }
@@ -92,12 +98,13 @@ impl<P: Fn(Vector2<f64>) -> Option<PixelPoint>> Disk<P> {
         }
     }
 
-    /// Side of a cell, px, and places along it that are looked at: a few across the lit part, however thin.
+    /// Side of a cell, px, and number of samples along the side: at least a few across the lit part, even a
+    /// thin one.
     fn cells(&self, radius_px: f64, count_limit: usize) -> (f64, usize) {
         let lit_px = std::f64::consts::PI * radius_px * radius_px * self.lit;
         let limit = count_limit.max(1) as f64;
         let cell_px = if lit_px / (FINE_CELL_PX * FINE_CELL_PX) <= limit {
-            // A disk within a pixel has no grid to be in step with.
+            // A disk smaller than a pixel needs no grid aligned with the pixels.
             FINE_CELL_PX.min(0.5 * radius_px)
         } else {
             (lit_px / limit).sqrt().ceil()
@@ -108,7 +115,7 @@ impl<P: Fn(Vector2<f64>) -> Option<PixelPoint>> Disk<P> {
         (cell_px, wanted.min(affordable) as usize)
     }
 
-    /// Pixels a unit of the plane at the disk's centre: what its axes are in the image.
+    /// Image of the plane's axes at the disk's centre, px per unit of the plane.
     fn scale(&self) -> Option<Matrix2<f64>> {
         let step = 0.01 * self.radius;
         let derivative = |along: Vector2<f64>| {

@@ -1,4 +1,5 @@
-//! What is in the field: stars, planets, the Moon and the target, as sources with a place and a rate of electrons.
+//! Contents of the field of view: stars, planets, the Moon and the target, as sources with a pixel position
+//! and an electron rate.
 
 mod aberration;
 mod background;

@@ -1,4 +1,4 @@
-//! The planets in the field.
+//! Planets in the field of view.
 
 use contract::{CameraFrame, Direction, Icrs, Rotation};
 
@@ -7,9 +7,9 @@ use super::{CameraMotion, Source};
 use crate::optics::{Projection, Radiometry};
 use crate::truth::{ObjectKind, Observer, Planet};
 
-/// Appends the planets whose image comes onto the detector during the exposure, from the Sun outwards, as points: the
-/// largest, Venus near conjunction, spans 1′. `tdb_j2000_s` is the time of the observer, `reach_px` tells how far an image
-/// reaches, px, for photo-electrons a second.
+/// Appends the planets whose image falls on the detector during the exposure, from the Sun outwards. They are
+/// point sources: the largest, Venus near conjunction, spans 1′. `tdb_j2000_s` is the time of the observer;
+/// `reach_px` returns the extent of an image, px, for a flux in photoelectrons per second.
 pub(crate) fn add_visible(
     tdb_j2000_s: f64,
     observer: &Observer,
@@ -39,7 +39,7 @@ pub(crate) fn add_visible(
     }
 }
 
-/// Electrons per second of the brightest planet on the detector that nothing hides, or `at_least` when that is more.
+/// Electrons per second of the brightest unhidden planet on the detector, or `at_least` if that is larger.
 pub(crate) fn brightest(
     tdb_j2000_s: f64,
     observer: &Observer,

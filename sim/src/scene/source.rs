@@ -1,23 +1,23 @@
-//! Sources of light.
+//! Light sources.
 
 use contract::{Direction, Icrs, PixelPoint};
 
 use crate::truth::ObjectKind;
 
-/// A source of electrons on the detector.
+/// Source of photoelectrons on the detector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source {
-    /// What it is.
+    /// Kind of object.
     pub kind: ObjectKind,
-    /// Number within its kind.
+    /// Number of the object within its kind.
     pub id: u32,
-    /// Where it is in the middle of the exposure; may lie off the detector by as much as its image reaches. Of the target:
-    /// where the origin of its body frame is; of the Moon: where the centre of its disk is.
+    /// Pixel position at mid-exposure; may lie off the detector by as much as the extent of the image. For
+    /// the target it is the origin of its body frame, for the Moon the centre of its disk.
     pub position: PixelPoint,
-    /// Where it is at the begin and at the end of the exposure.
+    /// Pixel positions at the start and end of the exposure.
     pub ends: [PixelPoint; 2],
-    /// Direction without aberration; for the target its geometric line of sight; `None` for what is no light of the
-    /// sky.
+    /// Direction without aberration; for the target, its geometric line of sight; `None` for sources that are
+    /// not in the sky.
     pub astrometric: Option<Direction<Icrs>>,
     /// Visual magnitude.
     pub magnitude: Option<f64>,

@@ -1,4 +1,4 @@
-//! The stars that fall on the detector.
+//! Stars on the detector.
 
 use contract::{Angle, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
 
@@ -7,21 +7,22 @@ use crate::catalog::Catalog;
 use crate::optics::{Projection, Radiometry};
 use crate::truth::{ObjectKind, Observer, StarMotion};
 
-/// How far a star may stand from its catalogued place: proper motion (Barnard's star, 10.4″ a year, over 60
-/// years), aberration and parallax together stay below 0.2°. A star of a user's catalogue that moves faster than
-/// 11″ a year is lost when its catalogued place is farther than this from the cone about the field.
+/// Maximum angle between a star and its catalogued direction: proper motion (Barnard's star, 10.4″ per year,
+/// over 60 years), aberration and parallax together stay below 0.2°. A star of a user's catalogue that moves
+/// faster than 11″ per year is lost if its catalogued direction is farther than this from the cone around the
+/// field of view.
 const CATALOG_MARGIN: Angle = Angle::from_degrees(0.2);
 
-/// The catalogue, ready to be looked at.
+/// Catalogue prepared for searches by direction.
 #[derive(Debug, Clone)]
 pub struct StarField {
     catalog: Catalog,
     stars: Vec<PreparedStar>,
-    /// Of the brightest star.
+    /// Electrons per second of the brightest star.
     brightest_e_per_s: f64,
 }
 
-/// What drawing needs of a star, computed once.
+/// Precomputed data of a star for drawing.
 #[derive(Debug, Clone, Copy)]
 struct PreparedStar {
     id: u32,
@@ -46,8 +47,8 @@ impl StarField {
         Self { catalog: catalog.clone(), stars, brightest_e_per_s }
     }
 
-    /// Appends the stars whose image comes onto the detector during the exposure, by number: `reach_px` tells how far an
-    /// image reaches, px, for photo-electrons a second.
+    /// Appends the stars whose image falls on the detector during the exposure, sorted by number. `reach_px`
+    /// returns the extent of an image, px, for a flux in photoelectrons per second.
     pub fn add_visible(
         &self,
         observer: &Observer,
@@ -78,7 +79,7 @@ impl StarField {
         }
     }
 
-    /// Electrons per second of the brightest star on the detector that nothing hides, or `at_least` when that is more.
+    /// Electrons per second of the brightest unhidden star on the detector, or `at_least` if that is larger.
     pub fn brightest(
         &self,
         observer: &Observer,
@@ -89,7 +90,7 @@ impl StarField {
     ) -> f64 {
         let mut brightest = at_least;
         for star in self.stars_around(camera_from_icrs, projection, 0.0) {
-            // Most stars are fainter than the best so far and need no place.
+            // Most stars are fainter than the brightest so far, so their positions are not needed.
             if star.electrons_per_s > brightest {
                 let astrometric = observer.astrometric(&star.motion);
                 let apparent = observer.apparent_from_astrometric(astrometric);
@@ -104,7 +105,7 @@ impl StarField {
         brightest
     }
 
-    /// The stars that can be within `margin_px` of the detector, and some more, by number.
+    /// Returns all stars that can be within `margin_px` of the detector, and some others, sorted by number.
     fn stars_around(
         &self,
         camera_from_icrs: Rotation<CameraFrame, Icrs>,
@@ -119,7 +120,7 @@ impl StarField {
     }
 }
 
-/// Whether a place is on the detector, or no farther than `margin_px` off its border along either axis.
+/// Returns true if a position is on the detector or at most `margin_px` beyond its border along each axis.
 pub(super) fn is_within(position: PixelPoint, projection: &Projection, margin_px: f64) -> bool {
     let (columns, rows) = projection.detector();
     let inside = |v: f64, n: usize| v >= -0.5 - margin_px && v <= n as f64 - 0.5 + margin_px;
@@ -178,7 +179,7 @@ mod tests {
         sources
     }
 
-    /// What the shutter control follows must be what is drawn.
+    /// The star that controls the shutter is one that is drawn.
     #[test]
     fn the_brightest_is_the_brightest_of_those_on_the_detector() {
         let field = StarField::new(&Catalog::hipparcos2(), &radiometry());
@@ -201,14 +202,15 @@ mod tests {
             (seen(&field, looking_at(84.0, -1.0), 0.0), seen(&field, looking_at(84.0, -1.0), 20.0));
         assert!(inside.iter().all(|star| around.contains(star) && star.position.is_on_detector(300, 200)));
         let added = around.iter().filter(|star| !star.position.is_on_detector(300, 200));
-        // 11 % of the area more each way: 340 × 240 against 300 × 200 is a factor of 1.36.
+        // 340 × 240 against 300 × 200: the area grows by a factor of 1.36.
         let share = added.count() as f64 / inside.len() as f64;
         assert!((0.15..0.6).contains(&share), "{share}");
         assert!(around.is_sorted_by(|a, b| a.id < b.id));
     }
 
-    /// A known limit, see [`CATALOG_MARGIN`]: a star that moves 90″ a year, of a user's catalogue, has gone 0.53° from
-    /// 1991.25 to 2012 and is not found at the edge of the field. A slower one in the same place is.
+    /// Known limit, see [`CATALOG_MARGIN`]: a star of a user's catalogue that moves 90″ per year has moved
+    /// 0.53° from 1991.25 to 2012 and is not found at the edge of the field of view. A slower star at the
+    /// same position is found.
     #[test]
     fn a_star_faster_than_any_known_is_lost_at_the_edge() {
         let camera_from_icrs = looking_at(40.0, 0.0);
@@ -217,11 +219,12 @@ mod tests {
         let boresight = icrs_from_camera * Direction::z();
         let years = 21.065;
         let found = |arcsec_per_yr: f64| {
-            // Straight away from the boresight, back along the way that the star has come.
+            // The star's motion reversed: straight away from the boresight.
             let outwards = (corner.vector() - boresight.vector()).normalize();
             let back = Angle::from_arcsec(arcsec_per_yr * years).radians();
             let start: Direction<Icrs> = Direction::from_vector(corner.vector() + outwards * back).unwrap();
-            // The field is near the equator: right ascension is as long as declination to 1e-3.
+            // The field of view is near the equator, so right ascension and declination have equal scale to
+            // 1e-3.
             let pm = |to: Angle, from: Angle| (to.arcsec() - from.arcsec()) * 1000.0 / years;
             let star = CatalogStar {
                 id: 1,

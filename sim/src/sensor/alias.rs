@@ -1,42 +1,44 @@
-//! Draws from a discrete law in constant time: Walker's alias method, in integers.
+//! Sampling of a discrete distribution in constant time: Walker's alias method with integers.
 
-/// A discrete law over digital numbers, drawn from with one word of 32 bits (Walker 1977; built as by Vose 1991).
+/// Discrete distribution over digital numbers, sampled with one 32-bit word per draw (Walker 1977; built by
+/// Vose's algorithm, 1991).
 ///
-/// Every probability is rounded to a whole number of 2^-32, the resolution of the word; the rounded ones add up
-/// to exactly 1. What is rarer than half of 2^-32 does not happen.
+/// Each probability is rounded to an integer multiple of 2^-32, the resolution of the word; the rounded
+/// probabilities add up to exactly 1. A number with a probability below 2^-32 may never occur.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AliasTable {
     cells: Vec<Cell>,
-    /// The word's highest bits choose the cell, the others its side.
+    /// The highest bits of the word select the cell, the remaining bits its side.
     shift: u32,
     side_mask: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
-    /// Sides below this give `primary`, the others `other`.
+    /// A side below the threshold gives `own`, any other side gives `other`.
     threshold: u32,
     primary: u16,
     other: u16,
 }
 
 impl AliasTable {
-    /// The table of the law that gives `first` + i with probability `probabilities[i]`. They need not add up to 1.
-    /// At most 65,536 of them; none of them, or nothing but zeros, gives `first` for certain.
+    /// Builds the table that gives `first` + i with probability `probabilities[i]`. The probabilities need
+    /// not add up to 1. There may be at most 65,536; if there are none, or all are zero, the table always
+    /// gives `first`.
     pub(super) fn new(first: u16, probabilities: &[f64]) -> Self {
         Self::with_cells(2, first, probabilities)
     }
 
-    /// [`AliasTable::new`] with at least `cells` cells, a power of two and more than one: the size of a single one, 2^32,
-    /// would not fit its threshold.
+    /// Builds the table of [`AliasTable::new`] with at least `cells` cells, a power of two greater than one:
+    /// the size of a single cell, 2^32, would not fit its threshold.
     pub(super) fn with_cells(cells: usize, first: u16, probabilities: &[f64]) -> Self {
         let mut weights = whole_weights(probabilities);
         let count = weights.len().next_power_of_two().max(cells);
         weights.resize(count, 0);
         let cell_weight = (1_u64 << 32) / count as u64;
         let number = |i: usize| first.saturating_add(u16::try_from(i).unwrap_or(u16::MAX));
-        // A full cell needs no other side. The weights are whole and add up to a whole number of cells, so that
-        // whatever is not paired below is exactly full.
+        // A full cell needs no other side. The weights are integers and add up to an integer number of cells,
+        // so every cell that is not paired below is exactly full.
         let mut cells: Vec<Cell> = (0..count)
             .map(|i| Cell { threshold: cell_weight as u32, primary: number(i), other: number(i) })
             .collect();
@@ -54,8 +56,9 @@ impl AliasTable {
         Self { cells, shift: 32 - count.trailing_zeros(), side_mask: cell_weight as u32 - 1 }
     }
 
-    /// Its cells as words, lowest bits first: 32 of the threshold, 16 of the number below it, 16 of the other. No word is 0: a
-    /// cell whose threshold is 0 is told with its sides exchanged.
+    /// Returns the cells as words, lowest bits first: 32 bits of the threshold, 16 bits of the number below
+    /// it, 16 bits of the other number. No word is 0: a cell with threshold 0 is encoded with its sides
+    /// exchanged.
     pub(super) fn packed(&self) -> impl ExactSizeIterator<Item = u64> {
         self.cells.iter().map(|cell| {
             let (threshold, primary) = if cell.threshold > 0 {
@@ -67,7 +70,7 @@ impl AliasTable {
         })
     }
 
-    /// The digital number of a uniform word.
+    /// Returns the digital number for a uniformly distributed word.
     #[inline(always)]
     pub(super) fn draw(&self, word: u32) -> u16 {
         let cell = self.cells[(word >> self.shift) as usize];
@@ -75,8 +78,8 @@ impl AliasTable {
     }
 }
 
-/// Probabilities as whole multiples of 2^-32 that add up to 1: differences of the rounded cumulative law, so that
-/// none is off by more than one multiple.
+/// Converts probabilities to integer multiples of 2^-32 that add up to 1: differences of the rounded
+/// cumulative distribution, so each error is at most one multiple.
 fn whole_weights(probabilities: &[f64]) -> Vec<u64> {
     let whole = (1_u64 << 32) as f64;
     let total: f64 = probabilities.iter().sum();
@@ -104,7 +107,7 @@ fn whole_weights(probabilities: &[f64]) -> Vec<u64> {
 mod tests {
     use super::*;
 
-    /// The exact probability, in multiples of 2^-32, that a table gives each number.
+    /// Exact probability of each number in a table, in multiples of 2^-32.
     fn law_of(table: &AliasTable, numbers: usize) -> Vec<u64> {
         let mut distribution = vec![0; numbers];
         for cell in &table.cells {
@@ -139,7 +142,7 @@ mod tests {
             words.clone().filter(|&word| table.draw(word as u32) == 7).count() as f64 / words.count() as f64
         };
         assert!((share(0, 1 << 32) - 0.25).abs() < 1e-4);
-        // The number 8 fills its own half of the words.
+        // The number 8 has the upper half of the words.
         assert_eq!(share(1 << 31, 1 << 32), 0.0);
     }
 

@@ -1,4 +1,4 @@
-//! Blooming: the pixels of a frame after its full wells have spilt.
+//! Blooming: the pixels of a frame after its overfull wells have spilt.
 
 use std::ops::Range;
 
@@ -8,22 +8,23 @@ use super::spill::BloomingConfig;
 use crate::draw::ExpectedImage;
 use crate::randomness::{Stream, Streams};
 
-/// What the wells of a frame are filled from.
+/// Inputs for filling the wells of a frame.
 pub(super) struct Overflow<'a> {
     pub(super) blooming: &'a BloomingConfig,
     pub(super) expected: &'a ExpectedImage,
-    /// What the readout adds to rows and columns.
+    /// Readout offsets of rows and columns.
     pub(super) offsets: Option<&'a LineOffsets>,
-    /// Of the pixels' noise.
+    /// Random streams of the pixel noise.
     pub(super) streams: &'a Streams,
 }
 
 impl Sensor {
-    /// Draws anew the columns that have pixels above the full well, and tells `put` the index and the digital number of each
-    /// pixel that differs.
+    /// Redraws the columns with pixels that may exceed the full well, and passes the index and the digital
+    /// number of each pixel that differs to `put`.
     ///
-    /// Electrons are drawn first, then they spill, then they are read. A pixel is drawn at its own address, place =
-    /// rows + index, where a pixel with signal was drawn already: what neither overflows nor receives is left as it is.
+    /// Electrons are drawn, then they spill, then they are read out. Each pixel is drawn at the address
+    /// rows + index, the address of the earlier draw of a pixel with signal. Pixels that neither overflow nor
+    /// receive electrons keep their value.
     pub(super) fn bloom(&self, overflow: &Overflow<'_>, mut put: impl FnMut(usize, u16)) {
         let Overflow { blooming, expected, offsets, streams } = *overflow;
         let threshold_e = self.distribution.may_overflow_from_e();
@@ -42,10 +43,11 @@ impl Sensor {
                 margin *= 4;
             }
             for (i, y) in part.rows.clone().enumerate() {
-                // Those that may overflow were drawn before with a well of their own, perhaps from a table.
+                // Pixels that may overflow were drawn earlier without spilling, perhaps from a table.
                 if part.held[i] != part.collected[i] || part.means_e[i] > threshold_e {
                     let mut stream = stream(y);
-                    // What was collected is drawn again only to leave the stream where the read noise begins.
+                    // The collected electrons are redrawn only to advance the stream to the draw of the read
+                    // noise.
                     self.distribution.collect(part.means_e[i], &mut stream);
                     let offset_e = offsets.map_or(0.0, |offsets| offsets.offset_at(x, y));
                     put(y * self.columns + x, self.distribution.convert(part.held[i], offset_e, &mut stream));
@@ -55,11 +57,13 @@ impl Sensor {
     }
 }
 
-/// Rows beyond the pixels that may overflow that are looked at first: most of what spills stays within.
+/// Initial number of rows examined beyond the pixels that may overflow: most spilt electrons stay within
+/// them.
 const MARGIN: usize = 16;
 
-/// Some rows of a column: what its pixels are expected to collect, what they collect and what they hold. Pixels farther from those
-/// that may overflow overflow themselves once in 2^40, and neither give nor receive.
+/// Some rows of a column: expected electrons, collected electrons and electrons held after spilling. Each
+/// pixel farther from those that may overflow overflows with a probability of 2^-40, and neither gives nor
+/// receives electrons.
 #[derive(Default)]
 struct ColumnPart {
     rows: Range<usize>,
@@ -69,7 +73,7 @@ struct ColumnPart {
 }
 
 impl ColumnPart {
-    /// Draws what the pixels of column `x` collect, before anything spills.
+    /// Draws the electrons collected by the pixels of column `x`, before spilling.
     fn fill(
         &mut self,
         sensor: &Sensor,
@@ -89,7 +93,7 @@ impl ColumnPart {
         held.clone_from(collected);
     }
 
-    /// Whether anything spills to an end of the rows that is no end of the column.
+    /// Returns true if electrons spill to an end of the rows that is not an end of the column.
     fn leaves(&self, sensor: &Sensor) -> bool {
         let reached =
             |i: usize| self.held[i] != self.collected[i] || self.held[i] >= sensor.distribution.full_well_e();
@@ -105,7 +109,7 @@ mod tests {
     use super::*;
     use crate::randomness::Seed;
 
-    /// Of a column only the rows about what overflows are looked at, and more of them as far as it spills.
+    /// Only the rows near overflowing pixels are examined, extended as far as the electrons spill.
     #[test]
     fn a_long_bleed_is_followed_to_both_its_ends() {
         for (row, first, last) in [(300, 101, Some(499)), (30, 0, None)] {
@@ -119,7 +123,8 @@ mod tests {
             };
             let sensor = Sensor::new(&config, 5, 600).unwrap();
             let (mut image, mut raw) = (sensor.new_expected(), sensor.new_raw());
-            // Half of it goes up and half down, a full well a pixel; what leaves at an end is lost.
+            // Half of the electrons spill upwards and half downwards, one full well per pixel; electrons that
+            // leave at an end are lost.
             image.add_pixel(2, row, 5000.0 * 399.0);
             let charge = sensor.collect(&mut image, &interval(1.0));
             let seed = Seed { seed: 61, case: 0 };

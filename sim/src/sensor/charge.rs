@@ -1,4 +1,5 @@
-//! What a detector has collected at the end of an exposure: light, dark current, hot pixels, tracks of particles.
+//! Charge collected by a detector by the end of an exposure: photoelectrons, dark current, hot pixels,
+//! cosmic-ray hits.
 
 use super::detector::Sensor;
 use super::hot_pixels::HotPixel;
@@ -9,16 +10,16 @@ use crate::randomness::Seed;
 /// One opening of the shutter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExposureInterval {
-    /// Seed of what switches in time.
+    /// Seed of the effects that switch with time.
     pub seed: Seed,
-    /// Middle of the exposure, s of TT since J2000.0; of an interlaced frame the middle between its two fields.
+    /// Mid-exposure, s of TT since J2000.0; for an interlaced frame, the middle between its two fields.
     pub middle_s: f64,
     /// Exposure time, s.
     pub exposure_s: f64,
 }
 
-/// The expected charge of every pixel at the end of an exposure: photo-electrons, dark current, hot pixels and tracks of
-/// particles. Made by [`Sensor::collect`] alone.
+/// Expected charge of every pixel at the end of an exposure: photoelectrons, dark current, hot pixels and
+/// cosmic-ray hits. Created only by [`Sensor::collect`].
 #[derive(Debug)]
 pub struct Charge<'a> {
     expected: &'a mut ExpectedImage,
@@ -31,20 +32,21 @@ impl Charge<'_> {
         self.expected
     }
 
-    /// Adds the charge of a particle's track, as the pixels collect it.
+    /// Adds the charge of a cosmic-ray hit, as collected by the pixels.
     pub(crate) fn add_cosmic_ray_hit(&mut self, hit: &Stamp) {
         self.expected.add_collected(hit);
     }
 
-    /// Electrons that the frame transfer adds to a pixel of an even detector, the mean over all pixels.
+    /// Electrons per pixel that the frame transfer adds, for a uniform detector; mean over all pixels.
     pub fn smear_e_per_px(&self) -> f64 {
         self.smear_e_per_px
     }
 }
 
 impl Sensor {
-    /// Turns the photo-electrons of every pixel, which an image of [`Sensor::new_expected`] holds as the pixels have responded to
-    /// their light, into its charge: smear of the frame transfer, dark current, hot pixels; dead pixels stay empty.
+    /// Converts the photoelectrons of every pixel to its charge: adds smear of the frame transfer, dark
+    /// current and hot pixels; dead pixels stay empty. The input, an image of [`Sensor::new_expected`],
+    /// already contains the pixels' response to light.
     pub fn collect<'a>(
         &self,
         photo_electrons: &'a mut ExpectedImage,
@@ -53,7 +55,7 @@ impl Sensor {
         let ExposureInterval { exposure_s, .. } = *interval;
         let (columns, rows) = photo_electrons.size();
         let smear_e_per_px = if self.config().frame_transfer_s > 0.0 && exposure_s > 0.0 {
-            // A row stops in front of every other row for 1/rows of the transfer.
+            // Each row spends 1/rows of the transfer time at the position of each other row.
             photo_electrons.smear(self.config().frame_transfer_s / (rows as f64 * exposure_s))
         } else {
             0.0
@@ -73,14 +75,15 @@ impl Sensor {
         Charge { expected: photo_electrons, smear_e_per_px }
     }
 
-    /// Takes from the image of a particle's track what dead pixels do not collect.
+    /// Removes the charge that dead pixels do not collect from the image of a cosmic-ray hit.
     pub(crate) fn mask_dead_pixels(&self, hit: &mut Stamp) {
         for &(x, y) in &self.pattern().dead {
             hit.empty(x, y);
         }
     }
 
-    /// Expected electrons of a hot pixel in an exposure, above those of an ordinary one; 0 when it is dead.
+    /// Expected electrons of a hot pixel in an exposure, above those of an ordinary pixel; 0 if the pixel is
+    /// dead.
     pub(crate) fn hot_electrons(&self, pixel: &HotPixel, interval: &ExposureInterval) -> f64 {
         if self.pattern().is_dead(pixel.x, pixel.y) {
             return 0.0;
@@ -99,8 +102,9 @@ impl Sensor {
         }
     }
 
-    /// The image of an object alone, over a background, as it is after its full wells have spilt: `bloomed`. Its brightest pixel
-    /// has `peak_e`. `false` when nothing spills, or when blooming is off.
+    /// Sets `bloomed` to the image of a single object over a background after its overfull wells have spilt.
+    /// `peak_e` is the number of electrons in its brightest pixel. Returns false if nothing spills, or if
+    /// blooming is off.
     pub(crate) fn bloom_stamp(
         &self,
         stamp: &Stamp,
@@ -192,7 +196,7 @@ mod tests {
             };
             assert!((electrons - expected).abs() < 1e-9 * (1.0 + expected), "{x}, {y}: {electrons}");
         }
-        // What the object alone gives is the difference to a frame without it.
+        // The contribution of the object is the difference from a frame without it.
         let with: f64 = charge.expected().iter().sum();
         let object = sum(&charge.expected().objects()[0]);
         image.clear(100.0);
@@ -214,7 +218,7 @@ mod tests {
             sensor.collect(&mut image, &interval(0.5)).expected().clone()
         };
         let (with, without) = (charge(&sensor), charge(&still));
-        // 0.1 ms a row, of 0.5 s; 47 other rows. Dark current and hot pixels are not smeared here.
+        // 0.1 ms per row, of 0.5 s; 47 other rows. Dark current and hot pixels are not smeared.
         let gained = with.iter().sum::<f64>() - without.iter().sum::<f64>();
         assert!((gained - 1e5 * 2e-4 * 47.0).abs() < 0.1, "{gained}");
         let column: f64 = stamp.rows().map(|(x, _, row)| row[20 - x]).sum();
@@ -242,9 +246,9 @@ mod tests {
         let (stamp, mut bloomed) = (star(&sensor, 1e5), Stamp::new());
         let peak_e = |stamp: &Stamp| stamp.truth(20.0, 15.0, f64::INFINITY).peak_electrons;
         assert!(sensor.bloom_stamp(&stamp, peak_e(&stamp), 20.0, &mut bloomed));
-        // Some ten columns round to a whole electron each, at either end.
+        // About ten columns, each rounded to integer electrons at either end.
         assert!((sum(&bloomed) - sum(&stamp)).abs() < 20.0, "{}", sum(&bloomed) - sum(&stamp));
-        // It overflows 16 times: over some ten columns, four of which have most of it.
+        // The star has 16 times the full well, spread over about ten columns; four of them hold most of it.
         let radius_px = stamp.truth(20.0, 15.0, f64::INFINITY).radius_px;
         assert!(stamp.height_px(15.7) <= radius_px && bloomed.height_px(15.7) > 1.5 * radius_px);
         let faint = star(&sensor, 1e3);

@@ -1,4 +1,4 @@
-//! Cosmic rays: straight tracks of charge through the sensitive layer.
+//! Cosmic-ray hits: straight tracks of charge through the sensitive layer.
 
 use contract::bounds::require;
 use contract::{Camera, OutOfRange, PixelPoint};
@@ -16,28 +16,30 @@ use crate::truth::geographic;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CosmicRayConfig {
-    /// Particles through the detector's face outside the South Atlantic Anomaly, a second and cm², 0 to 1e4. The Hubble
-    /// Space Telescope's CCDs see about 1 (Miles et al., ApJ 918, 86, 2021).
+    /// Particles through the detector's face outside the South Atlantic Anomaly, per cm² and second, 0 to
+    /// 1e4. The Hubble Space Telescope's CCDs receive about 1 (Miles et al., ApJ 918, 86, 2021).
     #[schemars(range(min = 0, max = 1e4))]
     pub rate_per_cm2_s: f64,
     /// Thickness of the layer from which charge is collected, µm, 0.1 to 1000.
     #[schemars(range(min = 0.1, max = 1000))]
     pub thickness_um: f64,
-    /// Time besides the exposure in which the detector collects hits, s, 0 to 1000: storage and readout.
+    /// Time in addition to the exposure in which the detector collects hits, s, 0 to 1000: storage and
+    /// readout.
     #[serde(default)]
     #[schemars(range(min = 0, max = 1000))]
     pub readout_s: f64,
-    /// Mean charge along a track, electrons a µm, 1 to 1e5. A minimum ionising particle leaves about 80 in silicon; slow
-    /// protons leave more.
+    /// Mean charge along a track, electrons per µm, 1 to 1e5. A minimum ionising particle releases about 80
+    /// in silicon; slow protons release more.
     #[serde(default = "minimum_ionising")]
     #[schemars(range(min = 1, max = 1e5))]
     pub mean_e_per_um: f64,
-    /// Scale of the fluctuation of that charge, electrons a µm, 0 to 1e4: the width ξ of Landau's law. In silicon 4.9
-    /// (ξ of 17.8 eV/µm, and 3.65 eV a pair; Particle Data Group, Passage of particles through matter, Sec. 34.2.9).
+    /// Scale of the fluctuation of the charge along a track, electrons per µm, 0 to 1e4: the width ξ of the
+    /// Landau distribution. In silicon 4.9 (ξ of 17.8 eV/µm, and 3.65 eV per pair; Particle Data Group,
+    /// Passage of particles through matter, Sec. 34.2.9).
     #[serde(default = "landau_width")]
     #[schemars(range(min = 0, max = 1e4))]
     pub landau_e_per_um: f64,
-    /// The South Atlantic Anomaly; without the table the rate is the same all along the orbit.
+    /// South Atlantic Anomaly; without the table the rate is constant along the orbit.
     #[serde(default)]
     pub south_atlantic: Option<SouthAtlanticConfig>,
 }
@@ -50,16 +52,16 @@ fn landau_width() -> f64 {
     4.9
 }
 
-/// The South Atlantic Anomaly as a bump of the rate over the globe, whatever the altitude.
+/// South Atlantic Anomaly: a peak of the rate over the globe, independent of altitude.
 ///
-/// The factor is 1 + (`peak_factor` − 1) exp(−(Δφ/`latitude_sigma_deg`)²/2 − (Δλ/`longitude_sigma_deg`)²/2), with φ the
-/// geocentric latitude and λ the longitude. At 540 km the peak is 1100 particles a second and cm² against about 1 outside
-/// (Miles et al., ApJ 918, 86, 2021): the default of `peak_factor`. Place and widths are assumptions; the anomaly drifts west by
-/// 0.3° a year.
+/// The factor is 1 + (`peak_factor` − 1) exp(−(Δφ/`latitude_sigma_deg`)²/2 − (Δλ/`longitude_sigma_deg`)²/2),
+/// with φ the geocentric latitude and λ the longitude. At 540 km the peak is 1100 particles per cm² and
+/// second against about 1 outside (Miles et al., ApJ 918, 86, 2021): the default of `peak_factor`. Position
+/// and widths are assumptions; the anomaly drifts west by 0.3° per year.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SouthAtlanticConfig {
-    /// Rate at the centre over the rate outside, 1 to 1e5.
+    /// Ratio of the rate at the centre to the rate outside, 1 to 1e5.
     #[schemars(range(min = 1, max = 1e5))]
     pub peak_factor: f64,
     /// Latitude of the centre, degrees, −90 to 90.
@@ -89,7 +91,7 @@ impl Default for SouthAtlanticConfig {
 }
 
 impl SouthAtlanticConfig {
-    /// The rate's factor at a place.
+    /// Factor of the rate at a latitude and longitude.
     fn factor(&self, latitude_deg: f64, longitude_deg: f64) -> f64 {
         let turn = longitude_deg - self.longitude_deg;
         let east = turn - 360.0 * (turn / 360.0).round();
@@ -100,7 +102,7 @@ impl SouthAtlanticConfig {
 }
 
 impl CosmicRayConfig {
-    /// Bounds the number of tracks in a frame.
+    /// Checks the bound on the number of hits in a frame.
     pub(super) fn check(&self) -> Result<(), OutOfRange> {
         let Some(bump) = &self.south_atlantic else { return Ok(()) };
         let expected = "at most 1e5 particles a second and cm², times the rate";
@@ -109,10 +111,10 @@ impl CosmicRayConfig {
     }
 }
 
-/// Hits of a frame that are kept at most: each has a row in the truth table.
+/// Maximum number of hits in a frame: each hit has a row in the truth table.
 const MOST_HITS: f64 = 1e5;
 
-/// The particles that a camera's detector meets.
+/// Generator of the cosmic-ray hits on a camera's detector.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CosmicRays {
     config: CosmicRayConfig,
@@ -122,19 +124,19 @@ pub(crate) struct CosmicRays {
     pixel_height_um: f64,
 }
 
-/// The track of one particle: where it enters, how far it goes across the detector, how much charge it leaves. It may
-/// leave the detector.
+/// Track of one particle: its entry, its extent across the detector and its charge. It may leave the
+/// detector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CosmicRayHit {
     start: PixelPoint,
-    /// Columns and rows from the entry to the exit.
+    /// Displacement from the entry to the exit, in columns and rows.
     across: (f64, f64),
-    /// Over the whole track.
+    /// Charge of the whole track, electrons.
     electrons: f64,
 }
 
 impl CosmicRays {
-    /// Of a configuration that was checked with its sensor.
+    /// Creates the generator from a configuration that was checked with its sensor.
     pub(crate) fn new(config: &CosmicRayConfig, camera: &Camera) -> Self {
         Self {
             config: config.clone(),
@@ -145,7 +147,7 @@ impl CosmicRays {
         }
     }
 
-    /// Particles a second and cm² at a place: `position_km` from the centre of the Earth in ICRS axes.
+    /// Particles per cm² and second at `position_km`, relative to the Earth's centre in ICRS axes.
     pub(crate) fn rate_per_cm2_s(&self, time: Epoch, position_km: &Vector3<f64>) -> f64 {
         let factor = self.config.south_atlantic.map_or(1.0, |bump| {
             let (latitude, longitude) = geographic(time, position_km);
@@ -154,7 +156,8 @@ impl CosmicRays {
         self.config.rate_per_cm2_s * factor
     }
 
-    /// Refuses more hits than a frame may have, at the highest rate and an exposure of `longest_s`.
+    /// Rejects a configuration with more expected hits in a frame than the maximum, at the highest rate and
+    /// an exposure of `longest_s`.
     pub(crate) fn check_hits(&self, longest_s: f64) -> Result<(), OutOfRange> {
         let peak = self.config.south_atlantic.map_or(1.0, |bump| bump.peak_factor);
         let hits = self.mean_hits(longest_s, self.config.rate_per_cm2_s * peak);
@@ -165,14 +168,14 @@ impl CosmicRays {
         if hits <= MOST_HITS { Ok(()) } else { Err(refused()) }
     }
 
-    /// Mean number of hits of a frame.
+    /// Mean number of hits in a frame.
     fn mean_hits(&self, exposure_s: f64, rate_per_cm2_s: f64) -> f64 {
         let area_cm2 =
             1e-8 * self.pixel_width_um * self.pixel_height_um * self.columns as f64 * self.rows as f64;
         rate_per_cm2_s * area_cm2 * (exposure_s + self.config.readout_s)
     }
 
-    /// The tracks of a frame. The first `n` of them are the same whatever the rate.
+    /// Returns the tracks of a frame. The first `n` tracks are the same for every rate.
     pub(crate) fn hits(
         &self,
         seed: &Seed,
@@ -186,9 +189,11 @@ impl CosmicRays {
         (1..=count).map(|number| self.draw_hit(&mut streams.stream_at(number))).collect()
     }
 
-    /// A particle of an isotropic flux: it crosses the face anywhere, with cos θ from the normal of density 2 cos θ (the
-    /// face seen from θ is smaller by cos θ). Its charge per µm follows Moyal's law (Phil. Mag. 46, 1955), an
-    /// approximation of Landau's: the mean plus ξ (m − γ − ln 2), where m = −ln z² of a normal z has Moyal's density.
+    /// Returns one particle of an isotropic flux. It crosses the face at a uniformly distributed position, at
+    /// an angle θ from the normal with the density 2 cos θ of cos θ (the face seen from θ is smaller by cos
+    /// θ). Its charge per µm follows the Moyal distribution (Phil. Mag. 46, 1955), an approximation of the
+    /// Landau distribution: the mean plus ξ (m − γ − ln 2), where m = −ln z² of a standard normal z has the
+    /// Moyal density.
     fn draw_hit(&self, stream: &mut Stream) -> CosmicRayHit {
         const MOYAL_MEAN: f64 = 1.270_362_845_461_478;
         let x = self.columns as f64 * uniform(stream) - 0.5;
@@ -207,11 +212,11 @@ impl CosmicRays {
         }
     }
 
-    /// Makes `stamp` the image of a track: its charge evenly along its length, to each pixel by the length in it. What
-    /// lies off the detector is left out.
+    /// Sets `stamp` to the image of a track. The charge is uniform along the track; each pixel receives the
+    /// charge of the length inside it. Charge off the detector is dropped.
     pub(crate) fn stamp(&self, hit: &CosmicRayHit, stamp: &mut Stamp) {
         let (dx, dy) = hit.across;
-        // Where it leaves the detector, as a part of its length; it starts inside.
+        // Share of the track's length at which it leaves the detector; it starts inside.
         let leaves = |at: f64, by: f64, size: usize| {
             let edge = if by > 0.0 { size as f64 - 0.5 } else { -0.5 };
             if by == 0.0 { 1.0 } else { ((edge - at) / by).clamp(0.0, 1.0) }
@@ -224,7 +229,7 @@ impl CosmicRays {
         let (y0, y1) = (pixel(hit.start.y, rows), pixel(hit.start.y + dy, rows));
         let centre = PixelPoint::new(hit.start.x + 0.5 * dx, hit.start.y + 0.5 * dy);
         stamp.reset(centre, (x0.min(x1), x0.max(x1) + 1), (y0.min(y1), y0.max(y1) + 1));
-        // From one border of pixels to the next.
+        // Steps from one pixel border to the next.
         let border = |pixel: usize, at: f64, by: f64| match by {
             b if b > 0.0 => (pixel as f64 + 0.5 - at) / b,
             b if b < 0.0 => (pixel as f64 - 0.5 - at) / b,
@@ -233,7 +238,7 @@ impl CosmicRays {
         let (mut x, mut y, mut done) = (x0, y0, 0.0);
         while (x, y) != (x1, y1) {
             let (to_x, to_y) = (border(x, hit.start.x, dx), border(y, hit.start.y, dy));
-            // Rounding must not lead past the last pixel.
+            // Rounding errors must not lead past the last pixel.
             let along_x = if x == x1 { false } else { y == y1 || to_x <= to_y };
             let next = if along_x { to_x } else { to_y }.clamp(done, 1.0);
             stamp.add(x, y, electrons * (next - done));
@@ -306,7 +311,7 @@ mod tests {
         let bin = |hit: &CosmicRayHit| {
             let across_um = libm::hypot(hit.across.0 * 8.6, hit.across.1 * 8.3);
             let e_per_um = hit.electrons / libm::hypot(across_um, 20.0);
-            // Moyal's distribution function is erfc(exp(−m/2)/√2).
+            // The cumulative distribution function of the Moyal distribution is erfc(exp(−m/2)/√2).
             let moyal = (e_per_um - 80.0) / 4.9 + 1.270362845;
             let below = libm::erfc(libm::exp(-0.5 * moyal) * std::f64::consts::FRAC_1_SQRT_2);
             ((20.0 * below) as usize).min(19)
@@ -329,7 +334,8 @@ mod tests {
             let hit = CosmicRayHit { start: PixelPoint::new(start.0, start.1), across, electrons: 1000.0 };
             rays.stamp(&hit, &mut stamp);
             assert!((sum(&stamp) - 1000.0).abs() < 1e-9, "{hit:?}");
-            // The centre of charge is the middle of the track, to the half pixel that a pixel hides.
+            // The centre of charge is the middle of the track, to within half a pixel along each axis, the
+            // resolution of a pixel.
             let (mut x, mut y) = (0.0, 0.0);
             for (column, row, electrons) in stamp.rows() {
                 for (i, e) in electrons.iter().enumerate() {
@@ -339,7 +345,7 @@ mod tests {
             }
             assert!(PixelPoint::new(x, y).distance(stamp.centre()) < 0.71, "{hit:?}: {x}, {y}");
         }
-        // Four pixels and two halves along a row.
+        // Four whole pixels and two half pixels along a row.
         let hit = CosmicRayHit { start: PixelPoint::new(10.0, 10.0), across: (5.0, 0.0), electrons: 1000.0 };
         rays.stamp(&hit, &mut stamp);
         let row: Vec<f64> = stamp.rows().next().unwrap().2.to_vec();

@@ -1,4 +1,4 @@
-//! A detector: what is fixed of it, and what follows from that alone.
+//! Detector: its fixed properties, and the quantities that follow from them.
 
 use super::config::SensorConfig;
 use super::fixed_pattern::FixedPattern;
@@ -8,21 +8,22 @@ use super::raw_image::RawImage;
 use crate::SimError;
 use crate::draw::ExpectedImage;
 
-/// A detector with its readout. What is fixed for its life, hot pixels included, is made once.
+/// Detector with its readout. Properties that are fixed for its life, including the hot pixels, are computed
+/// once.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensor {
     config: SensorConfig,
     pub(super) distribution: PixelDistribution,
     pub(super) columns: usize,
     pub(super) rows: usize,
-    /// Factor of all dark currents by the temperature.
+    /// Temperature factor of all dark currents.
     warmth: f64,
     hot_pixels: Vec<HotPixel>,
     pattern: FixedPattern,
 }
 
 impl Sensor {
-    /// A sensor of `columns` × `rows` pixels.
+    /// Creates a sensor of `columns` × `rows` pixels.
     ///
     /// # Errors
     /// [`SimError::OutOfRange`] for a number out of range.
@@ -40,39 +41,39 @@ impl Sensor {
         })
     }
 
-    /// The configuration it was made of.
+    /// Configuration of the sensor.
     pub fn config(&self) -> &SensorConfig {
         &self.config
     }
 
-    /// Columns and rows.
+    /// Number of columns and of rows.
     pub(crate) fn size(&self) -> (usize, usize) {
         (self.columns, self.rows)
     }
 
-    /// What is different from pixel to pixel.
+    /// Fixed differences between pixels.
     pub(super) fn pattern(&self) -> &FixedPattern {
         &self.pattern
     }
 
-    /// Its hot pixels, in the order of the image.
+    /// Hot pixels, in image order.
     pub fn hot_pixels(&self) -> &[HotPixel] {
         &self.hot_pixels
     }
 
-    /// Photo-electrons of the flat sky in every pixel: the level to clear an image to.
+    /// Photoelectrons of the uniform sky in every pixel: the initial level of an image.
     pub fn sky_electrons(&self, exposure_s: f64) -> f64 {
         self.config.background_e_per_s * exposure_s
     }
 
-    /// Dark current of an ordinary pixel in an exposure, electrons; 0 when it is off.
+    /// Dark current of an ordinary pixel in an exposure, electrons; 0 if dark current is switched off.
     pub fn dark_electrons(&self, exposure_s: f64) -> f64 {
         self.config.noise.dark.apply(self.config.dark_current_e_per_s * self.warmth) * exposure_s
     }
 
-    /// Standard deviation of what the readout adds to a pixel, electrons: read noise with what rows and columns share, as
-    /// far as it is simulated, and the rounding of the converter, which is even over one digital number and has the variance
-    /// gain²/12 (Janesick, Photon Transfer, 2007, quantising noise).
+    /// Standard deviation of the readout per pixel, electrons: the simulated read noise, including the noise
+    /// common to rows and columns, and the rounding of the converter, which is uniform over one digital
+    /// number and has the variance gain²/12 (Janesick, Photon Transfer, 2007, quantising noise).
     pub fn readout_noise_e(&self) -> f64 {
         let (pixel_e, lines) = (self.config.read_noise_e, self.config.line_noise);
         let read_e2 = pixel_e * pixel_e + lines.row_e * lines.row_e + lines.column_e * lines.column_e;
@@ -80,12 +81,12 @@ impl Sensor {
         (self.config.noise.read.apply(read_e2) + gain_e * gain_e / 12.0).sqrt()
     }
 
-    /// An image that [`Sensor::collect`] and [`Sensor::read_out`] take.
+    /// Returns an image for [`Sensor::collect`] and [`Sensor::read_out`].
     pub fn new_expected(&self) -> ExpectedImage {
         ExpectedImage::new(self.columns, self.rows).with_response(&self.pattern.response)
     }
 
-    /// A raw image for [`Sensor::read_out`].
+    /// Returns a raw image for [`Sensor::read_out`].
     pub fn new_raw(&self) -> RawImage {
         RawImage {
             columns: self.columns,

@@ -1,61 +1,67 @@
-//! How probable it is that a pixel's digital number is above a floor, and which number it then is.
+//! Probability that a pixel's digital number exceeds a floor, and draws of the number above the floor.
 //!
-//! Poisson(λ) is Poisson(λₖ) plus an independent Poisson(λ − λₖ), where λₖ is the next lower mean of a grid of quarters of an
-//! electron. So the probability of exceeding is the sum over n of the probability of n electrons more, which is Poisson's, times
-//! that of exceeding from λₖ with n electrons more for certain, which a table holds; and a number above the floor is drawn by
-//! its n, then by inversion in the tail of that table.
+//! Poisson(λ) is Poisson(λₖ) plus an independent Poisson(λ − λₖ), where λₖ is the next lower mean of a grid
+//! of quarters of an electron. The probability of exceeding the floor is therefore a sum over n: the Poisson
+//! probability of n extra electrons, times the probability of exceeding from λₖ plus n fixed electrons, which
+//! a table holds. A number above the floor is drawn in two steps: first n, then the number by inversion in
+//! the tail of that table.
 
 use std::collections::BTreeMap;
 
 use super::pixel_distribution::PixelDistribution;
 
-/// The law of the digital numbers above a floor. Tables are made when first met, and are the same whatever was met before.
+/// Distribution of the digital numbers above a floor. Tables are made on first use; their content does not
+/// depend on earlier use.
 #[derive(Debug, Clone)]
 pub(super) struct Exceedance {
     distribution: PixelDistribution,
     floor_dn: u16,
-    /// The means, in quarters of an electron, from and up to which the limit of dark pixels follows the background; `None` where
-    /// the darkest pixel exceeds the floor too often.
+    /// Lower and upper mean, in quarters of an electron, between which the limit of dark pixels follows the
+    /// background; `None` if the darkest pixel exceeds the floor too often.
     limits: Option<(u32, u32)>,
-    /// The limit told last, and its mean in quarters of an electron: rows side by side mostly have the same.
+    /// Most recent limit, and its mean in quarters of an electron: adjacent rows mostly have equal limits.
     last_limit: Option<(u32, DarkLimit)>,
-    /// By the mean in quarters of an electron, then by the electrons more.
+    /// Tails by mean in quarters of an electron, then by extra electrons.
     tails: BTreeMap<(u32, u32), Tail>,
 }
 
-/// The probabilities of the numbers above the floor.
+/// Probabilities of the digital numbers above the floor.
 #[derive(Debug, Clone, PartialEq)]
 struct Tail {
     first_dn: u16,
-    /// Of exceeding the floor by a number up to `first_dn` + i.
+    /// Cumulative probability of the numbers above the floor, up to `first_dn` + i.
     cumulative: Vec<f64>,
 }
 
-/// The mean up to which a pixel is dark, and what its exceedances are thinned from.
+/// Largest mean of a dark pixel, and the probability from which its exceedances are thinned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DarkLimit {
-    /// A pixel with more expected electrons is drawn outright; negative where every pixel is.
+    /// Largest mean of a dark pixel, electrons; a pixel with a larger mean is drawn directly. Negative if
+    /// every pixel is drawn directly.
     pub(super) mean_e: f64,
-    /// The probability that a pixel of that mean exceeds the floor: no dark pixel's is higher.
+    /// Probability that a pixel of this mean exceeds the floor: the maximum over all dark pixels.
     pub(super) probability: f64,
 }
 
 impl DarkLimit {
-    /// Where no pixel is dark.
+    /// Limit without any dark pixels.
     const NOWHERE: Self = Self { mean_e: -1.0, probability: 0.0 };
 }
 
-/// However dark the background: below this a candidate comes once in two frames of half a million pixels.
+/// Minimum exceedance probability of the limit, for any background: at this value there is one candidate in
+/// two frames of half a million pixels.
 const RAREST: f64 = 1.0 / 1_048_576.0;
-/// However bright the background: above this it costs less to draw a pixel than its candidates.
+/// Maximum exceedance probability of the limit, for any background: above this value the draw of a pixel
+/// costs less than its candidates.
 const MOST_FREQUENT: f64 = 1.0 / 64.0;
-/// The means of the limit end here, in quarters of an electron.
+/// Upper end of the means of the limit, in quarters of an electron.
 const END: u32 = 4 * 1024;
-/// Of a mean's rest of less than a quarter of an electron eight electrons or more come once in 10^10.
+/// Number of extra electrons from which on they are neglected: a remainder of less than a quarter of an
+/// electron gives eight or more with a probability below 3.1e-10.
 const MOST_MORE: u32 = 8;
 
 impl Exceedance {
-    /// Of a law with shot noise.
+    /// Creates the distribution from a pixel's distribution with shot noise.
     pub(super) fn new(distribution: &PixelDistribution, floor_dn: u16) -> Self {
         let mut new = Self {
             distribution: *distribution,
@@ -68,8 +74,8 @@ impl Exceedance {
         new
     }
 
-    /// The highest mean of the grid that exceeds the floor no more often than `limit`, in quarters of an electron. The
-    /// probability grows with the mean.
+    /// Returns the highest mean of the grid whose probability of exceeding the floor is at most `limit`, in
+    /// quarters of an electron. The probability grows with the mean.
     fn last_below(&mut self, limit: f64) -> Option<u32> {
         let (mut from, mut to) = (0, END);
         while from < to {
@@ -79,16 +85,16 @@ impl Exceedance {
         from.checked_sub(1)
     }
 
-    /// Whether it is the law of these.
+    /// Returns true if the distribution belongs to this pixel distribution and floor.
     pub(super) fn is_valid_for(&self, distribution: &PixelDistribution, floor_dn: u16) -> bool {
         self.distribution == *distribution && self.floor_dn == floor_dn
     }
 
-    /// The limit of dark pixels over a background of at most `bound_e` electrons a pixel.
+    /// Limit of dark pixels over a background of at most `bound_e` electrons per pixel.
     #[inline(always)]
     pub(super) fn dark_limit(&mut self, bound_e: f64) -> DarkLimit {
         let Some((low, high)) = self.limits else { return DarkLimit::NOWHERE };
-        // A cast saturates.
+        // The cast to an integer saturates.
         let quarters = ((4.0 * bound_e).ceil() as u32).clamp(low, high);
         if let Some((of, limit)) = self.last_limit
             && of == quarters
@@ -101,8 +107,9 @@ impl Exceedance {
         limit
     }
 
-    /// A number above the floor of a dark pixel with a mean of `mean_e` electrons, or none: with the probability that it
-    /// exceeds the floor, divided by `limit`'s. From three uniform numbers.
+    /// Draws a number above the floor for a dark pixel with a mean of `mean_e` electrons, or none. A number
+    /// is drawn with the probability that the pixel exceeds the floor, divided by the probability of `limit`.
+    /// Uses three uniform random numbers.
     pub(super) fn thin(
         &mut self,
         mean_e: f64,
@@ -112,7 +119,8 @@ impl Exceedance {
         let mean_e = mean_e.max(0.0);
         let level = keep * limit.probability;
         let quarters = (4.0 * mean_e) as u32;
-        // Most are refused by the probability of the next mean of the grid, without those of more electrons.
+        // Most candidates are rejected by the probability of the next higher mean of the grid, which needs no
+        // sum over extra electrons.
         if level >= self.tail(quarters + 1, 0).probability() {
             return None;
         }
@@ -136,7 +144,7 @@ impl Exceedance {
         Some(self.tail(quarters, n as u32).number(number))
     }
 
-    /// The tail of the mean of so many quarters of an electron, with `more` electrons for certain.
+    /// Returns the tail for a mean of `quarters` quarters of an electron plus `more` fixed electrons.
     fn tail(&mut self, quarters: u32, more: u32) -> &Tail {
         let (distribution, floor_dn) = (&self.distribution, self.floor_dn);
         self.tails
@@ -165,7 +173,7 @@ impl Tail {
         self.cumulative.last().copied().unwrap_or(0.0)
     }
 
-    /// The number at a quantile, 0 to below 1.
+    /// Number at a quantile from 0 to below 1.
     fn number(&self, quantile: f64) -> u16 {
         let level = quantile * self.probability();
         let i = self.cumulative.partition_point(|&up_to| up_to <= level);
@@ -181,7 +189,7 @@ mod tests {
     use super::*;
     use crate::randomness::{Effect, Seed, uniform};
 
-    /// A gain of 1 e⁻/DN and a low read noise, so that single electrons are seen.
+    /// A gain of 1 e⁻/DN and a low read noise, so single electrons are distinguishable.
     fn distribution() -> PixelDistribution {
         PixelDistribution::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() })
     }
@@ -205,9 +213,9 @@ mod tests {
                 limit.mean_e < bound_e && above(&distribution, limit.mean_e + 0.25, floor_dn) > MOST_FREQUENT;
             assert!(follows || (rarest && limit.probability <= RAREST) || most, "{bound_e}: {limit:?}");
         }
-        // The bias alone is above this floor: nothing is dark.
+        // The bias exceeds this floor, so no pixel is dark.
         assert_eq!(Exceedance::new(&distribution, 40).dark_limit(0.0), DarkLimit::NOWHERE);
-        // Nothing is above full scale.
+        // No number exceeds full scale.
         assert_eq!(Exceedance::new(&distribution, 4095).dark_limit(3.0).probability, 0.0);
     }
 

@@ -1,4 +1,4 @@
-//! What is different from pixel to pixel and the same in every frame: response, dark current, defects.
+//! Differences between pixels that are constant in time: response, dark current, defects.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -10,75 +10,79 @@ use serde::{Deserialize, Serialize};
 use crate::pixel_factors::PixelFactors;
 use crate::randomness::{Effect, Seed, Streams, normal};
 
-/// The law of the dark currents of ordinary pixels.
+/// Distribution of the dark currents of ordinary pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DarkCurrentDistribution {
-    /// Log-normal about the same mean: never negative, with a tail to high currents.
+    /// Log-normal distribution with the same mean: never negative, with a tail of high currents.
     #[default]
     LogNormal,
-    /// Normal, cut at 0.
+    /// Normal distribution, clipped at 0.
     Normal,
 }
 
-/// Differences between pixels, fixed for the life of a detector. All of it follows from `seed` and from nothing else.
-/// Everything is off by default.
+/// Differences between pixels, fixed for the life of a detector. They depend only on `seed`. All are off by
+/// default.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FixedPatternConfig {
-    /// Seed of this piece of hardware; not the seed of the scenario.
+    /// Seed of this detector; not the seed of the scenario.
     #[schemars(range(max = u64::MAX))]
     pub seed: u64,
-    /// Photo-response non-uniformity (PRNU): standard deviation of the pixels' sensitivity to light as a fraction of its
-    /// mean, 0 to 0.3. Normal, cut at 0.
+    /// Photo-response non-uniformity (PRNU): standard deviation of the pixels' sensitivity to light as a
+    /// fraction of its mean, 0 to 0.3. Normal distribution, clipped at 0.
     #[schemars(range(min = 0, max = 0.3))]
     pub prnu_fraction: f64,
-    /// Dark-signal non-uniformity (DSNU): standard deviation of the pixels' dark current as a fraction of its mean, 0 to 5.
+    /// Dark-signal non-uniformity (DSNU): standard deviation of the pixels' dark current as a fraction of its
+    /// mean, 0 to 5.
     #[schemars(range(min = 0, max = 5))]
     pub dsnu_fraction: f64,
-    /// Law of the dark currents.
+    /// Distribution of the dark currents.
     pub dsnu_law: DarkCurrentDistribution,
-    /// Standard deviation of the columns' offsets, which are added to every frame, electrons, 0 to 500. Normal.
+    /// Standard deviation of the column offsets, which are added to every frame, electrons, 0 to 500. Normal
+    /// distribution.
     #[schemars(range(min = 0, max = 500))]
     pub column_offset_e: f64,
-    /// Number of dead pixels, at most a tenth of all (of the largest detector 26843545); they collect nothing, neither light nor dark current.
+    /// Number of dead pixels, at most a tenth of all pixels (26843545 for the largest detector); dead pixels
+    /// collect neither photoelectrons nor dark current.
     #[schemars(range(max = 26_843_545))]
     pub dead_pixels: usize,
-    /// Number of dead columns, at most a tenth of all.
+    /// Number of dead columns, at most a tenth of all columns.
     #[schemars(range(max = 1638))]
     pub dead_columns: usize,
 }
 
-/// The fixed pattern of a detector, made once; empty where an effect is off.
+/// Fixed pattern of a detector, computed once; empty for effects that are off.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct FixedPattern {
-    /// Sensitivity of each pixel, of mean 1.
+    /// Sensitivity of each pixel, with mean 1.
     pub(super) response: PixelFactors,
     /// Dark current of each pixel as a multiple of the mean.
     pub(super) dark: PixelFactors,
     /// Offset of each column, electrons.
     pub(super) column_offsets_e: Vec<f64>,
-    /// Column and row of each dead pixel, dead columns included, in the order of the image.
+    /// Column and row of each dead pixel, dead columns included, in image order.
     pub(super) dead: Vec<(usize, usize)>,
 }
 
-/// The pattern made last, with what it was made of. A piece of hardware is the same in all cases of a study, and making it takes longer than
-/// many frames.
+/// Most recent pattern, with its configuration and size. A detector is the same in all cases of a study, and
+/// its pattern takes longer to compute than many frames.
 static LAST: Mutex<Option<(FixedPatternConfig, [usize; 2], FixedPattern)>> = Mutex::new(None);
-/// Patterns of more pixels are not kept.
+/// Maximum number of pixels of a cached pattern.
 const MOST_PIXELS: usize = 1 << 22;
 
 impl FixedPattern {
-    /// The pattern of a detector; one that was made last is not made again.
+    /// Returns the pattern of a detector; reuses the most recent pattern if it matches.
     ///
     /// # Errors
-    /// As [`FixedPattern::new`].
+    /// See [`FixedPattern::new`].
     pub(super) fn from_config(
         config: &FixedPatternConfig,
         columns: usize,
         rows: usize,
     ) -> Result<Self, OutOfRange> {
-        // A thread that panicked while it held the pattern cannot have left half of one.
+        // The pattern is stored in one assignment, so a thread that panicked with the lock held cannot have
+        // left a partial pattern.
         let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
         let size = [columns, rows];
         if let Some((_, _, pattern)) = last().as_ref().filter(|(of, at, _)| (of, *at) == (config, size)) {
@@ -91,14 +95,16 @@ impl FixedPattern {
         Ok(pattern)
     }
 
+    /// Computes the pattern of a detector.
+    ///
     /// # Errors
-    /// [`OutOfRange`] when more than a tenth of all pixels or columns would be dead.
+    /// [`OutOfRange`] if more than a tenth of all pixels or columns would be dead.
     pub(super) fn new(config: &FixedPatternConfig, columns: usize, rows: usize) -> Result<Self, OutOfRange> {
         let seed = Seed { seed: config.seed, case: 0 };
         let standard = |effect: Effect, number: usize| normal(&mut seed.stream(0, effect, number as u64));
         let pixels = |on: bool| 0..if on { columns * rows } else { 0 };
         let response = |index| (1.0 + config.prnu_fraction * standard(Effect::PixelResponse, index)).max(0.0);
-        // A log-normal law of mean 1 and standard deviation s has σ² = ln(1 + s²) and μ = −σ²/2.
+        // A log-normal distribution of mean 1 and standard deviation s has σ² = ln(1 + s²) and μ = −σ²/2.
         let variance = libm::log1p(config.dsnu_fraction * config.dsnu_fraction);
         let dark = |index| {
             let z = standard(Effect::DarkPattern, index);
@@ -119,13 +125,13 @@ impl FixedPattern {
         })
     }
 
-    /// Whether a pixel collects nothing.
+    /// Returns true if a pixel is dead.
     pub(super) fn is_dead(&self, x: usize, y: usize) -> bool {
         self.dead.binary_search_by_key(&(y, x), |&(x, y)| (y, x)).is_ok()
     }
 }
 
-/// Dead pixels and the pixels of dead columns, in the order of the image.
+/// Returns dead pixels and the pixels of dead columns, in image order.
 fn dead(
     config: &FixedPatternConfig,
     seed: Seed,
@@ -156,14 +162,15 @@ fn dead(
     Ok(dead)
 }
 
-/// `count` different numbers below `of`, of which they are at most a tenth; a higher count keeps the others.
+/// Draws `count` distinct integers below `of`; `count` is at most a tenth of `of`. A higher count keeps the
+/// integers of a lower count.
 fn distinct(count: usize, of: usize, streams: Streams) -> Vec<usize> {
     let mut taken = vec![false; if count > 0 { of } else { 0 }];
     (0..count)
         .map(|number| {
             let mut stream = streams.stream_at(number as u64);
             loop {
-                // The highest bits of a product: uniform but for of/2^64.
+                // Highest bits of a product: uniform to within of/2^64.
                 let index = ((u128::from(stream.next_u64()) * of as u128) >> 64) as usize;
                 if !std::mem::replace(&mut taken[index], true) {
                     break index;
@@ -188,7 +195,7 @@ mod tests {
     }
     use statrs::distribution::{ContinuousCDF, LogNormal, Normal};
 
-    /// The distance of Kolmogorov and Smirnov, times √n: above 2.23 once in 10,000.
+    /// Kolmogorov–Smirnov distance times √n: above 2.23 with a probability of 1 in 10,000.
     fn distance(mut values: Vec<f64>, law: &impl ContinuousCDF<f64, f64>) -> f64 {
         values.sort_by(f64::total_cmp);
         let n = values.len() as f64;

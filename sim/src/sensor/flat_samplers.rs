@@ -1,9 +1,9 @@
-//! The laws of all pixels without signal, and of those with little: tables instead of samplers.
+//! Distributions of pixels without signal and of pixels with a weak signal: tables instead of samplers.
 //!
-//! Most pixels of a frame have the same mean, hence the same law of their digital number: one table, one word a
-//! pixel. A pixel with a little signal s above the flat mean λ follows by superposition: Poisson(λ + s) is
-//! Poisson(λ) plus an independent n from Poisson(s), and given n its law is that of the flat mean with n electrons
-//! added for certain: one table for each n.
+//! Most pixels of a frame have the same mean and therefore the same distribution of their digital number:
+//! they need one table, and one word per pixel. For a pixel with a weak signal s above the flat mean λ,
+//! superposition applies: Poisson(λ + s) is Poisson(λ) plus an independent n from Poisson(s). For given n its
+//! distribution is that of the flat mean plus n fixed electrons: one table for each n.
 
 use std::collections::BTreeMap;
 
@@ -18,12 +18,12 @@ use super::ziggurat::Ziggurat;
 use crate::randomness::{Stream, Streams};
 use crate::switch::Switch;
 
-/// Tables for the means met so far, kept from frame to frame. What they give does not depend on what they
-/// keep: an empty one works as well, only slower.
+/// Cache of tables for means, kept from frame to frame. Results do not depend on the cached tables: an empty
+/// cache gives the same results, only more slowly.
 #[derive(Debug, Clone, Default)]
 pub struct FlatSamplers {
     distribution: Option<PixelDistribution>,
-    /// By the bits of the mean.
+    /// Tables by the bits of the mean.
     means: BTreeMap<u64, FlatSampler>,
     mean_tables: Option<MeanTables>,
     exceedance: Option<Exceedance>,
@@ -32,15 +32,15 @@ pub struct FlatSamplers {
 }
 
 impl FlatSamplers {
-    /// Means kept at most; a shutter's ladder has fewer exposures.
+    /// Maximum number of cached means; a shutter's ladder has fewer exposures.
     const MEANS: usize = 64;
 
-    /// Nothing kept yet.
+    /// Creates an empty cache.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The tables of a flat mean, electrons.
+    /// Returns the tables of a flat mean, electrons.
     pub(super) fn sampler_for(&mut self, distribution: &PixelDistribution, mean_e: f64) -> &mut FlatSampler {
         if self.distribution != Some(*distribution)
             || (self.means.len() >= Self::MEANS && !self.means.contains_key(&mean_e.to_bits()))
@@ -50,7 +50,7 @@ impl FlatSamplers {
         self.means.entry(mean_e.to_bits()).or_insert_with(|| FlatSampler::new(*distribution, mean_e))
     }
 
-    /// The tables of pixels with a mean of their own.
+    /// Returns the tables for pixels with individual means.
     pub(super) fn mean_tables(&mut self, distribution: &PixelDistribution) -> &mut MeanTables {
         if self.distribution != Some(*distribution) {
             self.forget(distribution);
@@ -58,7 +58,7 @@ impl FlatSamplers {
         self.mean_tables.get_or_insert_with(|| MeanTables::new(distribution))
     }
 
-    /// The law of the numbers above a floor.
+    /// Returns the distribution of the digital numbers above a floor.
     pub(super) fn exceedance(&mut self, distribution: &PixelDistribution, floor_dn: u16) -> &mut Exceedance {
         if self.exceedance.as_ref().is_some_and(|kept| !kept.is_valid_for(distribution, floor_dn)) {
             self.exceedance = None;
@@ -66,7 +66,8 @@ impl FlatSamplers {
         self.exceedance.get_or_insert_with(|| Exceedance::new(distribution, floor_dn))
     }
 
-    /// The tables of numbers of electrons and of the read noise, for pixels whose law no table holds.
+    /// Returns the tables of electron numbers and of the read noise, for pixels whose distribution is in no
+    /// table.
     pub(super) fn in_parts(&mut self) -> (&mut PoissonDigits, &Ziggurat) {
         (&mut self.digits, &self.normal)
     }
@@ -78,18 +79,18 @@ impl FlatSamplers {
     }
 }
 
-/// The law of the pixels of one flat mean.
+/// Distribution of pixels with a common flat mean.
 #[derive(Debug, Clone)]
 pub(super) struct FlatSampler {
     distribution: PixelDistribution,
     mean_e: f64,
     flat: AliasTable,
-    /// For 0, 1, 2 … electrons more, made when first met.
+    /// Tables for 0, 1, 2 … extra electrons, made on first use.
     more: Vec<Option<AliasTable>>,
 }
 
 impl FlatSampler {
-    /// Signals up to this have their tables.
+    /// Maximum signal that is drawn from tables, electrons.
     const FAINT_E: f64 = 4.0;
 
     fn new(distribution: PixelDistribution, mean_e: f64) -> Self {
@@ -97,7 +98,7 @@ impl FlatSampler {
         Self { distribution, mean_e, flat: table, more: vec![None; FEW + 1] }
     }
 
-    /// Draws pixels without signal, two from a word.
+    /// Draws pixels without signal, two from each word.
     #[inline(always)]
     pub(super) fn draw_row(&self, row: &mut [u16], stream: &mut Stream) {
         let mut pairs = row.chunks_exact_mut(2);
@@ -111,10 +112,10 @@ impl FlatSampler {
         }
     }
 
-    /// Draws a pixel where something was drawn, from its place.
+    /// Draws a pixel with signal, at the address `place`.
     pub(super) fn draw_lit(&mut self, signal_e: f64, streams: &Streams, index: u64) -> u16 {
-        // Without shot noise electrons are not counted, and there is nothing to superpose. A dead pixel has less than the flat
-        // level.
+        // Without shot noise, electrons are not drawn as integers and superposition does not apply. A dead
+        // pixel has less than the flat level.
         if (0.0..=Self::FAINT_E).contains(&signal_e) && self.distribution.shot == Switch::On {
             self.draw_faint(signal_e, streams.word(index))
         } else {
@@ -122,8 +123,9 @@ impl FlatSampler {
         }
     }
 
-    /// A digital number of a pixel with a signal of at most [`FlatSampler::FAINT_E`], from a uniform word: its upper half
-    /// decides the number of signal electrons (to 2^-32), its lower half the digital number.
+    /// Draws the digital number of a pixel with a signal of at most [`FlatSampler::FAINT_E`] from a uniform
+    /// word: its upper half determines the number of signal electrons (to 2^-32), its lower half the digital
+    /// number.
     fn draw_faint(&mut self, signal_e: f64, word: u64) -> u16 {
         let n = small_poisson(signal_e, (word >> 32) as u32);
         if n == 0 {
@@ -133,7 +135,7 @@ impl FlatSampler {
     }
 }
 
-/// The table of a mean with `extra_e` electrons more.
+/// Returns the table of a mean plus `extra_e` fixed electrons.
 pub(super) fn table(distribution: &PixelDistribution, mean_e: f64, extra_e: u32) -> AliasTable {
     let probabilities = distribution.probabilities(mean_e, extra_e);
     AliasTable::new(probabilities.first_dn, &probabilities.probabilities)
@@ -162,7 +164,7 @@ mod tests {
             let drawn = histogram((0..n).map(|_| usize::from(table.draw(stream.next_u32()))));
             let p = chi_square_p(&drawn, &from_zero(&distribution.probabilities(mean_e, 0)));
             assert!(p > 1e-4, "mean {mean_e}: p = {p} against the probabilities");
-            // The sampler shares nothing with the table but the parameters.
+            // Sampler and table share only the parameters.
             let sampled =
                 histogram((0..n).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
             let (mut chi2, mut bins) = (0.0, 0.0);
@@ -177,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_little_signal_superposes_to_the_law_of_the_sum() {
-        // A gain of 1 e⁻/DN and a low read noise, so that single electrons are seen.
+        // A gain of 1 e⁻/DN and a low read noise, so single electrons are distinguishable.
         let distribution =
             PixelDistribution::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() });
         for (frame, signal_e) in [0.02, 0.5, 1.0, 2.7, FlatSampler::FAINT_E].into_iter().enumerate() {

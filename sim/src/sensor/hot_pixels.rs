@@ -14,17 +14,18 @@ pub struct HotPixel {
     pub x: usize,
     /// Row.
     pub y: usize,
-    /// Its dark current above that of an ordinary pixel, electrons a second; of one that switches, in its high state.
+    /// Dark current above that of an ordinary pixel, electrons per second; for a switching pixel, in its high
+    /// state.
     pub rate_e_per_s: f64,
-    /// Whether it is a random telegraph.
+    /// True if the dark current switches as random telegraph noise.
     pub switches: bool,
 }
 
-/// The hot pixels of a detector, in the order of the image. They depend on the sensor's seed alone; a higher count
-/// adds pixels and keeps the ones there were. `warmth` multiplies the currents.
+/// Returns the hot pixels of a detector, in image order. They depend only on the sensor's seed; a higher
+/// count adds pixels and keeps the existing ones. `warmth` multiplies the currents.
 ///
 /// # Errors
-/// [`OutOfRange`] when more than a tenth of all pixels would be hot.
+/// [`OutOfRange`] if more than a tenth of all pixels would be hot.
 pub(super) fn hot_pixels(
     config: &HotPixelConfig,
     columns: usize,
@@ -32,7 +33,7 @@ pub(super) fn hot_pixels(
     warmth: f64,
 ) -> Result<Vec<HotPixel>, OutOfRange> {
     let pixels = columns * rows;
-    // So few that a place drawn at random is free nine times in ten.
+    // With this limit a randomly drawn position is free in at least nine of ten draws.
     if config.count > pixels / 10 {
         return Err(OutOfRange::new(
             "sensor.hot_pixels.count",
@@ -47,7 +48,7 @@ pub(super) fn hot_pixels(
             let mut stream = streams.stream_at(number as u64);
             let rate_e_per_s = warmth * current(config, &mut stream);
             let index = loop {
-                // The highest bits of a product: uniform but for pixels/2^64.
+                // Highest bits of a product: uniform to within pixels/2^64.
                 let index = ((u128::from(stream.next_u64()) * pixels as u128) >> 64) as usize;
                 if !std::mem::replace(&mut taken[index], true) {
                     break index;
@@ -61,9 +62,9 @@ pub(super) fn hot_pixels(
     Ok(hot)
 }
 
-/// A dark current, electrons a second, at the temperature of reference.
+/// Draws a dark current at the reference temperature, electrons per second.
 fn current(config: &HotPixelConfig, stream: &mut Stream) -> f64 {
-    // A tail without a mean has no end.
+    // A tail without a mean needs an upper limit.
     const MOST_E_PER_S: f64 = 1e9;
     let factor = match config.law {
         HotPixelDistribution::LogNormal => libm::exp(config.spread * normal(stream)),
@@ -108,7 +109,7 @@ mod tests {
             .enumerate()
             .map(|(i, rate)| (law.cdf(*rate) - (i as f64 + 0.5) / n).abs())
             .fold(0.0, f64::max);
-        // Kolmogorov-Smirnov at the 1e-4 level.
+        // Kolmogorov–Smirnov test at the 1e-4 level.
         assert!(distance < 2.23 / n.sqrt(), "{distance}");
     }
 
@@ -119,7 +120,7 @@ mod tests {
         let (with, without) =
             (hot_pixels(&with, 400, 400, 1.0).unwrap(), hot_pixels(&config(10_000), 400, 400, 1.0).unwrap());
         let switching = with.iter().filter(|pixel| pixel.switches).count();
-        // Binomial: 3000 ± 46; four of them.
+        // Binomial distribution: 3000 ± 46; four standard deviations.
         assert!(switching.abs_diff(3000) < 184, "{switching}");
         assert_eq!((with.len(), without.len()), (10_000, 10_000));
         assert!(with.iter().zip(&without).all(|(a, b)| HotPixel { switches: false, ..*a } == *b));

@@ -1,4 +1,4 @@
-//! Interlaced readout: a frame is two fields of alternate rows, each exposed at its own moment.
+//! Interlaced readout: a frame consists of two fields of alternate rows, each exposed at a different time.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,15 +13,16 @@ pub enum RowParity {
     Odd,
 }
 
-/// Interlaced readout by frame integration: each field holds every second row as that row was lit, without summing
-/// neighbours. The time of the frame is the middle between the exposures of its two fields: the first is exposed about
-/// time − `field_interval_s`/2, the second about time + `field_interval_s`/2, both as long as the shutter says. An
-/// exposure may be longer than the interval; the two then overlap in time.
+/// Interlaced readout by frame integration: each field contains every second row, without summing
+/// neighbouring rows. The time of the frame is the middle between the exposures of its two fields: the first
+/// is exposed about time − `field_interval_s`/2, the second about time + `field_interval_s`/2, each for the
+/// exposure time of the shutter. An exposure may be longer than the interval; the two exposures then overlap
+/// in time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InterlaceConfig {
-    /// Time from the middle of the first field's exposure to that of the second's, s, 0 to 10; 0.02 in a 50-field (PAL)
-    /// and 1.001/60 in a 60-field (NTSC) camera.
+    /// Time from the middle of the first field's exposure to the middle of the second's, s, 0 to 10; 0.02 in
+    /// a 50-field (PAL) and 1.001/60 in a 60-field (NTSC) camera.
     #[schemars(range(min = 0, max = 10))]
     pub field_interval_s: f64,
     /// Rows of the field that is exposed first, counted from 0.
@@ -29,24 +30,24 @@ pub struct InterlaceConfig {
 }
 
 impl InterlaceConfig {
-    /// Middle of the exposure of the first and of the second field, s from the time of the frame.
+    /// Mid-exposure times of the first and of the second field, s from the time of the frame.
     pub fn offsets_s(&self) -> [f64; 2] {
         [-0.5 * self.field_interval_s, 0.5 * self.field_interval_s]
     }
 
-    /// Whether a row, counted from 0, belongs to the first field.
+    /// Returns true if a row, counted from 0, belongs to the first field.
     pub fn is_first(&self, row: usize) -> bool {
         row.is_multiple_of(2) == (self.first_field == RowParity::Even)
     }
 
-    /// Middle of the exposure of a row, counted from 0, s from the time of the frame.
+    /// Mid-exposure time of a row, counted from 0, s from the time of the frame.
     pub fn offset_s(&self, row: usize) -> f64 {
         let [first_s, second_s] = self.offsets_s();
         if self.is_first(row) { first_s } else { second_s }
     }
 
-    /// Puts the rows of the second field in their places: `frame` holds the scene of the first field and `second` that of
-    /// the second, both row by row, `columns` long.
+    /// Copies the rows of the second field into `frame`. `frame` holds the scene of the first field and
+    /// `second` that of the second field, both row by row with `columns` columns.
     pub(crate) fn weave(&self, frame: &mut [f64], second: &[f64], columns: usize) {
         let columns = columns.max(1);
         for (y, (row, later)) in frame.chunks_exact_mut(columns).zip(second.chunks_exact(columns)).enumerate()

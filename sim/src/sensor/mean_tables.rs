@@ -1,11 +1,13 @@
-//! The laws of pixels that have a mean of their own each: tables on a grid of means.
+//! Distributions of pixels with individual means: tables on a grid of means.
 //!
-//! Poisson(λ) is Poisson(λₖ) plus an independent n from Poisson(λ − λₖ), where λₖ is the next lower mean of a fixed grid.
-//! The grid is so fine that n is nearly always 0: then the digital number is one of the table of λₖ. For n of 1 and 2
-//! there are tables of their own; the few others go to the direct sampler, at the pixel's own address.
+//! Poisson(λ) is Poisson(λₖ) plus an independent n from Poisson(λ − λₖ), where λₖ is the next lower mean of a
+//! fixed grid. The grid is so fine that n is nearly always 0: the digital number is then drawn from the table
+//! of λₖ. For n of 1 and 2 there are separate tables; the few larger n are drawn with the direct sampler, at
+//! the pixel's own address.
 //!
-//! Pixels are drawn in pieces, in three short loops over each: where the cell of a pixel is, its cell, its number. The first
-//! and the last are arithmetic alike for all pixels, which a machine with wide registers does for many at once.
+//! Pixels are drawn in pieces, with three short loops over each piece: the index of each pixel's cell, the
+//! cell, the digital number. The first and the last loop apply the same arithmetic to all pixels, so wide
+//! registers process many at once.
 
 use pulp::Simd;
 
@@ -16,35 +18,37 @@ use crate::draw::{PART, PIECE};
 use crate::generator_lanes::{GeneratorLanes, LANES};
 use crate::randomness::Stream;
 
-/// Tables of the means of the grid, made when first met: 3072 of at most [`MeanTables::WIDEST`] digital numbers, 25 MB.
+/// Tables for the means of the grid, made on first use: 3072 tables of at most [`MeanTables::WIDEST`] digital
+/// numbers, 25 MB.
 #[derive(Debug, Clone)]
 pub(super) struct MeanTables {
     distribution: PixelDistribution,
-    /// Cells of a table, as a power of two.
+    /// Binary logarithm of the number of cells of a table.
     log2_cells: u32,
-    /// The packed cells of the tables: by the mean in quarters of an electron, then by n; 0 where none is made yet, and in
-    /// one table more.
+    /// Packed cells of the tables, by mean in quarters of an electron, then by n; 0 in tables that are not
+    /// made yet and in one additional table.
     cells: Vec<u64>,
 }
 
-/// The grid ends here, electrons.
+/// Upper end of the grid, electrons.
 const END_E: f64 = 256.0;
-/// Tables of a mean: with 0, 1 and 2 electrons more.
+/// Number of tables per mean: with 0, 1 and 2 extra electrons.
 const TABLES_PER_MEAN: usize = 3;
-/// All tables of the grid.
+/// Number of tables of the grid.
 const TABLES: usize = 4 * END_E as usize * TABLES_PER_MEAN;
-/// The end of the grid in quarters of an electron.
+/// Upper end of the grid, in quarters of an electron.
 const QUARTERS: f32 = 4.0 * END_E as f32;
 const TWO_TO_23: f32 = 8_388_608.0;
 const TWO_TO_24: f32 = 16_777_216.0;
 
 impl MeanTables {
-    /// Digital numbers in a table at most.
+    /// Maximum number of digital numbers in a table.
     const WIDEST: f64 = 1024.0;
 
-    /// No table made yet.
+    /// Creates the grid without any tables.
     pub(super) fn new(distribution: &PixelDistribution) -> Self {
-        // A law reaches as many numbers as it is wide, and one at either end; n moves it by two electrons, not wider.
+        // A distribution covers as many numbers as its width, and one more at each end; n shifts it by up to
+        // two electrons without widening it.
         let cells = (distribution.width_dn(END_E).clamp(0.0, Self::WIDEST) as usize + 3).next_power_of_two();
         Self {
             distribution: *distribution,
@@ -53,13 +57,14 @@ impl MeanTables {
         }
     }
 
-    /// The means from which on pixels of a law have no grid, electrons; 0 where its tables would be wide.
+    /// Mean from which on pixels are not drawn from the grid, electrons; 0 if the tables of this distribution
+    /// would be too wide.
     pub(super) fn end_e(distribution: &PixelDistribution) -> f64 {
         if distribution.width_dn(END_E) <= Self::WIDEST { END_E } else { 0.0 }
     }
 
-    /// Draws the pixels of a row, each of a mean of its own, electrons (one below 0 is taken for 0), from the words of `lanes`,
-    /// one a pixel. `pixel_stream` tells the stream of a pixel's own address.
+    /// Draws the pixels of a row, each with its mean, electrons (a negative mean counts as 0), from the words
+    /// of `lanes`, one per pixel. `own` returns the stream at a pixel's own address.
     #[inline(always)]
     pub(super) fn draw_row<S: Simd>(
         &mut self,
@@ -76,7 +81,7 @@ impl MeanTables {
         }
     }
 
-    /// [`MeanTables::draw_row`] of at most `N` pixels side by side, from their words.
+    /// [`MeanTables::draw_row`] for at most `N` adjacent pixels and their words.
     #[inline(always)]
     pub(super) fn draw_piece<const N: usize>(
         &mut self,
@@ -97,8 +102,8 @@ impl MeanTables {
         self.pick(&places, words, means_e, piece, pixel_stream);
     }
 
-    /// [`MeanTables::draw_piece`] where most pixels have the mean `even`, all but those of the parts that are lit: the same numbers,
-    /// in less time.
+    /// [`MeanTables::draw_piece`] for a piece whose pixels, except in the lit parts, have the mean `even`:
+    /// the same numbers in less time.
     #[inline(always)]
     pub(super) fn draw_mostly_even_piece(
         &mut self,
@@ -123,7 +128,8 @@ impl MeanTables {
         self.pick(&places, words, means_e, piece, pixel_stream);
     }
 
-    /// The numbers of a piece from the places of their cells; what no cell tells is drawn by the pixel's mean.
+    /// Sets the numbers of a piece from the indices of their cells; pixels whose cell has no number are drawn
+    /// from their mean.
     #[inline(always)]
     fn pick<const N: usize>(
         &mut self,
@@ -133,7 +139,7 @@ impl MeanTables {
         piece: &mut [u16],
         pixel_stream: impl Fn(usize) -> Stream,
     ) {
-        // Looked up once: where the tables are, is told to no pixel.
+        // The address of the tables is loaded once per piece, not per pixel.
         let all = self.cells.as_slice();
         let Some(last) = all.len().checked_sub(1) else { return };
         let mut cells = [0; N];
@@ -158,8 +164,9 @@ impl MeanTables {
         }
     }
 
-    /// A digital number of a pixel with a mean of `mean_e` electrons, from a uniform word: its highest 24 bits decide n, its lower half
-    /// the digital number. `pixel_stream` is the stream of the pixel's own address.
+    /// Draws the digital number of a pixel with a mean of `mean_e` electrons from a uniform word: its highest
+    /// 24 bits determine n, its lower half the digital number. `own` is the stream at the pixel's own
+    /// address.
     fn draw(&mut self, mean_e: f64, word: u64, pixel_stream: impl FnOnce() -> Stream) -> u16 {
         let mean = mean_e.max(0.0) as f32;
         let choice = TableChoice::from_mean(mean, (word >> 32) as u32);
@@ -172,7 +179,7 @@ impl MeanTables {
         self.number(level, pair, word as u32) as u16
     }
 
-    /// The same where there is no table, or not yet.
+    /// [`MeanTables::draw`] for a pixel without a table, or whose table is not made yet.
     #[cold]
     fn draw_open(&mut self, mean_e: f64, choice: TableChoice, word: u64, mut pixel_stream: Stream) -> u16 {
         if choice.quarters >= QUARTERS as i32 {
@@ -188,7 +195,8 @@ impl MeanTables {
         let table =
             AliasTable::with_cells(1 << self.log2_cells, distribution.first_dn, &distribution.probabilities);
         let start = (choice.table() as usize) << self.log2_cells;
-        // A law of more numbers than a table has cells would have none: it would be drawn as it stands here, always.
+        // A distribution with more numbers than a table has cells is not stored: it is recomputed on every
+        // draw.
         if table.packed().len() == 1 << self.log2_cells
             && let Some(cells) = self.cells.get_mut(start..start + (1 << self.log2_cells))
         {
@@ -197,13 +205,13 @@ impl MeanTables {
         table.draw(word as u32)
     }
 
-    /// Where in a table the cell of a word is, by its lower half.
+    /// Index of the cell that the lower half of a word selects in a table.
     #[inline(always)]
     fn table_cell(&self, table: u32, lower: u32) -> u32 {
         (table << self.log2_cells) + (lower >> (32 - self.log2_cells))
     }
 
-    /// The number that a word picks of its cell, by its lower half.
+    /// Digital number that the lower half of a word selects in its cell.
     #[inline(always)]
     fn number(&self, level: u32, pair: u32, lower: u32) -> u32 {
         let side = lower & (u32::MAX >> self.log2_cells);
@@ -211,19 +219,20 @@ impl MeanTables {
     }
 }
 
-/// The words of `N` pixels side by side, one each, in halves: of numbers of 32 bits a register holds twice as many.
+/// Words of `N` adjacent pixels, one per pixel, split into halves: a register holds twice as many 32-bit
+/// numbers.
 pub(super) struct Words<const N: usize> {
     upper: [u32; N],
     lower: [u32; N],
 }
 
 impl<const N: usize> Words<N> {
-    /// None drawn yet.
+    /// Creates words that are not drawn yet.
     pub(super) fn new() -> Self {
         Self { upper: [0; N], lower: [0; N] }
     }
 
-    /// Makes them the next ones of a row.
+    /// Draws the next words of a row.
     #[inline(always)]
     pub(super) fn draw<S: Simd>(&mut self, simd: S, lanes: &mut GeneratorLanes) {
         simd.vectorize(DrawWords { words: self, lanes });
@@ -234,7 +243,7 @@ impl<const N: usize> Words<N> {
     }
 }
 
-/// [`Words::draw`].
+/// Arguments of [`Words::draw`] for vectorised code.
 struct DrawWords<'a, const N: usize> {
     words: &'a mut Words<N>,
     lanes: &'a mut GeneratorLanes,
@@ -255,32 +264,35 @@ impl<const N: usize> pulp::WithSimd for DrawWords<'_, N> {
     }
 }
 
-/// The lower and the upper half of a word or a cell; of a cell the level up to which its first number is picked, and its two numbers.
+/// Returns the lower and the upper half of a word or a cell. In a cell they are the threshold below which its
+/// first number is selected, and its two numbers.
 #[inline(always)]
 fn halves(word: u64) -> (u32, u32) {
     (word as u32, (word >> 32) as u32)
 }
 
-/// Whether a cell tells no number, because its table is missing, or because no table decides.
+/// Returns true if a cell has no number, because its table is missing or because the pixel is not drawn from
+/// a table.
 #[inline(always)]
 fn is_open(cell: u64) -> bool {
     cell as u32 == 0
 }
 
-/// Which table a pixel is drawn from.
+/// Table from which a pixel is drawn.
 #[derive(Debug, Clone, Copy)]
 struct TableChoice {
-    /// Its mean in quarters of an electron, and what is above them, electrons.
+    /// Mean in quarters of an electron, rounded down, and the remainder, electrons.
     quarters: i32,
     rest: f32,
-    /// The number n of electrons that the rest gives; [`TABLES_PER_MEAN`] where it is that or more.
+    /// Number n of electrons drawn from the remainder; [`TABLES_PER_MEAN`] if there are that many or more.
     more: i32,
 }
 
 impl TableChoice {
-    /// Of a mean from 0 on.
+    /// Selects the table for a mean of 0 or more.
     ///
-    /// n is decided to 2^-24, by the highest bits of the upper half of a word, and the mean is rounded to the 24 bits of its float.
+    /// n is resolved to 2^-24, by the highest bits of the upper half of a word, and the mean is rounded to
+    /// the 24 bits of its float.
     #[inline(always)]
     fn from_mean(mean: f32, upper: u32) -> Self {
         let (quarters, rest) = grid_node(mean);
@@ -290,7 +302,7 @@ impl TableChoice {
         Self { quarters, rest, more }
     }
 
-    /// The number of its table; the one after the last where there is none.
+    /// Index of the table; one past the last table if there is none.
     #[inline(always)]
     fn table(self) -> u32 {
         let known = (self.quarters < QUARTERS as i32) & (self.more < TABLES_PER_MEAN as i32);
@@ -298,20 +310,20 @@ impl TableChoice {
     }
 }
 
-/// The mean of many pixels: what [`TableChoice`] finds for each, found once.
+/// Precomputed [`Choice`] for many pixels with a common mean.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct UniformMean {
-    /// The table of 0 electrons more.
+    /// Index of the table with 0 extra electrons.
     first: u32,
-    /// From which values of the 24 bits of a word on there are 1, 2 and 3 electrons more.
+    /// Values of a word's 24 bits from which on there are at least 1, 2 and 3 extra electrons.
     steps: [i32; TABLES_PER_MEAN],
 }
 
 impl UniformMean {
-    /// Of a mean from 0 to [`MeanTables::end_e`], electrons.
+    /// Creates the choice for a mean from 0 to [`MeanTables::end_e`], electrons.
     pub(super) fn new(mean_e: f64) -> Self {
         let (quarters, rest) = grid_node(mean_e.max(0.0) as f32);
-        // 24 bits are a float's own: comparing them as numbers without a point is comparing them as shares.
+        // A float represents 24 bits exactly, so a comparison of integers equals a comparison of shares.
         let steps = n_at_most(rest).map(|share| (f64::from(share) * f64::from(TWO_TO_24)).ceil() as i32);
         Self { first: (quarters * TABLES_PER_MEAN as i32) as u32, steps }
     }
@@ -324,11 +336,11 @@ impl UniformMean {
     }
 }
 
-/// The node of the grid below a mean, in quarters of an electron, and what is above it, electrons.
+/// Returns the grid node below a mean, in quarters of an electron, and the remainder, electrons.
 #[inline(always)]
 fn grid_node(mean: f32) -> (i32, f32) {
-    // The floor without a conversion, which most machines have for one number at a time: in a sum with 2^23 the last bit
-    // counts ones.
+    // Floor without a float-to-integer conversion, which most machines do for one number at a time: in a sum
+    // with 2^23 the last bit counts ones.
     let all = mean * 4.0;
     let all = if all < QUARTERS { all } else { QUARTERS };
     let nearest = (all + TWO_TO_23) - TWO_TO_23;
@@ -337,10 +349,10 @@ fn grid_node(mean: f32) -> (i32, f32) {
     (quarters, mean - 0.25 * floor)
 }
 
-/// The probabilities that a mean of `rest` electrons gives none, at most one and at most two.
+/// Probabilities that a mean of `rest` electrons gives none, at most one and at most two.
 #[inline(always)]
 fn n_at_most(rest: f32) -> [f32; TABLES_PER_MEAN] {
-    // exp(−rest) by Taylor's series: for a rest of at most ¼ the next term is 1.2e-8.
+    // Taylor series of exp(−rest): for a remainder of at most ¼ the next term is 1.2e-8.
     let r = -rest;
     let none = 1.0
         + r * (1.0
@@ -358,7 +370,7 @@ mod tests {
     use super::*;
     use crate::randomness::{Effect, Seed};
 
-    /// A gain of 1 e⁻/DN and a low read noise, so that single electrons are seen.
+    /// A gain of 1 e⁻/DN and a low read noise, so single electrons are distinguishable.
     fn distribution() -> PixelDistribution {
         PixelDistribution::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() })
     }
@@ -390,15 +402,15 @@ mod tests {
         }
     }
 
-    /// Half-way between the nodes of the grid n is least certain. Pearson's test against the exact law, its tails joined to
-    /// ten expected numbers; draws of a row each.
+    /// Checks means half-way between the nodes of the grid, where n is least certain. Pearson's test against
+    /// the exact distribution, its tails merged to an expected count of ten; one row of draws at a time.
     fn assert_the_law_midway(draws: usize) {
         let distribution = distribution();
         let mut tables = MeanTables::new(&distribution);
         let mut row = vec![0; 1000];
         let mut after = 0.0;
         for i in 0..20_u64 {
-            // No two in the same quarter.
+            // At most one mean per quarter.
             let quarters = (4.0 * 0.1 * libm::pow(2550.0, i as f64 / 19.0)).floor().max(after);
             after = quarters + 1.0;
             let mean_e = 0.25 * quarters + 0.125;
@@ -427,7 +439,7 @@ mod tests {
         assert_the_law_midway(1_000_000);
     }
 
-    /// In full: `cargo test --release -p boresight-sim --lib midway -- --ignored`, 15 s of CPU time.
+    /// Full version: `cargo test --release -p boresight-sim --lib midway -- --ignored`, 15 s of CPU time.
     #[test]
     #[ignore = "2e9 draws: for a scheduled job"]
     fn midway_between_nodes_the_law_is_exact_in_a_hundred_million_draws() {
@@ -449,7 +461,8 @@ mod tests {
         }
     }
 
-    /// Pieces, the last of them short, against one pixel after the other; twice, without tables and with them.
+    /// Pieces, the last of them short, give the same numbers as single pixels, without tables and with
+    /// tables.
     #[test]
     fn a_row_is_drawn_as_its_pixels_are() {
         let distribution = distribution();

@@ -1,25 +1,26 @@
-//! The sensor: expected photo-electrons → charge → digital numbers.
+//! The sensor: expected photoelectrons → charge → digital numbers.
 //!
-//! Each stage is a type of its own: [`crate::draw::ExpectedImage`] holds photo-electrons, [`Charge`] adds what the
-//! detector itself collects (dark current, hot pixels) and what each pixel makes of it, [`RawImage`] holds digital numbers. A charge can only be
-//! had from an image, and digital numbers only from a charge:
+//! Each stage is a separate type: [`crate::draw::ExpectedImage`] holds photoelectrons, [`Charge`] adds the
+//! electrons that the detector itself collects (dark current, hot pixels) and each pixel's response,
+//! [`RawImage`] holds digital numbers. A charge can be obtained only from an image, and digital numbers only
+//! from a charge:
 //! ```
 //! use boresight_sim::draw::ExpectedImage;
 //! use boresight_sim::randomness::Seed;
-//! use boresight_sim::sensor::{FlatSamplers, ExposureInterval, RawImage, Sensor};
-//! fn right(sensor: &Sensor, image: &mut ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
+//! use boresight_sim::sensor::{FlatLaws, Opening, RawImage, Sensor};
+//! fn right(sensor: &Sensor, image: &mut ExpectedImage, laws: &mut FlatLaws, raw: &mut RawImage) {
 //!     let seed = Seed { seed: 1, case: 0 };
-//!     let charge = sensor.collect(image, &ExposureInterval { seed, middle_s: 0.0, exposure_s: 0.5 });
-//!     let _ = sensor.read_out(&charge, &seed, 0, samplers, raw);
+//!     let charge = sensor.collect(image, &Opening { seed, middle_s: 0.0, exposure_s: 0.5 });
+//!     let _ = sensor.read_out(&charge, &seed, 0, laws, raw);
 //! }
 //! ```
-//! A readout of photo-electrons does not compile:
+//! A readout of photoelectrons does not compile:
 //! ```compile_fail,E0308
 //! use boresight_sim::draw::ExpectedImage;
 //! use boresight_sim::randomness::Seed;
-//! use boresight_sim::sensor::{FlatSamplers, RawImage, Sensor};
-//! fn wrong(sensor: &Sensor, image: &ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
-//!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, samplers, raw);
+//! use boresight_sim::sensor::{FlatLaws, RawImage, Sensor};
+//! fn wrong(sensor: &Sensor, image: &ExpectedImage, laws: &mut FlatLaws, raw: &mut RawImage) {
+//!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, laws, raw);
 //! }
 //! ```
 

@@ -1,7 +1,8 @@
-//! The law of one pixel: from its expected electrons to its digital number.
+//! Distribution of one pixel: from its expected electrons to its digital number.
 //!
-//! Collected electrons are Poisson, held at the full well; the read noise is normal; the converter rounds and
-//! clips. The law is here twice: as a sampler, and as the probability of every digital number.
+//! Collected electrons are Poisson distributed and limited to the full well; the read noise is normal; the
+//! converter rounds and clips. The distribution is implemented twice: as a sampler, and as the probability of
+//! every digital number.
 
 use super::alias::AliasTable;
 use super::config::SensorConfig;
@@ -9,7 +10,7 @@ use super::poisson::poisson;
 use crate::randomness::{Stream, normal};
 use crate::switch::Switch;
 
-/// What the law of a pixel depends on besides its mean.
+/// Parameters of a pixel's distribution other than its mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PixelDistribution {
     gain_e_per_dn: f64,
@@ -21,14 +22,14 @@ pub(super) struct PixelDistribution {
     full_scale_dn: u16,
 }
 
-/// The probability of each digital number from `first_dn` on.
+/// Probability of each digital number from `first_dn` on.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct DnDistribution {
     pub(super) first_dn: u16,
     pub(super) probabilities: Vec<f64>,
 }
 
-/// Standard deviations beyond which a normal law is cut: 6e-14 of it lies there, less than 2^-43.
+/// Standard deviations at which a normal distribution is truncated: 6e-14 of it lies beyond, less than 2^-43.
 const NORMAL_REACH: f64 = 7.5;
 
 impl PixelDistribution {
@@ -44,16 +45,18 @@ impl PixelDistribution {
         }
     }
 
-    /// A digital number of a pixel with a mean of `mean_e` electrons, and `offset_e` electrons added by the readout.
+    /// Draws the digital number of a pixel with a mean of `mean_e` electrons, plus `offset_e` electrons added
+    /// by the readout.
     pub(super) fn sample(&self, mean_e: f64, offset_e: f64, stream: &mut Stream) -> u16 {
-        // Twelve standard deviations above a full well the well is full but once in 10^32; a mean without bound
-        // would leave the range of the sampler.
+        // With a mean twelve standard deviations above the full well, the well is full except with a
+        // probability of 10^-32; an unbounded mean would exceed the range of the sampler.
         let surely_full = self.full_well_e + 12.0 * self.full_well_e.sqrt() + 144.0;
         let collected_e = if mean_e < surely_full { self.collect(mean_e, stream) } else { mean_e };
         self.convert(collected_e.min(self.full_well_e), offset_e, stream)
     }
 
-    /// The electrons that a pixel collects, before its well is full: the first half of [`PixelDistribution::sample`].
+    /// Draws the electrons that a pixel collects, before the limit of the full well: the first half of
+    /// [`PixelDistribution::sample`].
     pub(super) fn collect(&self, mean_e: f64, stream: &mut Stream) -> f64 {
         // Beyond the range of the sampler the shot noise is less than 3e-8 of the mean.
         const SAMPLER_RANGE_E: f64 = 1e15;
@@ -63,27 +66,29 @@ impl PixelDistribution {
         }
     }
 
-    /// A digital number of a pixel that collects a Poisson number of mean `mean_e` and `extra_e` electrons for certain.
+    /// Draws the digital number of a pixel that collects a Poisson number of mean `mean_e` plus `extra_e`
+    /// fixed electrons.
     pub(super) fn sample_more(&self, mean_e: f64, extra_e: f64, stream: &mut Stream) -> u16 {
         let collected_e = self.collect(mean_e, stream) + extra_e;
         self.convert(collected_e.min(self.full_well_e), 0.0, stream)
     }
 
-    /// The digital number of a pixel that holds `held_e` electrons: the second half of [`PixelDistribution::sample`].
+    /// Draws the digital number of a pixel that holds `held_e` electrons: the second half of
+    /// [`PixelDistribution::sample`].
     pub(super) fn convert(&self, held_e: f64, offset_e: f64, stream: &mut Stream) -> u16 {
         let normal = if self.read_noise_e > 0.0 { normal(stream) } else { 0.0 };
         self.read(held_e, normal, offset_e)
     }
 
-    /// The digital number of the electrons that a pixel collected, its well perhaps full, with `normal` standard deviations of
-    /// read noise.
+    /// Returns the digital number for the electrons that a pixel collected, limited to the full well, with
+    /// `normal` standard deviations of read noise.
     #[inline(always)]
     pub(super) fn read(&self, collected_e: f64, normal: f64, offset_e: f64) -> u16 {
         let held_e = self.amplified(collected_e.min(self.full_well_e));
         self.digitise(held_e + self.read_noise_e * normal + offset_e)
     }
 
-    /// Electrons as a linear amplifier would have to see them: e (1 − β e/full well).
+    /// Equivalent electrons at the input of a linear amplifier: e (1 − β e/full well).
     #[inline(always)]
     fn amplified(&self, held_e: f64) -> f64 {
         if self.non_linearity == 0.0 {
@@ -92,13 +97,13 @@ impl PixelDistribution {
         held_e * (1.0 - self.non_linearity * held_e / self.full_well_e)
     }
 
-    /// Electrons that a pixel holds.
+    /// Full well of a pixel, electrons.
     pub(super) fn full_well_e(&self) -> f64 {
         self.full_well_e
     }
 
-    /// The mean from which on a pixel may collect more than its well holds; below, the probability is less than 2^-40
-    /// (the bound of [`PoissonReach`], solved for the mean).
+    /// Mean from which on a pixel may collect more than its full well; below it the probability is less than
+    /// 2^-40 (the bound of [`PoissonReach`], solved for the mean).
     pub(super) fn may_overflow_from_e(&self) -> f64 {
         match self.shot {
             Switch::On => {
@@ -110,22 +115,22 @@ impl PixelDistribution {
         }
     }
 
-    /// The converter: floor(e/gain + bias + ½), clipped.
+    /// Converts electrons to a digital number: floor(e/gain + bias + ½), clipped.
     #[inline(always)]
     fn digitise(&self, electrons: f64) -> u16 {
         let dn = electrons / self.gain_e_per_dn + self.bias_dn + 0.5;
-        // Above 0 the conversion is the floor.
+        // Above 0 the conversion equals the floor.
         dn.clamp(0.0, f64::from(self.full_scale_dn)) as u16
     }
 
-    /// How many digital numbers the law of a mean reaches, as if none were clipped.
+    /// Number of digital numbers that the distribution of a mean covers, without clipping.
     pub(super) fn width_dn(&self, mean_e: f64) -> f64 {
         let reach = PoissonReach::new(mean_e);
         (reach.high - reach.low + 2.0 * NORMAL_REACH * self.read_noise_e) / self.gain_e_per_dn
     }
 
-    /// The probability of every digital number when a Poisson number of mean `mean_e`, plus `extra_e` electrons for
-    /// certain, is collected. The absolute error of a probability is below 2^-40.
+    /// Returns the probability of every digital number if a Poisson number of mean `mean_e` plus `extra_e`
+    /// fixed electrons is collected. The absolute error of a probability is below 2^-40.
     pub(super) fn probabilities(&self, mean_e: f64, extra_e: u32) -> DnDistribution {
         let extra_e = f64::from(extra_e);
         let reach = PoissonReach::new(mean_e);
@@ -138,7 +143,8 @@ impl PixelDistribution {
         }
     }
 
-    /// The plain sum over numbers of electrons (value, probability): each gives a normal law cut into digital numbers.
+    /// Sums directly over numbers of electrons (value, probability): each gives a normal distribution divided
+    /// into digital numbers.
     fn by_sum(&self, atoms: &[(f64, f64)], extra_e: f64) -> DnDistribution {
         let collected = |value: f64| self.amplified((value + extra_e).min(self.full_well_e));
         let reach_e = NORMAL_REACH * self.read_noise_e;
@@ -162,12 +168,13 @@ impl PixelDistribution {
         DnDistribution { first_dn, probabilities }
     }
 
-    /// The same from the characteristic function of Poisson plus normal,
-    /// φ(u) = exp(λ(e^{iu} − 1) + iux − σ²u²/2), for a smooth law: tens of terms a digital number, not hundreds.
+    /// Computes the probabilities from the characteristic function of Poisson plus normal, φ(u) =
+    /// exp(λ(e^{iu} − 1) + iux − σ²u²/2), for a smooth distribution: tens of terms per digital number instead
+    /// of hundreds.
     ///
-    /// With n digital numbers of width g that hold the whole law, the probability of the one centred at c is the
-    /// Fourier series (1/n) [1 + 2 Σ_j Re(φ(u_j) e^{−i u_j c}) sinc(u_j g/2)], u_j = 2πj/(n g). It is exact but for
-    /// the law's mass outside of them, and ends where φ is below 1e-15.
+    /// With n digital numbers of width g that hold the whole distribution, the probability of the one centred
+    /// at c is the Fourier series (1/n) [1 + 2 Σ_j Re(φ(u_j) e^{−i u_j c}) sinc(u_j g/2)], u_j = 2πj/(n g).
+    /// It is exact except for the probability outside these numbers, and is truncated where φ is below 1e-15.
     fn by_characteristic_function(&self, mean_e: f64, extra_e: f64, reach: PoissonReach) -> DnDistribution {
         const NEGLIGIBLE_EXPONENT: f64 = 35.0;
         let (gain, sigma) = (self.gain_e_per_dn, self.read_noise_e);
@@ -187,7 +194,7 @@ impl PixelDistribution {
             }
             let half_width = 0.5 * u * gain;
             let amplitude = libm::exp(-exponent) * libm::sin(half_width) / half_width;
-            // The angle falls by u g from one digital number to the next: a rotation, not a cosine, each.
+            // The angle falls by u g from each digital number to the next, so a rotation replaces a cosine.
             let (mut im, mut re) = libm::sincos(mean_e * sin - u * first_centre_e);
             let (turn_im, turn_re) = libm::sincos(u * gain);
             for term in &mut series {
@@ -200,7 +207,7 @@ impl PixelDistribution {
         let (first_dn, last_dn) = (clip(first), clip(first + (count - 1) as f64));
         let mut probabilities = vec![0.0; usize::from(last_dn - first_dn) + 1];
         for (i, term) in series.into_iter().enumerate() {
-            // Rounding leaves some 1e-17 where there is nothing, of either sign.
+            // Rounding leaves about 1e-17 of either sign where the probability is zero.
             let probability = (2.0 * term / count as f64).max(0.0);
             probabilities[usize::from(clip(first + i as f64) - first_dn)] += probability;
         }
@@ -208,8 +215,8 @@ impl PixelDistribution {
     }
 }
 
-/// Numbers beyond which a Poisson law is cut, with less than 2^-40 on either side, by Chernoff's bounds in Bernstein's
-/// form: P(N ≥ λ + x) ≤ exp(−x²/(2λ + 2x/3)) and P(N ≤ λ − x) ≤ exp(−x²/(2λ)).
+/// Numbers at which a Poisson distribution is truncated, with less than 2^-40 on either side, by Chernoff's
+/// bounds in Bernstein's form: P(N ≥ λ + x) ≤ exp(−x²/(2λ + 2x/3)) and P(N ≤ λ − x) ≤ exp(−x²/(2λ)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct PoissonReach {
     low: f64,
@@ -229,7 +236,7 @@ impl PoissonReach {
     }
 }
 
-/// The numbers of a Poisson law within its reach and their probabilities.
+/// Returns the numbers of a Poisson distribution within its reach, with their probabilities.
 fn poisson_atoms(mean: f64, reach: PoissonReach) -> Vec<(f64, f64)> {
     if mean <= 0.0 {
         return vec![(0.0, 1.0)];
@@ -240,7 +247,7 @@ fn poisson_atoms(mean: f64, reach: PoissonReach) -> Vec<(f64, f64)> {
     (0..count).map(|i| reach.low + i as f64).map(|k| (k, probability(k))).collect()
 }
 
-/// The table of a Poisson law of a mean of at most 61,440 (its numbers have 16 bits).
+/// Returns the table of a Poisson distribution with a mean of at most 61,440 (its numbers have 16 bits).
 pub(super) fn poisson_table(mean: f64) -> AliasTable {
     let reach = PoissonReach::new(mean);
     let probabilities: Vec<f64> = poisson_atoms(mean, reach).into_iter().map(|(_, p)| p).collect();
@@ -257,7 +264,7 @@ pub(super) mod tests {
     use super::*;
     use crate::randomness::{Effect, Seed};
 
-    /// How often each number occurs.
+    /// Number of occurrences of each number.
     pub(in crate::sensor) fn histogram(numbers: impl Iterator<Item = usize>) -> Vec<usize> {
         let mut counts = Vec::new();
         for number in numbers {
@@ -269,13 +276,14 @@ pub(super) mod tests {
         counts
     }
 
-    /// The probability that chi-square exceeds a value.
+    /// Probability that chi-square exceeds a value.
     pub(in crate::sensor) fn chi_square_tail(chi2: f64, degrees_of_freedom: f64) -> f64 {
         use statrs::distribution::{ChiSquared, ContinuousCDF};
         ChiSquared::new(degrees_of_freedom).unwrap().sf(chi2)
     }
 
-    /// Pearson's test of counts against probabilities, bins joined until each is expected ten times.
+    /// Pearson's test of counts against probabilities; bins are merged until each has an expected count of
+    /// ten.
     pub(in crate::sensor) fn chi_square_p(counts: &[usize], probabilities: &[f64]) -> f64 {
         let n = counts.iter().sum::<usize>() as f64;
         let (mut chi2, mut bins, mut seen, mut expected) = (0.0, 0.0, 0.0, 0.0);
@@ -283,7 +291,7 @@ pub(super) mod tests {
         for i in 0..counts.len().max(probabilities.len()) {
             seen += counts.get(i).copied().unwrap_or(0) as f64;
             expected += n * probabilities.get(i).copied().unwrap_or(0.0);
-            // The last bin takes all the rest, so that nothing unexpected is left out.
+            // The last bin includes the entire remainder, so unexpected numbers also count.
             if expected >= 10.0 && n - joined - expected >= 10.0 {
                 chi2 += (seen - expected) * (seen - expected) / expected;
                 bins += 1.0;
@@ -296,7 +304,7 @@ pub(super) mod tests {
         if bins < 1.0 { 1.0 } else { chi_square_tail(chi2, bins) }
     }
 
-    /// A law as probabilities that start at the digital number 0.
+    /// Probabilities of a distribution, starting at the digital number 0.
     pub(in crate::sensor) fn from_zero(distribution: &DnDistribution) -> Vec<f64> {
         let mut all = vec![0.0; usize::from(distribution.first_dn)];
         all.extend(&distribution.probabilities);
@@ -328,7 +336,7 @@ pub(super) mod tests {
                 for dn in 0..sum.len().max(series.len()) {
                     let at = |distribution: &[f64]| distribution.get(dn).copied().unwrap_or(0.0);
                     let error = at(&sum) - at(&series);
-                    // 2^-40, of each.
+                    // 2^-40 for each.
                     assert!(error.abs() < 2.0 * 9.1e-13, "{distribution:?}, mean {mean_e}, {dn} DN: {error}");
                 }
             }
@@ -339,7 +347,7 @@ pub(super) mod tests {
     fn the_probabilities_have_the_moments_of_poisson_plus_normal_plus_rounding() {
         let mut checked = 0;
         for (distribution, mean_e) in distributions() {
-            // Far from both ends, and smooth, so that Sheppard's correction of 1/12 DN² holds.
+            // Far from both ends and smooth, so Sheppard's correction of 1/12 DN² applies.
             if distribution.read_noise_e < 0.75 * distribution.gain_e_per_dn || distribution.bias_dn < 40.0 {
                 continue;
             }
@@ -352,7 +360,7 @@ pub(super) mod tests {
             let gain2 = distribution.gain_e_per_dn * distribution.gain_e_per_dn;
             let variance =
                 (mean_e + distribution.read_noise_e * distribution.read_noise_e) / gain2 + 1.0 / 12.0;
-            // The rounding's own ripple is exp(−2π²σ²/g²), below 1e-15 at 1.5 DN of read noise.
+            // The ripple due to rounding is exp(−2π²σ²/g²), below 1e-15 at 1.5 DN of read noise.
             assert!((moment(&|dn| dn) - expected_dn).abs() < 1e-8);
             assert!((moment(&|dn| (dn - expected_dn) * (dn - expected_dn)) - variance).abs() < 1e-8);
             checked += 1;
@@ -367,7 +375,7 @@ pub(super) mod tests {
             let counts =
                 histogram((0..50_000).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
             let p = chi_square_p(&counts, &from_zero(&distribution.probabilities(mean_e, 0)));
-            // Thirty tests: one in 3,000 runs would fail by chance, and the seed is fixed.
+            // Thirty tests: one in 3,000 random seeds would fail by chance, but the seed is fixed.
             assert!(p > 1e-5, "{distribution:?}, mean {mean_e}: p = {p}");
         }
     }
@@ -387,7 +395,7 @@ pub(super) mod tests {
         let config = SensorConfig { full_well_e: 5000.0, ..twelve_bit() };
         let distribution = PixelDistribution::new(&config);
         let counts = histogram((0..20_000).map(|_| usize::from(distribution.sample(1e6, 0.0, &mut stream))));
-        // Five thousand electrons for certain, and the read noise.
+        // Exactly five thousand electrons, plus the read noise.
         let full = PixelDistribution { shot: Switch::Off, ..distribution }.probabilities(5000.0, 0);
         assert!(chi_square_p(&counts, &from_zero(&full)) > 1e-4);
         let half_full =
@@ -406,7 +414,7 @@ pub(super) mod tests {
                 histogram((0..50_000).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
             let probabilities = from_zero(&distribution.probabilities(mean_e, 0));
             assert!(chi_square_p(&counts, &probabilities) > 1e-4, "mean {mean_e}");
-            // e − 1e-4 e² of a Poisson number: ⟨e²⟩ = λ² + λ. The well cuts the last one.
+            // e − 1e-4 e² of a Poisson number: ⟨e²⟩ = λ² + λ. The full well truncates the last mean.
             let mean_dn: f64 = probabilities.iter().enumerate().map(|(dn, p)| dn as f64 * p).sum();
             let expected_dn = 50.3 + (mean_e - 1e-4 * (mean_e * mean_e + mean_e)) / 3.0;
             assert!(mean_e == 2000.0 || (mean_dn - expected_dn).abs() < 1e-6, "{mean_dn}");

@@ -1,4 +1,5 @@
-//! The digital numbers of a frame, pixel by pixel: by tables where a table holds the law of a pixel, in parts elsewhere.
+//! Digital numbers of a frame, pixel by pixel: from tables where a table holds a pixel's distribution,
+//! otherwise in separate steps.
 
 use rand::Rng;
 
@@ -13,21 +14,22 @@ use crate::randomness::Streams;
 use crate::simd_kernel::arch;
 use crate::switch::Switch;
 
-/// Electrons that the readout adds to each row and each column of a frame.
+/// Electrons that the readout adds to each row and to each column of a frame.
 pub(super) struct LineOffsets {
     pub(super) rows: Vec<f64>,
     pub(super) columns: Vec<f64>,
 }
 
 impl LineOffsets {
-    /// Of one pixel.
+    /// Offset of one pixel, electrons.
     pub(super) fn offset_at(&self, x: usize, y: usize) -> f64 {
         self.rows[y] + self.columns[x]
     }
 }
 
 impl Sensor {
-    /// The frame of a flat background of more electrons than there are tables for: one of its own for nearly all pixels.
+    /// Draws a frame with a flat background above the range of the tables; nearly all pixels share a table
+    /// made for this level.
     pub(super) fn draw_flat(
         &self,
         expected: &ExpectedImage,
@@ -44,12 +46,12 @@ impl Sensor {
         }
     }
 
-    /// Whether there are tables for the means of nearly all pixels.
+    /// Returns true if there are tables for the means of nearly all pixels.
     pub(super) fn has_tables_for(&self, expected: &ExpectedImage) -> bool {
         self.distribution.shot == Switch::On && expected.flat_e() < MeanTables::end_e(&self.distribution)
     }
 
-    /// The frame in which every pixel has a mean of its own.
+    /// Draws a frame in which every pixel has an individual mean.
     pub(super) fn draw_with_mean_tables(
         &self,
         expected: &ExpectedImage,
@@ -58,12 +60,12 @@ impl Sensor {
         raw: &mut RawImage,
     ) {
         let tables = samplers.mean_tables(&self.distribution);
-        // The same steps on every machine, on the widest registers that it has.
+        // Identical steps on every machine, on its widest registers.
         arch().dispatch(MeanTableFrame { expected, streams, tables, raw });
     }
 
-    /// The frame in which no table holds the law of a pixel, because rows and columns have offsets or the flat level is high:
-    /// electrons, then read noise, then the converter.
+    /// Draws a frame without tables of pixel distributions, because rows and columns have offsets or the flat
+    /// level is high: electrons, then read noise, then the converter.
     pub(super) fn draw_in_parts(
         &self,
         expected: &ExpectedImage,
@@ -78,7 +80,7 @@ impl Sensor {
             let pixel_stream = |x: usize| streams.stream_at((self.rows + y * self.columns + x) as u64);
             let mut stream = streams.stream_at(y as u64);
             expected.row(y, &mut means);
-            // One step after the other over the row, each a short loop.
+            // Each step is a short loop over the row.
             match self.distribution.shot {
                 Switch::On => {
                     for (collected, &mean_e) in collected.iter_mut().zip(&means) {
@@ -119,7 +121,8 @@ impl Sensor {
     }
 }
 
-/// The drawing of a frame by the tables of own means; where the background is even and nothing was drawn, by its one mean.
+/// Task of drawing a frame from the tables of individual means; on a uniform background, pixels without
+/// signal use their common mean.
 struct MeanTableFrame<'a> {
     expected: &'a ExpectedImage,
     streams: &'a Streams,
@@ -130,13 +133,13 @@ struct MeanTableFrame<'a> {
 impl pulp::WithSimd for MeanTableFrame<'_> {
     type Output = ();
 
-    // Inline, all of it: only so is it compiled for the registers of the machine.
+    // Everything is inlined: only then is it compiled for the registers of the machine.
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { expected, streams, tables, raw } = self;
         let (columns, rows) = (raw.columns, raw.rows);
         let even = (!expected.has_field()).then(|| UniformMean::new(expected.flat_e()));
-        // Of an even background, always those of a row on which nothing was drawn.
+        // With a uniform background, these are between rows always the means of a row without signal.
         let mut means = vec![expected.flat_e(); columns];
         let mut is_lit = vec![true; columns.div_ceil(PART)];
         let mut words = Words::new();
@@ -163,7 +166,7 @@ impl pulp::WithSimd for MeanTableFrame<'_> {
     }
 }
 
-/// The parts of a row that are lit, by number, and the means of their pixels.
+/// Returns the lit parts of a row, by number, with the means of their pixels.
 #[inline(always)]
 fn lit<'a>(is_lit: &'a [bool], means_e: &'a mut [f64]) -> impl Iterator<Item = (usize, &'a mut [f64])> {
     let parts = means_e.chunks_mut(PART).enumerate().zip(is_lit);
@@ -198,7 +201,7 @@ mod tests {
         raw.dn
     }
 
-    /// An even detector of a sky, with offsets of rows or a response that differ by nothing that can be seen.
+    /// Returns a uniform detector with a sky background; its row offsets or its response vary imperceptibly.
     fn even(sky_e: f64, row_e: f64, prnu_fraction: f64) -> SensorConfig {
         SensorConfig {
             bit_depth: 16,
@@ -219,7 +222,7 @@ mod tests {
         let mut samplers = FlatSamplers::new();
         for sky_e in [0.0, 0.4, 20.3, 150.7, 300.0, 5000.0, 70_000.0] {
             for (row_e, prnu_fraction) in [(1e-9, 0.0), (0.0, 1e-9)] {
-                // The mean of a pixel is a float of 32 bits times the sky: 3e-8 of it.
+                // The mean of a pixel is a 32-bit float times the sky level: accurate to 3e-8.
                 let config = even(sky_e, row_e, prnu_fraction);
                 let dn: Vec<u16> =
                     (0..8).flat_map(|number| frame(&config, number, &mut samplers, &[])).collect();
@@ -250,12 +253,13 @@ mod tests {
         for config in [even(20.0, 5.0, 0.0), even(20.0, 0.0, 0.02), even(2000.0, 0.0, 0.02)] {
             let mut samplers = FlatSamplers::new();
             let without = frame(&config, 1, &mut samplers, &[]);
-            // With other tables kept than those of the frame without it.
+            // Uses a separate cache of tables from that of the frame without the star.
             let with = frame(&config, 1, &mut FlatSamplers::new(), &[1e6]);
             assert_ne!(with, without);
             for (index, _) in with.iter().zip(&without).enumerate().filter(|(_, (a, b))| a != b) {
                 let pixel = PixelPoint::new((index % 128) as f64, (index / 128) as f64);
-                // exp(−d²/2σ²) of a million electrons is below the floor of 0.01 e⁻ from 4.9 px on; a corner of a pixel more.
+                // exp(−d²/2σ²) of a million electrons is below the floor of 0.01 e⁻ from 4.9 px on; the
+                // corner of a pixel adds to that.
                 assert!(pixel.distance(PixelPoint::new(10.3, 12.8)) < 5.7, "{index}");
             }
         }
@@ -282,8 +286,8 @@ mod tests {
         }
     }
 
-    /// The pixels themselves are frozen: this must hold on every machine, and a change here changes every result of such
-    /// detectors and belongs in CHANGELOG.md.
+    /// The pixel values are frozen: they must be equal on every machine, and a change here changes every
+    /// result of such detectors and must be recorded in CHANGELOG.md.
     #[test]
     fn the_pixels_of_uneven_detectors_are_frozen() {
         let hashes = [even(20.0, 5.0, 0.0), even(20.0, 0.0, 0.02), even(2000.0, 3.0, 0.02)].map(|config| {
@@ -292,7 +296,7 @@ mod tests {
             let hash = Sha256::digest(&bytes);
             hash.iter().take(8).map(|byte| format!("{byte:02x}")).collect::<String>()
         });
-        // Offsets of rows, response of pixels, both.
+        // Row offsets, pixel response, and the two together.
         assert_eq!(hashes, ["8f06fd1c95738a8f", "584784391a3412b5", "b8384caf98119a61"]);
     }
 }

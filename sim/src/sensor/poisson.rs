@@ -1,22 +1,22 @@
-//! Poisson numbers on `libm`, so that they are the same on every machine.
+//! Poisson random numbers based on `libm`, so they are equal on every machine.
 
 use crate::randomness::{Stream, uniform};
 
-/// Where the two methods meet: PTRS needs a mean of 10 or more.
+/// Mean at which the method changes: PTRS needs a mean of 10 or more.
 const INVERSION_BELOW: f64 = 10.0;
 
-/// A Poisson number of a mean from 0 to 1e15, as a float that holds a whole number.
+/// Draws a Poisson number of a mean from 0 to 1e15, as a float with an integer value.
 ///
-/// Below a mean of 10 by sequential inversion of one uniform number of 53 bits; from there on by transformed
-/// rejection with squeeze, PTRS (Hörmann, "The transformed rejection method for generating Poisson random
-/// variables", Insurance: Mathematics and Economics 12, 1993).
+/// Below a mean of 10 by sequential inversion of one uniform random number of 53 bits; from 10 on by
+/// transformed rejection with squeeze, PTRS (Hörmann, "The transformed rejection method for generating
+/// Poisson random variables", Insurance: Mathematics and Economics 12, 1993).
 pub fn poisson(mean: f64, stream: &mut Stream) -> f64 {
     if mean < INVERSION_BELOW { by_inversion(mean, uniform(stream)) } else { by_rejection(mean, stream) }
 }
 
-/// The smallest k with P(N ≤ k) ≥ u.
+/// Returns the smallest k with P(N ≤ k) ≥ u.
 fn by_inversion(mean: f64, u: f64) -> f64 {
-    // Beyond 100 at a mean of 10 lies a probability of 1e-61: rounding alone could lead there.
+    // At a mean of 10, numbers above 100 have a probability of 5e-64: only rounding could lead there.
     const LAST: f64 = 100.0;
     let (mut k, mut left, mut probability) = (0.0, u, libm::exp(-mean));
     while left > probability && k < LAST {
@@ -27,7 +27,7 @@ fn by_inversion(mean: f64, u: f64) -> f64 {
     k
 }
 
-/// Algorithm PTRS; the constants and their names are the paper's.
+/// Algorithm PTRS; the constants and their names are those of the paper.
 fn by_rejection(mean: f64, stream: &mut Stream) -> f64 {
     let b = 0.931 + 2.53 * mean.sqrt();
     let a = -0.059 + 0.02483 * b;
@@ -44,7 +44,7 @@ fn by_rejection(mean: f64, stream: &mut Stream) -> f64 {
         if k < 0.0 || (us < 0.013 && v > us) {
             continue;
         }
-        // Needed by one number in ten only.
+        // Only one number in ten needs this.
         let ln_mean = *ln_mean.get_or_insert_with(|| libm::log(mean));
         let ln_inverse_alpha =
             *ln_inverse_alpha.get_or_insert_with(|| libm::log(1.1239 + 1.1328 / (b - 3.4)));
@@ -75,12 +75,12 @@ mod tests {
             let law = Poisson::new(mean).unwrap();
             let expected: Vec<f64> = (0..counts.len() + 100).map(|k| law.pmf(k as u64)).collect();
             let p = chi_square_p(&counts, &expected);
-            // Eight tests: one in 10,000 runs would fail by chance, and the seed is fixed.
+            // Eight tests: one in 10,000 random seeds would fail by chance, but the seed is fixed.
             assert!(p > 1e-5, "mean {mean}: p = {p}");
         }
     }
 
-    /// An implementation that we did not write, compared number by number of its histogram.
+    /// Compares the histogram with that of an independent implementation, number by number.
     #[test]
     fn its_numbers_are_like_those_of_rand_distr() {
         use rand_distr::Distribution;
@@ -93,7 +93,7 @@ mod tests {
                 let number: f64 = witness.sample(&mut other);
                 number as usize
             }));
-            // Two samples of the same size: Σ (a − b)²/(a + b) over bins of 20 or more.
+            // Two samples of equal size: Σ (a − b)²/(a + b) over bins of 20 or more.
             let (mut chi2, mut bins, mut a, mut b) = (0.0, 0.0, 0.0, 0.0);
             for k in 0..ours.len().max(theirs.len()) {
                 a += ours.get(k).copied().unwrap_or(0) as f64;
@@ -116,7 +116,7 @@ mod tests {
         let z: Vec<f64> = (0..n).map(|_| (poisson(mean, &mut stream) - mean) / mean.sqrt()).collect();
         let average = z.iter().sum::<f64>() / n as f64;
         let variance = z.iter().map(|z| z * z).sum::<f64>() / n as f64;
-        // Standard errors 1/sqrt(n) = 0.007 and sqrt(2/n) = 0.01; four of them.
+        // Standard errors 1/sqrt(n) = 0.007 and sqrt(2/n) = 0.01; the tolerance is four of them.
         assert!(average.abs() < 0.028 && (variance - 1.0).abs() < 0.04, "{average}, {variance}");
     }
 

@@ -1,13 +1,14 @@
-//! Poisson numbers of any mean from a few tables.
+//! Poisson random numbers of any mean from a small number of tables.
 
 use super::alias::AliasTable;
 use super::pixel_distribution::poisson_table;
 
-/// Poisson numbers of means from 0 to [`PoissonDigits::END_E`].
+/// Sampler of Poisson numbers of means from 0 to [`PoissonDigits::END_E`].
 ///
-/// A mean is written in digits, λ = 4096 c + 64 b + a/4 + δ with whole a, b, c and 0 ≤ δ < ¼. Poisson(λ) is the sum of
-/// independent Poisson numbers of these four means: three from tables, to the 2^-32 of their words, the last by inversion.
-/// Tables are made when first met and are the same whatever the detector: 333 at most, 1.5 MB.
+/// A mean is written in digits, λ = 4096 c + 64 b + a/4 + δ with integers a, b, c and 0 ≤ δ < ¼. Poisson(λ)
+/// is the sum of independent Poisson numbers of these four means: three from tables, to the 2^-32 of their
+/// words, the last by inversion. Tables are made on first use and do not depend on the detector: 333 at most,
+/// 1.5 MB.
 #[derive(Debug, Clone)]
 pub(super) struct PoissonDigits {
     quarters: Vec<Option<AliasTable>>,
@@ -22,10 +23,10 @@ impl Default for PoissonDigits {
 }
 
 impl PoissonDigits {
-    /// Means from which on there are no tables, electrons: a number and its spread must fit 16 bits.
+    /// Mean from which on there are no tables, electrons: a number with its spread must fit 16 bits.
     pub(super) const END_E: f64 = 65_536.0;
 
-    /// A Poisson number of a mean from 0 to less than [`PoissonDigits::END_E`] from two uniform words.
+    /// Draws a Poisson number of a mean from 0 to less than [`PoissonDigits::END_E`] from two uniform words.
     #[inline(always)]
     pub(super) fn draw(&mut self, mean_e: f64, words: [u64; 2]) -> u32 {
         let quarters = (mean_e * 4.0) as u32;
@@ -39,7 +40,7 @@ impl PoissonDigits {
     }
 }
 
-/// A Poisson number of mean `digit` · `unit_e`.
+/// Draws a Poisson number of mean `digit` · `unit_e`.
 #[inline(always)]
 fn digit(tables: &mut [Option<AliasTable>], digit: u32, unit_e: f64, word: u32) -> u32 {
     let Some(table) = tables.get_mut(digit as usize).filter(|_| digit > 0) else { return 0 };
@@ -47,17 +48,18 @@ fn digit(tables: &mut [Option<AliasTable>], digit: u32, unit_e: f64, word: u32) 
     u32::from(table.draw(word))
 }
 
-/// More than 24 electrons from a mean of 4 come with a probability of 1.4e-12, far below the 2^-32 that a word resolves.
+/// Maximum number of electrons drawn from a mean of 4 or less: more than 24 have a probability of 1.4e-12,
+/// far below the 2^-32 that a word resolves.
 pub(super) const FEW: usize = 24;
 
-/// A Poisson number of a mean of at most 4, and itself at most [`FEW`], from a uniform word: the smallest n with
-/// P(N ≤ n) ≥ u.
+/// Draws a Poisson number of a mean of at most 4 from a uniform word: the smallest n with P(N ≤ n) ≥ u, at
+/// most [`FEW`].
 #[inline(always)]
 pub(super) fn small_poisson(mean: f64, word: u32) -> usize {
     let u = (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0);
-    // Bounds from Taylor's series, whose terms alternate and fall up to 1, decide nearly always when the mean is small,
-    // without an exponential and without a branch between 0 and 1: exp(−s) lies between 1 − s + s²/2 and s³/6 less, and
-    // (1 + s) exp(−s) ≥ 1 − s²/2.
+    // Bounds from the Taylor series, whose terms alternate and decrease for means up to 1, are nearly always
+    // sufficient for a small mean. They need no exponential and no branch between 0 and 1: exp(−s) lies
+    // between 1 − s + s²/2 − s³/6 and 1 − s + s²/2, and (1 + s) exp(−s) ≥ 1 − s²/2.
     let half_square = 0.5 * mean * mean;
     let none_to = 1.0 - mean + half_square;
     let none_from = none_to - half_square * mean * (1.0 / 3.0);
@@ -68,7 +70,7 @@ pub(super) fn small_poisson(mean: f64, word: u32) -> usize {
     }
 }
 
-/// [`few`] where the bounds leave it open.
+/// Draws the number of [`few`] where its bounds are not sufficient.
 pub(super) fn by_inversion(mean: f64, u: f64) -> usize {
     let (mut n, mut left, mut probability) = (0, u, libm::exp(-mean));
     while left > probability && n < FEW {

@@ -1,6 +1,6 @@
-//! What leaves the converter.
+//! Output of the converter.
 
-/// Digital numbers as they leave the converter. Reused from frame to frame.
+/// Digital numbers as output by the converter. Reused from frame to frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RawImage {
     pub(super) columns: usize,
@@ -10,14 +10,14 @@ pub struct RawImage {
 }
 
 impl RawImage {
-    /// An image made by hand.
+    /// Creates an image from given digital numbers.
     #[cfg(test)]
     pub(crate) fn from_dn(columns: usize, rows: usize, bit_depth: u8, dn: Vec<u16>) -> Self {
         assert_eq!(dn.len(), columns * rows);
         Self { columns, rows, bit_depth, dn }
     }
 
-    /// Columns and rows.
+    /// Number of columns and of rows.
     pub fn size(&self) -> (usize, usize) {
         (self.columns, self.rows)
     }

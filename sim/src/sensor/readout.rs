@@ -1,4 +1,4 @@
-//! From expected photo-electrons to digital numbers.
+//! Readout: from expected photoelectrons to digital numbers.
 
 use contract::OutOfRange;
 
@@ -15,13 +15,14 @@ use crate::randomness::{Effect, Seed, normal};
 impl Sensor {
     /// Draws the digital number of every pixel.
     ///
-    /// A row has one stream, at place = row, of which every pixel takes 64 bits, or 32 of a high flat level, or 192 where rows and
-    /// columns have offsets (or a high level is not flat): from them comes the number of nearly every pixel. One with much signal, or
-    /// whose bits do not decide, is drawn from an address of its own, place = rows + index, so that what is in one pixel
-    /// never changes the draw of another.
+    /// Each row has one stream, at the address of its row number, from which each pixel takes 64 bits, or 32
+    /// with a high flat level, or 192 if rows and columns have offsets (or if a high level is not flat).
+    /// These bits give the number of nearly every pixel. A pixel with a large signal, or whose bits are not
+    /// sufficient, is drawn at its own address, rows + index, so the content of one pixel never changes the
+    /// draw of another.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] when the image is not of the sensor's size.
+    /// [`SimError::OutOfRange`] if the image does not have the sensor's size.
     pub fn read_out(
         &self,
         charge: &Charge<'_>,
@@ -50,7 +51,7 @@ impl Sensor {
         Ok(())
     }
 
-    /// Refuses an image that is not of the sensor's size.
+    /// Rejects an image that does not have the sensor's size.
     pub(super) fn check_size(&self, expected: &ExpectedImage) -> Result<(), OutOfRange> {
         if expected.size() == (self.columns, self.rows) {
             return Ok(());
@@ -62,8 +63,8 @@ impl Sensor {
         ))
     }
 
-    /// What the readout adds to rows and columns: noise of this frame, and the fixed offsets. `None` when there is none of
-    /// it.
+    /// Offsets that the readout adds to rows and columns: noise of this frame, and fixed offsets. `None` if
+    /// there are neither.
     fn line_offsets(&self, seed: &Seed, frame: u64) -> Option<LineOffsets> {
         let (row_e, column_e) = self.line_noise_e();
         let fixed_e = &self.pattern().column_offsets_e;
@@ -78,13 +79,13 @@ impl Sensor {
         })
     }
 
-    /// Noise of rows and of columns, standard deviations, as far as it is simulated.
+    /// Standard deviations of the simulated noise of rows and of columns, electrons.
     fn line_noise_e(&self) -> (f64, f64) {
         let read = self.config().noise.read;
         (read.apply(self.config().line_noise.row_e), read.apply(self.config().line_noise.column_e))
     }
 
-    /// Whether the readout adds anything to rows or columns.
+    /// Returns true if the readout adds offsets to rows or columns.
     pub(super) fn has_line_offsets(&self) -> bool {
         let (row_e, column_e) = self.line_noise_e();
         row_e > 0.0 || column_e > 0.0 || !self.pattern().column_offsets_e.is_empty()
@@ -103,7 +104,7 @@ mod tests {
 
     const SEED: Seed = Seed { seed: 42, case: 0 };
 
-    /// A frame of 65 × 48 pixels with stars of the electrons given, all on one diagonal.
+    /// Returns a frame of 65 × 48 pixels with stars of the given electrons along a diagonal.
     fn frame(config: &SensorConfig, number: u64, stars_e: &[f64]) -> RawImage {
         let sensor = Sensor::new(config, 65, 48).unwrap();
         let mut psf = Psf::new(&PsfConfig::Gaussian { sigma_px: 0.8 }).unwrap();
@@ -126,8 +127,8 @@ mod tests {
         Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
-    /// The pixels themselves are frozen: this must hold on every machine, and a change here changes every result
-    /// and belongs in CHANGELOG.md.
+    /// The pixel values are frozen: they must be equal on every machine, and a change here changes every
+    /// result and must be recorded in CHANGELOG.md.
     #[test]
     fn the_pixels_of_a_small_frame_are_frozen() {
         let raw = frame(&twelve_bit(), 7, &[500.0, 5e3, 5e4, 5e5]);
@@ -142,7 +143,8 @@ mod tests {
         for (index, (a, b)) in without.dn.iter().zip(&with.dn).enumerate() {
             let distance =
                 PixelPoint::new((index % 65) as f64, (index / 65) as f64).distance(PixelPoint::new(8.3, 6.8));
-            // exp(−d²/2σ²) of 5,000 e⁻ is below the floor of 0.01 e⁻ from 4.2 px on; a corner of a pixel more.
+            // exp(−d²/2σ²) of 5,000 e⁻ is below the floor of 0.01 e⁻ from 4.2 px on; the corner of a pixel
+            // adds to that.
             assert!(a == b || distance < 5.0, "{index}");
         }
         assert_ne!(without, with);
@@ -159,7 +161,7 @@ mod tests {
             let expected_e = 20.0 + 0.5 * pixel.rate_e_per_s;
             let mean_dn = frames.iter().map(|raw| f64::from(raw.dn[*index])).sum::<f64>() / 20.0;
             let error_e = ((expected_e + 225.0) / 20.0).sqrt();
-            // Of twenty frames, five standard errors, and 3 e⁻ for the rounding of the converter.
+            // Five standard errors of twenty frames, plus 3 e⁻ for the rounding of the converter.
             assert!(
                 ((mean_dn - 50.3) * 10.0 - expected_e.min(40_000.0)).abs() < 5.0 * error_e + 3.0,
                 "{pixel:?}"
@@ -170,7 +172,8 @@ mod tests {
         assert_ne!(Sensor::new(&config, 65, 48).unwrap().hot_pixels(), sensor.hot_pixels());
     }
 
-    /// Flat frames at growing exposures: the variance grows with the mean by 1/gain (Janesick's photon transfer).
+    /// Flat frames with increasing exposure: the variance grows with the mean by 1/gain (Janesick's photon
+    /// transfer).
     #[test]
     fn the_slope_of_variance_over_mean_is_one_over_the_gain() {
         let config = SensorConfig {
@@ -199,9 +202,10 @@ mod tests {
         };
         let ((low_mean, low_variance), (high_mean, high_variance)) = (moments(0.05), moments(4.0));
         let slope = (high_variance - low_variance) / (high_mean - low_mean);
-        // A variance from a million pixels is known to sqrt(2/n) = 0.14 %; half a percent is three and a half of that.
+        // A million pixels determine a variance to sqrt(2/n) = 0.14 %; half a percent is three and a half
+        // times that.
         assert!((slope * 4.0 - 1.0).abs() < 0.005, "slope {slope}");
-        // At the lower end: 100 e⁻ and 15² e⁻² over 4², and 1/12 of rounding.
+        // At the lower end: 100 e⁻ and 15² e⁻² over 4², plus 1/12 for rounding.
         assert!((low_variance / (325.0 / 16.0 + 1.0 / 12.0) - 1.0).abs() < 0.007, "{low_variance}");
     }
 
@@ -218,7 +222,7 @@ mod tests {
         let mean = dn.iter().map(|&dn| f64::from(dn)).sum::<f64>() / dn.len() as f64;
         let variance = dn.iter().map(|&dn| (f64::from(dn) - mean) * (f64::from(dn) - mean)).sum::<f64>();
         let spread_e = 10.0 * (variance / dn.len() as f64).sqrt();
-        // 3120 pixels know a spread to 1.3 %; without the rounding it would be 10 % less.
+        // 3120 pixels determine a standard deviation to 1.3 %; without the rounding it would be 10 % smaller.
         let expected_e = Sensor::new(&silent, 65, 48).unwrap().readout_noise_e();
         assert!((spread_e / expected_e - 1.0).abs() < 0.045, "{spread_e}, expected {expected_e}");
         let lines = LineNoiseConfig { row_e: 3.0, column_e: 2.0 };
@@ -252,7 +256,7 @@ mod tests {
 
     #[test]
     fn blooming_changes_nothing_but_columns_that_overflow_and_keeps_their_charge() {
-        // Without read noise and with a digital number an electron, the pixels are the electrons.
+        // Without read noise and with one electron per digital number, the digital numbers are the electrons.
         let config = SensorConfig {
             bit_depth: 16,
             gain_e_per_dn: 1.0,
@@ -275,8 +279,8 @@ mod tests {
                 let full = after.iter().filter(|&&e| e == 5000).count();
                 let over = before.iter().filter(|&&e| e > 5000).count();
                 assert!(over > 0 && full > over);
-                // A flat pixel that receives charge is drawn at its own address: at most as many as are full, each with a
-                // variance of its 20 electrons twice.
+                // A flat pixel that receives charge is redrawn at its own address: at most as many pixels as
+                // are full, each with twice the variance of its 20 electrons.
                 let sum = |column: &[u16]| column.iter().map(|&e| f64::from(e)).sum::<f64>();
                 let tolerance = 5.0 * (2.0 * 20.0 * (full + 2) as f64).sqrt();
                 assert!((sum(&before) - sum(&after)).abs() < tolerance, "column {x}");
@@ -290,12 +294,13 @@ mod tests {
     fn an_overflowing_flat_frame_is_full_with_drains_and_without() {
         let config =
             SensorConfig { full_well_e: 10.0, gain_e_per_dn: 1.0, read_noise_e: 0.0, ..twelve_bit() };
-        // 20 e⁻ a pixel in a well of 10: once in 200 pixels fewer than 10 are collected, and a neighbour fills them.
+        // 20 e⁻ per pixel in a full well of 10: one pixel in 200 collects fewer than 10, and a neighbour
+        // fills it.
         let raw = frame(&blooming(config.clone(), 1.0), 1, &[]);
         assert!(raw.dn.iter().all(|&dn| dn == 60));
         let drained = frame(&blooming(config.clone(), 0.0), 1, &[]);
         let lacking = drained.dn.iter().filter(|&&dn| dn < 60).count() as f64 / drained.dn.len() as f64;
-        // P(N < 10) at a mean of 20 is 0.0050; 3120 pixels know it to 0.0013.
+        // P(N < 10) at a mean of 20 is 0.0050; 3120 pixels determine it to 0.0013.
         assert!((lacking - 0.005).abs() < 0.005, "{lacking}");
         assert!(drained.dn.iter().all(|&dn| dn <= 60));
     }

@@ -1,27 +1,31 @@
-//! Frames of which only what is looked at is drawn.
+//! Frames of which only the pixels that the camera examines are drawn.
 //!
-//! A camera that keeps regions around bright pixels looks at a pixel if its digital number is above a floor, its threshold, or
-//! if it lies in a region. Most pixels are neither, and need no number. So that a frame drawn in part *is* the whole frame
-//! wherever anybody looks, the whole frame is drawn in two steps:
+//! A camera that keeps regions around bright pixels examines a pixel if its digital number is above a floor,
+//! the camera's threshold, or if it lies in a region. Most pixels are neither, and need no number. To make a
+//! partly drawn frame *equal* to the whole frame wherever it is examined, the whole frame is defined by two
+//! steps:
 //!
-//! 1. *Which dark pixels exceed the floor.* A pixel is dark if its mean is at most the limit λ₀ of its row, which is the largest
-//!    mean of the row's background, held between the means that exceed the floor once in 2^20 and once in 64 times. No dark pixel
-//!    exceeds it with a higher probability than p₀ = p(λ₀). Candidates come with p₀ from pixel to pixel, their gaps geometric
-//!    (Devroye, Non-Uniform Random Variate Generation, 1986, X.2): their number is binomial, their places uniform. A dark
-//!    candidate of mean λ is kept with p(λ)/p₀ (PRNU, DSNU and gradients make every pixel's mean its own), and gets a number
-//!    from its law above the floor ([`Exceedance`]).
-//! 2. *All other pixels.* They are drawn from the words of their row, as without a floor. A dark pixel whose number is above the
-//!    floor, but was not among those of the first step, is drawn again until it is not: its law given that it does not exceed.
+//! 1. *Dark pixels that exceed the floor.* A pixel is dark if its mean is at most the limit λ₀ of its row,
+//!    which is the largest mean of the row's background, clamped between the means that exceed the floor with
+//!    probabilities of 1 in 2^20 and 1 in 64. No dark pixel exceeds the floor with a higher probability than
+//!    p₀ = p(λ₀). Candidates occur with probability p₀ per pixel, with geometric gaps (Devroye, Non-Uniform
+//!    Random Variate Generation, 1986, X.2): their number is binomial, their positions uniform. A dark
+//!    candidate of mean λ is kept with the probability p(λ)/p₀ (PRNU, DSNU and gradients give every pixel an
+//!    individual mean), and gets a number from its distribution above the floor ([`Exceedance`]).
+//! 2. *All other pixels.* They are drawn from the words of their row, as without a floor. A dark pixel whose
+//!    number is above the floor, but which was not selected in the first step, is redrawn until its number is
+//!    not above the floor: this gives its distribution conditional on not exceeding the floor.
 //!
-//! Pixels brighter than λ₀, near sources, are drawn outright by the second step alone. Every pixel so has the law that it has
-//! without a floor, and, where nothing exceeds, the same number.
+//! Pixels brighter than λ₀, near sources, are drawn by the second step only. Every pixel therefore has the
+//! same distribution as without a floor and, if no pixel exceeds the floor, the same number.
 //!
-//! The first step costs a candidate a row or fewer. The second can be done for any part of 16 pixels of a row alone: for those
-//! in which a pixel may be brighter than λ₀, and then, once the camera has found its regions among the pixels above the floor,
-//! for those of its regions. What overflows is drawn column by column from the pixels' own addresses in either case.
+//! The first step costs one candidate per row or fewer. The second can be done separately for any part of 16
+//! pixels of a row: first for the parts in which a pixel may be brighter than λ₀, then, once the camera has
+//! found its regions from the pixels above the floor, for the parts in its regions. In either case,
+//! overflowing charge is drawn column by column from the pixels' own addresses.
 //!
-//! Frames whose lines have noise or offsets of their own, of detectors without shot noise, and of high flat levels are not
-//! drawn from tables: there all pixels are drawn outright.
+//! Frames with noise or offsets of rows or columns, of detectors without shot noise, or with high flat levels
+//! are not drawn from tables: all their pixels are drawn directly.
 
 use contract::Window;
 use pulp::Simd;
@@ -40,7 +44,7 @@ use crate::generator_lanes::{GeneratorLanes, LANES};
 use crate::randomness::{Effect, Seed, Streams, uniform};
 use crate::simd_kernel::{SimdKernel, arch, run_widest};
 
-/// What a frame is read out from.
+/// Inputs from which a frame is read out.
 pub(crate) struct FrameCharge<'a> {
     pub(crate) charge: &'a Charge<'a>,
     pub(crate) seed: Seed,
@@ -48,7 +52,7 @@ pub(crate) struct FrameCharge<'a> {
 }
 
 impl Sensor {
-    /// A raw image of which nothing is drawn.
+    /// Returns a raw image with no pixels drawn.
     pub(crate) fn new_sparse(&self) -> SparseImage {
         SparseImage::new(self.new_raw())
     }
@@ -56,7 +60,7 @@ impl Sensor {
     /// Draws every pixel whose digital number is above `floor_dn`.
     ///
     /// # Errors
-    /// As [`Sensor::read_out`].
+    /// See [`Sensor::read_out`].
     pub(crate) fn read_out_above(
         &self,
         floor_dn: u16,
@@ -86,7 +90,8 @@ impl Sensor {
         Ok(())
     }
 
-    /// Draws all pixels of some windows of the frame of which [`Sensor::read_out_above`] has drawn the pixels above a floor.
+    /// Draws all pixels in some windows of a frame whose pixels above a floor were drawn by
+    /// [`Sensor::read_out_above`].
     pub(crate) fn read_out_windows(
         &self,
         windows: &[Window],
@@ -104,7 +109,7 @@ impl Sensor {
         image.set_single_pixels();
     }
 
-    /// Draws the parts that are wanted and not yet drawn.
+    /// Draws the requested parts that are not drawn yet.
     fn draw_requested(
         &self,
         collected: &FrameCharge<'_>,
@@ -118,12 +123,12 @@ impl Sensor {
         let (distribution, columns, rows) = (&self.distribution, self.columns, self.rows);
         let task = Task { distribution, expected, words: &words, again: &again, columns, rows };
         let tables = samplers.mean_tables(distribution);
-        // The same steps on every machine, on the widest registers that it has.
+        // Identical steps on every machine, on its widest registers.
         arch().dispatch(MeanTableParts { task, tables, image });
     }
 }
 
-/// The first step, and a look at which parts the second is for.
+/// Task of the first step, and of selecting the parts for the second step.
 struct CandidateScan<'a> {
     expected: &'a ExpectedImage,
     exceedance: &'a mut Exceedance,
@@ -172,7 +177,7 @@ fn thin_row(
     if limit.probability <= 0.0 {
         return;
     }
-    // P(no candidate) = (1 − p)ⁿ ≥ 1 − n p: nearly all rows need no more than the first number of their stream.
+    // P(no candidate) = (1 − p)ⁿ ≥ 1 − n p: nearly all rows need only the first number of their stream.
     if streams.first_uniform(y as u64) <= 1.0 - columns as f64 * limit.probability {
         return;
     }
@@ -197,27 +202,28 @@ fn thin_row(
     }
 }
 
-/// What the parts of a frame are drawn from.
+/// Inputs from which the parts of a frame are drawn.
 #[derive(Clone, Copy)]
 struct Task<'a> {
     distribution: &'a PixelDistribution,
     expected: &'a ExpectedImage,
-    /// The words of rows and pixels.
+    /// Random streams of rows and pixels.
     words: &'a Streams,
-    /// What dark pixels are drawn again from.
+    /// Random streams for redrawing dark pixels.
     again: &'a Streams,
     columns: usize,
     rows: usize,
 }
 
 impl Task<'_> {
-    /// The place of a pixel of its own: rows have the places before.
+    /// Address of a pixel's own stream; the addresses before it belong to the rows.
     #[inline(always)]
     fn stream_index(&self, index: usize) -> u64 {
         (self.rows + index) as u64
     }
 
-    /// Draws again the dark pixels that are above the floor; `means_e` are those of the pixels from index `first` on.
+    /// Redraws the dark pixels that are above the floor; `means_e` are the means of the pixels from index
+    /// `first` on.
     #[inline(always)]
     fn keep_dark_pixels_below(
         &self,
@@ -233,7 +239,7 @@ impl Task<'_> {
         for (i, (dn, &mean_e)) in dn.iter_mut().zip(means_e).enumerate() {
             if *dn > floor_dn && mean_e <= limit.mean_e {
                 let mut stream = self.again.stream_at(self.stream_index(first + i));
-                // A dark pixel exceeds the floor once in 64 times or less.
+                // A dark pixel exceeds the floor with a probability of at most 1 in 64.
                 while *dn > floor_dn {
                     *dn = self.distribution.sample(mean_e.max(0.0), 0.0, &mut stream);
                 }
@@ -242,11 +248,11 @@ impl Task<'_> {
     }
 }
 
-/// Parts whose means are made one after the other, then their words, then their numbers: each comes from places in memory of its
-/// own, and of one kind of work several are on their way at once.
+/// Number of parts processed together: first their means, then their words, then their numbers. Each of these
+/// reads a different area of memory, and several accesses of one kind overlap in time.
 const BATCH: usize = 32;
 
-/// The wanted parts of a detector in which every pixel has a mean of its own.
+/// Task of drawing the requested parts of a detector in which every pixel has an individual mean.
 struct MeanTableParts<'a> {
     task: Task<'a>,
     tables: &'a mut MeanTables,
@@ -256,13 +262,13 @@ struct MeanTableParts<'a> {
 impl pulp::WithSimd for MeanTableParts<'_> {
     type Output = ();
 
-    // Inline, all of it: only so is it compiled for the registers of the machine.
+    // Everything is inlined: only then is it compiled for the registers of the machine.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { task, tables, image } = self;
         let SparseImage { raw, drawn, requested, to_draw, limits, floor_dn, .. } = image;
         to_draw.clear();
-        // Where there are no limits, all pixels are drawn.
+        // Without limits, all pixels are drawn already.
         for y in 0..limits.len() {
             let rows = requested.row(y).iter().zip(drawn.row_mut(y));
             for (i, (requested, drawn)) in
@@ -309,7 +315,8 @@ mod tests {
 
     const SEED: Seed = Seed { seed: 44, case: 0 };
 
-    /// A detector of a gain of 2 e⁻/DN over a sky of 20 e⁻: background pixels have 60.3 DN and a noise of 2.7 DN.
+    /// Returns a detector with a gain of 2 e⁻/DN and a sky of 20 e⁻: background pixels have 60.3 DN and a
+    /// noise of 2.7 DN.
     fn detector(prnu_fraction: f64) -> SensorConfig {
         SensorConfig {
             gain_e_per_dn: 2.0,
@@ -324,8 +331,8 @@ mod tests {
         }
     }
 
-    /// Frame `number` of a detector of 301 × 60 pixels with bright pixels, one of which overflows; as far as it is above
-    /// `floor_dn`, in `windows`, and as a whole.
+    /// Returns frame `number` of a detector of 301 × 60 pixels with bright pixels, one of which overflows:
+    /// drawn above `floor_dn` only, in `windows`, and as a whole.
     fn frames(config: &SensorConfig, number: u64, floor_dn: u16, windows: &[Window]) -> [Vec<u16>; 3] {
         let sensor = Sensor::new(config, 301, 60).unwrap();
         let mut image = sensor.new_expected();
@@ -336,7 +343,7 @@ mod tests {
         let mut samplers = FlatSamplers::new();
         let mut draw = |windows: &[Window]| {
             let mut sparse = sensor.new_sparse();
-            // Left over from the frame before.
+            // Remainder of an earlier frame.
             sparse.full_image().dn.fill(4095);
             sensor.read_out_above(floor_dn, &collected, &mut samplers, &mut sparse).unwrap();
             sensor.read_out_windows(windows, &collected, &mut samplers, &mut sparse);
@@ -353,7 +360,7 @@ mod tests {
     fn a_sparse_frame_is_the_whole_frame_wherever_anybody_looks() {
         let windows = [(0, 0, 20, 8), (55, 3, 20, 8), (60, 7, 9, 9), (281, 52, 20, 8)]
             .map(|(x, y, columns, rows)| Window { x, y, columns, rows });
-        // Floors below the background, within its noise and above all of it.
+        // Floors below the background, within its noise and above the background.
         for floor_dn in [55, 62, 65, 68, 72, 90, 300, 4095] {
             for (config, number) in [(detector(0.02), 0), (detector(0.3), 1), (detector(0.0), 2)] {
                 let [above, seen, all] = frames(&config, number, floor_dn, &windows);
@@ -366,7 +373,8 @@ mod tests {
                     let is_seen = windows.iter().any(|window| window.contains(x, y));
                     assert!(dn == seen[index] || dn <= floor_dn && !is_seen, "{x}, {y} over {floor_dn}");
                 }
-                // High floors save drawing, but for a detector whose brightest background pixels are above them.
+                // High floors save draws, except for a detector whose brightest background pixels exceed
+                // them.
                 if floor_dn >= 72 && number != 1 {
                     assert!(seen.iter().filter(|dn| **dn == 0).count() > all.len() / 2);
                 }
@@ -374,7 +382,8 @@ mod tests {
         }
     }
 
-    /// A floor leaves every pixel its law: of so many frames, over floors that are exceeded once in 3 to once in 10^4 times.
+    /// Checks that a floor does not change the distribution of any pixel, for this number of frames and for
+    /// floors that are exceeded with probabilities from 1 in 3 to 1 in 10^4.
     fn assert_the_law_over_floors(frames: u64) {
         for (config, means) in [(detector(0.0), [20.0, 28.0]), (detector(1e-9), [20.0, 28.0])] {
             let sensor = Sensor::new(&config, 128, 64).unwrap();
@@ -384,7 +393,7 @@ mod tests {
                 let mut drawn = [[0_usize; 4096]; 2];
                 for number in 0..frames {
                     image.clear(sensor.sky_electrons(1.0));
-                    // Every third pixel brighter than the background.
+                    // Every third pixel is brighter than the background.
                     (0..64).for_each(|y| (0..128).step_by(3).for_each(|x| image.add_pixel(x, y, 8.0)));
                     let charge = sensor.collect(&mut image, &interval(1.0));
                     let collected = FrameCharge { charge: &charge, seed: SEED, frame: number };
@@ -409,7 +418,8 @@ mod tests {
         assert_the_law_over_floors(60);
     }
 
-    /// In full: `cargo test --release -p boresight-sim --lib floor -- --ignored`, half a minute of CPU time.
+    /// Full version: `cargo test --release -p boresight-sim --lib floor -- --ignored`, half a minute of CPU
+    /// time.
     #[test]
     #[ignore = "8e8 draws: for a scheduled job"]
     fn pixels_have_the_same_law_with_a_floor_and_without_in_a_hundred_million_draws() {

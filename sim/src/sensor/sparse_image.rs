@@ -1,39 +1,39 @@
-//! A raw image that is drawn in parts.
+//! Raw image that is drawn in parts.
 
 use super::exceedance::DarkLimit;
 use super::raw_image::RawImage;
 use crate::draw::{PART, set_bits};
 
-/// A raw image of which parts of rows are drawn, 16 pixels each. Reused from frame to frame.
+/// Raw image of which only some parts of rows, 16 pixels each, are drawn. Reused from frame to frame.
 #[derive(Debug)]
 pub(crate) struct SparseImage {
-    /// Pixels that are not drawn are 0, unless they are above the floor.
+    /// The image. Pixels that are not drawn are 0, except those above the floor.
     pub(super) raw: RawImage,
-    /// Which parts are drawn, all of their pixels.
+    /// Parts in which all pixels are drawn.
     pub(super) drawn: Parts,
-    /// Which parts are to be drawn.
+    /// Parts to be drawn.
     pub(super) requested: Parts,
-    /// Row and number of the parts that are drawn together.
+    /// Row and number of each part to draw in one pass.
     pub(super) to_draw: Vec<(usize, usize)>,
-    /// In which parts pixels were set one by one.
+    /// Parts in which single pixels were set.
     touched: Parts,
-    /// The limit of dark pixels in each row; empty where all pixels are drawn outright.
+    /// Limit of dark pixels in each row; empty if all pixels are drawn directly.
     pub(super) limits: Vec<DarkLimit>,
     /// Dark pixels above the floor.
     pub(super) exceeding: Vec<Pixel>,
-    /// Pixels that overflow or receive what overflows, all of which are in the image.
+    /// Pixels that overflow or receive overflowing charge, all of them set in the image.
     pub(super) bloomed: Vec<Pixel>,
     pub(super) floor_dn: u16,
 }
 
-/// A pixel by its index in the image, and its digital number.
+/// Pixel, given by its index in the image, and its digital number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pixel {
     pub(super) index: usize,
     pub(super) dn: u16,
 }
 
-/// Some of the parts of the rows of an image: a bit each, in words of their own for each row.
+/// Set of parts of the rows of an image: one bit per part, in separate words for each row.
 #[derive(Debug, Clone)]
 pub(super) struct Parts {
     words: Vec<u64>,
@@ -41,16 +41,16 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// Parts of a word: a bit each.
+    /// Parts per word: one bit each.
     pub(super) const OF_A_WORD: usize = u64::BITS as usize;
 
-    /// None of an image of `columns` × `rows`.
+    /// Returns the empty set for an image of `columns` × `rows`.
     fn empty(columns: usize, rows: usize) -> Self {
         let words_per_row = columns.div_ceil(PART).div_ceil(Self::OF_A_WORD);
         Self { words: vec![0; words_per_row * rows], words_per_row }
     }
 
-    /// The words of a row.
+    /// Words of a row.
     #[inline(always)]
     pub(super) fn row(&self, y: usize) -> &[u64] {
         &self.words[y * self.words_per_row..(y + 1) * self.words_per_row]
@@ -61,13 +61,14 @@ impl Parts {
         &mut self.words[y * self.words_per_row..(y + 1) * self.words_per_row]
     }
 
-    /// Adds parts of row `y`: `bits`, of which the lowest is part `part`; all of them are in one word.
+    /// Adds the parts of row `y` given by `bits`, whose lowest bit is part `part`; all of them must be in one
+    /// word.
     #[inline(always)]
     pub(super) fn add(&mut self, y: usize, part: usize, bits: u64) {
         self.words[y * self.words_per_row + part / Self::OF_A_WORD] |= bits << (part % Self::OF_A_WORD);
     }
 
-    /// Adds the parts of row `y` in which the pixels of some columns are.
+    /// Adds the parts of row `y` that contain pixels of the columns `from` to `to`.
     pub(super) fn add_columns(&mut self, y: usize, from: usize, to: usize) {
         for part in from / PART..to.div_ceil(PART) {
             self.add(y, part, 1);
@@ -76,7 +77,7 @@ impl Parts {
 }
 
 impl SparseImage {
-    /// One of which nothing is drawn, in `raw`.
+    /// Creates an image in `raw` with no pixels drawn.
     pub(super) fn new(raw: RawImage) -> Self {
         let none = Parts::empty(raw.columns, raw.dn.len() / raw.columns.max(1));
         Self {
@@ -92,12 +93,13 @@ impl SparseImage {
         }
     }
 
-    /// The image. Digital numbers are those of the whole frame where they are above the floor or were asked for.
+    /// Returns the image. Digital numbers equal those of the whole frame if they are above the floor or were
+    /// requested.
     pub(crate) fn raw(&self) -> &RawImage {
         &self.raw
     }
 
-    /// The image, to be drawn as a whole.
+    /// Returns the image for drawing as a whole.
     pub(crate) fn full_image(&mut self) -> &mut RawImage {
         for y in 0..self.raw.rows {
             self.drawn.add_columns(y, 0, self.raw.columns);
@@ -105,7 +107,8 @@ impl SparseImage {
         &mut self.raw
     }
 
-    /// The pixels that are in the image, part by part: index of the first, and their digital numbers. All others are 0.
+    /// Returns the pixels set in the image, part by part: the index of the first pixel, and the digital
+    /// numbers. All other pixels are 0.
     pub(crate) fn runs(&self) -> impl Iterator<Item = (usize, &[u16])> {
         let Self { raw, drawn, touched, .. } = self;
         parts_in(drawn, touched).map(|(y, part)| {
@@ -114,7 +117,7 @@ impl SparseImage {
         })
     }
 
-    /// Makes 0 of all that is not above a floor.
+    /// Sets all pixels to 0 that are not above a floor.
     pub(crate) fn suppress(&mut self, floor_dn: u16) {
         let Self { raw, drawn, touched, .. } = self;
         for (y, part) in parts_in(drawn, touched) {
@@ -124,7 +127,7 @@ impl SparseImage {
         }
     }
 
-    /// Nothing drawn.
+    /// Clears the image: no pixels are drawn.
     pub(super) fn clear(&mut self) {
         let Self { raw, drawn, requested, touched, .. } = self;
         for (y, part) in parts_in(drawn, touched) {
@@ -138,7 +141,7 @@ impl SparseImage {
         self.bloomed.clear();
     }
 
-    /// Sets the pixels that were drawn one by one, over those that were drawn in parts.
+    /// Sets the pixels that were drawn singly, replacing those drawn in parts.
     pub(super) fn set_single_pixels(&mut self) {
         let columns = self.raw.columns;
         for pixel in self.exceeding.iter().chain(&self.bloomed) {
@@ -148,7 +151,7 @@ impl SparseImage {
     }
 }
 
-/// Row and number of each part that is among these or those.
+/// Returns row and number of each part in the union of two sets.
 fn parts_in<'a>(these: &'a Parts, those: &'a Parts) -> impl Iterator<Item = (usize, usize)> + 'a {
     let words_per_row = these.words_per_row.max(1);
     these
@@ -164,7 +167,7 @@ fn parts_in<'a>(these: &'a Parts, those: &'a Parts) -> impl Iterator<Item = (usi
         })
 }
 
-/// The pixels of a part of row `y` of an image of `columns`, as indices into the image.
+/// Pixels of a part of row `y` in an image of `columns` columns, as indices into the image.
 #[inline(always)]
 pub(super) fn pixels(columns: usize, y: usize, part: usize) -> std::ops::Range<usize> {
     y * columns + part * PART..y * columns + ((part + 1) * PART).min(columns)
@@ -174,7 +177,7 @@ pub(super) fn pixels(columns: usize, y: usize, part: usize) -> std::ops::Range<u
 mod tests {
     use super::*;
 
-    /// More parts to a row than a word has bits, the last of them short.
+    /// Rows with more parts than a word has bits, and a short last part.
     #[test]
     fn what_is_set_is_told_part_by_part_and_cleared() {
         let (columns, rows) = (2 * Parts::OF_A_WORD * PART + 5, 3);

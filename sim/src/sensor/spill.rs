@@ -1,28 +1,30 @@
-//! Where the charge goes that the full wells of a column do not hold.
+//! Spilling of charge that exceeds the full wells of a column.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Blooming of a CCD: charge above the full well spills to the neighbours up and down the column. Columns are parted
-/// by channel stops, so that nothing goes sideways.
+/// Blooming of a CCD: charge above the full well spills to the neighbours up and down the column. Channel
+/// stops separate the columns, so no charge moves sideways.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BloomingConfig {
-    /// Part of the charge above the full well that spills, 0 to 1; anti-blooming drains take the rest at once. 1: a
-    /// detector without drains; 0: all the excess is lost.
+    /// Share of the charge above the full well that spills, 0 to 1; anti-blooming drains remove the remainder
+    /// immediately. 1: a detector without drains; 0: all the excess is lost.
     #[schemars(range(min = 0, max = 1))]
     pub spill_fraction: f64,
 }
 
 impl BloomingConfig {
-    /// Lets the charge of one column spill until no pixel holds more than `full_well_e`. `column` has the electrons of
-    /// its pixels, top to bottom; whole numbers stay whole. What leaves at either end is lost.
+    /// Spills the charge of one column until no pixel holds more than `full_well_e`. `column` has the
+    /// electrons of the pixels, top to bottom; integer numbers stay integers. Charge that leaves at either
+    /// end is lost.
     ///
-    /// A pixel above the full well passes its excess on, half up, half down, and so on until all is held. The end does
-    /// not depend on the order of the steps (the divisible sandpile: Levine & Peres, "Strong spherical asymptotics for
-    /// rotor-router aggregation and the divisible sandpile", Potential Analysis 30, 2009, Sec. 3), and every step keeps
-    /// the column's charge and its centre. So a run of full pixels gives to the two pixels beside it what keeps both;
-    /// where one of them can not hold it, the run grows.
+    /// A pixel above the full well passes its excess on, half up and half down, and so on until all pixels
+    /// hold their charge. The result does not depend on the order of the steps (the divisible sandpile:
+    /// Levine & Peres, "Strong spherical asymptotics for rotor-router aggregation and the divisible
+    /// sandpile", Potential Analysis 30, 2009, Sec. 3), and every step conserves the column's charge and its
+    /// centre. A run of full pixels therefore passes to its two adjacent pixels the charges that conserve
+    /// charge and centre; if an adjacent pixel cannot hold its charge, the run grows.
     pub(super) fn spill(&self, column: &mut [f64], full_well_e: f64) {
         for electrons in column.iter_mut().filter(|electrons| **electrons > full_well_e) {
             *electrons -= ((1.0 - self.spill_fraction) * (*electrons - full_well_e)).round();
@@ -33,7 +35,7 @@ impl BloomingConfig {
             let mut run = Run::new(next + offset, column[next + offset] - full_well_e);
             loop {
                 let (up_e, down_e) = run.gives();
-                // The run above may have given to the pixel between the two.
+                // The run above may have passed charge to the pixel between the two runs.
                 let (above_end, above_e) = runs.last().map_or((0, 0.0), |above| (above.end, above.gives().1));
                 let shared_e = if run.start == above_end + 1 { above_e } else { 0.0 };
                 if let Some(above) = runs.pop_if(|above| above.end == run.start) {
@@ -62,14 +64,15 @@ impl BloomingConfig {
     }
 }
 
-/// A run of full pixels of a column: rows `start..end`.
+/// Run of full pixels in a column: rows `start..end`.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     start: usize,
     end: usize,
-    /// Electrons above the full well, summed over its pixels.
+    /// Electrons above the full well, summed over the pixels of the run.
     excess_e: f64,
-    /// The same, each pixel's weighted by its distance from the row before `start`.
+    /// Electrons above the full well, summed with each pixel's distance from the row before `start` as
+    /// weight.
     moment_e: f64,
 }
 
@@ -82,8 +85,8 @@ impl Run {
         (self.end - self.start) as f64
     }
 
-    /// Electrons that the pixel before the run and the pixel after it get: those that leave sum and centre as they
-    /// were, to a whole electron.
+    /// Electrons passed to the pixel before the run and to the pixel after it: they conserve sum and centre,
+    /// rounded to integer electrons.
     fn gives(&self) -> (f64, f64) {
         let down_e = (self.moment_e / (self.length() + 1.0)).round().clamp(0.0, self.excess_e.max(0.0));
         (self.excess_e - down_e, down_e)
@@ -101,7 +104,7 @@ impl Run {
         self.moment_e += excess_e * self.length();
     }
 
-    /// This run and the one that begins where it ends.
+    /// Merges this run with the run that begins at its end.
     fn joined(&self, below: &Self) -> Self {
         Self {
             start: self.start,
@@ -154,13 +157,13 @@ mod tests {
 
     #[test]
     fn what_reaches_an_end_is_lost() {
-        // A gambler's ruin: from the second of three rows half leaves at either end once all are full.
+        // Gambler's ruin: with three full rows, half of the excess of the second leaves at either end.
         assert_eq!(spilt(&[100.0, 1000.0, 100.0], 100.0), [100.0; 3]);
-        // Beside the upper end more is lost there than goes down: of 900, 660.
+        // Near the upper end more charge is lost at that end than moves down: 660 of 900.
         assert_eq!(spilt(&[1000.0, 100.0, 0.0, 0.0, 0.0], 100.0), [100.0, 100.0, 100.0, 100.0, 40.0]);
     }
 
-    /// Columns of random charge with some bright rows, whole electrons, an integer full well.
+    /// Columns of random charge with some bright rows, with integer electrons and an integer full well.
     fn columns() -> impl Iterator<Item = Vec<f64>> {
         (0..300).map(|index| {
             let mut stream = Seed { seed: 9, case: 0 }.stream(0, Effect::PixelNoise, index);
@@ -182,13 +185,14 @@ mod tests {
                 after.iter().all(|&electrons| (0.0..=100.0).contains(&electrons) && electrons.fract() == 0.0)
             );
             let moment = |column: &[f64]| column.iter().enumerate().map(|(y, e)| y as f64 * e).sum::<f64>();
-            // Each of at most six runs rounds half an electron over its own length.
+            // Each of at most six runs rounds half an electron over its length.
             let rounding = 6.0 * 0.5 * 150.0;
             assert!((moment(&after) - moment(&column)).abs() <= rounding);
         }
     }
 
-    /// The definition itself, step by step: every pixel above the well gives half of its excess to either side.
+    /// The definition, step by step: every pixel above the full well passes half of its excess to either
+    /// side.
     #[test]
     fn the_end_is_that_of_spilling_step_by_step() {
         for column in columns().take(30) {
@@ -209,7 +213,8 @@ mod tests {
                 }
             }
             for (y, (fast, slow)) in spilt(&column, 100.0).iter().zip(&slow).enumerate() {
-                // Rounding to a whole electron: half of one from either side, and one more where it decides who is full.
+                // Rounding to integer electrons: half an electron from either side, and one more where
+                // rounding decides which pixel is full.
                 assert!((fast - slow).abs() < 2.0, "row {y}: {fast} and {slow}");
             }
         }

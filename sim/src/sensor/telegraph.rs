@@ -1,4 +1,4 @@
-//! Random telegraph signals: hot pixels that switch between two dark currents.
+//! Random telegraph noise: hot pixels that switch between two dark currents.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,15 +6,16 @@ use serde::{Deserialize, Serialize};
 use super::poisson::poisson;
 use crate::randomness::{Effect, Seed, Stream, uniform};
 
-/// Random telegraph switching of a part of the hot pixels, as protons leave it in silicon (Hopkins & Hopkinson, "Random
-/// telegraph signals from proton-irradiated CCDs", IEEE Trans. Nucl. Sci. 40, 1993): two levels, exponential dwell times.
+/// Random telegraph switching of a share of the hot pixels, as caused by proton damage in silicon (Hopkins &
+/// Hopkinson, "Random telegraph signals from proton-irradiated CCDs", IEEE Trans. Nucl. Sci. 40, 1993): two
+/// levels, exponential dwell times.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TelegraphConfig {
-    /// Part of the hot pixels that switch, 0 to 1.
+    /// Share of the hot pixels that switch, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub fraction: f64,
-    /// Dark current in the low state as a part of that in the high one, 0 to 1.
+    /// Dark current in the low state relative to that in the high state, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub low_level: f64,
     /// Mean time in the high state, s, 0.1 to 1e7.
@@ -26,17 +27,18 @@ pub struct TelegraphConfig {
 }
 
 impl TelegraphConfig {
-    /// Mean dark current of a switching pixel from `from_s` to `to_s`, as a part of that in the high state.
+    /// Mean dark current of a switching pixel from `from_s` to `to_s`, relative to that in the high state.
     ///
-    /// The process has a memory, yet any time can be had alone. At the events of a Poisson process of the rate
-    /// 1/`high_s` + 1/`low_s` the state is drawn anew, high with probability `high_s`/(`high_s` + `low_s`), whatever it
-    /// was: this is the telegraph process itself, with its exponential dwell times. Time is cut into cells; the events of
-    /// a cell are drawn from its address, and the state at a time is that of the last event before it.
+    /// The process has a memory, yet its state can be computed at any time directly. At the events of a
+    /// Poisson process with the rate 1/`high_s` + 1/`low_s` the state is drawn anew, high with the
+    /// probability `high_s`/(`high_s` + `low_s`), independently of the previous state: this is exactly the
+    /// telegraph process, with exponential dwell times. Time is divided into cells; the events of a cell are
+    /// drawn at the address of the cell, and the state at any time is that of the last event before it.
     pub(super) fn mean_level(&self, seed: &Seed, pixel: u64, from_s: f64, to_s: f64) -> f64 {
         let cell_s = EVENTS_A_CELL * self.high_s * self.low_s / (self.high_s + self.low_s);
         let first = (from_s / cell_s).floor();
         let events = |cell: f64| {
-            // Cells before the epoch have negative numbers; as bits they are addresses like others.
+            // Cells before the epoch have negative numbers; their bit patterns are valid addresses.
             let mut stream = seed.stream(cell as i64 as u64, Effect::Telegraph, pixel);
             self.events(cell * cell_s, cell_s, &mut stream)
         };
@@ -60,7 +62,7 @@ impl TelegraphConfig {
         sum / (to_s - from_s)
     }
 
-    /// The events of a cell, in order.
+    /// Events of a cell, in order of time.
     fn events(&self, start_s: f64, cell_s: f64, stream: &mut Stream) -> Vec<Event> {
         let count = poisson(EVENTS_A_CELL, stream) as usize;
         let high_share = self.high_s / (self.high_s + self.low_s);
@@ -72,20 +74,21 @@ impl TelegraphConfig {
     }
 }
 
-/// Mean number of events in a cell of time. More make cells rarer and longer to draw.
+/// Mean number of events in a cell of time. A larger value makes cells fewer and slower to draw.
 const EVENTS_A_CELL: f64 = 4.0;
 
-/// Cells looked back for an event: none in sixteen has a probability of exp(−64).
+/// Maximum number of cells searched backwards for an event: the probability of no event in sixteen cells is
+/// exp(−64).
 const MOST_CELLS_BACK: u32 = 16;
 
-/// A moment at which the state is drawn anew.
+/// Time at which the state is drawn anew.
 #[derive(Debug, Clone, Copy)]
 struct Event {
     time_s: f64,
     high: bool,
 }
 
-/// Whether a hot pixel switches, decided by the last number of its own stream.
+/// Returns true if a hot pixel switches, decided by the last number of the pixel's stream.
 pub(super) fn switches(telegraph: Option<&TelegraphConfig>, stream: &mut Stream) -> bool {
     telegraph.is_some_and(|telegraph| uniform(stream) < telegraph.fraction)
 }
@@ -106,7 +109,8 @@ mod tests {
     fn occupancy_is_the_share_of_the_dwell_times() {
         let n = 20_000;
         let share = (0..n).filter(|&pixel| high(pixel, 1234.5)).count() as f64 / n as f64;
-        // A quarter; the standard error of independent pixels is sqrt(0.25 · 0.75/n) = 0.0031, four of them.
+        // One quarter; the standard error of independent pixels is sqrt(0.25 · 0.75/n) = 0.0031, and the
+        // tolerance is four of them.
         assert!((share - 0.25).abs() < 0.0125, "{share}");
     }
 
@@ -124,7 +128,7 @@ mod tests {
 
     #[test]
     fn dwell_times_are_exponential() {
-        // Sampled every 0.25 s; a dwell that is cut by either end of the series is left out.
+        // Sampled every 0.25 s; dwell times cut by either end of the series are dropped.
         let (step_s, mut long, mut dwells) = (0.25, 0, 0);
         for pixel in 0..60 {
             let states: Vec<bool> = (0..20_000).map(|i| high(pixel, f64::from(i) * step_s)).collect();
@@ -134,8 +138,8 @@ mod tests {
                 long += usize::from(run.len() as f64 * step_s > 30.0);
             }
         }
-        // exp(−1) of them are longer than their mean; some 2,500 dwells know it to 0.0096. The steps hide dwells below
-        // 0.25 s, 0.8 % of them.
+        // A share of exp(−1) is longer than the mean; about 2,500 dwell times determine it to 0.0096. The
+        // steps hide dwell times below 0.25 s, 0.8 % of them.
         let share = long as f64 / dwells as f64;
         assert!(dwells > 2000 && (share - 0.3679).abs() < 0.04, "{share} of {dwells}");
     }
@@ -146,7 +150,7 @@ mod tests {
             let moments =
                 (0..20_000).map(|i| SLOW.mean_level(&SEED, pixel, 0.01 * f64::from(i), 0.0)).sum::<f64>();
             let whole = SLOW.mean_level(&SEED, pixel, 0.0, 200.0);
-            // Each of some ten switches is placed to half a step of 20,000.
+            // Each of about ten switches is resolved to half a step of 20,000.
             assert!((moments / 20_000.0 - whole).abs() < 1e-3, "{whole}");
         }
     }

@@ -1,39 +1,42 @@
-//! Normal numbers by the ziggurat: nearly always one word, one multiplication and one comparison.
+//! Normal random numbers by the ziggurat method: nearly always one word, one multiplication and one
+//! comparison.
 
 use rand::Rng;
 
 use crate::randomness::{Stream, uniform};
 
-/// Layers of equal area that cover exp(−x²/2), x ≥ 0: 255 rectangles, and the lowest one with the tail.
+/// Number of layers of equal area that cover exp(−x²/2), x ≥ 0: 255 rectangles, and the lowest layer with the
+/// tail.
 const LAYERS: usize = 256;
-/// Where the tail begins: the abscissa for which 256 layers of equal area end at the top (Marsaglia & Tsang 2000).
+/// Start of the tail: the abscissa for which 256 layers of equal area end at the top (Marsaglia & Tsang
+/// 2000).
 const TAIL_FROM: f64 = 3.654_152_885_361_009;
 
-/// A sampler of the standard normal law (Marsaglia & Tsang, "The ziggurat method for generating random variables",
-/// Journal of Statistical Software 5(8), 2000), on words of 64 bits: the lowest eight choose the layer, the highest 53 the
-/// number, so that neither tells of the other (Doornik 2005).
+/// Sampler of the standard normal distribution (Marsaglia & Tsang, "The ziggurat method for generating random
+/// variables", Journal of Statistical Software 5(8), 2000), from 64-bit words: the lowest eight bits select
+/// the layer and the highest 53 the number, so the two are independent (Doornik 2005).
 #[derive(Debug, Clone)]
 pub(crate) struct Ziggurat {
     layers: Box<[Layer; LAYERS]>,
     short: Box<[ShortLayer; LAYERS]>,
 }
 
-/// What a word of 32 bits needs of a layer.
+/// Data of a layer for 32-bit words.
 #[derive(Debug, Clone, Copy, Default)]
 struct ShortLayer {
-    /// The width of a step.
+    /// Width of a step.
     width: f32,
-    /// Fewer steps than this lie below the curve.
+    /// Number of steps below which a point is surely under the curve.
     sure: f32,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Layer {
-    /// The layer ends here …
+    /// End of the layer.
     width: f64,
-    /// … and up to here it lies below the curve altogether.
+    /// Abscissa up to which the layer lies entirely under the curve.
     inner: f64,
-    /// The curve at both places.
+    /// Values of the curve at `width` and at `inner`.
     low: f64,
     high: f64,
 }
@@ -44,7 +47,7 @@ impl Default for Ziggurat {
             libm::sqrt(std::f64::consts::FRAC_PI_2) * libm::erfc(TAIL_FROM * std::f64::consts::FRAC_1_SQRT_2);
         let area = TAIL_FROM * density(TAIL_FROM) + tail;
         let mut layers = Box::new([Layer::default(); LAYERS]);
-        // The lowest layer as a rectangle of its area: what falls beyond the inner end is drawn from the tail.
+        // The lowest layer as a rectangle of equal area: points beyond the inner end are drawn from the tail.
         let mut width = area / density(TAIL_FROM);
         let mut inner = TAIL_FROM;
         for (i, layer) in layers.iter_mut().enumerate() {
@@ -55,7 +58,7 @@ impl Default for Ziggurat {
         }
         let short = layers.map(|layer| ShortLayer {
             width: (layer.width / SHORT_STEPS) as f32,
-            // Rounded down to a whole step: what is doubtful is decided in double precision.
+            // Rounded down to an integer step: doubtful cases are decided in double precision.
             sure: (layer.inner / layer.width * SHORT_STEPS).floor() as f32,
         });
         Self { layers, short: Box::new(short) }
@@ -67,8 +70,8 @@ fn density(x: f64) -> f64 {
 }
 
 impl Ziggurat {
-    /// A normal number of mean 0 and standard deviation 1 from a uniform word. One word in a hundred does not decide: then
-    /// the rest comes from the stream that `more` gives.
+    /// Draws a normal random number with mean 0 and standard deviation 1 from a uniform word. One word in a
+    /// hundred is not sufficient: the remaining words then come from the stream that `more` returns.
     #[inline(always)]
     pub(crate) fn draw(&self, word: u64, more: impl FnOnce() -> Stream) -> f64 {
         let layer = &self.layers[(word % LAYERS as u64) as usize];
@@ -76,8 +79,8 @@ impl Ziggurat {
         if x.abs() < layer.inner { x } else { self.draw_on(word, &mut more()) }
     }
 
-    /// As [`Ziggurat::draw`] from a word of 32 bits: the lowest eight choose the layer, the others the number, in steps of 2⁻²³ of
-    /// the layer's width.
+    /// [`Ziggurat::draw`] from a 32-bit word: the lowest eight bits select the layer, the other bits the
+    /// number, in steps of 2⁻²³ of the layer's width.
     #[inline(always)]
     pub(crate) fn draw_short(&self, word: u32, more: impl FnOnce() -> Stream) -> f32 {
         let layer = &self.short[(word % LAYERS as u32) as usize];
@@ -89,7 +92,7 @@ impl Ziggurat {
         }
     }
 
-    /// The number when the first word lies outside of the sure part of its layer.
+    /// Draws the number when the first word lies outside the sure part of its layer.
     #[cold]
     fn draw_on(&self, mut word: u64, stream: &mut Stream) -> f64 {
         loop {
@@ -110,21 +113,21 @@ impl Ziggurat {
     }
 }
 
-/// Steps of a word of 32 bits on each side of a layer.
+/// Number of steps of a 32-bit word on each side of a layer.
 const SHORT_STEPS: f64 = 8_388_608.0;
 
-/// The word of 64 bits with the layer and the number of one of 32: in the middle of the step.
+/// Returns the 64-bit word with the layer and the number of a 32-bit word, in the middle of the step.
 fn widened(word: u32) -> u64 {
     u64::from(word >> 8) << 40 | 1 << 39 | u64::from(word % LAYERS as u32)
 }
 
-/// A uniform number in (−1, 1) of the highest 53 bits.
+/// Uniform number in (−1, 1) from the highest 53 bits.
 #[inline(always)]
 fn signed_unit(word: u64) -> f64 {
     ((word as i64 >> 11) as f64 + 0.5) * (1.0 / 4_503_599_627_370_496.0)
 }
 
-/// A normal number beyond [`TAIL_FROM`] (Marsaglia 1964).
+/// Draws a normal random number beyond [`TAIL_FROM`] (Marsaglia 1964).
 fn tail(stream: &mut Stream) -> f64 {
     loop {
         let x = -libm::log(uniform(stream)) / TAIL_FROM;
@@ -141,7 +144,7 @@ mod tests {
     use super::*;
     use crate::randomness::{Effect, Seed};
 
-    /// Numbers as the readout draws them: a word of a row, and more from another place.
+    /// Numbers drawn as in the readout: one word of a row, and further words from another address.
     fn numbers(frame: u64, n: u64) -> impl Iterator<Item = f64> {
         let streams = Seed { seed: 31, case: 0 }.streams(frame, Effect::PixelNoise);
         let (ziggurat, mut row) = (Ziggurat::default(), streams.stream_at(0));
@@ -157,7 +160,7 @@ mod tests {
         let layers = Ziggurat::default().layers;
         let area = layers[0].width * layers[0].high;
         for layer in &layers[1..] {
-            // The abscissa of the tail is known to 17 digits, and the error grows from layer to layer.
+            // The abscissa of the tail is given to 17 digits, and its error grows from layer to layer.
             assert!((layer.width * (layer.high - layer.low) / area - 1.0).abs() < 1e-11, "{layer:?}");
         }
         assert_eq!(layers[LAYERS - 1].inner, 0.0);
@@ -165,7 +168,7 @@ mod tests {
 
     #[test]
     fn its_numbers_follow_the_normal_law_in_fine_bins() {
-        // From −5 to 5 in steps of 1/50, far narrower than most layers.
+        // −5 to 5 in steps of 1/50, far narrower than most layers.
         let bin = |x: f64| ((x + 5.0) * 50.0).floor().clamp(0.0, 499.0) as usize;
         let counts = histogram(numbers(0, 4_000_000).map(bin));
         let edge = |i: usize| cdf(i as f64 / 50.0 - 5.0);
@@ -176,7 +179,7 @@ mod tests {
 
     #[test]
     fn its_tail_is_as_heavy_as_the_normal_law() {
-        // 2 Φ(−3.6541…) = 2.6e-4: of four million a thousand, in 40 bins of 1/40 and the rest.
+        // 2 Φ(−3.6541…) = 2.6e-4: a thousand of four million, in 40 bins of 1/40 and the remainder.
         let n = 4_000_000;
         let beyond: Vec<f64> = numbers(1, n).map(f64::abs).filter(|x| *x > TAIL_FROM).collect();
         let tail = |x: f64| 2.0 * cdf(-x);
@@ -199,7 +202,7 @@ mod tests {
                 *moment += power / n as f64;
             }
         }
-        // Variances of the powers are 1, 2, 15 and 96; five standard errors.
+        // The variances of the powers are 1, 2, 15 and 96; the tolerance is five standard errors.
         for ((moment, expected), variance) in
             moments.iter().zip([0.0, 1.0, 0.0, 3.0]).zip([1.0, 2.0, 15.0, 96.0_f64])
         {

@@ -4,7 +4,7 @@ use std::path::Path;
 use super::*;
 use crate::{PixelSelection, Simulation, Simulator};
 
-// The simulation of the integration tests.
+// Simulation that the integration tests use.
 #[path = "../../tests/it/argon.rs"]
 mod argon;
 
@@ -12,12 +12,12 @@ thread_local! {
     static REQUESTED: Cell<Option<pulp::Arch>> = const { Cell::new(None) };
 }
 
-/// The registers that the test on this thread asks for.
+/// Returns the registers that the test on this thread requests.
 pub(super) fn requested() -> Option<pulp::Arch> {
     REQUESTED.get()
 }
 
-/// All registers that the machine has, the narrowest first.
+/// Returns all registers of the machine, narrowest first.
 pub(crate) fn registers() -> Vec<pulp::Arch> {
     let mut all = vec![pulp::Arch::Scalar];
     #[cfg(target_arch = "x86_64")]
@@ -30,10 +30,11 @@ pub(crate) fn registers() -> Vec<pulp::Arch> {
     all
 }
 
-/// Every bit of a frame, of its expected image, and of its truth and telemetry.
+/// All bits of a frame, of its expected image, and of its truth and telemetry.
 type Bits = (Vec<u16>, Vec<u64>, String);
 
-/// Frames of the first, third and fifth day, as the camera looks at them and drawn all over.
+/// Frames of the first, third and fifth day, drawn first only where the camera needs them and then
+/// completely.
 fn bits_of_frames(simulation: &Simulation) -> Vec<Bits> {
     let simulator = Simulator::new(simulation, Path::new("")).unwrap();
     let mut bits = Vec::new();
@@ -42,7 +43,7 @@ fn bits_of_frames(simulation: &Simulation) -> Vec<Bits> {
         for number in [300, 5000, 14_000] {
             let exposure = camera.expose(number).unwrap();
             let expected = camera.expected().iter().map(f64::to_bits).collect();
-            // Debug prints as many digits as tell a number from its neighbours, and the sign of 0.
+            // Debug prints enough digits to distinguish a number from its neighbours, and the sign of 0.
             let text = format!("{:?} {:?} {:?}", exposure.truth, exposure.telemetry, exposure.objects);
             bits.push((exposure.frame.dn().to_vec(), expected, text));
         }
@@ -50,7 +51,7 @@ fn bits_of_frames(simulation: &Simulation) -> Vec<Bits> {
     bits
 }
 
-/// Asserts that work which asks for [`arch`] gives the same on all registers.
+/// Asserts that work that calls [`arch`] has the same result on all registers.
 pub(crate) fn same_on_all_registers<T: PartialEq>(work: impl Fn() -> T) {
     let on = |registers: pulp::Arch| {
         REQUESTED.set(Some(registers));
@@ -64,7 +65,7 @@ pub(crate) fn same_on_all_registers<T: PartialEq>(work: impl Fn() -> T) {
     }
 }
 
-/// The fast path is the slow path on wider registers.
+/// The fast path takes the steps of the slow path on wider registers.
 #[test]
 fn frames_are_the_same_bits_on_all_registers() {
     let argon = argon::simulation();
@@ -73,7 +74,7 @@ fn frames_are_the_same_bits_on_all_registers() {
     }
 }
 
-/// All operations, on numbers that round differently in another order.
+/// All operations, on numbers whose results depend on the order of rounding.
 struct All<'a>(&'a [[f64; LANES]; 3]);
 
 impl SimdKernel for All<'_> {

@@ -1,26 +1,26 @@
-//! The camera's automatic gain.
+//! Automatic gain of the camera.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Gain that brings the mean of the picture towards a set value.
 ///
-/// It looks at the noise-free light of the field itself, so that any field can be made alone: a real loop looks back over
-/// some tenths of a second, in which the mean of an approach's picture changes by less than it is steered to; only at a
-/// change of lens is it quicker than a real one.
+/// It is computed from the noise-free signal of the field itself, so any field can be made separately. A real
+/// control loop averages over some tenths of a second, in which the mean of an approach's picture changes by
+/// less than the accuracy of the control; only at a change of lens is this gain faster than a real one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AutoGainConfig {
-    /// Mean of the picture that is steered to, in units of the white level, 0.01 to 1.
+    /// Target mean of the picture, in units of the white level, 0.01 to 1.
     #[schemars(range(min = 0.01, max = 1))]
     pub mean: f64,
-    /// Share of the (logarithmic) difference that is taken away, 0 to 1.
+    /// Share of the (logarithmic) difference that is corrected, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub strength: f64,
-    /// Least gain, 0.01 to 1.
+    /// Minimum gain, 0.01 to 1.
     #[schemars(range(min = 0.01, max = 1))]
     pub least: f64,
-    /// Greatest gain, 1 to 100.
+    /// Maximum gain, 1 to 100.
     #[schemars(range(min = 1, max = 100))]
     pub greatest: f64,
 }
@@ -32,9 +32,9 @@ impl Default for AutoGainConfig {
 }
 
 impl AutoGainConfig {
-    /// The gain for a picture of this mean, in units of the white level.
+    /// Returns the gain for a picture with this mean, in units of the white level.
     pub(super) fn gain(&self, mean: f64) -> f64 {
-        // A dark picture would ask for any gain.
+        // The lower limit keeps the ratio finite for a dark picture.
         let ratio = self.mean / mean.max(1e-6);
         libm::pow(ratio, self.strength).clamp(self.least, self.greatest)
     }

@@ -1,4 +1,4 @@
-//! Bloom: what is brighter than white has a wide, weak halo.
+//! Bloom: pixels brighter than white have a wide, weak halo.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,15 +7,15 @@ use crate::optics::{correlate, gaussian_kernel, pad};
 
 /// Side of the cells on which the halo is computed, px of the camera.
 const CELL_PX: usize = 8;
-/// Light above white that a pixel can give to the halo, in units of the white level: the target of a camera tube, or a
-/// well, holds no more.
+/// Maximum excess above white that a pixel contributes to the halo, in units of the white level: the target
+/// of a camera tube, or a well, holds no more.
 const MOST_EXCESS: f32 = 30.0;
 
-/// A halo about pixels above white: a Gaussian of a share of the light above white.
+/// Halo around pixels above white: a Gaussian that contains a share of the excess above white.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BloomConfig {
-    /// Share of the light above white that goes into the halo, 0 to 1.
+    /// Share of the excess above white that goes into the halo, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub share: f64,
     /// Standard deviation of the halo, px of the camera, 4 to 200.
@@ -29,7 +29,7 @@ impl Default for BloomConfig {
     }
 }
 
-/// Computes halos on coarse cells; keeps its buffers.
+/// Computes halos on coarse cells; reuses its buffers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Bloom {
     cells: Vec<f32>,
@@ -38,7 +38,7 @@ pub(super) struct Bloom {
 }
 
 impl Bloom {
-    /// Adds the halo to the rows of a field, `step` rows of the camera apart.
+    /// Adds the halo to the rows of a field, which are `step` rows of the camera apart.
     pub(super) fn add(&mut self, config: &BloomConfig, signal: &mut [f32], columns: usize, step: usize) {
         let rows_a_cell = CELL_PX / step;
         let rows = signal.len() / columns;
@@ -49,7 +49,7 @@ impl Bloom {
         self.cells.clear();
         let share = config.share as f32 / (CELL_PX * rows_a_cell) as f32;
         for rows in signal.chunks(rows_a_cell * columns) {
-            // First down the columns, which need not wait for each other.
+            // Sums down the columns first, because they are independent of each other.
             self.along.clear();
             self.along.resize(columns, 0.0);
             for row in rows.chunks_exact(columns) {
@@ -70,7 +70,7 @@ impl Bloom {
         }
     }
 
-    /// Blurs the cells; beyond the picture's border there is no light.
+    /// Blurs the cells; the signal beyond the picture's border is zero.
     fn spread(&mut self, kernel: &[f32], across: usize, down: usize) {
         let reach = kernel.len() / 2;
         for row in self.cells.chunks_exact_mut(across) {
@@ -89,12 +89,14 @@ impl Bloom {
     }
 }
 
-/// Whether some of a row is above white. It looks at all of it: a search that may end early looks at one at a time.
+/// Returns true if any pixel of a row is above white. It reads the whole row: a search with an early exit
+/// would test one pixel at a time.
 fn is_bright(row: &[f32]) -> bool {
     row.iter().filter(|s| **s > 1.0).count() > 0
 }
 
-/// Adds the cells of a row to its pixels, linearly between the cells' centres and as they are beyond the outer ones.
+/// Adds the cells of a row to its pixels: linear interpolation between the cells' centres, constant beyond
+/// the outer centres.
 fn add_between_cells(cells: &[f32], row: &mut [f32]) {
     let (before, after) = row.split_at_mut((CELL_PX / 2).min(row.len()));
     let first = cells.first().copied().unwrap_or(0.0);
@@ -114,7 +116,7 @@ fn dark_pad(row: &[f32], reach: usize, padded: &mut Vec<f32>) {
     padded[end..].fill(0.0);
 }
 
-/// The two cells whose centres a row lies between, and how far.
+/// Returns the two cells whose centres enclose a row, and the relative position of the row between them.
 fn between(row: usize, side: usize, cells: usize) -> (usize, usize, f32) {
     let position = ((row as f32 + 0.5) / side as f32 - 0.5).clamp(0.0, (cells - 1) as f32);
     let first = position as usize;
@@ -137,7 +139,7 @@ mod tests {
         Bloom::default().add(&config, &mut signal, columns, 1);
         let halo: Vec<f64> = signal.iter().zip(&before).map(|(a, b)| f64::from(a - b)).collect();
         let sum: f64 = halo.iter().sum();
-        // 64 pixels, 10 above white each; f32 sums.
+        // 64 pixels, each 10 above white; sums in f32.
         assert!((sum - 0.2 * 640.0).abs() < 0.05, "{sum}");
         let variance = halo
             .iter()
@@ -147,7 +149,8 @@ mod tests {
                 x * x * h / sum
             })
             .sum::<f64>();
-        // The source's cell (64/12), the interpolation between cells (2 × 64/12), and the tails that are cut at 4 σ (0.1 %).
+        // The source's cell (64/12), the interpolation between cells (2 × 64/12), and the tails truncated at
+        // 4 σ (0.1 %).
         let theory = 256.0 + 64.0 / 12.0 + 64.0 / 6.0;
         assert!((variance / theory - 1.0).abs() < 0.02, "{variance} {theory}");
     }

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::randomness::{Effect, Seed, uniform};
 
-/// Contrast and brightness of the camera as sums of sinusoids of equal strength whose phases are drawn from the seed: a
-/// function of time, with no memory.
+/// Drift of contrast and brightness as sums of sinusoids of equal amplitude with phases drawn from the seed:
+/// a function of time without memory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DriftConfig {
@@ -20,7 +20,7 @@ pub struct DriftConfig {
     /// Root mean square of the change of brightness, in units of the white level, 0 to 0.3.
     #[schemars(range(min = 0, max = 0.3))]
     pub brightness_rms: f64,
-    /// Periods, s, 0.1 to 1e5, 1 to 16 of them.
+    /// Periods of the sinusoids, s, 0.1 to 1e5; 1 to 16 periods.
     #[schemars(length(min = 1, max = 16), inner(range(min = 0.1, max = 1e5)))]
     pub periods_s: Vec<f64>,
 }
@@ -32,7 +32,8 @@ impl Default for DriftConfig {
 }
 
 impl DriftConfig {
-    /// The sinusoids may meet: then they change contrast by √(2 n) times the root mean square.
+    /// Checks the largest deviation: where the maxima of all sinusoids coincide, contrast changes by √(2 n)
+    /// times the root mean square.
     pub(super) fn check(&self) -> Result<(), OutOfRange> {
         require(
             "television.drift.contrast_rms",
@@ -65,7 +66,7 @@ mod tests {
     #[test]
     fn the_drift_has_its_root_mean_square() {
         let config = DriftConfig { contrast_rms: 0.05, brightness_rms: 0.02, periods_s: vec![10.0, 4.0] };
-        // Ten seconds hold whole periods of 10 s, and 20 s of both.
+        // 20 s contain an integer number of periods of 10 s and of 4 s.
         let n = 2000;
         let mut squares = [0.0; 2];
         for i in 0..n {
@@ -74,7 +75,7 @@ mod tests {
             squares[0] += (contrast - 1.0) * (contrast - 1.0) / f64::from(n);
             squares[1] += brightness * brightness / f64::from(n);
         }
-        // Exact over whole periods, to rounding.
+        // Exact over full periods, to rounding.
         assert!((squares[0].sqrt() - 0.05).abs() < 1e-12 && (squares[1].sqrt() - 0.02).abs() < 1e-12);
     }
 }

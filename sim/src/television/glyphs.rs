@@ -1,12 +1,12 @@
-//! A font of strokes for the overlay: capitals, figures and the signs of a clock and a number.
+//! Stroke font of the overlay: capitals, figures and the characters of a clock and of a number.
 
 use contract::docking::Lines;
 
 /// Grid of a character: x from 0 to 4, y from 0 (top) to 6.
 const GRID: (f64, f64) = (4.0, 6.0);
 
-/// Strokes of the characters: points as pairs of digits x y on the grid, strokes apart by spaces. A stroke of twice the
-/// same point is a dot.
+/// Strokes of the characters: points as pairs of digits x y on the grid; spaces separate strokes. A stroke
+/// that repeats a single point is a dot.
 const STROKES: [(char, &str); 42] = [
     ('0', "103041453616050110"),
     ('1', "112026 1636"),
@@ -52,12 +52,12 @@ const STROKES: [(char, &str); 42] = [
     (' ', ""),
 ];
 
-/// Whether the font has a character.
+/// Returns true if the font has a character.
 pub(super) fn supports(character: char) -> bool {
     STROKES.iter().any(|(known, _)| *known == character)
 }
 
-/// Coverage of a shape on the pixels of the camera about its place.
+/// Coverage of camera pixels by a shape, relative to its position.
 #[derive(Debug, Clone, PartialEq)]
 struct Sprite {
     columns: usize,
@@ -69,17 +69,17 @@ struct Sprite {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Glyphs {
     sprites: Vec<(char, Sprite)>,
-    /// Pixels of the margin about a character's grid.
+    /// Margin around a character's grid, px.
     margin: usize,
-    /// From a character to the next, px.
+    /// Distance from one character to the next, px.
     advance: usize,
 }
 
 impl Glyphs {
-    /// Capitals `height_px` high, of strokes `stroke_px` wide.
+    /// Creates a font with capitals of height `height_px` and strokes of width `stroke_px`.
     pub(super) fn new(height_px: f64, stroke_px: f64) -> Self {
         let scale = height_px / GRID.1;
-        // A little narrower than high squares, as television captions are.
+        // Characters are slightly narrower than the grid's squares, as in television captions.
         let (x_px, y_px) = (0.85 * scale, scale);
         let margin = (stroke_px.ceil() as usize).max(1);
         let columns = (GRID.0 * x_px).ceil() as usize + 2 * margin + 1;
@@ -134,14 +134,15 @@ impl Glyphs {
     }
 }
 
-/// The row of a field that is a row of the camera, if it holds it.
+/// Returns the row of a field that corresponds to a row of the camera; `None` if the field does not contain
+/// it.
 pub(super) fn field_row(camera_row: usize, lines: Lines) -> Option<usize> {
     let k = camera_row / lines.step();
     (lines.camera_row(k) == camera_row).then_some(k)
 }
 
 impl Sprite {
-    /// A segment with round ends: coverage falls from 1 to 0 over one pixel at its border.
+    /// Draws a segment with round ends: coverage falls from 1 to 0 over one pixel at its border.
     fn draw(&mut self, from: (f64, f64), to: (f64, f64), half_width: f64) {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length2 = dx * dx + dy * dy;
@@ -155,7 +156,7 @@ impl Sprite {
     }
 }
 
-/// The straight pieces of a character.
+/// Straight segments of a character.
 fn segments(strokes: &str) -> Vec<((f64, f64), (f64, f64))> {
     let mut segments = Vec::new();
     for stroke in strokes.split_whitespace() {
@@ -193,7 +194,7 @@ mod tests {
             for (b, second) in &glyphs.sprites[i + 1..] {
                 let differs: f32 =
                     first.coverage.iter().zip(&second.coverage).map(|(p, q)| (p - q).abs()).sum();
-                // In pixels of full coverage; a point is 2 or 3 of them.
+                // In pixels of full coverage; a dot covers 2 or 3 pixels.
                 assert!(differs > 1.5 || (*a, *b) == ('0', 'O'), "{a} {b}: {differs}");
             }
         }

@@ -1,4 +1,4 @@
-//! The analogue line: limited bandwidth and ringing, as one filter along each line.
+//! Analogue video line: limited bandwidth and ringing, combined in one filter along each line.
 
 use std::f64::consts::PI;
 
@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::optics::{correlate, pad};
 
-/// Limited bandwidth of the video channel: the discrete Gaussian along the line, weights exp(−σ²) I_n(σ²) of the modified
-/// Bessel functions (Lindeberg 1990). Its variance is σ² whatever σ is, which a Gaussian sampled at whole pixels has not
-/// below 0.6 px; its amplitude at f cycles a pixel is exp(−σ² (1 − cos 2πf)).
+/// Limited bandwidth of the video channel: the discrete Gaussian along the line, with weights exp(−σ²)
+/// I_n(σ²) of the modified Bessel functions (Lindeberg 1990). Its variance is σ² for every σ; a Gaussian
+/// sampled at integer pixels lacks this property below 0.6 px. Its amplitude at f cycles per pixel is exp(−σ²
+/// (1 − cos 2πf)).
 ///
-/// 0.45 px is 3 dB at 5.5 MHz of a 625-line system with square pixels (14.75 MHz).
+/// 0.45 px corresponds to 3 dB at 5.5 MHz for a 625-line system with square pixels (14.75 MHz).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BandwidthConfig {
@@ -26,17 +27,18 @@ impl Default for BandwidthConfig {
     }
 }
 
-/// Ringing: an edge of the height 1 is followed by amplitude × exp(−x/decay) sin(2π x/period), x pixels after it.
+/// Ringing: an edge of height 1 is followed by amplitude × exp(−x/decay) sin(2π x/period), x pixels after the
+/// edge.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RingingConfig {
-    /// Amplitude, in units of the edge, 0 to 0.5.
+    /// Amplitude relative to the height of the edge, 0 to 0.5.
     #[schemars(range(min = 0, max = 0.5))]
     pub amplitude: f64,
     /// Period, px, 2 to 50.
     #[schemars(range(min = 2, max = 50))]
     pub period_px: f64,
-    /// Decay to 1/e, px, 0.5 to 20.
+    /// Distance of decay to 1/e, px, 0.5 to 20.
     #[schemars(range(min = 0.5, max = 20))]
     pub decay_px: f64,
 }
@@ -48,7 +50,7 @@ impl Default for RingingConfig {
 }
 
 impl RingingConfig {
-    /// The impulse response from the edge on: differences of the response to an edge, of unit sum.
+    /// Impulse response from the edge on: differences of the response to an edge, with unit sum.
     fn impulse(&self) -> Vec<f64> {
         let edge = |i: i32| {
             let x = f64::from(i);
@@ -62,17 +64,17 @@ impl RingingConfig {
     }
 }
 
-/// Bandwidth and ringing together.
+/// Combined filter of bandwidth and ringing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LineFilter {
-    /// In the order of increasing column, as correlated with the line.
+    /// Correlation weights in order of increasing column.
     kernel: Vec<f32>,
     before: usize,
     padded: Vec<f32>,
 }
 
 impl LineFilter {
-    /// `None` when both are off.
+    /// Creates the filter; `None` if bandwidth and ringing are both off.
     pub(super) fn new(bandwidth: Option<&BandwidthConfig>, ringing: Option<&RingingConfig>) -> Option<Self> {
         if bandwidth.is_none() && ringing.is_none() {
             return None;
@@ -82,7 +84,8 @@ impl LineFilter {
         let impulse = ringing.map_or_else(|| vec![1.0], RingingConfig::impulse);
         let mut kernel = vec![0.0_f64; gaussian.len() + impulse.len() - 1];
         for (i, g) in gaussian.iter().enumerate() {
-            // Ringing follows: it takes from columns before, so the impulse runs backwards in a correlation.
+            // Ringing follows an edge: it uses preceding columns, so the impulse is reversed in a
+            // correlation.
             for (j, h) in impulse.iter().rev().enumerate() {
                 kernel[i + j] += g * h;
             }
@@ -101,10 +104,10 @@ impl LineFilter {
     }
 }
 
-/// What weighs less than this in a filter is left out: less than the rounding of its sum in single precision.
+/// Weight of a filter below which it is dropped: less than the rounding error of the sum in single precision.
 const LEAST_WEIGHT: f64 = 1e-8;
 
-/// exp(−σ²) I_n(σ²) for n from −N to N, of unit sum; less than 1e-7 of it lies beyond.
+/// exp(−σ²) I_n(σ²) for n from −N to N, with unit sum; less than 1e-7 is truncated.
 fn discrete_gaussian(sigma_px: f64) -> Vec<f64> {
     let variance = sigma_px * sigma_px;
     let most = (6.0 * sigma_px).ceil() as i32 + if sigma_px > 0.0 { 3 } else { 0 };
@@ -116,7 +119,8 @@ fn discrete_gaussian(sigma_px: f64) -> Vec<f64> {
     weights.map(|w| w / sum).collect()
 }
 
-/// exp(−t) I_n(t) by the power series of the modified Bessel function; all its terms are positive. t is 0 to 100.
+/// exp(−t) I_n(t) by the power series of the modified Bessel function, whose terms are all positive. t is 0
+/// to 100.
 fn scaled_bessel(n: i32, t: f64) -> f64 {
     let half = 0.5 * t;
     let mut term = (1..=n).fold(libm::exp(-t), |term, k| term * half / f64::from(k));
@@ -144,7 +148,8 @@ mod tests {
         for x in 0..20 {
             let t = x as f64;
             let theory = 1.0 + 0.1 * libm::exp(-t / 4.0) * libm::sin(2.0 * PI * t / 8.0);
-            // What is cut off after 6 decays, 2.5e-3 of the amplitude, is taken from the level after the edge.
+            // The part truncated after 6 decay lengths, 2.5e-3 of the amplitude, is subtracted from the level
+            // after the edge.
             assert!((f64::from(line[40 + x]) - theory).abs() < 2.6e-4, "{x}: {} {theory}", line[40 + x]);
         }
         assert!((line[99] - 1.0).abs() < 1e-6);
@@ -163,7 +168,7 @@ mod tests {
             filter.apply(&mut line, 200);
             let moment = |x: usize, v: f32| (x as f64 - 100.0) * (x as f64 - 100.0) * f64::from(v);
             let variance: f64 = line.iter().enumerate().map(|(x, &v)| moment(x, v)).sum();
-            // Single precision, at arms of up to 60 px.
+            // Single precision, at distances of up to 60 px.
             assert!((variance / (sigma_px * sigma_px) - 1.0).abs() < 1e-3, "{sigma_px}: {variance}");
         }
     }
@@ -178,7 +183,7 @@ mod tests {
             .enumerate()
             .map(|(i, &w)| f64::from(w) * libm::cos(2.0 * PI * frequency * (i as f64 - middle)))
             .sum();
-        // σ is given to 0.01 px: 0.03 dB.
+        // σ is stated to 0.01 px: 0.03 dB.
         assert!((20.0 * libm::log10(amplitude) + 3.0).abs() < 0.05, "{} dB", 20.0 * libm::log10(amplitude));
     }
 

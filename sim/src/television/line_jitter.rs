@@ -1,4 +1,4 @@
-//! Jitter of the line synchronisation: each line is shifted a little on its own.
+//! Jitter of the line synchronisation: a small independent shift of each line.
 
 use contract::docking::Lines;
 use schemars::JsonSchema;
@@ -8,11 +8,11 @@ use crate::optics::pad;
 use crate::randomness::{Effect, Seed, normal};
 use crate::simd_kernel::arch;
 
-/// Pixels of margin on each side of a line, and the largest shift: eight times the largest standard deviation.
+/// Margin on each side of a line, px, and largest shift, px: eight times the largest standard deviation.
 const MARGIN: usize = 10;
 const MOST_PX: f64 = 8.0;
 
-/// Each line is shifted along itself by a normal number.
+/// Shift of each line along itself by a normal random number.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LineJitterConfig {
@@ -28,7 +28,7 @@ impl Default for LineJitterConfig {
 }
 
 impl LineJitterConfig {
-    /// Shift of a row of the camera in a field, px, to the right.
+    /// Shift of a camera row in a field, px, positive to the right.
     pub(super) fn shift_px(&self, seed: &Seed, field: u64, row: usize) -> f64 {
         let mut stream = seed.stream(field, Effect::LineJitter, row as u64);
         (self.sigma_px * normal(&mut stream)).clamp(-MOST_PX, MOST_PX)
@@ -52,7 +52,7 @@ impl LineJitterConfig {
     }
 }
 
-/// The line at x − shift, by the cubic through four points (Catmull & Rom 1974).
+/// Writes the line at x − shift to `out`, by cubic interpolation through four points (Catmull & Rom 1974).
 fn shifted(padded: &[f32], shift_px: f64, out: &mut [f32]) {
     let whole = (-shift_px).floor();
     let t = (-shift_px - whole) as f32;
@@ -69,7 +69,7 @@ fn shifted(padded: &[f32], shift_px: f64, out: &mut [f32]) {
     arch().dispatch(Cubic { weights, taps, out });
 }
 
-/// Sums of four taps along a line.
+/// Task of summing four weighted taps along a line.
 struct Cubic<'a> {
     weights: [f32; 4],
     taps: [&'a [f32]; 4],
@@ -79,7 +79,8 @@ struct Cubic<'a> {
 impl pulp::WithSimd for Cubic<'_> {
     type Output = ();
 
-    // Inline: only so is it compiled for the registers of the machine. The bits do not depend on them.
+    // Inlined: only then is it compiled for the registers of the machine. The bits of the result do not
+    // depend on the registers.
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
         let Self { weights, taps, out } = self;
@@ -106,7 +107,7 @@ mod tests {
             pad(&line, MARGIN, MARGIN, &mut padded);
             shifted(&padded, shift, &mut out);
             for (x, value) in out.iter().enumerate().take(80).skip(20) {
-                // The cubic is exact on a straight line; f32.
+                // The cubic is exact on a straight line; f32 rounding remains.
                 assert!((f64::from(*value) - 0.01 * (x as f64 - shift)).abs() < 1e-6, "{shift} {x}");
             }
         }
@@ -134,7 +135,7 @@ mod tests {
         let mean = shifts.iter().sum::<f64>() / n;
         let square = shifts.iter().map(|s| s * s).sum::<f64>() / n;
         let next = shifts.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / n;
-        // Standard errors 1/√n, √(2/n), 1/√n with n = 20 000; four of them.
+        // Standard errors 1/√n, √(2/n), 1/√n with n = 20 000; the tolerance is four of them.
         assert!(mean.abs() < 0.029 && next.abs() < 0.029, "{mean} {next}");
         assert!((square - 1.0).abs() < 0.04, "{square}");
     }

@@ -1,4 +1,4 @@
-//! Faint horizontal bands and lines: mains hum, and a level of each line's own.
+//! Faint horizontal bands and lines: mains hum, and a random level of each line.
 
 use std::f64::consts::PI;
 
@@ -8,20 +8,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::randomness::{Effect, Seed, normal};
 
-/// Added to every pixel of a line: a band that wanders over the picture, and a normal number of the line.
+/// Levels added to every pixel of a line: a band that drifts over the picture, and a normal random number per
+/// line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LineLevelConfig {
     /// Amplitude of the hum, in units of the white level, 0 to 0.5.
     #[schemars(range(min = 0, max = 0.5))]
     pub hum_amplitude: f64,
-    /// Rows of the camera from one band of the hum to the next, 2 to 10000.
+    /// Period of the hum's bands, in rows of the camera, 2 to 10000.
     #[schemars(range(min = 2, max = 10000))]
     pub hum_period_rows: f64,
-    /// Bands of the hum that pass a row in a second, −25 to 25, Hz.
+    /// Number of bands of the hum that pass a row per second, −25 to 25, Hz.
     #[schemars(range(min = -25, max = 25))]
     pub hum_beat_hz: f64,
-    /// Standard deviation of a line's own level, in units of the white level, 0 to 0.5.
+    /// Standard deviation of the random level of a line, in units of the white level, 0 to 0.5.
     #[schemars(range(min = 0, max = 0.5))]
     pub line_sigma: f64,
 }
@@ -33,7 +34,7 @@ impl Default for LineLevelConfig {
 }
 
 impl LineLevelConfig {
-    /// Level of a row of the camera in a field exposed at a time.
+    /// Level of a camera row in a field exposed at `time_s`.
     pub(super) fn level(&self, seed: &Seed, field: u64, row: usize, time_s: f64) -> f64 {
         let turns = row as f64 / self.hum_period_rows - self.hum_beat_hz * time_s;
         let line_noise = normal(&mut seed.stream(field, Effect::LineLevel, row as u64));
@@ -73,12 +74,12 @@ mod tests {
         let n = 20_000_u64;
         let (mut band, mut square) = (0.0, 0.0);
         for field in 0..n {
-            // A row at the crest of the hum: a quarter of a period, and whole turns of the beat.
+            // A row at the crest of the hum: a quarter of a period, and full cycles of the beat.
             let line_noise = config.level(&seed, field, 25, 0.5 * field as f64) - 0.1;
             band += line_noise / n as f64;
             square += line_noise * line_noise / n as f64;
         }
-        // Standard errors 0.01/√n and 0.01²√(2/n); four of them.
+        // Standard errors 0.01/√n and 0.01²√(2/n); the tolerance is four of them.
         assert!(band.abs() < 2.9e-4, "{band}");
         assert!((square / 1e-4 - 1.0).abs() < 0.04, "{square}");
     }

@@ -1,4 +1,4 @@
-//! Lines that are lost on the way: snow, or the line before once more.
+//! Lines lost in transmission: replaced by snow or by the preceding line.
 
 use contract::docking::Lines;
 use schemars::JsonSchema;
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::randomness::{Effect, Seed, uniform};
 
-/// Some lines are lost; one half of them shows snow, the other the line before.
+/// Loss of lines; half of the lost lines show snow, the other half the preceding line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LostLinesConfig {
-    /// Probability of a line to be lost, 0 to 1.
+    /// Probability that a line is lost, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub probability: f64,
 }
@@ -22,7 +22,7 @@ impl Default for LostLinesConfig {
 }
 
 impl LostLinesConfig {
-    /// Replaces the lost lines of a field; how many there were.
+    /// Replaces the lost lines of a field and returns their number.
     pub(super) fn apply(
         &self,
         seed: &Seed,
@@ -41,7 +41,7 @@ impl LostLinesConfig {
             lost += 1;
             let (above, row) = signal.split_at_mut(k * columns);
             let row = &mut row[..columns];
-            // The first line of a field has none before it.
+            // The first line of a field has no preceding line.
             if uniform(&mut stream) < 0.5 && k > 0 {
                 row.copy_from_slice(&above[(k - 1) * columns..]);
             } else {
@@ -65,7 +65,7 @@ mod tests {
         let (mut lost, mut snow) = (0_u32, 0_u32);
         let fields = 100;
         for field in 0..fields {
-            // Each line its own level, so that the line before can be told.
+            // Each line has a different level, so a repeated line can be recognised.
             let mut signal: Vec<f32> = (0..rows * columns).map(|i| (i / columns + 2) as f32).collect();
             let said = config.apply(&SEED, field, Lines::Even, &mut signal, columns);
             let changed =
@@ -74,8 +74,8 @@ mod tests {
             lost += said;
             snow += signal.chunks_exact(columns).filter(|row| row[0] < 1.0).count() as u32;
         }
-        // Binomial, n = 28 800: σ = 51, and √(2880)/2 = 27; four of them (a repeated line that repeats snow is snow again:
-        // 5 % of the repeated, 72 of them expected).
+        // Binomial, n = 28 800: σ = 51, and √(2880)/2 = 27; the tolerance is four of them (a repeated line
+        // that repeats snow counts as snow: 5 % of the repeated lines, 72 expected).
         assert!((f64::from(lost) - 2880.0).abs() < 204.0, "{lost}");
         assert!((f64::from(snow) - 1440.0 - 72.0).abs() < 4.0 * 27.0 + 34.0, "{snow}");
     }

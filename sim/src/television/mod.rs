@@ -1,8 +1,9 @@
-//! The television chain: from light in the focal plane to a video signal, and to digital numbers.
+//! Television chain: from radiance in the focal plane to a video signal, and to digital numbers.
 //!
-//! In the order of the signal: veiling glare and bloom in the lens and the tube, gain, bandwidth and ringing, jitter and loss of
-//! lines, their levels, noise, and the overlay. Each effect is a file, has a switch of its own (it is on when it has its
-//! section) and draws of its own: every other draw is the same with and without it.
+//! In the order of the signal: veiling glare and bloom in the lens and the tube, gain, bandwidth and ringing,
+//! jitter and loss of lines, their levels, noise, and the overlay. Each effect has a separate file, a
+//! separate switch (it is on if its section is present) and separate draws: all other draws are the same with
+//! and without it.
 
 mod auto_gain;
 mod bloom;
@@ -40,26 +41,27 @@ pub use overlay::OverlayConfig;
 pub use sun_glare::{SunGlareConfig, SunImage};
 pub use video::{BIT_DEPTH, VideoField};
 
-/// Light that the automatic gain counts in a pixel at most, in units of the white level: the Sun is not to darken all.
+/// Maximum signal of a pixel in the automatic gain's mean, in units of the white level: the Sun must not
+/// darken the whole picture.
 const METER_LIMIT: f32 = 4.0;
-/// Columns that it sums side by side.
+/// Number of columns summed in parallel by the automatic gain.
 const METER_LANES: usize = 16;
 
-/// Which rows are exposed together.
+/// Rows that are exposed together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Interlace {
-    /// Two fields a frame, at moments half a frame apart; the first holds rows 0, 2, 4, …
+    /// Two fields per frame, at times half a frame period apart; the first holds rows 0, 2, 4, …
     #[default]
     TopFirst,
-    /// Two fields a frame; the first holds rows 1, 3, 5, …
+    /// Two fields per frame; the first holds rows 1, 3, 5, …
     BottomFirst,
-    /// Progressive: every row at one moment.
+    /// Progressive: all rows at one time.
     Off,
 }
 
 impl Interlace {
-    /// Rows of the field of this number.
+    /// Returns the rows of the field with this number.
     pub fn lines(self, field: u64) -> Lines {
         match (self, field.is_multiple_of(2)) {
             (Self::Off, _) => Lines::All,
@@ -68,7 +70,7 @@ impl Interlace {
         }
     }
 
-    /// Fields a frame: 1 or 2.
+    /// Number of fields per frame: 1 or 2.
     pub fn fields_a_frame(self) -> u32 {
         match self {
             Self::TopFirst | Self::BottomFirst => 2,
@@ -77,26 +79,27 @@ impl Interlace {
     }
 }
 
-/// The television chain. An effect is on when its section is there; noise is always there and may be 0.
+/// Television chain. An effect is on if its section is present; noise is always present and may be 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct TelevisionConfig {
-    /// Which rows are exposed together: top_first, bottom_first, off.
+    /// Rows that are exposed together: top_first, bottom_first, off.
     pub interlace: Interlace,
-    /// Frames a second, Hz, 1 to 1000; twice as many fields when interlaced.
+    /// Frame rate, Hz, 1 to 1000; the field rate is twice as high when interlaced.
     #[schemars(range(min = 1, max = 1000))]
     pub frame_rate_hz: f64,
-    /// Radiance of the white level at a gain of 1, in the units of the lighting (a white surface that faces the Sun has
-    /// irradiance/π), 1e-6 to 1e6.
+    /// Radiance of the white level at a gain of 1, in the units of the lighting (a white surface that faces
+    /// the Sun has irradiance/π), 1e-6 to 1e6.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub white_radiance: f64,
-    /// Signal of a black scene, in units of the white level, −0.5 to 0.5: above 0, so that noise is not clipped.
+    /// Signal of a black scene, in units of the white level, −0.5 to 0.5; a value above 0 avoids clipping of
+    /// the noise.
     #[schemars(range(min = -0.5, max = 0.5))]
     pub pedestal: f64,
     /// Signal at which the camera clips, in units of the white level, 1 to 10.
     #[schemars(range(min = 1, max = 10))]
     pub clip_level: f64,
-    /// Noise.
+    /// Noise of the video signal.
     pub noise: VideoNoiseConfig,
     /// Slow drift of contrast and brightness.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -104,10 +107,10 @@ pub struct TelevisionConfig {
     /// Automatic gain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub auto_gain: Option<AutoGainConfig>,
-    /// Halo about what is brighter than white.
+    /// Halo around pixels brighter than white.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bloom: Option<BloomConfig>,
-    /// The Sun when it is in the field of view.
+    /// Glare of the Sun when it is in the field of view.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sun_glare: Option<SunGlareConfig>,
     /// Limited bandwidth.
@@ -122,7 +125,7 @@ pub struct TelevisionConfig {
     /// Loss of lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lost_lines: Option<LostLinesConfig>,
-    /// Hum and levels of lines.
+    /// Hum, and random levels of lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line_level: Option<LineLevelConfig>,
     /// Reticle and text.
@@ -131,7 +134,7 @@ pub struct TelevisionConfig {
 }
 
 impl Default for TelevisionConfig {
-    /// Interlace and noise, nothing else: for studies of accuracy.
+    /// Interlace and noise only: for studies of accuracy.
     fn default() -> Self {
         Self {
             interlace: Interlace::TopFirst,
@@ -155,7 +158,7 @@ impl Default for TelevisionConfig {
 }
 
 impl TelevisionConfig {
-    /// Every effect at its default size.
+    /// Returns the chain with every effect at its default strength.
     pub fn all() -> Self {
         Self {
             drift: Some(DriftConfig::default()),
@@ -175,24 +178,24 @@ impl TelevisionConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first number outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "television")?;
         self.drift.as_ref().map_or(Ok(()), DriftConfig::check)
     }
 
-    /// Fields (or progressive frames) a second.
+    /// Fields (or progressive frames) per second.
     pub fn field_rate_hz(&self) -> f64 {
         self.frame_rate_hz * f64::from(self.interlace.fields_a_frame())
     }
 }
 
-/// Whether the overlay can write a text.
+/// Returns true if the overlay can write a text.
 pub(crate) fn can_be_written(text: &str) -> bool {
     text.chars().all(glyphs::supports)
 }
 
-/// What the chain is told of a field besides its light.
+/// Data of a field that the chain needs in addition to its radiance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FieldLabel<'a> {
     pub(crate) number: u64,
@@ -202,18 +205,18 @@ pub(crate) struct FieldLabel<'a> {
     pub(crate) caption: Caption<'a>,
 }
 
-/// What the chain did to a field.
+/// Effects of the chain on a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VideoTruth {
-    /// Signal a radiance of the white level has above the pedestal: automatic gain × drift of contrast.
+    /// Signal above the pedestal for the radiance of the white level: automatic gain × drift of contrast.
     pub contrast: f64,
     /// Signal of a black scene: pedestal + drift of brightness.
     pub brightness: f64,
-    /// Lines lost on the way.
+    /// Number of lines lost in transmission.
     pub lost_lines: u32,
 }
 
-/// A chain that was checked, with the buffers that fields reuse. One a thread.
+/// Checked chain with the buffers that its fields reuse. One per thread.
 #[derive(Debug, Clone)]
 pub(crate) struct Television {
     config: TelevisionConfig,
@@ -227,7 +230,7 @@ pub(crate) struct Television {
 }
 
 impl Television {
-    /// For cameras of `columns` × `rows`; `config` was checked.
+    /// Creates a chain for cameras of `columns` × `rows`; `config` must have been checked.
     pub(crate) fn new(config: &TelevisionConfig, seed: Seed, columns: usize, rows: usize) -> Self {
         Self {
             config: config.clone(),
@@ -241,7 +244,7 @@ impl Television {
         }
     }
 
-    /// Turns the radiance of a field's rows into its video signal, in place.
+    /// Converts the radiance of a field's rows to its video signal, in place.
     pub(crate) fn transmit(&mut self, field: &FieldLabel<'_>, signal: &mut [f32]) -> VideoTruth {
         let (config, seed, columns) = (&self.config, &self.seed, self.columns);
         let (number, time_s, lines) = (field.number, field.time_s, field.lines);
@@ -281,9 +284,9 @@ impl Television {
     }
 }
 
-/// Mean of a field as the automatic gain counts it.
+/// Mean of a field as measured by the automatic gain.
 fn metered_mean(signal: &[f32], columns: usize) -> f64 {
-    // Side by side, so that a sum need not wait for the one before it.
+    // Parallel sums, so no sum waits for the result of the preceding addition.
     let mut sums = [0.0_f32; METER_LANES];
     let mut sum = 0.0;
     for row in signal.chunks(columns) {

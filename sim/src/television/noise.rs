@@ -12,7 +12,8 @@ use crate::sensor::Ziggurat;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct VideoNoiseConfig {
-    /// Standard deviation, in 1/255 of the white level (8-bit digital numbers at a contrast of 1), 0 to 100; 0 is without.
+    /// Standard deviation, in 1/255 of the white level (8-bit digital numbers at a contrast of 1), 0 to 100;
+    /// 0 for none.
     #[schemars(range(min = 0, max = 100))]
     pub sigma_dn8: f64,
 }
@@ -24,8 +25,9 @@ impl Default for VideoNoiseConfig {
 }
 
 impl VideoNoiseConfig {
-    /// Adds noise to the lines of a field. A row of the camera has one stream, at place = row, of which every two pixels take one
-    /// word, the left one its lower half; one whose half does not decide goes on at an address of its own.
+    /// Adds noise to the lines of a field. Each row of the camera has one stream, at the address of its row
+    /// number. Every two pixels take one word from it, the left pixel its lower half. A pixel whose half word
+    /// is not sufficient continues at its own address.
     pub(super) fn apply(
         &self,
         ziggurat: &Ziggurat,
@@ -77,15 +79,16 @@ mod tests {
             signal.windows(lag + 1).map(|w| f64::from(w[0]) * f64::from(w[lag]) * 85.0 * 85.0).sum::<f64>()
                 / n
         };
-        // Standard errors 1/√n, √(2/n), √(96/n), 1/√n with n = 221 184; four of them.
+        // Standard errors 1/√n, √(2/n), √(96/n), 1/√n with n = 221 184; the tolerance is four of them.
         assert!(moment(&|s| s).abs() < 0.0086);
         assert!((moment(&|s| s * s) - 1.0).abs() < 0.0121);
         assert!((moment(&|s| s * s * s * s) - 3.0).abs() < 0.084);
         assert!(lagged(1).abs() < 0.0086 && lagged(columns).abs() < 0.0086);
-        // Two pixels share a word: what is large in one must not tell what is large in the other.
+        // Two pixels share a word: large values in one pixel must be independent of large values in the
+        // other.
         let square = |s: f32| f64::from(s) * f64::from(s) * 85.0 * 85.0 - 1.0;
         let pairs = signal.chunks_exact(2).map(|pair| square(pair[0]) * square(pair[1])).sum::<f64>();
-        // Standard error 2/√(n/2); four of them.
+        // Standard error 2/√(n/2); the tolerance is four of them.
         assert!((pairs / (n / 2.0)).abs() < 0.024, "{pairs}");
     }
 
@@ -106,7 +109,7 @@ mod tests {
             }
         }
         let n = (columns * rows) as f64 * fields as f64;
-        // erfc(k/√2); binomial, four standard deviations.
+        // erfc(k/√2); binomial, with a tolerance of four standard deviations.
         for (count, k) in counts.iter().zip([1.0, 2.0, 3.0, 4.0]) {
             let p = libm::erfc(k * std::f64::consts::FRAC_1_SQRT_2);
             let off = (f64::from(*count) - n * p) / (n * p * (1.0 - p)).sqrt();

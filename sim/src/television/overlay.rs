@@ -1,4 +1,4 @@
-//! What the camera's caption generator lays over the picture: a reticle, the clock, its name, range and range rate.
+//! Overlay of the camera's caption generator: a reticle, the clock, the camera's name, range and range rate.
 
 use contract::docking::Lines;
 use schemars::JsonSchema;
@@ -7,31 +7,31 @@ use serde::{Deserialize, Serialize};
 use super::glyphs::{Glyphs, field_row};
 use crate::randomness::{Effect, Seed, normal};
 
-/// Rows of the camera for which the sizes below hold; they go with its rows.
+/// Number of camera rows to which the sizes below refer; they scale with the number of rows.
 const REFERENCE_ROWS: f64 = 576.0;
-/// Height of capitals, width of strokes, px.
+/// Height of capitals and width of strokes, px.
 const CAPITAL_PX: f64 = 15.0;
 const STROKE_PX: f64 = 1.7;
-/// From the picture's border to the text, px.
+/// Distance from the picture's border to the text, px.
 const TEXT_MARGIN_PX: (f64, f64) = (20.0, 16.0);
-/// From the range to the range rate, px.
+/// Column of the range rate, px.
 const RATE_AT_PX: f64 = 150.0;
-/// Bottom of the lower text above the picture's border, px.
+/// Distance from the picture's lower border to the bottom of the lower text, px.
 const BOTTOM_PX: f64 = 27.0;
-/// The reticle's four lines: from the picture's border, their length, their width, px.
+/// The reticle's four lines: distance from the picture's border, length and width, px.
 const RETICLE_PX: (f64, f64, f64) = (40.0, 30.0, 1.4);
 
-/// Reticle and text, at a level of their own.
+/// Reticle and text, with their level.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OverlayConfig {
     /// Level of lines and text, in units of the white level, 0 to 2.
     #[schemars(range(min = 0, max = 2))]
     pub level: f64,
-    /// Standard deviation of the range that the text says, as a part of it, 0 to 0.5; drawn anew each second.
+    /// Standard deviation of the displayed range, relative to the range, 0 to 0.5; drawn anew each second.
     #[schemars(range(min = 0, max = 0.5))]
     pub range_error: f64,
-    /// Standard deviation of the range rate that the text says, m/s, 0 to 10; drawn anew each second.
+    /// Standard deviation of the displayed range rate, m/s, 0 to 10; drawn anew each second.
     #[schemars(range(min = 0, max = 10))]
     pub range_rate_error_m_s: f64,
 }
@@ -42,10 +42,10 @@ impl Default for OverlayConfig {
     }
 }
 
-/// What the text says of the approach; at first the truth.
+/// Content of the text; initially the true values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Caption<'a> {
-    /// UTC, as 14:07:32.
+    /// UTC, for example 14:07:32.
     pub(crate) clock: &'a str,
     pub(crate) camera: &'a str,
     pub(crate) range_m: f64,
@@ -53,12 +53,12 @@ pub(crate) struct Caption<'a> {
 }
 
 impl OverlayConfig {
-    /// The caption with range and range rate as the radar of the approach measures them, whose readings the picture shows:
-    /// the truth is in no picture.
+    /// Returns the caption with range and range rate as measured by the radar of the approach. The picture
+    /// shows these readings; no picture contains the true values.
     pub(super) fn measured<'a>(&self, seed: &Seed, time_s: f64, caption: &Caption<'a>) -> Caption<'a> {
         let second = time_s.max(0.0).floor();
         let mut stream = seed.stream(second as u64, Effect::OverlayReading, 0);
-        // As it was when the second began: the digits do not change between the fields of a frame.
+        // Range at the start of the second: the digits do not change between the fields of a frame.
         let range_m = caption.range_m - caption.range_rate_m_s * (time_s - second);
         Caption {
             range_m: range_m * (1.0 + self.range_error * normal(&mut stream)),
@@ -68,7 +68,7 @@ impl OverlayConfig {
     }
 }
 
-/// The overlay for a camera, its characters rasterised once.
+/// Overlay for one camera, its characters rasterised once.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Overlay {
     glyphs: Glyphs,
@@ -85,7 +85,7 @@ impl Overlay {
         Self { glyphs, level: config.level as f32, scale, columns, rows }
     }
 
-    /// Lays the overlay over the rows of a field.
+    /// Draws the overlay over the rows of a field.
     pub(super) fn draw(&self, caption: &Caption<'_>, lines: Lines, signal: &mut [f32]) {
         self.reticle(lines, signal);
         let px = |length: f64| (length * self.scale).round() as usize;
@@ -101,7 +101,7 @@ impl Overlay {
         write(&format!("V {:+.2}", caption.range_rate_m_s), px(RATE_AT_PX), bottom);
     }
 
-    /// Four lines that point at the picture's centre.
+    /// Draws four lines that point at the picture's centre.
     fn reticle(&self, lines: Lines, signal: &mut [f32]) {
         let (inset, length) = (RETICLE_PX.0 * self.scale, RETICLE_PX.1 * self.scale);
         let half_width = 0.5 * (RETICLE_PX.2 * self.scale).max(1.0);
@@ -120,7 +120,7 @@ impl Overlay {
         }
     }
 
-    /// A rectangle between two columns and two rows, with its exact coverage of pixels.
+    /// Draws a rectangle between two columns and two rows, with exact coverage of pixels.
     fn rectangle(&self, x: (f64, f64), y: (f64, f64), lines: Lines, signal: &mut [f32]) {
         for camera_row in y.0.max(0.0).round() as usize..=y.1.max(0.0).round() as usize {
             let Some(row) = field_row(camera_row, lines)
@@ -137,7 +137,7 @@ impl Overlay {
     }
 }
 
-/// Part of the pixel at `index` that lies between two coordinates.
+/// Share of the pixel at `index` that lies between two coordinates.
 fn covered((from, to): (f64, f64), index: usize) -> f64 {
     let centre = index as f64;
     (to.min(centre + 0.5) - from.max(centre - 0.5)).clamp(0.0, 1.0)
@@ -157,7 +157,8 @@ mod tests {
     const CAPTION: Caption<'static> =
         Caption { clock: "14:07:32", camera: "TV-1", range_m: 20.0, range_rate_m_s: -0.11 };
 
-    /// The readings of a second are one, that of its beginning. Those of many have the errors that were asked for.
+    /// All readings within a second equal the one at its start. Readings of many seconds have the requested
+    /// errors.
     #[test]
     fn readings_are_the_radars_and_hold_for_a_second() {
         let config =
@@ -168,7 +169,7 @@ mod tests {
             config.measured(&seed, time_s, &Caption { range_m: moved, ..CAPTION })
         };
         let at = |time_s: f64| reading(&config, time_s);
-        // Rounding of the way back to the second's beginning.
+        // Rounding error of the extrapolation back to the start of the second.
         assert!((at(7.0).range_m - at(7.98).range_m).abs() < 1e-9);
         assert_eq!(at(7.0).range_rate_m_s, at(7.98).range_rate_m_s);
         assert!((at(7.0).range_m - at(8.0).range_m).abs() > 1e-3);
@@ -179,7 +180,8 @@ mod tests {
             range += libm::pow((reading.range_m / CAPTION.range_m - 1.0) / 0.02, 2.0);
             rate += libm::pow((reading.range_rate_m_s - CAPTION.range_rate_m_s) / 0.05, 2.0);
         }
-        // Mean squares of normal numbers: standard error √(2/n) = 0.022; four of them.
+        // Mean squares of normal random numbers: standard error √(2/n) = 0.022; the tolerance is four of
+        // them.
         for mean in [range, rate].map(|sum| sum / f64::from(n)) {
             assert!((mean - 1.0).abs() < 0.09, "{mean}");
         }
@@ -193,7 +195,7 @@ mod tests {
         let sum = |columns: std::ops::Range<usize>, rows: std::ops::Range<usize>| {
             rows.map(|y| frame[y * 768..][columns.clone()].iter().sum::<f32>()).sum::<f32>()
         };
-        // Each line: its length times its width.
+        // Each line: length times width.
         for (columns, rows) in
             [(370..400, 30..80), (370..400, 500..545), (30..80, 270..300), (690..740, 270..300)]
         {

@@ -1,19 +1,19 @@
-//! The Sun in the field: its disk, veiling glare, a streak and a ghost.
+//! The Sun in the field of view: its disk, veiling glare, a streak and a ghost.
 
 use contract::PixelPoint;
 use contract::docking::Lines;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What the Sun does to the picture when it is in the field of view, in units of the white level; the part of it that the
-/// scene hides is taken off all of it.
+/// Effects of the Sun on the picture when it is in the field of view, in units of the white level; all are
+/// multiplied by the visible share of its disk.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SunGlareConfig {
     /// Level of the disk, 0 to 1e4.
     #[schemars(range(min = 0, max = 1e4))]
     pub disk_level: f64,
-    /// Veiling glare: level at the edge of the disk, 0 to 10. It falls as 1/(1 + (θ/θ0)²).
+    /// Veiling glare: level at the centre of the disk, 0 to 10. It falls as 1/(1 + (θ/θ0)²).
     #[schemars(range(min = 0, max = 10))]
     pub veil_level: f64,
     /// θ0 of the veiling glare, degrees, 0.1 to 90.
@@ -22,7 +22,8 @@ pub struct SunGlareConfig {
     /// Level of a streak along the column through the Sun, 0 to 10.
     #[schemars(range(min = 0, max = 10))]
     pub streak_level: f64,
-    /// Level of the ghost, a disk three times the Sun's opposite to it about the principal point, 0 to 10.
+    /// Level of the ghost, a disk of three times the Sun's radius, opposite to the Sun about the principal
+    /// point, 0 to 10.
     #[schemars(range(min = 0, max = 10))]
     pub ghost_level: f64,
 }
@@ -39,18 +40,18 @@ impl Default for SunGlareConfig {
     }
 }
 
-/// The Sun as a camera sees it.
+/// Image of the Sun in a camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunImage {
-    /// Its centre, px.
+    /// Centre of the disk, px.
     pub centre: PixelPoint,
-    /// Where its ghost is, px.
+    /// Position of the ghost, px.
     pub ghost: PixelPoint,
-    /// Radius of its disk, px.
+    /// Radius of the disk, px.
     pub radius_px: f64,
-    /// Pixels a radian.
+    /// Pixels per radian.
     pub focal_px: f64,
-    /// Share of its disk that nothing hides, 0 to 1.
+    /// Visible share of the disk, 0 to 1.
     pub visible: f64,
 }
 
@@ -72,7 +73,7 @@ pub(super) fn add(config: &SunGlareConfig, sun: &SunImage, signal: &mut [f32], c
         for (x, pixel) in row.iter_mut().enumerate() {
             let dx = x as f32 - sun_x;
             let r2 = dx * dx + dy2;
-            // The streak is as wide as the disk and has soft edges.
+            // The streak has the width of the disk and soft edges.
             let soft = (1.0 - dx.abs() / radius).max(0.0);
             *pixel += veil / (1.0 + r2 * per_veil2) + streak * soft;
         }
@@ -81,7 +82,7 @@ pub(super) fn add(config: &SunGlareConfig, sun: &SunImage, signal: &mut [f32], c
     }
 }
 
-/// Adds one row of a disk, its edge one pixel wide.
+/// Adds one row of a disk with an edge one pixel wide.
 fn add_disk(row: &mut [f32], y: f32, centre: (f32, f32), radius: f32, level: f32) {
     let dy = y - centre.1;
     if dy.abs() > radius + 1.0 {
@@ -118,7 +119,8 @@ mod tests {
         let mut signal = vec![0.0_f32; 120 * 100];
         add(&bare, &sun, &mut signal, 120, Lines::All);
         let area = signal.iter().map(|s| f64::from(*s)).sum::<f64>() / 10.0;
-        // The linear edge is exact for a straight edge along the pixels; 0.1 % for this circle.
+        // The linear edge is exact for a straight edge along the pixels, and accurate to 0.1 % for this
+        // circle.
         assert!((area / (std::f64::consts::PI * 13.6 * 13.6) - 1.0).abs() < 1e-3, "{area}");
         let before = signal.clone();
         add(&SunGlareConfig::default(), &SunImage { visible: 0.0, ..sun }, &mut signal, 120, Lines::All);

@@ -5,7 +5,7 @@ const COLUMNS: usize = 96;
 const ROWS: usize = 72;
 const SEED: Seed = Seed { seed: 11, case: 0 };
 
-/// A picture with a bright square on a grey ground.
+/// Picture with a bright square on a grey background.
 fn light(lines: Lines) -> Vec<f32> {
     let mut light = vec![0.2_f32; COLUMNS * lines.rows(ROWS)];
     for row in light.chunks_exact_mut(COLUMNS).skip(10).take(12) {
@@ -79,7 +79,7 @@ fn every_effect_changes_the_picture() {
     }
 }
 
-/// Noise is added to whatever came before it: with and without an effect the same numbers.
+/// Noise is independent of the picture: the same numbers are added with and without an effect.
 #[test]
 fn an_effect_leaves_the_draws_of_noise_as_they_were() {
     for (name, change) in EFFECTS {
@@ -87,7 +87,7 @@ fn an_effect_leaves_the_draws_of_noise_as_they_were() {
             let mut config =
                 TelevisionConfig { noise: VideoNoiseConfig { sigma_dn8 }, ..TelevisionConfig::default() };
             change(&mut config);
-            // The overlay covers the noise: it must not reach the place that is looked at.
+            // The overlay covers the noise: it must not reach the pixels that are compared.
             transmitted(&config, 4).0
         };
         let plain = |sigma_dn8| {
@@ -109,13 +109,13 @@ fn an_effect_leaves_the_draws_of_noise_as_they_were() {
     }
 }
 
-/// The rows of a field by their numbers in which two pictures differ.
+/// Numbers of the rows of a field in which two pictures differ.
 fn changed_rows(a: &[f32], b: &[f32]) -> Vec<usize> {
     let rows = a.chunks_exact(COLUMNS).zip(b.chunks_exact(COLUMNS)).enumerate();
     rows.filter(|(_, (a, b))| a != b).map(|(k, _)| k).collect()
 }
 
-/// A picture of which no row is like another, and every row tells a shift.
+/// Picture in which all rows differ and every row reveals a shift.
 fn uneven_light(lines: Lines) -> Vec<f32> {
     let mut light = light(lines);
     for (i, light) in light.iter_mut().enumerate() {
@@ -125,7 +125,8 @@ fn uneven_light(lines: Lines) -> Vec<f32> {
     light
 }
 
-/// As above for the draws of lost lines: the same rows are lost, the same of them to the same snow.
+/// An effect does not change the draws of lost lines: the same rows are lost, and the same ones show the same
+/// snow.
 #[test]
 fn an_effect_leaves_the_lines_that_are_lost_as_they_were() {
     let picture = |change: Change, lost: Option<LostLinesConfig>| {
@@ -144,8 +145,9 @@ fn an_effect_leaves_the_lines_that_are_lost_as_they_were() {
     }
 }
 
-/// As above for the shifts of lines. An effect before the jitter gives another picture that is shifted by the same; one after
-/// it leaves what it leaves of a picture that was not shifted.
+/// An effect does not change the shifts of lines. An effect before the jitter changes the picture, which is
+/// then shifted by the same amounts; an effect after the jitter changes shifted and unshifted pictures
+/// equally.
 #[test]
 fn an_effect_leaves_the_shifts_of_lines_as_they_were() {
     let jitter = LineJitterConfig { sigma_px: 0.5 };

@@ -1,11 +1,11 @@
-//! A field as a video signal, and its way through the frame grabber.
+//! Field as a video signal, and its conversion by the frame grabber.
 
 use contract::Frame;
 use contract::docking::{Digitiser, Field, Lines};
 
 use crate::simd_kernel::arch;
 
-/// Bits of the frame grabber.
+/// Bit depth of the frame grabber.
 pub const BIT_DEPTH: u8 = 8;
 
 /// One field before the digitiser: 0 is the black level of the video and 1 its white level.
@@ -19,7 +19,8 @@ pub struct VideoField {
 }
 
 impl VideoField {
-    /// The rows `lines` of a camera of `columns` × `camera_rows`; `None` when `signal` has not as many values.
+    /// Creates a field from the rows `lines` of a camera of `columns` × `camera_rows`; `None` if `signal`
+    /// does not have that number of values.
     pub fn new(
         number: u64,
         columns: usize,
@@ -36,17 +37,17 @@ impl VideoField {
         })
     }
 
-    /// Number in its sequence.
+    /// Number of the field in its sequence.
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// Columns.
+    /// Number of columns.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Which rows of the camera it holds.
+    /// Rows of the camera that the field holds.
     pub fn lines(&self) -> Lines {
         self.lines
     }
@@ -56,8 +57,8 @@ impl VideoField {
         &self.signal
     }
 
-    /// Digital numbers of eight bits: 255 × (contrast × signal + brightness), clipped to 0 and 255 and rounded, halves
-    /// upwards.
+    /// Returns digital numbers of eight bits: 255 × (contrast × signal + brightness), clipped to 0 to 255 and
+    /// rounded, halves upwards.
     #[allow(clippy::expect_used, reason = "the size was checked when the field was made")]
     pub fn digitise(&self, digitiser: &Digitiser) -> Field {
         let full_scale = 255.0_f32;
@@ -71,7 +72,7 @@ impl VideoField {
     }
 }
 
-/// The levels of a signal as whole numbers.
+/// Task of converting signal levels to integers.
 struct Digits<'a> {
     signal: &'a [f32],
     slope: f32,
@@ -83,20 +84,22 @@ struct Digits<'a> {
 impl pulp::WithSimd for Digits<'_> {
     type Output = ();
 
-    // Inline: only so is it compiled for the registers of the machine. The bits do not depend on them.
+    // Inlined: only then is it compiled for the registers of the machine. The bits of the result do not
+    // depend on the registers.
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
         for (dn, s) in self.dn.iter_mut().zip(self.signal) {
             let level = self.slope * s + self.offset;
-            // Not by `clamp`: what is no number is black.
+            // `clamp` is not used, because NaN must become black.
             let level = if level > 0.0 { level } else { 0.0 };
             *dn = whole_part(if level < self.full_scale { level } else { self.full_scale } + 0.5);
         }
     }
 }
 
-/// The whole part of 0 to 65535. By additions, which a processor does for many numbers at once, as it does not a cast that must
-/// look for what does not fit: at 2²³ the last bit of single precision is worth 1.
+/// Integer part of a number from 0 to 65535. It is computed by additions, which a processor does for many
+/// numbers at once; a cast would have to check for values that do not fit. At 2²³ the last bit of single
+/// precision is worth 1.
 #[inline(always)]
 fn whole_part(value: f32) -> u16 {
     const ONES: f32 = 8_388_608.0;

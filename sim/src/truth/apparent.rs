@@ -1,9 +1,11 @@
-//! How the stars look from the spacecraft: space motion, parallax, light deflection, aberration.
+//! Apparent positions of stars as seen from the spacecraft: space motion, parallax, light deflection,
+//! aberration.
 //!
-//! The chain is that of the IAU's SOFA collection for an observer in space, catalogue to proper direction (ICRS to
-//! GCRS axes): straight space motion and parallax, deflection of light by the Sun, exact relativistic aberration.
-//! Written from the papers and held against ERFA (`golden/apparent`). Neglected: deflection by planets (16 mas at
-//! Jupiter's limb, under 1 mas from 6′ on) and by the Earth (0.4 mas at its limb from a low orbit).
+//! The chain is that of the IAU's SOFA collection for an observer in space, catalogue to proper direction
+//! (ICRS to GCRS axes): straight space motion and parallax, deflection of light by the Sun, exact
+//! relativistic aberration. It was written from the papers and is compared with ERFA (`golden/apparent`).
+//! Neglected: deflection by planets (16 mas at Jupiter's limb, under 1 mas from 6′ on) and by the Earth (0.4
+//! mas at its limb from a low orbit).
 
 use contract::bounds::require;
 use contract::{Direction, Icrs, OutOfRange};
@@ -14,36 +16,37 @@ use super::{clock, ephemeris};
 use crate::catalog::CatalogStar;
 use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
 
-/// A Julian year, s.
+/// Julian year, s.
 const YEAR_S: f64 = 365.25 * 86_400.0;
 /// Light time of one astronomical unit, Julian years.
 const AU_LIGHT_YEARS: f64 = AU_KM / LIGHT_SPEED_KM_S / YEAR_S;
-/// The Schwarzschild radius of the Sun, 2GM/c², au.
+/// Schwarzschild radius of the Sun, 2GM/c², au.
 const SUN_SCHWARZSCHILD_AU: f64 = 1.97412574336e-8;
-/// The catalogue's epoch J1991.25 in s since J2000.0.
+/// Catalogue epoch J1991.25, s since J2000.0.
 const CATALOG_EPOCH_S: f64 = -8.75 * YEAR_S;
 const RADIANS_PER_MAS: f64 = std::f64::consts::PI / (180.0 * 3_600.0 * 1_000.0);
-/// Farthest from the Earth that an observer may be, km: well inside the Earth's distance from the Sun.
+/// Maximum distance of an observer from the Earth, km: well inside the Earth's distance from the Sun.
 const FARTHEST_KM: f64 = 1e7;
-/// Fastest about the Earth that an observer may be, km/s.
+/// Maximum speed of an observer relative to the Earth, km/s.
 const FASTEST_KM_S: f64 = 1e3;
 
-/// A star's place and motion as vectors, made once for a catalogue.
+/// Position and motion of a star as vectors, computed once per catalogue.
 ///
-/// Epoch J1991.25 (TDB; the catalogue's TT differs by under 2 ms), ICRS axes.
+/// Epoch J1991.25 (TDB; the catalogue's TT differs by less than 2 ms), ICRS axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StarMotion {
-    /// Unit vector at the epoch.
+    /// Unit vector towards the star at the epoch.
     unit_vector: Vector3<f64>,
-    /// Space velocity over distance at the epoch, rad per Julian year: across, the proper motion; along, the
-    /// change of distance.
+    /// Space velocity divided by distance at the epoch, rad per Julian year. Its transverse component is the
+    /// proper motion; its radial component is the relative change of distance.
     motion_per_yr: Vector3<f64>,
     /// Parallax, rad.
     parallax: f64,
 }
 
 impl StarMotion {
-    /// From catalogue values. A negative parallax is noise of the measurement; the star is taken to be at infinity.
+    /// Converts catalogue values. A negative parallax is measurement noise; the star is then assumed to be at
+    /// infinity.
     pub fn new(star: &CatalogStar) -> Self {
         let (sin_ra, cos_ra) = libm::sincos(star.ra_rad);
         let (sin_dec, cos_dec) = libm::sincos(star.dec_rad);
@@ -51,7 +54,8 @@ impl StarMotion {
         let east = Vector3::new(-sin_ra, cos_ra, 0.0);
         let north = Vector3::new(-cos_ra * sin_dec, -sin_ra * sin_dec, cos_dec);
         let parallax = star.parallax_mas.max(0.0) * RADIANS_PER_MAS;
-        // Distance over the parallax's au: radial velocity in au/yr times parallax is the relative change a year.
+        // Distance equals 1 au divided by the parallax, so radial velocity in au/yr times parallax is the
+        // relative change per year.
         let radial = star.radial_velocity_km_s * (YEAR_S / AU_KM) * parallax;
         let motion_per_yr = east * (star.pm_ra_mas_per_yr * RADIANS_PER_MAS)
             + north * (star.pm_dec_mas_per_yr * RADIANS_PER_MAS)
@@ -60,14 +64,14 @@ impl StarMotion {
     }
 }
 
-/// A place and a velocity from which stars are seen, with all that does not depend on the star.
+/// Position and velocity of an observer of stars, with all quantities that do not depend on the star.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observer {
     /// TDB since the catalogue's epoch, Julian years.
     years: f64,
-    /// From the barycentre of the Solar System, au.
+    /// Position relative to the barycentre of the Solar System, au.
     position_au: Vector3<f64>,
-    /// In units of the speed of light.
+    /// Velocity relative to the barycentre of the Solar System, in units of the speed of light.
     beta: Vector3<f64>,
     inverse_gamma: f64,
     /// Unit vector from the Sun to the observer.
@@ -76,11 +80,11 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// The observer at `time`, at `position_km` from the centre of the Earth and moving about it with
-    /// `velocity_km_s`, ICRS axes.
+    /// Creates the observer at `time`, at `position_km` relative to the Earth's centre and with the velocity
+    /// `velocity_km_s` relative to it, ICRS axes.
     ///
     /// # Errors
-    /// [`OutOfRange`] when the time is outside [`ephemeris::COVERAGE`], or the observer farther from the
+    /// [`OutOfRange`] if the time is outside [`ephemeris::COVERAGE`], or the observer is farther from the
     /// Earth than 10⁷ km or faster than 1000 km/s, or a number is not finite.
     ///
     /// ```
@@ -119,22 +123,23 @@ impl Observer {
         })
     }
 
-    /// Position from the barycentre of the Solar System, au, ICRS axes.
+    /// Position relative to the barycentre of the Solar System, au, ICRS axes.
     pub fn barycentric_position_au(&self) -> Vector3<f64> {
         self.position_au
     }
 
-    /// Velocity against the barycentre of the Solar System, km/s, ICRS axes.
+    /// Velocity relative to the barycentre of the Solar System, km/s, ICRS axes.
     pub fn barycentric_velocity_km_s(&self) -> Vector3<f64> {
         self.beta * LIGHT_SPEED_KM_S
     }
 
-    /// Direction to the centre of the Sun: geometric, without light time and aberration (20″ from the apparent).
+    /// Direction to the centre of the Sun: geometric, without light time and aberration (20″ from the
+    /// apparent direction).
     pub fn sun(&self) -> Direction<Icrs> {
         Direction::from_unit(-self.from_sun)
     }
 
-    /// The Sun from the observer, km: geometric, as [`Observer::sun`].
+    /// Position of the Sun relative to the observer, km: geometric, like [`Observer::sun`].
     pub fn sun_km(&self) -> Vector3<f64> {
         -self.from_sun * (self.sun_distance_au * AU_KM)
     }
@@ -144,25 +149,26 @@ impl Observer {
         self.sun_distance_au
     }
 
-    /// The geometric direction to a star: space motion in a straight line (proper motion with its change by
-    /// perspective), then parallax.
+    /// Returns the geometric direction to a star: space motion in a straight line (proper motion and its
+    /// perspective change), then parallax.
     ///
-    /// Murray, Vectorial Astrometry (1983); Urban & Seidelmann, Explanatory Supplement (2013), Sec. 7.2. The Roemer
-    /// delay, by which the light reaches the observer earlier than the barycentre, is taken along the catalogued
-    /// direction. Not modelled: the relativistic terms of a star's own motion (in 2044, 0.20 mas for Kapteyn's
-    /// star, 0.10 mas for Barnard's).
+    /// Murray, Vectorial Astrometry (1983); Urban & Seidelmann, Explanatory Supplement (2013), Sec. 7.2. The
+    /// Roemer delay, by which the light reaches the observer earlier than the barycentre, is computed along
+    /// the catalogued direction. Not modelled: the relativistic terms of a star's own motion (in 2044, 0.20
+    /// mas for Kapteyn's star, 0.10 mas for Barnard's).
     pub fn astrometric(&self, star: &StarMotion) -> Direction<Icrs> {
         Direction::from_unit(self.coordinate_direction(star))
     }
 
-    /// The direction in which an ideal camera sees a star: [`Observer::astrometric`], bent by the Sun
-    /// ([`deflect`]), aberrated ([`aberrate`], with the Sun's potential added: 0.4 µas, Klioner 2003, Eq. 7).
+    /// Returns the direction in which an ideal camera sees a star: [`Observer::astrometric`] with deflection
+    /// by the Sun ([`deflect`]) and aberration ([`aberrate`], with the Sun's potential added: 0.4 µas,
+    /// Klioner 2003, Eq. 7).
     pub fn apparent(&self, star: &StarMotion) -> Direction<Icrs> {
         self.apparent_from_astrometric(self.astrometric(star))
     }
 
-    /// The direction in which an ideal camera sees a distant source that stands at `astrometric`; see
-    /// [`Observer::apparent`].
+    /// Returns the direction in which an ideal camera sees a distant source with the astrometric direction
+    /// `astrometric`; see [`Observer::apparent`].
     pub fn apparent_from_astrometric(&self, astrometric: Direction<Icrs>) -> Direction<Icrs> {
         let natural = bend(astrometric.vector(), &self.from_sun, self.sun_distance_au);
         let potential = SUN_SCHWARZSCHILD_AU / self.sun_distance_au;
@@ -175,41 +181,42 @@ impl Observer {
     }
 }
 
-/// The direction of light bent by the Sun, for a source far behind it.
+/// Returns the direction after deflection of light by the Sun, for a source far behind it.
 ///
-/// `p + 2GM/(c² d) · (e − (p·e) p) / (1 + p·e)`, with p the direction to the star, e the unit vector from the Sun to
-/// the observer, d the distance of the Sun: Klioner (2003), Astron. J. 125, 1580, Eq. 70. 4.07 mas at 90° from the
-/// Sun, 1.75″ at its limb. Inside 4.9′ of the Sun's centre (behind its disk) the bending is reduced, to zero at the
-/// centre, as SOFA does.
+/// `p + 2GM/(c² d) · (e − (p·e) p) / (1 + p·e)`, with p the direction to the star, e the unit vector from the
+/// Sun to the observer, d the distance of the Sun: Klioner (2003), Astron. J. 125, 1580, Eq. 70. 4.07 mas at
+/// 90° from the Sun, 1.75″ at its limb. Within 4.9′ of the Sun's centre (behind its disk) the deflection is
+/// reduced, to zero at the centre, as in SOFA.
 pub fn deflect(direction: Direction<Icrs>, sun: Direction<Icrs>, sun_distance_au: f64) -> Direction<Icrs> {
     Direction::from_unit(bend(direction.vector(), &-sun.vector(), sun_distance_au).normalize())
 }
 
-/// The direction seen by an observer who moves with `beta` (velocity over the speed of light, |β| < 1).
+/// Returns the direction seen by an observer that moves with `beta` (velocity divided by the speed of light,
+/// |β| < 1).
 ///
-/// Exact aberration of special relativity: `u′ = (u/γ + β (1 + u·β/(1 + 1/γ))) / (1 + u·β)`
-/// (Urban & Seidelmann 2013, Eq. 7.40). [`unaberrate`] undoes it.
+/// Exact aberration of special relativity: `u′ = (u/γ + β (1 + u·β/(1 + 1/γ))) / (1 + u·β)` (Urban &
+/// Seidelmann 2013, Eq. 7.40). [`unaberrate`] is its inverse.
 pub fn aberrate(direction: Direction<Icrs>, beta: &Vector3<f64>) -> Direction<Icrs> {
     let inverse_gamma = (1.0 - beta.norm_squared()).sqrt();
     Direction::from_unit(boost(direction.vector(), beta, inverse_gamma, 0.0))
 }
 
-/// The direction that a moving observer sees as `apparent`: the exact inverse of [`aberrate`], which is the
-/// aberration of the opposite velocity.
+/// Returns the direction whose aberrated direction is `apparent`: the exact inverse of [`aberrate`], equal to
+/// the aberration for the opposite velocity.
 pub fn unaberrate(apparent: Direction<Icrs>, beta: &Vector3<f64>) -> Direction<Icrs> {
     aberrate(apparent, &-beta)
 }
 
-/// See [`deflect`]. Not normalised: the length is 1 within 1e-11.
+/// Deflection formula of [`deflect`]. The result is not normalised: its length is 1 within 1e-11.
 fn bend(direction: &Vector3<f64>, from_sun: &Vector3<f64>, sun_distance_au: f64) -> Vector3<f64> {
     let cosine = direction.dot(from_sun);
-    // 1 + p·e is half the square of the angle from the Sun; SOFA stops it at 1e-6 (4.9′ at 1 au).
+    // 1 + p·e is half the square of the angle from the Sun; SOFA limits it to at least 1e-6 (4.9′ at 1 au).
     let limiter = 1e-6 / (sun_distance_au * sun_distance_au).max(1.0);
     let strength = SUN_SCHWARZSCHILD_AU / sun_distance_au / (1.0 + cosine).max(limiter);
     direction + (from_sun - direction * cosine) * strength
 }
 
-/// See [`aberrate`]; `potential` is twice the Sun's potential over c², positive.
+/// Aberration formula of [`aberrate`]; `potential` is twice the Sun's potential over c², positive.
 fn boost(natural: &Vector3<f64>, beta: &Vector3<f64>, inverse_gamma: f64, potential: f64) -> Vector3<f64> {
     let along = natural.dot(beta);
     let forward = 1.0 + along / (1.0 + inverse_gamma) + potential;
@@ -261,11 +268,12 @@ mod tests {
 
     #[test]
     fn the_orbital_speed_of_the_earth_shifts_a_star_across_by_the_constant_of_aberration() {
-        // κ = 20.49552″ belongs to the mean orbital speed 29.7847 km/s (e corrected): β = tan κ.
+        // κ = 20.49552″ corresponds to the mean orbital speed 29.7847 km/s (corrected for e): β = tan κ.
         let kappa = Angle::from_arcsec(20.49552);
         let seen = aberrate(direction(1.0, 0.0, 0.0), &(Vector3::y() * libm::tan(kappa.radians())));
         let shift = seen.separation(&direction(1.0, 0.0, 0.0));
-        // Second order: κ² / 2 is 1 mas of the tangent against the sine; across the motion sin is exact.
+        // Perpendicular to the motion the sine of the shift is β exactly, so with β = tan κ the shift exceeds
+        // κ by κ³/2, 1e-7″.
         assert!((shift.arcsec() - 20.49552).abs() < 1e-5, "{}", shift.arcsec());
         assert!(seen.vector().y > 0.0, "towards the motion");
     }
@@ -273,7 +281,7 @@ mod tests {
     #[test]
     fn light_is_bent_by_the_angles_of_general_relativity() {
         let sun = direction(0.0, 0.0, 1.0);
-        // Einstein 1916: 2GM/(c² d) cot(θ/2): 1.7505″ at the limb (959.63″) and 4.072 mas across.
+        // Einstein 1916: 2GM/(c² d) cot(θ/2): 1.7505″ at the limb (959.63″) and 4.072 mas at 90°.
         for (angle, expected_mas, tolerance_mas) in
             [(Angle::from_arcsec(959.63), 1_750.5, 0.5), (Angle::from_degrees(90.0), 4.072, 1e-3)]
         {
@@ -290,8 +298,9 @@ mod tests {
         );
     }
 
-    /// ERFA's `eraAb`, p/γ + (1 + p·v/(1 + 1/γ)) v + w (v − (p·v) p), with p = (0.6, 0.8, 0), v = (0, 0.5, 0) and, for w of the Sun at
-    /// 1 au, a tenth: x = 0.6 · 0.826025 and y = 0.8 · 0.826025 + 0.5 · 1.314359.
+    /// ERFA's `eraAb`, p/γ + (1 + p·v/(1 + 1/γ)) v + w (v − (p·v) p), with p = (0.6, 0.8, 0), v = (0, 0.5, 0)
+    /// and w = a tenth in place of the Sun's value at 1 au: x = 0.6 · 0.826025 and y = 0.8 · 0.826025 + 0.5 ·
+    /// 1.314359.
     #[test]
     fn the_potential_of_the_sun_adds_to_aberration() {
         let beta = Vector3::new(0.0, 0.5, 0.0);
@@ -300,7 +309,8 @@ mod tests {
         assert!((seen.norm() - 1.0).abs() < 1e-15 && seen.z == 0.0);
     }
 
-    /// The Earth's mean speed is 29.8 km/s, 1.7 % more or less in its orbit; the Sun's own is 0.02 km/s.
+    /// The Earth's mean speed is 29.8 km/s and varies by 1.7 % along the orbit; the Sun's own speed is 0.02
+    /// km/s.
     #[test]
     fn an_observer_at_rest_on_the_earth_moves_with_it() {
         let observer = observer("2012-04-25T12:00:00Z");
@@ -308,7 +318,8 @@ mod tests {
         assert!((29.2..30.4).contains(&speed), "{speed}");
         let sun_au = observer.sun().vector() * observer.sun_distance_au();
         assert!((observer.sun_km() / AU_KM - sun_au).norm() < 1e-12);
-        // Astronomical Almanac, low-precision formulae: 1.00014 − 0.01671 cos g − 0.00014 cos 2g, with g = 110.76°.
+        // Astronomical Almanac, low-precision formulae: 1.00014 − 0.01671 cos g − 0.00014 cos 2g, with g =
+        // 110.76°.
         assert!((observer.sun_distance_au() - 1.006_17).abs() < 5e-4, "{}", observer.sun_distance_au());
     }
 
@@ -329,14 +340,16 @@ mod tests {
         let east_mas =
             (seen.ra().arcsec() - moving.ra_rad.to_degrees() * 3_600.0) * libm::cos(moving.dec_rad) * 1e3;
         let north_mas = (seen.dec().arcsec() - moving.dec_rad.to_degrees() * 3_600.0) * 1e3;
-        // The Roemer delay (up to 500 s: 0.02 mas) and the curvature of the parallel (20″² tan δ: 1 mas) are left.
+        // The Roemer delay (up to 500 s: 0.02 mas) and the curvature of the parallel (20″² tan δ: 1 mas)
+        // remain.
         assert!((east_mas - 20_000.0).abs() < 2.0, "{east_mas}");
         assert!((north_mas + 10_000.0).abs() < 2.0, "{north_mas}");
     }
 
     #[test]
     fn an_approaching_star_moves_ever_faster() {
-        // Perspective acceleration: μ̇ = −2 μ v_r π / (1 au/yr) (van de Kamp 1967), 1.25 mas/yr² for Barnard's star.
+        // Perspective acceleration: μ̇ = −2 μ v_r π / (1 au/yr) (van de Kamp 1967), 1.25 mas/yr² for
+        // Barnard's star.
         let mut barnard = star();
         barnard.parallax_mas = 548.31;
         barnard.pm_dec_mas_per_yr = 10_358.0;
@@ -347,7 +360,7 @@ mod tests {
         let utc = "2041-04-02T00:00:00Z";
         let ahead_mas = at(-110.5, utc).separation(&at(0.0, utc)).arcsec() * 1e3;
         let acceleration = 2.0 * 10_358.0 * 110.5 / 4.740_470_5 * 548.31 * RADIANS_PER_MAS / 1.0;
-        // Half acceleration times 50 years squared: 1600 mas; cubic terms are 50 yr × 6e-5/yr of it.
+        // Half the acceleration times 50 years squared: 1600 mas; cubic terms are 50 yr × 6e-5/yr of that.
         assert!((ahead_mas / (0.5 * acceleration * 2_500.0) - 1.0).abs() < 0.02, "{ahead_mas} mas");
     }
 
@@ -359,7 +372,8 @@ mod tests {
         let far = observer.astrometric(&StarMotion::new(&star()));
         let seen = observer.astrometric(&StarMotion::new(&near));
         let angle = far.separation(&observer.sun()).radians();
-        // sin θ arcsec at 1 au; the Sun is up to 0.01 au from the barycentre, the Earth 1.7 % from 1 au.
+        // sin θ arcsec at 1 au; the Sun is up to 0.01 au from the barycentre, and the Earth's distance
+        // differs from 1 au by up to 1.7 %.
         assert!((seen.separation(&far).arcsec() / libm::sin(angle) - 1.0).abs() < 0.03);
         assert!(seen.separation(&observer.sun()).radians() < angle);
         near.parallax_mas = -1_000.0;
@@ -389,7 +403,7 @@ mod tests {
             let star = Direction::from_vector(Vector3::from(u)).unwrap();
             let beta = Vector3::from(b);
             let back = unaberrate(aberrate(star, &beta), &beta);
-            // Rounding, up to the Doppler factor of 5 at |β| = 0.87.
+            // Rounding, amplified by the Doppler factor, up to 5 at |β| = 0.87.
             prop_assert!((back.vector() - star.vector()).norm() < 1e-14);
         }
     }

@@ -1,4 +1,5 @@
-//! The true attitude of the chaser: guidance through the nominal mounting, plus what control does not achieve.
+//! True attitude of the chaser: guidance through the nominal mounting, plus the errors of the attitude
+//! control.
 
 use contract::bounds::{self, require};
 use contract::{Body, CameraFrame, Icrs, OutOfRange, Rotation};
@@ -13,30 +14,30 @@ use super::trajectory::States;
 use crate::randomness::{Effect, Seed};
 use crate::switch::Switch;
 
-/// How the chaser is pointed.
+/// Pointing of the chaser.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AttitudeConfig {
-    /// Where the camera is meant to look.
+    /// Intended pointing of the camera.
     pub guidance: Guidance,
-    /// How far from there it really looks.
+    /// Deviation of the actual pointing from the intended pointing.
     #[serde(default)]
     pub control: ControlConfig,
-    /// Whether images are smeared by its motion, and the target's, during the exposure; off: every image is that of the
-    /// middle of its exposure.
+    /// Smear of images by the motion of chaser and target during the exposure; if off, every image shows the
+    /// geometry at mid-exposure.
     #[serde(default)]
     pub motion_smear: Switch,
 }
 
-/// Error of the attitude control, about the body axes. A positive error: the body is turned by the right-hand rule from
-/// where guidance wants it.
+/// Error of the attitude control about the body axes. A positive error rotates the body by the right-hand
+/// rule from the attitude that guidance commands.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ControlConfig {
-    /// Slow part; with three or more periods that have no common multiple, so that it does not repeat.
+    /// Slow part of the error; at least three periods, without a common multiple, so that it does not repeat.
     #[serde(default)]
     pub drift: DriftConfig,
-    /// Jitter about x, y, z, new in every frame: standard deviation, arcsec, 0 to 36000.
+    /// Standard deviation of the jitter about x, y, z, drawn anew in every frame, arcsec, 0 to 36000.
     #[serde(default)]
     #[schemars(inner(range(min = 0, max = 36000)))]
     pub jitter_arcsec: [f64; 3],
@@ -46,7 +47,7 @@ impl AttitudeConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first number outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "attitude")?;
         let drift = &self.control.drift;
@@ -57,11 +58,11 @@ impl AttitudeConfig {
     }
 }
 
-/// The true attitude as a function of time and frame.
+/// True attitude as a function of time and frame.
 #[derive(Debug, Clone)]
 pub struct Attitude {
     guidance: Guidance,
-    /// Guidance believes in the nominal mounting.
+    /// Guidance assumes the nominal mounting.
     body_from_camera: Rotation<Body, CameraFrame>,
     drift: Drift,
     jitter_rad: Vector3<f64>,
@@ -70,10 +71,10 @@ pub struct Attitude {
 }
 
 impl Attitude {
-    /// Draws what belongs to the whole run.
+    /// Creates the attitude and draws the values that apply to the whole run.
     ///
     /// # Errors
-    /// As [`AttitudeConfig::check`] and [`MountingConfig::check`].
+    /// See [`AttitudeConfig::check`] and [`MountingConfig::check`].
     pub fn new(config: &AttitudeConfig, mounting: &MountingConfig, seed: Seed) -> Result<Self, OutOfRange> {
         config.check()?;
         mounting.check()?;
@@ -87,18 +88,18 @@ impl Attitude {
         })
     }
 
-    /// Whether images are smeared by motion.
+    /// Switch of the smear of images by motion.
     pub fn motion_smear(&self) -> Switch {
         self.motion_smear
     }
 
-    /// The true attitude in `frame`, taken when chaser and target are at `states`.
+    /// Returns the true attitude in `frame`, taken when chaser and target are at `states`.
     pub fn truth(&self, states: &States, frame: u64) -> Rotation<Body, Icrs> {
         let jitter = white(self.seed, frame, Effect::AttitudeControl, 0, self.jitter_rad);
         turned_by(self.drift.error_rad_at(states.time_s) + jitter) * self.guided(states)
     }
 
-    /// The attitude that guidance asks for.
+    /// Returns the attitude that guidance commands.
     fn guided(&self, states: &States) -> Rotation<Body, Icrs> {
         self.body_from_camera * self.guidance.camera_from_icrs(states)
     }
@@ -160,7 +161,7 @@ pub(crate) mod tests {
         let camera_from_icrs = mounting().nominal.camera_from_body() * attitude.truth(&states, 0);
         let expected = quiet().guidance.camera_from_icrs(&states);
         assert!(camera_from_icrs.angle_to(&expected).radians() < 1e-15);
-        // The actual camera is off by the 0.2° of its mounting.
+        // The actual camera deviates by the 0.2° of its mounting.
         let actual = mounting().actual.camera_from_body() * attitude.truth(&states, 0);
         assert!((actual.angle_to(&expected).degrees() - 0.2).abs() < 1e-9);
     }
@@ -173,7 +174,7 @@ pub(crate) mod tests {
             let states = trajectory.states_at_seconds(15.0 * frame as f64);
             let body_from_icrs = attitude.truth(&states, frame);
             let seen = body_from_icrs * Direction::from_vector(states.line_of_sight_km()).unwrap();
-            // 300 m and the 600 m/20 km foreshortening at 20 km are 0.87°; control adds a few arcmin.
+            // 300 m and the 600 m/20 km foreshortening at 20 km give 0.87°; control adds a few arcmin.
             assert!(seen.separation(&Direction::z()).degrees() < 1.1);
         }
     }
@@ -207,7 +208,7 @@ pub(crate) mod tests {
                 off.quaternion().scaled_axis().component_div(&radians_from_arcsec([5.0, 10.0, 20.0]));
             chi2 += scaled.component_mul(&scaled);
         }
-        // χ² of n degrees: standard deviation √(2n) = 100; four of them.
+        // χ² with n degrees of freedom: standard deviation √(2n) = 100; the tolerance is four of them.
         for axis in 0..3 {
             assert!((chi2[axis] - n as f64).abs() < 400.0, "{chi2}");
         }

@@ -1,37 +1,39 @@
-//! Time scales: UTC in and out, TT and TDB as numbers.
+//! Time scales: UTC as input and output, TT and TDB as numbers.
 //!
-//! Instants are hifitime's `Epoch`. Three of its habits are not ours, and this module stands between:
-//! its UTC text reads second 60 as second 59 (its issue 417); its TAI to UTC steps by the leap second as many
-//! seconds early as TAI is ahead of UTC; its TDB uses the platform's sine. Here UTC is read and written by the rule
-//! itself (only the table of leap seconds is hifitime's), and TDB is on `libm`.
+//! Instants are hifitime's `Epoch`. This module works around three properties of hifitime: its UTC text reads
+//! second 60 as second 59 (its issue 417); its conversion from TAI to UTC steps at a leap second too early,
+//! by TAI − UTC; its TDB uses the platform's sine. Here UTC is read and written by the rule itself (only the
+//! table of leap seconds is hifitime's), and TDB uses `libm`.
 //!
-//! Every `Epoch` made here is in TAI, so that adding a duration to it adds SI seconds, over a leap second too;
-//! hifitime adds to an epoch in UTC without counting leap seconds.
+//! Every `Epoch` created here is in TAI, so adding a duration to it adds SI seconds, also across a leap
+//! second; hifitime adds to an epoch in UTC without counting leap seconds.
 
 use contract::OutOfRange;
 use hifitime::leap_seconds::{LatestLeapSeconds, LeapSecond};
 use hifitime::{Duration, Epoch, TimeScale};
 
 const NS_PER_S: i128 = 1_000_000_000;
-/// TT − TAI, by definition.
+/// TT − TAI, ns, by definition.
 const TT_MINUS_TAI_NS: i128 = 32_184_000_000;
-/// J2000.0 (2000-01-01 12:00) as a count from 1900-01-01 00:00 in the same scale.
+/// J2000.0 (2000-01-01 12:00) as a count from 1900-01-01 00:00 in the same scale, ns.
 const J2000_NS: i128 = 3_155_716_800 * NS_PER_S;
-/// The origin of POSIX time (1970-01-01 00:00) as a count from 1900-01-01 00:00 in the same scale.
+/// Origin of POSIX time (1970-01-01 00:00) as a count from 1900-01-01 00:00 in the same scale, ns.
 const UNIX_ORIGIN_NS: i128 = 2_208_988_800 * NS_PER_S;
-/// The origin of GPS time (1980-01-06 00:00 UTC) as a count of TAI from 1900-01-01 00:00 TAI.
+/// Origin of GPS time (1980-01-06 00:00 UTC) as a count of TAI from 1900-01-01 00:00 TAI, ns.
 const GPS_ORIGIN_TAI_NS: i128 = 2_524_953_619 * NS_PER_S;
 /// Seconds in a Julian century.
 const CENTURY_S: f64 = 36_525.0 * 86_400.0;
 
-/// Reads a UTC instant in ISO 8601: `2012-04-25T12:18:54.5Z`, to the nanosecond.
+/// Parses a UTC instant in ISO 8601: `2012-04-25T12:18:54.5Z`, to the nanosecond.
 ///
-/// The scale must be said: `Z` or ` UTC` at the end; the separator is `T` or a space. Second 60 is read where a leap
-/// second was inserted, and refused elsewhere. After the last known leap second (2016-12-31) none is assumed.
+/// The scale must be given: `Z` or ` UTC` at the end; the separator is `T` or a space. Second 60 is accepted
+/// where a leap second was inserted, and rejected elsewhere. No leap second is assumed after the last known
+/// one (2016-12-31).
 ///
 /// # Errors
-/// [`OutOfRange`] when the text has another form, the date does not exist, or the year lies before 1972
-/// (UTC had no whole seconds to TAI then) or after 2261 (the last that timestamps in nanoseconds reach).
+/// [`OutOfRange`] if the text has another form, the date does not exist, or the year is before 1972 (when TAI
+/// − UTC was not an integer number of seconds) or after 2261 (the last year that timestamps in nanoseconds
+/// reach).
 pub fn parse_utc(text: &str) -> Result<Epoch, OutOfRange> {
     let refuse = |expected| OutOfRange::new("time", text, expected);
     let civil = Civil::parse(text)
@@ -40,7 +42,7 @@ pub fn parse_utc(text: &str) -> Result<Epoch, OutOfRange> {
     if civil.second < 60 {
         return Ok(epoch_of_tai(label_ns + tai_minus_utc_ns(label_ns)));
     }
-    // Second 60 counts on from 59: its label is that of the second after it, its TAI one second less.
+    // Second 60 continues from 59: its label is that of the following second, and its TAI is one second less.
     let inserted_before = label_ns - i128::from(civil.nanosecond);
     if leap_seconds().any(|leap| leap_label_ns(&leap) == inserted_before) {
         Ok(epoch_of_tai(label_ns + tai_minus_utc_ns(label_ns) - NS_PER_S))
@@ -49,32 +51,33 @@ pub fn parse_utc(text: &str) -> Result<Epoch, OutOfRange> {
     }
 }
 
-/// As [`parse_utc`]; an error names `field`, the path in the scenario.
+/// [`parse_utc`] with errors that name `path`, the path in the scenario.
 ///
 /// # Errors
-/// Those of [`parse_utc`].
+/// See [`parse_utc`].
 pub(crate) fn parse_utc_field(path: &str, text: &str) -> Result<Epoch, OutOfRange> {
     parse_utc(text).map_err(|error| OutOfRange { path: path.to_owned(), ..error })
 }
 
-/// Writes an instant as UTC in ISO 8601 with nine decimals and `Z`; inside a leap second the second is 60.
+/// Formats an instant as UTC in ISO 8601 with nine decimals and `Z`; inside a leap second the second is 60.
 ///
-/// Before 1972, where UTC was another thing, the text is that of TAI − 10 s.
+/// Before 1972, when UTC was defined differently, the text is TAI − 10 s.
 pub fn format_utc(time: Epoch) -> String {
     let tai_ns = tai_ns(time);
     let (offset_ns, inside_leap) = utc_at(tai_ns);
     let label_ns = tai_ns - offset_ns - if inside_leap { NS_PER_S } else { 0 };
-    // Same scale in and out: hifitime only does the calendar.
+    // Input and output have the same scale: hifitime computes only the calendar date.
     let label = Epoch::from_utc_duration(Duration::from_total_nanoseconds(label_ns));
     let (year, month, day, hour, minute, second, nanosecond) = label.to_gregorian_utc();
     let second = second + u8::from(inside_leap);
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{nanosecond:09}Z")
 }
 
-/// Nanoseconds of UTC since 1970-01-01 in days of 86,400 s: the time of POSIX, and of timestamps in Parquet. It has no number for what is
-/// inside a leap second: that has the one of its end, so that time does not step back.
+/// Nanoseconds of UTC since 1970-01-01 in days of 86,400 s: the time of POSIX, and of timestamps in Parquet.
+/// Instants inside a leap second have no separate number; they have the number of the end of the leap second,
+/// so that time does not step back.
 ///
-/// Before 1972 as in [`format_utc`]; saturates before 1677 and after 2262.
+/// Before 1972 see [`format_utc`]; saturates before 1677 and after 2262.
 pub fn unix_ns(time: Epoch) -> i64 {
     let tai_ns = tai_ns(time);
     let (offset_ns, inside_leap) = utc_at(tai_ns);
@@ -83,20 +86,20 @@ pub fn unix_ns(time: Epoch) -> i64 {
     unix_ns.clamp(i64::MIN.into(), i64::MAX.into()) as i64
 }
 
-/// The instant of a [`unix_ns`].
+/// Returns the instant of a [`unix_ns`] number.
 pub fn from_unix_ns(unix_ns: i64) -> Epoch {
     let label_ns = i128::from(unix_ns) + UNIX_ORIGIN_NS;
     epoch_of_tai(label_ns + tai_minus_utc_ns(label_ns))
 }
 
-/// The Julian date in UTC, days; it stands still inside a leap second as [`unix_ns`] does.
+/// Julian date in UTC, days; constant inside a leap second, like [`unix_ns`].
 pub(super) fn jd_utc(time: Epoch) -> f64 {
-    // Same scale in and out.
+    // Input and output have the same scale.
     let label_ns = i128::from(unix_ns(time)) + UNIX_ORIGIN_NS;
     Epoch::from_utc_duration(Duration::from_total_nanoseconds(label_ns)).to_jde_utc_days()
 }
 
-/// Whole milliseconds of [`unix_ns`], rounded down: the time of JavaScript's dates.
+/// [`unix_ns`] in integer milliseconds, rounded down: the time of JavaScript's dates.
 pub fn unix_ms(time: Epoch) -> i64 {
     unix_ns(time).div_euclid(1_000_000)
 }
@@ -106,12 +109,13 @@ pub fn tt_j2000_s(time: Epoch) -> f64 {
     seconds(tai_ns(time) + TT_MINUS_TAI_NS - J2000_NS)
 }
 
-/// The instant of a TT count since J2000.0, s, rounded to the nanosecond; saturates outside hifitime's range.
+/// Returns the instant of a TT count since J2000.0, s, rounded to the nanosecond; saturates outside
+/// hifitime's range.
 pub fn from_tt_j2000_s(tt_j2000_s: f64) -> Epoch {
     epoch_of_tai(nanoseconds(tt_j2000_s) + J2000_NS - TT_MINUS_TAI_NS)
 }
 
-/// TDB since J2000.0, s, by [`tdb_minus_tt_s`].
+/// TDB since J2000.0, s, computed with [`tdb_minus_tt_s`].
 pub fn tdb_j2000_s(time: Epoch) -> f64 {
     let tt = tt_j2000_s(time);
     tt + tdb_minus_tt_s(tt)
@@ -119,8 +123,8 @@ pub fn tdb_j2000_s(time: Epoch) -> f64 {
 
 /// TDB − TT at the geocentre, s, at a TT since J2000.0 in s.
 ///
-/// The seven largest terms of Fairhead & Bretagnon (1990) as given by Kaplan, USNO Circular 179 (2005), Eq. 2.6:
-/// within 10 µs from 1600 to 2200. The Earth moves 0.3 m in that time.
+/// The seven largest terms of Fairhead & Bretagnon (1990) as given by Kaplan, USNO Circular 179 (2005), Eq.
+/// 2.6: accurate to 10 µs from 1600 to 2200. The Earth moves 0.3 m in 10 µs.
 pub fn tdb_minus_tt_s(tt_j2000_s: f64) -> f64 {
     let t = tt_j2000_s / CENTURY_S;
     0.001657 * libm::sin(628.3076 * t + 6.2401)
@@ -137,12 +141,12 @@ pub fn gps_s(time: Epoch) -> f64 {
     seconds(tai_ns(time) - GPS_ORIGIN_TAI_NS)
 }
 
-/// The instant of a GPS time in s since 1980-01-06 00:00 UTC, rounded to the nanosecond.
+/// Returns the instant of a GPS time in s since 1980-01-06 00:00 UTC, rounded to the nanosecond.
 pub fn from_gps_s(gps_s: f64) -> Epoch {
     epoch_of_tai(nanoseconds(gps_s) + GPS_ORIGIN_TAI_NS)
 }
 
-/// The digits of a UTC time, as written.
+/// Calendar fields of a UTC time as written.
 struct Civil {
     year: i32,
     month: u8,
@@ -183,8 +187,8 @@ impl Civil {
         (1972..=2261).contains(&civil.year).then_some(civil)
     }
 
-    /// The count of UTC from 1900-01-01 as if every day had 86,400 s: what hifitime calls a UTC duration.
-    /// `None` for a date or time that does not exist, apart from leap seconds, which the caller checks.
+    /// Count of UTC from 1900-01-01, ns, with days of 86,400 s: a UTC duration in hifitime. `None` for a date
+    /// or time that does not exist; leap seconds are checked by the caller.
     fn label_ns(&self) -> Option<i128> {
         let last_minute = self.hour == 23 && self.minute == 59;
         if self.hour > 23 || self.second > 60 || (self.second == 60 && !last_minute) {
@@ -209,22 +213,22 @@ impl Civil {
     }
 }
 
-/// Exactly `count` decimal digits as a number.
+/// Parses exactly `count` decimal digits.
 fn digits(text: &str, count: usize) -> Option<u16> {
     (text.len() == count && text.bytes().all(|b| b.is_ascii_digit())).then(|| text.parse().ok())?
 }
 
-/// The leap seconds since 1972, oldest first; the first entry is the 10 s of 1972-01-01.
+/// Leap seconds since 1972, oldest first; the first entry is the 10 s of 1972-01-01.
 fn leap_seconds() -> impl Iterator<Item = LeapSecond> {
     LatestLeapSeconds::default().filter(|leap| leap.announced_by_iers)
 }
 
-/// The midnight (UTC) from which an entry of the table holds, as a UTC label.
+/// Midnight (UTC) from which an entry of the table applies, as a UTC label, ns.
 fn leap_label_ns(leap: &LeapSecond) -> i128 {
     leap.timestamp_tai_s as i128 * NS_PER_S
 }
 
-/// TAI − UTC from an entry of the table on.
+/// TAI − UTC from an entry of the table on, ns.
 fn leap_offset_ns(leap: &LeapSecond) -> i128 {
     leap.delta_at as i128 * NS_PER_S
 }
@@ -236,7 +240,7 @@ fn tai_minus_utc_ns(label_ns: i128) -> i128 {
         .map_or(10 * NS_PER_S, |leap| leap_offset_ns(&leap))
 }
 
-/// TAI − UTC at a count of TAI, and whether that is inside a leap second.
+/// TAI − UTC at a count of TAI, ns, and true if the instant is inside a leap second.
 fn utc_at(tai_ns: i128) -> (i128, bool) {
     let mut offset_ns = 10 * NS_PER_S;
     for leap in leap_seconds() {
@@ -249,14 +253,14 @@ fn utc_at(tai_ns: i128) -> (i128, bool) {
     (offset_ns, false)
 }
 
-/// TAI since 1900-01-01 00:00 TAI.
+/// TAI since 1900-01-01 00:00 TAI, ns.
 fn tai_ns(time: Epoch) -> i128 {
     match time.time_scale {
         TimeScale::UTC => {
             let label_ns = time.duration.total_nanoseconds();
             label_ns + tai_minus_utc_ns(label_ns)
         }
-        // hifitime would go through the platform's sine. TDB − TT hardly changes in its own 2 ms.
+        // hifitime would use the platform's sine. TDB − TT is almost constant over its own 2 ms.
         TimeScale::TDB | TimeScale::ET => {
             let tdb_ns = time.duration.total_nanoseconds();
             let difference_ns = nanoseconds(tdb_minus_tt_s(seconds(tdb_ns)));
@@ -276,7 +280,7 @@ fn seconds(ns: i128) -> f64 {
 
 fn nanoseconds(seconds: f64) -> i128 {
     let whole = seconds.floor();
-    // A cast saturates, and NaN becomes 0.
+    // The cast saturates, and NaN becomes 0.
     (whole as i64 as i128) * NS_PER_S + ((seconds - whole) * 1e9).round() as i128
 }
 
@@ -326,8 +330,8 @@ mod tests {
 
     #[test]
     fn hifitime_still_steps_utc_early() {
-        // A known fault of hifitime 4.3.1, which format_utc stands in for: 20 s before the leap second its UTC has
-        // already lost it.
+        // Known bug of hifitime 4.3.1, which format_utc avoids: 20 s before the leap second its UTC has
+        // already stepped back.
         let time = parse_utc("2012-06-30T23:59:40Z").unwrap();
         assert_eq!(time.to_gregorian_utc(), (2012, 6, 30, 23, 59, 39, 0));
         assert_eq!(format_utc(time), "2012-06-30T23:59:40.000000000Z");
@@ -387,7 +391,7 @@ mod tests {
 
     #[test]
     fn milliseconds_since_1970_are_those_of_posix() {
-        // From `date --utc --date=TEXT +%s`; inside a leap second that of its end.
+        // From `date --utc --date=TEXT +%s`; inside a leap second, the value at its end.
         for (text, ms) in [
             ("2012-04-23T00:00:00Z", 1_335_139_200_000),
             ("2012-04-25T12:18:54.123999999Z", 1_335_356_334_123),
@@ -422,7 +426,7 @@ mod tests {
     fn the_julian_date_is_that_of_the_calendar_up_to_a_leap_second() {
         let at = |text| jd_utc(parse_utc(text).unwrap());
         assert_eq!(at("2000-01-01T12:00:00Z"), 2_451_545.0);
-        // A second is 1.2e-5 days, and the number known to 5e-10.
+        // A second is 1.2e-5 days, and the resolution of the number is 5e-10 days.
         assert!((at("2016-12-31T23:59:50Z") - (2_457_754.5 - 10.0 / 86_400.0)).abs() < 1e-9);
         assert_eq!(at("2016-12-31T23:59:60.5Z"), 2_457_754.5);
     }

@@ -1,4 +1,5 @@
-//! Slow errors about the three body axes, and fast ones frame by frame: functions of time and address, with no memory.
+//! Slow errors about the three body axes, and noise drawn in each frame: functions of time and address,
+//! without memory.
 
 use std::f64::consts::PI;
 
@@ -10,28 +11,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::randomness::{Effect, Seed, normal};
 
-/// The place of a frame's number in the address of draws that belong to the whole run; no frame has it.
+/// Frame number in the address of draws that apply to the whole run; no frame has this number.
 const WHOLE_RUN: u64 = u64::MAX;
 
-/// A slow error: about each body axis a sum of sinusoids whose amplitudes and phases are drawn from the seed.
+/// Slow error: for each body axis a sum of sinusoids whose amplitudes and phases are drawn from the seed.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DriftConfig {
-    /// Root mean square about the body's x, y, z axes over many seeds, arcsec, 0 to 36000.
+    /// Root mean square over many seeds about the body's x, y, z axes, arcsec, 0 to 36000.
     #[serde(default)]
     #[schemars(inner(range(min = 0, max = 36000)))]
     pub rms_arcsec: [f64; 3],
-    /// Periods of the sinusoids, s, each 1 to 1e7, at most 16; none only where the rms is 0.
+    /// Periods of the sinusoids, s, each 1 to 1e7, at most 16; may be empty only if the rms is 0.
     #[serde(default)]
     #[schemars(length(max = 16), inner(range(min = 1, max = 1e7)))]
     pub periods_s: Vec<f64>,
 }
 
 impl DriftConfig {
-    /// Checks every number; `field` is where this stands in the scenario.
+    /// Checks that there is at least one period unless the rms is 0; `path` is the path of the periods in the
+    /// scenario.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] if the periods are missing.
     pub(super) fn check(&self, path: &str) -> Result<(), OutOfRange> {
         let count = self.periods_s.len() as f64;
         require(path, count, "at least one of periods_s where the rms is not 0", |n| {
@@ -39,16 +41,16 @@ impl DriftConfig {
         })
     }
 
-    /// Whether it never moves.
+    /// Returns true if the error is always zero.
     pub(super) fn is_still(&self) -> bool {
         self.rms_arcsec == [0.0; 3]
     }
 }
 
-/// A realisation of a [`DriftConfig`].
+/// Realisation of a [`DriftConfig`].
 ///
-/// x(t) = Σ a_k cos ω_k t + b_k sin ω_k t with a_k and b_k normal of variance σ²/K: at any time the value over many
-/// seeds is normal with standard deviation σ, whatever the number K of sinusoids.
+/// x(t) = Σ a_k cos ω_k t + b_k sin ω_k t, where a_k and b_k are normal with variance σ²/K: over many seeds,
+/// the value at any time is normal with standard deviation σ, independent of the number K of sinusoids.
 #[derive(Debug, Clone)]
 pub(crate) struct Drift {
     terms: Vec<Term>,
@@ -62,7 +64,7 @@ struct Term {
 }
 
 impl Drift {
-    /// Draws amplitudes and phases. Each sinusoid and axis has an address of its own.
+    /// Draws amplitudes and phases. Each sinusoid and axis has a separate address.
     pub(crate) fn new(config: &DriftConfig, seed: Seed, effect: Effect) -> Self {
         let share = 1.0 / (config.periods_s.len().max(1) as f64).sqrt();
         let terms = (0_u64..).zip(&config.periods_s).map(|(k, period_s)| {
@@ -82,7 +84,7 @@ impl Drift {
         Self { terms: terms.collect() }
     }
 
-    /// The error about the body axes, rad, at a time in seconds since the orbit's epoch.
+    /// Error about the body axes, rad, at a time in seconds since the orbit's epoch.
     pub(crate) fn error_rad_at(&self, time_s: f64) -> Vector3<f64> {
         self.terms.iter().fold(Vector3::zeros(), |sum, term| {
             let (sin, cos) = libm::sincos(term.rate_rad_s * time_s);
@@ -91,7 +93,7 @@ impl Drift {
     }
 }
 
-/// A normal vector that is new in every frame; component k is at place `first_place` + k of the address.
+/// Returns a normal vector drawn anew in every frame; component k has index `first_place` + k in the address.
 pub(crate) fn white(
     seed: Seed,
     frame: u64,
@@ -103,13 +105,13 @@ pub(crate) fn white(
     sigma.component_mul(&Vector3::new(draw(0), draw(1), draw(2)))
 }
 
-/// Angles about three axes, in radians.
+/// Converts angles about three axes to radians.
 pub(crate) fn radians_from_arcsec(arcsec: [f64; 3]) -> Vector3<f64> {
     Vector3::from(arcsec.map(|a| Angle::from_arcsec(a).radians()))
 }
 
-/// The rotation from a body frame to the same frame turned by `error_rad`: the axes turn by the right-hand rule about
-/// the vector, so components turn the other way.
+/// Returns the rotation from a body frame to this frame rotated by `error_rad`: the axes rotate by the
+/// right-hand rule about the vector, so components rotate in the opposite sense.
 pub(crate) fn turned_by(error_rad: Vector3<f64>) -> Rotation<Body, Body> {
     Rotation::from_rotation_vector(-error_rad)
 }
@@ -132,7 +134,8 @@ mod tests {
             sum += value.component_mul(&value);
         }
         let rms = (sum / n as f64).map(f64::sqrt);
-        // χ² with n degrees: relative standard error of the rms 1/√(2n) = 1.1 %; four of them.
+        // χ² with n degrees of freedom: relative standard error of the rms 1/√(2n) = 1.1 %; the tolerance is
+        // four of them.
         assert!((rms.x / radians_from_arcsec([10.0; 3]).x - 1.0).abs() < 0.045, "{rms}");
         assert!((rms.y / radians_from_arcsec([20.0; 3]).y - 1.0).abs() < 0.045, "{rms}");
         assert_eq!(rms.z, 0.0);
@@ -142,7 +145,7 @@ mod tests {
     fn a_drift_of_one_period_comes_back() {
         let config = DriftConfig { periods_s: vec![100.0], ..config() };
         let drift = Drift::new(&config, Seed { seed: 1, case: 0 }, Effect::AttitudeControl);
-        // A phase of some 2π·3 turns, rounded: 1e-15 of an amplitude of 1e-4 rad.
+        // Rounding of a phase of about 2π·3: 1e-15 of an amplitude of 1e-4 rad.
         assert!((drift.error_rad_at(20.0) - drift.error_rad_at(320.0)).norm() < 1e-18);
         assert!((drift.error_rad_at(20.0) + drift.error_rad_at(370.0)).norm() < 1e-18);
     }
@@ -166,7 +169,8 @@ mod tests {
 
     #[test]
     fn a_body_turned_about_z_sees_a_star_turn_back() {
-        // Turned by +ε about z, the body's x axis points to where y was: the old x axis has a negative y component.
+        // After a rotation by +ε about z, the body's x axis points towards the former y: the former x axis
+        // has a negative y component.
         let old_x = turned_by(Vector3::new(0.0, 0.0, 1e-3)).rotate(&Vector3::x());
         assert!((old_x.y + 1e-3).abs() < 1e-9);
     }

@@ -1,4 +1,4 @@
-//! Where on the rotating Earth a position is.
+//! Geographic coordinates of a position.
 
 use contract::Angle;
 use hifitime::Epoch;
@@ -6,18 +6,19 @@ use nalgebra::Vector3;
 
 use super::clock::jd_utc;
 
-/// The Earth rotation angle (IERS Conventions 2010, Eq. 5.15), radians from 0 to 2π. UTC stands for UT1, from which it
-/// differs by less than 0.9 s, 0.004°.
+/// Earth rotation angle (IERS Conventions 2010, Eq. 5.15), radians from 0 to 2π. UTC is used for UT1; they
+/// differ by less than 0.9 s, 0.004°.
 fn earth_rotation_angle(time: Epoch) -> f64 {
     let days = jd_utc(time) - 2_451_545.0;
     let turns = 0.779_057_273_264_0 + 0.002_737_811_911_354_48 * days + (days - days.floor());
     2.0 * std::f64::consts::PI * (turns - turns.floor())
 }
 
-/// Geocentric latitude, −90° to 90°, and longitude, −180° to 180° east, under a position from the centre of the Earth in
-/// ICRS axes, km.
+/// Geocentric latitude, −90° to 90°, and longitude, −180° to 180° east, below a position relative to the
+/// Earth's centre in ICRS axes, km.
 ///
-/// The pole of ICRS is taken for that of date: precession moves it by 0.56° in a century, at most 0.28° from 1950 to 2050.
+/// The pole of ICRS is used for the pole of date: precession moves it by 0.56° per century, at most 0.28°
+/// from 1950 to 2050.
 pub fn geographic(time: Epoch, position_km: &Vector3<f64>) -> (Angle, Angle) {
     let equatorial_km = (position_km.x * position_km.x + position_km.y * position_km.y).sqrt();
     let latitude = libm::atan2(position_km.z, equatorial_km);
@@ -31,11 +32,11 @@ mod tests {
     use super::*;
     use crate::truth::clock::parse_utc;
 
-    /// The test case of SOFA's iauEra00 (t_sofa_c.c): 0.4022837240028158102 rad at UT1 of JD 2454388.5.
+    /// Test case of SOFA's iauEra00 (t_sofa_c.c): 0.4022837240028158102 rad at UT1 of JD 2454388.5.
     #[test]
     fn the_angle_is_that_of_sofa() {
         let angle = earth_rotation_angle(parse_utc("2007-10-15T00:00:00Z").unwrap());
-        // A Julian date in 64 bits is known to 40 µs, 3e-9 rad.
+        // A 64-bit Julian date has a resolution of 40 µs, 3e-9 rad.
         assert!((angle - 0.402_283_724_002_815_8).abs() < 1e-8, "{angle}");
     }
 
@@ -46,7 +47,7 @@ mod tests {
         let position = Vector3::new(7000.0 * libm::cos(angle), 7000.0 * libm::sin(angle), 7000.0);
         let (latitude, longitude) = geographic(time, &position);
         assert!((latitude.degrees() - 45.0).abs() < 1e-9 && longitude.degrees().abs() < 1e-6);
-        // An hour later the Earth has turned by 15.04° under it.
+        // In one hour the Earth turns by 15.04° below the position.
         let later = geographic(parse_utc("2007-10-15T01:00:00Z").unwrap(), &position).1;
         assert!((later.degrees() + 15.041).abs() < 1e-3, "{later:?}");
     }

@@ -1,17 +1,17 @@
-//! Axes of the ecliptic and equinox of J2000.0.
+//! Axes of the ecliptic and equinox of J2000.0, and their conversion to ICRS.
 
 use nalgebra::Vector3;
 
 /// Obliquity of the ecliptic at J2000.0, degrees (IAU 1976: 84381.448″).
 const OBLIQUITY_DEG: f64 = 84_381.448 / 3_600.0;
 
-/// A vector in ecliptic axes turned into ICRS axes.
+/// Converts a vector from ecliptic axes to ICRS axes.
 pub fn to_icrs(v: Vector3<f64>) -> Vector3<f64> {
     let (sin, cos) = libm::sincos(OBLIQUITY_DEG.to_radians());
     Vector3::new(v.x, cos * v.y - sin * v.z, sin * v.y + cos * v.z)
 }
 
-/// A vector in ICRS axes turned into ecliptic axes.
+/// Converts a vector from ICRS axes to ecliptic axes.
 pub fn from_icrs(v: Vector3<f64>) -> Vector3<f64> {
     let (sin, cos) = libm::sincos(OBLIQUITY_DEG.to_radians());
     Vector3::new(v.x, cos * v.y + sin * v.z, cos * v.z - sin * v.y)

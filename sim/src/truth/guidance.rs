@@ -1,4 +1,4 @@
-//! Where the camera is meant to look.
+//! Intended pointing of the camera.
 //!
 //! Camera axes: z along the boresight, x along increasing column, y along increasing row.
 
@@ -13,7 +13,7 @@ use super::trajectory::States;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "mode", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Guidance {
-    /// A fixed place in the sky. At roll 0 north is up in the image (−y) and east is to the left (−x).
+    /// Fixed direction in the sky. At roll 0 north is up in the image (−y) and east is to the left (−x).
     Inertial {
         /// Right ascension of the boresight, degrees, −360 to 360.
         #[schemars(range(min = -360, max = 360))]
@@ -21,16 +21,16 @@ pub enum Guidance {
         /// Declination of the boresight, degrees, −90 to 90.
         #[schemars(range(min = -90, max = 90))]
         dec_deg: f64,
-        /// Turn of the camera about its boresight from x towards y, degrees, −360 to 360.
+        /// Rotation of the camera about its boresight from x towards y, degrees, −360 to 360.
         #[serde(default)]
         #[schemars(range(min = -360, max = 360))]
         roll_deg: f64,
     },
-    /// Fixed in the chaser's local orbital frame: boresight along T (the velocity, on a circular orbit), columns
-    /// along R (x = R: the zenith is to the right), rows against the orbit's normal (y = −N). Stars drift along +x
-    /// at the orbital rate. The offsets then turn the camera away from these axes.
+    /// Fixed in the chaser's local orbital frame: boresight along T (the velocity on a circular orbit),
+    /// columns along R (x = R: the zenith is to the right), rows opposite to the orbit normal (y = −N). Stars
+    /// drift along +x at the orbital rate. The offsets then rotate the camera from these axes.
     LocalOrbital {
-        /// Offset φ, degrees, −180 to 180: Euler angles 123 from the axes above to the camera.
+        /// Offset φ, degrees, −180 to 180: Euler angles 123 from these axes to the camera.
         #[serde(default)]
         #[schemars(range(min = -180, max = 180))]
         phi_deg: f64,
@@ -43,18 +43,19 @@ pub enum Guidance {
         #[schemars(range(min = -180, max = 180))]
         psi_deg: f64,
     },
-    /// Boresight at the target; y as near to −N (against the orbit's normal) as that allows.
+    /// Boresight towards the target; y as close as possible to −N (opposite to the orbit normal).
     TargetPointing {},
 }
 
 impl Guidance {
-    /// The camera's attitude that guidance asks for.
+    /// Returns the camera attitude that guidance commands.
     pub fn camera_from_icrs(&self, states: &States) -> Rotation<CameraFrame, Icrs> {
         match *self {
             Self::Inertial { ra_deg, dec_deg, roll_deg } => {
                 let ra = Angle::from_degrees(ra_deg);
                 let z = *Direction::from_ra_dec(ra, Angle::from_degrees(dec_deg)).vector();
-                // East at the boresight; defined at the poles too, where only the right ascension can tell it.
+                // East at the boresight; also defined at the poles, where it depends only on the right
+                // ascension.
                 let east = Vector3::new(-libm::sin(ra.radians()), libm::cos(ra.radians()), 0.0);
                 let unrolled: Rotation<CameraFrame, Icrs> = Rotation::from_axes(&-east, &east.cross(&z), &z);
                 let roll = Rotation::<CameraFrame, CameraFrame>::from_euler_123(
@@ -77,11 +78,11 @@ impl Guidance {
             }
             Self::TargetPointing {} => {
                 let (radial, transverse, normal) = local_axes(states);
-                // A target at the very place of the chaser, or exactly along the normal, has no attitude of its
-                // own: the next best axis stands in.
+                // A target at the position of the chaser, or exactly along the orbit normal, defines no
+                // attitude; another axis is then used.
                 let z = states.line_of_sight_km().try_normalize(1e-9).unwrap_or(transverse);
                 let x = z.cross(&normal).try_normalize(1e-9).unwrap_or(radial);
-                // x = y × z with y near −N gives x along z × N.
+                // With x = y × z and y close to −N, x lies along z × N.
                 Rotation::from_axes(&x, &z.cross(&x), &z)
             }
         }
@@ -133,7 +134,8 @@ mod tests {
 
     #[test]
     fn a_target_above_is_to_the_right_and_one_along_the_normal_is_up() {
-        // The chaser 300 m lower sees the target higher; chaser below along N (u = 0.4 rad, θ = 0.4 + 90°: N < 0).
+        // A chaser 300 m lower sees the target higher; then the chaser lies below along N (u = 0.4 rad, θ =
+        // 0.4 + 90°: N < 0).
         let lower = RelativeElements { a_da_m: -300.0, ..behind() };
         let (sin, cos) = libm::sincos(0.4 + std::f64::consts::FRAC_PI_2);
         let below = RelativeElements { a_dix_m: 300.0 * cos, a_diy_m: 300.0 * sin, ..behind() };
@@ -151,7 +153,7 @@ mod tests {
         let now = LOCAL.camera_from_icrs(&states(t, behind()));
         let star = now.inverse() * Direction::z();
         let later = LOCAL.camera_from_icrs(&states(t + dt, behind())) * star;
-        // n = 1.04862e-3 rad/s for 7130 km; the oblateness changes the rate of u by 1e-3 of it.
+        // n = 1.04862e-3 rad/s for 7130 km; the oblateness changes the rate of u by a relative 1e-3.
         assert!((later.vector().x / 1.04862e-3 - 1.0).abs() < 2e-3, "{later:?}");
         assert!(later.vector().y.abs() < 1e-6);
     }
@@ -187,7 +189,7 @@ mod tests {
         assert!((unrolled * at(30.0, 20.0)).separation(&Direction::z()).radians() < 1e-15);
         assert!((unrolled * at(30.0, 21.0)).vector().y < -0.01);
         assert!((unrolled * at(31.0, 20.0)).vector().x < -0.01);
-        // Turned by 90° from x towards y, the camera sees the old y direction (south) along its x.
+        // Rotated by 90° from x towards y, the camera has the former y direction (south) along its x axis.
         let rolled = guidance(90.0).camera_from_icrs(&states);
         assert!((rolled * at(30.0, 19.0)).vector().x > 0.01);
     }
@@ -195,7 +197,7 @@ mod tests {
     #[test]
     fn an_offset_moves_the_boresight() {
         let states = states(0.0, behind());
-        // θ > 0 turns z towards x: the boresight looks up (towards R), so R is nearer to z.
+        // θ > 0 rotates z towards x: the boresight points upwards (towards R), so R is closer to z.
         let up = Guidance::LocalOrbital { phi_deg: 0.0, theta_deg: 5.0, psi_deg: 0.0 };
         let boresight = up.camera_from_icrs(&states).inverse() * Direction::z();
         let radial = local_axes(&states).0;

@@ -1,4 +1,4 @@
-//! What the chaser knows, or believes, about its own attitude and velocity.
+//! Knowledge of the chaser about its own attitude and velocity, with errors.
 
 use contract::{OutOfRange, Telemetry, bounds};
 use hifitime::Epoch;
@@ -11,11 +11,11 @@ use super::drift::{Drift, DriftConfig, radians_from_arcsec, turned_by, white};
 use super::trajectory::Trajectory;
 use crate::randomness::{Effect, Seed};
 
-/// First place of the velocity's noise in an address; the attitude's noise has places 0 to 2.
+/// First index of the velocity noise in an address; the attitude noise has indices 0 to 2.
 const VELOCITY_INDEX: u64 = 3;
 
-/// Errors of the telemetry. A positive error about a body axis: telemetry tells an attitude that is turned by the
-/// right-hand rule from the true one.
+/// Errors of the telemetry. With a positive error about a body axis, telemetry reports an attitude rotated by
+/// the right-hand rule from the true attitude.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct KnowledgeConfig {
@@ -23,18 +23,18 @@ pub struct KnowledgeConfig {
     #[serde(default)]
     #[schemars(inner(range(min = -36000, max = 36000)))]
     pub bias_arcsec: [f64; 3],
-    /// Slow error, with the orbital period for instance.
+    /// Slow error, for example with the orbital period.
     #[serde(default)]
     pub drift: DriftConfig,
-    /// Noise about x, y, z, new in every frame: standard deviation, arcsec, 0 to 36000.
+    /// Standard deviation of the noise about x, y, z, drawn anew in every frame, arcsec, 0 to 36000.
     #[serde(default)]
     #[schemars(inner(range(min = 0, max = 36000)))]
     pub noise_arcsec: [f64; 3],
-    /// Error of the time tag, s, −60 to 60: the attitude told for t is that of t − latency.
+    /// Error of the time tag, s, −60 to 60: the attitude reported for t is that of t − latency.
     #[serde(default)]
     #[schemars(range(min = -60, max = 60))]
     pub latency_s: f64,
-    /// Noise of each component of the velocity, new in every frame: standard deviation, m/s, 0 to 1000.
+    /// Standard deviation of the noise of each velocity component, drawn anew in every frame, m/s, 0 to 1000.
     #[serde(default)]
     #[schemars(range(min = 0, max = 1000))]
     pub velocity_noise_m_s: f64,
@@ -44,14 +44,14 @@ impl KnowledgeConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first number outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "knowledge")?;
         self.drift.check("knowledge.drift")
     }
 }
 
-/// Makes telemetry out of the truth.
+/// Generator of telemetry from the ground truth.
 #[derive(Debug, Clone)]
 pub struct Knowledge {
     bias_rad: Vector3<f64>,
@@ -63,10 +63,10 @@ pub struct Knowledge {
 }
 
 impl Knowledge {
-    /// Draws what belongs to the whole run.
+    /// Creates the generator and draws the values that apply to the whole run.
     ///
     /// # Errors
-    /// As [`KnowledgeConfig::check`].
+    /// See [`KnowledgeConfig::check`].
     pub fn new(config: &KnowledgeConfig, seed: Seed) -> Result<Self, OutOfRange> {
         config.check()?;
         Ok(Self {
@@ -79,9 +79,9 @@ impl Knowledge {
         })
     }
 
-    /// The telemetry of `frame`, whose exposure has its middle at `time` and lasts `exposure_s`.
+    /// Returns the telemetry of `frame`, with mid-exposure at `time` and exposure time `exposure_s`.
     ///
-    /// The latency shifts guidance and slow control error; the frame's jitter and the velocity are those of the
+    /// The latency shifts guidance and the slow control error; the jitter and the velocity are those of the
     /// frame itself.
     pub fn telemetry(
         &self,
@@ -126,7 +126,7 @@ mod tests {
         Knowledge::new(config, SEED).unwrap().telemetry(attitude, &trajectory, time, frame, 0.1)
     }
 
-    /// By how much the told body axes are turned from the true ones, rad.
+    /// Rotation of the reported body axes from the true body axes, rad.
     fn error(config: &KnowledgeConfig, attitude: &Attitude, frame: u64) -> Vector3<f64> {
         let truth = attitude.truth(&trajectory().states_at_seconds(DT_S * frame as f64), frame);
         let measured_from_true = telemetry_of(config, attitude, frame).body_from_icrs * truth.inverse();
@@ -147,7 +147,7 @@ mod tests {
         assert!(
             (error(&config, &attitude(true), 3) - radians_from_arcsec([100.0, -40.0, 7.0])).norm() < 1e-15
         );
-        // Told with the body turned by +100″ about x, a star along the true z has moved towards +y.
+        // With the body reported as rotated by +100″ about x, a star along the true z moves towards +y.
         let config = KnowledgeConfig { bias_arcsec: [100.0, 0.0, 0.0], ..Default::default() };
         let attitude = attitude(false);
         let truth = attitude.truth(&trajectory().states_at_seconds(0.0), 0);
@@ -173,7 +173,8 @@ mod tests {
             let dv = measured.velocity_km_s.unwrap() - states.chaser.velocity_km_s;
             velocity += (dv / 0.5e-3).norm_squared();
         }
-        // χ² of n degrees has the standard deviation √(2n) = 100, of 3n degrees 173; four of them.
+        // χ² with n degrees of freedom has the standard deviation √(2n) = 100, with 3n degrees 173; the
+        // tolerance is four of them.
         for axis in 0..3 {
             assert!((turn[axis] - n as f64).abs() < 400.0, "{turn}");
         }
@@ -184,16 +185,17 @@ mod tests {
     fn noise_of_knowledge_does_not_follow_the_jitter_of_control() {
         let config = KnowledgeConfig { noise_arcsec: [10.0; 3], ..Default::default() };
         let (loud, calm) = (attitude(true), attitude(false));
-        // The same draws whether control is restless or not.
+        // The draws are the same with and without control errors.
         assert!((error(&config, &loud, 5) - error(&config, &calm, 5)).norm() < 1e-15);
     }
 
     #[test]
     fn a_latency_tells_an_attitude_that_is_old() {
         let config = KnowledgeConfig { latency_s: 2.0, ..Default::default() };
-        // The body turns about −y at 1.0486e-3 rad/s: two seconds ago it was turned the other way.
+        // The body rotates about −y at 1.0486e-3 rad/s: its attitude two seconds earlier is rotated in the
+        // opposite sense.
         let expected = Vector3::new(0.0, 2.0 * 1.0486e-3, 0.0);
-        // The oblateness, the chaser's eccentricity: 1e-3 and 1e-4 of it.
+        // Relative effects of the oblateness and of the chaser's eccentricity: 1e-3 and 1e-4.
         assert!((error(&config, &attitude(false), 40) - expected).norm() < 6e-6);
     }
 

@@ -9,11 +9,12 @@ use serde::{Deserialize, Serialize};
 use super::clock::parse_utc_field;
 use super::orbit::{Elements, State};
 
-/// An impulse given to the chaser.
+/// Impulse of the chaser.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ManoeuvreConfig {
-    /// When, UTC, as in 2012-04-24T00:31:07; after the orbit's epoch and after the manoeuvre listed before.
+    /// Time, UTC, for example 2012-04-24T00:31:07; after the orbit's epoch and after the preceding manoeuvre
+    /// of the list.
     pub time_utc: String,
     /// Change of velocity along the chaser's own radial, transverse and normal axes, m/s, each −100 to 100.
     #[schemars(inner(range(min = -100, max = 100)))]
@@ -21,22 +22,22 @@ pub struct ManoeuvreConfig {
 }
 
 impl ManoeuvreConfig {
-    /// Checks text and numbers; `index` is the place in the list, counted from 0, for the message.
+    /// Checks text and numbers; `index` is the index in the list, counted from 0, for the message.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a time that is none or a change of velocity outside its range.
+    /// [`OutOfRange`] for an invalid time or a change of velocity outside its range.
     pub fn check(&self, index: usize) -> Result<(), OutOfRange> {
         self.time().map_err(|error| error.in_entry(index))?;
         bounds::check(self, &format!("orbit.manoeuvres[{index}]"))
     }
 
-    /// When.
+    /// Time of the manoeuvre.
     pub(crate) fn time(&self) -> Result<Epoch, OutOfRange> {
         parse_utc_field("orbit.manoeuvres[].time_utc", &self.time_utc)
     }
 
-    /// The orbit after the impulse, from the orbit just before: the position stays, the velocity changes, exactly.
-    /// `None` when no supported orbit is left.
+    /// Returns the orbit after the impulse, from the orbit just before: the position is unchanged, the
+    /// velocity changes exactly. `None` if the resulting orbit is not supported.
     pub(crate) fn apply(&self, before: &Elements) -> Option<Elements> {
         let state = before.state();
         let icrs_from_rtn = state.rtn_from_icrs().inverse();
@@ -44,13 +45,13 @@ impl ManoeuvreConfig {
         Elements::from_state(&State { velocity_km_s: state.velocity_km_s + dv_km_s, ..state })
     }
 
-    /// The error of an impulse, naming its place in the list.
+    /// Returns the error for an impulse, with its index in the list.
     pub(crate) fn refused_impulse(&self, index: usize, expected: &'static str) -> OutOfRange {
         OutOfRange::new("orbit.manoeuvres[].dv_rtn_m_s", format!("{:?}", self.dv_rtn_m_s), expected)
             .in_entry(index)
     }
 
-    /// The error of a time, naming its place in the list.
+    /// Returns the error for a time, with its index in the list.
     pub(crate) fn refused_time(&self, index: usize, expected: &'static str) -> OutOfRange {
         OutOfRange::new("orbit.manoeuvres[].time_utc", self.time_utc.clone(), expected).in_entry(index)
     }
@@ -75,8 +76,8 @@ mod tests {
         RelativeElements::between(&manoeuvre.apply(&CIRCULAR).unwrap(), &CIRCULAR)
     }
 
-    /// Compares with the linear theory. Second order is Δv/v = 1e-6 of an effect of at most 20 m, and δi's second
-    /// order through cot i as small: a tenth of a millimetre.
+    /// Compares with the linear theory. The second order is Δv/v = 1e-6 of an effect of at most 20 m, and
+    /// δi's second order through cot i is equally small: a tenth of a millimetre.
     fn check(got: RelativeElements, expected: [f64; 6]) {
         let got = [got.a_da_m, got.a_dlambda_m, got.a_dex_m, got.a_dey_m, got.a_dix_m, got.a_diy_m];
         for (g, e) in got.iter().zip(expected) {
@@ -84,7 +85,8 @@ mod tests {
         }
     }
 
-    // Effects of an impulse on the relative elements in linear theory (D'Amico 2010, chapter 2), here at u = 0.7 rad.
+    // Effects of an impulse on the relative elements in linear theory (D'Amico 2010, chapter 2), evaluated at
+    // u = 0.7 rad.
 
     #[test]
     fn a_radial_impulse_moves_lambda_and_the_eccentricity_vector() {
@@ -113,7 +115,7 @@ mod tests {
             ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s: [1.0, -2.0, 3.0] };
         let before = Elements { eccentricity: 0.003, ..CIRCULAR };
         let after = manoeuvre.apply(&before).unwrap();
-        // Rounding of 7130 km: 1e-12 km, through the angles a few times.
+        // Rounding of 7130 km: 1e-12 km, accumulated through several angles.
         assert!((after.state().position_km - before.state().position_km).norm() < 1e-10);
         let dv = after.state().velocity_km_s - before.state().velocity_km_s;
         assert!((dv.norm() - 14.0_f64.sqrt() * 1e-3).abs() < 1e-13);

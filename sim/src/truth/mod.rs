@@ -1,4 +1,4 @@
-//! Truth: where everything is, and how it looks from the chaser.
+//! Ground truth: positions of all objects, and their appearance from the chaser.
 
 mod apparent;
 pub mod approach;

@@ -1,4 +1,4 @@
-//! The Moon: where it is, to a few hundredths of a degree, and how bright.
+//! The Moon: its position, to a few hundredths of a degree, and its brightness.
 
 use nalgebra::Vector3;
 
@@ -6,18 +6,18 @@ use super::ecliptic;
 
 /// Mean radius of the Moon, km (IAU Working Group on Cartographic Coordinates 2015).
 pub const MOON_RADIUS_KM: f64 = 1_737.4;
-/// Mean distance of the Moon, km, for which [`moon_magnitude`] holds.
+/// Mean distance of the Moon, km, to which [`moon_magnitude`] refers.
 pub const MOON_MEAN_DISTANCE_KM: f64 = 384_400.0;
-/// Colour index B−V of its light (Cox 2000, Allen's Astrophysical Quantities, Table 12.6).
+/// Colour index B−V of the Moon (Cox 2000, Allen's Astrophysical Quantities, Table 12.6).
 pub const MOON_B_V: f64 = 0.92;
-/// Phase angle up to which the magnitude is that of the observed law, degrees.
+/// Phase angle up to which the observed phase function applies, degrees.
 const LAST_PHASE_DEG: f64 = 150.0;
 
 /// Seconds in a Julian century.
 const CENTURY_S: f64 = 36_525.0 * 86_400.0;
 
-/// Periodic terms of longitude and distance: multiples of D, M, M', F; sine of longitude, 1e-6 degrees; cosine of distance, m.
-/// Meeus (1998), Table 47.A, to 0.002 degrees.
+/// Periodic terms of longitude and distance: multiples of D, M, M', F; sine coefficient of longitude, 1e-6
+/// degrees; cosine coefficient of distance, m. Meeus (1998), Table 47.A, to 0.002 degrees.
 const LONGITUDE_AND_DISTANCE: [([f64; 4], f64, f64); 32] = [
     ([0.0, 0.0, 1.0, 0.0], 6_288_774.0, -20_905_355.0),
     ([2.0, 0.0, -1.0, 0.0], 1_274_027.0, -3_699_111.0),
@@ -53,7 +53,8 @@ const LONGITUDE_AND_DISTANCE: [([f64; 4], f64, f64); 32] = [
     ([2.0, -2.0, 0.0, 0.0], 2_236.0, -9_884.0),
 ];
 
-/// Periodic terms of latitude: multiples of D, M, M', F; sine, 1e-6 degrees. Meeus (1998), Table 47.B, to 0.002 degrees.
+/// Periodic terms of latitude: multiples of D, M, M', F; sine coefficient, 1e-6 degrees. Meeus (1998), Table
+/// 47.B, to 0.002 degrees.
 const LATITUDE: [([f64; 4], f64); 17] = [
     ([0.0, 0.0, 0.0, 1.0], 5_128_122.0),
     ([0.0, 0.0, 1.0, 1.0], 280_602.0),
@@ -74,11 +75,12 @@ const LATITUDE: [([f64; 4], f64); 17] = [
     ([2.0, -1.0, -1.0, -1.0], 2_065.0),
 ];
 
-/// The centre of the Moon from the centre of the Earth, km, ICRS axes; geometric, at `tdb_j2000_s` (s of TDB since J2000.0, see
-/// [`super::clock::tdb_j2000_s`]).
+/// Position of the Moon's centre relative to the Earth's centre, km, ICRS axes; geometric, at `tdb_j2000_s`
+/// (s of TDB since J2000.0, see [`super::clock::tdb_j2000_s`]).
 ///
-/// The largest terms of Meeus (1998, Astronomical Algorithms, Ch. 47) in longitude, latitude and distance, with the precession of
-/// longitude taken off (Eq. 21.7, first order). From 1990 to 2050 within 0.02° and 40 km of JPL's DE421.
+/// The largest terms of Meeus (1998, Astronomical Algorithms, Ch. 47) in longitude, latitude and distance,
+/// with the precession of longitude subtracted (Eq. 21.7, first order). From 1990 to 2050 it agrees with
+/// JPL's DE421 to 0.02° and 40 km.
 pub fn moon_position_km(tdb_j2000_s: f64) -> Vector3<f64> {
     let t = tdb_j2000_s / CENTURY_S;
     let mean_longitude = 218.316_447_7 + t * (481_267.881_234_21 - t * 0.001_578_6);
@@ -86,7 +88,8 @@ pub fn moon_position_km(tdb_j2000_s: f64) -> Vector3<f64> {
     let sun_anomaly = 357.529_109_2 + t * (35_999.050_290_9 - t * 0.000_153_6);
     let moon_anomaly = 134.963_396_4 + t * (477_198.867_505_5 + t * 0.008_741_4);
     let node_argument = 93.272_095_0 + t * (483_202.017_523_3 - t * 0.003_653_9);
-    // The orbit of the Earth becomes rounder: terms with the Sun's anomaly M shrink, those with 2 M twice.
+    // The eccentricity of the Earth's orbit decreases: terms with the Sun's anomaly M shrink, those with 2 M
+    // quadratically.
     let rounder = 1.0 - t * 0.002_516;
     let angle = |[d, m, m1, f]: [f64; 4]| {
         (d * elongation + m * sun_anomaly + m1 * moon_anomaly + f * node_argument).to_radians()
@@ -97,7 +100,7 @@ pub fn moon_position_km(tdb_j2000_s: f64) -> Vector3<f64> {
         _ => 1.0,
     };
 
-    // Venus, and the flattening of the Earth.
+    // Terms due to Venus and to the flattening of the Earth.
     let venus = (119.75 + 131.849 * t).to_radians();
     let flattening = (mean_longitude - node_argument).to_radians();
     let mut longitude_e6 = 3_958.0 * libm::sin(venus) + 1_962.0 * libm::sin(flattening);
@@ -118,9 +121,9 @@ pub fn moon_position_km(tdb_j2000_s: f64) -> Vector3<f64> {
     ecliptic::to_icrs(Vector3::new(cos_b * cos_l, cos_b * sin_l, sin_b) * (distance_m / 1000.0))
 }
 
-/// V magnitude of the Moon at mean distance with the Sun at 1 au, `phase_deg` (0 to 180) from full: Krisciunas & Schaefer (1991, PASP
-/// 103, 1033, Eq. 9, after Allen). Beyond 150°, where that law would leave light to a new Moon, it fades as a
-/// Lommel–Seeliger sphere does; infinite at 180°.
+/// V magnitude of the Moon at mean distance with the Sun at 1 au, at the phase angle `phase_deg` (0 to 180):
+/// Krisciunas & Schaefer (1991, PASP 103, 1033, Eq. 9, after Allen). Beyond 150°, where this formula would
+/// leave flux at new Moon, it fades like a Lommel–Seeliger sphere; infinite at 180°.
 pub fn moon_magnitude(phase_deg: f64) -> f64 {
     let observed = |phase_deg: f64| {
         let square = phase_deg * phase_deg;
@@ -134,7 +137,8 @@ pub fn moon_magnitude(phase_deg: f64) -> f64 {
     observed(LAST_PHASE_DEG) - 2.5 * libm::log10(faded)
 }
 
-/// Phase law of a Lommel–Seeliger sphere, 1 at full phase, 0 at π: 1 − sin(α/2) tan(α/2) ln cot(α/4) (Fairbairn 2005, JRASC 99, 92).
+/// Phase function of a Lommel–Seeliger sphere, 1 at full phase, 0 at π: 1 − sin(α/2) tan(α/2) ln cot(α/4)
+/// (Fairbairn 2005, JRASC 99, 92).
 pub(crate) fn lommel_seeliger_phase(phase_rad: f64) -> f64 {
     if phase_rad <= 0.0 {
         return 1.0;
@@ -150,8 +154,9 @@ pub(crate) fn lommel_seeliger_phase(phase_rad: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Full: a geometric albedo of 0.12 (NASA's Moon Fact Sheet) in a Sun of V = −26.76 (Willmer 2018). Less than full: Allen,
-    /// Astrophysical Quantities (3rd ed. 1973), p. 143, whose table the formula smooths to 0.05 mag, at 140° to 0.11 mag.
+    /// Full Moon: a geometric albedo of 0.12 (NASA's Moon Fact Sheet) with a Sun of V = −26.76 (Willmer
+    /// 2018). Other phases: Allen, Astrophysical Quantities (3rd ed. 1973), p. 143; the formula smooths this
+    /// table to 0.05 mag, at 140° to 0.11 mag.
     #[test]
     fn the_moon_has_its_published_magnitudes() {
         let sine = 1737.4 / 384_400.0;
@@ -179,19 +184,20 @@ mod tests {
         assert!((moon_magnitude(150.0) - moon_magnitude(150.001)).abs() < 1e-3);
         let magnitudes: Vec<f64> = (0..180).map(|degrees| moon_magnitude(f64::from(degrees))).collect();
         assert!(magnitudes.windows(2).all(|pair| pair[0] < pair[1]));
-        // The observed law, drawn out to here, would leave −3.97.
+        // The observed formula, extrapolated to this phase, would give −3.97.
         assert!(moon_magnitude(179.0) > -2.0, "{}", moon_magnitude(179.0));
         assert!(moon_magnitude(180.0) > 10.0);
     }
 
-    /// Meeus, Example 47.a: 1992 April 12, 0h TD: longitude 133.162655°, latitude −3.229126°, 368 409.7 km, of date.
+    /// Meeus, Example 47.a: 1992 April 12, 0h TD: longitude 133.162655°, latitude −3.229126°, 368 409.7 km,
+    /// of date.
     #[test]
     fn the_example_of_meeus_comes_out() {
         let tdb_s = (2_448_724.5 - 2_451_545.0) * 86_400.0;
         let ecliptic = ecliptic::from_icrs(moon_position_km(tdb_s));
         let longitude = libm::atan2(ecliptic.y, ecliptic.x).to_degrees();
         let latitude = libm::asin(ecliptic.z / ecliptic.norm()).to_degrees();
-        // Precession of 7.72 years is 0.10788°; what the terms left out come to is 0.01°, and 30 km.
+        // Precession over 7.72 years is 0.10788°; the omitted terms amount to 0.01° and 30 km.
         assert!((longitude - 0.107_88 - 133.162_655).abs() < 0.02, "{longitude}");
         assert!((latitude + 3.229_126).abs() < 0.01, "{latitude}");
         assert!((ecliptic.norm() - 368_409.7).abs() < 50.0, "{}", ecliptic.norm());

@@ -1,16 +1,16 @@
-//! How the camera really sits on the spacecraft, and how everybody believes it does.
+//! Mounting of the camera on the spacecraft, actual and nominal.
 
 use contract::{Mounting, OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The camera's mounting, real and believed. Their difference is what a pipeline can calibrate from stars.
+/// Actual and nominal mounting of the camera. A pipeline can calibrate their difference from stars.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MountingConfig {
-    /// As it is: images are made with it. Euler angles 123 from body to camera, degrees.
+    /// Actual mounting, used to make images. Euler angles 123 from body to camera, degrees.
     pub actual: Mounting,
-    /// As calibrated on the ground: guidance points with it, and pipelines are given it.
+    /// Mounting as calibrated on the ground: guidance uses it for pointing, and pipelines receive it.
     pub nominal: Mounting,
 }
 

@@ -1,12 +1,13 @@
-//! One orbit: Keplerian elements that drift under the Earth's oblateness, and the state they stand for.
+//! Orbit: Keplerian elements that drift due to the Earth's oblateness, and the corresponding state.
 //!
 //! Positions and velocities are geocentric and their axes are treated as ICRS. Three simplifications:
-//! - the elements are mean elements used as if they were osculating: secular drift, no short-period terms. Those
-//!   move each satellite by a few kilometres and, as both move nearly alike, the line of sight by about 1e-3 rad.
-//!   That is another path of the target through the image, not an error of it: image and truth share the path;
+//! - the elements are mean elements used as osculating elements: secular drift, no short-period terms. The
+//!   short-period terms move each satellite by a few kilometres and, because they are nearly equal for the
+//!   two satellites, the line of sight by about 1e-3 rad. This changes the path of the target through the
+//!   image, but is no error in it: image and truth share the path;
 //! - the equator is that of ICRS and not that of date (the pole moved by 0.07° from 2000 to 2012);
-//! - the velocity is the Keplerian one of the elements at that instant. It differs from the derivative of the
-//!   position by the drift rates, about 1e-3 of the orbital velocity: 0.005″ of aberration.
+//! - the velocity is the Keplerian velocity of the elements at that instant. It differs from the derivative
+//!   of the position by the drift rates, about 1e-3 of the orbital velocity: 0.005″ of aberration.
 
 use contract::bounds::{self, require};
 use contract::{Icrs, OutOfRange, Rotation};
@@ -19,8 +20,8 @@ use super::kepler::{MAX_ECCENTRICITY, eccentric_anomaly, wrap};
 /// Gravitational parameter of the Earth, km³/s² (EGM96: Lemoine et al., NASA/TP-1998-206861).
 pub const EARTH_GM_KM3_S2: f64 = 398_600.441_5;
 
-/// Radius of reference of the gravity field, km (EGM96): it goes with [`EARTH_J2`] and with nothing else. That of the body is
-/// [`super::shadow::EARTH_RADIUS_KM`].
+/// Reference radius of the gravity field, km (EGM96): for use with [`EARTH_J2`] only. For the radius of the
+/// body see [`super::shadow::EARTH_RADIUS_KM`].
 pub const EGM96_RADIUS_KM: f64 = 6_378.136_3;
 
 /// Oblateness of the Earth: J2 = −√5 C̄20 with C̄20 = −4.841 653 717 36e-4 (EGM96).
@@ -29,18 +30,18 @@ pub const EARTH_J2: f64 = 1.082_626_683_5e-3;
 /// Smallest perigee radius, km: 100 km above the equator.
 const MIN_PERIGEE_KM: f64 = EGM96_RADIUS_KM + 100.0;
 
-/// Largest semi-major axis, km; beyond it the Moon and the Sun rule.
+/// Largest semi-major axis, km; beyond it the Moon and the Sun dominate.
 const MAX_SEMI_MAJOR_AXIS_KM: f64 = 100_000.0;
 
-/// Smallest sine of the inclination; below it the node means nothing.
+/// Smallest sine of the inclination; below it the node is undefined.
 const MIN_SIN_INCLINATION: f64 = 1e-4;
 
-/// The frame of an orbit at an instant: R along the position, N along the angular momentum, T = N × R (along the
-/// velocity on a circular orbit). Components of a vector in it are (R, T, N).
+/// Orbital frame at an instant: R along the position, N along the angular momentum, T = N × R (along the
+/// velocity on a circular orbit). Vector components are (R, T, N).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rtn {}
 
-/// Keplerian elements as a scenario gives them.
+/// Keplerian elements in a scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ElementsConfig {
@@ -68,7 +69,7 @@ impl ElementsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first number outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "orbit.target")?;
         let perigee_km = self.semi_major_axis_km * (1.0 - self.eccentricity);
@@ -82,10 +83,10 @@ impl ElementsConfig {
         })
     }
 
-    /// The same elements in radians.
+    /// Converts the elements to radians.
     ///
     /// # Errors
-    /// As [`ElementsConfig::check`].
+    /// See [`ElementsConfig::check`].
     pub fn elements(&self) -> Result<Elements, OutOfRange> {
         self.check()?;
         Ok(Elements {
@@ -99,17 +100,17 @@ impl ElementsConfig {
     }
 }
 
-/// Position and velocity about the Earth, ICRS axes.
+/// Position and velocity relative to the Earth, ICRS axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Position from the centre of the Earth, km.
+    /// Position relative to the Earth's centre, km.
     pub position_km: Vector3<f64>,
-    /// Velocity about the Earth, km/s.
+    /// Velocity relative to the Earth's centre, km/s.
     pub velocity_km_s: Vector3<f64>,
 }
 
 impl State {
-    /// The rotation to the orbit's own frame at this instant.
+    /// Returns the rotation from ICRS to the orbital frame at this instant.
     pub fn rtn_from_icrs(&self) -> Rotation<Rtn, Icrs> {
         let radial = self.position_km.normalize();
         let normal = self.position_km.cross(&self.velocity_km_s).normalize();
@@ -117,7 +118,7 @@ impl State {
     }
 }
 
-/// Keplerian elements of an orbit about the Earth at an instant.
+/// Keplerian elements of a geocentric orbit at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elements {
     /// Semi-major axis, km.
@@ -157,9 +158,9 @@ impl Elements {
         self.argument_of_perigee_rad + self.mean_anomaly_rad
     }
 
-    /// First-order secular rates under J2 (Vallado, *Fundamentals of Astrodynamics and Applications*, 4th edition,
-    /// section 9.6). With γ = 3/2 J2 (R/p)² n, p = a(1 − e²): Ω' = −γ cos i, ω' = γ (2 − 5/2 sin² i),
-    /// M' = n + γ √(1 − e²) (1 − 3/2 sin² i).
+    /// First-order secular rates under J2 (Vallado, *Fundamentals of Astrodynamics and Applications*, 4th
+    /// edition, section 9.6). With γ = 3/2 J2 (R/p)² n, p = a(1 − e²): Ω' = −γ cos i, ω' = γ (2 − 5/2 sin²
+    /// i), M' = n + γ √(1 − e²) (1 − 3/2 sin² i).
     pub fn secular_rates(&self) -> SecularRates {
         let n = self.mean_motion_rad_s();
         let one_minus_e2 = 1.0 - self.eccentricity * self.eccentricity;
@@ -173,7 +174,8 @@ impl Elements {
         }
     }
 
-    /// The elements `seconds` later (earlier when negative): Ω, ω and M have drifted, the rest stays.
+    /// Returns the elements `seconds` later (earlier if negative): Ω, ω and M drift, the other elements are
+    /// constant.
     pub fn propagate(&self, seconds: f64) -> Self {
         let rates = self.secular_rates();
         Self {
@@ -193,7 +195,7 @@ impl Elements {
         let eta = (1.0 - e * e).sqrt();
         let anomaly_rate = self.mean_motion_rad_s() / (1.0 - e * cos_anomaly);
 
-        // Axes of the orbit: P towards the perigee, Q a quarter turn ahead in the direction of motion.
+        // Axes of the orbit: P towards the perigee, Q 90° ahead in the direction of motion.
         let (sin_raan, cos_raan) = libm::sincos(self.raan_rad);
         let (sin_argp, cos_argp) = libm::sincos(self.argument_of_perigee_rad);
         let (sin_i, cos_i) = libm::sincos(self.inclination_rad);
@@ -208,8 +210,8 @@ impl Elements {
         }
     }
 
-    /// The elements of a state; `None` when they are outside what this crate supports: not an ellipse, e above 0.9,
-    /// perigee below 100 km of height, a above 100000 km, or the orbit in the equator.
+    /// Returns the elements of a state; `None` if they are not supported: not an ellipse, e above 0.9,
+    /// perigee height below 100 km, a above 100000 km, or an equatorial orbit.
     pub fn from_state(state: &State) -> Option<Self> {
         let (r, v) = (&state.position_km, &state.velocity_km_s);
         let distance = r.norm();
@@ -219,7 +221,7 @@ impl Elements {
         let node = Vector3::new(-normal.y, normal.x, 0.0) / sin_i;
         let across = normal.cross(&node);
 
-        // The eccentricity vector, seen from the node, keeps its meaning when the orbit is circular.
+        // The eccentricity vector relative to the node is also defined for a circular orbit.
         let eccentricity_vector = v.cross(&momentum) / EARTH_GM_KM3_S2 - r / distance;
         let (e_x, e_y) = (eccentricity_vector.dot(&node), eccentricity_vector.dot(&across));
         let e = libm::hypot(e_x, e_y);
@@ -239,7 +241,7 @@ impl Elements {
         elements.is_supported().then_some(elements)
     }
 
-    /// Whether this is an orbit that the crate supports. A NaN anywhere says no.
+    /// Returns true if the orbit is supported; false if any element is NaN.
     pub(crate) fn is_supported(&self) -> bool {
         let (a, e) = (self.semi_major_axis_km, self.eccentricity);
         (0.0..=MAX_ECCENTRICITY).contains(&e)
@@ -279,7 +281,8 @@ mod tests {
         ) {
             let state = elements(perigee / (1.0 - e), e, i, [raan, argp, m]).state();
             let back = Elements::from_state(&state).unwrap().state();
-            // Positions of 1e4..1e5 km carry 1e-11 km; a small sin i and 1/(1 − e) magnify it by up to a thousand.
+            // Positions of 1e4..1e5 km have rounding errors of 1e-11 km; a small sin i and 1/(1 − e) amplify
+            // them by up to a thousand.
             prop_assert!((back.position_km - state.position_km).norm() < 1e-7);
             prop_assert!((back.velocity_km_s - state.velocity_km_s).norm() < 1e-10);
         }
@@ -292,7 +295,8 @@ mod tests {
             let State { position_km: r, velocity_km_s: v } = orbit.state();
             let energy = 0.5 * v.norm_squared() - EARTH_GM_KM3_S2 / r.norm();
             let expected = -0.5 * EARTH_GM_KM3_S2 / orbit.semi_major_axis_km;
-            // At the perigee of an eccentric orbit the energy is a difference of terms up to 20 times larger.
+            // At the perigee of an eccentric orbit the energy is a difference of terms up to 20 times larger
+            // than the energy.
             prop_assert!((energy / expected - 1.0).abs() < 1e-13);
             let momentum = r.cross(&v);
             let p = orbit.semi_major_axis_km * (1.0 - e * e);
@@ -301,16 +305,16 @@ mod tests {
         }
     }
 
-    /// Curtis, *Orbital Mechanics for Engineering Students*, 3rd edition, example 4.3: from r = (−6045, −3490, 2500) km
-    /// and v = (−3.457, 6.618, 2.533) km/s to h = 58310 km²/s, i = 153.2°, Ω = 255.3°, e = 0.1712, ω = 20.07°,
-    /// θ = 28.45°, with μ = 398600.
+    /// Curtis, *Orbital Mechanics for Engineering Students*, 3rd edition, example 4.3: from r = (−6045,
+    /// −3490, 2500) km and v = (−3.457, 6.618, 2.533) km/s to h = 58310 km²/s, i = 153.2°, Ω = 255.3°, e =
+    /// 0.1712, ω = 20.07°, θ = 28.45°, with μ = 398600.
     #[test]
     fn the_example_of_curtis_is_met() {
         let state = State {
             position_km: Vector3::new(-6045.0, -3490.0, 2500.0),
             velocity_km_s: Vector3::new(-3.457, 6.618, 2.533),
         };
-        // Its perigee is 7284 km; every figure is compared to the digits printed.
+        // The perigee is 7284 km; the values are compared to the digits printed.
         let got = Elements::from_state(&state).unwrap();
         assert!((got.eccentricity - 0.1712).abs() < 1e-4);
         assert!((got.inclination_rad.to_degrees() - 153.2).abs() < 0.06);
@@ -319,8 +323,8 @@ mod tests {
         assert!((got.semi_major_axis_km - 8788.0).abs() < 1.0);
     }
 
-    /// In closed form the node of a circular orbit keeps pace with the mean Sun, 360° in a tropical year of 365.2422
-    /// days, when cos i = −Ω'/(3/2 J2 (R/a)² n). Textbooks give 98.6° for a height of 800 km.
+    /// In closed form, the node of a circular orbit follows the mean Sun, 360° in a tropical year of 365.2422
+    /// days, for cos i = −Ω'/(3/2 J2 (R/a)² n). Textbooks give 98.6° for a height of 800 km.
     #[test]
     fn a_sun_synchronous_orbit_keeps_pace_with_the_sun() {
         let sun_rad_s = 360.0_f64.to_radians() / (365.2422 * 86400.0);
@@ -341,7 +345,8 @@ mod tests {
         assert!(rates.argument_of_perigee_rad_s.abs() < 1e-20);
     }
 
-    /// Without J2 the velocity is the derivative of the position: checked along the ellipse, with Ω and ω at rest.
+    /// Without J2 the velocity is the derivative of the position: checked along the ellipse, with constant Ω
+    /// and ω.
     #[test]
     fn the_velocity_is_the_derivative_of_the_position_along_the_ellipse() {
         let orbit = elements(7130.0, 0.003, 98.28, [120.0, 40.0, 200.0]);
@@ -350,7 +355,7 @@ mod tests {
             Elements { mean_anomaly_rad, ..orbit }.state().position_km
         };
         let derivative = (at(0.5) - at(-0.5)) / 1.0;
-        // Central difference: n³ a h²/6 with h = 0.5 s is 3.4e-7 km/s.
+        // Error of the central difference: n³ a h²/6 with h = 0.5 s is 3.4e-7 km/s.
         assert!((derivative - orbit.state().velocity_km_s).norm() < 4e-7);
     }
 

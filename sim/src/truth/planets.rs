@@ -1,12 +1,14 @@
-//! The planets: where they are, and how bright.
+//! The planets: their positions and magnitudes.
 //!
-//! Places from Keplerian elements that drift linearly: Standish & Williams, Keplerian Elements for Approximate Positions of the
-//! Major Planets (JPL, Table 1, 1800 to 2050). Against DE421 the direction from the Earth errs by up to 0.3′ (Mercury, Venus),
-//! 1.5′ (Mars), 7.4′ (Jupiter), 10.4′ (Saturn), 1.9′ (Uranus) and 1′ (Neptune); see `golden/planets`. Image and truth share the error: the
-//! planet is drawn where the truth says.
+//! Positions are from Keplerian elements that drift linearly: Standish & Williams, Keplerian Elements for
+//! Approximate Positions of the Major Planets (JPL, Table 1, 1800 to 2050). Compared with DE421, the
+//! direction from the Earth has errors of up to 0.3′ (Mercury, Venus), 1.5′ (Mars), 7.4′ (Jupiter), 10.4′
+//! (Saturn), 1.9′ (Uranus) and 1′ (Neptune); see `golden/planets`. Image and truth share the error: each
+//! planet is drawn at its position in the truth.
 //!
-//! Magnitudes by Mallama & Hilton 2018, Astron. Comput. 25, 10 (the Astronomical Almanac's), without the terms of rotation
-//! (Mars, 0.1 mag) and of the latitude of Uranus (0.07 mag); Saturn with its rings.
+//! Magnitudes are from Mallama & Hilton 2018, Astron. Comput. 25, 10 (used in the Astronomical Almanac),
+//! without the terms of rotation (Mars, 0.1 mag) and of the latitude of Uranus (0.07 mag); Saturn includes
+//! its rings.
 
 use contract::{Direction, Icrs};
 use nalgebra::Vector3;
@@ -17,15 +19,15 @@ use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
 
 /// Light time of one astronomical unit, s.
 const AU_LIGHT_S: f64 = AU_KM / LIGHT_SPEED_KM_S;
-/// A Julian century, s.
+/// Julian century, s.
 const CENTURY_S: f64 = 36_525.0 * 86_400.0;
-/// Obliquity of the ecliptic at J2000.0 as the elements have it, degrees.
+/// Obliquity of the ecliptic at J2000.0 for these elements, degrees.
 const OBLIQUITY_DEG: f64 = 23.43928;
-/// Saturn's north pole at J2000.0, which the plane of its rings has for its normal: right ascension and declination, degrees
+/// Saturn's north pole at J2000.0, the normal of the ring plane: right ascension and declination, degrees
 /// (IAU Working Group on Cartographic Coordinates 2015).
 const SATURN_POLE_DEG: (f64, f64) = (40.589, 83.537);
 
-/// A planet other than the Earth.
+/// Planet other than the Earth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Planet {
     /// Number 1.
@@ -44,10 +46,10 @@ pub enum Planet {
     Neptune,
 }
 
-/// A planet as an observer has it.
+/// Direction, distance and magnitude of a planet for an observer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ApparentPlanet {
-    /// Where it stands: light time applied, no aberration, no deflection.
+    /// Astrometric direction: light time applied, no aberration, no deflection.
     pub astrometric: Direction<Icrs>,
     /// Distance from the observer, au.
     pub distance_au: f64,
@@ -55,15 +57,15 @@ pub struct ApparentPlanet {
     pub magnitude: f64,
 }
 
-/// Elements at J2000.0 and their change in a Julian century: a (au), e, I, L, ϖ, Ω (degrees).
+/// Elements at J2000.0 and their change per Julian century: a (au), e, I, L, ϖ, Ω (degrees).
 type Elements = [[f64; 6]; 2];
 
 impl Planet {
-    /// All of them, from the Sun outwards.
+    /// All planets except the Earth, from the Sun outwards.
     pub const ALL: [Self; 7] =
         [Self::Mercury, Self::Venus, Self::Mars, Self::Jupiter, Self::Saturn, Self::Uranus, Self::Neptune];
 
-    /// Its number from the Sun outwards, the Earth being 3: 1 to 8.
+    /// Number of the planet, counted from the Sun outwards with the Earth as 3: 1 to 8.
     pub fn number(self) -> u32 {
         match self {
             Self::Mercury => 1,
@@ -76,8 +78,8 @@ impl Planet {
         }
     }
 
-    /// Colour index B−V of its light (Cox 2000, Allen's Astrophysical Quantities, Table 12.6, as in the Astronomical
-    /// Almanac).
+    /// Colour index B−V of the planet (Cox 2000, Allen's Astrophysical Quantities, Table 12.6, as in the
+    /// Astronomical Almanac).
     pub fn b_v(self) -> f64 {
         match self {
             Self::Mercury => 0.93,
@@ -90,15 +92,15 @@ impl Planet {
         }
     }
 
-    /// The planet from where the observer is, at `tdb_j2000_s` seconds of TDB since J2000.0; `None` for an observer inside
-    /// of it.
+    /// Returns the planet as seen by the observer, at `tdb_j2000_s` seconds of TDB since J2000.0; `None` for
+    /// an observer at the planet's centre.
     pub fn apparent(self, tdb_j2000_s: f64, observer: &Observer) -> Option<ApparentPlanet> {
-        // The Sun from the observer moves by 13 m/s while light is under way: nothing at this accuracy.
+        // The Sun moves by 13 m/s during the light time, which is negligible at this accuracy.
         let sun_au = observer.sun_km() / AU_KM;
         let mut light_s = 0.0;
         let mut heliocentric = Vector3::zeros();
         let mut from_observer = Vector3::zeros();
-        // A planet moves by 48 km/s at most: a third step changes 1e-12 of the distance.
+        // A planet moves by 48 km/s at most: a third step changes the distance by a relative 1e-12.
         for _ in 0..3 {
             heliocentric = self.heliocentric_au(tdb_j2000_s - light_s);
             from_observer = sun_au + heliocentric;
@@ -111,7 +113,7 @@ impl Planet {
         })
     }
 
-    /// From the Sun, au, ICRS axes.
+    /// Position relative to the Sun, au, ICRS axes.
     fn heliocentric_au(self, tdb_j2000_s: f64) -> Vector3<f64> {
         let centuries = tdb_j2000_s / CENTURY_S;
         let [at_epoch, rates] = self.elements();
@@ -122,7 +124,8 @@ impl Planet {
         let (sin_e, cos_e) = libm::sincos(anomaly);
         let x = axis * (cos_e - eccentricity);
         let y = axis * (1.0 - eccentricity * eccentricity).sqrt() * sin_e;
-        // From the plane of the orbit, x to the perihelion, to the ecliptic and on to the equator.
+        // Rotation from the orbital plane, with x towards the perihelion, to the ecliptic and then to the
+        // equator.
         let (sin_w, cos_w) = libm::sincos(perihelion - node);
         let (sin_n, cos_n) = libm::sincos(node);
         let (sin_i, cos_i) = libm::sincos(inclination);
@@ -137,7 +140,7 @@ impl Planet {
         )
     }
 
-    /// V for its place from the Sun and from the observer, au.
+    /// V magnitude for the position relative to the Sun and relative to the observer, au.
     fn magnitude(self, from_sun: &Vector3<f64>, from_observer: &Vector3<f64>, tdb_j2000_s: f64) -> f64 {
         let (sun_au, observer_au) = (from_sun.norm(), from_observer.norm());
         let phase_rad = libm::atan2(from_sun.cross(from_observer).norm(), from_sun.dot(from_observer));
@@ -157,7 +160,8 @@ impl Planet {
                 -9.428 - 2.5 * libm::log10(share)
             }
             Self::Saturn => {
-                // Opening of the rings: the mean of the latitudes of Sun and observer, none when they differ in side.
+                // Opening of the rings: geometric mean of the latitudes of Sun and observer; zero if they are
+                // on opposite sides.
                 let (ra, dec) = SATURN_POLE_DEG;
                 let (sin_ra, cos_ra) = libm::sincos(ra.to_radians());
                 let (sin_dec, cos_dec) = libm::sincos(dec.to_radians());
@@ -168,7 +172,7 @@ impl Planet {
             }
             Self::Uranus => polynomial(&[-7.110, 6.587e-3, 1.045e-4], if a > 3.1 { a } else { 0.0 }),
             Self::Neptune => {
-                // It grew brighter from 1980 to 2000.
+                // Neptune brightened from 1980 to 2000.
                 let year = 2000.0 + tdb_j2000_s / CENTURY_S * 100.0;
                 (-6.89 - 0.0054 * (year - 1980.0)).clamp(-7.00, -6.89)
             }
@@ -176,7 +180,7 @@ impl Planet {
         own + 5.0 * libm::log10(sun_au * observer_au)
     }
 
-    /// Standish & Williams, Table 1.
+    /// Elements from Standish & Williams, Table 1.
     #[rustfmt::skip]
     fn elements(self) -> Elements {
         match self {
@@ -212,7 +216,7 @@ impl Planet {
     }
 }
 
-/// By Horner's rule, the constant term first.
+/// Evaluates a polynomial by Horner's rule, the constant term first.
 fn polynomial(terms: &[f64], x: f64) -> f64 {
     terms.iter().rev().fold(0.0, |sum, term| sum * x + term)
 }
@@ -228,7 +232,7 @@ mod tests {
         planet.magnitude(&(Vector3::x() * sun_au), &(Vector3::new(cos, sin, 0.0) * observer_au), 3e8)
     }
 
-    /// The worked examples that Mallama & Hilton give with their program.
+    /// Worked examples that Mallama & Hilton supply with their program.
     #[test]
     fn magnitudes_are_those_of_the_published_examples() {
         for (planet, sun_au, observer_au, phase_deg, expected) in [
@@ -247,7 +251,7 @@ mod tests {
         }
     }
 
-    /// Mallama & Hilton's law on DE421's places, 2021-10-04 0 h TT, from the geocentre.
+    /// Formulae of Mallama & Hilton with positions of DE421, 2021-10-04 0 h TT, from the geocentre.
     #[test]
     fn every_planet_has_its_magnitude_of_a_known_day() {
         let time = clock::parse_utc("2021-10-03T23:58:50.816Z").unwrap();
@@ -255,8 +259,8 @@ mod tests {
         let expected = [2.393, -4.278, 1.592, -2.693, 0.508, 5.701, 7.690];
         for (planet, expected) in Planet::ALL.into_iter().zip(expected) {
             let got = planet.apparent(clock::tdb_j2000_s(time), &observer).unwrap().magnitude;
-            // The reference takes the barycentre for the Sun: 0.5° of the phase of Venus and Mercury. Left out here:
-            // Uranus 0.05, Mars 0.1.
+            // The reference uses the barycentre in place of the Sun: 0.5° in the phase of Venus and Mercury.
+            // Terms omitted here: Uranus 0.05, Mars 0.1.
             let tolerance = 0.1;
             assert!((got - expected).abs() < tolerance, "{planet:?}: {got}, expected {expected}");
         }
@@ -266,7 +270,7 @@ mod tests {
     fn the_curve_of_venus_has_no_step_where_its_two_pieces_meet() {
         let (before, after) =
             (magnitude_at(Planet::Venus, 0.72, 0.3, 163.69), magnitude_at(Planet::Venus, 0.72, 0.3, 163.71));
-        // The published pieces meet within 0.02 mag.
+        // The two published pieces agree to 0.02 mag at the junction.
         assert!((before - after).abs() < 0.02, "{before} {after}");
     }
 }

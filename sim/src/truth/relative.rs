@@ -1,10 +1,10 @@
 //! Relative orbital elements of the chaser with respect to the target.
 //!
-//! Definition: S. D'Amico, *Autonomous Formation Flying in Low Earth Orbit*, PhD thesis, TU Delft 2010, chapter 2:
-//! δa = (a_c − a)/a, δλ = (u_c − u) + (Ω_c − Ω) cos i, δex = e_c cos ω_c − e cos ω, δey = e_c sin ω_c − e sin ω,
-//! δix = i_c − i, δiy = (Ω_c − Ω) sin i, with u = ω + M the mean argument of latitude; letters without index are
-//! the target's. All are multiplied by the target's a and given in metres. The map to the chaser's own elements
-//! is exact: nothing is linearised.
+//! Definition: S. D'Amico, *Autonomous Formation Flying in Low Earth Orbit*, PhD thesis, TU Delft 2010,
+//! chapter 2: δa = (a_c − a)/a, δλ = (u_c − u) + (Ω_c − Ω) cos i, δex = e_c cos ω_c − e cos ω, δey = e_c sin
+//! ω_c − e sin ω, δix = i_c − i, δiy = (Ω_c − Ω) sin i, with u = ω + M the mean argument of latitude; letters
+//! without index are the target's. All are multiplied by the target's a and given in metres. The conversion
+//! to the chaser's own elements is exact, without linearisation.
 
 use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
@@ -26,7 +26,7 @@ pub struct RelativeElements {
     /// aδex: relative eccentricity vector towards the node, m, −1e6 to 1e6.
     #[schemars(range(min = -1e6, max = 1e6))]
     pub a_dex_m: f64,
-    /// aδey: relative eccentricity vector a quarter turn from the node, m, −1e6 to 1e6.
+    /// aδey: relative eccentricity vector 90° from the node, m, −1e6 to 1e6.
     #[schemars(range(min = -1e6, max = 1e6))]
     pub a_dey_m: f64,
     /// aδix: relative inclination vector, difference of the inclinations, m, −1e6 to 1e6.
@@ -41,12 +41,13 @@ impl RelativeElements {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first number outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "orbit.relative")
     }
 
-    /// The relative elements of `chaser` with respect to `target`. Differences of angles are taken in [−π, π].
+    /// Returns the relative elements of `chaser` with respect to `target`. Differences of angles are wrapped
+    /// to [−π, π].
     pub fn between(chaser: &Elements, target: &Elements) -> Self {
         let a_m = target.semi_major_axis_km * 1000.0;
         let (sin_i, cos_i) = libm::sincos(target.inclination_rad);
@@ -64,7 +65,8 @@ impl RelativeElements {
         }
     }
 
-    /// The chaser's elements, when the target's are `target`: the inverse of [`RelativeElements::between`].
+    /// Returns the chaser's elements for the target's elements `target`: the inverse of
+    /// [`RelativeElements::between`].
     pub fn chaser(&self, target: &Elements) -> Elements {
         let a_m = target.semi_major_axis_km * 1000.0;
         let (sin_i, cos_i) = libm::sincos(target.inclination_rad);
@@ -84,7 +86,7 @@ impl RelativeElements {
     }
 }
 
-/// (e cos ω, e sin ω).
+/// Eccentricity vector (e cos ω, e sin ω).
 fn eccentricity_vector(elements: &Elements) -> (f64, f64) {
     let (sin, cos) = libm::sincos(elements.argument_of_perigee_rad);
     (elements.eccentricity * cos, elements.eccentricity * sin)
@@ -97,7 +99,7 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::PI;
 
-    /// A circular target: the linear theory is written for it.
+    /// Circular target, as assumed by the linear theory.
     const TARGET: Elements = Elements {
         semi_major_axis_km: 7130.0,
         eccentricity: 0.0,
@@ -107,7 +109,8 @@ mod tests {
         mean_anomaly_rad: 0.4,
     };
 
-    /// Position of the chaser from the target in the target's RTN, m, `seconds` after the elements hold.
+    /// Position of the chaser relative to the target in the target's RTN, m, `seconds` after the epoch of the
+    /// elements.
     fn offset_m(relative: &RelativeElements, seconds: f64) -> Vector3<f64> {
         let chaser = relative.chaser(&TARGET).propagate(seconds).state();
         let target = TARGET.propagate(seconds).state();
@@ -133,7 +136,8 @@ mod tests {
                 a_da_m: da, a_dlambda_m: dl, a_dex_m: ex, a_dey_m: ey, a_dix_m: ix, a_diy_m: iy,
             };
             let back = RelativeElements::between(&relative.chaser(&target), &target);
-            // Angles of a few rad carry 4e-16 rad; times 1.4e7 m that is 6 nm, added up a few times.
+            // Angles of a few rad have rounding errors of 4e-16 rad; times 1.4e7 m these are 6 nm,
+            // accumulated several times.
             for (got, expected) in [
                 (back.a_da_m, da), (back.a_dlambda_m, dl), (back.a_dex_m, ex),
                 (back.a_dey_m, ey), (back.a_dix_m, ix), (back.a_diy_m, iy),
@@ -143,7 +147,8 @@ mod tests {
         }
     }
 
-    /// D'Amico 2010, chapter 2, near-circular: R = aδa − aδe cos(u − φ), T = aδλ + 2 aδe sin(u − φ), N = aδi sin(u − θ).
+    /// D'Amico 2010, chapter 2, near-circular: R = aδa − aδe cos(u − φ), T = aδλ + 2 aδe sin(u − φ), N = aδi
+    /// sin(u − θ).
     #[test]
     fn the_relative_orbit_is_the_ellipse_of_the_linear_theory() {
         let relative = RelativeElements { a_dey_m: 400.0, a_diy_m: 300.0, ..Default::default() };
@@ -153,8 +158,8 @@ mod tests {
             // δe along +y: φ = 90°; δi along +y: θ = 90°.
             let expected = Vector3::new(-400.0 * libm::sin(u), -800.0 * libm::cos(u), -300.0 * libm::cos(u));
             let got = offset_m(&relative, seconds);
-            // δe turns with the perigee, −3.0° a day or 0.21° an orbit: of the 800 m along T, 2.9 m. Second order
-            // is (2 aδe)²/2a = 0.05 m.
+            // δe rotates with the perigee, −3.0° per day or 0.21° per orbit: 2.9 m of the 800 m along T. The
+            // second order is (2 aδe)²/2a = 0.05 m.
             assert!((got - expected).norm() < 3.0, "{got} {expected}");
         }
     }
@@ -166,8 +171,8 @@ mod tests {
         for k in 0..3600 {
             most = offset_m(&relative, period_s() * f64::from(k) / 3600.0).abs().sup(&most);
         }
-        // Second order as above. aδix changes the node's rate: 3/2 J2 (R/a)² n sin²i aδix makes 2 m in an orbit, and
-        // less than half a metre of it at the last extreme of N; cot i couples it into T.
+        // For the second order see above. aδix changes the rate of the node: 3/2 J2 (R/a)² n sin²i aδix gives
+        // 2 m per orbit, and less than half a metre at the last extreme of N; cot i couples it into T.
         for (got, expected, tolerance) in [(most.x, 300.0, 0.1), (most.y, 600.0, 3.0), (most.z, 250.0, 2.1)] {
             assert!((got - expected).abs() < tolerance, "{got} {expected}");
         }
@@ -176,17 +181,17 @@ mod tests {
     #[test]
     fn a_chaser_behind_is_at_negative_t() {
         let offset = offset_m(&RelativeElements { a_dlambda_m: -30_000.0, ..Default::default() }, 0.0);
-        // The chord of an arc: T = −a sin δλ, R = −a(1 − cos δλ) = −aδλ²/2 = −63.1 m.
+        // Chord of an arc: T = −a sin δλ, R = −a(1 − cos δλ) = −aδλ²/2 = −63.1 m.
         assert!((offset.y + 30_000.0).abs() < 0.1, "{offset}");
         assert!((offset.x + 63.1).abs() < 0.1, "{offset}");
     }
 
-    /// In one orbit T moves by −3π aδa (δλ' = −3/2 n δa).
+    /// In one orbit T changes by −3π aδa (δλ' = −3/2 n δa).
     #[test]
     fn a_lower_chaser_catches_up_by_three_pi_a_delta_a_an_orbit() {
         let relative = RelativeElements { a_da_m: -40.0, a_dlambda_m: -5_000.0, ..Default::default() };
         let moved = offset_m(&relative, period_s()).y - offset_m(&relative, 0.0).y;
-        // The oblateness changes n's slope by 7/2·3/2 J2 (R/a)² ≈ 0.5 %.
+        // The oblateness changes the slope of n by 7/2·3/2 J2 (R/a)² ≈ 0.5 %.
         assert!((moved / (3.0 * PI * 40.0) - 1.0).abs() < 0.01, "{moved}");
     }
 

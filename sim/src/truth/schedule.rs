@@ -1,4 +1,4 @@
-//! Which frame is taken when.
+//! Times of the frames.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -10,27 +10,27 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::parse_utc_field;
 
-/// Most frames that a scenario may have.
+/// Maximum number of frames in a scenario.
 pub const MAX_FRAMES: u64 = 100_000_000;
 
-/// A group of frames at a constant cadence: a day, a portion of an approach.
+/// Group of frames at a constant cadence: a day, or a part of an approach.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GroupConfig {
-    /// Name, not empty, different from those of the other groups.
+    /// Name, not empty, unique among the groups.
     pub name: String,
-    /// Middle of the exposure of the first frame, UTC, as in 2012-04-23T09:00:00Z.
+    /// Mid-exposure of the first frame, UTC, for example 2012-04-23T09:00:00Z.
     pub start_utc: String,
-    /// Time from one frame to the next, s, 0.001 to 1e6; rounded to the nanosecond.
+    /// Interval between frames, s, 0.001 to 1e6; rounded to the nanosecond.
     #[schemars(range(min = 0.001, max = 1e6))]
     pub cadence_s: f64,
-    /// Number of frames, at least 1; all groups together at most 100000000.
+    /// Number of frames, at least 1; at most 100000000 for all groups together.
     #[schemars(range(min = 1, max = MAX_FRAMES))]
     pub count: u64,
 }
 
 impl GroupConfig {
-    /// Checks this group by itself.
+    /// Checks this group without reference to the other groups.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.
@@ -43,12 +43,12 @@ impl GroupConfig {
     }
 }
 
-/// Frames that belong together, in order of time.
+/// Frames of one group, in order of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sequence<'a> {
     /// Name of the group.
     pub name: &'a str,
-    /// Numbers of its frames in the scenario.
+    /// Numbers of the group's frames in the scenario.
     pub frames: Range<u64>,
 }
 
@@ -77,8 +77,8 @@ impl Schedule {
     /// Checks the groups and numbers their frames.
     ///
     /// # Errors
-    /// [`OutOfRange`] when a group is wrong by itself, a name comes twice, a group does not begin after the last
-    /// frame of the one before, or there are too many frames, or there is no group.
+    /// [`OutOfRange`] if a group is invalid by itself, a name is used twice, a group does not begin after the
+    /// last frame of the preceding group, there are too many frames, or there is no group.
     pub fn new(configs: &[GroupConfig]) -> Result<Self, OutOfRange> {
         let mut names = BTreeSet::new();
         let mut groups: Vec<Group> = Vec::with_capacity(configs.len());
@@ -89,7 +89,7 @@ impl Schedule {
                 return Err(OutOfRange::new("schedule[].name", config.name.clone(), "a name used once")
                     .in_entry(index));
             }
-            // Counted in TAI: in UTC, adding seconds across a leap second would lose one.
+            // Counted in TAI: in UTC, adding seconds across a leap second would lose one second.
             let start =
                 parse_utc_field("schedule[].start_utc", &config.start_utc)?.to_time_scale(TimeScale::TAI);
             if let Some(before) = groups.last()
@@ -121,7 +121,7 @@ impl Schedule {
         self.groups.last().map_or(0, |group| group.frames.end)
     }
 
-    /// The shortest time from one frame to the next, s; infinite for a single frame.
+    /// Shortest interval between frames, s; infinite for a single frame.
     pub fn shortest_interval_s(&self) -> f64 {
         let last = |group: &Group| group.time(group.frames.end - 1);
         let within = self.groups.iter().filter(|group| group.frames.end - group.frames.start > 1);
@@ -131,12 +131,12 @@ impl Schedule {
         within.chain(between).fold(f64::INFINITY, f64::min)
     }
 
-    /// The middles of the first and the last exposure.
+    /// Mid-exposure times of the first and the last frame.
     pub fn ends(&self) -> Option<[Epoch; 2]> {
         Some([self.frame(0)?.1, self.frame(self.frame_count().checked_sub(1)?)?.1])
     }
 
-    /// Name of the group and middle of the exposure of frame `n`; `None` past the last frame.
+    /// Name of the group and mid-exposure of frame `n`; `None` past the last frame.
     pub fn frame(&self, n: u64) -> Option<(&str, Epoch)> {
         let group = &self.groups[self.group_of(n)?];
         Some((&group.name, group.time(n)))
@@ -148,7 +148,7 @@ impl Schedule {
         (index < self.groups.len()).then_some(index)
     }
 
-    /// The groups in order.
+    /// Returns the groups in order.
     pub fn sequences(&self) -> impl ExactSizeIterator<Item = Sequence<'_>> {
         self.groups.iter().map(|group| Sequence { name: &group.name, frames: group.frames.clone() })
     }
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn times_do_not_gather_rounding() {
-        // 0.1 s is not a binary fraction: a sum of ten million would be off by 1e-4 s.
+        // 0.1 s is not a binary fraction: a sum of ten million terms would have an error of 1e-4 s.
         let schedule = Schedule::new(&[group("a", "2012-04-23T00:00:00Z", 0.1, 10_000_001)]).unwrap();
         let (_, last) = schedule.frame(10_000_000).unwrap();
         let start = parse_utc_field("t", "2012-04-23T00:00:00Z").unwrap();

@@ -1,8 +1,9 @@
-//! The Earth's shadow: how much of the Sun is seen.
+//! The Earth's shadow: the visible fraction of the Sun.
 //!
-//! Sun and Earth are spheres, light goes straight. Neglected: the oblateness of the Earth (its polar radius is 21 km
-//! less: the instant of a crossing shifts by up to some seconds in a low orbit), the atmosphere (refraction and
-//! absorption lengthen and redden the twilight by some ten seconds), the darkening of the Sun's limb.
+//! Sun and Earth are spheres, and light travels in straight lines. Neglected: the oblateness of the Earth
+//! (its polar radius is 21 km smaller: the instant of a crossing shifts by up to several seconds in a low
+//! orbit), the atmosphere (refraction and absorption lengthen and redden the twilight by about ten seconds),
+//! the darkening of the Sun's limb.
 
 use nalgebra::Vector3;
 
@@ -13,19 +14,20 @@ pub const EARTH_RADIUS_KM: f64 = 6_378.136_6;
 /// Radius of the Sun, km: nominal, IAU 2015 Resolution B3.
 pub const SUN_RADIUS_KM: f64 = 695_700.0;
 
-/// The fraction of the Sun's disk that is seen, in [0, 1].
+/// Visible fraction of the Sun's disk, in [0, 1].
 ///
-/// `position_km` is the spacecraft and `sun_km` the Sun, both from the centre of the Earth, in any one frame. The two
-/// disks are circles of the angles under which the bodies appear, their overlap taken as in the plane (Montenbruck
-/// & Gill, Satellite Orbits, 2000, Sec. 3.4.2, Eq. 3.85–3.87). From a low orbit the Earth's disk is large, and its
-/// limb more curved in the plane than on the sphere: the fraction errs by less than 0.001.
-/// A position inside the Earth sees nothing.
+/// `position_km` is the position of the spacecraft and `sun_km` that of the Sun, relative to the Earth's
+/// centre, in any common frame. The two disks are circles with the angular radii of the bodies, and their
+/// overlap is computed as in the plane (Montenbruck & Gill, Satellite Orbits, 2000, Sec. 3.4.2, Eq.
+/// 3.85–3.87). From a low orbit the Earth's disk is large, and its limb is more curved in the plane than on
+/// the sphere: the error of the fraction is less than 0.001. The fraction is 0 at a position inside the
+/// Earth.
 pub fn sunlit_fraction(position_km: &Vector3<f64>, sun_km: &Vector3<f64>) -> f64 {
     visible_fraction(position_km, sun_km, SUN_RADIUS_KM)
 }
 
-/// The fraction of the disk of a body of radius `radius_km` at `body_km` that the Earth does not hide; else as
-/// [`sunlit_fraction`].
+/// Fraction of the disk of a body of radius `radius_km` at `body_km` that the Earth does not hide; otherwise
+/// like [`sunlit_fraction`].
 pub(crate) fn visible_fraction(position_km: &Vector3<f64>, body_km: &Vector3<f64>, radius_km: f64) -> f64 {
     let to_body = body_km - position_km;
     let body = libm::asin((radius_km / to_body.norm()).min(1.0));
@@ -38,7 +40,7 @@ pub(crate) fn visible_fraction(position_km: &Vector3<f64>, body_km: &Vector3<f64
     1.0 - covered_fraction(body, earth, separation)
 }
 
-/// The class of a sunlit fraction.
+/// Returns the class of a sunlit fraction.
 pub fn classify(sunlit_fraction: f64) -> Shadow {
     match sunlit_fraction {
         f if f >= 1.0 => Shadow::Sunlit,
@@ -47,7 +49,8 @@ pub fn classify(sunlit_fraction: f64) -> Shadow {
     }
 }
 
-/// The fraction of a disk of radius `sun` that a disk of radius `earth` covers, the centres `separation` apart.
+/// Fraction of a disk of radius `sun` that a disk of radius `earth` covers, with the distance `separation`
+/// between the centres.
 fn covered_fraction(sun: f64, earth: f64, separation: f64) -> f64 {
     if separation >= sun + earth {
         return 0.0;
@@ -56,10 +59,10 @@ fn covered_fraction(sun: f64, earth: f64, separation: f64) -> f64 {
         return 1.0;
     }
     if separation <= sun - earth {
-        // Farther than 1.4 million km the Earth no longer covers the whole Sun.
+        // Beyond 1.4 million km the Earth does not cover the whole Sun.
         return (earth / sun) * (earth / sun);
     }
-    // The chord common to both circles: x from the Sun's centre towards the Earth's, half-length y.
+    // Common chord of the two circles: x from the Sun's centre towards the Earth's, half-length y.
     let x = (separation * separation + sun * sun - earth * earth) / (2.0 * separation);
     let y = (sun * sun - x * x).max(0.0).sqrt();
     let lens =
@@ -91,23 +94,23 @@ mod tests {
 
     #[test]
     fn the_umbra_ends_where_the_cone_does() {
-        // Length of the cone: R⊕ d / (R☉ − R⊕) = 1.384 million km for radii seen as asin(R/d).
+        // Length of the cone: R⊕ d / (R☉ − R⊕) = 1.384 million km for apparent radii asin(R/d).
         let tip = EARTH_RADIUS_KM * AU_KM / (SUN_RADIUS_KM - EARTH_RADIUS_KM);
         assert_eq!(fraction(-0.999 * tip, 0.0), 0.0);
         let beyond = fraction(-1.5 * tip, 0.0);
         let seen = EARTH_RADIUS_KM / (1.5 * tip) / (SUN_RADIUS_KM / (AU_KM + 1.5 * tip));
-        // 1e-4: sine against angle at 0.25°.
+        // 1e-4: difference between sine and angle at 0.25°.
         assert!((beyond - (1.0 - seen * seen)).abs() < 1e-4, "{beyond}");
     }
 
     #[test]
     fn half_the_sun_is_seen_when_its_centre_stands_on_the_limb() {
         for radius in [6_700.0, 7_100.0, 42_164.0] {
-            // The line to the Sun's centre touches the sphere.
+            // The line to the Sun's centre is tangent to the sphere.
             let x = -f64::sqrt(radius * radius - EARTH_RADIUS_KM * EARTH_RADIUS_KM);
             let seen = fraction(x, EARTH_RADIUS_KM);
-            // The Sun is at a finite distance: its centre stands 6378 km / 1 au off the limb, 0.6 % of its disk. The
-            // limb is curved: 0.3 % from the highest orbit.
+            // The Sun is at a finite distance: its centre is 6378 km / 1 au from the limb, 0.6 % of its disk.
+            // The limb is curved: 0.3 % from the highest orbit.
             assert!((seen - 0.5).abs() < 0.01, "{seen} at {radius} km");
         }
     }
@@ -116,11 +119,11 @@ mod tests {
     fn the_fraction_grows_without_a_jump_through_the_penumbra() {
         let mut last = 0.0;
         let mut partial = 0;
-        // 20 m steps over the limb at 7100 km: the penumbra is 2 × 0.266° × 3120 km = 29 km wide.
+        // Steps of 20 m over the limb at 7100 km: the penumbra is 2 × 0.266° × 3120 km = 29 km wide.
         for i in 0..4_000 {
             let seen = fraction(-3_119.0, 6_338.0 + 0.02 * f64::from(i));
             assert!((0.0..=1.0).contains(&seen));
-            // The steepest slope is 2/π a radius: 20 m / 14.5 km × 2 / π = 0.0009.
+            // The steepest slope is 2/π per radius: 20 m / 14.5 km × 2 / π = 0.0009.
             assert!(seen >= last && seen - last < 1.5e-3, "{last} to {seen} at step {i}");
             partial += i32::from(seen > 0.0 && seen < 1.0);
             last = seen;

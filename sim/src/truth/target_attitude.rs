@@ -1,4 +1,4 @@
-//! How the target is turned.
+//! Attitude of the target.
 
 use contract::bounds::require;
 use contract::{Angle, Icrs, OutOfRange, Rotation, Target};
@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 use super::orbit::Rtn;
 use super::trajectory::States;
 
-/// Attitude of the target's body frame, a function of time. Angles are Euler angles 123 from the axes named to the body
-/// axes, degrees, −360 to 360.
+/// Attitude of the target's body frame as a function of time. Angles are Euler angles 123 from the stated
+/// axes to the body axes, degrees, −360 to 360.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "mode", rename_all = "snake_case", deny_unknown_fields)]
 pub enum TargetAttitudeConfig {
-    /// At rest in the sky.
+    /// Constant in ICRS.
     Inertial {
-        /// φ from the axes of ICRS, degrees.
+        /// φ from the ICRS axes, degrees.
         #[serde(default)]
         #[schemars(range(min = -360, max = 360))]
         phi_deg: f64,
@@ -29,7 +29,7 @@ pub enum TargetAttitudeConfig {
         #[schemars(range(min = -360, max = 360))]
         psi_deg: f64,
     },
-    /// Fixed in the target's own orbital frame.
+    /// Constant in the target's orbital frame.
     Orbital {
         /// φ from the axes R, T, N of the target's orbit, degrees.
         #[serde(default)]
@@ -44,9 +44,9 @@ pub enum TargetAttitudeConfig {
         #[schemars(range(min = -360, max = 360))]
         psi_deg: f64,
     },
-    /// Turning at a constant rate about an axis that is fixed in the body and in the sky.
+    /// Rotation at a constant rate about an axis that is fixed in the body and in ICRS.
     Tumbling {
-        /// φ at the orbit's epoch, from the axes of ICRS, degrees.
+        /// φ at the orbit's epoch, from the ICRS axes, degrees.
         #[serde(default)]
         #[schemars(range(min = -360, max = 360))]
         phi_deg: f64,
@@ -58,10 +58,10 @@ pub enum TargetAttitudeConfig {
         #[serde(default)]
         #[schemars(range(min = -360, max = 360))]
         psi_deg: f64,
-        /// The axis in the body frame, of any length but 0.
+        /// Rotation axis in the body frame, of any length but 0.
         #[schemars(inner(range(min = -1e6, max = 1e6)))]
         axis: [f64; 3],
-        /// Rate, by the right-hand rule about the axis, degrees a second, −360 to 360.
+        /// Rotation rate, right-handed about the axis, degrees per second, −360 to 360.
         #[schemars(range(min = -360, max = 360))]
         rate_deg_per_s: f64,
     },
@@ -74,17 +74,17 @@ impl Default for TargetAttitudeConfig {
 }
 
 impl TargetAttitudeConfig {
-    /// Checks every number.
+    /// Checks the length of the axis of a tumbling target.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for a length outside 1e-9 to 1e9.
     pub fn check(&self) -> Result<(), OutOfRange> {
         let Self::Tumbling { axis, .. } = *self else { return Ok(()) };
         let length = Vector3::from(axis).norm();
         require("target.attitude.axis", length, "a length from 1e-9 to 1e9", |n| (1e-9..=1e9).contains(&n))
     }
 
-    /// The attitude at the time of `states`. Checked angles are taken for granted.
+    /// Returns the attitude at the time of `states`. Assumes checked angles.
     pub fn target_from_icrs(&self, states: &States) -> Rotation<Target, Icrs> {
         match *self {
             Self::Inertial { phi_deg, theta_deg, psi_deg } => euler(phi_deg, theta_deg, psi_deg),
@@ -92,10 +92,11 @@ impl TargetAttitudeConfig {
                 euler::<Rtn>(phi_deg, theta_deg, psi_deg) * states.target.rtn_from_icrs()
             }
             Self::Tumbling { phi_deg, theta_deg, psi_deg, axis, rate_deg_per_s } => {
-                // Whole turns away first: after months an angle has lost digits.
+                // Full turns are removed first: after months a large angle has lost digits.
                 let angle_deg = rate_deg_per_s * states.time_s % 360.0;
                 let axis = Vector3::from(axis).normalize();
-                // The body turns by +angle, so that what rests in the sky turns by −angle in its frame.
+                // The body turns by +angle; a direction fixed in ICRS therefore turns by −angle in the body
+                // frame.
                 let turn = Rotation::<Target, Target>::from_rotation_vector(-axis * angle_deg.to_radians());
                 turn * euler::<Icrs>(phi_deg, theta_deg, psi_deg)
             }
@@ -144,7 +145,7 @@ mod tests {
             rate_deg_per_s: 0.5,
         };
         let at = |time_s| tumbling.target_from_icrs(&states(time_s));
-        // After a quarter turn, 180 s, the body's x axis points where its y axis was.
+        // After a quarter turn, 180 s, the body's x axis points along the previous direction of its y axis.
         let (start, later) = (at(0.0).inverse(), at(180.0).inverse());
         assert!((later.rotate(&Vector3::x()) - start.rotate(&Vector3::y())).norm() < 1e-14);
         assert!((later.rotate(&Vector3::z()) - start.rotate(&Vector3::z())).norm() < 1e-14);

@@ -1,8 +1,9 @@
-//! Where chaser and target are at any time.
+//! Positions and velocities of chaser and target at any time.
 //!
-//! Between manoeuvres each orbit drifts by its own secular rates; the chaser's orbit is kept as one arc from each
-//! manoeuvre to the next, so that any instant can be computed alone. Time inside is seconds (SI, as TT and TAI
-//! count them) since the orbit's epoch, exact to 0.1 ns within months of it.
+//! Between manoeuvres each orbit drifts at its own secular rates. The chaser's orbit is stored as one arc
+//! from each manoeuvre to the next; any instant can therefore be computed independently. Internal time is
+//! seconds (SI, as TT and TAI count them) since the orbit's epoch, exact to 0.1 ns within months of the
+//! epoch.
 
 use contract::{Icrs, OutOfRange, Rotation};
 use hifitime::Epoch;
@@ -20,11 +21,11 @@ use super::relative::RelativeElements;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrbitConfig {
-    /// When the elements hold, UTC, as in 2012-04-23T00:00:00.
+    /// Epoch of the elements, UTC, as in 2012-04-23T00:00:00.
     pub epoch_utc: String,
-    /// The target's orbit.
+    /// Orbit of the target.
     pub target: ElementsConfig,
-    /// The chaser's orbit, relative to the target's.
+    /// Orbit of the chaser relative to the target's orbit.
     pub relative: RelativeElements,
     /// Manoeuvres of the chaser, in order of time.
     #[serde(default)]
@@ -32,54 +33,54 @@ pub struct OrbitConfig {
 }
 
 impl OrbitConfig {
-    /// Checks everything, the order of the manoeuvres included.
+    /// Checks all values, including the order of the manoeuvres.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first thing that is wrong.
+    /// [`OutOfRange`] for the first invalid value.
     pub fn check(&self) -> Result<(), OutOfRange> {
         Trajectory::new(self).map(|_| ())
     }
 }
 
-/// Chaser and target at an instant.
+/// States of chaser and target at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct States {
     /// Seconds since the orbit's epoch.
     pub time_s: f64,
-    /// The chaser.
+    /// State of the chaser.
     pub chaser: State,
-    /// The target.
+    /// State of the target.
     pub target: State,
 }
 
 impl States {
-    /// From the chaser to the target, km, ICRS axes; geometric, no light time.
+    /// Returns the vector from the chaser to the target, km, ICRS axes; geometric, without light time.
     pub fn line_of_sight_km(&self) -> Vector3<f64> {
         self.target.position_km - self.chaser.position_km
     }
 
-    /// Distance between chaser and target, km.
+    /// Returns the distance between chaser and target, km.
     pub fn range_km(&self) -> f64 {
         self.line_of_sight_km().norm()
     }
 
-    /// Position of the chaser from the target along the target's R, T, N axes, km.
+    /// Returns the position of the chaser relative to the target along the target's R, T, N axes, km.
     pub fn chaser_rtn_km(&self) -> Vector3<f64> {
         let rtn_from_icrs: Rotation<Rtn, Icrs> = self.target.rtn_from_icrs();
         rtn_from_icrs.rotate(&-self.line_of_sight_km())
     }
 }
 
-/// The motion of chaser and target over all time.
+/// Motion of chaser and target over all time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     epoch: Epoch,
     target: Elements,
-    /// In order of time; the first one also reaches back before the epoch.
+    /// Arcs in order of time; the first also extends back before the epoch.
     arcs: Vec<Arc>,
 }
 
-/// The chaser's orbit from one manoeuvre to the next.
+/// Orbit of the chaser from one manoeuvre to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Arc {
     start_s: f64,
@@ -96,8 +97,8 @@ impl Trajectory {
     /// Computes the arcs.
     ///
     /// # Errors
-    /// [`OutOfRange`] for an epoch that is none or an orbit outside what is supported; [`OutOfRange`] for
-    /// a manoeuvre that is out of order, not after the epoch, or leaves no supported orbit.
+    /// [`OutOfRange`] for an invalid epoch, or an orbit outside the supported range; [`OutOfRange`] for a
+    /// manoeuvre that is out of order, not after the epoch, or results in an unsupported orbit.
     pub fn new(config: &OrbitConfig) -> Result<Self, OutOfRange> {
         let epoch = parse_utc_field("orbit.epoch_utc", &config.epoch_utc)?;
         check_covered("orbit.epoch_utc", &config.epoch_utc, epoch)?;
@@ -131,34 +132,35 @@ impl Trajectory {
         Ok(Self { epoch, target, arcs })
     }
 
-    /// The orbit's epoch.
+    /// Returns the orbit's epoch.
     pub fn epoch(&self) -> Epoch {
         self.epoch
     }
 
-    /// Seconds from the orbit's epoch to `time`, leap seconds counted.
+    /// Returns the seconds from the orbit's epoch to `time`, including leap seconds.
     pub fn seconds(&self, time: Epoch) -> f64 {
         seconds_between(self.epoch, time)
     }
 
-    /// Chaser and target at `time`.
+    /// Returns the states of chaser and target at `time`.
     pub fn states_at(&self, time: Epoch) -> States {
         self.states_at_seconds(self.seconds(time))
     }
 
-    /// Chaser and target `time_s` seconds after the orbit's epoch. At a manoeuvre: just after it.
+    /// Returns the states of chaser and target `time_s` seconds after the orbit's epoch; at a manoeuvre, the
+    /// states just after it.
     pub fn states_at_seconds(&self, time_s: f64) -> States {
         let (chaser, target) = self.elements(time_s);
         States { time_s, chaser: chaser.state(), target: target.state() }
     }
 
-    /// Relative orbital elements at `time`, m. At a manoeuvre: just after it.
+    /// Returns the relative orbital elements at `time`, m; at a manoeuvre, the elements just after it.
     pub fn relative_elements(&self, time: Epoch) -> RelativeElements {
         let (chaser, target) = self.elements(self.seconds(time));
         RelativeElements::between(&chaser, &target)
     }
 
-    /// Elements of (chaser, target).
+    /// Returns the elements of (chaser, target).
     fn elements(&self, time_s: f64) -> (Elements, Elements) {
         let begun = self.arcs.partition_point(|arc| arc.start_s <= time_s);
         let arc = &self.arcs[begun.saturating_sub(1)];
@@ -166,8 +168,8 @@ impl Trajectory {
     }
 }
 
-/// Seconds from `from` to `to`. Through TAI: a difference of UTC would miss leap seconds. Through integer
-/// nanoseconds: f64 holds 104 days of them exactly.
+/// Returns the seconds from `from` to `to`. Computed in TAI, because a difference of UTC would miss leap
+/// seconds, and in integer nanoseconds, because f64 holds 104 days of them exactly.
 fn seconds_between(from: Epoch, to: Epoch) -> f64 {
     let nanoseconds = to.to_tai_duration().total_nanoseconds() - from.to_tai_duration().total_nanoseconds();
     nanoseconds as f64 / 1e9
@@ -213,7 +215,7 @@ mod tests {
         let manoeuvre_s = 6.0 * 3600.0;
         let before = trajectory.states_at_seconds(manoeuvre_s - 1e-6).chaser;
         let after = trajectory.states_at_seconds(manoeuvre_s).chaser;
-        // A microsecond of flight at 7.5 km/s is 7.5e-6 km.
+        // In a microsecond of flight at 7.5 km/s the position changes by 7.5e-6 km.
         assert!((after.position_km - before.position_km).norm() < 8e-6);
         let dv_m_s = (after.velocity_km_s - before.velocity_km_s) * 1000.0;
         // In that microsecond gravity adds 8e-6 m/s.
@@ -252,7 +254,7 @@ mod tests {
 
     #[test]
     fn a_leap_second_is_counted() {
-        // 2012-06-30 had 86401 seconds.
+        // The day 2012-06-30 had 86401 seconds.
         let config = OrbitConfig { epoch_utc: "2012-06-30T00:00:00Z".into(), manoeuvres: vec![], ..config() };
         let trajectory = Trajectory::new(&config).unwrap();
         let next_day = parse_utc_field("time", "2012-07-01T00:00:00Z").unwrap();

@@ -1,4 +1,4 @@
-//! The space through which light comes to what is seen of a plane: what is outside of it casts no shadow that is seen.
+//! Beam of light that reaches the visible part of a plane; objects outside the beam cast no visible shadow.
 
 use nalgebra::Vector3;
 
@@ -9,25 +9,27 @@ use super::planes::Plane;
 use super::source::Source;
 use super::view::View;
 
-/// Four planes along the light, through the borders of a window of the image as seen on a plane of the scene.
+/// Four planes parallel to the light rays, through the borders of an image window as projected onto a plane
+/// of the scene.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Beam {
     sides: [Side; 4],
 }
 
-/// What lies beyond it casts its shadow beyond one border.
+/// Side plane of a beam; a point beyond it casts its shadow beyond one border of the window.
 #[derive(Debug, Clone, Copy)]
 struct Side {
-    /// A unit vector outwards.
+    /// Unit normal, pointing outwards.
     normal: Vector3<f64>,
     offset: f64,
 }
 
 impl Side {
-    /// For the border of a window, a plane through the camera with the normal m outwards. The shadow y of a point x lies beyond
-    /// it when m · (y − d) > 0. With y put in, along the light, this is linear in x: with n the normal of the receiver, t towards
-    /// the light (from the camera, for a light that is near) and x3 the height of x above the receiver
-    /// (n · t) m · (x − d) − (m · t) x3 > 0, where n · t of a near light is its height above the receiver.
+    /// Creates the side for the border of a window: a plane through the camera with outward normal m. The
+    /// shadow y of a point x lies beyond the border when m · (y − d) > 0. After projecting x along the light
+    /// to y, the condition is linear in x: (n · t) m · (x − d) − (m · t) x3 > 0, with n the normal of the
+    /// receiver, t the direction towards the light (measured from the camera for a near light) and x3 the
+    /// height of x above the receiver. For a near light, n · t is its height above the receiver.
     fn new(border: &Vector3<f64>, source: Source, receiver: &Plane, camera: &Vector3<f64>) -> Self {
         let (towards, climb) = match source {
             Source::Parallel(towards) => (towards, receiver.normal.dot(&towards)),
@@ -44,43 +46,46 @@ impl Side {
         }
     }
 
-    /// How far a point lies beyond, m.
+    /// Returns the distance of a point beyond the side, m; negative inside.
     fn signed_distance_m(&self, point: &Vector3<f64>) -> f64 {
         self.normal.dot(point) - self.offset
     }
 }
 
 impl Beam {
-    /// From a light that shines on the plane's front to what a window shows of the plane.
+    /// Creates the beam from a light that shines on the plane's front to the part of the plane visible in a
+    /// window.
     pub(super) fn new(source: Source, receiver: &Plane, view: &View<'_>, window: Window) -> Self {
         let sides = view.borders(window).map(|border| Side::new(&border, source, receiver, &view.position));
         Self { sides }
     }
 
-    /// Whether nothing of a sphere is inside.
+    /// Returns true if no part of a sphere is inside, because all of it lies beyond one side.
     pub(super) fn misses(&self, sphere: &Sphere) -> bool {
         self.sides.iter().any(|side| side.signed_distance_m(&sphere.centre) > sphere.radius)
     }
 
-    /// Whether all of a sphere is inside.
+    /// Returns true if the whole sphere is inside.
     fn contains(&self, sphere: &Sphere) -> bool {
         self.sides.iter().all(|side| side.signed_distance_m(&sphere.centre) <= -sphere.radius)
     }
 
-    /// The first side beyond which all of a sphere lies.
+    /// Returns the first side beyond which the whole sphere lies.
     fn separating_side(&self, centre: &Vector3<f64>, radius: f64) -> Option<&Side> {
         self.sides.iter().find(|side| side.signed_distance_m(centre) > radius)
     }
 
-    /// Puts a polygon into `kept` without the corners that do not matter inside: of corners in a row that are all beyond one
-    /// side the first and the last, since the straight way between these is beyond it too. Left with fewer than three corners
-    /// the polygon covers nothing inside.
+    /// Copies a polygon into `kept` without the corners that have no effect inside the beam: of consecutive
+    /// corners that all lie beyond one side, only the first and the last are kept, because the straight line
+    /// between them also lies beyond that side. A polygon left with fewer than three corners covers nothing
+    /// inside.
     pub(super) fn trim(&self, loops: &Loops, index: usize, kept: &mut Vec<Vector3<f64>>) {
         kept.clear();
         if self.misses(loops.sphere(index)) {
             return;
         }
-        // The side beyond which all corners since the last one kept lie, and the last of them.
+        // `row` is the side beyond which all corners since the last kept corner lie; `last` is the last of
+        // those corners.
         let (mut row, mut last) = (None::<&Side>, None);
         for (sphere, points) in loops.stretches(index) {
             if row.is_some_and(|side| side.signed_distance_m(&sphere.centre) > sphere.radius) {
@@ -140,7 +145,7 @@ mod tests {
         }
     }
 
-    /// The plane y3 = 0, its front up.
+    /// The plane y3 = 0, facing up.
     fn ground() -> Plane {
         let corners = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]];
         let outer = corners.map(|[x, y]| Vector3::new(x, y, 0.0)).to_vec();
@@ -149,7 +154,7 @@ mod tests {
         PreparedScene::new(&DockingScene { parts: vec![part] }).planes.remove(0)
     }
 
-    /// Where the shadow of a point falls on the ground.
+    /// Position of a point's shadow on the ground.
     fn shadow(source: Source, point: &Vector3<f64>) -> Vector3<f64> {
         match source {
             Source::Parallel(towards) => point - towards * (point.z / towards.z),
@@ -157,7 +162,7 @@ mod tests {
         }
     }
 
-    /// How often the shadow of a polygon goes round a place of the ground.
+    /// Winding number of a polygon's shadow about a point on the ground.
     fn turns(source: Source, polygon: &[Vector3<f64>], window_point: &Vector3<f64>) -> i32 {
         let next = polygon.iter().cycle().skip(1);
         polygon.iter().zip(next).fold(0, |turns, (from, to)| {
@@ -171,7 +176,7 @@ mod tests {
         })
     }
 
-    /// A star of 400 corners at a slant, so that it leaves the beam and comes back.
+    /// A tilted star-shaped polygon with 400 corners, which leaves the beam and re-enters it.
     fn star(x: f64, y: f64, radius: f64) -> Vec<Vector3<f64>> {
         let corner = |i: i32| {
             let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::PI / 200.0);
@@ -199,7 +204,8 @@ mod tests {
                 (0..=10).flat_map(|i| (0..=10).map(move |j| (f64::from(i) / 10.0, f64::from(j) / 10.0)));
             let window_points: Vec<Vector3<f64>> = pixels
                 .map(|(s, t)| {
-                    // Inside by a thousandth of a pixel: on the border itself rounding would decide.
+                    // The points lie a thousandth of a pixel inside: on the border itself rounding would
+                    // decide.
                     let x = WINDOW.left as f64 + 1e-3 + s * ((WINDOW.right - WINDOW.left) as f64 - 2e-3);
                     let y = WINDOW.top as f64 + 1e-3 + t * ((WINDOW.bottom - WINDOW.top) as f64 - 2e-3);
                     let ray = view.attitude * lens.ray([x, y]);

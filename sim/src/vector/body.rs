@@ -1,23 +1,26 @@
-//! Parts that touch at a corner: where they meet in a pixel, nothing between them shows what lies behind.
+//! Parts that touch at a corner: in a pixel where they meet, the background does not show through between
+//! them.
 //!
-//! Laid one over the other, two parts that cover a pixel by halves would let a quarter of it through. Of parts whose
-//! corners touch the coverages are taken as disjoint as far as there is room, and what is behind the later one gives way:
-//! Porter and Duff's *over* for disjoint coverage (SIGGRAPH 1984, 4.1; OpenGL's `DISJOINT_NV`).
+//! If two parts that each cover half a pixel were composited independently, a quarter of the background would
+//! remain visible. For parts whose corners touch, the coverages are therefore treated as disjoint as long as
+//! they fit into the pixel; beyond that, the later part covers the earlier: Porter and Duff's *over* for
+//! disjoint coverage (SIGGRAPH 1984, 4.1; OpenGL's `DISJOINT_NV`).
 
 use std::ops::Range;
 
-/// What lies behind the body that is being laid, and how much of every pixel the body covers.
+/// Image behind the body being composited, and the fraction of every pixel that the body covers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Body {
     columns: usize,
     behind: Vec<f32>,
     covered: Vec<f32>,
-    /// Of each row, the columns that the two hold; the rest of a row is not covered.
+    /// Columns of each row for which `behind` and `covered` hold values; the body does not cover the
+    /// remainder of the row.
     kept: Vec<Range<usize>>,
 }
 
 impl Body {
-    /// Begins a body before an image of so many pixels.
+    /// Begins a body in front of an image with the given number of columns and pixels.
     pub(super) fn begin(&mut self, columns: usize, pixels: usize) {
         self.columns = columns;
         self.behind.resize(pixels, 0.0);
@@ -26,14 +29,14 @@ impl Body {
         self.kept.resize(pixels / columns, 0..0);
     }
 
-    /// Keeps what is in the image before the body covers these columns of a row, as far as that is not done.
+    /// Saves the image in these columns of a row before the body covers them, unless already saved.
     fn keep(&mut self, image: &[f32], row: usize, columns: Range<usize>) {
         let kept = &mut self.kept[row];
         let is_new = kept.start == kept.end;
         let new = if is_new {
             [columns.clone(), 0..0]
         } else {
-            // What lies between two runs is kept with them.
+            // The gap between two runs is saved as well.
             [columns.start.min(kept.start)..kept.start, kept.end..columns.end.max(kept.end)]
         };
         *kept = if is_new { columns } else { columns.start.min(kept.start)..columns.end.max(kept.end) };
@@ -44,7 +47,8 @@ impl Body {
         }
     }
 
-    /// Lays a further part over the body, on a row's pixels from a column on, each (coverage, light).
+    /// Adds a further part to the body, on the pixels of a row from `column` on, each as (coverage,
+    /// radiance).
     pub(super) fn join(
         &mut self,
         image: &mut [f32],

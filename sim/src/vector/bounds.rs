@@ -1,11 +1,12 @@
-//! Bounds of points: boxes and spheres.
+//! Bounding boxes and bounding spheres of points.
 
 use nalgebra::Vector3;
 
-/// Boxes nearer than this touch, m: a plane along the axes has a flat one.
+/// Largest gap between boxes that count as touching, m; the box of a plane perpendicular to an axis has no
+/// thickness.
 const SAME_POINT_M: f64 = 1e-6;
 
-/// The smallest box along the target's axes about some points.
+/// Smallest box, aligned with the target's axes, that contains some points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extent {
     pub(super) low: Vector3<f64>,
@@ -20,7 +21,7 @@ impl Extent {
             .fold(nothing, |extent, point| Self { low: extent.low.inf(point), high: extent.high.sup(point) })
     }
 
-    /// Whether two boxes have something in common, up to rounding.
+    /// Returns true if two boxes intersect, up to rounding.
     pub(super) fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|axis| {
             self.low[axis] <= other.high[axis] + SAME_POINT_M
@@ -29,7 +30,7 @@ impl Extent {
     }
 }
 
-/// A sphere about something.
+/// A bounding sphere.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sphere {
     pub(super) centre: Vector3<f64>,
@@ -37,7 +38,8 @@ pub(super) struct Sphere {
 }
 
 impl Sphere {
-    /// About the middle of the points' extent along the axes; about the origin where there are no points.
+    /// Creates a sphere that contains the points, centred on the middle of their bounding box; centred on the
+    /// origin if there are no points.
     pub(super) fn enclosing<'a>(points: impl Iterator<Item = &'a Vector3<f64>> + Clone) -> Self {
         let Extent { low, high } = Extent::from_points(points.clone());
         let centre = if low.x <= high.x { 0.5 * (low + high) } else { Vector3::zeros() };

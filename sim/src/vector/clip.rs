@@ -1,9 +1,10 @@
-//! Polygons cut by a plane.
+//! Clipping of polygons by a plane.
 
 use nalgebra::Vector3;
 
-/// The part of a closed polygon where `height` ≥ 0, into `kept` (Sutherland and Hodgman, CACM 17, 1974). `height` must be an affine
-/// function of the place. A polygon that falls apart stays joined by edges along the cut, which cover no area.
+/// Writes the part of a closed polygon where `height` ≥ 0 into `kept` (Sutherland and Hodgman, CACM 17,
+/// 1974). `height` must be an affine function of position. The pieces of a divided polygon stay joined by
+/// edges along the cut, which cover no area.
 pub(super) fn keep_above(
     polygon: &[Vector3<f64>],
     kept: &mut Vec<Vector3<f64>>,

@@ -1,9 +1,10 @@
 //! Exact area coverage of polygons on pixels.
 //!
-//! An edge adds to every pixel that it crosses the signed area to its right, and to the next pixel what is left of its
-//! height; the sum along a row is then the area of each pixel inside the closed polygon, without sampling. It is the
-//! method of font rasterisers (R. Levien, "Inside the fastest font renderer in the world", 2016). The sums are linear: any
-//! number of polygons is laid into them, each with its weights, and a row is summed once.
+//! Each edge adds the signed area to its right to every pixel that it crosses, and the remainder of its
+//! height to the next pixel. The running sum along a row is then the area of each pixel inside the closed
+//! polygon, without sampling. Font rasterisers use this method (R. Levien, "Inside the fastest font renderer
+//! in the world", 2016). The sums are linear: any number of polygons can be added, each with its weights, and
+//! each row is summed once.
 
 /// A rectangle of whole pixels: columns `left` to `right`, rows `top` to `bottom`, ends excluded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,42 +15,43 @@ pub(super) struct Window {
     pub(super) bottom: usize,
 }
 
-/// Neighbouring pixels of a row.
+/// Consecutive pixels of a row.
 #[derive(Clone, Copy)]
 pub(super) enum Run<'a> {
-    /// Each with its own sums.
+    /// Pixels with individual sums.
     Each(&'a [[f32; 2]]),
-    /// So many pixels, all with the same sums.
+    /// Pixels with identical sums: the sums, and the number of pixels.
     Same([f32; 2], usize),
 }
 
-/// Weighted coverage of every pixel of a window, two sums a pixel. Empty between [`Coverage::sweep`] and the next
-/// [`Coverage::open`].
+/// Weighted coverage of every pixel of a window, two sums per pixel. Empty between [`Coverage::sweep`] and
+/// the next [`Coverage::open`].
 #[derive(Debug, Clone)]
 pub(super) struct Coverage {
     columns: usize,
     rows: usize,
-    /// From one row of the steps to the next: a step more than pixels, for what is left beyond the last of them.
+    /// Steps per row: one more than the columns, for the remainder beyond the last pixel.
     stride: usize,
-    /// What a pixel adds to the sums of the pixels before it in its row.
+    /// Increment of the running sums at each pixel of each row.
     steps: Vec<[f32; 2]>,
-    /// A bit for each block of a row that has a step.
+    /// Bit mask per row: a bit is set for each block that contains a step.
     touched: Vec<u64>,
-    /// A block has 2^shift columns.
+    /// Columns per block: 2^shift.
     shift: u32,
     window: Window,
 }
 
-/// The whole part of a place in an image. Its sides fit into 32 bits, to which a processor converts in a third of the steps.
+/// Returns the integer part of a coordinate in an image. Image dimensions fit into 32 bits, to which a
+/// processor converts in a third of the steps.
 #[inline(always)]
 fn pixel_index(position: f64) -> usize {
     position as u32 as usize
 }
 
 impl Coverage {
-    /// Blocks of 16 pixels, more where a row would have more than 64 of them.
+    /// Smallest shift: blocks of 16 pixels; larger blocks where a row would have more than 64 of them.
     const LEAST_SHIFT: u32 = 4;
-    /// Runs whose first sum is below this are left out: it is what rounding leaves behind a closed polygon.
+    /// Smallest first sum of a run that is painted; rounding leaves smaller sums behind a closed polygon.
     pub(super) const RESIDUE: f32 = 1e-5;
 
     pub(super) fn new(columns: usize, rows: usize) -> Self {
@@ -68,18 +70,19 @@ impl Coverage {
         }
     }
 
-    /// The whole image.
+    /// Returns the window of the whole image.
     pub(super) fn full_window(&self) -> Window {
         Window { left: 0, right: self.columns, top: 0, bottom: self.rows }
     }
 
-    /// Confines what follows to a window inside the image.
+    /// Confines subsequent operations to a window inside the image.
     pub(super) fn open(&mut self, window: Window) {
         self.window = window;
     }
 
-    /// Adds a closed polygon. Points are (x, y) with the corner of the first pixel at (0, 0), y down; what goes round
-    /// anticlockwise as one sees it covers positively. Holes are polygons that go round the other way.
+    /// Adds a closed polygon. Points are (x, y) with the corner of the first pixel at (0, 0), y down. A
+    /// polygon that runs anticlockwise as displayed has positive coverage; holes are polygons that run
+    /// clockwise.
     pub(super) fn add(&mut self, polygon: &[[f64; 2]], weights: [f32; 2]) {
         let Some(mut from) = polygon.last() else { return };
         for to in polygon {
@@ -92,7 +95,7 @@ impl Coverage {
         let (upper, lower, sign) = if from[1] < to[1] { (from, to, 1.0_f32) } else { (to, from, -1.0_f32) };
         let top = upper[1].max(self.window.top as f64);
         let bottom = lower[1].min(self.window.bottom as f64);
-        // Said this way round, a coordinate that is no number adds nothing.
+        // In this form of the condition a coordinate that is not a number adds nothing.
         let crosses_rows = top < bottom && (upper[0] + lower[0]).is_finite();
         if !crosses_rows {
             return;
@@ -109,8 +112,8 @@ impl Coverage {
         if x_top >= right && x_bottom >= right {
             return;
         }
-        // Cut where it enters and leaves the window. What is to the left of the window covers its rows whole; what is to
-        // the right covers nothing of it.
+        // The edge is cut where it enters and leaves the window. A piece to the left of the window covers its
+        // rows completely; a piece to the right covers no part of it.
         let crossing = |x: f64| (top + (x - x_top) / per_row).clamp(top, bottom);
         let (mut first, mut second) = (top, bottom);
         if per_row != 0.0 {
@@ -132,7 +135,7 @@ impl Coverage {
         }
     }
 
-    /// An edge that lies in the window, `from` above `to`, and its x a row.
+    /// Adds an edge that lies in the window, with `from` above `to`; `per_row` is the change of x per row.
     fn add_inside(&mut self, from: [f64; 2], to: [f64; 2], per_row: f64, weights: [f32; 2]) {
         let (low, high) = if from[0] < to[0] { (from[0], to[0]) } else { (to[0], from[0]) };
         let mut row = pixel_index(from[1]).min(self.window.bottom - 1);
@@ -149,14 +152,14 @@ impl Coverage {
         self.add_in_row(row, x, to[0], to[1] - y, weights);
     }
 
-    /// A piece of an edge within one row, of this height, from x `a` to `b`.
+    /// Adds a piece of an edge within one row: its height, and its x from `a` to `b`.
     #[inline(always)]
     fn add_in_row(&mut self, row: usize, a: f64, b: f64, height: f64, weights: [f32; 2]) {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
         let right = self.window.right;
         let first = pixel_index(low).min(right - 1);
         let start = row * self.stride;
-        // One more than the window's, for what is left beyond it.
+        // One step more than the columns of the window, for the remainder beyond it.
         let steps = &mut self.steps[start..start + right + 1];
         let mut step = |column: usize, area: f64| {
             let (step, area) = (&mut steps[column], area as f32);
@@ -169,8 +172,9 @@ impl Coverage {
             step(first, area);
             step(first + 1, height - area);
         } else {
-            // Along the piece the height to the left of x grows in proportion; a pixel's area is its integral over the
-            // pixel, a triangle in the first and all but a triangle in the last.
+            // Along the piece, the height to the left of x grows linearly. The area of a pixel is the
+            // integral of this height over the pixel: a triangle in the first pixel, and all but a triangle
+            // in the last.
             last = pixel_index(high).min(right - 1);
             let slope = height / (high - low);
             let triangle = |side: f64| 0.5 * slope * side * side;
@@ -186,12 +190,12 @@ impl Coverage {
             step(last + 1, height - next);
         }
         let (from, to) = (first >> self.shift, (last + 1).min(right - 1) >> self.shift);
-        // Blocks `from` to `to`.
+        // Marks blocks `from` to `to`.
         self.touched[row] |= (u64::MAX >> (63 - (to - from))) << from;
     }
 
-    /// Hands the sums of the window's pixels to `paint` (row, first column, run), row by row from the left, and
-    /// empties them. Left out are runs that nothing covers by the first sum.
+    /// Passes the sums of the window's pixels to `paint` (row, first column, run), row by row from the left,
+    /// and clears them. Runs without coverage in the first sum are skipped.
     pub(super) fn sweep(&mut self, mut paint: impl FnMut(usize, usize, Run<'_>)) {
         let Window { left, right, top, bottom } = self.window;
         for row in top..bottom {

@@ -1,4 +1,4 @@
-//! The light of a lamp on a plane, pixel by pixel.
+//! Illumination of a plane by a lamp, pixel by pixel.
 
 use std::f64::consts::PI;
 
@@ -9,12 +9,12 @@ use super::planes::Plane;
 use super::view::View;
 use crate::scene::docking::Floodlight;
 
-/// A lamp's light on a plane that a camera sees.
+/// Illumination by a lamp of a plane that a camera sees.
 pub(super) struct LampOnPlane<'a> {
     lamp: &'a Floodlight,
     view: &'a View<'a>,
     normal: Vector3<f64>,
-    /// Heights of camera and lamp above the plane, m.
+    /// Height of the camera above the plane, m; `lamp_height` is that of the lamp.
     camera_height: f64,
     lamp_height: f64,
     camera_from_lamp: Vector3<f64>,
@@ -32,7 +32,8 @@ impl<'a> LampOnPlane<'a> {
         }
     }
 
-    /// Where the ray of a point of the image (px from the corner of the first pixel) meets the plane.
+    /// Returns the illumination at the point where the ray of an image point (px from the corner of the first
+    /// pixel) meets the plane.
     fn node_at(&self, point: [f64; 2]) -> Node {
         let ray = self.view.attitude * self.view.lens.ray(point);
         let descent = -self.normal.dot(&ray);
@@ -52,16 +53,17 @@ impl<'a> LampOnPlane<'a> {
     }
 }
 
-/// A cone that ends at once ends within this angle, rad.
+/// Smallest angle between the inner and outer cone, rad; a cone with a sharp edge fades over this angle.
 const SHARPEST_RAD: f64 = 1e-6;
 
-/// A lamp's light at a place.
+/// Illumination of a point by a lamp.
 #[derive(Debug, Clone, Copy, Default)]
 struct Node {
-    /// E/π without the cone: the intensity over the square of the distance, times the cosine at the plane, over π.
+    /// E/π without the cone: the intensity divided by the squared distance, times the cosine of the angle of
+    /// incidence on the plane, divided by π.
     radiance: f32,
-    /// The share of the intensity of the axis, above 1 inside the inner cone and below 0 outside the outer one, so that it has no
-    /// kink there.
+    /// Fraction of the on-axis intensity, not clamped: above 1 inside the inner cone and below 0 outside the
+    /// outer cone, to avoid a kink at either cone.
     share: f32,
 }
 
@@ -78,7 +80,8 @@ impl Node {
     }
 }
 
-/// A lamp's light on a window of the image, computed at the nodes of a grid; between them radiance and angle are bilinear.
+/// Illumination by a lamp in a window of the image, computed at the nodes of a grid; radiance and angle are
+/// interpolated bilinearly between the nodes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct LampGrid {
     nodes: Vec<Node>,
@@ -89,7 +92,8 @@ impl LampGrid {
     /// Pixels between nodes.
     const STEP: usize = 16;
 
-    /// Computes the nodes: on the window's border and not beyond, where the plane may end at its horizon.
+    /// Computes the nodes. The outermost nodes lie on the border of the window and not beyond it, where the
+    /// plane may end at its horizon.
     pub(super) fn fill(&mut self, light: &LampOnPlane<'_>, window: Window) {
         self.nodes.clear();
         let positions = |from: usize, to: usize| {
@@ -100,7 +104,7 @@ impl LampGrid {
         }
     }
 
-    /// Computes the light of a row of the window.
+    /// Computes the illumination of a row of the window.
     pub(super) fn compute_row(&mut self, window: Window, row: usize) {
         let along = (window.right - window.left).div_ceil(Self::STEP) + 1;
         let cell = (row - window.top) / Self::STEP;
@@ -122,7 +126,7 @@ impl LampGrid {
         }
     }
 
-    /// E/π at the centres of the pixels of that row, from the window's left.
+    /// Returns E/π at the pixel centres of the row computed last, from the left edge of the window.
     pub(super) fn row_radiances(&self) -> &[f32] {
         &self.lights
     }

@@ -1,10 +1,10 @@
-//! Closed polygons of many corners, kept so that most corners need not be looked at.
+//! Closed polygons with many corners, stored with bounding spheres to skip most corners in tests.
 
 use nalgebra::Vector3;
 
 use super::bounds::Sphere;
 
-/// Closed polygons, with spheres about stretches of their corners.
+/// Closed polygons, with bounding spheres of stretches of their corners.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Loops {
     points: Vec<Vector3<f64>>,
@@ -12,24 +12,24 @@ pub(super) struct Loops {
     polygons: Vec<Polygon>,
 }
 
-/// A sphere about a polygon, and where its stretches end.
+/// Bounding sphere of a polygon, and the end of its stretches in the list.
 #[derive(Debug, Clone, Copy)]
 struct Polygon {
     sphere: Sphere,
     end: usize,
 }
 
-/// Neighbouring corners of a polygon.
+/// Consecutive corners of a polygon.
 #[derive(Debug, Clone, Copy)]
 struct Stretch {
-    /// Where it begins and ends among the points.
+    /// Index of the first corner in the points; `end` is excluded.
     start: usize,
     end: usize,
     sphere: Sphere,
 }
 
 impl Loops {
-    /// Most corners of a stretch.
+    /// Maximum number of corners of a stretch.
     const STRETCH: usize = 16;
 
     pub(super) fn clear(&mut self) {
@@ -38,7 +38,7 @@ impl Loops {
         self.polygons.clear();
     }
 
-    /// How many polygons there are.
+    /// Returns the number of polygons.
     pub(super) fn len(&self) -> usize {
         self.polygons.len()
     }
@@ -56,18 +56,18 @@ impl Loops {
         self.polygons.push(Polygon { sphere, end: self.stretches.len() });
     }
 
-    /// A sphere about a polygon.
+    /// Returns the bounding sphere of a polygon.
     pub(super) fn sphere(&self, index: usize) -> &Sphere {
         &self.polygons[index].sphere
     }
 
-    /// The stretches of a polygon, in order.
+    /// Returns the stretches of a polygon, in order, each with its bounding sphere.
     pub(super) fn stretches(&self, index: usize) -> impl Iterator<Item = (&Sphere, &[Vector3<f64>])> {
         let start = if index == 0 { 0 } else { self.polygons[index - 1].end };
         self.points_of(&self.stretches[start..self.polygons[index].end])
     }
 
-    /// The stretches of all polygons.
+    /// Returns the stretches of all polygons, each with its bounding sphere.
     pub(super) fn all_stretches(&self) -> impl Iterator<Item = (&Sphere, &[Vector3<f64>])> {
         self.points_of(&self.stretches)
     }

@@ -1,9 +1,10 @@
-//! The fast renderer of docking scenes: facets in, linear radiance out.
+//! Fast renderer of docking scenes: converts facets to linear radiance.
 //!
-//! Every facet is drawn by the exact area that it covers of every pixel (`coverage`), and parts are laid over each other from
-//! the back. Within a part facets are disjoint, so that their light and their coverage add up before the part is laid over
-//! what lies behind: neighbours leave no seam. Light is Lambert's: ρ (fill + E cos θ/π), where the light's part is weakened
-//! by the share of the pixel that lies in the shadow (`shadow`) of other parts.
+//! Every facet is drawn with the exact area that it covers of every pixel (`coverage`), and parts are
+//! composited from back to front. Facets within a part are disjoint: their radiance and coverage are added
+//! before the part is composited over the image behind it, and neighbouring facets leave no seam. Reflection
+//! is Lambertian: ρ (fill + E cos θ/π), where the term of the light source is reduced by the fraction of the
+//! pixel that lies in the shadow (`shadow`) of other parts.
 
 mod beam;
 mod body;
@@ -33,21 +34,22 @@ use self::view::{Lens, View};
 use crate::SimError;
 use crate::scene::docking::{DockingScene, Lighting};
 
-/// Mean radiance over each pixel of the camera (box filter, no point spread), row by row; units of [`Lighting`].
+/// Mean radiance over each pixel of the camera (box filter, without point-spread function), row by row; units
+/// of [`Lighting`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RadianceImage {
-    /// Columns of the camera.
+    /// Number of columns of the camera.
     pub columns: usize,
-    /// Rows of the camera.
+    /// Number of rows of the camera.
     pub rows: usize,
-    /// columns × rows values.
+    /// Radiance values, columns × rows.
     pub radiance: Vec<f32>,
 }
 
-/// Draws docking scenes as one camera sees them.
+/// Renderer of docking scenes for one camera.
 ///
-/// It keeps its buffers from image to image, and the outlines of what casts shadows as long as scene and light stay the same.
-/// What it draws depends on nothing but the arguments of [`Drawer::draw`].
+/// Reuses its buffers from image to image, and keeps the outlines of shadow casters while scene and light
+/// stay the same. For a given camera, the image depends only on the arguments of [`Drawer::draw`].
 #[derive(Debug, Clone)]
 pub struct Drawer {
     lens: Lens,
@@ -62,10 +64,10 @@ pub struct Drawer {
 }
 
 impl Drawer {
-    /// For a camera.
+    /// Creates a renderer for a camera.
     ///
     /// # Errors
-    /// [`SimError`] when the camera's data are not allowed.
+    /// [`SimError`] if the camera's data are invalid.
     pub fn new(camera: &Camera) -> Result<Self, SimError> {
         Ok(Self {
             lens: Lens::new(camera)?,
@@ -80,8 +82,8 @@ impl Drawer {
         })
     }
 
-    /// Draws the scene as seen from `pose` into `image`, which is made the camera's size. From the first image of a scene
-    /// on, with the Sun in its place, nothing is allocated.
+    /// Draws the scene as seen from `pose` into `image`, which is resized to the camera's dimensions. After
+    /// the first image of a scene, and while the Sun's direction stays unchanged, no memory is allocated.
     pub fn draw(
         &mut self,
         scene: &DockingScene,

@@ -1,4 +1,4 @@
-//! One part at a time: outlined, laid over what lies behind it, shaded, lit by the lamp.
+//! Painting of one part at a time: outline, compositing over the image behind it, shadows, lamp illumination.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -14,39 +14,39 @@ use super::shadow::Shadows;
 use super::view::{Bounds, Outlines, View};
 use crate::scene::docking::{Floodlight, Lighting, Part, Sun};
 
-/// What a part is painted on.
+/// Image and buffers that a part is painted on.
 pub(super) struct Canvas<'a> {
     pub(super) view: View<'a>,
     pub(super) prepared: &'a PreparedScene,
     pub(super) coverage: &'a mut Coverage,
     pub(super) radiance: &'a mut [f32],
     pub(super) columns: usize,
-    /// What lies behind the body to which the part belongs, and how much of it is covered already.
+    /// Image behind the body to which the part belongs, and the coverage of the body so far.
     pub(super) body: &'a mut Body,
-    /// Whether the part touches a neighbour in the scene's order, and so is of a body with them.
+    /// True if the part touches a neighbour in the scene's order and so forms one body with it.
     pub(super) in_body: bool,
 }
 
-/// A facet in the image.
+/// A facet projected into the image.
 #[derive(Debug, Clone)]
 struct VisibleFacet {
-    /// Its place in the part.
+    /// Index of the facet in the part.
     facet: usize,
-    /// Its polygons among the outlines.
+    /// Range of its polygons in the outlines.
     polygons: Range<usize>,
     bounds: Bounds,
 }
 
-/// A plane of the part that shows its front and has facets in the image.
+/// A plane of the part whose front faces the camera and that has facets in the image.
 #[derive(Debug, Clone)]
 struct VisiblePlane {
-    /// Its place in the scene.
+    /// Index of the plane in the scene.
     plane: usize,
     facets: Range<usize>,
     bounds: Bounds,
 }
 
-/// The part being painted, as it is seen.
+/// The part being painted, as the camera sees it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Painting {
     outlines: Outlines,
@@ -58,7 +58,7 @@ pub(super) struct Painting {
 }
 
 impl Painting {
-    /// Projects the facets of a part that show their front and reach into the image.
+    /// Projects the facets of a part that face the camera and reach into the image.
     pub(super) fn outline(&mut self, part: &Part, ready: &PreparedPart, canvas: &Canvas<'_>) {
         self.outlines.clear();
         self.facets.clear();
@@ -69,7 +69,7 @@ impl Painting {
         }
         for index in ready.planes.clone() {
             let plane = &canvas.prepared.planes[index];
-            // Said this way round, a height that is no number sees nothing either.
+            // In this form of the condition a height that is not a number also counts as not visible.
             let shows_front = plane.height(&view.position) > 0.0;
             if !shows_front {
                 continue;
@@ -100,7 +100,8 @@ impl Painting {
         }
     }
 
-    /// Finds the Sun's shadows on a part that shows one plane alone, and has [`Painting::lay`] keep its light there.
+    /// Finds the Sun's shadows on a part that shows a single plane, and makes [`Painting::lay`] keep the
+    /// radiance there.
     pub(super) fn prepare_shadows(&mut self, sun: &Sun, shadows: &mut Shadows, canvas: &Canvas<'_>) {
         let window = match &self.planes[..] {
             [seen] if sunlight(sun, &canvas.prepared.planes[seen.plane].normal) > 0.0 => {
@@ -112,9 +113,10 @@ impl Painting {
         self.kept.open(window, canvas.columns);
     }
 
-    /// Lays the part over the image, lit by the Sun and from everywhere, as if nothing cast shadows on it.
+    /// Composites the part over the image, lit by the Sun and by the uniform fill, without shadows.
     ///
-    /// Here and below what rounding leaves under zero is zero: light is never negative.
+    /// Here and below, values that rounding makes negative are set to zero, because radiance is never
+    /// negative.
     pub(super) fn paint_part(&mut self, part: &Part, lighting: &Lighting, canvas: &mut Canvas<'_>) {
         if self.planes.is_empty() {
             return;
@@ -167,7 +169,8 @@ impl Painting {
         });
     }
 
-    /// Takes the Sun's light away where the part lies in shadow; after [`Painting::expect_shade`].
+    /// Subtracts the Sun's contribution where the part lies in shadow; to be called after
+    /// [`Painting::prepare_shadows`].
     pub(super) fn shade(
         &mut self,
         part: &Part,
@@ -219,7 +222,7 @@ impl Painting {
         }
     }
 
-    /// Takes a share of the light that was kept away in the shadows that were expected.
+    /// Subtracts a fraction of the kept radiance inside the expected shadows.
     fn shade_plane(&self, share: f64, canvas: &mut Canvas<'_>) {
         let Some(window) = self.kept.window() else { return };
         canvas.coverage.open(window);
@@ -244,7 +247,7 @@ impl Painting {
         });
     }
 
-    /// Adds the lamp's light where it reaches the part.
+    /// Adds the lamp's contribution where it reaches the part.
     pub(super) fn illuminate(
         &mut self,
         part: &Part,
@@ -300,7 +303,7 @@ impl Painting {
         }
     }
 
-    /// Projects the shadows on a plane; the pixels of a window that they may touch.
+    /// Projects the shadows on a plane, and returns the pixels of a window that they may touch.
     fn outline_shadows(
         &mut self,
         shadows: &mut Shadows,
@@ -324,7 +327,7 @@ impl Painting {
     }
 }
 
-/// E cos θ/π of the Sun on a plane, 0 on its dark side.
+/// Returns E cos θ/π of the Sun on a plane; 0 if the plane faces away from the Sun.
 fn sunlight(sun: &Sun, normal: &Vector3<f64>) -> f64 {
     sun.irradiance * normal.dot(&sun.towards).max(0.0) / PI
 }

@@ -1,4 +1,4 @@
-//! A scene made ready to be drawn: its facets by the planes in which they lie, with bounds of everything.
+//! A scene prepared for rendering: its facets grouped by plane, with bounds of all elements.
 
 use std::ops::Range;
 
@@ -9,51 +9,51 @@ use super::loops::Loops;
 use super::silhouette::FacetEdges;
 use crate::scene::docking::{DockingScene, Facet, Part};
 
-/// Facets of one part in one plane.
+/// Facets of one part that lie in one plane.
 #[derive(Debug, Clone)]
 pub(super) struct Plane {
-    /// Place of its part in the scene.
+    /// Index of the part in the scene.
     pub(super) part: usize,
     pub(super) normal: Vector3<f64>,
-    /// normal · y of its points, m.
+    /// Offset of the plane, m: normal · y of its points y.
     pub(super) offset: f64,
-    /// Places of its facets in the part.
+    /// Indices of its facets in the part.
     pub(super) facets: Vec<usize>,
     pub(super) extent: Extent,
 }
 
 impl Plane {
-    /// How far a point lies in front of it, m.
+    /// Returns the distance of a point in front of the plane, m; negative behind it.
     pub(super) fn height(&self, point: &Vector3<f64>) -> f64 {
         self.normal.dot(point) - self.offset
     }
 }
 
-/// What a caster of shadows needs to know of a facet.
+/// Data of a facet that casts a shadow.
 #[derive(Debug, Clone)]
 pub(super) struct Caster {
     pub(super) sphere: Sphere,
     /// Area, m².
     pub(super) area: f64,
-    /// Its boundary and its holes.
+    /// Outer boundary and holes.
     pub(super) loops: Loops,
 }
 
-/// A part made ready.
+/// A part prepared for rendering.
 #[derive(Debug, Clone)]
 pub(super) struct PreparedPart {
-    /// Places of its planes in the scene.
+    /// Range of its planes in the scene.
     pub(super) planes: Range<usize>,
     pub(super) sphere: Sphere,
-    /// One a facet; empty when the part casts no shadow.
+    /// One caster per facet; empty if the part casts no shadow.
     pub(super) casters: Vec<Caster>,
-    /// The edges of its facets; none when the part casts no shadow.
+    /// Edges of its facets; empty if the part casts no shadow.
     pub(super) outlines: FacetEdges,
-    /// Whether corners of it touch the part before it: both are surfaces of one body.
+    /// True if corners of the part touch the previous part: both are surfaces of one body.
     pub(super) joins_previous: bool,
 }
 
-/// The scene and what was made of it.
+/// A scene with its prepared parts and planes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct PreparedScene {
     pub(super) scene: DockingScene,
@@ -94,13 +94,14 @@ impl PreparedScene {
     }
 }
 
-/// How far apart normals and, in metres, offsets of one plane may be.
+/// Largest difference between the normals, and in metres between the offsets, of facets in one plane.
 const SAME_PLANE: f64 = 1e-9;
 
-/// How near the corners of parts that touch are, m: circles of few and of many sides differ by some millimetres.
+/// Largest distance between the corners of parts that touch, m: circles with few and with many sides differ
+/// by some millimetres.
 const TOUCHING_M: f64 = 5e-3;
 
-/// Whether two visible parts have corners that touch.
+/// Returns true if both parts are visible and have corners that touch.
 fn touch(one: &Part, other: &Part) -> bool {
     fn corners(part: &Part) -> impl Iterator<Item = &Vector3<f64>> {
         part.facets.iter().flat_map(|facet| std::iter::once(&facet.outer).chain(&facet.holes)).flatten()

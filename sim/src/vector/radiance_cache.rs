@@ -1,21 +1,22 @@
-//! The light that a part of one plane was laid with, kept for its shadows.
+//! Unshadowed radiance of a part that shows a single plane, kept until its shadows are subtracted.
 //!
-//! All facets of a plane lose the same share of their light in the Sun's shadow, so that their outlines need not be drawn
-//! a second time to know how much light there is to lose in a pixel.
+//! In the Sun's shadow, all facets of a plane lose the same fraction of their radiance. Their outlines
+//! therefore need not be drawn a second time to find the radiance that a pixel can lose.
 
 use super::coverage::{Run, Window};
 
-/// Light on the rows of a window.
+/// Radiance on the rows of a window.
 #[derive(Debug, Clone, Default)]
 pub(super) struct RadianceCache {
     window: Option<Window>,
     columns: usize,
-    /// Whole rows.
+    /// Values of complete rows of the image.
     light: Vec<f32>,
 }
 
 impl RadianceCache {
-    /// Begins anew, for the rows of a window of an image so many columns wide; keeps nothing without one.
+    /// Starts anew for the rows of a window of an image with `columns` columns; keeps nothing if there is no
+    /// window.
     pub(super) fn open(&mut self, window: Option<Window>, columns: usize) {
         self.window = window;
         self.columns = columns;
@@ -25,12 +26,12 @@ impl RadianceCache {
         }
     }
 
-    /// The window that it was opened for.
+    /// Returns the window passed to `open`.
     pub(super) fn window(&self) -> Option<Window> {
         self.window
     }
 
-    /// Keeps the second sums of a run.
+    /// Stores the second sums of a run.
     pub(super) fn store(&mut self, row: usize, column: usize, run: &Run<'_>) {
         let Some(window) = self.window.filter(|window| (window.top..window.bottom).contains(&row)) else {
             return;
@@ -46,7 +47,7 @@ impl RadianceCache {
         }
     }
 
-    /// What was kept of a row of the window, from a column on.
+    /// Returns the kept values of a row of the window, from `column` on.
     pub(super) fn row(&self, row: usize, column: usize) -> &[f32] {
         let top = self.window.map_or(0, |window| window.top);
         &self.light[(row - top) * self.columns..][column..self.columns]

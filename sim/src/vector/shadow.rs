@@ -1,9 +1,13 @@
-//! Cast shadows: the outlines of what casts, projected along the light onto the planes that it falls on.
+//! Cast shadows: the outlines of shadow casters, projected along the light onto the planes that the shadows
+//! fall on.
 //!
-//! Only what falls into the window of the image in which the plane is seen is cast ([`Beam`]): the outlines of what casts have
-//! thousands of corners, and most planes are small. The outlines know no camera and stay while the light stays. A body's shadow is that of its lit side, or of its dark side where that is much the larger
-//! (a sheet seen by the light from behind): of a closed body both are the same, and both together would count its outline twice.
-//! Where all of it stands over the plane its [`silhouette`](super::silhouette) casts it, else each facet, cut at the plane.
+//! Only shadows that fall into the window of the image in which the plane is visible are cast ([`Beam`]): the
+//! outlines of shadow casters have thousands of corners, and most planes are small. The outlines are
+//! independent of the camera and are kept while the light stays unchanged. A body's shadow is cast by its lit
+//! side, or by its dark side where that is much larger (a sheet lit from behind): for a closed body both
+//! sides cast the same shadow, and together they would count its outline twice. A body that stands completely
+//! over the plane is cast by its [`silhouette`](super::silhouette); otherwise each facet is cut at the plane
+//! and cast separately.
 
 use nalgebra::Vector3;
 
@@ -17,13 +21,13 @@ use super::source::Source;
 use super::view::View;
 
 impl Source {
-    /// Where the outline of what casts is, seen from a plane; `sphere` is about all of it.
+    /// Returns the position of a caster's outline relative to a plane; `sphere` encloses the caster.
     fn classify(&self, outline: &Silhouette, sphere: &Sphere, plane: &Plane) -> RelativePosition {
         let highest = match self {
             Self::Parallel(_) => f64::INFINITY,
             Self::Point(position) => Shadows::BELOW_LIGHT * plane.height(position),
         };
-        // The corners need not be looked at where all of a sphere is on one side.
+        // The corners need no test if their sphere lies completely on one side.
         let sure = |sphere: &Sphere| {
             let height = plane.height(&sphere.centre);
             let (low, high) = (height - sphere.radius, height + sphere.radius);
@@ -58,29 +62,29 @@ impl Source {
     }
 }
 
-/// Where something is, seen from a plane.
+/// Position of an object relative to a plane.
 enum RelativePosition {
-    /// Nothing of it is over the plane.
+    /// No part of the object is over the plane.
     Behind,
-    /// All of it is between plane and light; it may stand on the plane.
+    /// The whole object is between plane and light; it may stand on the plane.
     Between,
-    /// Some of it is.
+    /// Part of the object is between plane and light.
     Across,
 }
 
-/// What a part casts in one light.
+/// Shadow-casting outline of a part in one light.
 #[derive(Debug, Clone, Default)]
 struct PartShadow {
-    /// Whether its dark side does.
+    /// True if the dark side of the part casts the shadow.
     dark_side: bool,
     silhouette: Silhouette,
 }
 
-/// The shadows in a scene from one light.
+/// Shadows in a scene from one light.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shadows {
     source: Option<Source>,
-    /// Of each part.
+    /// Shadow-casting outline of each part.
     part_shadow: Vec<PartShadow>,
     trimmed: Vec<Vector3<f64>>,
     cut: Vec<Vector3<f64>>,
@@ -88,21 +92,23 @@ pub(super) struct Shadows {
 }
 
 impl Shadows {
-    /// What lies less than this above a plane casts no shadow on it, m: it touches it.
+    /// Height above a plane below which a point touches the plane and casts no shadow on it, m.
     const TOUCHING_M: f64 = 1e-6;
-    /// What lies higher than this share of a near light's height above a plane casts none: its shadow would have no end.
+    /// Fraction of a near light's height above a plane, above which a point casts no shadow: its shadow would
+    /// extend to infinity.
     const BELOW_LIGHT: f64 = 0.999;
-    /// How many times the lit side the dark side must be to cast: a sheet seen from behind has next to no lit side. A tube, such
-    /// as the rim of a plate whose faces are parts of their own, has both, of which a near light sees the dark one a little the
-    /// larger; but that one's shadow lies within that of the face towards the light, and the lit one's beside it.
+    /// Ratio of dark side to lit side above which the dark side casts the shadow. A sheet lit from behind has
+    /// almost no lit side. A tube, such as the rim of a plate whose faces are separate parts, has both sides,
+    /// and a near light sees the dark side slightly larger; but the shadow of that dark side lies within that
+    /// of the face towards the light, and the shadow of the lit side lies beside it.
     const LARGER: f64 = 2.0;
 
-    /// Forgets all.
+    /// Discards the light and its outlines.
     pub(super) fn forget(&mut self) {
         self.source = None;
     }
 
-    /// Turns to a light, unless it is the last one: then the outlines of what casts stay.
+    /// Prepares the outlines of the casters for a light; keeps them if the light is unchanged.
     pub(super) fn update(&mut self, prepared: &PreparedScene, source: Source) {
         if self.source == Some(source) {
             return;
@@ -129,8 +135,8 @@ impl Shadows {
         }
     }
 
-    /// Hands the polygons of the shadows on a plane to `take`, anticlockwise as seen from its front: right inside a window of
-    /// the image, and outside of it as it happens.
+    /// Passes the polygons of the shadows on a plane to `take`, anticlockwise as seen from the plane's front.
+    /// The shadows are correct inside a window of the image, and arbitrary outside it.
     pub(super) fn find(
         &mut self,
         plane: &Plane,
@@ -180,7 +186,8 @@ impl Shadows {
     }
 }
 
-/// Puts what of a polygon lies between plane and light into `cut`, and leaves anything in the polygon.
+/// Writes the part of a polygon between plane and light to `cut`; the content of `polygon` is unspecified
+/// afterwards.
 fn cut_between(polygon: &mut Vec<Vector3<f64>>, plane: &Plane, source: Source, cut: &mut Vec<Vector3<f64>>) {
     keep_above(polygon, cut, |point| plane.height(point) - Shadows::TOUCHING_M);
     if let Source::Point(position) = source {
@@ -190,8 +197,8 @@ fn cut_between(polygon: &mut Vec<Vector3<f64>>, plane: &Plane, source: Source, c
     }
 }
 
-/// Puts the shadow of a polygon between plane and light into `shadow`; whether it may fall on the plane's facets. Where it
-/// passes by these it must not shade the pixels that they have on their border.
+/// Writes the shadow of a polygon between plane and light to `shadow`; returns true if it may fall on the
+/// plane's facets. A shadow that misses the facets must not darken the pixels on their border.
 fn cast(
     polygon: &[Vector3<f64>],
     plane: &Plane,

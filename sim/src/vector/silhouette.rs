@@ -1,7 +1,8 @@
-//! The outline of the side of a body that a light sees, or does not see.
+//! Outline of the side of a body that faces a light, or of the side that faces away.
 //!
-//! Where two facets of that side meet, their shared edge runs once each way: both together cover nothing, and both are
-//! left out. What is left closes to polygons, however it is put together where more than two edges meet.
+//! Where two facets of that side meet, their shared edge occurs once in each direction: the two edges
+//! together cover nothing, and both are omitted. The remaining edges close to polygons, regardless of how
+//! they are joined where more than two edges meet.
 
 use std::ops::Range;
 
@@ -10,20 +11,20 @@ use nalgebra::Vector3;
 use super::loops::Loops;
 use crate::scene::docking::Part;
 
-/// The edges of a part's facets, by the places of their ends in a list of its corners.
+/// Edges of a part's facets, as indices of their ends in a list of the part's corners.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FacetEdges {
     corners: Vec<Vector3<f64>>,
-    /// Holes run round the other way than outer boundaries.
+    /// Edges as corner indices [from, to]; holes run in the opposite sense to outer boundaries.
     edges: Vec<[u32; 2]>,
-    /// Of each edge, the one that runs the other way along it.
+    /// For each edge, the edge that runs along it in the opposite direction.
     opposite: Vec<Option<u32>>,
-    /// Of each facet, its edges.
+    /// Range of the edges of each facet.
     of_facet: Vec<Range<usize>>,
 }
 
 impl FacetEdges {
-    /// Of a part; corners are the same when their coordinates are the same bits.
+    /// Collects the edges of a part; corners are identical if their coordinates have the same bits.
     pub(super) fn from_part(part: &Part) -> Self {
         let mut outlines = Self::default();
         let key = |corner: &Vector3<f64>| [corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()];
@@ -43,7 +44,7 @@ impl FacetEdges {
             }
             outlines.of_facet.push(start..outlines.edges.len());
         }
-        // Of several edges between two corners each finds a partner of its own.
+        // If several edges connect two corners, each is paired with a different partner.
         let mut single = std::collections::BTreeMap::<[u32; 2], Vec<u32>>::new();
         outlines.opposite = vec![None; outlines.edges.len()];
         for (index, [from, to]) in outlines.edges.iter().enumerate() {
@@ -58,19 +59,20 @@ impl FacetEdges {
     }
 }
 
-/// The outline of some facets of a part: closed polygons, not flat in general, that run as the facets' boundaries do.
+/// Outline of some facets of a part: closed polygons, not planar in general, in the sense of the facets'
+/// boundaries.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Silhouette {
     pub(super) loops: Loops,
-    /// The polygon being put together.
+    /// The polygon under construction.
     points: Vec<Vector3<f64>>,
     chosen: Vec<bool>,
-    /// Of each corner, the edges of the outline that leave it, and have not been gone along.
+    /// For each corner, the edges of the outline that leave it and have not been traversed.
     leaving: Vec<Vec<u32>>,
 }
 
 impl Silhouette {
-    /// Finds the outline of the facets that `is_chosen` names by their places in the part.
+    /// Finds the outline of the facets for whose index in the part `is_chosen` returns true.
     pub(super) fn find(&mut self, facets: &FacetEdges, is_chosen: impl Fn(usize) -> bool) {
         self.loops.clear();
         self.chosen.clear();
@@ -80,7 +82,7 @@ impl Silhouette {
         }
         self.leaving.resize_with(facets.corners.len(), Vec::new);
         self.leaving.iter_mut().for_each(Vec::clear);
-        // Backwards, so that the first of a corner is the last of its list.
+        // In reverse order, to put the first edge of a corner at the end of its list.
         for (index, [from, _]) in facets.edges.iter().enumerate().rev() {
             let shared = facets.opposite[index].is_some_and(|other| self.chosen[other as usize]);
             if self.chosen[index] && !shared {
@@ -91,7 +93,7 @@ impl Silhouette {
             while let Some(first) = self.leaving[start].pop() {
                 let mut next = Some(first);
                 self.points.clear();
-                // As many edges leave a corner as come to it, so that the way ends where it began.
+                // Each corner has as many outgoing as incoming edges; the path therefore ends where it began.
                 while let Some(edge) = next {
                     let [from, to] = facets.edges[edge as usize].map(|corner| corner as usize);
                     self.points.push(facets.corners[from]);
@@ -139,7 +141,7 @@ mod tests {
                     area(&polygon).dot(&light)
                 })
                 .sum();
-            // Areas of up to 10³ m² from corners at up to 60 m: rounding.
+            // Rounding for areas of up to 10³ m² from corners at up to 60 m.
             assert!((whole - outline).abs() < 1e-10 * (1.0 + whole), "{}: {whole} {outline}", part.name);
         }
         assert!(left < all, "{left} of {all}");

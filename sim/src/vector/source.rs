@@ -1,21 +1,21 @@
-//! Where light comes from.
+//! Light sources.
 
 use nalgebra::Vector3;
 
 use super::planes::Plane;
 use crate::scene::docking::Facet;
 
-/// Where light comes from.
+/// Light source of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Source {
-    /// From very far: the unit vector towards it.
+    /// A very distant source: unit vector towards it.
     Parallel(Vector3<f64>),
-    /// From a point, m.
+    /// A point source: its position, m.
     Point(Vector3<f64>),
 }
 
 impl Source {
-    /// The vector towards the light from a point: a unit vector from very far.
+    /// Returns the vector from a point towards the light; a unit vector for a very distant source.
     pub(super) fn from(&self, point: &Vector3<f64>) -> Vector3<f64> {
         match self {
             Self::Parallel(towards) => *towards,
@@ -23,7 +23,7 @@ impl Source {
         }
     }
 
-    /// Whether a plane has its front to the light.
+    /// Returns true if the front of a plane faces the light.
     pub(super) fn illuminates(&self, plane: &Plane) -> bool {
         match self {
             Self::Parallel(towards) => plane.normal.dot(towards) > 0.0,
@@ -31,7 +31,7 @@ impl Source {
         }
     }
 
-    /// Whether a facet is on the side of its part that casts.
+    /// Returns true if a facet belongs to the side of its part that casts the shadow.
     pub(super) fn casts_shadow(&self, facet: &Facet, dark_side: bool) -> bool {
         let Some(corner) = facet.outer.first() else { return false };
         (facet.normal.dot(&self.from(corner)) <= 0.0) == dark_side

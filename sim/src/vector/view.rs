@@ -1,4 +1,4 @@
-//! Outlines as the camera sees them: pose, pinhole, distortion.
+//! Outlines as the camera sees them: pose, pinhole projection, distortion.
 
 use contract::docking::Pose;
 use contract::{Camera, PixelPoint};
@@ -10,16 +10,17 @@ use super::coverage::Window;
 use crate::SimError;
 use crate::optics::Projection;
 
-/// The camera without its pose.
+/// Camera without its pose.
 #[derive(Debug, Clone)]
 pub(super) struct Lens {
     projection: Projection,
     focal_px: [f64; 2],
     /// Principal point, px from the corner of the first pixel.
     principal: [f64; 2],
-    /// With distortion: what can reach the image, as undistorted offsets from the principal point, px.
+    /// Bounds of the undistorted offsets from the principal point that can reach the image, px; `None`
+    /// without distortion.
     reach: Option<Reach>,
-    /// With distortion: the way back.
+    /// Map from distorted positions back to undistorted offsets; `None` without distortion.
     offsets: Option<OffsetGrid>,
 }
 
@@ -30,9 +31,9 @@ struct Reach {
 }
 
 impl Lens {
-    /// What lies nearer than this along the optical axis is not drawn, m.
+    /// Distance along the optical axis, m; nearer objects are not drawn.
     const NEAR_M: f64 = 1e-3;
-    /// Largest distance between a bent edge and the chords that it is drawn by, px.
+    /// Largest distance between a curved edge and the chords that approximate it, px.
     const SAGITTA_PX: f64 = 1e-3;
     const MOST_CHORDS: f64 = 256.0;
 
@@ -53,7 +54,7 @@ impl Lens {
         Ok(lens)
     }
 
-    /// The detector's border without distortion, and a margin.
+    /// Returns the bounds of the detector's border after removal of the distortion, with a margin.
     fn reach_of(&self, camera: &Camera) -> Reach {
         const POINTS: usize = 129;
         const MARGIN_PX: f64 = 8.0;
@@ -72,20 +73,20 @@ impl Lens {
         reach
     }
 
-    /// The undistorted offset from the principal point of a point of the detector, px.
+    /// Returns the undistorted offset of a detector point from the principal point, px.
     fn offset_of(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         if !self.projection.is_distorted() {
             return [x - self.principal[0], y - self.principal[1]];
         }
-        // On the detector every point has a direction.
+        // Every point on the detector has a direction.
         self.projection.unproject(PixelPoint::new(x - 0.5, y - 0.5)).map_or([0.0; 2], |direction| {
             let ray = direction.vector();
             [self.focal_px[0] * ray.x / ray.z, self.focal_px[1] * ray.y / ray.z]
         })
     }
 
-    /// The direction (camera frame, third component 1) that falls on a point of the detector, px from the corner of the
-    /// first pixel.
+    /// Returns the direction (camera frame, third component 1) that projects to a point of the detector, px
+    /// from the corner of the first pixel.
     pub(super) fn ray(&self, point: [f64; 2]) -> Vector3<f64> {
         let [u, v] = match &self.offsets {
             Some(grid) => grid.offset_at(point),
@@ -94,8 +95,8 @@ impl Lens {
         Vector3::new(u / self.focal_px[0], v / self.focal_px[1], 1.0)
     }
 
-    /// The least and the greatest undistorted offsets from the principal point in a window, px; with distortion not less than
-    /// that.
+    /// Returns the smallest and the largest undistorted offsets from the principal point in a window, px;
+    /// with distortion, bounds that enclose them.
     fn offsets_of(&self, window: Window) -> ([f64; 2], [f64; 2]) {
         let low = [window.left as f64, window.top as f64];
         let high = [window.right as f64, window.bottom as f64];
@@ -114,8 +115,9 @@ impl Lens {
     }
 }
 
-/// Undistorted offsets at the nodes of a grid over the detector; between them they are bilinear. Good to 1e-2 px where a
-/// distortion of the whole field is some percent: enough for a lamp's light, which changes over many pixels.
+/// Undistorted offsets at the nodes of a grid over the detector, interpolated bilinearly between the nodes.
+/// Accurate to 1e-2 px where the distortion over the whole field is some percent: enough for the illumination
+/// by a lamp, which changes over many pixels.
 #[derive(Debug, Clone)]
 struct OffsetGrid {
     step: [f64; 2],
@@ -125,7 +127,8 @@ struct OffsetGrid {
 
 impl OffsetGrid {
     const CELL_PX: usize = 16;
-    /// What a rectangle's offsets are widened by, px: more than the grid is off, and than a border bends within a cell.
+    /// Margin added to the offsets of a rectangle, px: larger than the error of the grid, and than the
+    /// curvature of a border within a cell.
     const MARGIN_PX: f64 = 2.0;
 
     fn new(lens: &Lens, camera: &Camera) -> Self {
@@ -138,7 +141,7 @@ impl OffsetGrid {
         Self { step, cells, nodes }
     }
 
-    /// Offsets that enclose those of a rectangle: of its border, at the grid's distances.
+    /// Returns bounds of the offsets in a rectangle, from points on its border at the grid's spacing.
     fn reach(&self, low: [f64; 2], high: [f64; 2]) -> ([f64; 2], [f64; 2]) {
         let coordinates = |axis: usize| {
             let steps = ((high[axis] - low[axis]) / self.step[axis]).ceil().max(1.0);
@@ -171,13 +174,13 @@ impl OffsetGrid {
     }
 }
 
-/// A camera in its place.
+/// A camera with its pose.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View<'a> {
     pub(super) lens: &'a Lens,
-    /// d, m, target frame.
+    /// Position d of the camera, m, target frame.
     pub(super) position: Vector3<f64>,
-    /// A: target frame from camera frame.
+    /// Attitude A of the camera: target frame from camera frame.
     pub(super) attitude: Matrix3<f64>,
     camera_from_target: Matrix3<f64>,
 }
@@ -189,8 +192,8 @@ impl<'a> View<'a> {
         Self { lens, position: pose.position_m, attitude, camera_from_target: attitude.transpose() }
     }
 
-    /// The borders of a window of the image as planes through the camera: their normals outwards, target frame. With distortion
-    /// they enclose the window with some pixels to spare.
+    /// Returns the borders of a window of the image as planes through the camera: their outward normals,
+    /// target frame. With distortion they enclose the window with a margin of some pixels.
     pub(super) fn borders(&self, window: Window) -> [Vector3<f64>; 4] {
         let ([left, top], [right, bottom]) = self.lens.offsets_of(window);
         let [fx, fy] = self.lens.focal_px;
@@ -203,13 +206,13 @@ impl<'a> View<'a> {
         .map(|normal| self.attitude * normal)
     }
 
-    /// Whether something in a sphere may lie in front of the camera.
+    /// Returns true if part of a sphere may lie in front of the camera.
     pub(super) fn may_see(&self, sphere: &Sphere) -> bool {
         (sphere.centre - self.position).dot(&self.attitude.column(2)) + sphere.radius > Lens::NEAR_M
     }
 }
 
-/// The smallest upright rectangle about points of the image, px.
+/// Smallest axis-aligned rectangle that contains some points of the image, px.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
     low: [f64; 2],
@@ -226,7 +229,7 @@ impl Bounds {
         }
     }
 
-    /// Its pixels inside another window; `None` when there are none.
+    /// Returns the pixels of the rectangle inside another window; `None` if there are none.
     pub(super) fn window(self, within: Window) -> Option<Window> {
         let window = Window {
             left: within.left.max(self.low[0].max(0.0) as usize),
@@ -242,7 +245,7 @@ impl Bounds {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Outlines {
     points: Vec<[f64; 2]>,
-    /// Where each polygon ends among the points.
+    /// End index of each polygon in the points.
     ends: Vec<usize>,
     cut: [Vec<Vector3<f64>>; 2],
     offsets: Vec<[f64; 2]>,
@@ -254,12 +257,12 @@ impl Outlines {
         self.ends.clear();
     }
 
-    /// How many polygons there are.
+    /// Returns the number of polygons.
     pub(super) fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Forgets all but the first `len` polygons.
+    /// Removes all polygons after the first `len`.
     pub(super) fn truncate(&mut self, len: usize) {
         self.ends.truncate(len);
         self.points.truncate(self.ends.last().copied().unwrap_or(0));
@@ -270,7 +273,7 @@ impl Outlines {
         &self.points[start..self.ends[index]]
     }
 
-    /// Adds a polygon of the target frame as it is seen, and tells its bounds.
+    /// Adds the image of a polygon of the target frame, and returns its bounds.
     pub(super) fn push(&mut self, view: &View<'_>, polygon: &[Vector3<f64>]) -> Bounds {
         let [seen, spare] = &mut self.cut;
         seen.clear();
@@ -303,7 +306,8 @@ impl Outlines {
     }
 }
 
-/// The image of a straight edge without its last point, by chords: a chord's sagitta goes with the square of its length.
+/// Appends the image of a straight edge, without its last point, as chords. The sagitta of a chord is
+/// proportional to the square of its length.
 fn bend(lens: &Lens, from: [f64; 2], to: [f64; 2], points: &mut Vec<[f64; 2]>) {
     let between =
         |t: f64| lens.pixel_position([from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])]);

@@ -1,24 +1,24 @@
-//! The simulation of the scenario `argon`, for tests and benchmarks.
+//! Simulation of the scenario `argon`, for tests and benchmarks.
 
 use serde::de::DeserializeOwned;
 
-// Of the program that includes it: the library's unit tests know the crate by another name.
+// Imported from the including program: the library's unit tests refer to the crate by another name.
 use super::Simulation;
 
 const ARGON: &str = include_str!("../../../scenarios/argon.toml");
 
-/// The scenario as a table.
+/// Returns the scenario as a table.
 pub(crate) fn table() -> toml::Table {
     ARGON.parse().unwrap()
 }
 
-/// A section of the scenario `argon`; a section that is missing is an empty one.
+/// Returns a section of the scenario `argon`; a missing section counts as empty.
 pub(crate) fn section<T: DeserializeOwned>(table: &toml::Table, name: &str) -> T {
     let empty = toml::Value::Table(toml::Table::new());
     table.get(name).unwrap_or(&empty).clone().try_into().unwrap()
 }
 
-/// Its simulation.
+/// Returns the simulation of the scenario `argon`.
 pub(crate) fn simulation() -> Simulation {
     let table = table();
     Simulation {

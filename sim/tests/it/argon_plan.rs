@@ -1,7 +1,7 @@
-//! The approach planned for the scenario `argon`, flown by the simulator.
+//! Approach planned for the scenario `argon`, propagated by the simulator.
 //!
-//! The plan is made by scenarios/argon_plan.py with orbit mathematics of its own, in another language: it is the
-//! witness here.
+//! The plan comes from scenarios/argon_plan.py, which has an independent implementation of the orbit
+//! mathematics in another language and serves as the reference here.
 
 use boresight_sim::truth::{GroupConfig, Guidance, OrbitConfig, Schedule, Trajectory};
 use hifitime::{Duration, Epoch};
@@ -23,7 +23,8 @@ fn noon(day: u8) -> Epoch {
     Epoch::from_gregorian_utc_hms(2012, 4, 22 + day, 12, 0, 0)
 }
 
-/// Positions of the chaser in the target's RTN at noon of days 1 to 5, m, computed by argon_plan.py.
+/// Reference positions of the chaser in the target's RTN frame at noon of days 1 to 5, m, computed by
+/// argon_plan.py.
 const WITNESS_RTN_M: [[f64; 3]; 5] = [
     [-442.439, -29696.272, -122.0644],
     [94.3429, -23025.033, 278.9088],
@@ -37,13 +38,14 @@ fn two_implementations_fly_the_same_plan() {
     let trajectory = Trajectory::new(&fragment().orbit).unwrap();
     for (day, expected) in (1..).zip(WITNESS_RTN_M) {
         let got = trajectory.states_at(noon(day)).chaser_rtn_km() * 1000.0;
-        // Printed to 0.1 mm. The manoeuvres pass through elements of rounding 1e-15, that is 1e-8 m of semi-major axis
-        // and, at 10 rad of drift a day, far less than 1 mm at the end.
+        // Printed to 0.1 mm. The manoeuvres pass through elements with rounding 1e-15, which is 1e-8 m of
+        // semi-major axis and, at 10 rad of drift per day, far less than 1 mm at the end.
         assert!((got - Vector3::from(expected)).norm() < 1e-3, "day {day}: {got} {expected:?}");
     }
 }
 
-/// Mean range over the orbit around noon; over one orbit the range itself swings by ±2 aδe, up to 0.8 km.
+/// The mean range is taken over the orbit around noon; within one orbit the range swings by ±2 aδe, up to 0.8
+/// km.
 #[test]
 fn the_mean_range_at_noon_goes_down_as_planned() {
     let trajectory = Trajectory::new(&fragment().orbit).unwrap();
@@ -62,7 +64,8 @@ fn the_approach_begins_at_30_km_and_ends_at_3_km() {
     let lambda = |epoch: Epoch| trajectory.relative_elements(epoch).a_dlambda_m;
     assert!((lambda(trajectory.epoch()) + 30_000.0).abs() < 1.0);
     let end = Epoch::from_gregorian_utc_hms(2012, 4, 28, 0, 0, 0);
-    // Each impulse is rounded to 0.01 mm/s, which is 1.4 m a day; the last waypoint is four days of them away.
+    // Each impulse is rounded to 0.01 mm/s, which is 1.4 m per day; the rounding accumulates over four days
+    // to the last waypoint.
     assert!((lambda(end) + 3_000.0).abs() < 20.0, "{}", lambda(end));
     // Approximately 16 km on 25 April from 11:30 to 13:00 (paper, Fig. 2).
     let overlay = Epoch::from_gregorian_utc_hms(2012, 4, 25, 12, 15, 0);
@@ -79,7 +82,7 @@ fn the_schedule_has_the_papers_counts_and_its_sample_image() {
     assert_eq!(schedule.frame(1634 + 2978 + 1516), Some(("day 3", sample)));
 }
 
-/// Half fields of the camera: 9.1° along columns, 6.8° along rows.
+/// Half field of view of the camera: 9.1° along columns, 6.8° along rows.
 #[test]
 fn the_target_is_in_the_field_of_view_in_every_frame() {
     let Fragment { orbit, schedule } = fragment();
@@ -95,6 +98,6 @@ fn the_target_is_in_the_field_of_view_in_every_frame() {
         }
     }
     assert!(widest[0] < 9.1 && widest[1] < 6.8, "{widest:?}");
-    // It fills a good part of the field in the end, as in the paper's Fig. 3.
+    // The motion finally covers a large part of the field, as in Fig. 3 of the paper.
     assert!(widest[0] > 3.0 && widest[1] > 3.0, "{widest:?}");
 }

@@ -1,4 +1,4 @@
-//! The effects of the detector, seen from outside: in digital numbers and in the truth table.
+//! Detector effects, measured from outside: in digital numbers and in the truth table.
 
 use boresight_sim::randomness::Seed;
 use boresight_sim::sensor::{
@@ -11,10 +11,10 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::small_scene::{cosmic_rays, defective, restless, simulator, still};
 
-/// Five standard deviations: by chance once in 1.7 million tests; the seeds are fixed.
+/// Five standard deviations: exceeded by chance in one of 1.7 million tests; the seeds are fixed.
 const FIVE_SIGMA: f64 = 5.0;
 
-/// Frames of a flat sky as deviations from the bias, electrons.
+/// Returns frames of a flat sky as deviations from the bias, electrons.
 fn flat_frames(config: &SensorConfig, size: usize, frames: u64, exposure_s: f64) -> Vec<Vec<f64>> {
     let sensor = Sensor::new(config, size, size).unwrap();
     let (mut image, mut raw, mut samplers) = (sensor.new_expected(), sensor.new_raw(), FlatSamplers::new());
@@ -39,12 +39,12 @@ fn variance(values: &[f64]) -> f64 {
     values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (values.len() - 1) as f64
 }
 
-/// Variance of the difference of two frames, halved: what is fixed cancels.
+/// Returns half the variance of the difference of two frames: fixed patterns cancel.
 fn temporal_variance(a: &[f64], b: &[f64]) -> f64 {
     0.5 * variance(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
 }
 
-/// Mean of each column (`true`) or row of a square frame.
+/// Returns the mean of each column (`true`) or row of a square frame.
 fn line_means(frame: &[f64], size: usize, columns: bool) -> Vec<f64> {
     let (step, stride) = if columns { (size, 1) } else { (1, size) };
     (0..size).map(|i| (0..size).map(|j| frame[i * stride + j * step]).sum::<f64>() / size as f64).collect()
@@ -72,9 +72,11 @@ fn variance_over_mean_of_frame_differences_is_the_gain_whatever_the_prnu() {
     };
     let ((low, low_variance, _), (high, high_variance, spatial)) = (moments(0.1), moments(8.0));
     let slope = (high_variance - low_variance) / (high - low);
-    // Half a million differences know a variance to 0.2 %; half a percent is two and a half of that.
+    // Half a million differences determine a variance to 0.2 %; the tolerance of half a percent is two and a
+    // half times as large.
     assert!((slope * 4.0 - 1.0).abs() < 0.005, "slope {slope}");
-    // In one frame PRNU adds (2 % of 8000 e⁻)² to 8000 e⁻ + 8²; 0.3 % known, and 0.5 % of the pattern itself.
+    // Within one frame, PRNU adds (2 % of 8000 e⁻)² to 8000 e⁻ + 8²; uncertainty 0.3 %, and 0.5 % from the
+    // pattern itself.
     let expected = (8000.0 + 64.0 + 160.0 * 160.0) / 16.0 + 1.0 / 12.0;
     assert!((spatial / expected - 1.0).abs() < 0.015, "{spatial} and {expected}");
 }
@@ -89,18 +91,19 @@ fn dark_frames_have_the_mean_the_pattern_and_the_noise_of_their_figures() {
         ..quiet()
     };
     let frames = flat_frames(&config, 256, 2, 4.0);
-    // 100 e⁻ with a spread of 40 from pixel to pixel: its mean is known to 40/256.
+    // 100 e⁻ with a spread of 40 from pixel to pixel: the uncertainty of the mean is 40/256.
     assert!((mean(&frames[0]) - 100.0).abs() < FIVE_SIGMA * 40.0 / 256.0, "{}", mean(&frames[0]));
     let temporal = temporal_variance(&frames[0], &frames[1]);
-    // Dark shot noise, read noise, rounding to half an electron; 0.55 % known, and the pattern's mean as above.
+    // Dark shot noise, read noise, rounding to half an electron; uncertainty 0.55 %, and the mean of the
+    // pattern as above.
     assert!((temporal / (100.0 + 9.0 + 0.25 / 12.0) - 1.0).abs() < 0.03, "{temporal}");
     let covariance = variance(&frames[0]) - temporal;
-    // A log-normal pattern of 40 %: its fourth moment makes its variance uncertain by some 1.5 %.
+    // A log-normal pattern of 40 %: its fourth moment makes the variance uncertain by roughly 1.5 %.
     assert!((covariance / 1600.0 - 1.0).abs() < 0.06, "{covariance}");
 }
 
-/// The cameras to start from, cut to 96 × 96 pixels, without their hot pixels, dark for ten seconds: at their own
-/// temperature, and as many kelvin above as double the dark current.
+/// The built-in cameras, cropped to 96 × 96 pixels, without hot pixels, in darkness for ten seconds: at their
+/// nominal temperature, and at the higher temperature, in kelvin, that doubles the dark current.
 #[test]
 fn dark_frames_of_every_built_in_camera_have_the_mean_and_the_noise_of_its_figures() {
     let (size, n, frames, exposure_s) = (96, 96.0 * 96.0, 16, 10.0);
@@ -118,7 +121,8 @@ fn dark_frames_of_every_built_in_camera_have_the_mean_and_the_noise_of_its_figur
             let (line, pattern) = (config.line_noise, &config.fixed_pattern);
             let sample = flat_frames(&config, size, frames, exposure_s);
 
-            // Shot noise of the dark current, read noise, rounding; rows and columns share theirs.
+            // Shot noise of the dark current, read noise, rounding; row and column noise are shared within a
+            // line.
             let pixel = dark_e
                 + config.read_noise_e * config.read_noise_e
                 + config.gain_e_per_dn * config.gain_e_per_dn / 12.0;
@@ -127,7 +131,7 @@ fn dark_frames_of_every_built_in_camera_have_the_mean_and_the_noise_of_its_figur
             let offsets = pattern.column_offset_e * pattern.column_offset_e / size as f64;
             let error =
                 ((pixel + lines * size as f64) / (n * frames as f64) + dsnu_e * dsnu_e / n + offsets).sqrt();
-            // What the bend takes: β e²/full well of the mean and of the spread.
+            // Reduction by the non-linearity: β e²/full well for the mean and for the spread.
             let bend =
                 config.non_linearity * (dark_e * dark_e + dsnu_e * dsnu_e + pixel) / config.full_well_e;
             let got = mean(&sample.concat());
@@ -135,8 +139,9 @@ fn dark_frames_of_every_built_in_camera_have_the_mean_and_the_noise_of_its_figur
 
             let pairs: Vec<f64> =
                 sample.chunks_exact(2).map(|pair| temporal_variance(&pair[0], &pair[1])).collect();
-            // Eight pairs of 9216 pixels: a variance known to 0.5 %; that of 96 rows in each adds 0.4 % where it is a
-            // tenth of all; the mean of the pattern 0.3 %. Five percent is more than five of their sum.
+            // Eight pairs of 9216 pixels determine a variance to 0.5 %. The variance of 96 rows in each pair
+            // adds 0.4 % where it is a tenth of the total; the mean of the pattern adds 0.3 %. Five percent
+            // is more than five times their sum.
             let got = mean(&pairs);
             assert!((got / (pixel + lines) - 1.0).abs() < 0.05, "{path:?}: {got} e⁻² for {}", pixel + lines);
         }
@@ -156,7 +161,8 @@ fn rows_and_columns_have_the_noise_that_they_share() {
         ..quiet()
     };
     let frames = flat_frames(&config, size, 20, 1.0);
-    // What a mean over a line leaves of the noise of its pixels: 500 + 4² + 2²/12 e⁻², and of the crossing lines.
+    // Variance that remains in the mean over a line: from the noise of its pixels, 500 + 4² + 2²/12 e⁻² per
+    // pixel, and from the crossing lines.
     let chi2 = |values: &[f64], expected: f64| {
         let n = values.len() as f64;
         ChiSquared::new(n - 1.0).unwrap().sf(variance(values) * (n - 1.0) / expected)
@@ -188,7 +194,7 @@ fn frames_of_lines_and_patterns_still_have_shot_and_read_noise() {
     };
     let frames = flat_frames(&lines, 256, 2, 1.0);
     let got = temporal_variance(&frames[0], &frames[1]);
-    // 0.55 % known from 65,536 differences.
+    // The uncertainty from 65,536 differences is 0.55 %.
     assert!((got / (516.0 + 4.0 / 12.0) - 1.0).abs() < 0.0275, "{got}");
 }
 
@@ -206,10 +212,12 @@ fn a_defective_frame_alone_is_the_frame_of_the_run() {
     assert!(run.iter().flat_map(|e| &e.objects).any(|object| object.kind == ObjectKind::CosmicRay));
 }
 
-/// Photometric closure: the expectation is the table and the background, the latter known in closed form.
+/// Photometric closure: the expected image equals the truth table plus the background, which is known in
+/// closed form.
 #[test]
 fn the_electrons_of_the_frame_are_those_of_the_truth_table() {
-    // Without smear, whose light the table does not hold, and without DSNU and PRNU, which would change the background.
+    // Without smear, whose signal the table excludes, and without DSNU and PRNU, which would change the
+    // background.
     let mut simulation = defective(still());
     simulation.sensor.frame_transfer_s = 0.0;
     (simulation.sensor.fixed_pattern.prnu_fraction, simulation.sensor.fixed_pattern.dsnu_fraction) =
@@ -222,7 +230,7 @@ fn the_electrons_of_the_frame_are_those_of_the_truth_table() {
         let image = camera.expected();
         let in_table: f64 = exposure.objects.iter().map(|object| object.electrons).sum();
         let dead = image.iter().filter(|&electrons| electrons == 0.0).count() as f64;
-        // 1500 dead pixels and two columns of 120, some of them shared.
+        // 1500 dead pixels, and two columns of 120 pixels, with some overlap.
         assert!((1690.0..=1740.0).contains(&dead), "{dead} dead pixels");
         let expected = in_table + image.flat_e() * (160.0 * 120.0 - dead);
         let got: f64 = image.iter().sum();
@@ -230,7 +238,8 @@ fn the_electrons_of_the_frame_are_those_of_the_truth_table() {
     }
 }
 
-/// With smear the frame has more light than its objects and its background: as much as the truth about the frame tells.
+/// With smear, a frame has more signal than its objects and its background: the excess equals the smear in
+/// the frame truth.
 #[test]
 fn with_the_smear_of_the_truth_the_electrons_are_complete() {
     let mut simulation = still();
@@ -245,13 +254,15 @@ fn with_the_smear_of_the_truth_the_electrons_are_complete() {
         let got: f64 = camera.expected().iter().sum();
         let expected = in_table + (camera.expected().flat_e() + exposure.truth.smear_e_per_px) * pixels;
         assert!((got / expected - 1.0).abs() < 1e-9, "frame {frame}: {got} and {expected}");
-        // A fiftieth of the exposure: of 60 e⁻/s of sky for 0.25 s alone 119/120 of 0.3 e⁻, and stars come to it.
+        // The transfer takes a fiftieth of the exposure: 60 e⁻/s of sky for 0.25 s give 119/120 of 0.3 e⁻,
+        // and stars add to this.
         assert!(exposure.truth.smear_e_per_px > 0.29, "{}", exposure.truth.smear_e_per_px);
     }
     assert_eq!(one(&still(), 0).truth.smear_e_per_px, 0.0);
 }
 
-/// With all that changes the light too, the table holds each object's own share: the difference that it makes.
+/// With all other effects that change the signal enabled, the table holds the contribution of each object:
+/// the difference between images with and without it.
 #[test]
 fn with_every_effect_on_the_table_holds_what_each_object_adds() {
     let mut with = defective(still());
@@ -280,7 +291,7 @@ fn with_every_effect_on_the_table_holds_what_each_object_adds() {
 fn the_digital_numbers_scatter_about_the_expectation_with_every_pattern_on() {
     let mut simulation = defective(still());
     let sensor = &mut simulation.sensor;
-    // What moves in time or bends the mean is off.
+    // Effects that vary in time or make the mean non-linear are off.
     (sensor.non_linearity, sensor.cosmic_rays, sensor.hot_pixels.telegraph) = (0.0, None, None);
     (sensor.line_noise, sensor.fixed_pattern.column_offset_e) = (LineNoiseConfig::default(), 0.0);
     let simulator = simulator(&simulation);
@@ -296,7 +307,7 @@ fn the_digital_numbers_scatter_about_the_expectation_with_every_pattern_on() {
             }
         }
     }
-    // A squared normal number has a variance of 2.
+    // The square of a standard normal variable has variance 2.
     assert!((chi2 - n).abs() < FIVE_SIGMA * (2.0 * n).sqrt(), "{}", chi2 / n);
 }
 
@@ -323,9 +334,10 @@ fn telegraphs_in_the_table_have_two_levels_and_the_occupancy_of_their_dwell_time
             }
         }
     }
-    // A quarter is high; frames 60 s apart share exp(−60/22.5) = 7 % of their state, so 1.15 times the binomial error.
+    // A quarter is in the high state; frames 60 s apart share exp(−60/22.5) = 7 % of their state, hence 1.15
+    // times the binomial error.
     assert!((high / n - 0.25).abs() < 1.15 * FIVE_SIGMA * (0.1875_f64 / n).sqrt(), "{}", high / n);
-    // Some 0.25 s of 45 s have a switch in them.
+    // A switch falls into about 0.25 s of every 60 s.
     assert!(between / n < 0.02);
 }
 
@@ -338,7 +350,7 @@ fn the_anomaly_is_felt_where_it_is_and_only_there() {
     let simulator = simulator(&simulation);
     let mut camera = simulator.camera().unwrap();
     let (mut inside, mut outside) = ((0, 0), (0, 0));
-    // A day of passes.
+    // One day of passes.
     for frame in (0..720).step_by(2) {
         let exposure = camera.expose(frame).unwrap();
         let (latitude, longitude) = geographic(exposure.truth.time, &exposure.truth.position_km);
@@ -350,7 +362,7 @@ fn the_anomaly_is_felt_where_it_is_and_only_there() {
             _ => {}
         }
     }
-    // 0.35 s on 0.0137 cm²: 0.005 hits a frame outside, 2 to 5.3 inside.
+    // 0.35 s on 0.0137 cm²: 0.005 hits per frame outside the anomaly, 2 to 5.3 inside.
     assert!(inside.1 > 5 && outside.1 > 200, "{inside:?}, {outside:?}");
     assert!(inside.0 as f64 / inside.1 as f64 > 1.0 && (outside.0 as f64) < 0.05 * outside.1 as f64);
 }

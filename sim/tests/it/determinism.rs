@@ -1,4 +1,5 @@
-//! The same scenario is the same bits: on every machine, in any order, on any thread, and whatever else is switched.
+//! A scenario produces the same bits on every machine, in any order, on any thread, and with any other
+//! effects switched on or off.
 
 use boresight_sim::sensor::Switch;
 use boresight_sim::truth::{ControlConfig, FrameTruth, KnowledgeConfig, ObjectKind, ObjectTruth};
@@ -8,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::small_scene::{restless, simulator, still};
 
-/// SHA-256 of things in a fixed byte order: every bit of every number.
+/// SHA-256 of values in a fixed byte order: every bit of every number.
 #[derive(Default)]
 struct Fingerprint(Sha256);
 
@@ -35,7 +36,7 @@ impl Fingerprint {
     }
 }
 
-/// Digital numbers and transmitted regions.
+/// Hash of the digital numbers and transmitted regions.
 fn pixels(exposures: &[Exposure]) -> String {
     let mut print = Fingerprint::default();
     for exposure in exposures {
@@ -110,9 +111,10 @@ fn one(simulation: &Simulation, frame: u64) -> Exposure {
     expose(&simulator(simulation), [frame]).remove(0)
 }
 
-/// The law itself is frozen, with every effect on: this must hold on every machine, and a change here changes
-/// every result and belongs in CHANGELOG.md. The four parts tell where to look: pixels alone, a sampler; telemetry
-/// alone, the knowledge of the attitude; all of them, the orbit, the ephemeris or the addresses of draws.
+/// The simulated values themselves are frozen, with every effect on. The hashes must hold on every machine; a
+/// change here changes every result and belongs in CHANGELOG.md. The four parts indicate the cause: only
+/// pixels changed, a sampler; only telemetry changed, the attitude knowledge; all changed, the orbit, the
+/// ephemeris or the addresses of draws.
 #[test]
 fn pixels_truth_and_telemetry_of_a_small_scene_are_frozen() {
     let exposures = expose(&simulator(&restless()), [0, 1, 2, 7]);
@@ -120,7 +122,7 @@ fn pixels_truth_and_telemetry_of_a_small_scene_are_frozen() {
     assert_eq!(got, FROZEN);
 }
 
-/// Frame truth, object truth, telemetry, pixels.
+/// Hashes of frame truth, object truth, telemetry and pixels.
 const FROZEN: [&str; 4] = [
     "9cd92280b856144efa443138b1f3ee8a5e42704f3e469558c0fabd155f920af1",
     "10417743650b4355613c60ef293838b6c7919e997a64fe351eb0980c204534f0",
@@ -128,7 +130,7 @@ const FROZEN: [&str; 4] = [
     "625e735eb946aff89eb0b6f251504375503b7084b66c6ec5fce948133b911be4",
 ];
 
-/// A frozen hash of an empty scene would freeze nothing.
+/// A frozen hash of an empty scene would have no value as a test.
 #[test]
 fn the_frozen_scene_has_everything_in_it() {
     let exposures = expose(&simulator(&restless()), [0, 1, 2, 7]);
@@ -138,7 +140,7 @@ fn the_frozen_scene_has_everything_in_it() {
         assert_eq!(count(ObjectKind::HotPixel), 12);
         assert!(count(ObjectKind::Star) > 10, "{} stars", count(ObjectKind::Star));
         assert!(exposure.frame.windows().unwrap().len() > 2);
-        // The shutter has something to do, and neither limit is all it does.
+        // The shutter control is active and not only at a limit.
         assert!((0.0006..0.25).contains(&exposure.truth.exposure_s), "{} s", exposure.truth.exposure_s);
     }
     assert!(exposures.iter().flat_map(|e| &e.objects).any(|object| object.cut > 0.0 && object.cut < 1.0));
@@ -175,7 +177,7 @@ fn threads_that_share_the_frames_make_what_one_makes() {
     }
 }
 
-/// Indices of the pixels that differ.
+/// Returns the indices of the pixels that differ.
 fn differing(a: &Exposure, b: &Exposure) -> Vec<usize> {
     let pairs = a.frame.dn().iter().zip(b.frame.dn()).enumerate();
     pairs.filter(|(_, (a, b))| a != b).map(|(index, _)| index).collect()
@@ -190,7 +192,7 @@ fn without_hot_pixels_no_other_pixel_and_no_other_number_changes() {
         with.objects.iter().filter(|o| o.kind == ObjectKind::HotPixel).map(|o| o.id as usize).collect();
     let differing = differing(&with, &without);
     assert!(differing.iter().all(|index| hot.contains(index)), "{differing:?} of {hot:?}");
-    // With a median of 1000 e⁻ over a noise of 16, every one shows.
+    // With a median of 1000 e⁻ and a noise of 16 e⁻, every hot pixel changes its pixel value.
     assert_eq!(differing.len(), 12);
     assert_eq!((&with.truth, &with.telemetry), (&without.truth, &without.telemetry));
     assert_eq!(with.objects[..with.objects.len() - 12], without.objects);
@@ -205,7 +207,8 @@ fn without_the_target_only_the_pixels_under_it_change() {
     assert_eq!((target.kind, without.objects[0].kind), (ObjectKind::Target, ObjectKind::Star));
     for index in differing(&with, &without) {
         let pixel = contract::PixelPoint::new((index % 160) as f64, (index / 160) as f64);
-        // The halo, 4 px wide, of a few hundred electrons falls below 0.01 e⁻ within 4.5 of its widths.
+        // The halo, 4 px wide and with a few hundred electrons, falls below 0.01 e⁻ within 4.5 times its
+        // width.
         assert!(pixel.distance(target.position) < 18.0, "{index}");
     }
     assert!(!differing(&with, &without).is_empty());
@@ -213,8 +216,8 @@ fn without_the_target_only_the_pixels_under_it_change() {
     assert_eq!(with.telemetry, without.telemetry);
 }
 
-/// Shot, dark and read noise are one effect with one draw a pixel: without a part of it the pixels are drawn
-/// anew, and nothing else is.
+/// Shot, dark and read noise are one effect with one draw per pixel: if a part of it is switched off, the
+/// pixels are drawn anew, and nothing else is.
 #[test]
 fn without_a_part_of_the_pixel_noise_nothing_but_pixels_is_drawn_anew() {
     let base = one(&restless(), 5);
@@ -233,7 +236,8 @@ fn without_a_part_of_the_pixel_noise_nothing_but_pixels_is_drawn_anew() {
         assert_eq!(known(&other), base.truth);
         assert_eq!(other.objects.len(), base.objects.len());
         for (a, b) in other.objects.iter().zip(&base.objects) {
-            // What the noise itself decides may differ: SNR, radius, and the cut by regions laid on noisy pixels.
+            // Values that depend on the noise itself may differ: SNR, radius, and the cut by regions that
+            // were found on noisy pixels.
             let known = |o: &ObjectTruth| ObjectTruth {
                 snr: 0.0,
                 radius_px: 0.0,
@@ -276,7 +280,7 @@ fn errors_of_the_knowledge_change_telemetry_and_nothing_else() {
 
 #[test]
 fn errors_of_the_control_leave_the_draws_of_the_knowledge_as_they_were() {
-    // Without latency: the error of a time tag is one of control too, and no draw.
+    // Latency is off: the error due to a time tag depends on the control errors as well, and is not a draw.
     let with = |control: Option<ControlConfig>| {
         let mut simulation = restless();
         simulation.knowledge.latency_s = 0.0;
@@ -288,7 +292,7 @@ fn errors_of_the_control_leave_the_draws_of_the_knowledge_as_they_were() {
         )
     };
     let (restless, still) = (with(None), with(Some(ControlConfig::default())));
-    // Products of quaternions round to 1e-16.
+    // The rounding error of quaternion products is 1e-16.
     assert!(restless.0.angle_to(&still.0).radians() < 1e-15);
     assert!(restless.1.angle_to(&still.1).radians() > 1e-5);
 }
@@ -298,7 +302,7 @@ fn another_seed_draws_other_noise_and_keeps_the_detector() {
     let other = Simulation { seed: 1, ..still() };
     let (a, b) = (one(&still(), 5), one(&other, 5));
     assert_eq!((&a.truth, &a.objects), (&b.truth, &b.objects));
-    // Two draws of a law 1.6 DN wide agree in one of five or six.
+    // Two draws of a distribution with a standard deviation of 1.6 DN are equal in one case of five or six.
     let share = differing(&a, &b).len() as f64 / a.frame.dn().len() as f64;
     assert!((0.75..0.9).contains(&share), "{share}");
 }

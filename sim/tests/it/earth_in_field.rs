@@ -1,4 +1,4 @@
-//! The Earth in the field hides what is behind it, and what it outshines cannot be found.
+//! The Earth in the field hides the objects behind it, and objects that it outshines are undetectable.
 
 use boresight_sim::catalog::Catalog;
 use boresight_sim::optics::{KnownDetector, Projection, QuantumEfficiency, RadiometryConfig};
@@ -10,14 +10,15 @@ use nalgebra::{Rotation3, Unit, Vector3};
 
 use crate::small_scene::{looking_at, simulator, still};
 
-/// Of WGS 84, by which the limb is told here.
+/// Equatorial radius of WGS 84, which defines the limb in this test.
 const EQUATORIAL_RADIUS_KM: f64 = 6378.137;
 
 fn first(simulation: &Simulation) -> Exposure {
     simulator(simulation).camera().unwrap().expose(0).unwrap()
 }
 
-/// The small scene with the Earth in it, which gives no light: what is hidden is not what is outshone.
+/// The small scene with a black Earth, which emits no light: hidden and outshone objects are thereby
+/// distinguished.
 fn with_black_earth() -> Simulation {
     let mut simulation = still();
     simulation.radiometry = RadiometryConfig::Spectral {
@@ -44,7 +45,7 @@ fn stars_are_seen_above_the_limb_and_none_below_it() {
     let axis = Unit::new_normalize(down.cross(&Vector3::z()));
     let (mut above, mut below) = (0, 0);
     for sixth in 0..6 {
-        // The boresight on the limb, here and there around the Earth.
+        // The boresight points at the limb, at several positions around the Earth.
         let around = Rotation3::from_axis_angle(&Unit::new_normalize(down), f64::from(sixth));
         let at_limb: Direction<Icrs> =
             Direction::from_vector(around * Rotation3::from_axis_angle(&axis, limb) * down).unwrap();
@@ -58,7 +59,7 @@ fn stars_are_seen_above_the_limb_and_none_below_it() {
             let Some(at) = projection.project(&(exposure.truth.camera_from_icrs * direction)) else {
                 continue;
             };
-            // Catalogued places are off by aberration and proper motion, three pixels and more at the worst.
+            // Catalogued positions differ by aberration and proper motion, by three pixels or more at worst.
             if !((5.0..154.0).contains(&at.x) && (5.0..114.0).contains(&at.y)) {
                 continue;
             }
@@ -83,7 +84,7 @@ fn nothing_is_to_be_found_where_the_background_fills_the_pixels() {
         stars(exposure).filter(|star| detectable(star.snr)).count()
     };
     assert!(detectable(&first(&simulation)) > 3);
-    // In 0.25 s 1.2 times what the converter can tell.
+    // In 0.25 s, 1.2 times the largest signal that the converter can represent.
     simulation.sensor.background_e_per_s = 4.0 * 1.2 * simulation.sensor.saturation_e();
     let blinded = first(&simulation);
     assert!(stars(&blinded).count() > 3, "they are there all the same");

@@ -1,5 +1,5 @@
-//! The noise-free expectation: it holds the electrons of the truth table, and the frames scatter about it as they
-//! should.
+//! The noise-free expected image holds the electrons of the truth table, and the frames scatter about it as
+//! expected.
 
 use boresight_sim::Simulation;
 use boresight_sim::catalog::CatalogConfig;
@@ -12,7 +12,8 @@ use crate::small_scene::{restless, simulator, still};
 
 #[test]
 fn the_expected_image_holds_the_electrons_of_the_truth_table_and_the_flat_level() {
-    // Without a magnitude limit, in a hundredth of a second: objects of less than an electron.
+    // Without a magnitude limit, with an exposure of a hundredth of a second: objects of less than one
+    // electron.
     let faint = Simulation {
         catalog: CatalogConfig::default(),
         shutter: ShutterConfig::Fixed { exposure_s: 0.01 },
@@ -28,7 +29,8 @@ fn the_expected_image_holds_the_electrons_of_the_truth_table_and_the_flat_level(
             assert!((image.flat_e() / flat_e - 1.0).abs() < 1e-14);
             let in_image: f64 = image.object_pixels().map(|(_, signal_e)| signal_e).sum();
             let in_table: f64 = exposure.objects.iter().map(|object| object.electrons).sum();
-            // Some thousand positive numbers are added in two orders: 1e-13. A star that was left out would show.
+            // Some thousand positive numbers are added in two different orders, with an error of 1e-13. An
+            // omitted star would be detected.
             assert!((in_image / in_table - 1.0).abs() < 1e-9, "frame {frame}: {in_image} and {in_table} e⁻");
             let faintest = exposure.objects.iter().map(|o| o.electrons).fold(f64::INFINITY, f64::min);
             assert!(faintest > 1e-8 * in_table, "the tolerance would hide an object of {faintest} e⁻");
@@ -36,8 +38,8 @@ fn the_expected_image_holds_the_electrons_of_the_truth_table_and_the_flat_level(
     }
 }
 
-/// A camera fixed in the orbital frame turns: a star is smeared along its way, the longer the exposure the more, and
-/// its place in the table is the centroid of what is in the image.
+/// A camera fixed in the orbital frame rotates. The image of a star is smeared along its path, more for a
+/// longer exposure, and its position in the table is the centroid of the signal in the image.
 #[test]
 fn motion_during_the_exposure_smears_stars_about_the_place_of_the_table() {
     let exposed = |exposure_s: f64, motion_smear: Switch| {
@@ -59,7 +61,7 @@ fn motion_during_the_exposure_smears_stars_about_the_place_of_the_table() {
             .max_by(|a, b| a.electrons.total_cmp(&b.electrons))
             .unwrap()
             .clone();
-        // Centroid and variance along the rows, in a window that has nothing else of this brightness in it.
+        // Centroid and variance along the rows, in a window without any other object of this brightness.
         let image = camera.expected();
         let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
         for y in star.position.y as usize - 8..star.position.y as usize + 9 {
@@ -74,27 +76,31 @@ fn motion_during_the_exposure_smears_stars_about_the_place_of_the_table() {
     };
     let (_, _, still_px2) = exposed(1.0, Switch::Off);
     let (star, centroid, smeared_px2) = exposed(1.0, Switch::On);
-    // Faint neighbours pull by some hundredths of a pixel.
+    // Faint neighbours shift the centroid by some hundredths of a pixel.
     assert!((centroid - star.position.x).abs() < 0.05, "{centroid} and {}", star.position.x);
-    // The orbital rate, 0.0602 °/s, is 2.46 px/s along the rows: a uniform trail of variance L²/12.
+    // The orbital rate, 0.0602 °/s, is 2.46 px/s along the rows: a uniform trail of length L with variance
+    // L²/12.
     let trail_px2 = 2.46 * 2.46 / 12.0;
     assert!((smeared_px2 - still_px2 - trail_px2).abs() < 0.05, "{smeared_px2} − {still_px2} px²");
 }
 
 const SEEDS: u64 = 5;
 const FRAMES: u64 = 40;
-/// Five standard deviations: by chance once in 1.7 million tests; there are some ten here, and the seeds are fixed.
+/// Five standard deviations: exceeded by chance in one of 1.7 million tests; there are about ten tests here,
+/// and the seeds are fixed.
 const FIVE_SIGMA: f64 = 5.0;
 
 /// Deviations of digital numbers from their expectation, over all frames of all seeds.
 struct Scatter {
-    /// For each pixel: sum of the deviations, sum of their variances, mean signal above the flat level, e⁻.
+    /// For each pixel: sum of the deviations, sum of their variances, and mean signal above the flat level,
+    /// e⁻.
     pixels: Vec<(f64, f64, f64)>,
-    /// Products of normalised deviations: with the pixel to the right, the pixel below, the same pixel a frame later.
+    /// Products of normalised deviations: with the pixel to the right, with the pixel below, and with the
+    /// same pixel one frame later.
     products: [Products; 3],
 }
 
-/// A sum of products of two independent numbers of unit variance.
+/// Sum of products of two independent numbers of unit variance.
 #[derive(Default, Clone, Copy)]
 struct Products {
     sum: f64,
@@ -112,7 +118,7 @@ impl Products {
     }
 }
 
-/// `error_e` is added to every expectation: a planted fault.
+/// Collects the deviations; `error_e` is added to every expected value as a planted fault.
 fn scatter(simulation: &Simulation, error_e: f64) -> Scatter {
     let (columns, rows) = (simulation.camera.columns, simulation.camera.rows);
     let sensor = &simulation.sensor;
@@ -127,11 +133,12 @@ fn scatter(simulation: &Simulation, error_e: f64) -> Scatter {
             let image = camera.expected();
             let mut normalised = Vec::with_capacity(columns * rows);
             for ((expected_e, dn), pixel) in image.iter().zip(exposure.frame.dn()).zip(&mut scatter.pixels) {
-                // Clipping at the full well or the converter's end would bend the law.
+                // Clipping at the full well or at the end of the converter's range would distort the
+                // distribution.
                 assert!(expected_e < 0.7 * sensor.saturation_e());
                 let mean_dn = sensor.bias_dn + (expected_e + error_e) / sensor.gain_e_per_dn;
                 let gain2 = sensor.gain_e_per_dn * sensor.gain_e_per_dn;
-                // Poisson, read noise, and the converter's rounding (Sheppard).
+                // Poisson noise, read noise, and the converter's rounding (Sheppard).
                 let variance = (expected_e + sensor.read_noise_e * sensor.read_noise_e) / gain2 + 1.0 / 12.0;
                 let deviation = f64::from(*dn) - mean_dn;
                 pixel.0 += deviation;
@@ -156,7 +163,8 @@ fn scatter(simulation: &Simulation, error_e: f64) -> Scatter {
     scatter
 }
 
-/// How many standard deviations the mean of all pixels of some signal is off; how many there are.
+/// Returns the deviation of the mean of all pixels within a range of signal, in standard deviations, and the
+/// number of these pixels.
 fn mean_of(scatter: &Scatter, signal_e: std::ops::RangeInclusive<f64>) -> (f64, usize) {
     let chosen = || scatter.pixels.iter().filter(|(_, _, signal)| signal_e.contains(signal));
     let (sum, variance) =
@@ -171,17 +179,17 @@ fn two_hundred_frames_agree_with_their_expectation() {
     let z: Vec<f64> = scatter.pixels.iter().map(|(sum, variance, _)| sum / variance.sqrt()).collect();
     let n = z.len() as f64;
 
-    // Every pixel by itself, with Bonferroni's correction: 1e-4 over all of them.
+    // Each pixel separately, with Bonferroni correction: probability 1e-4 over all pixels.
     let limit = Normal::new(0.0, 1.0).unwrap().inverse_cdf(1.0 - 0.5e-4 / n);
     let worst = z.iter().fold(0.0_f64, |worst, z| worst.max(z.abs()));
     assert!(worst < limit, "a pixel is off by {worst} standard deviations, allowed {limit}");
 
-    // All together: chi-square has the mean n and the variance 2n.
+    // All pixels together: chi-square has mean n and variance 2n.
     let chi2: f64 = z.iter().map(|z| z * z).sum();
     assert!(((chi2 - n) / (2.0 * n).sqrt()).abs() < FIVE_SIGMA, "chi-square of {chi2} for {n} pixels");
 
-    // Each way in which a pixel is drawn: by the table, with some electrons on top, by the sampler; and the brightest,
-    // in which an error of the gain shows best.
+    // Each method of drawing a pixel: from the table, from the table with some additional electrons, from the
+    // sampler; and the brightest pixels, which are the most sensitive to an error of the gain.
     for (signal_e, at_least) in [(0.0..=0.0, 2000), (1e-9..=4.0, 2000), (4.0..=1e6, 200), (1000.0..=1e6, 10)]
     {
         let (sigmas, count) = mean_of(&scatter, signal_e.clone());
@@ -202,7 +210,8 @@ fn the_noise_of_neighbours_in_space_and_time_is_independent() {
     }
 }
 
-/// The null control: what the test above must not miss. A tenth of an electron is a hundredth of a digital number.
+/// Null control: a fault that the preceding test must detect. A tenth of an electron is a hundredth of a
+/// digital number.
 #[test]
 fn saboteur_a_tenth_of_an_electron_too_much_is_seen() {
     let (sigmas, _) = mean_of(&scatter(&still(), 0.1), 0.0..=0.0);

@@ -1,4 +1,5 @@
-//! Time scales, Earth and Sun, and apparent places against ERFA, astropy and JPL DE421: golden/README.md.
+//! Time scales, Earth and Sun, and apparent positions, compared with ERFA, astropy and JPL DE421:
+//! golden/README.md.
 
 use std::fs;
 use std::path::PathBuf;
@@ -26,11 +27,11 @@ where
     text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
 }
 
-/// apparent.bin; its layout is told in golden/apparent/make.py.
+/// Content of apparent.bin, whose layout is documented in golden/apparent/make.py.
 struct Apparent {
     observers: Vec<Observer>,
     stars: Vec<CatalogStar>,
-    /// Unit vectors, by epoch, then by star.
+    /// Unit vectors, indexed by epoch, then by star.
     places: Vec<Vec<Vector3<f64>>>,
 }
 
@@ -83,7 +84,7 @@ fn unit(ra_rad: f64, dec_rad: f64) -> Vector3<f64> {
     Vector3::new(cos_ra * cos_dec, sin_ra * cos_dec, sin_dec)
 }
 
-/// Collects differences, and says which is the largest.
+/// Collects differences, and reports the largest.
 #[derive(Default)]
 struct Worst {
     seen: usize,
@@ -94,7 +95,7 @@ struct Worst {
 impl Worst {
     fn see(&mut self, value: f64, place: impl Fn() -> String) {
         self.seen += 1;
-        // Negated, so that NaN is the worst of all.
+        // Negated, to make NaN the largest of all.
         if !value.le(&self.value) {
             (self.value, self.place) = (value, place());
         }
@@ -119,7 +120,7 @@ fn apparent_places_are_those_of_erfa() {
             worst.see(difference_mas, || format!("HIP {}, epoch {epoch}", star.id));
         }
     }
-    // Our Earth is within 3 mm/s of ERFA's (2 µas), our TDB within 10 µs; 1 mas is what a user needs.
+    // The simulator's Earth is within 3 mm/s of ERFA's (2 µas), its TDB within 10 µs; a user needs 1 mas.
     worst.check("apparent place, mas", 0.01);
 }
 
@@ -142,7 +143,7 @@ fn the_golden_stars_hold_the_hard_cases() {
                 .filter(|star| star.direction().separation(&observer.sun()).arcsec() < limit_arcmin * 60.0)
                 .count()
         };
-        // Inside the limiter of the deflection (4.9′), and around the Sun.
+        // Stars inside the limit of the deflection (4.9′), and stars around the Sun.
         assert!(near_sun(4.5) >= 1 && near_sun(180.0) >= 20, "epoch {epoch}");
     }
 }
@@ -158,8 +159,8 @@ fn straight_motion_agrees_with_relativistic_space_motion() {
         let difference = (seen.vector() - unit(ra_deg.to_radians(), dec_deg.to_radians())).norm();
         worst.see(difference * MAS_PER_RADIAN, || format!("HIP {hip}, epoch {epoch}"));
     }
-    // The relativistic terms of the star's own motion, which the simulator leaves out: 0.20 mas for Kapteyn's star
-    // (245 km/s, 8.6″ a year) after 54 years.
+    // Relativistic terms of the star's motion, which the simulator omits: 0.20 mas for Kapteyn's star (245
+    // km/s, 8.6″ per year) after 54 years.
     worst.check("place by space motion, mas", 0.3);
 }
 
@@ -186,14 +187,14 @@ fn check_earth(name: &str, position_km: f64, velocity_km_s: f64, sun_km: f64, su
 
 #[test]
 fn earth_and_sun_are_those_of_epv00() {
-    // What the polynomials leave (sim/data/make_earth.py prints it). 0.4 km at 1 au are 0.0006″.
+    // Residuals of the polynomials (printed by sim/data/make_earth.py). 0.4 km at 1 au are 0.0006″.
     check_earth("earth_erfa.csv", 0.3, 4e-6, 0.1, 0.001);
 }
 
 #[test]
 fn earth_and_sun_are_those_of_a_numerical_integration() {
-    // epv00 is within 13.4 km and 4.9 mm/s of DE405, which is some km from DE421; the velocity also has our 3 mm/s.
-    // 8e-6 km/s are 6 µas of aberration, 20 km at 1 au 0.03″.
+    // epv00 is within 13.4 km and 4.9 mm/s of DE405, which differs by some km from DE421; the velocity also
+    // has the simulator's error of 3 mm/s. 8e-6 km/s are 6 µas of aberration; 20 km at 1 au are 0.03″.
     check_earth("earth_de421.csv", 20.0, 8e-6, 20.0, 0.03);
 }
 
@@ -215,10 +216,10 @@ fn time_scales_are_those_of_astropy() {
         gps.see((clock::gps_s(time) - gps_s).abs(), || row[0].clone());
         tdb.see((clock::tdb_minus_tt_s(clock::tt_j2000_s(time)) - tdb_minus_tt_s).abs(), || row[0].clone());
     }
-    // astropy keeps a time to well below a nanosecond: rounding only.
+    // astropy represents a time to well below a nanosecond: only rounding remains.
     tt.check("TT, ns", 1.0);
-    // Six decimals in the file.
+    // The file has six decimals.
     gps.check("GPS time, s", 1e-6);
-    // Seven terms are good to 10 µs (USNO Circular 179).
+    // Seven terms are accurate to 10 µs (USNO Circular 179).
     tdb.check("TDB - TT, s", 1.5e-5);
 }

@@ -1,4 +1,4 @@
-//! Every file of golden/ is in its manifest, unchanged, and everything in the manifest is there.
+//! Every file of golden/ is in the manifest, unchanged, and every file in the manifest exists.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -43,8 +43,9 @@ fn manifest() -> Manifest {
     toml::from_str(&fs::read_to_string(golden().join("manifest.toml")).unwrap()).unwrap()
 }
 
-/// Paths below golden/ with `/`, without the manifest, the README, what Python leaves behind, and the witnesses: they look at what is
-/// simulated now, and keep nothing to compare with.
+/// Collects the paths below golden/, written with `/`. Excluded are the manifest, the README, files that
+/// Python leaves behind, and the witnesses, which examine current simulations and store nothing to compare
+/// with.
 fn files(folder: &Path, found: &mut BTreeSet<String>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

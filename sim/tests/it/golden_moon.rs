@@ -1,4 +1,4 @@
-//! The Moon against JPL's DE421.
+//! The Moon compared with JPL's DE421.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! Point-spread functions against stamps drawn by GalSim: golden/README.md.
+//! Point-spread functions compared with stamps drawn by GalSim: golden/README.md.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::Path;
 use boresight_sim::optics::{Psf, PsfConfig, Stamp};
 use contract::PixelPoint;
 
-/// A line of stamps.csv; its columns are told in golden/psf/make_stamps.py.
+/// A line of stamps.csv; its columns are documented in golden/psf/make_stamps.py.
 struct Reference {
     kind: String,
     config: PsfConfig,
@@ -58,7 +58,8 @@ fn stamps_are_those_of_galsim() {
             let difference = (a - b).abs() / peak;
             let entry = worst.entry(kind.clone()).or_default();
             *entry = entry.max(difference);
-            // What the issue of this simulator asks for; GalSim and our tables are each good to about 1e-5.
+            // Required by the issue of this simulator; GalSim and the simulator's tables are each accurate to
+            // about 1e-5.
             assert!(
                 difference < 1e-4,
                 "{config:?} at {centre:?}, pixel ({}, {}): {a:e}, GalSim {b:e}, {difference:e} of the peak",
@@ -71,7 +72,8 @@ fn stamps_are_those_of_galsim() {
     assert_eq!(worst.len(), 4, "every kind was compared");
 }
 
-/// Where the wings matter, 1e-4 of the peak says little: there they are compared with themselves.
+/// In the wings, a tolerance of 1e-4 of the peak is too loose: the wings are compared relative to their own
+/// values.
 #[test]
 fn the_wings_of_a_moffat_image_are_those_of_galsim() {
     let wide: Vec<Reference> = references().into_iter().filter(|stamp| stamp.size > 60).collect();
@@ -87,7 +89,7 @@ fn the_wings_of_a_moffat_image_are_those_of_galsim() {
         for (k, (share, expected)) in ours.iter().zip(&shares).enumerate() {
             let radius = centre.distance(PixelPoint::new((k % size) as f64, (k / size) as f64));
             if radius <= 30.0 {
-                // GalSim's image is periodic with some hundred px and rounded at 1e-9 of the flux.
+                // GalSim's image is periodic over some hundred pixels and rounded at 1e-9 of the flux.
                 let tolerance = 0.01 * expected + 2e-9;
                 assert!(
                     (share - expected).abs() < tolerance,

@@ -1,17 +1,18 @@
-//! The radiometry against stars that its spectra were not made from, and against the published zero point and colours of Gaia.
+//! Radiometry compared with stars that were not used to make its spectra, and with the published zero point
+//! and colours of Gaia.
 
 use std::fs;
 
 use boresight_sim::optics::{KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig};
 
-/// Rows of a file of golden/radiometry/, without its header.
+/// Returns the rows of a file of golden/radiometry/, without the header.
 fn rows(name: &str) -> Vec<Vec<String>> {
     let path = format!("{}/../golden/radiometry/{name}", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(path).unwrap();
     text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }
 
-/// An aperture of so many square centimetres in front of a detector.
+/// An aperture of `area_cm2` square centimetres in front of a detector.
 fn radiometry(area_cm2: f64, quantum_efficiency: QuantumEfficiency) -> Radiometry {
     Radiometry::new(&RadiometryConfig::Spectral {
         aperture_diameter_mm: 20.0 * (area_cm2 / std::f64::consts::PI).sqrt(),
@@ -47,7 +48,7 @@ fn electrons_agree_with_those_of_another_library_of_spectra() {
             let tolerance = if row[0] == "sun" { 0.02 } else { 0.07 };
             assert!((ratio - 1.0).abs() < tolerance, "{} in {name}: {ratio}", row[0]);
             ratios.push(ratio);
-            // By B−V alone, K dwarfs are taken for giants of less infrared light.
+            // From B−V only, K dwarfs are mistaken for giants with less infrared flux.
             let by_b_v = ours.zero_point_e_per_s(Some(b_v), None) / theirs;
             assert!(b_v > 1.2 || (by_b_v - 1.0).abs() < 0.08, "{} in {name}: {by_b_v} by B−V", row[0]);
         }
@@ -57,8 +58,9 @@ fn electrons_agree_with_those_of_another_library_of_spectra() {
     assert!((mean - 1.0).abs() < 0.01, "{mean}");
 }
 
-/// Gaia's telescope collects with 0.7278 m², and its G has the zero point 25.688 ± 0.002 mag of electrons a second in the Vega
-/// system (Evans et al. 2018, A&A 616, A4; Gaia DR2 documentation, Sec. 5.3.6): an absolute figure that a real detector reached.
+/// Gaia's telescope has a collecting area of 0.7278 m², and the zero point of its G band is 25.688 ± 0.002
+/// mag for one electron per second in the Vega system (Evans et al. 2018, A&A 616, A4; Gaia DR2
+/// documentation, Sec. 5.3.6): an absolute value that a real detector achieved.
 #[test]
 fn the_zero_point_of_gaia_comes_out() {
     let gaia = radiometry(7278.0, gaia_g());
@@ -67,9 +69,10 @@ fn the_zero_point_of_gaia_comes_out() {
     assert!((zero_point - 25.688).abs() < 0.03, "{zero_point}");
 }
 
-/// G − V = −0.01597 − 0.02809 x − 0.2483 x² + 0.03656 x³ − 0.002939 x⁴, x = V−I, from Landolt's standards, scatter 0.027 (Riello
-/// et al. 2021, A&A 649, A3, Appendix C). Held to 0.04 mag, since the zero of V itself differs by 0.02 from calibration to
-/// calibration; to 0.08 for M giants, of which few are among the standards, and where the relation of Jordi et al. (2010) is 0.04 away.
+/// G − V = −0.01597 − 0.02809 x − 0.2483 x² + 0.03656 x³ − 0.002939 x⁴, x = V−I, from Landolt's standards,
+/// scatter 0.027 (Riello et al. 2021, A&A 649, A3, Appendix C). The tolerance is 0.04 mag, because the zero
+/// point of V itself differs by 0.02 between calibrations; it is 0.08 for M giants, which are rare among the
+/// standards, and for which the relation of Jordi et al. (2010) differs by 0.04.
 #[test]
 fn the_colour_term_of_gaia_is_the_published_one() {
     let gaia = radiometry(7278.0, gaia_g());

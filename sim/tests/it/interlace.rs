@@ -1,4 +1,5 @@
-//! Interlaced readout: alternate rows show the scene at two moments, and the truth table tells both.
+//! Interlaced readout: alternate rows show the scene at two different times, and the truth table accounts for
+//! both.
 
 use boresight_sim::draw::ExpectedImage;
 use boresight_sim::onboard::ShutterConfig;
@@ -11,7 +12,7 @@ use crate::small_scene::{START_UTC, restless, simulator, still};
 
 const COLUMNS: usize = 160;
 
-/// An interval in which the field of the small scene turns by 5 px: 2 s at one turn an orbit.
+/// Interval in which the field of the small scene rotates by 5 px: 2 s at one rotation per orbit.
 const INTERVAL_S: f64 = 2.0;
 
 fn interlaced(mut simulation: Simulation, field_interval_s: f64, first_field: RowParity) -> Simulation {
@@ -19,7 +20,8 @@ fn interlaced(mut simulation: Simulation, field_interval_s: f64, first_field: Ro
     simulation
 }
 
-/// A camera fixed in the orbital frame, with jitter, drift and background, whose exposure is the same in every frame.
+/// A camera fixed in the orbital frame, with jitter, drift and background, and with the same exposure time in
+/// every frame.
 fn turning() -> Simulation {
     let mut simulation = restless();
     simulation.shutter = ShutterConfig::Fixed { exposure_s: 0.25 };
@@ -29,7 +31,7 @@ fn turning() -> Simulation {
     simulation
 }
 
-/// A pinhole with the same motion and nothing but the brightest star of the field.
+/// A pinhole camera with the same motion, and with the brightest star of the field as the only object.
 fn one_star() -> Simulation {
     let mut simulation = turning();
     simulation.camera.radial = [0.0; 3];
@@ -46,7 +48,7 @@ fn one_star() -> Simulation {
     simulation
 }
 
-/// The progressive scene, its first frame some seconds off.
+/// The progressive scene with its first frame shifted by some seconds.
 fn shifted(mut simulation: Simulation, seconds: i32) -> Simulation {
     simulation.schedule[0].start_utc = match seconds {
         -1 => "2012-04-25T11:59:59Z".into(),
@@ -71,7 +73,7 @@ fn find(objects: &[ObjectTruth], like: &ObjectTruth) -> Option<ObjectTruth> {
     objects.iter().find(|object| (object.kind, object.id) == (like.kind, like.id)).cloned()
 }
 
-/// The definition: each field is that of a progressive frame half an interval before or after, bit by bit.
+/// Definition: each field equals, bit by bit, that of a progressive frame half an interval before or after.
 #[test]
 fn each_field_is_the_progressive_frame_of_its_own_moment() {
     let (before, after) = (expose(&shifted(turning(), -1), 0), expose(&shifted(turning(), 1), 0));
@@ -86,7 +88,7 @@ fn each_field_is_the_progressive_frame_of_its_own_moment() {
             );
         }
         assert_ne!(rows(expected.iter(), 0), rows(odd.1.iter(), 0));
-        // An object is where it is on the average of both.
+        // The position of an object is the mean of its positions in both fields.
         let mut compared = 0;
         for object in &frame.objects {
             let (Some(a), Some(b)) = (find(&before.0.objects, object), find(&after.0.objects, object)) else {
@@ -100,7 +102,7 @@ fn each_field_is_the_progressive_frame_of_its_own_moment() {
     }
 }
 
-/// Electron-weighted mean column of the rows of one parity about a place.
+/// Electron-weighted mean column of the rows of one parity around an object.
 fn mean_column(image: &ExpectedImage, about: &ObjectTruth, parity: usize) -> f64 {
     let (mut sum, mut moment) = (0.0, 0.0);
     for (index, electrons) in image.iter().enumerate() {
@@ -120,11 +122,12 @@ fn even_and_odd_rows_are_displaced_by_rate_times_interval() {
         let simulation = interlaced(one_star(), INTERVAL_S, first_field);
         let (exposure, image) = expose(&simulation, 0);
         let truth = &exposure.truth;
-        // The boresight turns at |r × v|/r² about the orbit's normal.
+        // The boresight rotates at |r × v|/r² about the orbit's normal.
         let rate_rad_s =
             truth.position_km.cross(&truth.velocity_km_s).norm() / truth.position_km.norm_squared();
         let normal = truth.position_km.cross(&truth.velocity_km_s).normalize();
-        // Stars go the other way: −ω × s, and a pinhole makes of it the motion of the image.
+        // Stars move in the opposite sense, −ω × s; the pinhole projection converts this to the motion of the
+        // image.
         let [star] = &exposure.objects[..] else { unreachable!("one star was asked for") };
         let seen = |s: &nalgebra::Vector3<f64>| truth.camera_from_icrs.rotate(s);
         let s = seen(star.astrometric.unwrap().vector());
@@ -133,13 +136,14 @@ fn even_and_odd_rows_are_displaced_by_rate_times_interval() {
         let speed_px_s = focal_px * (motion.x * s.z - s.x * motion.z) / (s.z * s.z);
         let displaced_px = mean_column(&image, star, 1) - mean_column(&image, star, 0);
         assert!(speed_px_s.abs() > 2.4, "{speed_px_s} px/s");
-        // The precession of the orbit adds 1e-3 of the rate, 0.005 px; what the box cuts of the halo takes 0.003 px.
+        // The precession of the orbit adds 1e-3 of the rate, 0.005 px; the part of the halo outside the box
+        // accounts for 0.003 px.
         let expected_px = sign * speed_px_s * INTERVAL_S;
         assert!((displaced_px - expected_px).abs() < 0.01, "{displaced_px} px, expected {expected_px}");
     }
 }
 
-/// All light is in the table, with that of objects at the edge that are seen in one field alone.
+/// The table contains all signal, including that of objects at the edge that are visible in only one field.
 #[test]
 fn the_electrons_of_the_table_are_those_of_the_image() {
     let mut simulation = interlaced(turning(), INTERVAL_S, RowParity::Even);
@@ -154,10 +158,11 @@ fn the_electrons_of_the_table_are_those_of_the_image() {
         let objects = camera.expose(frame).unwrap().objects;
         let table: f64 = objects.iter().map(|object| object.electrons).sum();
         let image: f64 = camera.expected().iter().sum();
-        // Sums of some 1e5 numbers.
+        // Rounding of sums of about 1e5 numbers.
         assert!((table / image - 1.0).abs() < 1e-10, "frame {frame}: {table} and {image}");
         let stars = objects.iter().filter(|object| object.kind == ObjectKind::Star);
-        // Half the way is 2.5 px: such a star is on the detector in one field and off it in the other.
+        // Half the displacement is 2.5 px: such a star is on the detector in one field and off it in the
+        // other.
         in_one_field += stars.clone().filter(|star| star.position.x.abs() < 2.0).count();
         seen += stars.count();
     }
@@ -176,10 +181,10 @@ fn the_truth_of_the_frame_is_that_of_its_middle() {
     assert_eq!(frame.telemetry, progressive.telemetry);
     let mut compared = 0;
     for object in &frame.objects {
-        // At the edge an object may be seen in one field alone.
+        // At the edge an object may be visible in only one field.
         let Some(one) = find(&progressive.objects, object) else { continue };
         assert_eq!((object.astrometric, object.magnitude), (one.astrometric, one.magnitude));
-        // The path of a star bends by x²/f² · 5 px, and drift by seconds of arc.
+        // The path of a star is curved by x²/f² · 5 px, and drift adds seconds of arc.
         assert!(object.position.distance(one.position) < 0.02, "{object:?} and {one:?}");
         compared += usize::from(object.kind == ObjectKind::Star);
     }
@@ -200,8 +205,8 @@ fn a_still_scene_is_the_progressive_one() {
     let (frame, expected) = expose(&interlaced(still(), 0.02, RowParity::Even), 1);
     let (progressive, light) = expose(&still(), 1);
     for (index, (a, b)) in expected.iter().zip(light.iter()).enumerate() {
-        // Stars stand still to 1e-6 px (aberration); the target, 10 km ahead, turns by some 1e-3 rad/s · 0.01 s · 2347 px
-        // = 0.025 px, of its own electrons.
+        // Stars are stationary to 1e-6 px (aberration); the target, 10 km ahead, moves by about 1e-3 rad/s ·
+        // 0.01 s · 2347 px = 0.025 px, and the tolerance is this fraction of its electrons.
         let target = &progressive.objects[0];
         let at = contract::PixelPoint::new((index % COLUMNS) as f64, (index / COLUMNS) as f64);
         let allowed = if at.distance(target.position) < 25.0 { 0.03 * target.electrons } else { 1e-4 * a };
@@ -222,7 +227,7 @@ fn an_interlaced_frame_alone_is_that_of_the_run() {
     }
 }
 
-/// Each hot pixel that switches is seen while its own field is exposed.
+/// Each switching hot pixel is evaluated during the exposure of its own field.
 #[test]
 fn hot_pixels_switch_at_the_moment_of_their_row() {
     let mut simulation = turning();
@@ -235,7 +240,7 @@ fn hot_pixels_switch_at_the_moment_of_their_row() {
         let is_even = (pixel.id as usize / COLUMNS).is_multiple_of(2);
         let (own, other) = if is_even { (&before, &after) } else { (&after, &before) };
         let (own, other) = (find(own, pixel).unwrap(), find(other, pixel).unwrap());
-        // Time since J2000 is known to 6e-8 s of the 0.25 s of the exposure.
+        // Time since J2000 is accurate to 6e-8 s, compared with an exposure of 0.25 s.
         assert!((pixel.electrons / own.electrons - 1.0).abs() < 1e-5, "{pixel:?} and {own:?}");
         different += usize::from((pixel.electrons / other.electrons - 1.0).abs() > 1e-2);
     }

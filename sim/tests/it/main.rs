@@ -1,4 +1,5 @@
-//! The simulator from outside, one module per suite: `cargo test -p boresight-sim --test it pixel_distribution::` runs one suite.
+//! Tests of the simulator's public interface, one module per suite: `cargo test -p boresight-sim --test it
+//! pixel_distribution::` runs one suite.
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
 

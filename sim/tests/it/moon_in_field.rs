@@ -1,4 +1,4 @@
-//! The Moon in the field: against JPL's DE421, and in image and truth.
+//! The Moon in the field: compared with JPL's DE421, and in image and truth.
 
 use std::fs;
 use std::path::Path;
@@ -15,13 +15,14 @@ use nalgebra::Vector3;
 
 use crate::small_scene::{looking_at, simulator, still};
 
-/// DE421's Moon at one instant, from the chaser, and the scene of a camera that looks at it.
+/// Position of DE421's Moon relative to the chaser at one instant, and the scene of a camera that points at
+/// it.
 struct MoonView {
     from_chaser_km: Vector3<f64>,
     simulation: Simulation,
 }
 
-/// The first instants of the reference at which the Earth is far from the line to the Moon.
+/// The first instants of the reference at which the Earth is far from the line of sight to the Moon.
 fn views() -> Vec<MoonView> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../golden/moon/moon_de421.csv");
     let text = fs::read_to_string(path).unwrap();
@@ -55,14 +56,14 @@ fn the_moon(exposure: &Exposure) -> Option<&ObjectTruth> {
     exposure.objects.iter().find(|object| object.kind == ObjectKind::Moon)
 }
 
-/// Where the image has a direction.
+/// Pixel position of a direction in the image.
 fn place(view: &MoonView, exposure: &Exposure, direction: Vector3<f64>) -> PixelPoint {
     let direction: Direction<Icrs> = Direction::from_vector(direction).unwrap();
     let projection = Projection::new(&view.simulation.camera).unwrap();
     projection.project(&(exposure.truth.camera_from_icrs * direction)).unwrap()
 }
 
-/// Angle Sun–Moon–chaser, degrees, with the Sun at 1 au: its distance changes nothing of note.
+/// Angle Sun–Moon–chaser, degrees, with the Sun at 1 au: the effect of its actual distance is negligible.
 fn phase_deg(view: &MoonView, exposure: &Exposure) -> f64 {
     let sun_km = exposure.truth.sun.vector() * 149_597_870.7 - view.from_chaser_km;
     sun_km.angle(&-view.from_chaser_km).to_degrees()
@@ -83,13 +84,14 @@ fn the_disk_is_where_de421_has_it_as_large_as_it_is_and_lit_from_the_sun() {
             assert!(phase > 170.0, "no Moon at {phase}°");
             continue;
         };
-        // A pixel is 1.4′; the ephemeris errs by 0.02°, 0.85 px; 6″ of aberration by the orbit.
+        // A pixel is 1.4′; the ephemeris has an error of 0.02°, 0.85 px; the orbital velocity adds 6″ of
+        // aberration.
         let towards: Direction<Icrs> = Direction::from_vector(view.from_chaser_km).unwrap();
         let error = moon.astrometric.unwrap().separation(&towards).degrees();
         assert!(error < 0.032, "{error}°");
         let centre = place(view, &exposure, view.from_chaser_km);
 
-        // The lit pixels about the centre: none outside the disk, and the bright half towards the Sun.
+        // The lit pixels around the centre: none outside the disk, and the bright half towards the Sun.
         let sun_side = view.from_chaser_km + exposure.truth.sun.vector() * 300.0;
         let to_sun = place(view, &exposure, sun_side);
         let (dx, dy) = (to_sun.x - centre.x, to_sun.y - centre.y);
@@ -105,7 +107,8 @@ fn the_disk_is_where_de421_has_it_as_large_as_it_is_and_lit_from_the_sun() {
         assert!(along < radius_px + 1.2);
 
         if phase < 60.0 {
-            // Lommel–Seeliger: nearly even, so that half the level is the limb; the terminator takes its part.
+            // Lommel–Seeliger: the disk is nearly uniform, and half the level marks the limb; the terminator
+            // cuts off its part.
             let expected = camera.expected();
             let (columns, rows) = expected.size();
             let level = expected.electrons_at(centre.x.round() as usize, centre.y.round() as usize);
@@ -120,7 +123,8 @@ fn the_disk_is_where_de421_has_it_as_large_as_it_is_and_lit_from_the_sun() {
     assert!(phases.iter().any(|p| *p < 40.0) && phases.iter().any(|p| *p > 110.0), "{phases:?}");
 }
 
-/// Allen, Astrophysical Quantities (3rd ed. 1973), p. 143: phase angle, degrees, and how many magnitudes fainter than full the Moon is.
+/// Allen, Astrophysical Quantities (3rd ed. 1973), p. 143: phase angle, degrees, and magnitude difference
+/// from the full Moon, positive when fainter.
 const ALLEN: [(f64, f64); 17] = [
     (0.0, 0.00),
     (5.0, 0.08),
@@ -141,8 +145,9 @@ const ALLEN: [(f64, f64); 17] = [
     (150.0, 5.9),
 ];
 
-/// The Moon's V by Allen's table at a distance, with the Sun at another (au). When full, at the mean distance, it reflects a geometric
-/// albedo of 0.12 (NASA's Moon Fact Sheet) of a Sun of −26.76 (Willmer 2018) on a disk of 1737.4 km.
+/// V magnitude of the Moon at a distance, by Allen's table, with the Sun at another distance (au). The full
+/// Moon, with the Sun at its mean distance, reflects a geometric albedo of 0.12 (NASA's Moon Fact Sheet) of a
+/// Sun of −26.76 (Willmer 2018) on a disk of radius 1737.4 km.
 fn published_magnitude(phase_deg: f64, distance_km: f64, sun_au: f64) -> f64 {
     let full = -26.76 - 2.5 * libm::log10(0.12 * (1737.4 / distance_km) * (1737.4 / distance_km));
     let next = ALLEN.iter().position(|(phase, _)| *phase >= phase_deg).unwrap().max(1);
@@ -151,7 +156,7 @@ fn published_magnitude(phase_deg: f64, distance_km: f64, sun_au: f64) -> f64 {
     full + fainter_0 + part * (fainter_1 - fainter_0) + 5.0 * libm::log10(sun_au)
 }
 
-/// The distance of the Sun, au, to 1e-4 (Astronomical Almanac, low-precision formulas).
+/// Distance of the Sun, au, accurate to 1e-4 (Astronomical Almanac, low-precision formulas).
 fn sun_distance_au(time: Epoch) -> f64 {
     let anomaly_deg = 357.528 + 0.985_600_3 * clock::tt_j2000_s(time) / 86_400.0;
     let (once, twice) = (libm::cos(anomaly_deg.to_radians()), libm::cos(2.0 * anomaly_deg.to_radians()));
@@ -173,14 +178,16 @@ fn its_light_is_that_of_allens_table_in_the_table_and_in_the_image() {
         let distance_km = view.from_chaser_km.norm();
         let expected = published_magnitude(phase, distance_km, sun_distance_au(exposure.truth.time));
         let magnitude = moon.magnitude.unwrap();
-        // The table's two hundredths scatter by 0.05 about a smooth curve up to 120°, and by 0.11 beyond.
+        // The table's values, given to hundredths, scatter by 0.05 about a smooth curve up to 120°, and by
+        // 0.11 beyond.
         let tolerance = if phase < 120.0 { 0.06 } else { 0.12 };
         assert!((magnitude - expected).abs() < tolerance, "{magnitude}, expected {expected} at {phase}°");
         let electrons = 1.5e6 * libm::pow(10.0, -0.4 * magnitude) * exposure.truth.exposure_s;
-        // What the floor and the detector's edge leave out of the wings.
+        // Wings omitted by the floor of the stamp and by the detector's edge.
         assert!((moon.electrons / electrons - 1.0).abs() < 2e-3, "{} of {electrons}", moon.electrons);
 
-        // The image has these electrons more than one without the Moon; a star has none in a microsecond.
+        // The image has this number of electrons more than one without the Moon; a star contributes none in a
+        // microsecond.
         let with: f64 = camera.expected().iter().sum();
         let dark = Simulation { solar_system: Switch::Off, ..view.simulation.clone() };
         let dark = crate::small_scene::simulator(&dark);
@@ -192,7 +199,8 @@ fn its_light_is_that_of_allens_table_in_the_table_and_in_the_image() {
         distances_km.push(distance_km);
     }
     assert!(checked >= 12, "{checked} Moons");
-    // 0.2 mag from the nearest to the farthest: a Moon that is always at its mean distance would be found.
+    // The difference is 0.2 mag between the nearest and the farthest: a Moon placed always at its mean
+    // distance would be detected.
     let (near, far) = distances_km.iter().fold((f64::MAX, 0.0_f64), |(a, b), &km| (a.min(km), b.max(km)));
     assert!(5.0 * libm::log10(far / near) > 0.15, "{near} to {far} km");
 }
@@ -211,13 +219,13 @@ fn off_there_is_none_and_on_only_the_stars_behind_it_are_missing() {
         let off = Simulation { solar_system: Switch::Off, ..on.clone() };
         let [on, off] = [on, off].map(|s| simulator(&s).camera().unwrap().expose(0).unwrap());
         assert!(the_moon(&off).is_none());
-        // A new Moon gives no light, and hides its stars all the same.
+        // A new Moon contributes no electrons, but still hides stars.
         let Some(moon) = the_moon(&on) else { continue };
         let centre = moon.astrometric.unwrap();
         let seen = stars(&on);
         for star in off.objects.iter().filter(|object| object.kind == ObjectKind::Star) {
             let apart = star.astrometric.unwrap().separation(&centre).degrees();
-            // The disk's radius is 0.245° to 0.28°; what is apparent and what astrometric differ by 0.006°.
+            // The disk's radius is 0.245° to 0.28°; apparent and astrometric directions differ by 0.006°.
             assert!(
                 !(seen.contains(&star.id) && apart < 0.238),
                 "a star {apart}° from the centre shines through"
@@ -228,7 +236,7 @@ fn off_there_is_none_and_on_only_the_stars_behind_it_are_missing() {
         brightest_e = brightest_e.max(moon.peak_electrons);
         moons += 1;
     }
-    // Electrons do not fit into wells: it overflows, and the frame is made all the same.
+    // The electrons exceed the full well: it overflows, and the frame is still produced.
     assert!(brightest_e > 1e6, "{brightest_e} e⁻");
     assert!(moons > 10 && hidden > 5, "{hidden} stars behind {moons} Moons");
 }
@@ -247,7 +255,8 @@ fn the_shutter_follows_its_brightest_pixel() {
         };
         let exposure = simulator(&simulation).camera().unwrap().expose(0).unwrap();
         if let Some(moon) = the_moon(&exposure) {
-            // Half of the saturation of 40,550 electrons, within a step of the ladder: to 1 %, as the image is known.
+            // Half of the saturation of 40,550 electrons, within one step of the ladder; accurate to 1 %, as
+            // the predicted image is.
             let peak = moon.peak_electrons;
             assert!((16_700.0..=20_500.0).contains(&peak), "{peak} e⁻ in {} s", exposure.truth.exposure_s);
             checked += 1;

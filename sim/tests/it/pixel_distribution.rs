@@ -1,8 +1,11 @@
-//! The law of a digital number against its definition: Poisson electrons, normal read noise, a converter that rounds. Pearson's
-//! chi-square over whole frames, tails included, at twenty means from 0.1 to 10,000 electrons, each half-way between the
-//! quarters of an electron at which tables stand, and on three detectors, because each way of drawing has its own tables: an even
-//! one (one table for a mean), one whose pixels differ (tables on a grid of means up to 256 e⁻, in parts above), and one whose rows have offsets (electrons
-//! and noise from tables of their own).
+//! Distribution of a digital number compared with its definition: Poisson electrons, normal read noise, a
+//! converter that rounds.
+//!
+//! Pearson's chi-square is computed over whole frames, tails included, at twenty means from 0.1 to 10,000
+//! electrons. Each mean is half-way between the quarters of an electron at which tables are computed. Three
+//! detectors are tested, because each way of drawing has its own tables: a uniform detector (one table for a
+//! mean), a detector with different pixels (tables on a grid of means up to 256 e⁻, in parts above), and a
+//! detector with row offsets (electrons and noise from separate tables).
 
 use boresight_sim::randomness::{Effect, Seed, Stream, normal};
 use boresight_sim::sensor::{
@@ -10,12 +13,13 @@ use boresight_sim::sensor::{
 };
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Read noise in electrons; the gain is 1 e⁻/DN, so that single electrons are seen.
+/// Read noise in electrons; the gain is 1 e⁻/DN, which resolves single electrons.
 const READ_NOISE_E: f64 = 1.2;
 const BIAS_DN: f64 = 20.3;
 const COLUMNS: usize = 1000;
 
-/// The twenty means, evenly on a logarithmic scale, each moved to the middle between two quarters, no two to the same.
+/// The twenty means, evenly spaced on a logarithmic scale, each moved to a different midpoint between two
+/// quarters of an electron.
 fn means_e() -> Vec<f64> {
     let mut after = 0.0;
     let middles = (0..20).map(|i| {
@@ -35,21 +39,21 @@ fn even() -> SensorConfig {
     }
 }
 
-/// Pixels that differ by less than anybody can see: a response is a float of 32 bits, 3e-8 of the mean.
+/// A detector whose pixels differ by a negligible amount: a response is a float of 32 bits, 3e-8 of the mean.
 fn uneven() -> SensorConfig {
     let fixed_pattern = FixedPatternConfig { prnu_fraction: 1e-9, ..FixedPatternConfig::default() };
     SensorConfig { fixed_pattern, ..even() }
 }
 
-/// Rows whose offsets nobody can see.
+/// A detector with negligible row offsets.
 fn rows() -> SensorConfig {
     SensorConfig { line_noise: LineNoiseConfig { row_e: 1e-9, column_e: 0.0 }, ..even() }
 }
 
-/// The probability of each digital number from 0 on, by the plain sum over numbers of electrons.
+/// Probability of each digital number from 0 on, by direct summation over numbers of electrons.
 fn exact_distribution(mean_e: f64) -> Vec<f64> {
     let normal_cdf = |z: f64| 0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2);
-    // Beyond these lie less than 1e-14 of the electrons and of the noise.
+    // Less than 1e-14 of the probability of electrons and of noise lies beyond these limits.
     let (reach_e, reach_sigmas) = (9.0 * mean_e.sqrt() + 25.0, 8.0);
     let (first, last) = ((mean_e - reach_e).max(0.0) as u32, (mean_e + reach_e) as u32);
     let mut distribution = vec![0.0; (f64::from(last) + BIAS_DN + reach_sigmas * READ_NOISE_E) as usize + 2];
@@ -61,7 +65,7 @@ fn exact_distribution(mean_e: f64) -> Vec<f64> {
         let high = (centre + reach_sigmas * READ_NOISE_E) as usize + 1;
         let up_to = |dn: usize| normal_cdf((dn as f64 + 0.5 - centre) / READ_NOISE_E);
         for (dn, share) in distribution.iter_mut().enumerate().take(high + 1).skip(low) {
-            // The converter clips what is below 0.
+            // The converter clips values below 0.
             let below = if dn == 0 { 0.0 } else { up_to(dn - 1) };
             *share += probability * (up_to(dn) - below);
         }
@@ -69,7 +73,7 @@ fn exact_distribution(mean_e: f64) -> Vec<f64> {
     distribution
 }
 
-/// How often each digital number comes in flat frames of a mean.
+/// Number of occurrences of each digital number in flat frames of a given mean.
 fn counts_of_frames(config: &SensorConfig, mean_e: f64, draws: usize, seed: Seed) -> Vec<u64> {
     let rows = draws.min(1_000_000) / COLUMNS;
     let sensor = Sensor::new(config, COLUMNS, rows).unwrap();
@@ -85,7 +89,8 @@ fn counts_of_frames(config: &SensorConfig, mean_e: f64, draws: usize, seed: Seed
     counts
 }
 
-/// The same from the direct sampler: a Poisson number and a normal number for each.
+/// Number of occurrences of each digital number from the direct sampler: one Poisson draw and one normal draw
+/// each.
 fn counts_of_sampler(mean_e: f64, draws: usize, stream: &mut Stream) -> Vec<u64> {
     let mut counts = vec![0; 1 << 16];
     for _ in 0..draws {
@@ -95,13 +100,14 @@ fn counts_of_sampler(mean_e: f64, draws: usize, stream: &mut Stream) -> Vec<u64>
     counts
 }
 
-/// The probability of a chi-square at least as large.
+/// Probability of a chi-square at least as large as `chi2`.
 fn tail(chi2: f64, degrees_of_freedom: f64) -> f64 {
     ChiSquared::new(degrees_of_freedom).unwrap().sf(chi2)
 }
 
-/// Pearson's test against a law. Neighbouring numbers are joined until ten are expected; what lies beyond the last is joined with
-/// it, so that a number that the law does not know counts against it.
+/// Pearson's test of counts against a distribution. Neighbouring numbers are joined until ten occurrences are
+/// expected. The remainder is joined with the last bin; a number outside the distribution therefore counts
+/// against it.
 fn p_against_distribution(counts: &[u64], distribution: &[f64]) -> f64 {
     let draws = counts.iter().sum::<u64>() as f64;
     let mut bins: Vec<[f64; 2]> = Vec::new();
@@ -120,7 +126,8 @@ fn p_against_distribution(counts: &[u64], distribution: &[f64]) -> f64 {
     tail(chi2, bins.len() as f64 - 1.0)
 }
 
-/// Chi-square of two samples of the same size, numbers joined until both together came twenty times.
+/// Chi-square test of two samples of the same size; numbers are joined until the two samples together have
+/// twenty occurrences.
 fn p_of_two(a: &[u64], b: &[u64]) -> f64 {
     let (mut chi2, mut bins, mut open) = (0.0, 0.0, [0.0; 2]);
     for (&a, &b) in a.iter().zip(b) {
@@ -162,15 +169,15 @@ fn frames_follow_the_distribution_between_the_nodes_of_their_tables() {
     assert_distribution(200_000);
 }
 
-/// In full: `cargo test --release -p boresight-sim --test it pixel_distribution:: -- --ignored --nocapture`.
+/// Full run: `cargo test --release -p boresight-sim --test it pixel_distribution:: -- --ignored --nocapture`.
 #[test]
 #[ignore = "8e9 draws, minutes of a processor: for a scheduled job"]
 fn frames_follow_the_law_in_a_hundred_million_draws_of_each_mean() {
     assert_distribution(100_000_000);
 }
 
-/// The test can fail: a mean that is off by two hundredths of the noise is found in a million draws, hence by one of two thousandths
-/// in the full number.
+/// The test can fail: a mean with an error of two hundredths of the noise is detected in a million draws, and
+/// hence an error of two thousandths in the full number.
 #[test]
 fn a_wrong_distribution_is_found() {
     let (mean_e, draws) = (1000.125, 1_000_000);

@@ -1,4 +1,4 @@
-//! Planets: against JPL's DE421, and in the field.
+//! Planets: compared with JPL's DE421, and in the field.
 
 use std::fs;
 use std::path::Path;
@@ -64,16 +64,16 @@ fn directions_and_distances_are_those_of_de421_to_minutes_of_arc() {
         let distance = (sight.distance_au / distance_au - 1.0).abs();
         worst_distance[number] = worst_distance[number].max(distance);
     }
-    // What Standish and Williams state, from the Earth; see golden/manifest.toml.
+    // Errors stated by Standish and Williams, as seen from the Earth; see golden/manifest.toml.
     for (number, bound) in [(1, 0.3), (2, 0.6), (4, 2.5), (5, 9.0), (6, 13.0), (7, 2.5), (8, 1.5)] {
         assert!(worst[number] < bound, "planet {number}: {worst:?}");
     }
     assert!(worst_distance.iter().all(|error| *error < 3e-3), "{worst_distance:?}");
-    // Bounds that mean something: the worst comes near them.
+    // The bounds are meaningful: the largest errors come near them.
     assert!(worst[5] > 1.0 && worst[6] > 1.0, "{worst:?}");
 }
 
-/// A camera that looks at where DE421 has the planet.
+/// A camera that points at DE421's position of the planet.
 fn towards(reference: &Reference) -> Simulation {
     let utc = clock::format_utc(epoch(reference.tdb_j2000_s));
     let mut simulation = still();
@@ -101,8 +101,8 @@ fn a_planet_is_where_de421_has_it_in_the_image_and_in_the_table() {
             .unwrap()
             .project(&(exposure.truth.camera_from_icrs * reference.direction))
             .unwrap();
-        // A pixel is 1.4′: the ephemeris' error (9′ for Jupiter, 2.5′ for Venus), 0.4′ of aberration, and the parallax of a
-        // low orbit, 0.5′ of Venus at its nearest.
+        // A pixel is 1.4′: the error of the ephemeris (9′ for Jupiter, 2.5′ for Venus), 0.4′ of aberration,
+        // and the parallax of a low orbit, 0.5′ for Venus at its nearest.
         let bound_px = if planet.id == 5 { 7.0 } else { 2.5 };
         assert!(
             planet.position.distance(expected) < bound_px,
@@ -110,10 +110,10 @@ fn a_planet_is_where_de421_has_it_in_the_image_and_in_the_table() {
             planet.position.distance(expected)
         );
         assert!(planet.magnitude.unwrap() < -1.5);
-        // Its light is in the image.
+        // The planet's electrons are in the image.
         let (x, y) = (planet.position.x.round() as usize, planet.position.y.round() as usize);
         assert!(camera.expected().electrons_at(x, y) > 0.5 * planet.peak_electrons);
-        // No star of the catalogue has its number's place.
+        // No catalogue star is listed instead of the planet because of an equal number.
         let star = exposure.objects.iter().filter(|object| object.kind == ObjectKind::Star);
         assert!(star.clone().all(|star| star.magnitude.unwrap() > planet.magnitude.unwrap()));
     }
@@ -144,7 +144,7 @@ fn the_shutter_follows_a_planet() {
     let off = Simulation { solar_system: Switch::Off, ..on.clone() };
     let [on, off] = [on, off].map(|simulation| simulator(&simulation).camera().unwrap().expose(0).unwrap());
     assert!(on.truth.exposure_s < 0.1 * off.truth.exposure_s, "{} s", on.truth.exposure_s);
-    // 0.5 of the saturation of 40,550 electrons, within a step of the ladder.
+    // 0.5 of the saturation of 40,550 electrons, within one step of the ladder.
     let peak = planets(&on).iter().map(|planet| planet.peak_electrons).fold(0.0, f64::max);
     assert!((5_000.0..=20_300.0).contains(&peak), "{peak}");
 }

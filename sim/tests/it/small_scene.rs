@@ -1,4 +1,4 @@
-//! A small scene for tests: 160 × 120 pixels, 3.9° × 2.9° of sky, a target 10 km ahead, some twenty stars.
+//! A small scene for tests: 160 × 120 pixels, 3.9° × 2.9° of sky, a target 10 km ahead, about twenty stars.
 
 use std::path::Path;
 
@@ -24,8 +24,8 @@ pub(crate) fn simulator(simulation: &Simulation) -> Simulator {
     Simulator::new(simulation, Path::new("")).unwrap()
 }
 
-/// An inertial camera that looks at where the target is in frame 0, without control or knowledge errors; a fixed
-/// exposure; whole images; every noise on. Nothing in it is saturated.
+/// An inertial camera that points at the target's position in frame 0, without control or knowledge errors; a
+/// fixed exposure; whole images; every noise on. No pixel is saturated.
 pub(crate) fn still() -> Simulation {
     let orbit = orbit();
     let states = Trajectory::new(&orbit).unwrap().states_at(clock::parse_utc(START_UTC).unwrap());
@@ -84,8 +84,8 @@ pub(crate) fn still() -> Simulation {
     }
 }
 
-/// Every effect there is: a camera fixed in the orbital frame through a mounting that is not as believed, control
-/// and knowledge errors, shutter control, regions of interest, a manoeuvre.
+/// All effects of the simulator: a camera fixed in the orbital frame through a mounting that differs from its
+/// nominal one, control and knowledge errors, shutter control, regions of interest, a manoeuvre.
 pub(crate) fn restless() -> Simulation {
     let nominal = Mounting { phi_deg: -90.0, theta_deg: 1.0, psi_deg: 5.0 };
     let slow = |rms: f64| DriftConfig { rms_arcsec: [rms; 3], periods_s: vec![5930.0, 910.0, 173.0] };
@@ -125,7 +125,7 @@ pub(crate) fn restless() -> Simulation {
     simulation
 }
 
-/// Every effect of the detector at once.
+/// All detector effects at once.
 pub(crate) fn defective(mut simulation: Simulation) -> Simulation {
     let sensor = &mut simulation.sensor;
     sensor.hot_pixels = HotPixelConfig {
@@ -151,7 +151,7 @@ pub(crate) fn defective(mut simulation: Simulation) -> Simulation {
     simulation
 }
 
-/// Particles through a thin detector, by their rate.
+/// Cosmic-ray hits on a thin detector at the given rate.
 pub(crate) fn cosmic_rays(rate_per_cm2_s: f64) -> CosmicRayConfig {
     CosmicRayConfig {
         rate_per_cm2_s,
@@ -163,7 +163,7 @@ pub(crate) fn cosmic_rays(rate_per_cm2_s: f64) -> CosmicRayConfig {
     }
 }
 
-/// A camera pointed at a place in the sky, without control error.
+/// A camera pointed at a direction in the sky, without control error.
 pub(crate) fn looking_at(ra_deg: f64, dec_deg: f64) -> AttitudeConfig {
     AttitudeConfig {
         guidance: Guidance::Inertial { ra_deg, dec_deg, roll_deg: 20.0 },
@@ -172,7 +172,7 @@ pub(crate) fn looking_at(ra_deg: f64, dec_deg: f64) -> AttitudeConfig {
     }
 }
 
-/// A dawn-dusk orbit at 750 km, the chaser 10 km behind.
+/// A dawn-dusk orbit at 750 km, with the chaser 10 km behind.
 fn orbit() -> OrbitConfig {
     OrbitConfig {
         epoch_utc: "2012-04-25T00:00:00Z".into(),

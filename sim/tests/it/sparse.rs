@@ -1,4 +1,4 @@
-//! Frames of which the camera keeps regions, drawn as far as it looks at them, are those drawn as a whole.
+//! Frames with regions of interest, drawn only where the camera needs them, equal frames drawn completely.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use boresight_sim::{PixelSelection, Simulation, Simulator};
 
 use crate::{argon, small_scene};
 
-/// The frames with their regions, telemetry, truth and objects, to the bit.
+/// Asserts that the frames with their regions, telemetry, truth and objects are identical to the bit.
 fn assert_sparse_is_whole(simulator: &Simulator, frames: Range<u64>) {
     let mut seen = simulator.camera().unwrap();
     let mut all = simulator.camera().unwrap().with_pixel_selection(PixelSelection::All);
@@ -19,7 +19,7 @@ fn assert_sparse_is_whole(simulator: &Simulator, frames: Range<u64>) {
     assert!(regions as u64 > frames.end - frames.start, "{regions} regions");
 }
 
-/// The images above a floor of a camera that suppresses the rest, to the bit.
+/// Asserts that the images of a camera with zero suppression are identical above the floor, to the bit.
 fn assert_above_is_whole(simulator: &Simulator, floor_dn: u16, frames: Range<u64>) {
     let (mut seen, mut all) =
         (simulator.camera().unwrap(), simulator.camera().unwrap().with_pixel_selection(PixelSelection::All));
@@ -33,15 +33,15 @@ fn assert_above_is_whole(simulator: &Simulator, floor_dn: u16, frames: Range<u64
     assert!(lit > 20, "{lit} pixels over {floor_dn}");
 }
 
-/// Regions about all that is above `threshold_dn`.
+/// The scene with regions around all pixels above `threshold_dn`.
 fn restless(threshold_dn: u16) -> Simulation {
     let mut simulation = small_scene::restless();
     simulation.roi.as_mut().unwrap().threshold_dn = threshold_dn;
     simulation
 }
 
-/// The background has 41 DN with a noise of 1.6 DN: these thresholds are exceeded by sources alone, by some pixels of the
-/// background, and by a tenth of it.
+/// The background is 41 DN with a noise of 1.6 DN: these thresholds are exceeded only by sources, by some
+/// pixels of the background, and by a tenth of the background.
 #[test]
 fn a_sparse_frame_is_the_whole_frame_with_few_regions_and_with_many() {
     for (threshold_dn, count) in [(67, 500), (46, 100), (43, 20)] {
@@ -56,7 +56,8 @@ fn a_sparse_frame_is_the_whole_frame_on_an_even_detector() {
     assert_sparse_is_whole(&small_scene::simulator(&simulation), 0..400);
 }
 
-/// Whole images of which only what is above a floor is drawn are those drawn as a whole, with 0 for what is not above it.
+/// Whole images of which only the pixels above a floor are drawn equal images drawn completely, with 0 for
+/// all other pixels.
 #[test]
 fn suppressed_images_are_whole_images_above_the_floor() {
     for floor_dn in [43, 46, 67] {
@@ -72,7 +73,8 @@ fn suppressed_images_are_whole_images_above_the_floor() {
     assert!(refusal.starts_with("zero_suppression_dn is 67, expected none beside [roi]"), "{refusal}");
 }
 
-/// Wells that overflow, particles, dead pixels, smear: with and without the noise of lines, which leaves no pixel undrawn.
+/// Overflowing wells, cosmic-ray hits, dead pixels, smear: with and without line noise, which leaves no pixel
+/// undrawn.
 #[test]
 fn a_sparse_frame_is_the_whole_frame_with_every_effect_of_the_detector() {
     for lines in [true, false] {
@@ -86,20 +88,20 @@ fn a_sparse_frame_is_the_whole_frame_with_every_effect_of_the_detector() {
     }
 }
 
-/// Of the two hundred frames of each of the five days the first twelve.
+/// The first twelve of the two hundred frames of each of the five days.
 #[test]
 fn sparse_frames_of_argon_are_whole_frames() {
     assert_argon(12);
 }
 
-/// In full: `cargo test --release -p boresight-sim --test it sparse:: -- --ignored`, 20 s of CPU time.
+/// Full run: `cargo test --release -p boresight-sim --test it sparse:: -- --ignored`, 20 s of CPU time.
 #[test]
 #[ignore = "1,000 frames of 752 × 580 pixels, four times: for a scheduled job"]
 fn a_thousand_sparse_frames_of_argon_are_whole_frames() {
     assert_argon(200);
 }
 
-/// Their regions, and every pixel above the floor wherever it is.
+/// Compares the regions of the frames, and every pixel above the floor anywhere in the frame.
 fn assert_argon(frames_of_a_day: u64) {
     let argon = argon::simulation();
     let floor_dn = argon.roi.as_ref().unwrap().threshold_dn;

@@ -1,4 +1,4 @@
-//! Effects switched one by one: what is drawn for the others stays to the bit.
+//! Effects switched one by one: the draws of all other effects stay the same to the bit.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ fn one(simulation: &Simulation, frame: u64) -> Exposure {
     simulator(simulation).camera().unwrap().expose(frame).unwrap()
 }
 
-/// Identity, place and light of all objects of a kind.
+/// Number, position and electrons of all objects of a kind.
 fn light(exposure: &Exposure, kind: ObjectKind) -> Vec<(u32, [f64; 4])> {
     let of_kind = exposure.objects.iter().filter(|object| object.kind == kind);
     of_kind.map(|o| (o.id, [o.position.x, o.position.y, o.electrons, o.peak_electrons])).collect()
@@ -25,7 +25,7 @@ fn places(exposure: &Exposure, kind: ObjectKind) -> BTreeSet<(u32, [u64; 2])> {
     of_kind.map(|o| (o.id, [o.position.x.to_bits(), o.position.y.to_bits()])).collect()
 }
 
-/// The switch changes the frame, and of its truth the objects of the kinds `touched` alone.
+/// Checks that the switch changes the frame, and in its truth only the objects of the kinds `touched`.
 fn check(all: &Simulation, name: &str, switch: fn(&mut Simulation), touched: &[ObjectKind]) {
     let mut simulation = all.clone();
     switch(&mut simulation);
@@ -48,13 +48,14 @@ fn check(all: &Simulation, name: &str, switch: fn(&mut Simulation), touched: &[O
             assert_eq!(light(&other, kind), light(&base, kind), "{name}: {kind:?}");
         }
     }
-    // Places are drawn apart from all that happens to the charge; a dead pixel hides what is there.
+    // Positions are drawn independently of all effects on the charge; a dead pixel hides an object at its
+    // position.
     let kept = |kind| places(&other, kind).is_superset(&places(&base, kind));
     assert!(kept(HotPixel), "{name}");
     assert!(kept(CosmicRay) || name == "cosmic rays", "{name}");
 }
 
-/// A white cube of half a metre.
+/// A white cube with sides of half a metre.
 fn cube() -> TargetConfig {
     let surface = SurfaceConfig { diffuse: 0.8, specular: 0.0, roughness: 0.1 };
     TargetConfig::Plates {
@@ -72,7 +73,7 @@ fn switching_an_effect_leaves_every_other_draw_as_it_was() {
     all.sensor.full_well_e = 10_000.0;
     all.sensor.interlace = Some(InterlaceConfig { field_interval_s: 0.02, first_field: RowParity::Even });
     all.background.faint_stars_s10 = 100.0;
-    // Light that falls on the pixels, and what comes to lie in them.
+    // Objects whose signal falls on the pixels, and those that also arise in the pixels.
     let sky = [Target, Star, Planet, Moon];
     let charge = [Target, Star, Planet, Moon, HotPixel, CosmicRay];
     type Switching = fn(&mut Simulation);
@@ -93,7 +94,7 @@ fn switching_an_effect_leaves_every_other_draw_as_it_was() {
             &charge,
         ),
         ("frame transfer", |s| s.sensor.frame_transfer_s = 0.0, &[]),
-        // Of hot pixels the moments at which they switch.
+        // For hot pixels, the times at which they switch change.
         ("interlace", |s| s.sensor.interlace = None, &[Target, Star, Planet, Moon, HotPixel]),
         ("background", |s| s.background = BackgroundConfig::default(), &[]),
         ("a beacon", |s| s.target = TargetConfig::Beacon { magnitude_at_1_km: 1.0 }, &[Target]),
@@ -102,7 +103,7 @@ fn switching_an_effect_leaves_every_other_draw_as_it_was() {
     for (name, switch, touched) in switches {
         check(&all, name, switch, touched);
     }
-    // Saturn, in the days of that spring.
+    // Direction of Saturn in that spring.
     all.solar_system = Switch::On;
     all.attitude = looking_at(203.4, -6.8);
     check(&all, "solar system", |s| s.solar_system = Switch::Off, &[Planet, Moon]);

@@ -1,4 +1,4 @@
-//! The target as a body of plates, in whole frames: where its light is, how much, and what the truth tells of it.
+//! The target as a body of plates, in whole frames: position and amount of its signal, and its truth.
 
 use boresight_sim::scene::TargetConfig;
 use boresight_sim::truth::{ObjectKind, ObjectTruth, TargetAttitudeConfig};
@@ -6,7 +6,7 @@ use boresight_sim::{Exposure, Simulation};
 
 use crate::small_scene::{simulator, still};
 
-/// The fragment of a scenario that the documentation offers.
+/// The scenario fragment from the documentation.
 fn tango() -> TargetConfig {
     #[derive(serde::Deserialize)]
     struct Fragment {
@@ -16,7 +16,7 @@ fn tango() -> TargetConfig {
     fragment.target
 }
 
-/// TANGO `range_m` ahead, alone in the sky.
+/// TANGO at `range_m` ahead, as the only object in the sky.
 fn ahead(range_m: f64, target: TargetConfig) -> Simulation {
     let mut simulation = still();
     let scale = range_m / 10_000.0;
@@ -44,7 +44,7 @@ fn the_fragment_of_the_documentation_is_a_target() {
 
 #[test]
 fn a_resolved_body_has_the_light_of_its_magnitude_in_the_image_and_in_the_table() {
-    // Over 30 px, 6 px, 0.2 px and 0.06 px.
+    // The body spans 30 px, 6 px, 0.2 px and 0.06 px.
     for range_m in [60.0, 300.0, 9_000.0, 30_000.0] {
         let simulation = ahead(range_m, tango());
         let simulator = simulator(&simulation);
@@ -52,7 +52,7 @@ fn a_resolved_body_has_the_light_of_its_magnitude_in_the_image_and_in_the_table(
         let exposure = camera.expose(0).unwrap();
         let target = target(&exposure);
         let expected = 1.5e6 * libm::pow(10.0, -0.4 * target.magnitude.unwrap()) * 0.25;
-        // Cut at the floor of the stamp: 2π · 16 px² · 0.01 electrons and some.
+        // Loss at the floor of the stamp: slightly more than 2π · 16 px² · 0.01 electrons.
         assert!((target.electrons - expected).abs() < 2.0 + 1e-9 * expected, "at {range_m} m");
         let (mut sum, mut x, mut y) = (0.0, 0.0, 0.0);
         for (index, electrons) in camera.expected().object_pixels() {
@@ -62,7 +62,7 @@ fn a_resolved_body_has_the_light_of_its_magnitude_in_the_image_and_in_the_table(
         }
         assert!((sum / target.electrons - 1.0).abs() < 1e-9);
         let away = libm::hypot(x / sum - target.position.x, y / sum - target.position.y);
-        // The S-curve of pixel sampling at a width of 0.8 px, and what the floor cuts.
+        // The S-curve of pixel sampling at a width of 0.8 px, and the loss at the floor.
         assert!(away < 1e-3, "{away} px at {range_m} m");
     }
 }
@@ -76,7 +76,7 @@ fn the_centre_of_brightness_leaves_the_line_of_sight_as_the_range_says() {
         target(&exposure).position.distance(exposure.truth.target_position.unwrap())
     };
     let (near, far) = (offset(100.0), offset(1_000.0));
-    // Of a body of 0.4 m at 2350 px a radian: some px at 100 m. Perspective changes it by 1 %.
+    // For a body of 0.4 m at 2350 px per radian: some pixels at 100 m. Perspective changes the offset by 1 %.
     assert!((0.5..10.0).contains(&near), "{near}");
     assert!((near / far / 10.0 - 1.0).abs() < 0.05, "{near} {far}");
 }
@@ -84,7 +84,7 @@ fn the_centre_of_brightness_leaves_the_line_of_sight_as_the_range_says() {
 #[test]
 fn a_tumbling_body_has_its_period_in_the_light_curve() {
     let TargetConfig::Plates { boxes, plates, .. } = tango() else { panic!("a body of plates") };
-    // A turn in 8 frames; frames are 0.25 s apart.
+    // One rotation in 8 frames; frames are 0.25 s apart.
     let attitude = TargetAttitudeConfig::Tumbling {
         phi_deg: 0.0,
         theta_deg: 0.0,
@@ -104,7 +104,8 @@ fn a_tumbling_body_has_its_period_in_the_light_curve() {
     let faintest = curve.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(brightest > 1.5 * faintest + 100.0, "{curve:?}");
     for (i, electrons) in curve[..16].iter().enumerate() {
-        // In 2 s the Sun and the chaser hardly move as seen from the target: 0.12°, of a glint a few per cent.
+        // In 2 s the directions to the Sun and to the chaser, as seen from the target, change by 0.12°: a few
+        // per cent of a glint.
         assert!((curve[i + 8] - electrons).abs() < 0.05 * brightest, "frame {i}: {curve:?}");
     }
     assert!((0..16).any(|i| (curve[i + 4] - curve[i]).abs() > 0.2 * brightest), "no shorter period");

@@ -1,4 +1,5 @@
-//! The target hides the stars behind it, lit or not, and no camera is inside of it. What else cannot be of a flight is refused too.
+//! The target, lit or not, hides the stars behind it, and a camera inside the target is rejected. Other
+//! impossible flights are rejected too.
 
 use std::path::Path;
 
@@ -18,15 +19,15 @@ fn with(target: TargetConfig) -> Simulation {
     Simulation { target, ..still() }
 }
 
-/// A point of next to no light, which hides nothing.
+/// A point target with almost no flux, which hides nothing.
 const POINT: TargetConfig = TargetConfig::Beacon { magnitude_at_1_km: 30.0 };
 
-/// Black: what is hidden is not what is outshone.
+/// A black sphere: hidden stars are thereby distinguished from outshone stars.
 fn black_sphere(radius_m: f64) -> TargetConfig {
     TargetConfig::LambertSphere { radius_m, albedo: 0.0 }
 }
 
-/// A box of 200 m about the origin.
+/// A black box of 200 m around the origin.
 fn black_box() -> TargetConfig {
     let surface = "{ diffuse = 0.0 }";
     toml::from_str(&format!(
@@ -45,7 +46,7 @@ fn stars_are_seen_beside_it_and_none_behind_it() {
     let seen = first(&with(POINT));
     let centre: PixelPoint = seen.truth.target_position.unwrap();
     let hidden = first(&with(black_sphere(100.0)));
-    // 100 m at the range, in columns of 8.6 µm and rows of 8.3 µm.
+    // A radius of 100 m at this range, in columns of 8.6 µm and rows of 8.3 µm.
     let sine = 0.1 / seen.truth.range_km;
     let (across_px, along_px) = (20.187 / 0.0086 * sine, 20.187 / 0.0083 * sine);
     let left = stars(&hidden);
@@ -62,7 +63,7 @@ fn stars_are_seen_beside_it_and_none_behind_it() {
         }
     }
     assert!(behind >= 2 && beside > 10, "{behind} behind, {beside} beside");
-    // Whatever its shape: the box holds the sphere.
+    // The shape does not matter: the box contains the sphere.
     let boxed = stars(&first(&with(black_box())));
     assert!(boxed.len() < left.len() + 1 && boxed.iter().all(|star| left.contains(star)), "{boxed:?}");
     assert!(boxed.len() > 5);
@@ -81,7 +82,7 @@ fn the_shutter_does_not_follow_a_star_that_is_hidden() {
         first(&Simulation { shutter: shutter.clone(), ..with(target) }).truth.exposure_s
     };
     assert!(exposure_s(POINT) < 0.2);
-    // Before the whole field.
+    // The sphere covers the whole field.
     assert_eq!(exposure_s(black_sphere(1000.0)), 0.25);
 }
 
@@ -95,7 +96,8 @@ fn refusal(simulation: &Simulation) -> String {
 
 #[test]
 fn no_camera_is_inside_of_it_in_any_frame() {
-    // It drifts by below the target, 500 m from its centre in the middle, 1.1 km and more at both ends.
+    // The chaser drifts past below the target, 500 m from the target's centre in the middle, 1.1 km and more
+    // at both ends.
     let mut simulation = still();
     simulation.orbit.epoch_utc = START_UTC.into();
     let relative = &mut simulation.orbit.relative;
@@ -126,7 +128,7 @@ fn exposures_hits_and_epochs_that_cannot_be_are_refused() {
         message.contains("shutter.exposure_s is 0.26") && message.contains("0.25 s (schedule)"),
         "{message}"
     );
-    // A single frame lasts as long as it likes; two groups are apart by less than their cadence.
+    // A single frame may last for any time; two groups are separated by less than their cadence.
     simulation.schedule[0].count = 1;
     simulator(&simulation);
     let mut second = simulation.schedule[0].clone();
@@ -150,7 +152,8 @@ fn exposures_hits_and_epochs_that_cannot_be_are_refused() {
     }
 }
 
-/// Stars brighter than the limit have that signal-to-noise ratio in the truth table, fainter ones have not.
+/// In the truth table, stars brighter than the limit have at least the requested signal-to-noise ratio;
+/// fainter stars have less.
 #[test]
 fn the_limiting_magnitude_is_that_of_the_truth_table() {
     let simulation = with(POINT);
@@ -161,7 +164,7 @@ fn the_limiting_magnitude_is_that_of_the_truth_table() {
     };
     let (mut brighter, mut fainter) = (0, 0);
     for star in stars.iter().filter(inside) {
-        // Where in a pixel a star lies, and its trail, are worth a quarter of a magnitude.
+        // The position of a star within its pixel, and its trail, account for a quarter of a magnitude.
         let magnitude = star.magnitude.unwrap();
         if magnitude < limit - 0.3 {
             assert!(star.snr > 5.0, "{magnitude} of {limit}: {}", star.snr);

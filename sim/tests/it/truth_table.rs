@@ -1,4 +1,4 @@
-//! The truth table: complete, and each column what its definition says.
+//! The truth table is complete, and each column follows its definition.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,8 @@ fn stars(exposure: &Exposure) -> Vec<&ObjectTruth> {
     exposure.objects.iter().filter(|object| object.kind == ObjectKind::Star).collect()
 }
 
-/// Both poles, both sides of the cut of right ascension, and a spiral over the rest of the sky.
+/// Both poles, both sides of the discontinuity in right ascension, and a spiral over the remainder of the
+/// sky.
 fn pointings() -> Vec<(f64, f64)> {
     let mut pointings =
         vec![(0.0, 90.0), (123.0, -90.0), (0.0, 0.0), (359.99, -0.7), (0.3, 89.2), (200.0, -88.9)];
@@ -37,14 +38,14 @@ fn pointings() -> Vec<(f64, f64)> {
     pointings
 }
 
-/// No index of the sky, no cone: every star of the catalogue is moved, aberrated and projected, and its image drawn.
-/// What has light on the detector must be in the table, and nothing else.
+/// Reference without a sky index or search cone: every star of the catalogue is moved, aberrated and
+/// projected, and its image drawn. The table must contain exactly the stars with signal on the detector.
 #[test]
 fn every_star_of_the_catalogue_with_light_on_the_detector_is_in_the_table() {
     let catalog = Catalog::hipparcos2();
     let motions: Vec<StarMotion> = catalog.stars().iter().map(StarMotion::new).collect();
     for (i, (ra_deg, dec_deg)) in pointings().into_iter().enumerate() {
-        // At the ends of the ephemeris too, where proper motion has carried the stars farthest.
+        // Also at the ends of the ephemeris, where proper motion has moved the stars farthest.
         let start_utc = ["2012-04-25T12:00:00Z", "1990-01-02T00:00:00Z", "2050-01-04T00:00:00Z"][i % 3];
         let mut simulation = Simulation {
             catalog: CatalogConfig::default(),
@@ -52,7 +53,7 @@ fn every_star_of_the_catalogue_with_light_on_the_detector_is_in_the_table() {
             ..still()
         };
         if i % 2 == 1 {
-            // Wings: the brighter a star, the farther off the detector it is seen.
+            // With wings, brighter stars contribute from farther off the detector.
             simulation.psf = PsfConfig::Moffat { fwhm_px: 1.8, beta: 2.5 };
         }
         simulation.orbit.epoch_utc = start_utc.into();
@@ -82,7 +83,7 @@ fn every_star_of_the_catalogue_with_light_on_the_detector_is_in_the_table() {
             expected,
             "at RA {ra_deg}°, Dec {dec_deg}°"
         );
-        // 2.9 stars a square degree on average, 11 square degrees; at the galactic pole about half of it.
+        // 2.9 stars per square degree on average, 11 square degrees; about half of this at the galactic pole.
         assert!(expected.len() > 8, "{} stars at RA {ra_deg}°, Dec {dec_deg}°", expected.len());
     }
 }
@@ -95,7 +96,7 @@ fn vignetting_takes_its_part_of_every_object_and_no_more() {
     let vignetted = one(&simulation, 0);
     let camera = &simulation.camera;
     let [x_um, y_um] = [camera.pixel_width_um, camera.pixel_height_um];
-    // The principal point is (81.3, 58.4): the farthest corner is (−0.5, 119.5).
+    // The principal point is (81.3, 58.4); the farthest corner is therefore (−0.5, 119.5).
     let corner_um = libm::hypot(81.8 * x_um, 61.1 * y_um);
     let mut checked = 0;
     for (before, after) in open.objects.iter().zip(&vignetted.objects) {
@@ -103,14 +104,14 @@ fn vignetting_takes_its_part_of_every_object_and_no_more() {
         let (x, y) = (before.position.x - 81.3, before.position.y - 58.4);
         let rho = libm::hypot(x * x_um, y * y_um) / corner_um;
         let expected = match before.kind {
-            // Dark current knows no optics.
+            // Dark current does not depend on the optics.
             ObjectKind::HotPixel => 1.0,
             _ if before.position.is_on_detector(160, 120) && before.electrons > 100.0 => {
                 1.0 - 0.4 * rho * rho
             }
             _ => continue,
         };
-        // A fainter image loses a little more to the floor of the stamps: 2πσ² · 0.01 e⁻ of 100.
+        // A fainter image loses a slightly larger fraction at the floor of the stamps: 2πσ² · 0.01 e⁻ of 100.
         let ratio = after.electrons / before.electrons;
         assert!((ratio - expected).abs() < 0.003, "at ρ = {rho}: {ratio}, expected {expected}");
         checked += usize::from(expected < 0.95);
@@ -118,7 +119,7 @@ fn vignetting_takes_its_part_of_every_object_and_no_more() {
     assert!(checked > 3, "{checked} objects lose light");
 }
 
-/// Where a camera without distortion would see a direction, by similar triangles.
+/// Pixel position of a direction for a camera without distortion, by similar triangles.
 fn pinhole(simulation: &Simulation, truth: &FrameTruth, direction: &Vector3<f64>) -> PixelPoint {
     let camera = &simulation.camera;
     let seen = truth.camera_from_icrs.matrix() * direction;
@@ -128,21 +129,22 @@ fn pinhole(simulation: &Simulation, truth: &FrameTruth, direction: &Vector3<f64>
     )
 }
 
-/// A camera at rest in the sky, without distortion.
+/// An inertial camera without distortion.
 fn straight() -> Simulation {
     let mut simulation = still();
     (simulation.camera.radial, simulation.camera.tangential) = ([0.0; 3], [0.0; 2]);
     simulation
 }
 
-/// Velocity of the chaser about the barycentre of the Solar System, km/s.
+/// Velocity of the chaser relative to the barycentre of the Solar System, km/s.
 fn barycentric_velocity_km_s(truth: &FrameTruth) -> Vector3<f64> {
     let earth = ephemeris::earth(clock::tdb_j2000_s(truth.time)).unwrap();
     earth.velocity_km_s + truth.velocity_km_s
 }
 
-/// Bradley's aberration: the star's direction and the velocity over that of light are added, and that is all.
-/// Relativity differs from it by (v/c)²/4 = 0.6 mas, the Sun bends light by 4 mas a quarter of the sky from it.
+/// Bradley's aberration: the sum of the star's direction and the velocity divided by the speed of light,
+/// without further terms. Relativity differs by (v/c)²/4 = 0.6 mas; the Sun deflects light by 4 mas at right
+/// angles to its direction.
 fn aberrated(direction: &Vector3<f64>, velocity_km_s: &Vector3<f64>) -> Vector3<f64> {
     (direction + velocity_km_s / LIGHT_SPEED_KM_S).normalize()
 }
@@ -150,7 +152,7 @@ fn aberrated(direction: &Vector3<f64>, velocity_km_s: &Vector3<f64>) -> Vector3<
 #[test]
 fn stars_are_aberrated_and_the_target_is_not() {
     let mut simulation = straight();
-    // A sphere is seen at its centre of brightness, which is not on the line of sight.
+    // A sphere is located by its centre of brightness, which is not on the line of sight.
     simulation.target = TargetConfig::Beacon { magnitude_at_1_km: -5.0 };
     let exposure = one(&simulation, 3);
     let truth = &exposure.truth;
@@ -161,7 +163,7 @@ fn stars_are_aberrated_and_the_target_is_not() {
     let line_of_sight = truth.line_of_sight.vector();
     let target = exposure.objects[0].position;
     assert_eq!(exposure.objects[0].kind, ObjectKind::Target);
-    // The mean of its trail, which is bent by 1e-7 px.
+    // The position is the mean of the trail, which is curved by 1e-7 px.
     assert!(truth.target_position.unwrap().distance(target) < 1e-6);
     assert!(target.distance(pinhole(&simulation, truth, line_of_sight)) < 1e-6);
     let shifted = pinhole(&simulation, truth, &aberrated(line_of_sight, &velocity));
@@ -177,8 +179,8 @@ fn stars_are_aberrated_and_the_target_is_not() {
     assert!(stars(&exposure).len() > 10, "{} stars", stars(&exposure).len());
 }
 
-/// Half a year later the Earth moves the other way, while the chaser and the target, whose orbits do not know the
-/// date, are where they were.
+/// Half a year later the Earth moves in the opposite direction; the chaser and the target, whose orbits do
+/// not depend on the date, have the same positions as before.
 #[test]
 fn another_velocity_moves_the_stars_by_its_aberration_and_the_target_not_at_all() {
     let seen = |date: &str| {
@@ -193,7 +195,7 @@ fn another_velocity_moves_the_stars_by_its_aberration_and_the_target_not_at_all(
 
     let simulation = straight();
     let [before, after] = [&spring, &autumn].map(|exposure| barycentric_velocity_km_s(&exposure.truth));
-    // 60 km/s of 300,000 are 41″: half a pixel, where the motion is across the line of sight.
+    // 60 km/s out of 300,000 are 41″: half a pixel, if the motion is across the line of sight.
     assert!((after - before).norm() > 55.0);
     let aberration = |exposure: &Exposure, star: &ObjectTruth| {
         let still = pinhole(&simulation, &exposure.truth, star.astrometric.unwrap().vector());
@@ -206,7 +208,8 @@ fn another_velocity_moves_the_stars_by_its_aberration_and_the_target_not_at_all(
         let at = star.astrometric.unwrap();
         let [from, to] =
             [before, after].map(|v| pinhole(&simulation, &spring.truth, &aberrated(at.vector(), &v)));
-        // Neglected as above, in both seasons; the star's own motion between them changes the plate scale by 1e-7.
+        // Terms neglected as above, in both seasons; the star's proper motion between the seasons changes the
+        // plate scale by 1e-7.
         assert!(
             (change - nalgebra::Vector2::new(to.x - from.x, to.y - from.y)).norm() < 2e-4,
             "HIP {}",
@@ -234,16 +237,17 @@ fn the_columns_of_a_frame_are_what_their_definitions_say() {
         let states = trajectory.states_at(truth.time);
         let (chaser, target) = (states.chaser.position_km, states.target.position_km);
         assert_eq!((truth.position_km, truth.velocity_km_s), (chaser, states.chaser.velocity_km_s));
-        // Positions of 7000 km are known to 1e-12 km.
+        // Positions of 7000 km are accurate to 1e-12 km.
         assert!((truth.range_km - (target - chaser).norm()).abs() < 1e-11);
         assert!((truth.line_of_sight.vector() * truth.range_km - (target - chaser)).norm() < 1e-11);
 
         let earth = ephemeris::earth(clock::tdb_j2000_s(truth.time)).unwrap();
         let sun = earth.sun_geocentric_km();
-        // Sums of 1.5e8 km round to 3e-8 km: 2e-16 rad.
+        // Sums of 1.5e8 km have a rounding error of 3e-8 km: 2e-16 rad.
         assert!((truth.sun.vector() - (sun - chaser).normalize()).norm() < 1e-14);
         let cosine = (sun - target).normalize().dot(&(chaser - target).normalize());
-        // The arc cosine loses half its digits near 0° and 180°, and 1e-12 relative to the range of 10 km elsewhere.
+        // The arc cosine loses half its digits near 0° and 180°; elsewhere the error is 1e-12 relative to the
+        // range of 10 km.
         let phase_deg = libm::acos(cosine).to_degrees();
         assert!((truth.phase_deg - phase_deg).abs() < 1e-5, "{} and {phase_deg}", truth.phase_deg);
 
@@ -259,7 +263,8 @@ fn the_columns_of_a_frame_are_what_their_definitions_say() {
     }
 }
 
-/// The target alone on the detector: the numbers of its row from the expected image, pixel by pixel.
+/// With the target as the only object on the detector: its row is computed from the expected image, pixel by
+/// pixel.
 #[test]
 fn the_columns_of_an_object_are_what_their_definitions_say() {
     let mut simulation = restless();
@@ -271,7 +276,7 @@ fn the_columns_of_an_object_are_what_their_definitions_say() {
         let exposure = camera.expose(frame).unwrap();
         let [target] = exposure.objects.as_slice() else { panic!("frame {frame}: {:?}", exposure.objects) };
         let (image, windows) = (camera.expected(), exposure.frame.windows().unwrap());
-        // Read noise of 15 e⁻, a digital number of 10 e⁻.
+        // Read noise of 15 e⁻, gain of 10 e⁻ per digital number.
         let variance = image.flat_e() + 15.0 * 15.0 + 10.0 * 10.0 / 12.0;
         let (mut electrons, mut peak, mut snr2, mut radius, mut lost) = (0.0, 0.0_f64, 0.0, 0.5_f64, 0.0);
         let (mut moment_x, mut moment_y) = (0.0, 0.0);
@@ -290,7 +295,8 @@ fn the_columns_of_an_object_are_what_their_definitions_say() {
                 }
             }
         }
-        // Signals here are differences from the flat level: 1e-14 of it in each of 19,200 pixels.
+        // Signals here are differences from the flat level, with an error of 1e-14 of that level in each of
+        // 19,200 pixels.
         let close = |a: f64, b: f64| (a - b).abs() < 1e-8 * b.abs().max(1e-3);
         assert!(close(target.electrons, electrons), "{} {electrons}", target.electrons);
         assert!(close(target.peak_electrons, peak), "{} {peak}", target.peak_electrons);
@@ -298,11 +304,11 @@ fn the_columns_of_an_object_are_what_their_definitions_say() {
         assert!(close(target.radius_px, radius), "{} {radius}", target.radius_px);
         assert!(close(target.cut, lost / electrons), "{} {}", target.cut, lost / electrons);
         assert_eq!(exposure.truth.target_visibility, Visibility::from_snr(target.snr));
-        // A pixel-integrated Gaussian of 0.8 px is off its centre by 1e-6 px; what is below the floor of 0.01 e⁻ a
-        // pixel is some 2 e⁻ at some 12 px, evenly around.
+        // The centroid of a pixel-integrated Gaussian of 0.8 px has an error of 1e-6 px. The signal below the
+        // floor of 0.01 e⁻ per pixel is about 2 e⁻ at about 12 px, distributed symmetrically.
         let centroid = PixelPoint::new(moment_x / electrons, moment_y / electrons);
         assert!(centroid.distance(target.position) < 1e-3, "{centroid:?} {:?}", target.position);
-        // Pogson: the magnitude is that of the electrons, but for the floor's 2 e⁻.
+        // Pogson: the magnitude corresponds to the electrons, apart from the 2 e⁻ below the floor.
         let magnitude = -2.5 * libm::log10(electrons / exposure.truth.exposure_s / 1.5e6);
         assert!((target.magnitude.unwrap() - magnitude).abs() < 0.01, "{magnitude}");
     }
@@ -319,7 +325,7 @@ fn a_target_behind_the_camera_has_no_place_and_no_row() {
     assert!(!stars(&exposure).is_empty());
 }
 
-/// Shadow by the cones that touch Sun and Earth: `None` within a metre of their surfaces.
+/// Shadow by the cones tangent to Sun and Earth; `None` within a metre of the cones' surfaces.
 fn shadow_of(position_km: &Vector3<f64>, sun_km: &Vector3<f64>) -> Option<Shadow> {
     let (sun_radius, earth_radius) = (695_700.0, 6_378.136_6);
     let distance = sun_km.norm();
@@ -329,7 +335,8 @@ fn shadow_of(position_km: &Vector3<f64>, sun_km: &Vector3<f64>) -> Option<Shadow
         return Some(Shadow::Sunlit);
     }
     let off_axis = (position_km - axis * along).norm();
-    // A cone that touches both spheres: its half angle from the radii, its radius at `along` from the Earth's.
+    // A cone tangent to both spheres: its half angle follows from the radii, its radius at `along` from the
+    // Earth's radius.
     let radius_at = |sine: f64| {
         let cosine = (1.0 - sine * sine).sqrt();
         (earth_radius + along * sine) / cosine
@@ -347,7 +354,7 @@ fn shadow_of(position_km: &Vector3<f64>, sun_km: &Vector3<f64>) -> Option<Shadow
     }
 }
 
-/// A noon-midnight orbit, one revolution of it, the camera on the target.
+/// One revolution of a noon-midnight orbit, with the camera pointed at the target.
 #[test]
 fn in_the_earths_shadow_the_target_fades_through_penumbra_and_is_gone_in_umbra() {
     let mut simulation = still();
@@ -384,7 +391,7 @@ fn in_the_earths_shadow_the_target_fades_through_penumbra_and_is_gone_in_umbra()
             Shadow::Sunlit => assert_eq!(truth.sunlit_fraction, 1.0),
         }
         if let Some(target) = target {
-            // Lambert's sphere of 0.1 m and albedo 0.3, with the range and the phase of the table.
+            // A Lambertian sphere of radius 0.1 m and albedo 0.3, with the range and the phase of the table.
             let phase = Angle::from_degrees(truth.phase_deg).radians();
             let (sin, cos) = libm::sincos(phase);
             let lambert = (sin + (std::f64::consts::PI - phase) * cos) / std::f64::consts::PI;
@@ -392,13 +399,14 @@ fn in_the_earths_shadow_the_target_fades_through_penumbra_and_is_gone_in_umbra()
             let ratio = 1e-4 / truth.range_km / sun_au;
             let flux = 2.0 / 3.0 * 0.3 * lambert * ratio * ratio * truth.sunlit_fraction;
             let magnitude = -26.76 - 2.5 * libm::log10(flux);
-            // The table's phase and range are good to 1e-12; near full phase nothing is steep.
+            // Phase and range of the table are accurate to 1e-12; the function has no steep slope near full
+            // phase.
             assert!((target.magnitude.unwrap() - magnitude).abs() < 1e-9, "frame {frame}: {magnitude}");
             lit += 1;
         }
         if before.replace(truth.shadow) != Some(truth.shadow) {
             changes.push(truth.shadow);
-            // Where exactly: the two seconds before, in steps of 10 ms, or 75 m.
+            // The exact time of the change: the two preceding seconds in steps of 10 ms, or 75 m.
             for step in 0..200 {
                 let at = trajectory
                     .states_at(truth.time - hifitime::Unit::Millisecond * (10 * step))
@@ -412,8 +420,8 @@ fn in_the_earths_shadow_the_target_fades_through_penumbra_and_is_gone_in_umbra()
             }
         }
     }
-    // Through the shadow once: a third of a revolution of 5990 s, and on each side some 8 s in which the Sun sets. The
-    // revolution begins anywhere.
+    // One passage through the shadow: a third of a revolution of 5990 s, and on each side about 8 s in which
+    // the Sun sets. The revolution may begin at any phase.
     let cycle = [Shadow::Sunlit, Shadow::Penumbra, Shadow::Umbra, Shadow::Penumbra];
     let turned = (0..4).any(|by| changes.iter().copied().eq((0..5).map(|i| cycle[(i + by) % 4])));
     assert!(turned, "{changes:?}");
@@ -422,8 +430,8 @@ fn in_the_earths_shadow_the_target_fades_through_penumbra_and_is_gone_in_umbra()
     assert_eq!(lit, 3000 - umbra, "the target is seen wherever the Sun is");
 }
 
-/// The direction told for a star is where the catalogue says it is, moved and seen from here: for a star without
-/// parallax worth its name that is the catalogue's own direction with its proper motion.
+/// The direction listed for a star is its catalogue position, moved by proper motion and seen from the
+/// chaser: for a star with negligible parallax, the catalogue direction with its proper motion.
 #[test]
 fn the_direction_of_a_star_is_astrometric() {
     let exposure = one(&still(), 0);
@@ -438,7 +446,8 @@ fn the_direction_of_a_star_is_astrometric() {
             Angle::from_radians(star.dec_rad + mas(star.pm_dec_mas_per_yr * years)),
         );
         let off_mas = row.astrometric.unwrap().separation(&moved).arcsec() * 1000.0;
-        // The parallax; and 1 mas for curvature of the parallels and the rounding of the epoch (0.001 years).
+        // The parallax, plus 1 mas for the curvature of the parallels and the rounding of the epoch (0.001
+        // years).
         assert!(
             off_mas < star.parallax_mas.max(0.0) * 1.02 + 1.0,
             "HIP {}: {off_mas} mas, parallax {}",

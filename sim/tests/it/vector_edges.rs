@@ -1,4 +1,4 @@
-//! Where the fast renderer puts edges: against coverage in closed form, computed apart from it.
+//! Edge positions of the fast renderer, compared with coverage in closed form that is computed independently.
 
 use boresight_sim::vector::RadianceImage;
 use contract::Camera;
@@ -11,8 +11,8 @@ use crate::vector_scene::{
     shoelace, small,
 };
 
-/// The largest difference of a pixel's coverage from its closed form. An edge that crosses a pixel from side to side is as far
-/// from its place, in px, as the coverage from its value.
+/// Largest difference of a pixel's coverage from its closed form. For an edge that crosses a pixel from side
+/// to side, the position error in px equals the coverage error.
 fn worst_coverage(image: &RadianceImage, polygon: &[[f64; 2]]) -> f64 {
     let mut worst = 0.0_f64;
     for row in 0..image.rows {
@@ -38,7 +38,8 @@ fn edges_are_where_the_closed_form_has_them_at_100_poses() {
         worst = worst.max(worst_coverage(&image, &polygon));
     }
     println!("worst edge position error at 100 poses: {worst:.1e} px");
-    // Asked for: 0.01 px. The areas are exact; what is left is the rounding of single precision, some 1e-7 an edge.
+    // Required: 0.01 px. The areas are exact; the remaining error is the rounding of single precision, about
+    // 1e-7 per edge.
     assert!(worst < 2e-6, "{worst}");
 }
 
@@ -67,7 +68,7 @@ fn centre_and_radius_of_a_circle_are_those_of_its_moments() {
         &pose(d, [0.0; 3]),
     );
     let (flux, centroid) = moments(&image, [0, 768], [0, 576]);
-    // A polygon of n sides has n/(2π) sin(2π/n) of the circle's area.
+    // A polygon with n sides has n/(2π) sin(2π/n) of the circle's area.
     let share =
         sides as f64 / (2.0 * std::f64::consts::PI) * libm::sin(2.0 * std::f64::consts::PI / sides as f64);
     let radius = (flux / share / std::f64::consts::PI).sqrt();
@@ -93,7 +94,8 @@ fn the_cross_moves_before_the_plate_as_its_height_says() {
     // docking paper, 3.1: Xc − Xo = −f b d1/(d3 (d3 − b)) with the disk's centre at −f d1/d3.
     let expected = [383.5 - 2917.0 * d[0] / (d[2] - b), 287.5 + 2917.0 * d[1] / (d[2] - b)];
     for axis in 0..2 {
-        // A pixel counts at its centre: along upright edges, 186 px of 6600 px² on a side, that is 1/8 px at worst.
+        // A pixel's flux counts at the pixel centre: along vertical edges, 186 px out of 6600 px² on each
+        // side, with an error of 1/8 px at worst.
         assert!((centroid[axis] - expected[axis]).abs() < 4e-3, "{centroid:?} {expected:?}");
     }
 }
@@ -117,7 +119,7 @@ fn a_part_in_many_facets_is_the_part_in_one() {
         .collect();
     let (one, many) = (draw(&camera, &whole, &plain(), &pose), draw(&camera, &cut, &plain(), &pose));
     let worst = one.radiance.iter().zip(&many.radiance).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-    // Rounding of single precision over 16 edges in a row.
+    // Rounding of single precision over 16 consecutive edges.
     assert!(worst < 3e-6, "{worst}");
 }
 
@@ -169,7 +171,8 @@ fn a_line_bends_as_the_camera_model_says() {
             camera.principal_y_px + v * radial + p1 * (r2 + 2.0 * v * v) + 2.0 * p2 * u * v,
         ]
     };
-    // The mean of the edge over a column is the column's flux above it. Simpson's rule over the column.
+    // The mean position of the edge over a column equals the column's flux above the edge; computed by
+    // Simpson's rule over the column.
     let edge_at = |column: f64| {
         let (mut low, mut high) = (-4.0, 4.0);
         for _ in 0..60 {
@@ -183,7 +186,7 @@ fn a_line_bends_as_the_camera_model_says() {
         let flux: f32 = (0..576).map(|row| image.radiance[row * 768 + column]).sum();
         let x = column as f64;
         let expected = (edge_at(x - 0.5) + 4.0 * edge_at(x) + edge_at(x + 0.5)) / 6.0;
-        // Chords are within 0.001 px of the curve.
+        // The chords are within 0.001 px of the curve.
         assert!((f64::from(flux) - 0.5 - expected).abs() < 1.5e-3, "{column}: {flux} {expected}");
         let chord = edge_at(3.0) + (x - 3.0) / 761.0 * (edge_at(764.0) - edge_at(3.0));
         bend = bend.max((chord - expected).abs());

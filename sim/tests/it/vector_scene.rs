@@ -1,4 +1,4 @@
-//! Scenes by hand for the tests of the fast renderer, and a projection written apart from it.
+//! Hand-made scenes for the tests of the fast renderer, and an independent projection.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 pub(crate) type Point = Vector3<f64>;
 
-/// 768 × 576 square pixels, the principal point in the middle.
+/// Camera with 768 × 576 square pixels and the principal point in the middle.
 pub(crate) fn camera(focal_px: f64) -> Camera {
     Camera {
         columns: 768,
@@ -31,20 +31,20 @@ pub(crate) fn pose(d: [f64; 3], phi: [f64; 3]) -> Pose {
     Pose { position_m: d.into(), phi_rad: phi.into() }
 }
 
-/// A facet from its corners, anticlockwise from outside.
+/// Facet with the given corners, anticlockwise as seen from outside.
 pub(crate) fn facet(corners: &[[f64; 3]], reflectance: f64) -> Facet {
     let outer: Vec<Point> = corners.iter().map(|corner| Point::from(*corner)).collect();
     let normal = (outer[1] - outer[0]).cross(&(outer[2] - outer[1])).normalize();
     Facet { outer, holes: Vec::new(), normal, reflectance }
 }
 
-/// Facing y3, corners (y1, y2) anticlockwise.
+/// Facet that faces y3, with corners (y1, y2) anticlockwise.
 pub(crate) fn flat(corners: &[[f64; 2]], height: f64, reflectance: f64) -> Facet {
     let corners: Vec<[f64; 3]> = corners.iter().map(|[x, y]| [*x, *y, height]).collect();
     facet(&corners, reflectance)
 }
 
-/// A regular polygon with as many sides about a centre.
+/// Regular polygon with the given number of sides around a centre.
 pub(crate) fn circle(centre: [f64; 2], radius: f64, sides: usize) -> Vec<[f64; 2]> {
     (0..sides)
         .map(|i| {
@@ -54,7 +54,7 @@ pub(crate) fn circle(centre: [f64; 2], radius: f64, sides: usize) -> Vec<[f64; 2
         .collect()
 }
 
-/// A prism over an outline: its front at `front`, its back `thickness` behind, closed.
+/// Closed prism over an outline, with its front at `front` and its back `thickness` behind.
 pub(crate) fn prism(outline: &[[f64; 2]], front: f64, thickness: f64, reflectance: f64) -> Vec<Facet> {
     let back = front - thickness;
     let reversed: Vec<[f64; 3]> = outline.iter().rev().map(|[x, y]| [*x, *y, back]).collect();
@@ -65,7 +65,7 @@ pub(crate) fn prism(outline: &[[f64; 2]], front: f64, thickness: f64, reflectanc
             reflectance,
         )
     });
-    // The normals come from the outline: corners of a cross may turn inwards.
+    // The normals are set explicitly: corners of a cross may be concave.
     let mut facets: Vec<Facet> = vec![flat(outline, front, reflectance), facet(&reversed, reflectance)];
     facets[0].normal = Point::z();
     facets[1].normal = -Point::z();
@@ -73,7 +73,7 @@ pub(crate) fn prism(outline: &[[f64; 2]], front: f64, thickness: f64, reflectanc
     facets
 }
 
-/// The outline of an upright cross.
+/// Outline of an upright cross.
 pub(crate) fn cross(half_length: f64, width: f64) -> Vec<[f64; 2]> {
     let (l, w) = (half_length, 0.5 * width);
     vec![
@@ -100,12 +100,12 @@ pub(crate) fn scene(parts: Vec<Part>) -> DockingScene {
     DockingScene { parts }
 }
 
-/// Everything has the radiance of its reflectance.
+/// Lighting in which every surface has a radiance equal to its reflectance.
 pub(crate) fn plain() -> Lighting {
     Lighting { sun: None, floodlight: None, fill_radiance: 1.0, sky_radiance: 0.0 }
 }
 
-/// The Sun alone, with E/π = 1.
+/// Lighting by the Sun only, with E/π = 1.
 pub(crate) fn sunlit(towards: [f64; 3]) -> Lighting {
     let sun = Sun { towards: Point::from(towards).normalize(), irradiance: PI };
     Lighting { sun: Some(sun), floodlight: None, fill_radiance: 0.0, sky_radiance: 0.0 }
@@ -117,8 +117,8 @@ pub(crate) fn draw(camera: &Camera, scene: &DockingScene, lighting: &Lighting, p
     image
 }
 
-/// Where a point is seen by the camera without its distortion, px, centre of the first pixel at 0: x = Aᵀ (y − d) with
-/// A = diag(1, −1, −1) exp(\[φ\]×) by Rodrigues' formula.
+/// Pixel position of a point in the camera without distortion, px, centre of the first pixel at 0: x = Aᵀ (y
+/// − d) with A = diag(1, −1, −1) exp(\[φ\]×) by Rodrigues' formula.
 pub(crate) fn seen(camera: &Camera, pose: &Pose, point: &Point) -> [f64; 2] {
     let ideal = point - pose.position_m;
     // exp(−[φ]×) diag(1, −1, −1) (y − d).
@@ -135,7 +135,7 @@ pub(crate) fn seen(camera: &Camera, pose: &Pose, point: &Point) -> [f64; 2] {
     [camera.principal_x_px + fx * x.x / x.z, camera.principal_y_px + fy * x.y / x.z]
 }
 
-/// The flux of a rectangle of pixels [columns, rows], and its centroid, px.
+/// Flux of a rectangle of pixels [columns, rows], and its centroid, px.
 pub(crate) fn moments(image: &RadianceImage, columns: [usize; 2], rows: [usize; 2]) -> (f64, [f64; 2]) {
     let (mut flux, mut sums) = (0.0, [0.0; 2]);
     for row in rows[0]..rows[1] {
@@ -149,7 +149,8 @@ pub(crate) fn moments(image: &RadianceImage, columns: [usize; 2], rows: [usize; 
     (flux, sums.map(|sum| sum / flux))
 }
 
-/// Area of a convex polygon inside the pixel whose centre is (column, row), by cutting the polygon with its four sides.
+/// Area of a convex polygon inside the pixel with centre (column, row), by clipping the polygon at the
+/// pixel's four sides.
 pub(crate) fn area_in_pixel(polygon: &[[f64; 2]], column: usize, row: usize) -> f64 {
     let (x, y) = (column as f64, row as f64);
     let sides = [(0, x - 0.5, 1.0), (0, x + 0.5, -1.0), (1, y - 0.5, 1.0), (1, y + 0.5, -1.0)];
@@ -182,7 +183,7 @@ pub(crate) fn shoelace(polygon: &[[f64; 2]]) -> f64 {
         .sum()
 }
 
-/// A small detector, so that the closed form of every pixel takes no long time.
+/// A small detector, for which the closed form of every pixel is computed quickly.
 pub(crate) fn small() -> Camera {
     Camera { columns: 96, rows: 72, principal_x_px: 47.5, principal_y_px: 35.5, ..camera(130.0) }
 }

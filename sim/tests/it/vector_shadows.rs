@@ -1,4 +1,4 @@
-//! Light and cast shadows of the fast renderer, against closed forms.
+//! Illumination and cast shadows of the fast renderer, compared with closed forms.
 
 use std::f64::consts::PI;
 
@@ -14,12 +14,12 @@ fn sheet(half: f64, height: f64, reflectance: f64) -> Facet {
     flat(&[[-half, -half], [half, -half], [half, half], [-half, half]], height, reflectance)
 }
 
-/// What a caster takes from a plate below it: flux and centroid, px.
+/// Signal that a shadow caster removes from a plate below it: flux and centroid, px.
 fn lost(caster: Vec<Facet>, camera: &Camera, lighting: &Lighting) -> (f64, [f64; 2]) {
     lost_to_parts(vec![caster], camera, lighting)
 }
 
-/// The same of casters of several parts.
+/// Signal that the shadow casters of several parts remove from a plate below them: flux and centroid, px.
 fn lost_to_parts(casters: Vec<Vec<Facet>>, camera: &Camera, lighting: &Lighting) -> (f64, [f64; 2]) {
     let view = pose([0.2, 0.1, 4.0], [0.03, 0.02, 0.1]);
     let plate = part("plate", vec![sheet(3.0, 0.0, 1.0)]);
@@ -37,7 +37,7 @@ fn lost_to_parts(casters: Vec<Vec<Facet>>, camera: &Camera, lighting: &Lighting)
     moments(&shaded, [0, 768], [0, 576])
 }
 
-/// Flux and centroid of a polygon at y3 = 0 that the camera of [`lost`] sees, by sums over its edges.
+/// Flux and centroid of a polygon at y3 = 0 as seen by the camera of [`lost`], by sums over its edges.
 fn closed_form(camera: &Camera, polygon: &[[f64; 2]], radiance: f64) -> (f64, [f64; 2]) {
     let view = pose([0.2, 0.1, 4.0], [0.03, 0.02, 0.1]);
     let points: Vec<[f64; 2]> =
@@ -60,7 +60,7 @@ fn the_shadow_of_the_cross_lies_where_the_sun_puts_it() {
     let shift = [-0.3 * sun.x / sun.z, -0.3 * sun.y / sun.z];
     let shadow: Vec<[f64; 2]> = cross(0.15, 0.03).iter().map(|[x, y]| [x + shift[0], y + shift[1]]).collect();
     let expected = closed_form(&camera, &shadow, sun.z);
-    // Asked for: 0.02 px. The shadow is drawn by the same exact areas as an outline.
+    // Required: 0.02 px. The shadow is drawn with the same exact areas as an outline.
     for axis in 0..2 {
         assert!((centroid[axis] - expected.1[axis]).abs() < 1e-3, "{centroid:?} {expected:?}");
     }
@@ -83,7 +83,8 @@ fn a_box_casts_the_shadow_of_its_outline_once() {
     let camera = camera(1055.0);
     let (half, height, thickness) = (0.1, 0.5, 0.2);
     let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
-    // The Sun in the plane y2 = 0 at 45°: a square of side 2 half, drawn out along y1 by the thickness.
+    // With the Sun in the plane y2 = 0 at 45°, the shadow is a square of side 2 half, extended along y1 by
+    // the thickness.
     let (flux, centroid) = lost(prism(&corners, height, thickness, 1.0), &camera, &sunlit([1.0, 0.0, 1.0]));
     let (low, high) = (-half - height, half - height + thickness);
     let outline = [[low, -half], [high, -half], [high, half], [low, half]];
@@ -164,7 +165,7 @@ fn lamp(position: [f64; 3]) -> Lighting {
 
 #[test]
 fn a_lamp_lights_by_distance_cosine_and_its_cone() {
-    // Distortion too: the way back from pixel to plane goes through it.
+    // Also with distortion, because the map from pixel to plane inverts it.
     for radial in [0.0, -2e-7] {
         let camera = Camera { radial: [radial, 0.0, 0.0], ..camera(1055.0) };
         let view = pose([0.0, 0.0, 3.0], [0.0; 3]);
@@ -187,7 +188,8 @@ fn a_lamp_lights_by_distance_cosine_and_its_cone() {
             let share = ((0.3 - angle) / 0.1).clamp(0.0, 1.0);
             let expected = 0.5 * 2.0 * share * libm::cos(angle) / way.norm_squared();
             let drawn = f64::from(image.radiance[row * 768 + column]);
-            // Light is linear over 16 px, here 0.045 m at 3 m: 1e-3 where the cone's edge bends it, else less.
+            // The illumination is linear over 16 px, here 0.045 m at 3 m: error 1e-3 at the kink at the
+            // cone's edge, smaller elsewhere.
             assert!((drawn - expected).abs() < 1e-3 * 0.11, "{row} {column}: {drawn} {expected}");
         }
     }
@@ -199,8 +201,8 @@ fn a_lamp_casts_shadows_from_its_place() {
     let half = 0.05;
     let square = flat(&[[-half, -half], [half, -half], [half, half], [-half, half]], 1.0, 1.0);
     let (_, centroid) = lost(vec![square], &camera, &lamp([0.4, 0.2, 4.0]));
-    // From (0.4, 0.2, 4) through (0, 0, 1) to y3 = 0: a third of the way on; a square of 4/3 the side. Its light is even enough
-    // over 0.13 m for the centroid.
+    // From (0.4, 0.2, 4) through (0, 0, 1) to y3 = 0: a third of the distance beyond the square, with 4/3 of
+    // its side. The illumination is uniform enough over 0.13 m for the centroid.
     let shadow = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
         .map(|[x, y]| [-0.4 / 3.0 + x * half * 4.0 / 3.0, -0.2 / 3.0 + y * half * 4.0 / 3.0]);
     let expected = closed_form(&camera, &shadow, 1.0).1;
@@ -209,7 +211,7 @@ fn a_lamp_casts_shadows_from_its_place() {
     }
 }
 
-/// The rim of a cross is a tube: the lamp sees a little more of its dark side than of its lit one.
+/// The rim of a cross is a tube: the lamp sees slightly more of its dark side than of its lit side.
 #[test]
 fn a_cross_whose_rim_is_a_part_of_its_own_casts_as_a_whole_one_does() {
     let camera = camera(1055.0);
@@ -218,7 +220,7 @@ fn a_cross_whose_rim_is_a_part_of_its_own_casts_as_a_whole_one_does() {
     let rim = front.split_off(2);
     front.truncate(1);
     let parts = lost_to_parts(vec![front, rim], &camera, &lamp([0.4, 0.3, 4.0]));
-    // Single precision of the image; the shadow of the dark side would take 1 % more.
+    // Single precision of the image; the shadow of the dark side would remove 1 % more.
     assert!((parts.0 / whole.0 - 1.0).abs() < 1e-4, "{parts:?} {whole:?}");
     for axis in 0..2 {
         assert!((parts.1[axis] - whole.1[axis]).abs() < 1e-3, "{parts:?} {whole:?}");

@@ -1,4 +1,5 @@
-//! The fast renderer on the scene of a target: against pictures sampled by tiny-skia, and in places where nothing can be seen.
+//! The fast renderer on the scene of a target: compared with pictures sampled by tiny-skia, and from
+//! viewpoints without anything in view.
 
 use boresight_sim::scene::docking::{DockingScene, Floodlight, TargetFile};
 use boresight_sim::vector::{Drawer, RadianceImage};
@@ -15,7 +16,8 @@ fn target() -> DockingScene {
     TargetFile::built_in("progress").unwrap().scene()
 }
 
-/// The scene without light from anywhere, sampled 16 × 16 in a pixel: reflectances, the last facet that holds the sample.
+/// The scene without light sources, with 16 × 16 samples per pixel: each sample is the reflectance of the
+/// last facet that contains it.
 fn sampled(camera: &Camera, scene: &DockingScene, pose: &Pose) -> Vec<f32> {
     const SAMPLES: usize = 16;
     let (width, height) = (camera.columns * SAMPLES, camera.rows * SAMPLES);
@@ -57,7 +59,8 @@ fn sampled(camera: &Camera, scene: &DockingScene, pose: &Pose) -> Vec<f32> {
 #[test]
 fn pictures_agree_with_tiny_skia_at_16_by_16_samples() {
     let scene = target();
-    // A window of a camera's image: the cross before the plate, the docking ring with its wall, and, coarse, the whole station.
+    // Windows of a camera's image: the cross in front of the plate, the docking ring with its wall, and, at
+    // low resolution, the whole station.
     for (focal_px, d, phi, limit) in [
         (1055.0, [0.5, 0.3, 5.0], [-0.064, -0.106, 0.3], 2e-3),
         (1055.0, [-0.4, -0.2, 4.0], [-0.256, 0.244, -0.2], 2e-3),
@@ -71,8 +74,9 @@ fn pictures_agree_with_tiny_skia_at_16_by_16_samples() {
         let square: f32 = image.radiance.iter().zip(&witness).map(|(a, b)| (a - b) * (a - b)).sum();
         let rms = (square / witness.len() as f32).sqrt();
         println!("f = {focal_px} px: rms against 16 x 16 samples {rms:.2e}");
-        // What 16 × 16 samples leave uncertain at an edge is some 0.4 % of its contrast. In the coarse picture nearly every
-        // pixel has an edge, and blankets end where the rim begins: there the face behind both shows through.
+        // With 16 × 16 samples, the uncertainty at an edge is about 0.4 % of its contrast. In the picture at
+        // low resolution nearly every pixel has an edge, and blankets end where the rim begins: there the
+        // face behind both shows through.
         assert!(rms < limit, "{rms}");
     }
 }
@@ -82,7 +86,7 @@ fn nothing_in_view_is_sky() {
     let mut lighting = sunlit([0.3, 0.2, 0.9]);
     lighting.sky_radiance = 0.125;
     for (d, phi) in [
-        // Behind the station, turned away, and beside it.
+        // Behind the station, turned away from it, and beside it.
         ([0.0, 0.0, -60.0], [0.0; 3]),
         ([0.0, 0.0, 5.0], [0.0, std::f64::consts::PI, 0.0]),
         ([500.0, 0.0, 5.0], [0.0; 3]),
@@ -122,7 +126,7 @@ fn a_camera_among_the_facets_draws_finite_light() {
 
 #[test]
 fn light_is_never_taken_away_below_zero() {
-    // Sun from many sides: shadows over shadows take a facet's light once.
+    // With the Sun in many directions: overlapping shadows remove the light of a facet only once.
     let scene = target();
     let mut drawer = Drawer::new(&camera(1055.0)).unwrap();
     let mut image = RadianceImage::default();

@@ -1,4 +1,5 @@
-//! Pointings spread evenly over the whole sky: what the star field shows is what a search through all stars shows.
+//! Pointings evenly distributed over the whole sky: the star field finds the same stars as a search through
+//! all stars.
 
 use std::path::Path;
 
@@ -11,28 +12,29 @@ use nalgebra::Vector3;
 
 const POINTINGS: usize = 500;
 
-/// Point `i` of a Fibonacci lattice of [`POINTINGS`] on the sphere: each stands for the same solid angle.
+/// Point `i` of a Fibonacci lattice of [`POINTINGS`] on the sphere; each point represents the same solid
+/// angle.
 fn lattice(i: usize) -> (f64, f64) {
     let z = 1.0 - (2.0 * i as f64 + 1.0) / POINTINGS as f64;
     let golden_turns = i as f64 * 0.618_033_988_749_894_9;
     (360.0 * golden_turns.fract(), libm::asin(z).to_degrees())
 }
 
-/// A camera that looks at a point of the sky, rolled by an angle of its own.
+/// Camera that points at lattice point `i`, with a different roll angle for each point.
 fn camera_at(i: usize) -> Rotation<CameraFrame, Icrs> {
     let (ra_deg, dec_deg) = lattice(i);
     let boresight: Direction<Icrs> =
         Direction::from_ra_dec(Angle::from_degrees(ra_deg), Angle::from_degrees(dec_deg));
     let z = *boresight.vector();
     let (sin, cos) = libm::sincos(i as f64);
-    // Any direction that is not along the boresight.
+    // Any direction that is not parallel to the boresight.
     let aside = if z.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let (u, v) = (z.cross(&aside).normalize(), z.cross(&z.cross(&aside)).normalize());
     let x = u * cos + v * sin;
     Rotation::from_axes(&x, &z.cross(&x), &z)
 }
 
-/// The far-range camera's field, 18.2° × 13.6°, on a coarser detector.
+/// Field of the far-range camera, 18.2° × 13.6°, on a detector with coarser pixels.
 fn projection() -> Projection {
     Projection::new(&Camera {
         columns: 188,
@@ -57,7 +59,7 @@ fn at_every_pointing_the_field_has_every_star_and_no_other() {
     let time = clock::parse_utc("2026-06-01T00:00:00Z").unwrap();
     let observer =
         Observer::new(time, Vector3::new(3000.0, 6000.0, 1500.0), Vector3::new(-6.0, 2.0, 4.0)).unwrap();
-    // The witness turns every star of the catalogue into the camera.
+    // The reference transforms every star of the catalogue into the camera frame.
     let apparent: Vec<(u32, Direction<Icrs>)> =
         catalog.stars().iter().map(|star| (star.id, observer.apparent(&StarMotion::new(star)))).collect();
     let radiometry = Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6 }).unwrap();
@@ -80,12 +82,13 @@ fn at_every_pointing_the_field_has_every_star_and_no_other() {
         stars += shown.len();
         fewest = fewest.min(shown.len());
     }
-    // The lattice weighs the sky evenly: the mean is the sky's density times the field's solid angle.
+    // The lattice weights the sky uniformly: the mean number of stars is the sky's density times the solid
+    // angle of the field.
     let (w, h): (f64, f64) = (188.0 * 34.4e-3 / 2.0 / 20.187, 145.0 * 33.2e-3 / 2.0 / 20.187);
     let solid_angle = 4.0 * libm::asin(w * h / ((1.0 + w * w) * (1.0 + h * h)).sqrt());
     let density = apparent.len() as f64 / (4.0 * std::f64::consts::PI);
     let mean = stars as f64 / POINTINGS as f64;
-    // The fields overlap three times, so that a star counts three times or so, give or take one: 1 %.
+    // The fields overlap three times. A star counts about three times, plus or minus one: 1 %.
     assert!((mean / (density * solid_angle) - 1.0).abs() < 0.01, "{mean} stars, {}", density * solid_angle);
     assert!(fewest > 5, "a field of {fewest} stars brighter than 6.5");
 }

@@ -1,4 +1,4 @@
-//! The server of the page, fed by a live run or by a run directory.
+//! Server of the page, with data from a live run or from a run directory.
 
 use std::net::SocketAddr;
 use std::path::Path;
@@ -17,9 +17,10 @@ use crate::command::scratch_directory::ScratchDirectory;
 
 pub(in crate::command) fn monitor(arguments: &MonitorArguments, output: &Output) -> Result<Answer, Failure> {
     let directory = Path::new(&arguments.selection.scenario);
-    // Its server ends on signals by itself.
+    // The server handles signals itself.
     let scratch = ScratchDirectory::create(&std::env::temp_dir())?;
-    // As in `run`, a built-in scenario is itself beside a folder of its name: that is `./NAME`.
+    // A built-in scenario takes precedence over a directory of the same name, as in `run`: the directory is
+    // `./NAME`.
     let is_built_in = BUILT_IN.iter().any(|built_in| built_in.name == arguments.selection.scenario);
     let (name, feed) = if directory.is_dir() && !is_built_in {
         arguments.check_replay()?;
@@ -45,7 +46,7 @@ pub(in crate::command) fn monitor(arguments: &MonitorArguments, output: &Output)
 }
 
 impl MonitorArguments {
-    /// Refuses what a run that has been flown cannot have any more.
+    /// Rejects options that cannot apply to a finished run.
     fn check_replay(&self) -> Result<(), Failure> {
         let given = [
             ("--frames", self.selection.frames.is_some()),
@@ -62,7 +63,7 @@ impl MonitorArguments {
         }
     }
 
-    /// The frames asked for, of a scenario of `count`.
+    /// Returns the requested frames of a scenario with `count` frames.
     fn frames(&self, count: u64) -> Result<std::ops::Range<u64>, Failure> {
         match self.from {
             Some(from) if from >= count => Err(Failure::Usage(format!(
@@ -74,7 +75,7 @@ impl MonitorArguments {
     }
 }
 
-/// A run that is simulated and processed as it is watched.
+/// Returns the feed of a run that is simulated and processed while it is displayed.
 fn live(arguments: &MonitorArguments, scratch: &Path) -> Result<(String, Feed), Failure> {
     let source = arguments.selection.scenario()?;
     let prepared = source.prepare(Options::default())?;
@@ -84,7 +85,8 @@ fn live(arguments: &MonitorArguments, scratch: &Path) -> Result<(String, Feed), 
     Ok((source.name, Feed::new(prepared, Measurements::Live { factory, frames, jobs })?))
 }
 
-/// A run directory: its measurements and its truth as they are, its pictures drawn anew.
+/// Returns the feed of a run directory: its measurements and truth are read unchanged, its pictures are drawn
+/// again.
 fn replay(directory: &Path) -> Result<(String, Feed), Failure> {
     let run = directory.join("run.toml");
     if !run.is_file() {
@@ -95,7 +97,7 @@ fn replay(directory: &Path) -> Result<(String, Feed), Failure> {
     }
     let source = ScenarioSource::read(&run.to_string_lossy())?;
     let truth = source.world().truth_file();
-    // A table has its name when it is complete.
+    // A table has its final name only when it is complete.
     if let Some(missing) =
         [truth, "telemetry.csv", "measurements.csv"].iter().find(|name| !directory.join(name).is_file())
     {
@@ -111,10 +113,10 @@ fn replay(directory: &Path) -> Result<(String, Feed), Failure> {
     ))
 }
 
-/// Ends with Ctrl-C, and where there is such a thing with a request to terminate.
+/// Completes on Ctrl-C and, on systems that have one, on a termination request.
 async fn interrupted() {
     let interrupt = async {
-        // Without a handler the process ends by the signal itself.
+        // Without a handler the signal itself ends the process.
         if tokio::signal::ctrl_c().await.is_err() {
             std::future::pending::<()>().await;
         }

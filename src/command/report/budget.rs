@@ -1,4 +1,5 @@
-//! The runs of an error budget: the frames of a run flown again, once a stage, with the truth in the place of its result.
+//! Runs of an error budget: the frames of a run are run again, once per stage, with the truth instead of the
+//! stage's result.
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -13,8 +14,9 @@ use crate::command::options::default_jobs;
 use crate::command::output::Output;
 use crate::command::scratch_directory::ScratchDirectory;
 
-/// Flies what is missing of the error budget of a far-range run, and keeps of each stage `run.toml` and `score.json` in
-/// `budget/STAGE`: its frames are those of the run, and their truth is there already. Gives the directories.
+/// Runs the missing stages of the error budget of a far-range run, and returns the directories. Of each
+/// stage, `run.toml` and `score.json` are kept in `budget/STAGE`: the frames are those of the run, whose
+/// truth is already stored.
 pub(super) fn run_budget(directory: &Path, output: &Output) -> Result<Vec<PathBuf>, Failure> {
     check_budget(directory)?;
     let run = FarRangeRun::read(directory)?;
@@ -34,7 +36,7 @@ pub(super) fn run_budget(directory: &Path, output: &Output) -> Result<Vec<PathBu
     let has_regions = run.run_file.scenario.roi.is_some();
     let mut kept = Vec::new();
     for &stage in Stage::value_variants() {
-        // Whole images are what such a camera sends anyway.
+        // A camera without regions transmits whole images anyway.
         if stage == Stage::Roi && !has_regions {
             continue;
         }
@@ -57,7 +59,8 @@ fn run_stage(
     let create =
         |path: &Path, source| Failure::from(FileError::Io { path: path.to_owned(), doing: "create", source });
     std::fs::create_dir_all(folder).map_err(|error| create(folder, error))?;
-    // Beside what is kept of it: the truth of a long run may be more than a folder for temporary files can hold.
+    // Created beside the results that are kept: the truth of a long run may exceed the capacity of a
+    // directory for temporary files.
     clean_up_when_interrupted();
     let scratch = ScratchDirectory::create(folder)?;
     let prepared = source.prepare(Options { inject: Some(stage), ..Options::default() })?;
@@ -73,7 +76,7 @@ fn run_stage(
     });
     progress.finish_and_clear();
     output.first_failure(ran?.first_failure.as_ref());
-    // The score last: where it is, the stage is done.
+    // The score is written last: if it exists, the stage is complete.
     for name in ["run.toml", "score.json"] {
         let path = run.path().join(name);
         let text = toml_file::read_text(&path).map_err(|source| FileError::Io {
@@ -81,7 +84,7 @@ fn run_stage(
             doing: "read",
             source,
         })?;
-        // Of a stage that was not done.
+        // From a stage that was not completed.
         let earlier = ReplaceableFile {
             description: "that of an earlier flight",
             matches: &|beginning| beginning.starts_with(b"name = "),

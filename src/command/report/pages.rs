@@ -14,13 +14,14 @@ use visibility::VisibilityReport;
 use super::budget::run_budget;
 use crate::command::output::Output;
 
-/// The value of `--budget` that flies every stage.
+/// Value of `--budget` that runs every stage.
 const ALL: &str = "all";
 
 /// Writes the report of a directory of results to `path` and returns its size, bytes.
 ///
 /// # Errors
-/// A [`Failure`] for a directory without results, an error budget that does not belong to it, or a file that cannot be written.
+/// A [`Failure`] for a directory without results, an error budget that does not belong to it, or a file that
+/// cannot be written.
 pub(super) fn write_report(
     directory: &Path,
     budget: &[PathBuf],
@@ -76,15 +77,16 @@ pub(in crate::command) fn write_gate(report: &GateReport, result: &Path, path: &
     write_page(&gate_page(report, flipped), path).map(|_| ())
 }
 
-/// Refuses a place where something else is than an earlier report.
+/// Rejects a path that holds anything other than an earlier report.
 ///
 /// # Errors
-/// A [`Failure`] that names it.
+/// A [`Failure`] that names the path.
 pub(super) fn check_place(path: &Path) -> Result<(), Failure> {
     Ok(REPORTS.check(path)?)
 }
 
-/// Writes `report.html` into a directory whose results are complete without it: a failure is only noted.
+/// Writes `report.html` into a directory whose results are complete without it: a failure only prints a
+/// remark.
 fn write_beside(page: Result<Page, Failure>, directory: &Path, output: &Output) {
     if let Err(failure) = page.and_then(|page| write_page(&page, &directory.join("report.html"))) {
         output.note(format!("the report was not written: {failure}"));

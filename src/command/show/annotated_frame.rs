@@ -1,4 +1,4 @@
-//! What is shown of a frame.
+//! Picture of a frame with its description.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use contract::Window;
 use serde_json::{Value, json};
 use show::{Class, Panel, PanelLayout};
 
-/// A panel, and what `--json` tells of it.
+/// A panel, and its description in the output of `--json`.
 pub(super) struct AnnotatedFrame {
     pub(super) panel: Panel,
     pub(super) frame: u64,
@@ -16,10 +16,10 @@ pub(super) struct AnnotatedFrame {
     pub(super) cause: Option<String>,
 }
 
-/// Where the pixels of a frame come from.
+/// Source of the pixels of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PixelSource {
-    /// From the image in the directory.
+    /// The image in the directory.
     Stored,
     /// Drawn again from `run.toml`.
     DrawnAgain,
@@ -70,7 +70,7 @@ impl AnnotatedFrame {
     }
 }
 
-/// A word of a file as people read it: `cut by roi`.
+/// Returns a code from a file in readable form: `cut by roi`.
 pub(super) fn display_name(word: &str) -> String {
     word.replace('_', " ")
 }

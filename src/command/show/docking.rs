@@ -1,4 +1,4 @@
-//! Fields of an approach as panels: what was recognised, the pose measured and true.
+//! Fields of an approach as panels: recognised features, and the measured and the true pose.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,10 +26,10 @@ use super::far_range::{Bounds, not_stored, time_words};
 use super::source::{Source, rows_of};
 use super::{AnnotatedFrame, PixelSource, display_name};
 
-/// Videos of a directory whose telemetry names no images.
+/// Videos of a directory whose telemetry lists no images.
 const VIDEOS: [&str; 2] = ["fields.avi", "fields.y4m"];
 
-/// What is known of a field.
+/// Available data about a field.
 struct FieldRecord<'a> {
     name: String,
     row: &'a FieldRow,
@@ -37,15 +37,16 @@ struct FieldRecord<'a> {
     lens: Option<String>,
     truth: Option<FieldTruth>,
     features: Vec<FeatureRow>,
-    /// `None` where there are no measurements at all.
+    /// `None` if there are no measurements at all.
     answer: Option<Option<DockingOutcome>>,
     verdict: Option<UnitVerdict>,
 }
 
-/// Panels of some fields, in their order. Each is woven with the field before it, where that one holds the other rows.
+/// Returns the panels of some fields, in the given order. Each field is interleaved with the preceding field,
+/// if that field holds the other rows.
 ///
 /// # Errors
-/// A [`Failure`] that names the field or the file which is missing or cannot be read.
+/// A [`Failure`] that names the field or the file that is missing or cannot be read.
 pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<AnnotatedFrame>, Failure> {
     let telemetry = read_field_telemetry(&source.directory.join("telemetry.csv"))?;
     let rows = source.select("field", &telemetry, numbers, |row: &FieldRow| row.field)?;
@@ -104,7 +105,7 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<AnnotatedFr
     Ok(shown)
 }
 
-/// The row before, where its field holds the other rows of the camera.
+/// Returns the preceding row of the telemetry, if its field holds the other rows of the camera.
 fn partner<'a>(telemetry: &'a [FieldRow], row: &FieldRow) -> Option<&'a FieldRow> {
     let place = telemetry.binary_search_by_key(&row.field, |row| row.field).ok()?;
     let before = telemetry.get(place.checked_sub(1)?)?;
@@ -113,7 +114,7 @@ fn partner<'a>(telemetry: &'a [FieldRow], row: &FieldRow) -> Option<&'a FieldRow
     (is_other && follows).then_some(before)
 }
 
-/// The fields that are needed: stored ones, or, where none are stored, drawn again.
+/// Returns the required fields: stored fields or, if none are stored, fields drawn again.
 fn fields(
     source: &Source,
     setup: &DockingSetup,
@@ -130,7 +131,7 @@ fn fields(
     let names_none = telemetry.iter().all(|row| row.file.is_none());
     if names_none && VIDEOS.iter().any(|name| source.file(name).is_some()) {
         let mut waiting: BTreeSet<u64> = needed.keys().copied().collect();
-        // Of a folder with telemetry they do not apply.
+        // The options do not apply to a directory with telemetry.
         let options = SequenceOptions {
             scan: Scan::Interlaced(FieldOrder::Top),
             camera: 0,
@@ -163,7 +164,7 @@ fn fields(
     Ok((fields, PixelSource::DrawnAgain))
 }
 
-/// The verdict on one field.
+/// Returns the verdict on one field.
 fn verdict(
     run_file: &RunFile<DockingScenario>,
     setup: &DockingSetup,
@@ -186,8 +187,8 @@ fn verdict(
     Ok(scorer.units().units.into_iter().next())
 }
 
-/// The digital numbers of a whole frame: rows of the field, and between them those of the field before, or where there is none those of
-/// the field itself again.
+/// Returns the digital numbers of a whole frame: the rows of the field, interleaved with those of the
+/// preceding field or, if there is none, with repeated rows of the field itself.
 fn woven(field: &Field, before: Option<&Field>) -> Vec<u16> {
     let columns = field.image().columns().max(1);
     let mut dn = vec![0; columns * field.camera_rows()];
@@ -273,14 +274,14 @@ impl FieldRecord<'_> {
             at.map(|at| Mark { at, shape, class: Class::TrueCentre, label: None })
         };
         let circle = self.features.iter().find(|row| row.kind == "circle").and_then(|row| row.radius_px);
-        // Neighbours leave room between them, also where the target is small.
+        // Marks of neighbouring features leave a gap between them, even if the target is small.
         let half = (0.11 * circle.filter(|radius| radius.is_finite()).unwrap_or(0.0)).clamp(3.5, 8.0);
         let features = self.features.iter().filter_map(|row| feature_mark(row, half));
         let truths = [truth.and_then(|truth| truth.disk_centre), truth.and_then(|truth| truth.cross_centre)];
         features.chain(truths.into_iter().filter_map(centre)).collect()
     }
 
-    /// The surroundings of the target, by what was recognised or by the truth.
+    /// Returns the surroundings of the target, from recognised features or from the truth.
     fn close_up(&self, columns: usize, rows: usize) -> Option<Window> {
         let circle = self.features.iter().find(|row| row.kind == "circle");
         let recognised = circle.map(|row| (PixelPoint::new(row.position[0], row.position[1]), row.radius_px));
@@ -307,7 +308,7 @@ impl FieldRecord<'_> {
         Some(Words { words: format!("{}{cause}", display_name(&unit.verdict)), tone })
     }
 
-    /// Why there is no pose in the answer.
+    /// Returns the reason why the outcome has no pose.
     fn reason(&self) -> Option<String> {
         match self.answer.as_ref()? {
             None => Some("no row".to_owned()),
@@ -358,7 +359,7 @@ impl FieldRecord<'_> {
             for (i, name) in NAMES.into_iter().enumerate() {
                 let truth = truth.as_ref().and_then(|truth| truth.0.get(i));
                 let truth = truth.map_or_else(String::new, |truth| format!("{truth:.3}"));
-                // What the outline gives is d3.
+                // The outline determines d3.
                 let value = range.clone().filter(|_| i == D3).unwrap_or_default();
                 if !truth.is_empty() || !value.is_empty() {
                     pose.push_pair(name, value, truth);
@@ -410,7 +411,7 @@ impl FieldRecord<'_> {
         lines
     }
 
-    /// The range of an answer that has nothing else, m.
+    /// Returns the range of an outcome that contains only a range, m.
     fn range_alone(&self) -> Option<String> {
         match self.answer.as_ref()?.as_ref()?.solution {
             DockingSolution::RangeOnly { range_m, sigma_m } => Some(with_sigma(range_m, sigma_m)),
@@ -421,7 +422,7 @@ impl FieldRecord<'_> {
 
 /// Names of [`Parameters`].
 const NAMES: [&str; 7] = ["range, m", "d1, m", "d2, m", "d3, m", "pitch, °", "yaw, °", "roll, °"];
-/// Place of d3 among them.
+/// Index of d3 in the names.
 const D3: usize = 3;
 
 /// Range and position, m, and the rotation vector, degrees.
@@ -434,7 +435,7 @@ impl Parameters {
         Self([d.norm(), d.x, d.y, d.z, pitch, yaw, roll])
     }
 
-    /// Standard deviations; that of the range along the direction of the position.
+    /// Returns the standard deviations; the one of the range is taken along the direction of the position.
     fn sigmas(best: &PoseEstimate) -> Self {
         let (d, covariance) = (&best.pose.position_m, &best.covariance);
         let range = d.norm();
@@ -446,7 +447,7 @@ impl Parameters {
     }
 }
 
-/// Decimals that show two digits of a standard deviation; three without one.
+/// Number of decimals that shows two digits of a standard deviation; three without a standard deviation.
 fn decimals(sigma: f64) -> usize {
     if !(sigma.is_finite() && sigma > 0.0) {
         return 3;
@@ -454,7 +455,7 @@ fn decimals(sigma: f64) -> usize {
     (1.0 - libm::log10(sigma).floor()).clamp(0.0, 5.0) as usize
 }
 
-/// A value with its standard deviation.
+/// Formats a value with its standard deviation.
 fn with_sigma(value: f64, sigma: f64) -> String {
     let digits = decimals(sigma);
     if sigma.is_finite() && sigma > 0.0 {
@@ -464,7 +465,8 @@ fn with_sigma(value: f64, sigma: f64) -> String {
     }
 }
 
-/// The mark of a feature; none of those that were not seen. `half` is half of the side of the squares, px.
+/// Returns the mark of a feature, or `None` for a feature that was not seen. `half` is half the side of the
+/// squares, px.
 fn feature_mark(row: &FeatureRow, half: f64) -> Option<Mark> {
     let at = PixelPoint::new(row.position[0], row.position[1]);
     let circle =
@@ -518,7 +520,8 @@ mod tests {
         assert_eq!(with_sigma(1.5, 1e-12), "1.50000 ± 0.00000");
     }
 
-    /// A camera on the axis has the range's σ of d3, one beside it that of the direction.
+    /// For a camera on the axis, the range has the σ of d3; for a camera beside the axis, the σ along the
+    /// line of sight.
     #[test]
     fn the_sigma_of_the_range_is_along_the_line_of_sight() {
         let variances = [0.01, 0.04, 0.09, 1e-4, 4e-4, 9e-4];

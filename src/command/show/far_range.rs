@@ -1,4 +1,5 @@
-//! Frames of the far range as panels: stars, target and what else is in the image, the answer, the transmitted regions.
+//! Far-range frames as panels: stars, target and other objects in the image, the outcome, the transmitted
+//! regions.
 
 use std::collections::BTreeMap;
 
@@ -19,29 +20,29 @@ use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility};
 use super::source::{Source, rows_of};
 use super::{AnnotatedFrame, PixelSource, display_name};
 
-/// Sides of a close-up at least, px.
+/// Minimum sides of a close-up, px.
 const LEAST_SIDES: (f64, f64) = (32.0, 24.0);
-/// A region or an answer so near to the target is in its close-up, px.
+/// Distance to the target within which a region or a measurement is included in the close-up, px.
 const NEAR_PX: f64 = 40.0;
-/// An object that lost more of its light than this to the regions is not in the picture.
+/// Fraction of electrons outside the regions above which an object is not marked in the picture.
 const MAX_CUT: f64 = 0.99;
 
-/// What is known of a frame.
+/// Available data about a frame.
 struct FrameRecord {
     name: String,
     telemetry: Telemetry,
     group: Option<String>,
     truth: Option<FrameTruth>,
     objects: Vec<ObjectTruth>,
-    /// `None` where there are no measurements at all.
+    /// `None` if there are no measurements at all.
     answer: Option<Option<Outcome>>,
     verdict: Option<Verdict>,
 }
 
-/// Panels of some frames, in their order.
+/// Returns the panels of some frames, in the given order.
 ///
 /// # Errors
-/// A [`Failure`] that names the frame or the file which is missing or cannot be read.
+/// A [`Failure`] that names the frame or the file that is missing or cannot be read.
 pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<AnnotatedFrame>, Failure> {
     let telemetry = read_telemetry(&source.directory.join("telemetry.csv"))?;
     let rows = source.select("frame", &telemetry, numbers, |row: &TelemetryRow| row.frame)?;
@@ -81,7 +82,7 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<AnnotatedFr
     Ok(shown)
 }
 
-/// The answers to some frames, each with its clusters; `None` where there are no measurements.
+/// Returns the outcomes of some frames, each with its clusters; `None` if there are no measurements.
 fn answers(
     source: &Source,
     camera: &Camera,
@@ -100,7 +101,7 @@ fn answers(
     Ok(Some(answers))
 }
 
-/// The images of some rows: stored ones, and where none is stored frames drawn again.
+/// Returns the images of some rows: stored images and, where none is stored, frames drawn again.
 fn images(
     source: &Source,
     camera: &CameraFile,
@@ -128,7 +129,7 @@ fn images(
     Ok(images)
 }
 
-/// That a frame can neither be read nor drawn again.
+/// Returns the failure of a frame that can be neither read nor drawn again.
 pub(super) fn not_stored(source: &Source, unit: &str, number: u64) -> Failure {
     Failure::Usage(format!(
         "{}: no image is named for {unit} {number}, expected one, or run.toml beside the table to draw it again",
@@ -136,7 +137,7 @@ pub(super) fn not_stored(source: &Source, unit: &str, number: u64) -> Failure {
     ))
 }
 
-/// The verdict on one frame.
+/// Returns the verdict on one frame.
 fn verdict(
     run_file: &RunFile,
     truth: &FrameTruth,
@@ -209,7 +210,8 @@ impl FrameRecord {
         self.objects.iter().find(|object| object.kind == ObjectKind::Target)
     }
 
-    /// Where the target truly is: the centre of its light, or, of one without light in the image, the line of sight.
+    /// Returns the true position of the target: its centroid or, for a target without signal in the image,
+    /// the line of sight.
     fn target_position(&self) -> Option<PixelPoint> {
         let of_frame = || self.truth.as_ref().and_then(|truth| truth.target_position);
         self.target().map(|target| target.position).or_else(of_frame)
@@ -220,7 +222,7 @@ impl FrameRecord {
         answer.measurement().map(|measurement| measurement.position)
     }
 
-    /// Later marks lie over earlier ones; bright stars are named first.
+    /// Returns the marks. Later marks cover earlier ones; bright stars are labelled first.
     fn marks(&self) -> Vec<Mark> {
         let mut objects: Vec<&ObjectTruth> = self
             .objects
@@ -250,7 +252,8 @@ impl FrameRecord {
         marks
     }
 
-    /// The surroundings of the target, or, where it is not known or not on the detector, of the answer.
+    /// Returns the surroundings of the target or, if its position is unknown or off the detector, those of
+    /// the measurement.
     fn close_up(&self, regions: Option<&[Window]>, columns: usize, rows: usize) -> Option<Window> {
         let on_detector = |at: &PixelPoint| at.is_on_detector(columns, rows);
         let answer = self.answer_position().filter(on_detector);
@@ -263,7 +266,7 @@ impl FrameRecord {
             let high = PixelPoint::new(low.x + region.columns as f64 - 1.0, low.y + region.rows as f64 - 1.0);
             let gap = |at: f64, low: f64, high: f64| (low - at).max(at - high).max(0.0);
             let distance = gap(centre.x, low.x, high.x).max(gap(centre.y, low.y, high.y));
-            // The target's own region; one of the whole detector is none.
+            // The region of the target; a region of the whole detector does not count.
             if distance < 4.0 && high.x - low.x < 4.0 * NEAR_PX && high.y - low.y < 4.0 * NEAR_PX {
                 bounds.add(low);
                 bounds.add(high);
@@ -284,7 +287,7 @@ impl FrameRecord {
         Some(Words { words, tone })
     }
 
-    /// Measured minus true position, px.
+    /// Returns the measured minus the true position, px.
     fn error_px(&self) -> Option<(f64, f64)> {
         let (answer, truth) = self.answer_position().zip(self.target_position())?;
         Some((answer.x - truth.x, answer.y - truth.y))
@@ -350,7 +353,7 @@ impl FrameRecord {
     }
 }
 
-/// The mark of an object that is not the target.
+/// Returns the mark of an object other than the target.
 fn object_mark(object: &ObjectTruth) -> Option<Mark> {
     let (class, least, label) = match object.kind {
         ObjectKind::Target => return None,
@@ -368,14 +371,14 @@ fn object_mark(object: &ObjectTruth) -> Option<Mark> {
     })
 }
 
-/// The name of a planet by its number from the Sun outwards.
+/// Returns the name of a planet from its number, counted from the Sun outwards.
 fn planet(number: u32) -> String {
     const NAMES: [&str; 8] = ["Mercury", "Venus", "Earth", "Mars", "Jupiter", "Saturn", "Uranus", "Neptune"];
     let name = usize::try_from(number).ok().and_then(|number| NAMES.get(number.checked_sub(1)?));
     name.map_or_else(|| format!("planet {number}"), |name| (*name).to_owned())
 }
 
-/// `2012-04-26T13:02:07.250000000Z` to the millisecond, without letters.
+/// Formats a time such as `2012-04-26T13:02:07.250000000Z` to the millisecond, without letters.
 pub(super) fn time_words(utc: &str) -> String {
     let (date, time) = utc.trim_end_matches('Z').split_once('T').unwrap_or((utc, ""));
     format!("{date} {}", time.get(..12).unwrap_or(time))
@@ -401,7 +404,8 @@ impl Bounds {
         self.high = PixelPoint::new(self.high.x.max(point.x), self.high.y.max(point.y));
     }
 
-    /// The window around it, four to three, with a border of three pixels, moved into the detector.
+    /// Returns the window around the rectangle, with an aspect ratio of four to three and a border of three
+    /// pixels, shifted into the detector.
     pub(super) fn window(&self, columns: usize, rows: usize) -> Window {
         let (wide, high) = (self.high.x - self.low.x + 7.0, self.high.y - self.low.y + 7.0);
         let width = wide.max(high * 4.0 / 3.0).max(LEAST_SIDES.0);

@@ -1,4 +1,4 @@
-//! The file of a picture: where it goes, and what it may replace.
+//! File of a picture: its path, and the files that it may replace.
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use files::{AtomicFile, Failure, FileError, ReplaceableFile};
 use show::is_boresight_picture;
 
-/// Folder of pictures in a run directory. Not beside the images of a dataset: every image there must have a row in `telemetry.csv`.
+/// Directory of pictures in a run directory. The images of a dataset are kept separate, because each of them
+/// must have a row in `telemetry.csv`.
 const FOLDER: &str = "show";
-/// What a picture may replace.
+/// Files that a picture may replace.
 const PICTURES: ReplaceableFile<'static> = ReplaceableFile {
     description: "an earlier picture of `boresight show` (--out FILE.png)",
     matches: &is_boresight_picture,
@@ -17,15 +18,16 @@ const PICTURES: ReplaceableFile<'static> = ReplaceableFile {
 /// A file that may be written.
 pub(super) struct PictureFile {
     path: PathBuf,
-    /// Whether its folder is made when it is missing.
+    /// True if the directory of the file is created when it is missing.
     is_default: bool,
 }
 
 impl PictureFile {
-    /// The file of `--out`, or without it that of some frames in the directory.
+    /// Returns the file of `--out` or, without it, the file in `directory` named by the frames.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a name that is not of a PNG, and for a file that is not an earlier picture of `boresight show`.
+    /// [`Failure::Usage`] for a name without the extension of PNG, and for an existing file that is not an
+    /// earlier picture of `boresight show`.
     pub(super) fn new(out: Option<&Path>, directory: &Path, frames: &[u64]) -> Result<Self, Failure> {
         let names: Vec<String> = frames.iter().map(|frame| format!("{frame:06}")).collect();
         let default = || directory.join(FOLDER).join(format!("{}.png", names.join("-")));
@@ -40,10 +42,10 @@ impl PictureFile {
         Ok(Self { path, is_default: out.is_none() })
     }
 
-    /// Writes the file, at once or not at all.
+    /// Writes the file atomically.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be written.
+    /// [`FileError::Io`] if the file cannot be written.
     pub(super) fn write(self, bytes: &[u8]) -> Result<PathBuf, Failure> {
         let Self { path, is_default } = self;
         if let Some(folder) = path.parent().filter(|_| is_default)

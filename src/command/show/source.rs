@@ -1,4 +1,4 @@
-//! The directory that frames are shown of.
+//! Directory whose frames are shown.
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -7,23 +7,23 @@ use run::{AnyWorld, world_of_run, worlds};
 
 /// A run directory or a dataset.
 pub(super) struct Source {
-    /// The directory.
+    /// Path of the directory.
     pub(super) directory: PathBuf,
-    /// Its world.
+    /// World of the directory.
     pub(super) world: &'static dyn AnyWorld,
-    /// Name for titles: that of the directory, until `run.toml` tells the scenario's.
+    /// Name for titles: the directory's name, until the scenario's name is read from `run.toml`.
     pub(super) name: String,
-    /// Whether there is a `run.toml`: frames can be drawn again, and answers be judged.
+    /// True if there is a `run.toml`, from which frames can be drawn again and outcomes scored.
     pub(super) has_run: bool,
-    /// The answers, where there are any.
+    /// File of measurements, if there is one.
     pub(super) measurements: Option<PathBuf>,
 }
 
 impl Source {
-    /// Looks into a directory.
+    /// Examines a directory.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for what is neither a run directory nor a dataset.
+    /// [`Failure::Usage`] for a path that is neither a run directory nor a dataset.
     pub(super) fn open(directory: &Path, measurements: Option<&Path>) -> Result<Self, Failure> {
         let has = |name: &str| directory.join(name).is_file();
         let run = directory.join("run.toml");
@@ -65,20 +65,20 @@ impl Source {
         })
     }
 
-    /// A file of the directory, if it is there.
+    /// Returns the path of a file in the directory, if it exists.
     pub(super) fn file(&self, name: &str) -> Option<PathBuf> {
         Some(self.directory.join(name)).filter(|path| path.is_file())
     }
 
-    /// A file beside the answers, if it is there.
+    /// Returns the path of a file beside the measurements, if it exists.
     pub(super) fn beside_measurements(&self, name: &str) -> Option<PathBuf> {
         self.measurements.as_ref().map(|path| path.with_file_name(name)).filter(|path| path.is_file())
     }
 
-    /// The rows of the telemetry that are asked for, in the order asked for.
+    /// Returns the requested rows of the telemetry, in the requested order.
     ///
     /// # Errors
-    /// [`Failure::Usage`] that names the first number without a row, and those that have one.
+    /// [`Failure::Usage`] that names the first number without a row, and the range of existing numbers.
     pub(super) fn select<'a, R>(
         &self,
         unit: &str,
@@ -104,7 +104,7 @@ impl Source {
         numbers.iter().map(find).collect()
     }
 
-    /// Holds the files that were read against their checksums.
+    /// Verifies the files against their checksums.
     ///
     /// # Errors
     /// A [`FileError`] for a file that was changed.
@@ -113,7 +113,7 @@ impl Source {
     }
 }
 
-/// The rows of some frames of a table, in one pass; none where there is no table.
+/// Reads the rows of some frames from a table, in one pass; returns no rows if there is no table.
 pub(super) fn rows_of<R: Row>(
     path: Option<&Path>,
     numbers: &[u64],

@@ -1,4 +1,4 @@
-//! The camera and the star list of a dataset.
+//! Camera and star list of a dataset.
 
 use super::{check_refused, dataset};
 

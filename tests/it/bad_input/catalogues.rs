@@ -1,9 +1,9 @@
-//! Star catalogues of the user that cannot be used.
+//! Unusable star catalogues from a user.
 
 use super::check_refused;
 use crate::support::Bench;
 
-/// A scenario whose catalogue is the file `stars.EXTENSION` with this text.
+/// Checks the rejection of a scenario whose catalogue is the file `stars.EXTENSION` with the given text.
 fn check(extension: &str, text: Option<&str>, parts: &[&str]) {
     let bench = Bench::new();
     let file = format!("stars.{extension}");

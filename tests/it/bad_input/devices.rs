@@ -1,4 +1,4 @@
-//! Pipes and devices in the place of files: they may have no end, or nobody at the other one.
+//! Pipes and devices instead of files: they may have no end, or no process at the other end.
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -7,7 +7,7 @@ use std::process::Command;
 use super::dataset;
 use crate::support::Bench;
 
-/// The file is a pipe that nobody writes to, and then a device without end: it is refused by name, at once.
+/// Checks that a pipe without a writer, and then a device without end, are rejected by name, at once.
 fn check(bench: &Bench, words: &str, name: &str) {
     let path = bench.path(name);
     let _ = fs::remove_file(&path);

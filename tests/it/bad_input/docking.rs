@@ -1,4 +1,4 @@
-//! Docking: scenarios, targets, sequences of television.
+//! Docking: scenarios, targets, television sequences.
 
 use boresight::scenario::DOCKING;
 use sim::scene::docking::TargetFile;
@@ -6,7 +6,7 @@ use sim::scene::docking::TargetFile;
 use super::check_refused;
 use crate::support::Bench;
 
-/// One frame of the hold at 2 m as AVI in `set`, with its setup.
+/// Renders one frame of the hold at 2 m as AVI in `set`, with its setup.
 fn video() -> Bench {
     let bench = Bench::new();
     bench.boresight("render docking --frames 24000..24004 --format avi --out set").done();
@@ -14,7 +14,8 @@ fn video() -> Bench {
     bench
 }
 
-/// The built-in scenario with a text replaced, in `mine.toml`: refused at the line of the new text.
+/// Checks that the built-in scenario with a replaced text, in `mine.toml`, is rejected at the line of the new
+/// text.
 fn check_edited(old: &str, new: &str, parts: &[&str]) {
     let bench = Bench::new();
     bench.write("mine.toml", DOCKING);
@@ -99,7 +100,7 @@ fn options_of_the_other_world_are_refused() {
     }
 }
 
-/// Nothing is written: the first field is drawn before.
+/// Nothing is written, because the first field is drawn before.
 #[test]
 fn a_mitsuba_that_is_not_there_is_reported() {
     let bench = Bench::new();
@@ -142,7 +143,7 @@ fn a_field_order_a_rate_or_a_size_that_is_none_is_refused() {
     }
 }
 
-/// A folder's table tells all of it: an option would be passed over in silence.
+/// The table of a directory specifies everything: an option would be ignored silently.
 #[test]
 fn an_option_that_a_table_makes_idle_is_refused() {
     let bench = video();
@@ -165,13 +166,14 @@ fn images_of_another_size_and_an_empty_input_are_refused() {
     bench.write("pictures/a1.png", png.into_inner());
     let size = ["pictures/a1.png", "`image size` is `640 × 480`", "expected 768 × 576"];
     check_refused(&bench, "process pictures --setup set/setup.toml", &size);
-    // Nothing is written to it.
+    // Standard input is empty.
     check_refused(&bench, "process - --setup set/setup.toml", &["standard input", "Y4M", "it is empty"]);
     check_refused(&bench, "process -", &["standard input", "--scenario SCENARIO", "--setup FILE"]);
     check_refused(&bench, "process set/fields.avi --camera 7", &["`camera` is `7`", "expected 0 to 1"]);
 }
 
-/// What goes beside the measurements has names of its own: another folder helps, another file does not.
+/// The files beside the measurements have fixed names: another directory avoids the conflict, another file
+/// name does not.
 #[test]
 fn a_second_set_of_answers_in_a_folder_is_refused() {
     let bench = video();
@@ -180,7 +182,7 @@ fn a_second_set_of_answers_in_a_folder_is_refused() {
     check_refused(&bench, again, &["motion.csv exists", "another folder with --out"]);
 }
 
-/// Each where the file has it.
+/// Each value is reported with its line in the file.
 #[test]
 fn a_setup_with_a_value_that_cannot_be_is_named_with_its_line() {
     let bench = video();
@@ -211,10 +213,10 @@ fn an_avi_that_is_none_cut_short_or_of_another_size_is_refused() {
     check_refused(&bench, &format!("process none.avi {scenario}"), &["none.avi", "AVI"]);
     bench.write("cut.avi", &whole[..whole.len() / 2]);
     check_refused(&bench, &format!("process cut.avi {scenario}"), &["cut.avi", "ends"]);
-    // Inside a dataset as well.
+    // Also within a dataset.
     bench.write("set/fields.avi", &whole[..whole.len() / 2]);
     check_refused(&bench, "process set", &["set/fields.avi", "ends"]);
-    // The width in the header of the stream's format.
+    // Width in the header of the stream's format.
     let mut narrow = whole.clone();
     let format = whole.windows(4).position(|bytes| bytes == b"strf").unwrap();
     narrow[format + 12..format + 16].copy_from_slice(&640_u32.to_le_bytes());

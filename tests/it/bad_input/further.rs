@@ -1,9 +1,10 @@
-//! Inputs of a second round of attacks (24 November 2026), sixty-odd that no earlier test had: each is refused with its place, or is no mistake.
+//! Inputs of a second round of attacks (24 November 2026), about sixty that no earlier test contained: each
+//! is rejected with its location, or is valid.
 
 use super::check_refused;
 use crate::support::{Bench, STUDY};
 
-/// A built-in scenario with one line changed.
+/// Writes a built-in scenario with one changed line.
 fn with_change(bench: &Bench, old: &str, new: &str) {
     let text = scenario::STARTING_POINT;
     assert!(text.contains(old), "`{old}`");
@@ -25,7 +26,7 @@ fn numbers_dates_and_names_of_scenarios() {
         ("count = 400", "count = 1152921504606846976", &["schedule[0].count", "1 to 1e8"]),
         ("cadence_s = 15.0", "cadence_s = -15.0", &["schedule[0].cadence_s", "-15"]),
         ("cadence_s = 15.0", "cadence_s = nan", &["schedule[0].cadence_s", "NaN"]),
-        // As it is written, not as three hundred zeros.
+        // Printed as written, without three hundred zeros.
         ("cadence_s = 15.0", "cadence_s = 1e300", &["schedule[0].cadence_s: is 1e300, expected"]),
         ("pixel_width_um = 8.6", "pixel_width_um = 1e-300", &["camera.pixel_width_um: is 1e-300, expected"]),
         ("2012-04-25T00:10:00Z", "2012-02-30T00:10:00Z", &["schedule[0].start_utc", "that exist"]),
@@ -38,7 +39,7 @@ fn numbers_dates_and_names_of_scenarios() {
         ("principal_x_px = 395.0", "principal_x_px = 1e9", &["camera.principal_x_px"]),
         ("radial = [2.6e-8, 0.0, 0.0]", "radial = [nan, 0.0, 0.0]", &["camera.radial[0]", "NaN"]),
         ("eccentricity = 0.003", "eccentricity = 1.0", &["orbit.target.eccentricity", "0 to 0.9"]),
-        // At its key, with what is expected of it.
+        // Reported at its key, with the expected range.
         (
             "eccentricity = 0.003",
             "eccentricity = 0.9",
@@ -69,7 +70,7 @@ fn numbers_dates_and_names_of_scenarios() {
         with_change(&bench, old, new);
         check_refused(&bench, RENDER, parts);
     }
-    // Neither is a mistake.
+    // Both are valid.
     for (old, new) in [("\n", "\r\n"), ("name = \"first orbit\"", "name = \"a\\u001b[2Jb,\\\"c\\nd\"")] {
         bench.write("s.toml", scenario::STARTING_POINT.replace(old, new));
         bench.boresight("scenario check s.toml").done();
@@ -128,7 +129,7 @@ fn tables_beside_a_scenario() {
 #[test]
 fn words_of_the_command_line_and_of_studies() {
     let bench = Bench::new();
-    // An empty name had been the current folder.
+    // An empty name used to mean the current directory.
     for words in [
         &["run", "argon", "--frames", "0..1", "--out", ""][..],
         &["render", "argon", "--frames", "0..1", "--out", ""],

@@ -1,11 +1,11 @@
-//! The images of a dataset.
+//! Images of a dataset.
 
 use std::fs;
 
 use super::{check_refused, dataset, dataset_of};
 use crate::support::Bench;
 
-/// The second image of a dataset replaced by these bytes.
+/// Checks the rejection of a dataset whose second image is replaced by the given bytes.
 fn check(format: &str, bytes: impl FnOnce(Vec<u8>) -> Vec<u8>, parts: &[&str]) {
     let bench = dataset_of(format);
     let name = format!("set/frames/000021.{format}");
@@ -21,7 +21,8 @@ fn cut_to(length: usize) -> impl FnOnce(Vec<u8>) -> Vec<u8> {
     }
 }
 
-/// A header card replaced, and the checksum of header and data taken for a remark; the length of the file stays.
+/// Replaces a header card, and turns the checksum of header and data into a comment; the length of the file
+/// stays.
 fn with_card(keyword: &'static str, card: &'static str) -> impl FnOnce(Vec<u8>) -> Vec<u8> {
     move |mut bytes| {
         let sum = bytes.chunks_exact(80).position(|old| old.starts_with(b"CHECKSUM")).unwrap() * 80;
@@ -63,7 +64,7 @@ fn a_fits_header_that_makes_all_pixels_the_same_is_refused() {
     check("fits", with_card("BSCALE", "BSCALE  =                  0.0"), &["BSCALE", "`0`"]);
 }
 
-/// The sum of the data alone, where that of header and data is missing.
+/// The checksum of the data is used on its own if the checksum of header and data is missing.
 #[test]
 fn fits_data_that_changed_are_refused_by_their_own_sum() {
     let damaged = |bytes: Vec<u8>| {
@@ -75,7 +76,8 @@ fn fits_data_that_changed_are_refused_by_their_own_sum() {
     check("fits", damaged, &["DATASUM", "damaged"]);
 }
 
-/// Two images of a dataset swapped: names can be wrong, what the images tell of themselves is held against the telemetry.
+/// Two images of a dataset are swapped: names can be wrong, and the contents of the images are therefore
+/// compared with the telemetry.
 #[test]
 fn an_image_of_another_frame_is_refused_by_its_header() {
     for (format, field) in [("fits", "`FRAMENO` is `22`"), ("exr", "`boresight.frame` is `22`")] {
@@ -131,7 +133,7 @@ fn an_exr_header_of_another_size_is_refused_before_anything_is_decoded() {
     let claiming = |mut bytes: Vec<u8>| {
         for window in ["dataWindow\0box2i\0", "displayWindow\0box2i\0"] {
             let name = bytes.windows(window.len()).position(|part| part == window.as_bytes()).unwrap();
-            // After the name the length of the value, then x and y of the first and the last pixel.
+            // The name is followed by the length of the value, then x and y of the first and the last pixel.
             let last = name + window.len() + 4 + 8;
             bytes[last..last + 8].copy_from_slice(&[16383_i32.to_le_bytes(); 2].concat());
         }

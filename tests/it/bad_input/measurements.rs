@@ -1,4 +1,4 @@
-//! Measurements to be scored, and the truth they are scored against.
+//! Measurements to be scored, and the truth to which they are compared.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use super::{check_refused, dataset};
 
 const HEADER: &str = "frame,status,x_px,y_px";
 
-/// A run of three frames, 20 to 22, whose measurements are these rows.
+/// Checks the rejection of a run of three frames, 20 to 22, with the given rows as measurements.
 fn check(rows: &[&str], parts: &[&str]) {
     let bench = dataset();
     bench.write("mine.csv", format!("{HEADER}\n{}\n", rows.join("\n")));

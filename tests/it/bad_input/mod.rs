@@ -1,4 +1,4 @@
-//! Bad input: a message that names the place, exit status 2, nothing written and nothing overwritten.
+//! Invalid input: a message with the location, exit status 2, nothing written and nothing overwritten.
 
 mod cameras;
 mod catalogues;
@@ -16,8 +16,8 @@ mod usage;
 
 use crate::support::{Bench, check_same_files};
 
-/// The command refuses these words with a message that has these parts; with `--json` the message is one JSON
-/// document on stdout as well. No file appears, vanishes or changes.
+/// Checks that the command rejects these words with a message that contains the given parts; with `--json`
+/// the message is also one JSON document on stdout. No file is created, removed or changed.
 fn check_refused(bench: &Bench, words: &str, parts: &[&str]) {
     check_refused_words(bench, &words.split_whitespace().collect::<Vec<_>>(), parts);
 }
@@ -39,7 +39,8 @@ fn check_refused_words(bench: &Bench, words: &[&str], parts: &[&str]) {
     check_same_files(&before, &after);
 }
 
-/// A rendered dataset of three frames in `set`, PNG, without checksums: what is wrong is wrong from the beginning.
+/// Renders a dataset of three frames in `set`, PNG, without checksums: any damage therefore counts as
+/// original content.
 fn dataset() -> Bench {
     dataset_of("png")
 }

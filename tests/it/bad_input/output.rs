@@ -1,4 +1,4 @@
-//! Places where nothing may be written.
+//! Paths that must not be written to.
 
 use super::{check_refused, dataset};
 use crate::support::{Bench, STUDY};
@@ -89,7 +89,7 @@ fn a_manual_replaces_nothing_but_its_pages() {
     assert_eq!(bench.read("man/boresight-run.1"), "mine");
 }
 
-/// A run's checksums are the last witness of its files.
+/// A run's checksums are the last evidence of its files.
 #[test]
 fn the_checksums_of_a_run_stay() {
     let bench = Bench::new();

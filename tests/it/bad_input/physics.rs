@@ -1,19 +1,20 @@
-//! Scenarios of which every number is allowed and which cannot be: refused by check, run and render alike, with file, field, value and
-//! expectation. And those that can be and are probably not meant: they are told.
+//! Scenarios with individually valid numbers that are impossible as a whole: rejected by check, run and
+//! render alike, with file, field, value and expectation. Scenarios that are possible but probably unintended
+//! give a warning.
 
 use toml::{Table, Value};
 
 use super::check_refused;
 use crate::support::{Answer, Bench};
 
-/// A built-in scenario with a change, in `mine.toml`.
+/// Writes a built-in scenario with a change to `mine.toml`.
 fn with_change(built_in: &str, change: impl FnOnce(&mut Table)) -> Bench {
     let bench = Bench::new();
     bench.scenario("mine.toml", built_in, change);
     bench
 }
 
-/// Sets a value of a scenario by its path.
+/// Sets a value of a scenario, given its path.
 fn set(table: &mut Table, path: &str, value: impl Into<Value>) {
     let (parents, key) = path.rsplit_once('.').unwrap();
     let table = parents.split('.').fold(table, |table, key| match table.get_mut(key).unwrap() {
@@ -23,7 +24,7 @@ fn set(table: &mut Table, path: &str, value: impl Into<Value>) {
     table.insert(key.to_owned(), value.into());
 }
 
-/// The scenario is refused with its file and these parts.
+/// Checks that the scenario is rejected with its file and these parts of the message.
 fn check_impossible(built_in: &str, parts: &[&str], change: impl FnOnce(&mut Table)) {
     let bench = with_change(built_in, change);
     let parts: Vec<&str> = parts.iter().copied().chain(["mine.toml:"]).collect();
@@ -82,7 +83,7 @@ fn an_exposure_longer_than_the_cadence_is_refused() {
     check_impossible("starting-point", &parts, |table| set(table, "shutter.max_s", 16.0));
 }
 
-/// 9.5 GB for a frame of 128 × 96 it was.
+/// Such a frame of 128 × 96 pixels used to take 9.5 GB.
 #[test]
 fn more_hits_than_a_frame_may_have_are_refused() {
     let parts = [
@@ -122,7 +123,7 @@ fn a_distortion_beyond_sip_is_reported_and_its_fits_files_have_none() {
         assert!(header.contains("'RA---TAN'") && header.contains("No SIP follows"), "{header}");
         assert!(!header.contains("A_ORDER"), "{header}");
     }
-    // Where a corner has no direction, or more than one, there is no camera.
+    // If a corner has no direction, or more than one, the camera is invalid.
     let parts = ["camera.radial", "does not fold inside the detector: it does 4"];
     check_impossible("starting-point", &parts, |table| {
         set(table, "camera.radial", vec![Value::Float(-7e-7), Value::Float(0.0), Value::Float(0.0)]);

@@ -5,14 +5,15 @@ use boresight::scenario::{BUILT_IN, STARTING_POINT};
 use super::check_refused;
 use crate::support::Bench;
 
-/// A scenario file with a text replaced is refused, at the line of the new text.
+/// Checks that a scenario file with a replaced text is rejected at the line of the new text.
 fn check_edited(old: &str, new: &str, parts: &[&str]) {
     let text = STARTING_POINT.split(old).next().unwrap();
     let place = format!("mine.toml:{}:", 1 + text.matches('\n').count());
     check_mistake(old, new, &[&[place.as_str()], parts].concat());
 }
 
-/// A scenario file with a text replaced is refused by the commands that would use it, and by the one that checks it.
+/// Checks that a scenario file with a replaced text is rejected by the commands that would use it, and by the
+/// command that checks it.
 fn check_mistake(old: &str, new: &str, parts: &[&str]) {
     let bench = Bench::new();
     bench.boresight("scenario new mine.toml").done();
@@ -71,7 +72,7 @@ fn an_unknown_key_gets_the_nearest_name() {
 
 #[test]
 fn a_missing_key_is_named_with_its_table() {
-    // The place is that of the table.
+    // The reported location is that of the table.
     check_mistake("sigma_px = 0.8\n", "", &["mine.toml:43:1: psf", "`sigma_px`"]);
 }
 
@@ -127,7 +128,7 @@ fn an_array_of_fixed_length_has_exactly_its_values() {
     ] {
         check_edited(old, new, &parts);
     }
-    // Within a table whose kind says what it has, the place is that of the table.
+    // In a table whose `kind` determines its keys, the reported location is that of the table.
     check_mistake(
         "kind = \"gaussian\" # or one of these, each line in place of the two here:\nsigma_px = 0.8",
         "kind = \"airy\"\nlambda_n_px = [1.2, 1.2, 0.3]",

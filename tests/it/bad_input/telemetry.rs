@@ -1,10 +1,10 @@
-//! The telemetry of a dataset.
+//! Telemetry of a dataset.
 
 use std::fs;
 
 use super::{check_refused, dataset};
 
-/// A dataset whose telemetry has been changed, cell by cell, is refused. Lines count from 1, the header.
+/// Checks that a dataset with changed telemetry cells is rejected. Lines count from 1, the header.
 fn check(change: impl FnOnce(&mut Vec<Vec<String>>), parts: &[&str]) {
     let bench = dataset();
     let mut table: Vec<Vec<String>> = bench
@@ -18,7 +18,7 @@ fn check(change: impl FnOnce(&mut Vec<Vec<String>>), parts: &[&str]) {
     check_refused(&bench, "process set", &[&["set/telemetry.csv"], parts].concat());
 }
 
-/// One cell changed.
+/// Checks the rejection of telemetry with one changed cell.
 fn check_cell(line: usize, column: &str, value: &str, parts: &[&str]) {
     check(
         |table| {

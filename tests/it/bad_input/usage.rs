@@ -1,4 +1,4 @@
-//! Arguments of the command line.
+//! Command-line arguments.
 
 use super::{check_refused, check_refused_words, dataset};
 use crate::support::Bench;
@@ -28,7 +28,7 @@ fn where_nothing_is_required_nothing_is_met() {
     check_refused(&bench, "visibility none.toml", &["none.toml", "[[requirements]]", "at least one"]);
 }
 
-/// Names are of anybody's making; what they order of a terminal is shown as numbers.
+/// Names may come from any source; terminal control characters in them are printed as numbers.
 #[test]
 fn a_name_orders_nothing_of_a_terminal() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Files that are cut short or have a bit flipped, wherever it is: an error that names the file.
+//! Files that are truncated or have a flipped bit at any position: an error that names the file.
 
 use std::fs;
 use std::path::Path;
@@ -9,13 +9,15 @@ use boresight::study::{Plan, ShardStore, Study};
 use super::small;
 use crate::support::{Bench, check_same_files};
 
-/// Every place of a file that is tried: the ends, where formats have their marks, lengths and checksums, and places all over.
+/// Byte positions of a file that are tested: the ends, where formats have their marks, lengths and checksums,
+/// and positions throughout the file.
 fn byte_positions(length: usize, step: usize) -> Vec<usize> {
     let end = length.saturating_sub(16);
     (0..length.min(16)).chain((16..end).step_by(step)).chain(end.max(16)..length).collect()
 }
 
-/// Calls `check` with a file cut short, empty, and with one bit flipped at each of some places; then the file is whole again.
+/// Calls `check` with the file truncated, empty, and with one bit flipped at each of several positions; then
+/// restores the file.
 fn damaged(bench: &Bench, name: &str, step: usize, mut check: impl FnMut(&str)) {
     let path = bench.path(name);
     let bytes = fs::read(&path).unwrap();
@@ -25,7 +27,7 @@ fn damaged(bench: &Bench, name: &str, step: usize, mut check: impl FnMut(&str)) 
     }
     for (i, place) in byte_positions(bytes.len(), step).into_iter().enumerate() {
         let mut flipped = bytes.clone();
-        // Of a text, a low bit makes a digit another digit, the most dangerous damage there is.
+        // In a text, a low bit changes a digit into another digit, the most dangerous kind of damage.
         flipped[place] ^= 1 << (i % 8);
         fs::write(&path, &flipped).unwrap();
         check(&format!("{name} with bit {} of byte {place} flipped", i % 8));
@@ -33,12 +35,12 @@ fn damaged(bench: &Bench, name: &str, step: usize, mut check: impl FnMut(&str)) 
     fs::write(&path, &bytes).unwrap();
 }
 
-/// The command refuses, and names the file, but where it is the checksums' own.
+/// Checks that the command rejects the damage and names the file.
 fn check_refused(bench: &Bench, words: &str, name: &str, what: &str) {
     let answer = bench.boresight(words);
     assert_eq!(answer.status, Some(2), "{what}: `{words}` is content\n{}{}", answer.stdout, answer.stderr);
     let file = Path::new(name).file_name().unwrap().to_str().unwrap();
-    // Long messages are broken into lines.
+    // Long messages are wrapped.
     let message = answer.refused(&[]).stderr.replace("\n  | ", "");
     assert!(message.contains(file), "{what}: `{words}` does not name it: {message}");
 }
@@ -88,7 +90,7 @@ fn damage_in_a_docking_dataset_is_found() {
         let step = bench.path(name).metadata().unwrap().len() as usize / tried;
         damaged(&bench, name, step, |what| check_refused(&bench, reader, name, what));
     }
-    // Of a PNG, all but its end, which holds nothing: 12 bytes that are always the same.
+    // In a PNG, all positions but its end, which contains no data: 12 bytes that are always the same.
     let name = "run/frames/018001.png";
     let path = bench.path(name);
     let bytes = fs::read(&path).unwrap();
@@ -125,13 +127,14 @@ fn damage_in_a_baseline_or_a_study_is_found_by_the_gate() {
         damaged(&bench, name, step, |what| check_refused(&bench, reader, name, what));
     }
     bench.boresight(gate).done();
-    // What is derived is made again.
+    // Derived files are written again.
     bench.write("study/cases.parquet", "damaged");
     bench.boresight("study merge study.toml --out study").done();
     bench.boresight(gate).done();
 }
 
-/// A shard of which any bit is another is no shard, wherever it is: magic, pages, their headers, the hash, the footer, its length.
+/// A shard with any flipped bit is invalid, wherever the bit is: magic, pages, their headers, the hash, the
+/// footer, its length.
 #[test]
 fn a_shard_with_any_bit_flipped_is_no_shard() {
     let bench = Bench::new();
@@ -156,7 +159,8 @@ fn a_shard_with_any_bit_flipped_is_no_shard() {
     });
     assert!(tried > 200, "{tried} places");
     assert!(store.read(1, &empty).unwrap().is_some());
-    // And a plan that is damaged is told, not replaced; or, where the damage says nothing (the name, a blank), the rows are the same.
+    // A damaged plan is reported and not replaced; or, if the damage is in irrelevant text (the name, a
+    // space), the rows are the same.
     let rows = fs::read(bench.path("study/cases.parquet")).unwrap();
     damaged(&bench, "study/plan.json", 40, |what| {
         let answer = bench.boresight("study run study.toml --out study --no-report");

@@ -1,4 +1,5 @@
-//! Disks that are full or may not be written to: an error that names the file, and nothing that looks whole.
+//! Disks that are full or read-only: an error that names the file, and no partial result that appears
+//! complete.
 
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -6,13 +7,13 @@ use std::process::Output;
 use super::{complete_files, shell, small, stderr};
 use crate::support::{Bench, check_same_files};
 
-/// Runs a command whose files may not be longer than so many blocks of 512 bytes: what a write beyond it gets is an error, as on a disk
-/// that is full.
+/// Runs a command whose files are limited to `blocks` blocks of 512 bytes: a write beyond this fails, as on a
+/// full disk.
 fn with_short_files(bench: &Bench, blocks: u32, words: &str) -> Output {
     shell(bench, &format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$BORESIGHT\" {words}"))
 }
 
-/// The command failed for want of room, and said for which file.
+/// Checks that the command failed for lack of space, and named the file.
 fn check_no_room(output: &Output, directory: &str) {
     let text = stderr(output);
     assert_eq!(output.status.code(), Some(2), "{text}");
@@ -21,11 +22,12 @@ fn check_no_room(output: &Output, directory: &str) {
     assert!(!text.contains("panicked") && !text.contains("not a readable"), "{text}");
 }
 
-/// Runs a command that makes a directory with every length of file that stops it somewhere else; returns how often it was stopped.
+/// Runs a command that creates a directory, with every file-size limit that stops it at a different point;
+/// returns the number of times that it was stopped.
 fn check_stopped_anywhere(bench: &Bench, making: &str, reader: &str) -> u32 {
     bench.boresight(&format!("{making} --out whole")).done();
     let whole = bench.tree("whole");
-    // Each file of the result as the first that is too long, and all in the middle of it.
+    // Each file of the result is the first to exceed the limit, and each exceeds it in the middle.
     let mut lengths: Vec<u32> =
         whole.values().flat_map(|bytes| [bytes.len() / 1024, bytes.len() / 512]).map(|n| n as u32).collect();
     lengths.sort_unstable();
@@ -34,7 +36,7 @@ fn check_stopped_anywhere(bench: &Bench, making: &str, reader: &str) -> u32 {
     for blocks in lengths {
         let output = with_short_files(bench, blocks, &format!("{making} --out short"));
         if output.status.code() == Some(0) {
-            // Results stand without their report, whose absence is a remark.
+            // Results are valid without their report, whose absence is noted.
             let mut left = bench.tree("short");
             let has_report = left.contains_key(Path::new("report.html"));
             assert!(
@@ -139,7 +141,7 @@ fn measurements_that_have_no_room_are_not_there() {
     let before = bench.tree("set");
     check_no_room(&with_short_files(&bench, 2, "process set"), "set");
     check_same_files(&before, &bench.tree("set"));
-    // A program that cannot be given its images has failed at them, each.
+    // If the images cannot be passed to a program, each frame is a failure.
     let words = "process set --pipeline 'exec:python3 program.py' --out answers.csv";
     bench.write(
         "program.py",
@@ -150,7 +152,7 @@ fn measurements_that_have_no_room_are_not_there() {
     let rows = bench.csv("answers.csv");
     assert_eq!(rows.len(), 20);
     assert!(rows.iter().all(|row| row["status"].contains("the image cannot be written")), "{rows:?}");
-    // And without a place for them nothing begins.
+    // Without a directory for the images, nothing begins.
     let output = shell(
         &bench,
         &format!(
@@ -162,7 +164,8 @@ fn measurements_that_have_no_room_are_not_there() {
     assert!(stderr(&output).contains("a temporary directory cannot be made"), "{}", stderr(&output));
 }
 
-/// Below a file, and in a folder that is the kernel's: places where nobody, not even root, makes a directory.
+/// Below a file, and in a directory of the kernel: paths where no user, not even root, can create a
+/// directory.
 #[test]
 fn a_path_that_cannot_be_written_to_is_named() {
     let bench = Bench::new();
@@ -184,11 +187,11 @@ fn a_path_that_cannot_be_written_to_is_named() {
     assert_eq!(bench.read("file"), "mine");
 }
 
-/// A file system of its own, ended with the value.
+/// A separate file system, unmounted when the value is dropped.
 struct MountedFileSystem(PathBuf);
 
 impl MountedFileSystem {
-    /// A tmpfs of so many kilobytes; `None` where mounting is not permitted.
+    /// Mounts a tmpfs of `kilobytes` kilobytes; `None` if mounting is not permitted.
     fn tmpfs(place: PathBuf, kilobytes: u32) -> Option<Self> {
         std::fs::create_dir(&place).unwrap();
         let size = format!("size={kilobytes}k,nr_inodes=400");
@@ -216,7 +219,7 @@ impl Drop for MountedFileSystem {
     }
 }
 
-/// A disk that is full in earnest, then larger, then read-only.
+/// A disk that is really full, then larger, then read-only.
 #[test]
 #[ignore = "needs root, to mount; continuous integration has it"]
 fn a_study_on_a_full_disk_is_gone_on_with_on_a_larger_one() {
@@ -262,7 +265,7 @@ fn a_study_on_a_full_disk_is_gone_on_with_on_a_larger_one() {
         .boresight("run small.toml --frames 20..24 --out disk/run")
         .refused(&["disk/run", "Read-only file system"]);
     bench.boresight("study run study.toml --out disk/new").refused(&["disk/new", "Read-only file system"]);
-    // What is whole can be read where nothing can be written.
+    // Complete results can be read on a read-only disk.
     bench.boresight("gate baseline disk/out --out base --reason x").done();
     let again = bench.boresight(&format!("{making} --out disk/out"));
     again.refused(&["disk/out", "Read-only file system"]);

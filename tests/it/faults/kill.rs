@@ -1,10 +1,10 @@
-//! Moments at which a process is killed, from a seed.
+//! Times at which a process is killed, drawn from a seed.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// SplitMix64 (Steele, Lea and Flood 2014): moments that are the same in every run of a test.
+/// SplitMix64 (Steele, Lea and Flood 2014): the same times in every run of a test.
 pub(crate) struct Dice(u64);
 
 impl Dice {
@@ -12,7 +12,7 @@ impl Dice {
         Self(seed)
     }
 
-    /// A whole number below `end`.
+    /// Draws an integer below `end`.
     pub(crate) fn below(&mut self, end: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -22,17 +22,17 @@ impl Dice {
     }
 }
 
-/// A moment of a process's life.
+/// A point in the execution of a process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum KillTime {
-    /// So long after its start.
+    /// This time after its start.
     After(Duration),
-    /// As soon as it has begun its n-th file, from 0: its name is not its own yet.
+    /// Immediately after it has begun its n-th file, from 0, which still has a temporary name.
     Writing(u64),
 }
 
 impl KillTime {
-    /// By turns some time of a life, and some file of so many.
+    /// Draws, with equal probability, a time within the duration `life`, or one of `files` files.
     pub(crate) fn draw(dice: &mut Dice, life: Duration, files: u64) -> Self {
         if dice.below(2) == 0 {
             Self::After(Duration::from_micros(dice.below(life.as_micros() as u64)))
@@ -42,15 +42,16 @@ impl KillTime {
     }
 }
 
-/// How a process that was to be killed ended.
+/// End of a process that was to be killed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ProcessEnd {
     Killed,
-    /// It was done before its moment came.
+    /// The process ended before its time to be killed.
     Done,
 }
 
-/// Starts a process and kills it (SIGKILL) at a moment, unless it is done by then; `folders` are those in which it makes files.
+/// Starts a process and kills it (SIGKILL) at a given point, unless it has ended by then; `folders` are the
+/// directories in which it creates files.
 pub(crate) fn kill_at(mut command: Command, kill_time: KillTime, folders: &[PathBuf]) -> ProcessEnd {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let is_done = match kill_time {
@@ -64,7 +65,7 @@ pub(crate) fn kill_at(mut command: Command, kill_time: KillTime, folders: &[Path
     }
     child.kill().unwrap();
     let status = child.wait().unwrap();
-    // It may have ended between the look and the kill.
+    // The process may have ended between the check and the kill.
     if std::os::unix::process::ExitStatusExt::signal(&status) == Some(9) {
         ProcessEnd::Killed
     } else {
@@ -102,7 +103,7 @@ fn watch_or_done(child: &mut Child, count: u64, folders: &[PathBuf]) -> bool {
     }
 }
 
-/// What is being written in a folder, or was left.
+/// Returns the files of a directory that are being written or were left unfinished.
 pub(crate) fn partial_files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let is_partial =

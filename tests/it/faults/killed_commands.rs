@@ -1,4 +1,5 @@
-//! Commands that are killed half way: what they leave is whole or is refused, and what comes next says so.
+//! Commands that are killed while running: their files are complete or rejected, and the next command reports
+//! this.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -13,7 +14,8 @@ fn small_bench() -> Bench {
     bench
 }
 
-/// A reader of what a command leaves gives the answer that it gives of the whole, or refuses.
+/// Checks that a command that reads the remaining files gives the same answer as for the complete files, or
+/// rejects them.
 fn check_answer_or_refusal(bench: &Bench, words: &str, whole: &Answer, kill_time: KillTime) {
     let answer = bench.boresight(words);
     match answer.status {
@@ -29,7 +31,8 @@ fn check_answer_or_refusal(bench: &Bench, words: &str, whole: &Answer, kill_time
     }
 }
 
-/// Kills a command that makes a directory; `readers` are commands on the directory `half`, whose answers on the whole one are known.
+/// Kills a command that creates a directory; `readers` are commands on the directory `half`, whose answers
+/// for the complete directory are known.
 fn check_directory(bench: &Bench, making: &str, files: u64, readers: &[&str], seed: u64) {
     let begun = Instant::now();
     bench.boresight(&format!("{making} --out whole")).done();
@@ -47,7 +50,7 @@ fn check_directory(bench: &Bench, making: &str, files: u64, readers: &[&str], se
         killed += u32::from(end == ProcessEnd::Killed);
         if bench.path("half").exists() {
             for (path, bytes) in complete_files(bench, "half") {
-                // An image that is being written is no matter: without telemetry no reader comes to it.
+                // A partly written image is harmless: without telemetry no command reads it.
                 if !path.starts_with("frames") {
                     assert!(
                         whole[&path] == bytes,
@@ -59,7 +62,7 @@ fn check_directory(bench: &Bench, making: &str, files: u64, readers: &[&str], se
             for (words, answer) in readers.iter().zip(&answers) {
                 check_answer_or_refusal(bench, words, answer, kill_time);
             }
-            // What is there is not touched, and the message says that there is something.
+            // Existing files are not touched, and the message reports that they exist.
             let before = bench.tree("half");
             let again = bench.boresight(&format!("{making} --out half"));
             if again.status != Some(0) {
@@ -117,7 +120,7 @@ fn a_docking_dataset_that_is_killed_is_whole_or_refused() {
     }
 }
 
-/// The measurements of a `process` that is killed are whole or not there, and the next one gives them.
+/// The measurements of a killed `process` are complete or absent, and the next call writes them.
 #[test]
 fn a_process_that_is_killed_is_done_again() {
     let bench = small_bench();
@@ -152,7 +155,7 @@ fn a_process_that_is_killed_is_done_again() {
     assert!(killed >= 2, "of eight kills {killed} came in time");
 }
 
-/// What a gate writes, a baseline and its reports, is whole or not there.
+/// The output of a gate, a baseline and its reports, is complete or absent.
 #[test]
 fn a_gate_that_is_killed_leaves_nothing_half_written() {
     let bench = small_bench();
@@ -188,12 +191,13 @@ fn a_gate_that_is_killed_leaves_nothing_half_written() {
     assert!(killed >= 2, "of three kills {killed} came in time");
 }
 
-/// A process that is asked to end removes its temporary directory, and of one that was killed the next one does.
+/// A process that is requested to end removes its temporary directory; the directory of a killed process is
+/// removed by the next process.
 #[cfg(unix)]
 #[test]
 fn temporary_directories_go_with_their_process() {
     let bench = small_bench();
-    // So long that no run ends before it is killed.
+    // Long enough that no run ends before it is killed.
     let long =
         std::fs::read_to_string(bench.path("small.toml")).unwrap().replace("count = 400", "count = 1000000");
     bench.write("long.toml", &long);
@@ -204,7 +208,7 @@ fn temporary_directories_go_with_their_process() {
     for (signal, count) in [("INT", 0), ("TERM", 0), ("KILL", 1)] {
         let mut command = command(&bench, &format!("run long.toml --out {signal}"));
         let mut child = command.env("TMPDIR", bench.path("tmp")).spawn().unwrap();
-        // With its mark: without, it could be anybody's.
+        // With its mark file: a directory without one could belong to the user.
         while !left().iter().any(|path| path.join(".boresight-scratch").exists()) {
             assert!(child.try_wait().unwrap().is_none(), "it ended too soon");
         }
@@ -225,7 +229,7 @@ fn temporary_directories_go_with_their_process() {
     assert_eq!(left().len(), 0);
 }
 
-/// Whoever interrupts a command learns what is left of it and how to go on.
+/// An interrupted command reports which results are kept and how to continue.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_command_says_what_it_kept() {
@@ -258,7 +262,7 @@ fn an_interrupted_command_says_what_it_kept() {
         }
     }
 
-    // Of a shard of 32 cases or more, those that are finished are not made again.
+    // In a shard of 32 cases or more, finished cases are not repeated.
     let journal = || std::fs::read_dir(bench.path("study/shards")).into_iter().flatten().flatten().next();
     let lines = |path: PathBuf| std::fs::read_to_string(path).unwrap_or_default().lines().count();
     let begun = || journal().is_some_and(|entry| lines(entry.path()) > 6);

@@ -1,4 +1,4 @@
-//! A study that is killed, again and again, and gone on with: what it leaves in the end is what it leaves undisturbed.
+//! A study that is killed repeatedly and continued: the final files are those of an undisturbed study.
 
 use std::time::{Duration, Instant};
 
@@ -22,10 +22,10 @@ distribution = { kind = "integer", min = 0, max = 40 }
 "#;
 
 const RUN: &str = "study run study.toml --shards 12 --jobs 2 --out";
-/// Files that a whole study writes: plan, shards, record, cases, summary, checksums, report.
+/// Number of files that a complete study writes: plan, shards, record, cases, summary, checksums, report.
 const FILES: u64 = 18;
 
-/// A bench with a study, undisturbed in `whole`, and how long that took.
+/// Returns a bench with a study, run undisturbed in `whole`, and the duration of that run.
 fn bench() -> (Bench, Duration) {
     let bench = Bench::new();
     small(&bench);
@@ -35,7 +35,8 @@ fn bench() -> (Bench, Duration) {
     (bench, begun.elapsed())
 }
 
-/// Kills a study so many times at moments drawn from a seed, and goes on with it until it is done, in as many folders as that takes.
+/// Kills a study `kills` times at times drawn from a seed, and continues it until it is complete, in as many
+/// directories as necessary.
 fn check_kills(kills: u32, seed: u64) {
     let (bench, life) = bench();
     let whole = complete_files(&bench, "whole");
@@ -64,7 +65,7 @@ fn check_kills(kills: u32, seed: u64) {
             eprintln!("kill {killed} {kill_time:?}: {shards} of 12 shards there, {left} unfinished files");
         }
         check_same_files(&whole, &complete_files(&bench, &out));
-        // And merging what is there once more changes nothing.
+        // Merging the existing shards again changes nothing.
         bench.boresight(&format!("study merge study.toml --out {out}")).done();
         check_same_files(&whole, &complete_files(&bench, &out));
     }
@@ -85,7 +86,7 @@ fn a_study_killed_at_fifty_times_ends_as_if_undisturbed() {
     check_kills(50, 2);
 }
 
-/// Merging, killed: the files of the end are whole or not there, and merging again gives them.
+/// If a merge is killed, the final files are complete or absent, and another merge writes them.
 #[test]
 fn a_merge_that_is_killed_is_done_again() {
     let (bench, _) = bench();
@@ -108,7 +109,7 @@ fn a_merge_that_is_killed_is_done_again() {
     assert!(killed >= 3, "of five kills {killed} came in time");
 }
 
-/// What killed processes left is taken away by a later one, an hour after.
+/// Files left by killed processes are removed by a later process, after an hour.
 #[test]
 fn what_a_killed_process_left_is_removed_when_it_is_old() {
     let (bench, _) = bench();

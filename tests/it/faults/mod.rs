@@ -1,5 +1,5 @@
-//! Faults of the world around: processes that are killed, disks that are full, files that are damaged, two at the same place. Each is a
-//! clear error or nothing at all; nothing is lost, and nothing is silently wrong.
+//! Faults of the environment: killed processes, full disks, damaged files, two processes at the same path.
+//! Each causes a clear error or no problem at all; nothing is lost, and nothing is silently wrong.
 
 mod damage;
 mod disk;
@@ -15,7 +15,7 @@ use std::process::{Command, Output};
 
 use crate::support::Bench;
 
-/// A scenario of small frames, whose star list is short: what is tried here is done many times.
+/// Writes a scenario with small frames and a short star list, because the tests here repeat it many times.
 fn small(bench: &Bench) {
     bench.scenario("small.toml", "starting-point", |table| {
         let camera = table["camera"].as_table_mut().unwrap();
@@ -29,19 +29,19 @@ fn small(bench: &Bench) {
     });
 }
 
-/// The program of the command.
+/// Path of the command's executable.
 fn program() -> &'static Path {
     assert_cmd::cargo::cargo_bin!("boresight")
 }
 
-/// The command with these words, which blanks separate, not started yet.
+/// Returns the command with these words, separated by spaces, not yet started.
 fn command(bench: &Bench, words: &str) -> Command {
     let mut command = Command::new(program());
     command.args(words.split_whitespace()).current_dir(bench.path(""));
     command
 }
 
-/// Runs a line of a shell in which `$BORESIGHT` is the program.
+/// Runs a shell line in which `$BORESIGHT` is the executable.
 fn shell(bench: &Bench, line: &str) -> Output {
     let mut command = Command::new("sh");
     command.args(["-c", line]).env("BORESIGHT", program()).current_dir(bench.path(""));
@@ -52,7 +52,8 @@ fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The files of a directory that have their names; what a killed process left unfinished is none of them.
+/// Returns the files of a directory that have their final names, without the unfinished files of killed
+/// processes.
 fn complete_files(bench: &Bench, directory: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let is_partial = |path: &Path| {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());

@@ -1,4 +1,4 @@
-//! Standard output that is full, closed, or whose reader has gone.
+//! Standard output that is full, closed, or whose reader is gone.
 
 #[cfg(target_os = "linux")]
 use std::fs::File;
@@ -45,7 +45,8 @@ fn a_full_standard_output_is_an_error_and_the_results_are_there() {
     }
 }
 
-/// `| head`: an answer that nobody reads to its end is given all the same; a stream that nobody reads ends.
+/// `| head`: a command completes its results even if its output is not read to the end; a stream without a
+/// reader ends.
 #[test]
 fn a_reader_that_goes_away_ends_a_stream_and_spoils_no_result() {
     let bench = Bench::new();
@@ -78,7 +79,8 @@ fn a_reader_that_goes_away_ends_a_stream_and_spoils_no_result() {
     assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));
 }
 
-/// A descriptor that is closed is not given to a file, into which the answer would then be written.
+/// The descriptor of a closed stream is not reused for a file, into which the command's output would then be
+/// written.
 #[test]
 fn closed_streams_spoil_no_result() {
     let bench = Bench::new();

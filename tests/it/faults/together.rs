@@ -1,4 +1,4 @@
-//! Two processes at one place at the same time: they work together, or one is refused.
+//! Two processes at one path at the same time: they cooperate, or one is rejected.
 
 use std::process::{Child, Output, Stdio};
 
@@ -12,7 +12,7 @@ fn study(cases: u32, sigma_max: f64) -> String {
     )
 }
 
-/// Starts commands at the same moment, as near as can be, and waits for all.
+/// Starts commands as simultaneously as possible, and waits for all of them.
 fn together(bench: &Bench, all: &[&str]) -> Vec<Output> {
     let start = |words: &&str| -> Child {
         command(bench, words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
@@ -34,7 +34,7 @@ fn workers_of_the_same_study_make_it_together() {
             assert!(output.status.success(), "{}", stderr(&output));
         }
         check_same_files(&bench.tree("whole"), &bench.tree(&out));
-        // One makes a shard while another puts all together.
+        // One process runs a shard while another merges all shards.
         let shard = format!("study run study.toml --shard 3/8 --out {out}");
         let merge = format!("study merge study.toml --out {out}");
         std::fs::remove_file(bench.path(&out).join("shards/3-of-8.parquet")).unwrap();
@@ -93,7 +93,7 @@ fn of_two_runs_into_one_directory_one_is_refused() {
         assert!(stderr(loser).contains("nothing is overwritten"), "{}", stderr(loser));
         check_same_files(&bench.tree(&format!("whole-{}", winner + 1)), &bench.tree(&out));
     }
-    // Without a directory of their own, each gets its number.
+    // Without separate directories, each run gets a number.
     let numbered = "run small.toml --frames 20..22 --no-report";
     for output in together(&bench, &[numbered; 3]) {
         assert!(output.status.success(), "{}", stderr(&output));

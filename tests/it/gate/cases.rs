@@ -1,4 +1,4 @@
-//! Runs for the gate to judge: made up, and real; with faults of a stated size.
+//! Synthetic and simulated runs as input of the gate, with faults of a stated size.
 
 use boresight::gate::{Baseline, CompareOptions, Identity, Pairing, Sample, SourceKind, compare};
 use boresight::score::{
@@ -8,29 +8,30 @@ use boresight::score::{
 use contract::{Angle, AttitudeSource};
 use sim::randomness::{Effect, Seed, Stream, normal, uniform};
 
-/// A pixel, degrees.
+/// Size of a pixel, degrees.
 const PIXEL_DEG: f64 = 0.024;
 
 /// A fault in a pipeline, of a stated size.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Fault {
-    /// So much of what was detected is missed.
+    /// This fraction of the detections is missed.
     LostHits(f64),
     /// All measurements are shifted along the columns, px.
     Shift(f64),
     /// All errors are larger by this factor.
     LargerErrors(f64),
-    /// All measurements are shifted along the rows, px, away from nought: in the direction of the bias that they have.
+    /// All measurements are shifted along the rows, px, away from zero: in the direction of their existing
+    /// bias.
     Bias(f64),
-    /// So much of all frames is wrong more.
+    /// The fraction of wrong frames increases by this amount.
     MoreWrong(f64),
-    /// Attitude is no longer solved in so much of the frames.
+    /// The attitude is no longer solved in this fraction of the frames.
     FewerAttitudes(f64),
-    /// Nothing is detected in this part of the frames, in a row.
+    /// Nothing is detected in a contiguous part of the frames, given by its two ends as fractions of the run.
     Blackout(f64, f64),
 }
 
-/// Those that a gate of 900 frames is to catch.
+/// Faults that a gate with 900 frames must catch.
 pub(crate) const FAULTS: [Fault; 15] = [
     Fault::LostHits(0.03),
     Fault::Shift(0.5),
@@ -50,7 +51,7 @@ pub(crate) const FAULTS: [Fault; 15] = [
 ];
 
 impl Fault {
-    /// The run of a pipeline that has the fault.
+    /// Returns the run of a pipeline with the fault.
     pub(crate) fn plant(self, frames: &[FrameVerdict], seed: u64) -> Vec<FrameVerdict> {
         let random = &mut Seed { seed, case: 1 }.stream(0, Effect::CaseSeed, 0);
         let correct = frames.iter().filter(|frame| matches!(frame.verdict, Verdict::Correct { .. })).count();
@@ -96,7 +97,7 @@ fn dec_deg(error: AnswerError) -> f64 {
     error.line_of_sight.map_or(0.0, |error| error.dec.degrees())
 }
 
-/// An error, degrees, of a pipeline that knows its attitude: all of it is the centroid's.
+/// Error, degrees, of a pipeline with its own attitude: the centroid causes all of it.
 fn error_from_degrees(ra: f64, dec: f64) -> AnswerError {
     let line_of_sight = LineOfSightError {
         ra: Angle::from_degrees(ra),
@@ -111,7 +112,7 @@ fn error_from_degrees(ra: f64, dec: f64) -> AnswerError {
     }
 }
 
-/// A verdict with another error, degrees.
+/// Returns a verdict with a changed error, degrees.
 fn with_error(verdict: Verdict, change: impl Fn(f64, f64) -> (f64, f64)) -> Verdict {
     let changed = |error: AnswerError| {
         let ra_deg = error.line_of_sight.map_or(0.0, |error| error.ra.degrees());
@@ -125,8 +126,8 @@ fn with_error(verdict: Verdict, change: impl Fn(f64, f64) -> (f64, f64)) -> Verd
     }
 }
 
-/// The run of one of several pipelines that are as good as one another: a tenth of a pixel of noise of its own in every error, and of one
-/// frame in fifty the verdict of another one.
+/// Returns the run of one of several equally good pipelines: every error has independent noise of a tenth of
+/// a pixel, and one frame in fifty has the verdict of another frame.
 pub(crate) fn harmless(frames: &[FrameVerdict], seed: u64, pipeline: u64) -> Vec<FrameVerdict> {
     let random = &mut Seed { seed, case: 2 + pipeline }.stream(0, Effect::CaseSeed, 0);
     let mut changed = frames.to_vec();
@@ -141,7 +142,8 @@ pub(crate) fn harmless(frames: &[FrameVerdict], seed: u64, pipeline: u64) -> Vec
     changed
 }
 
-/// The same in episodes: of one frame in forty on, the verdicts of another stretch of the run, eight frames long in the mean.
+/// Returns the run of one of several equally good pipelines that differ in episodes: an episode begins at one
+/// frame in forty, lasts eight frames on average, and has the verdicts of another part of the run.
 pub(crate) fn harmless_in_episodes(frames: &[FrameVerdict], seed: u64, pipeline: u64) -> Vec<FrameVerdict> {
     let random = &mut Seed { seed, case: 4 + pipeline }.stream(0, Effect::CaseSeed, 0);
     let mut changed = frames.to_vec();
@@ -161,7 +163,8 @@ pub(crate) fn harmless_in_episodes(frames: &[FrameVerdict], seed: u64, pipeline:
     changed
 }
 
-/// A made-up far-range run with a memory: hits, wrong answers and errors of a frame go with those of its neighbours.
+/// A synthetic far-range run with correlation in time: hits, wrong results and errors of a frame are
+/// correlated with those of its neighbours.
 pub(crate) struct Synthetic {
     pub(crate) stretches: u64,
     pub(crate) frames: u64,
@@ -183,7 +186,7 @@ impl Synthetic {
         (0..self.frames)
             .map(|frame| {
                 let error = error_from_degrees(0.014 * next(&mut ra, 0.6), 0.014 * next(&mut dec, 0.6));
-                // 95 % detected, 7 % of them wrong.
+                // 95 % are detected, of which 7 % are wrong.
                 let (is_hit, is_wrong) = (next(&mut hit, 0.7) < 1.645, next(&mut right, 0.7) > 1.476);
                 let verdict = match (is_hit, is_wrong) {
                     (false, _) => Verdict::Missed { cause: Cause::BelowThreshold },
@@ -208,7 +211,7 @@ impl Synthetic {
     }
 }
 
-/// A run as the gate reads it; runs of a seed are of the same frames.
+/// Sample of a run as the gate reads it; runs with the same seed have the same frames.
 pub(crate) fn sample_of(seed: u64, frames: &[FrameVerdict]) -> Sample {
     Sample::new(
         identity("far_range", seed),
@@ -216,7 +219,7 @@ pub(crate) fn sample_of(seed: u64, frames: &[FrameVerdict]) -> Sample {
     )
 }
 
-/// The same of a docking run.
+/// Sample of a docking run as the gate reads it; runs with the same seed have the same fields.
 pub(crate) fn docking_sample(seed: u64, table: UnitTable) -> Sample {
     Sample::new(identity("docking", seed), table)
 }
@@ -243,7 +246,7 @@ pub(crate) fn baseline_of(sample: Sample) -> Baseline {
     Baseline::new(sample, "a test", None).unwrap()
 }
 
-/// Whether the gate shuts, for two samples that go together in this way.
+/// Returns true if the gate closes, for two samples with this kind of pairing.
 pub(crate) fn rejects(baseline: &Baseline, result: &Sample, pairing: Pairing) -> bool {
     let report = compare(baseline, result, &CompareOptions::default()).unwrap();
     assert_eq!(report.pairing, pairing);

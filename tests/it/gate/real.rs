@@ -1,4 +1,4 @@
-//! Runs of the simulator, in this process.
+//! Simulator runs within this process.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 const PIPELINE: PipelineChoice =
     PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000, sandbox: None };
 
-/// The scenario of a gate of the project.
+/// Scenario of one of the project's gates.
 fn source(name: &str, seed: u64) -> ScenarioSource {
     let path = format!("{}/scenarios/gates/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let mut source = ScenarioSource::read(&path).unwrap();
@@ -22,7 +22,8 @@ fn source(name: &str, seed: u64) -> ScenarioSource {
     source
 }
 
-/// Runs of the gate's ARGON by seed, with the first so many stretches of each day and the first so many frames of each.
+/// Runs of the gate's ARGON by seed, with the first `stretches` stretches of each day and the first `frames`
+/// frames of each stretch.
 pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<FrameVerdict>> {
     let run = |seed: u64| {
         let mut source = source("argon", seed);
@@ -39,7 +40,7 @@ pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<
     seeds.into_par_iter().map(run).collect()
 }
 
-/// Runs of the gate's docking by seed, each as it is and with all its ranges a thousandth too long.
+/// Runs of the gate's docking by seed, each one unchanged and with all ranges too long by a thousandth.
 pub(crate) fn docking_runs(seeds: Range<u64>, fields: Range<u64>) -> Vec<(UnitTable, UnitTable)> {
     let run = |seed: u64| {
         let prepared = DockingMission::new(&source("docking", seed), DockingRenderer::Fast).unwrap();
@@ -52,7 +53,7 @@ pub(crate) fn docking_runs(seeds: Range<u64>, fields: Range<u64>) -> Vec<(UnitTa
     seeds.into_par_iter().map(run).collect()
 }
 
-/// A pipeline whose ranges are a thousandth too long.
+/// A pipeline whose ranges are too long by a thousandth.
 struct Scaled<'a>(&'a dyn PipelineFactory<Docking>);
 
 struct ScaledPipeline(Box<dyn Pipeline<Docking>>);

@@ -1,4 +1,5 @@
-//! The cases of golden/docking: what the images are images of. Shared by the test and by the program that makes them.
+//! Cases of golden/docking: the scenes of the images. Shared by the test and by the program that renders the
+//! images.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -61,20 +62,21 @@ struct Lens {
     principal_px: [f64; 2],
 }
 
-/// The folder golden/docking of the repository: this module is compiled in the root package and in `research`.
+/// Returns the directory golden/docking of the repository; this module is compiled in the root package and in
+/// `research`.
 pub(crate) fn folder() -> PathBuf {
     let mut above =
         Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|folder| folder.join("golden/docking"));
     above.find(|folder| folder.is_dir()).expect("the tests run in a checkout")
 }
 
-/// The cases, and the target that they are of.
+/// Reads the cases and their target.
 pub(crate) fn load() -> (Cases, TargetFile) {
     let read = |name: &str| fs::read_to_string(folder().join(name)).unwrap();
     (toml::from_str(&read("cases.toml")).unwrap(), toml::from_str(&read("target.toml")).unwrap())
 }
 
-/// The matrix A: from the camera's axes to the target frame.
+/// Returns the matrix A: from the camera's axes to the target frame.
 pub(crate) fn target_from_camera(pose: &Pose) -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))
         * Rotation3::from_scaled_axis(pose.phi_rad).matrix()
@@ -124,7 +126,7 @@ impl Case {
         Lighting { sun, floodlight, fill_radiance, sky_radiance }
     }
 
-    /// A square about the image of a point of the disk, as much of it as is in the image.
+    /// Returns a square around the image of a point of the disk, limited to the part within the image.
     pub(crate) fn crop(&self, cases: &Cases) -> Crop {
         let (camera, pose) = (self.camera(cases), self.pose());
         let (focal_px, _) = camera.focal_length_px();

@@ -1,4 +1,4 @@
-//! All tables that are declared, for whoever describes them or hands their columns on.
+//! List of all declared tables, used to document them and to export their columns.
 
 use sim::truth::{FrameTruth, ObjectTruth};
 
@@ -10,7 +10,7 @@ use crate::far_range::stars::StarRow;
 use crate::far_range::telemetry::TelemetryLine;
 use crate::table::declarations::{FieldDeclaration, Table};
 
-/// The fields of each CSV table, by its name in `docs/formats.md`.
+/// Returns the fields of each CSV table with its name in `docs/formats.md`.
 pub fn csv_tables() -> [(&'static str, Vec<FieldDeclaration>); 6] {
     [
         ("stars.csv", StarRow::declarations()),
@@ -22,7 +22,7 @@ pub fn csv_tables() -> [(&'static str, Vec<FieldDeclaration>); 6] {
     ]
 }
 
-/// The fields of each Parquet table whose columns are always the same, by its name in `docs/formats.md`.
+/// Returns the fields of each Parquet table with a fixed set of columns, with its name in `docs/formats.md`.
 pub fn parquet_tables() -> [(&'static str, Vec<FieldDeclaration>); 5] {
     [
         ("truth/frames.parquet", FrameTruth::declarations()),
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
     use crate::ColumnType;
 
-    /// [`crate::read_csv_table`] knows a column by its name alone.
+    /// [`crate::read_csv_table`] identifies a column only by its name.
     #[test]
     fn a_name_is_a_text_in_all_csv_tables_or_in_none() {
         let fields: Vec<FieldDeclaration> = csv_tables().into_iter().flat_map(|(_, fields)| fields).collect();

@@ -1,4 +1,4 @@
-//! Tables as columns in memory, whole, for whoever hands them on.
+//! Whole tables as columns in memory, for export.
 
 use std::path::Path;
 use std::str::FromStr;
@@ -12,22 +12,23 @@ use crate::parquet::file::ParquetFile;
 use crate::table::column::{Column, ColumnType};
 use crate::table::declarations::FieldDeclaration;
 
-/// Rows of a part of a table that is handed on.
+/// Number of rows in one part of an exported table.
 const PART_ROWS: usize = 8192;
 
 /// A table in memory.
 #[derive(Debug, Clone)]
 pub struct LoadedTable {
-    /// The columns without rows.
+    /// Columns without rows.
     pub header: Vec<Column>,
-    /// The rows, in parts, each with the columns of the header.
+    /// Rows, divided into parts, each with the columns of the header.
     pub parts: Vec<Vec<Column>>,
 }
 
 /// Reads a Parquet table with all its columns.
 ///
 /// # Errors
-/// [`FileError`] for a file that cannot be read, is none or is damaged, or has a column of a type that no table of ours has.
+/// [`FileError`] for a file that cannot be read, is damaged or not in Parquet format, or has a column of a
+/// type that Boresight tables do not use.
 pub fn read_parquet_table(path: &Path) -> Result<LoadedTable, FileError> {
     let file = ParquetFile::open(path)?;
     let names: Vec<String> = file.columns().iter().map(|column| column.name.clone()).collect();
@@ -36,11 +37,12 @@ pub fn read_parquet_table(path: &Path) -> Result<LoadedTable, FileError> {
     Ok(LoadedTable { header, parts: batches.collect::<Result<_, _>>()? })
 }
 
-/// Reads one of our CSV tables, each column of the type that its name has in them: 64-bit counts, texts, or floating-point numbers, as
-/// which others are read too. An empty cell is null.
+/// Reads a CSV table of Boresight. Each column has the type that its name has in the declared tables: 64-bit
+/// counts, texts, or floating-point numbers, which is also the type of undeclared columns. An empty cell is
+/// null.
 ///
 /// # Errors
-/// [`FileError`] for a file that cannot be read, or a cell that is no number where its column holds numbers.
+/// [`FileError`] for a file that cannot be read, or a cell that is not a number in a column of numbers.
 pub fn read_csv_table(path: &Path) -> Result<Vec<Column>, FileError> {
     let file = Lines::new(open_regular(path)?);
     let mut reader = csv::Reader::from_reader(file);
@@ -62,7 +64,7 @@ pub fn read_csv_table(path: &Path) -> Result<Vec<Column>, FileError> {
     header.iter().enumerate().map(column).collect()
 }
 
-/// The cells of a column that holds numbers.
+/// Parses the cells of a column of numbers.
 fn numbers<'a, T: FromStr>(
     path: &Path,
     name: &str,

@@ -1,4 +1,4 @@
-//! All tables that are declared, for whoever describes them, and tables as columns in memory.
+//! List of all declared tables, and tables as columns in memory.
 
 mod list;
 mod loaded_table;

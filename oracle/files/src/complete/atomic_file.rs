@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all: written under a name of their own, synced, and then given theirs.
+//! Files that appear complete or not at all: written under a temporary name, synced and then renamed.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read, Write};
@@ -9,29 +9,31 @@ use tempfile::NamedTempFile;
 
 use crate::FileError;
 
-/// How the names of files begin that are being written, or were left by a process that was killed.
+/// Prefix of the names of files that are being written or were left by a killed process.
 pub(crate) const PARTIAL: &str = ".partial-";
 
-/// A file that is being written grows. One that has not for so long was left by a process that was killed.
+/// Age after which a partial file counts as left by a killed process: a file that is still being written
+/// grows.
 const ABANDONED: Duration = Duration::from_secs(3600);
 
-/// Bytes in which a file says of what kind it is.
+/// Number of bytes at the beginning of a file that identify its kind.
 const BEGINNING_BYTES: u64 = 1 << 16;
 
-/// A kind of files, of which a later one may take the place of an earlier one.
+/// A kind of file whose newer files may replace older ones.
 #[derive(Clone, Copy)]
 pub struct ReplaceableFile<'a> {
-    /// What it is: `an earlier report`.
+    /// Description of the kind, for example `an earlier report`.
     pub description: &'a str,
-    /// Whether a file that begins so is one.
+    /// Returns true if a file with this beginning is of the kind.
     pub matches: &'a dyn Fn(&[u8]) -> bool,
 }
 
 impl ReplaceableFile<'_> {
-    /// Refuses a path where something else is: a folder, a link, a device, a file of another kind, or one that may not be written.
+    /// Rejects a path that holds something else: a directory, a link, a device, a file of another kind, or a
+    /// read-only file.
     ///
     /// # Errors
-    /// [`FileError::NotReplaced`]; [`FileError::Io`] when it cannot be read.
+    /// [`FileError::NotReplaced`]; [`FileError::Io`] if the file cannot be read.
     pub fn check(&self, path: &Path) -> Result<(), FileError> {
         let refused = |reason: &str| {
             let (path, expected) = (path.to_owned(), format!("a free name, or that of {}", self.description));
@@ -40,7 +42,7 @@ impl ReplaceableFile<'_> {
         let error = |source| FileError::io(path, "open", source);
         let metadata = match path.symlink_metadata() {
             Ok(metadata) => metadata,
-            // Of a folder that is missing or no folder, the writer tells.
+            // The writer reports a parent that is missing or not a directory.
             Err(source) if matches!(source.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
                 return Ok(());
             }
@@ -59,7 +61,7 @@ impl ReplaceableFile<'_> {
     }
 }
 
-/// A file that is being written; gone unless it is given its name.
+/// A file that is being written; removed on drop unless it has been committed.
 #[derive(Debug)]
 pub struct AtomicFile {
     file: NamedTempFile,
@@ -67,27 +69,28 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// A file that will be `path`, empty so far, which all may read.
+    /// Creates an empty temporary file, readable by all users, that will become `path`.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be made in the folder of `path`.
+    /// [`FileError::Io`] if it cannot be created in the directory of `path`.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
-        // As any other file of a folder, and not for its owner alone.
+        // Normal permissions of a file, instead of access for the owner only.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        // Its name says whose part it is, and does not end as that of a whole file does: nobody who looks for tables takes it for one.
+        // The name identifies the file it belongs to, but has a different ending than a complete file, so no
+        // search for tables finds it.
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let file = builder.prefix(&format!("{PARTIAL}{name}-")).tempfile_in(folder);
         let file = file.map_err(|source| FileError::io(path, "create", source))?;
         Ok(Self { file, path: path.to_owned() })
     }
 
-    /// [`AtomicFile::create`], of a path that is not there yet.
+    /// Creates a temporary file like [`WholeFile::create`], for a path that does not exist yet.
     ///
     /// # Errors
-    /// [`FileError::OutputTaken`] when it is; [`FileError::Io`] when the file cannot be made.
+    /// [`FileError::OutputTaken`] if the path exists; [`FileError::Io`] if the file cannot be created.
     pub fn create_new(path: &Path) -> Result<Self, FileError> {
         if path.symlink_metadata().is_ok() {
             return Err(output_taken(path));
@@ -95,40 +98,40 @@ impl AtomicFile {
         Self::create(path)
     }
 
-    /// A file that will be `path`, with this in it.
+    /// Creates a temporary file that will become `path`, and writes `text` to it.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be written.
+    /// [`FileError::Io`] if it cannot be written.
     pub fn with_text(path: &Path, text: &str) -> Result<Self, FileError> {
         let mut file = Self::create(path)?;
         file.file.write_all(text.as_bytes()).map_err(|source| FileError::io(path, "write", source))?;
         Ok(file)
     }
 
-    /// The same file, which will be another path of the same folder.
+    /// Changes the final path of the file to another path in the same directory.
     pub fn with_path(self, path: &Path) -> Self {
         Self { path: path.to_owned(), ..self }
     }
 
-    /// What is to be written to.
+    /// Returns the file for writing.
     pub fn file(&self) -> &File {
         self.file.as_file()
     }
 
-    /// Where it is meanwhile.
+    /// Returns the temporary path of the file.
     pub fn temporary_path(&self) -> &Path {
         self.file.path()
     }
 
-    /// Whether a file of this name is one that has none yet.
+    /// Returns true if `path` has the name of a partial file.
     pub fn is_partial(path: &Path) -> bool {
         path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PARTIAL))
     }
 
-    /// Gives the file its name, unless there is a file of that name: then this one is given back.
+    /// Syncs the file and gives it its name. If a file of that name exists, returns this file instead.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be synced or named.
+    /// [`FileError::Io`] if it cannot be synced or named.
     pub fn commit(self) -> Result<Option<Self>, FileError> {
         self.sync()?;
         let Self { file, path } = self;
@@ -141,10 +144,11 @@ impl AtomicFile {
         }
     }
 
-    /// Gives the file its name, which no other may have.
+    /// Syncs the file and gives it its name, which must be free.
     ///
     /// # Errors
-    /// [`FileError::OutputTaken`] when one has, [`FileError::Io`] when it cannot be synced or named.
+    /// [`FileError::OutputTaken`] if a file of that name exists, [`FileError::Io`] if the file cannot be
+    /// synced or named.
     pub fn commit_new(self) -> Result<(), FileError> {
         match self.commit()? {
             None => Ok(()),
@@ -152,10 +156,10 @@ impl AtomicFile {
         }
     }
 
-    /// Gives the file its name, in the place of an earlier one of its kind.
+    /// Syncs the file and gives it its name, replacing an earlier file of its kind.
     ///
     /// # Errors
-    /// Those of [`ReplaceableFile::check`]; [`FileError::Io`] when it cannot be synced or named.
+    /// Those of [`Earlier::check`]; [`FileError::Io`] if it cannot be synced or named.
     pub fn replace(self, earlier: ReplaceableFile<'_>) -> Result<(), FileError> {
         earlier.check(&self.path)?;
         self.sync()?;
@@ -163,13 +167,13 @@ impl AtomicFile {
         file.persist(&path).map(drop).map_err(|error| FileError::io(&path, "create", error.error))
     }
 
-    /// Removes what processes that were killed left in a folder, an hour after they last wrote to it. That it cannot be done is no
-    /// matter: nobody reads it.
+    /// Removes the partial files that killed processes left in a directory, an hour after the last write.
+    /// Failures are ignored, because no process reads these files.
     pub fn remove_abandoned(folder: &Path) {
         Self::remove_abandoned_of(folder, Self::is_partial);
     }
 
-    /// [`AtomicFile::remove_abandoned`], of files with other names.
+    /// Works like [`WholeFile::remove_abandoned`], for the files that `is` selects.
     pub fn remove_abandoned_of(folder: &Path, is: impl Fn(&Path) -> bool) {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         for path in entries.map(|entry| entry.path()).filter(|path| is(path)) {
@@ -186,7 +190,7 @@ impl AtomicFile {
     }
 }
 
-/// That a file stands where another one should be.
+/// Returns the error of an output path that already exists.
 pub(crate) fn output_taken(path: &Path) -> FileError {
     FileError::OutputTaken { path: path.to_owned(), reason: "exists; nothing is overwritten" }
 }

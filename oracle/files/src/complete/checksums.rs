@@ -1,7 +1,9 @@
-//! `SHA256SUMS`: what the files of a directory were when they were complete, so that a bit that changed since does not pass for a result.
+//! `SHA256SUMS`: checksums of the files of a directory at its completion, used to reject results that were
+//! damaged or changed later.
 //!
-//! The lines are those of `sha256sum`, and `sha256sum --check SHA256SUMS` reads them. Boresight reads them itself, after the files: of
-//! damage that a reader of the file can tell, it tells the place.
+//! The lines have the format of `sha256sum`, and `sha256sum --check SHA256SUMS` reads them. Boresight checks
+//! them itself, after it has read the files: for damage that a file's reader detects, the reader reports the
+//! location.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Component, Path};
@@ -12,32 +14,35 @@ use super::sha256::hex;
 use crate::error::FileLocation;
 use crate::{AtomicFile, FileError, ReplaceableFile};
 
-/// The file's name.
+/// Name of the checksum file.
 const NAME: &str = "SHA256SUMS";
-/// Largest file that is read.
+/// Largest checksum file that is read, bytes.
 const MAX_BYTES: u64 = 1 << 20;
-/// Largest file that is hashed: the tables of a hundred million frames are shorter.
+/// Largest file that is hashed, bytes: the tables of a hundred million frames are shorter.
 const MAX_HASHED_BYTES: u64 = 1 << 38;
-/// Bytes hashed at a time.
+/// Number of bytes read at a time for hashing.
 const CHUNK_BYTES: usize = 1 << 16;
 
-/// The checksums of a directory.
+/// Checksum file of a directory.
 #[derive(Debug, Clone, Copy)]
 pub struct Checksums;
 
 impl Checksums {
-    /// Makes sure that a directory has no checksums of other files than `names`: they are somebody else's.
+    /// Checks that a checksum file in `directory`, if present, covers only files in `names`: other checksums
+    /// were not written by Boresight.
     ///
     /// # Errors
-    /// [`FileError::NotReplaced`] when it has, [`FileError::Io`].
+    /// [`FileError::NotReplaced`] if it covers other files, [`FileError::Io`].
     pub fn check_own(directory: &Path, names: &[&str]) -> Result<(), FileError> {
         replaceable(&|beginning| are_checksums_of(beginning, names)).check(&directory.join(NAME))
     }
 
-    /// Writes the checksums of those of `names` that are in a directory, in the place of earlier ones of the same names.
+    /// Writes the checksums of those files of `names` that exist in a directory, replacing earlier checksums
+    /// of the same names.
     ///
     /// # Errors
-    /// Those of [`Checksums::check_own`]; [`FileError::Io`] when a file cannot be read, or the checksums not be written.
+    /// Those of [`Checksums::check_own`]; [`FileError::Io`] if a file cannot be read or the checksums cannot
+    /// be written.
     pub fn write(directory: &Path, names: &[&str]) -> Result<(), FileError> {
         let mut lines = String::new();
         for name in names {
@@ -49,7 +54,7 @@ impl Checksums {
         file.replace(replaceable(&|beginning| are_checksums_of(beginning, names)))
     }
 
-    /// Removes the checksums of a directory, whose files are about to change.
+    /// Removes the checksum file of a directory whose files are about to change.
     ///
     /// # Errors
     /// [`FileError::Io`].
@@ -63,11 +68,12 @@ impl Checksums {
         }
     }
 
-    /// Holds files of a directory against its checksums, where it has any: those whose names `is_used`. A file that has no line is
-    /// somebody else's, and one that is not there is missed by whoever needs it.
+    /// Compares the files of a directory that `is_used` selects by name with the directory's checksums, if it
+    /// has any. Files without a line are ignored: Boresight did not write them. Absent files are ignored too:
+    /// the reader that needs a file reports its absence.
     ///
     /// # Errors
-    /// [`FileError::Value`] for a file that is not what it was; [`FileError::Format`] for lines that are none;
+    /// [`FileError::Value`] for a file that has changed; [`FileError::Format`] for malformed lines;
     /// [`FileError::Io`].
     pub fn check(directory: &Path, is_used: impl Fn(&str) -> bool) -> Result<(), FileError> {
         let path = directory.join(NAME);
@@ -104,18 +110,18 @@ fn replaceable<'a>(matches: &'a dyn Fn(&[u8]) -> bool) -> ReplaceableFile<'a> {
     ReplaceableFile { description: "the checksums of the files that are to be written", matches }
 }
 
-/// Whether a text is that of checksums of some of `names` and nothing else.
+/// Returns true if `text` consists only of checksum lines for files in `names`.
 fn are_checksums_of(text: &[u8], names: &[&str]) -> bool {
     let lines = std::str::from_utf8(text).map(str::lines);
     lines.is_ok_and(|mut lines| lines.all(|line| parse(line).is_some_and(|(_, name)| names.contains(&name))))
 }
 
-/// Sum and name of a line.
+/// Returns the checksum and the file name of a line.
 fn parse(line: &str) -> Option<(&str, &str)> {
     line.split_once("  ").filter(|(sum, _)| is_sum(sum))
 }
 
-/// Whether a name leads to no place outside the directory.
+/// Returns true if a name refers to a file inside the directory.
 fn is_inside(name: &str) -> bool {
     !name.is_empty() && Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
 }
@@ -124,10 +130,10 @@ fn is_sum(text: &str) -> bool {
     text.len() == 64 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// SHA-256 of a regular file, hexadecimal; `None` when it is not there.
+/// Computes the SHA-256 of a regular file, hexadecimal; `None` if the file does not exist.
 ///
 /// # Errors
-/// [`FileError`] for a file that cannot be read, is no regular file or has more than 2^38 bytes.
+/// [`FileError`] for a file that cannot be read, is not a regular file or has more than 2^38 bytes.
 pub fn file_sha256(path: &Path) -> Result<Option<String>, FileError> {
     let file = match sim::regular_file::open(path) {
         Ok(file) => file,
@@ -164,7 +170,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("abc.txt"), "abc").unwrap();
         Checksums::write(folder.path(), &["abc.txt", "none.txt"]).unwrap();
-        // FIPS 180-4, example of one block.
+        // FIPS 180-4, one-block example.
         let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad  abc.txt\n";
         assert_eq!(std::fs::read_to_string(folder.path().join(NAME)).unwrap(), expected);
     }

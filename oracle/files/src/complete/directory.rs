@@ -1,4 +1,4 @@
-//! The directory that a run writes.
+//! Output directory of a run.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::{AtomicFile, Checksums, Failure, FileError, ImageFormat};
 
-/// The files of a run that have checksums.
+/// Files of a run that have checksums.
 const SEALED: [&str; 13] = [
     "run.toml",
     "camera.toml",
@@ -23,7 +23,7 @@ const SEALED: [&str; 13] = [
     "score.json",
 ];
 
-/// The file that a run directory has until it is complete.
+/// File that marks a run directory as incomplete.
 const UNFINISHED: &str = "UNFINISHED.txt";
 const UNFINISHED_TEXT: &str = "\
 The run in this directory has not ended: it was interrupted or killed, it failed, or it still goes on.
@@ -31,18 +31,18 @@ Tables appear when they are complete, telemetry.csv after the truth, score.json 
 Nothing here passes for a result, and the run is not continued: remove the directory, and run it again.
 ";
 
-/// A fresh directory for the output of a run, and the names of the files in it.
+/// A fresh output directory for a run, with the names of its files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunDirectory {
     path: PathBuf,
 }
 
 impl RunDirectory {
-    /// Makes the directory, with its parents; one that is there and empty is taken as it is.
+    /// Creates the directory with its parents; an existing empty directory is used unchanged.
     ///
     /// # Errors
-    /// [`FileError::OutputTaken`] when something is there that is not an empty directory; [`FileError::Io`] when
-    /// it cannot be made or written to.
+    /// [`FileError::OutputTaken`] if the path exists and is not an empty directory; [`FileError::Io`] if the
+    /// directory cannot be created or written to.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let taken = |reason| FileError::OutputTaken { path: path.to_owned(), reason };
         if path.as_os_str().is_empty() {
@@ -64,7 +64,7 @@ impl RunDirectory {
                     _ => FileError::io(path, "create", source),
                 })?;
             }
-            // Otherwise something above it is no directory.
+            // Otherwise, a parent of the path is not a directory.
             Err(error) if error.kind() == ErrorKind::NotADirectory && path.symlink_metadata().is_ok() => {
                 return Err(taken("exists and is not a directory"));
             }
@@ -73,10 +73,10 @@ impl RunDirectory {
         Self::checked(path.to_owned())
     }
 
-    /// Makes `PARENT/NAME-001`, or the next number that is free. Two runs that start together get two numbers.
+    /// Creates `PARENT/NAME-001`, or the next free number. Two runs started at the same time get two numbers.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be made or written to.
+    /// [`FileError::Io`] if the directory cannot be created or written to.
     pub fn create_numbered(parent: &Path, name: &str) -> Result<Self, FileError> {
         fs::create_dir_all(parent).map_err(|source| FileError::io(parent, "create", source))?;
         let mut number = last_number(parent, name)?;
@@ -91,11 +91,11 @@ impl RunDirectory {
         }
     }
 
-    /// Makes the inner directories, which also proves that the place can be written to before hours of work.
+    /// Creates the inner directories, which also verifies before hours of work that the location is writable.
     fn checked(path: PathBuf) -> Result<Self, FileError> {
         for inner in [path.join("truth"), path.join("frames")] {
             fs::create_dir(&inner).map_err(|source| match source.kind() {
-                // It was empty a moment ago.
+                // The directory was empty when it was checked, so another run has just created this entry.
                 ErrorKind::AlreadyExists => FileError::OutputTaken {
                     path: path.clone(),
                     reason: "is being written by another run; nothing is overwritten",
@@ -107,125 +107,127 @@ impl RunDirectory {
         Ok(Self { path })
     }
 
-    /// Writes the checksums of everything in it, images and report apart, and says no longer that it is unfinished.
+    /// Writes the checksums of all files except images and report, and removes the marker of an unfinished
+    /// run.
     ///
     /// # Errors
-    /// [`FileError::Io`] when a file cannot be read, or the checksums not be written.
+    /// [`FileError::Io`] if a file cannot be read or the checksums cannot be written.
     pub fn seal(&self) -> Result<(), FileError> {
         Checksums::write(&self.path, &SEALED)?;
         let path = self.path.join(UNFINISHED);
         fs::remove_file(&path).map_err(|source| FileError::io(&path, "remove", source))
     }
 
-    /// The directory itself.
+    /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// `run.toml`: the resolved scenario, seed, version, catalogue hash.
+    /// Path of `run.toml`: the resolved scenario, seed, version, catalogue hash.
     pub fn run(&self) -> PathBuf {
         self.path.join("run.toml")
     }
 
-    /// `camera.toml`: see [`crate::CameraFile`].
+    /// Path of `camera.toml`: see [`crate::CameraFile`].
     pub fn camera(&self) -> PathBuf {
         self.path.join("camera.toml")
     }
 
-    /// `stars.csv`: see [`crate::StarRow`].
+    /// Path of `stars.csv`: see [`crate::StarRow`].
     pub fn stars(&self) -> PathBuf {
         self.path.join("stars.csv")
     }
 
-    /// `telemetry.csv`: see [`crate::TelemetryRow`].
+    /// Path of `telemetry.csv`: see [`crate::TelemetryRow`].
     pub fn telemetry(&self) -> PathBuf {
         self.path.join("telemetry.csv")
     }
 
-    /// `truth/frames.parquet`: rows of [`sim::truth::FrameTruth`].
+    /// Path of `truth/frames.parquet`: rows of [`sim::truth::FrameTruth`].
     pub fn truth_frames(&self) -> PathBuf {
         self.path.join("truth/frames.parquet")
     }
 
-    /// `truth/objects.parquet`: rows of [`sim::truth::ObjectTruth`].
+    /// Path of `truth/objects.parquet`: rows of [`sim::truth::ObjectTruth`].
     pub fn truth_objects(&self) -> PathBuf {
         self.path.join("truth/objects.parquet")
     }
 
-    /// Makes the folder of the noise-free expectations.
+    /// Creates the directory of the noise-free expectations.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be made.
+    /// [`FileError::Io`] if it cannot be created.
     pub fn create_expected(&self) -> Result<(), FileError> {
         let folder = self.path.join("truth/expected");
         fs::create_dir(&folder).map_err(|source| FileError::io(&folder, "create", source))
     }
 
-    /// The noise-free expectation of a frame, electrons.
+    /// Path of the noise-free expectation of a frame, electrons.
     pub fn expected(&self, frame: u64) -> PathBuf {
         self.path.join(format!("truth/expected/{frame:06}.exr"))
     }
 
-    /// `measurements.csv`: a pipeline's answers.
+    /// Path of `measurements.csv`: the outcomes of a pipeline.
     pub fn measurements(&self) -> PathBuf {
         self.path.join("measurements.csv")
     }
 
-    /// `clusters.parquet`: rows of [`crate::FrameCluster`].
+    /// Path of `clusters.parquet`: rows of [`crate::FrameCluster`].
     pub fn clusters(&self) -> PathBuf {
         self.path.join("clusters.parquet")
     }
 
-    /// `setup.toml` of a docking run: see [`crate::docking::SetupFile`].
+    /// Path of `setup.toml` of a docking run: see [`crate::docking::SetupFile`].
     pub fn setup(&self) -> PathBuf {
         self.path.join("setup.toml")
     }
 
-    /// `truth/fields.parquet` of a docking run: rows of [`sim::docking::FieldTruth`].
+    /// Path of `truth/fields.parquet` of a docking run: rows of [`sim::docking::FieldTruth`].
     pub fn truth_fields(&self) -> PathBuf {
         self.path.join("truth/fields.parquet")
     }
 
-    /// `motion.csv` of a docking run: what is said at the end of each portion.
+    /// Path of `motion.csv` of a docking run: the motion reported at the end of each portion.
     pub fn motion(&self) -> PathBuf {
         self.path.join("motion.csv")
     }
 
-    /// `features.parquet` of a docking run: rows of [`crate::docking::FeatureRow`].
+    /// Path of `features.parquet` of a docking run: rows of [`crate::docking::FeatureRow`].
     pub fn features(&self) -> PathBuf {
         self.path.join("features.parquet")
     }
 
-    /// `score.json`.
+    /// Path of `score.json`.
     pub fn score(&self) -> PathBuf {
         self.path.join("score.json")
     }
 
-    /// `report.html`.
+    /// Path of `report.html`.
     pub fn report(&self) -> PathBuf {
         self.path.join("report.html")
     }
 
-    /// The image of a frame, relative to the directory, as `telemetry.csv` names it: `frames/000123.fits`.
+    /// Path of the image of a frame relative to the directory, as written in `telemetry.csv`:
+    /// `frames/000123.fits`.
     pub fn frame_name(frame: u64, format: ImageFormat) -> String {
         format!("frames/{frame:06}.{format}")
     }
 
-    /// The image of a frame.
+    /// Path of the image of a frame.
     pub fn frame(&self, frame: u64, format: ImageFormat) -> PathBuf {
         self.path.join(Self::frame_name(frame, format))
     }
 }
 
-/// Whether a directory holds the beginning of a run: its tables get their names when they are complete, that of the telemetry last.
+/// Returns true if a directory holds an incomplete run, which is marked by the file [`UNFINISHED`].
 fn is_unfinished(path: &Path) -> bool {
     path.join(UNFINISHED).is_file()
 }
 
-/// Refuses a directory that holds the beginning of a run.
+/// Rejects a directory that holds an incomplete run.
 ///
 /// # Errors
-/// [`Failure::Usage`] with what to do.
+/// [`Failure::Usage`] with instructions.
 pub fn refuse_unfinished(path: &Path) -> Result<(), Failure> {
     if !is_unfinished(path) {
         return Ok(());
@@ -237,7 +239,7 @@ pub fn refuse_unfinished(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// The largest number that `NAME-…` has in the parent; 0 when there is none.
+/// Returns the largest number of `NAME-…` in the parent directory; 0 if there is none.
 fn last_number(parent: &Path, name: &str) -> Result<u32, FileError> {
     let error = |source| FileError::io(parent, "open", source);
     let mut last = 0;
@@ -291,7 +293,7 @@ mod tests {
         assert!(RunDirectory::create(empty.path()).is_ok());
     }
 
-    /// Both found it empty; only one can make what is in it.
+    /// Both runs found the directory empty; only one can create its contents.
     #[test]
     fn of_two_runs_that_find_a_directory_empty_one_is_refused() {
         let path = tempdir().unwrap();

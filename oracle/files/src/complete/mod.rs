@@ -1,4 +1,4 @@
-//! Files and directories that are whole or not there, and what their bits were when they were written.
+//! Files and directories that appear only when complete, and checksums of their contents at that time.
 
 pub(crate) mod atomic_file;
 mod checksums;

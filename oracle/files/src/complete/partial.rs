@@ -1,4 +1,4 @@
-//! Files that are not there until they are complete.
+//! Files that become visible only when complete.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::atomic_file::{PARTIAL, output_taken};
 use crate::{AtomicFile, FileError};
 
-/// Files that get their names when they are complete; until then they go by names of their own, and are removed when
-/// the value is dropped.
+/// Output files that get their names when they are complete; until then they have temporary names, and are
+/// removed when the value is dropped.
 #[derive(Debug)]
 pub struct PartialFiles {
     names: Vec<PathBuf>,
@@ -17,10 +17,10 @@ pub struct PartialFiles {
 }
 
 impl PartialFiles {
-    /// Files that will be `names`; none of them may exist.
+    /// Prepares files for `names`; none of them may exist.
     ///
     /// # Errors
-    /// [`FileError::OutputTaken`] when one does; [`FileError::Io`] when there is no folder for one.
+    /// [`FileError::OutputTaken`] if one exists; [`FileError::Io`] if a parent directory does not exist.
     pub fn for_paths(names: &[&Path]) -> Result<Self, FileError> {
         for name in names {
             if name.exists() {
@@ -28,7 +28,7 @@ impl PartialFiles {
             }
             folder_of(name).metadata().map_err(|source| FileError::io(name, "create", source))?;
         }
-        // Nobody else's: another process may be making the same files.
+        // Unique name: another process may be writing the same files.
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let own = format!("{}-{}", process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
         let partial = |name: &PathBuf| {
@@ -42,23 +42,23 @@ impl PartialFiles {
         Ok(files)
     }
 
-    /// Where the file of the name number `index` is written meanwhile.
+    /// Returns the temporary path of the file with name number `index`.
     ///
     /// # Panics
-    /// For an index that is not below the number of names.
+    /// If `index` is not below the number of names.
     #[expect(clippy::indexing_slicing, reason = "the writer's own constant, nothing that was read")]
     pub fn path(&self, index: usize) -> &Path {
         &self.paths[index]
     }
 
-    /// Gives the files their names, the first one last: nobody looks for the others without it. Of two processes that make the same
-    /// files the first one does it.
+    /// Gives the files their names, the first name last: readers look for the other files only if the first
+    /// exists. Of two processes that write the same files, the first to complete succeeds.
     ///
     /// # Errors
-    /// [`FileError::OutputTaken`] when a file of that name has come up meanwhile; [`FileError::Io`].
+    /// [`FileError::OutputTaken`] if a file of that name has appeared in the meantime; [`FileError::Io`].
     pub fn complete(self) -> Result<(), FileError> {
         for (path, name) in self.paths.iter().zip(&self.names).rev() {
-            // A link, unlike a renaming, never replaces a file.
+            // A hard link, unlike a rename, never replaces a file.
             std::fs::hard_link(path, name).map_err(|source| match source.kind() {
                 ErrorKind::AlreadyExists => output_taken(name),
                 _ => FileError::io(name, "create", source),
@@ -69,7 +69,7 @@ impl PartialFiles {
 
     fn remove(&self) {
         for path in &self.paths {
-            // It may not be there.
+            // The file may not exist.
             let _ = std::fs::remove_file(path);
         }
     }

@@ -1,13 +1,13 @@
-//! SHA-256 as it is written: 64 hexadecimal digits.
+//! SHA-256 as text: 64 hexadecimal digits.
 
 use sha2::{Digest, Sha256};
 
-/// The digits of a digest.
+/// Returns the hexadecimal digits of a digest.
 pub fn hex(digest: impl AsRef<[u8]>) -> String {
     digest.as_ref().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The digits of the SHA-256 of some bytes.
+/// Returns the hexadecimal digits of the SHA-256 of `bytes`.
 pub fn sha256_hex(bytes: impl AsRef<[u8]>) -> String {
     hex(Sha256::digest(bytes))
 }

@@ -1,4 +1,4 @@
-//! One column of numbers of anybody's CSV table.
+//! One numeric column of an arbitrary CSV table.
 
 use std::path::Path;
 
@@ -7,10 +7,11 @@ use super::table::csv_error;
 use crate::FileError;
 use crate::error::{FileLocation, open_regular};
 
-/// The numbers of a column, by its name in the header; other columns are ignored.
+/// Reads the numbers of the column `name`; other columns are ignored.
 ///
 /// # Errors
-/// [`FileError`] for a file that cannot be read, has no such column or no row, or a cell that is no finite number.
+/// [`FileError`] for a file that cannot be read, has no such column or no row, or has a cell that is not a
+/// finite number.
 pub fn read_column(path: &Path, name: &str) -> Result<Vec<f64>, FileError> {
     let file = Lines::new(open_regular(path)?);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);

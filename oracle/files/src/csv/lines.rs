@@ -1,30 +1,30 @@
-//! CSV in records, none of which is endless: whoever reads a record keeps it. A record is a line, or several where a cell in quotation marks
-//! goes on in the next one.
+//! CSV input with bounded records, because readers keep a whole record in memory. A record is a line, or
+//! several lines if a quoted cell continues on the next line.
 
 use std::io::{Error, ErrorKind, Read, Result};
 
 /// Longest record, bytes.
 const LONGEST: usize = 1 << 20;
 
-/// A reader that fails at a record of more than a megabyte.
+/// A reader that fails if a record exceeds 1 MiB.
 #[derive(Debug)]
 pub struct Lines<R> {
     inner: R,
-    /// Bytes since the last record ended.
+    /// Number of bytes since the end of the last record.
     length: usize,
     state: CellState,
 }
 
-/// Where in a record a byte is.
+/// Position of a byte within a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum CellState {
-    /// The beginning of a cell.
+    /// Beginning of a cell.
     Start,
-    /// A cell without quotation marks; in it they are letters.
+    /// In a cell without quotation marks, where they are ordinary characters.
     Plain,
     /// Between quotation marks.
     Quoted,
-    /// After a quotation mark that ends a cell, unless it is doubled.
+    /// After a quotation mark that ends a cell unless it is doubled.
     Closed,
 }
 
@@ -41,7 +41,7 @@ impl CellState {
 }
 
 impl<R> Lines<R> {
-    /// A reader of the records of `inner`.
+    /// Creates a reader of the records of `inner`.
     pub fn new(inner: R) -> Self {
         Self { inner, length: 0, state: CellState::Start }
     }
@@ -92,7 +92,7 @@ mod tests {
                 "{begin}"
             );
         }
-        // Marks that are closed, and those that are letters.
+        // Closed quotation marks, and quotation marks as ordinary characters.
         for begin in ["\"a\"\n", "\"a\"\"\",1\n", "6\" of film\n", "1,a\"\n", "\"a\nb\",1\r\n"] {
             assert!(read(&format!("{begin}{lines}")).is_ok(), "{begin}");
         }

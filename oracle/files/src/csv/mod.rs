@@ -1,4 +1,4 @@
-//! Tables as text (CSV), of our writing or anybody's.
+//! Tables as text (CSV), written by Boresight or by other programs.
 
 pub(crate) mod column;
 pub(crate) mod lines;

@@ -1,4 +1,4 @@
-//! Where answers come from: columns that a CSV of answers in any world may have beside its own.
+//! Origin of measurements: columns that a CSV of measurements of any world may have in addition to its own.
 
 use std::path::Path;
 
@@ -11,13 +11,14 @@ use crate::{FileError, parse_utc};
 
 /// Column with the time of the frame, UTC.
 const TIME: &str = "time_utc";
-/// Column with the hash of the run's configuration, as in `CONFHASH` of its FITS files and `hash` of its `run.toml`.
+/// Column with the hash of the run's configuration, identical to `CONFHASH` of its FITS files and `hash` of
+/// its `run.toml`.
 const CONFIGURATION: &str = "configuration";
 
-/// The columns.
+/// Columns that state the origin of a row.
 pub(crate) const COLUMNS: [&str; 2] = [TIME, CONFIGURATION];
 
-/// Where an answer comes from, as far as its row says.
+/// Origin of a measurement, as far as its row states it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnswerOrigin {
     /// Line in the file.
@@ -30,7 +31,8 @@ pub struct AnswerOrigin {
     pub configuration: Option<String>,
 }
 
-/// The line of a CSV on which the row of a number is; `column` is that of the numbers. For the message of a row that does not belong there.
+/// Returns the line of a CSV whose cell in `column` is `number`. Used in the message about a row that does
+/// not belong to the table.
 pub fn line_of(path: &Path, column: &str, number: u64) -> Option<u64> {
     let file = Lines::new(open_regular(path).ok()?);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
@@ -42,10 +44,11 @@ pub fn line_of(path: &Path, column: &str, number: u64) -> Option<u64> {
     record.position().map(csv::Position::line)
 }
 
-/// Reads the origins that a table of answers has; none where it has neither column. `frame` is the column of the numbers.
+/// Reads the origins that a table of measurements contains; empty if it has neither column. `frame` is the
+/// name of the column of frame numbers.
 ///
 /// # Errors
-/// A [`FileError`] that names line and column of the first cell that is not as it should be.
+/// A [`FileError`] that names line and column of the first invalid cell.
 pub fn read_origins(path: &Path, frame: &str) -> Result<Vec<AnswerOrigin>, FileError> {
     let file = Lines::new(open_regular(path)?);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);

@@ -1,4 +1,4 @@
-//! A CSV table whose columns are known by name, and whose errors name line and column.
+//! A CSV table with columns identified by name, and with errors that name line and column.
 
 use std::fs::File;
 use std::io::Write;
@@ -11,27 +11,27 @@ use crate::table::declarations::Table;
 use crate::table::field::Atom;
 use crate::{AtomicFile, FileError};
 
-/// A row of a CSV, as [`table!`](crate::table!) declares it.
+/// A CSV row, as declared by [`table!`](crate::table!).
 pub trait CsvLine: Table {
-    /// The cells, in the order of the columns.
+    /// Returns the cells in the order of the columns.
     fn cells(&self) -> Vec<String>;
 
     /// Reads a row.
     ///
     /// # Errors
-    /// [`FileError::Value`] for a cell that is not as declared.
+    /// [`FileError::Value`] for a cell that does not match its declaration.
     fn read(row: &CsvRow<'_>) -> Result<Self, FileError>;
 }
 
-/// A column that a kind of table has.
+/// A declared column of a table.
 struct CsvColumn {
     name: &'static str,
     is_optional: bool,
-    /// Where the file has it.
+    /// Index of the column in the file, if the file contains it.
     position: Option<usize>,
 }
 
-/// A table being read, row by row.
+/// Reader of a table, row by row.
 pub struct CsvReader {
     path: PathBuf,
     columns: Vec<CsvColumn>,
@@ -40,18 +40,20 @@ pub struct CsvReader {
 }
 
 impl CsvReader {
-    /// Opens a table and checks its header: every required column, no unknown one, none twice.
+    /// Opens a table and checks that its header contains every required column, no unknown column and no
+    /// duplicate.
     ///
     /// # Errors
-    /// [`FileError`] for a file that cannot be opened, or a header with a column that is missing, unknown or there twice.
+    /// [`FileError`] for a file that cannot be opened, or a header with a missing, unknown or duplicate
+    /// column.
     pub fn open<T: Table>(path: &Path) -> Result<Self, FileError> {
         Self::open_with::<T>(path, &[])
     }
 
-    /// [`CsvReader::open`] of a table that may have the columns `others` as well.
+    /// Opens a table like [`CsvReader::open`], which may also have the columns `others`.
     ///
     /// # Errors
-    /// As [`CsvReader::open`].
+    /// Those of [`CsvReader::open`].
     pub fn open_with<T: Table>(path: &Path, others: &[&'static str]) -> Result<Self, FileError> {
         let file = Lines::new(open_regular(path)?);
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(file);
@@ -84,10 +86,10 @@ impl CsvReader {
         Ok(Self { path: path.to_owned(), columns, reader, record: csv::StringRecord::new() })
     }
 
-    /// All rows; `parse` is given the row before too.
+    /// Reads all rows; `parse` also receives the previous row.
     ///
     /// # Errors
-    /// [`FileError`] for a row that cannot be read, with its line, and what `parse` says.
+    /// [`FileError`] for a row that cannot be read, with its line, and the errors of `parse`.
     pub fn read_rows<T>(
         mut self,
         parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
@@ -99,10 +101,11 @@ impl CsvReader {
         Ok(rows)
     }
 
-    /// All rows, each with its line in the file; `parse` is given the row before too. A table without rows is an error.
+    /// Reads all rows, each with its line in the file; `parse` also receives the previous row. A table
+    /// without rows is an error.
     ///
     /// # Errors
-    /// As [`CsvReader::read_rows`].
+    /// Those of [`CsvReader::read_rows`], and [`FileError`] for a table without rows.
     pub fn read_all<T>(
         self,
         parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
@@ -118,7 +121,7 @@ impl CsvReader {
         Ok(rows)
     }
 
-    /// The next row; `None` at the end.
+    /// Reads the next row; `None` at the end.
     ///
     /// # Errors
     /// [`FileError`] for a row that cannot be read, with its line.
@@ -130,7 +133,8 @@ impl CsvReader {
     }
 }
 
-/// The columns of a kind of table, in the order in which they are written, and whether a file may lack them.
+/// Returns the columns of a table in the order in which they are written, each with true if a file may omit
+/// it.
 fn layout<T: Table>() -> impl Iterator<Item = (&'static str, bool)> {
     let fields = T::declarations().into_iter();
     fields.flat_map(|field| field.names.into_iter().map(move |name| (name, field.is_optional)))
@@ -139,12 +143,12 @@ fn layout<T: Table>() -> impl Iterator<Item = (&'static str, bool)> {
 /// One row of a table.
 pub struct CsvRow<'a> {
     table: &'a CsvReader,
-    /// Line of the file in which it begins, from 1.
+    /// Line of the file at which the row begins, from 1.
     pub line: u64,
 }
 
 impl CsvRow<'_> {
-    /// The cell of a column as it stands; empty when the file has no such column.
+    /// Returns the unchanged text of a cell; empty if the file has no such column.
     pub fn text(&self, column: &str) -> &str {
         let declarations = self.table.columns.iter().find(|declarations| declarations.name == column);
         debug_assert!(declarations.is_some(), "`{column}` is not declared");
@@ -152,20 +156,20 @@ impl CsvRow<'_> {
         position.and_then(|i| self.table.record.get(i)).unwrap_or("")
     }
 
-    /// What the cell of a column holds.
+    /// Parses the cell of a column.
     ///
     /// # Errors
-    /// [`FileError::Value`] with the line, the column and what was expected.
+    /// [`FileError::Value`] with the line, the column and the expected value.
     pub fn cell<'r, T: Atom<'r>>(&'r self, column: &'static str) -> Result<T, FileError> {
         T::parse(self.text(column)).ok_or_else(|| self.error(column, T::EXPECTED))
     }
 
-    /// The error of a cell that is not what was `expected`.
+    /// Creates the error of a cell that differs from `expected`.
     pub fn error(&self, column: &'static str, expected: impl Into<String>) -> FileError {
         FileError::value(&self.table.path, FileLocation::Line(self.line), column, self.text(column), expected)
     }
 
-    /// Refuses the number of the row's frame, field or star unless it is larger than that of the row before.
+    /// Rejects the frame, field or star number of a row unless it is larger than that of the previous row.
     ///
     /// # Errors
     /// [`FileError::Value`].
@@ -184,7 +188,8 @@ impl CsvRow<'_> {
         }
     }
 
-    /// Refuses a value where the row's status has none: counted as a miss, it would be lost in silence.
+    /// Rejects a value in columns that must be empty for the row's status: the row would count as a miss, and
+    /// the value would be lost silently.
     pub(crate) fn check_empty(
         &self,
         columns: impl IntoIterator<Item = &'static str>,
@@ -194,7 +199,7 @@ impl CsvRow<'_> {
         full.map_or(Ok(()), |column| Err(self.error(column, nothing())))
     }
 
-    /// Refuses standard deviations below 0.
+    /// Rejects negative standard deviations.
     pub(crate) fn check_sigmas<const N: usize>(
         &self,
         columns: [&'static str; N],
@@ -205,11 +210,11 @@ impl CsvRow<'_> {
     }
 }
 
-/// A table being written: a file that has its name when it is complete, or a stream.
+/// Writer of a table to a stream, or to a file that gets its name when it is complete.
 pub struct CsvWriter<T> {
     path: PathBuf,
     writer: csv::Writer<Box<dyn Write>>,
-    /// None of a stream.
+    /// Output file; `None` for a stream.
     file: Option<AtomicFile>,
     row: PhantomData<T>,
 }
@@ -218,14 +223,14 @@ impl<T: CsvLine> CsvWriter<T> {
     /// Creates the table and writes its header.
     ///
     /// # Errors
-    /// [`FileError::Io`] when the file exists or cannot be created.
+    /// [`FileError::Io`] if the file cannot be created, [`FileError::OutputTaken`] if it exists.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let file = AtomicFile::create_new(path)?;
         let out = file.file().try_clone().map_err(|source| FileError::io(path, "create", source))?;
         Self::headed(path, Box::new(out), Some(file))
     }
 
-    /// Writes the table to a stream that goes by `name` in messages, header first, each row as soon as it is there.
+    /// Writes the table to a stream, header first and each row immediately. Messages call the stream `name`.
     ///
     /// # Errors
     /// [`FileError::Io`].
@@ -240,7 +245,7 @@ impl<T: CsvLine> CsvWriter<T> {
         Ok(writer)
     }
 
-    /// Writes a row. Numbers are written so that they read back to the same bits.
+    /// Writes a row. Numbers are written with enough digits to be read back bit for bit.
     ///
     /// # Errors
     /// [`FileError::Io`].
@@ -250,7 +255,7 @@ impl<T: CsvLine> CsvWriter<T> {
 
     fn record(&mut self, cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Result<(), FileError> {
         self.writer.write_record(cells).map_err(|error| csv_error(&self.path, &error))?;
-        // A row of a stream goes out at once.
+        // Each row of a stream is flushed immediately.
         if self.file.is_none() { self.flush() } else { Ok(()) }
     }
 
@@ -258,7 +263,7 @@ impl<T: CsvLine> CsvWriter<T> {
         self.writer.flush().map_err(|source| FileError::io(&self.path, "write", source))
     }
 
-    /// Writes what is buffered, and gives the file its name.
+    /// Flushes the buffer and gives the file its name.
     ///
     /// # Errors
     /// [`FileError::Io`].
@@ -271,15 +276,16 @@ impl<T: CsvLine> CsvWriter<T> {
 /// Reads all rows of a table.
 ///
 /// # Errors
-/// [`FileError`] for a file that cannot be read, or a cell that is not as declared, with line and column.
+/// [`FileError`] for a file that cannot be read, or a cell that does not match its declaration, with line and
+/// column.
 pub fn read_csv<T: CsvLine>(path: &Path) -> Result<Vec<T>, FileError> {
     CsvReader::open::<T>(path)?.read_rows(|row, _| T::read(row))
 }
 
-/// Writes a table of these rows.
+/// Writes a table with `rows`.
 ///
 /// # Errors
-/// [`FileError::Io`] when the file exists or cannot be written.
+/// [`FileError::Io`] if the file cannot be written, [`FileError::OutputTaken`] if it exists.
 pub fn write_csv<T: CsvLine>(path: &Path, rows: &[T]) -> Result<(), FileError> {
     let mut table = CsvWriter::create(path)?;
     rows.iter().try_for_each(|row| table.line(row))?;

@@ -1,14 +1,14 @@
-//! A symmetric matrix of six as 21 cells of a table: the upper triangle, row by row.
+//! Symmetric 6 × 6 matrix as 21 cells of a table: the upper triangle, row by row.
 
 use nalgebra::{Matrix6, Vector6};
 
 use crate::FileError;
 use crate::csv::table::CsvRow;
 
-/// Cells of the upper triangle.
+/// Number of cells in the upper triangle.
 pub(super) const CELLS: usize = 21;
 
-/// The names of the cells, from those of the six.
+/// Returns the names of the cells, built from the names of the six variables.
 macro_rules! upper_triangle {
     ($($name:literal)+) => {
         $crate::docking::covariance::upper_triangle!(@ [] $($name)+)
@@ -25,12 +25,12 @@ macro_rules! upper_triangle {
 
 pub(super) use upper_triangle;
 
-/// The places of the upper triangle, row by row.
+/// Returns the row and column indices of the upper triangle, row by row.
 fn triangle_indices() -> impl Iterator<Item = (usize, usize)> {
     (0..6).flat_map(|i| (i..6).map(move |j| (i, j)))
 }
 
-/// The cells of a covariance; `scale` takes each of the six to the unit of the file.
+/// Returns the cells of a covariance; `scale` converts each of the six variables to the unit of the file.
 pub(super) fn to_cells(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> [f64; CELLS] {
     let mut cells = [0.0; CELLS];
     for (cell, (i, j)) in cells.iter_mut().zip(triangle_indices()) {
@@ -39,7 +39,7 @@ pub(super) fn to_cells(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> [f64;
     cells
 }
 
-/// The covariance as it comes back from its cells.
+/// Returns the covariance after conversion to the cells of a file and back.
 #[expect(clippy::indexing_slicing, reason = "the places are those of a matrix of six")]
 pub(super) fn as_filed(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> Matrix6<f64> {
     let mut filed = Matrix6::zeros();
@@ -51,7 +51,7 @@ pub(super) fn as_filed(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> Matri
     filed
 }
 
-/// The covariance that the cells of these columns say, if they say one.
+/// Returns the covariance in the cells of `columns`, if present.
 #[expect(clippy::indexing_slicing, reason = "the places are those of a matrix of six")]
 pub(super) fn from_cells(
     row: &CsvRow<'_>,

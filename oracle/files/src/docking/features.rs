@@ -1,39 +1,39 @@
-//! `features.parquet`: what a pipeline recognised in each field, beside `measurements.csv`. Coordinates are the camera's
-//! pixels.
+//! `features.parquet`: features that a pipeline recognised in each field, in addition to `measurements.csv`.
+//! Coordinates are camera pixels.
 
 use contract::docking::{Circle, Features};
 
 use crate::{nullable, table};
 
 table! {
-    /// A feature and the field it was found in.
+    /// A recognised feature with its field number.
     #[derive(Debug, Clone, PartialEq)]
     pub struct FeatureRow: parquet(field) {
         /// number of the field; ascending
         field: u64,
         /// `cross`, `circle` (of the marks), `station`, `docking_unit` or `mark`
         kind: String,
-        /// number of the mark; of the others 0
+        /// number of the mark; 0 for other features
         index: u32,
-        /// centre after least squares, or a mark's place
+        /// centre after least squares, or position of a mark
         position: [f64; 2] = nullable(["x_px", "y_px"]),
-        /// centre as first found, before least squares; of a mark none
+        /// centre as first found, before least squares; empty for a mark
         raw_position: Option<[f64; 2]> = ["raw_x_px", "raw_y_px"],
         /// radius of a circle
         radius_px: Option<f64>,
         /// slope of the cross's horizontal bar
         slope: Option<f64>,
-        /// points on a circle, or pairs on the horizontal bar; of a mark 0
+        /// points on a circle, or pairs on the horizontal bar; 0 for a mark
         points: u32,
-        /// pairs on the vertical bar; of the others 0
+        /// pairs on the vertical bar; 0 for other features
         vertical_pairs: u32,
-        /// what became of a mark: `used`, `rejected`, `missing`, `out_of_field`; of the others `used`
+        /// use of a mark: `used`, `rejected`, `missing`, `out_of_field`; for other features `used`
         usage: String,
     }
 }
 
 impl FeatureRow {
-    /// The rows of a field.
+    /// Returns the rows of a field.
     pub fn from_features(field: u64, features: &Features) -> Vec<Self> {
         let plain = |kind: &str, index: u32, position: contract::PixelPoint| Self {
             field,

@@ -1,4 +1,4 @@
-//! `measurements.csv` of a docking run: a pipeline's answer to each field, ours or anybody's.
+//! `measurements.csv` of a docking run: outcomes of the built-in or an external pipeline, one row per field.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::{optional, table};
 
 const SIGMA: [&str; 6] =
     ["sigma_d1_m", "sigma_d2_m", "sigma_d3_m", "sigma_phi1_deg", "sigma_phi2_deg", "sigma_phi3_deg"];
-/// A range alone, and its standard deviation.
+/// Columns of a range without a pose, and of its standard deviation.
 const RANGE: [&str; 2] = ["range_m", "sigma_range_m"];
 const COVARIANCE: [&str; CELLS] = [
     "cov_d1_d1_m2",
@@ -44,23 +44,25 @@ const COVARIANCE: [&str; CELLS] = [
 ];
 
 table! {
-    /// A row of the file.
+    /// A row of `measurements.csv`.
     pub struct FieldMeasurementLine: csv {
         /// number of the field; ascending, each once
         field: u64,
-        /// `measured`; `range_only`; `doubtful: residuals`, `doubtful: features`, `doubtful: motion`, `doubtful: repeated`: measured, and not to be
-        /// relied on; or why not: `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`,
+        /// `measured`; `range_only`; `doubtful: residuals`, `doubtful: features`, `doubtful: motion`,
+        /// `doubtful: repeated`: measured, but not to be relied on; or the reason for no solution:
+        /// `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`,
         /// `too_few_features`, `inconsistent`, `failed`, `failed: ` and a reason
         status: String,
-        /// the pose; empty unless `measured` or doubtful
+        /// pose; empty unless `measured` or doubtful
         pose: Option<Pose> = POSE,
         /// standard deviations; all six or none
         sigma: Option<[f64; 6]> = optional(SIGMA),
         /// d3 of `range_only`
         range_m: Option<f64> = optional([RANGE[0]]),
-        /// its standard deviation
+        /// standard deviation of d3 of `range_only`
         sigma_range_m: Option<f64> = optional([RANGE[1]]),
-        /// upper triangle of the covariance; all or none; without it the standard deviations are taken for uncorrelated
+        /// upper triangle of the covariance; all or none; without it the errors are assumed to be
+        /// uncorrelated
         covariance: Option<[f64; CELLS]> = optional(COVARIANCE),
         /// pose by the paper's formulas; all six or none
         paper: Option<Pose> =
@@ -68,25 +70,25 @@ table! {
     }
 }
 
-/// The status of a row that has a pose.
+/// Status of a row with a pose.
 const MEASURED: &str = "measured";
-/// The status of a row that has a range alone.
+/// Status of a row with a range but no pose.
 const RANGE_ONLY: &str = "range_only";
-/// What is expected in place of any other word.
+/// Expected values in the message for an unknown status.
 const STATUS: &str = "`measured`, `range_only`, `doubtful: residuals`, `doubtful: features`, `doubtful: motion`, `doubtful: repeated`, `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`, \
                       `too_few_features`, `inconsistent`, `failed`, or `failed: ` and a reason";
 
-/// From metres and radians to metres and degrees.
+/// Factors that convert metres and radians to metres and degrees.
 fn scale() -> Vector6<f64> {
     let degrees = 1.0_f64.to_degrees();
     Vector6::new(1.0, 1.0, 1.0, degrees, degrees, degrees)
 }
 
-/// Writes the table row by row.
+/// Writer of the table, row by row.
 pub type FieldMeasurementWriter = CsvWriter<FieldMeasurementLine>;
 
 impl FieldMeasurementWriter {
-    /// Writes the answer to one field. Features and motion have tables of their own.
+    /// Writes the outcome of one field. Features and motion have separate tables.
     ///
     /// # Errors
     /// [`FileError::Io`].
@@ -117,8 +119,9 @@ impl FieldMeasurementWriter {
     }
 }
 
-/// The answer as it comes back from the file, without features and motion: angles have changed their unit twice, which may
-/// move their last bit. A score of the run is made of these, so that one of the files is the same to the bit.
+/// Returns the outcome as it would be read back from the file, without features and motion: angles are
+/// converted twice, which may change their last bit. The score of a run is computed from these outcomes,
+/// which makes it bit-identical to a score of the files.
 pub fn outcome_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
     let as_filed = |measurement: &FieldMeasurement| {
         Box::new(FieldMeasurement {
@@ -139,10 +142,11 @@ pub fn outcome_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
     DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None }
 }
 
-/// Reads the table: the answer to each field, fields ascending, gaps allowed, without features and motion.
+/// Reads the table: the outcome of each field, without features and motion. Field numbers ascend, with gaps
+/// allowed.
 ///
 /// # Errors
-/// A [`FileError`] that names line and column of the first cell that is not as it should be.
+/// A [`FileError`] that names line and column of the first invalid cell.
 pub fn read_field_measurements(path: &Path) -> Result<Vec<(u64, DockingOutcome)>, FileError> {
     let table = CsvReader::open_with::<FieldMeasurementLine>(path, &origin::COLUMNS)?;
     table.read_rows(|row, previous: Option<&(u64, DockingOutcome)>| {
@@ -174,7 +178,7 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
             Ok(DockingSolution::Doubtful { measurement: measurement(row)?, doubt })
         }
         _ => {
-            // What stands behind `failed: ` is kept to the letter.
+            // The text after `failed: ` is kept verbatim.
             let reason = NoPose::parse(status.trim_start()).ok_or_else(|| row.error("status", STATUS))?;
             row.check_empty(POSE)?;
             row.check_empty(RANGE)?;
@@ -183,7 +187,7 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
     }
 }
 
-/// The pose of a row that has one.
+/// Reads the measurement of a row with a pose.
 fn measurement(row: &CsvRow<'_>) -> Result<Box<FieldMeasurement>, FileError> {
     row.check_empty(RANGE)?;
     let line = FieldMeasurementLine::read(row)?;
@@ -195,8 +199,8 @@ fn measurement(row: &CsvRow<'_>) -> Result<Box<FieldMeasurement>, FileError> {
     Ok(Box::new(FieldMeasurement { best, paper: line.paper }))
 }
 
-/// The covariance; without its cells that of the standard deviations, uncorrelated; without these zero, which says
-/// nothing.
+/// Returns the covariance of a row. Without covariance cells, it is the diagonal matrix of the standard
+/// deviations; without standard deviations, it is zero, which means unknown.
 fn covariance(row: &CsvRow<'_>, line: &FieldMeasurementLine) -> Result<Matrix6<f64>, FileError> {
     row.check_sigmas(SIGMA, line.sigma)?;
     if let Some(covariance) = covariance::from_cells(row, COVARIANCE, line.covariance, &scale())? {

@@ -1,4 +1,4 @@
-//! The files of docking: answers, evidence, truth, and what a pipeline knows before the first field.
+//! Files of docking: outcomes, features, truth, and the data that a pipeline receives before the first field.
 
 mod covariance;
 mod features;

@@ -1,5 +1,5 @@
-//! `motion.csv`: what a pipeline says at the end of each portion. Figures 5 and 6 of the docking paper are these rows
-//! over their times.
+//! `motion.csv`: the motion that a pipeline reports at the end of each portion. Figures 5 and 6 of the
+//! docking paper are these rows plotted against time.
 
 use std::path::Path;
 
@@ -26,19 +26,20 @@ const POSITION: [&str; CELLS] = upper_triangle!("d1" "d2" "d3" "d1_rate" "d2_rat
 const ATTITUDE: [&str; CELLS] = upper_triangle!("phi1" "phi2" "phi3" "phi1_rate" "phi2_rate" "phi3_rate");
 
 table! {
-    /// A row of the file.
+    /// A row of `motion.csv`.
     pub struct MotionLine: csv {
-        /// number of the field at which it is said; ascending
+        /// number of the field with which the motion is reported; ascending
         field: u64,
-        /// `best`, or `paper`: in the row after it, or alone where the best estimator gave no motion; `best` when empty
+        /// `best` or `paper`; `paper` follows the `best` row of its field, or stands without it if the best
+        /// estimator gave no motion; `best` when empty
         estimator: String = optional(["estimator"]),
-        /// the moment, s since the beginning of the sequence
+        /// time, s since the beginning of the sequence
         time_s: f64,
-        /// fields of the portion that were measured
+        /// number of measured fields in the portion
         fields: Option<u32> = optional(["fields"]),
         /// ρ, u, α, β and φ, the parameters of figures 5 and 6 of the docking paper
         shown: [f64; 7] = ["rho_m", "u_m_s", "alpha_deg", "beta_deg", "phi1_deg", "phi2_deg", "phi3_deg"],
-        /// their standard deviations; all or none
+        /// standard deviations of ρ, u, α, β and φ; all or none
         sigma: Option<[f64; 7]> = optional(SIGMA),
         /// position, velocity and rates of φ; all or none
         state: Option<[f64; 9]> = optional([
@@ -71,21 +72,21 @@ table! {
     }
 }
 
-/// The word of the pipeline's own best estimator; the one without a word.
+/// Name of the pipeline's best estimator, also assumed for an empty cell.
 const BEST: &str = "best";
-/// The word of the paper's formulas.
+/// Name of the estimator that uses the paper's formulas.
 const PAPER: &str = "paper";
 
-/// From radians to degrees, for six values with angles alone.
+/// Factors that convert radians to degrees, for six values that are all angles.
 fn degrees() -> Vector6<f64> {
     Vector6::repeat(1.0_f64.to_degrees())
 }
 
-/// Writes the table row by row.
+/// Writer of the table, row by row.
 pub type MotionWriter = CsvWriter<MotionLine>;
 
 impl MotionWriter {
-    /// Writes the report at a field: a row for each estimator that gave a motion.
+    /// Writes the report of a field: one row for each estimator that gave a motion.
     ///
     /// # Errors
     /// [`FileError::Io`].
@@ -104,7 +105,7 @@ fn line(field: u64, estimator: &str, motion: &Motion) -> MotionLine {
     let phi_deg = shown.phi_rad.map(f64::to_degrees);
     let (d, v) = (&motion.pose.position_m, &motion.velocity_m_s);
     let phi_rate = motion.phi_rate_rad_s.map(f64::to_degrees);
-    // Row by row, where the matrix lies column by column.
+    // Cells are stored row by row; the matrix is stored column by column.
     let cross: [[f64; 3]; 3] = motion.cross_covariance.map(f64::to_degrees).transpose().into();
     let [[c11, c12, c13], [c21, c22, c23], [c31, c32, c33]] = cross;
     MotionLine {
@@ -132,7 +133,7 @@ fn line(field: u64, estimator: &str, motion: &Motion) -> MotionLine {
     }
 }
 
-/// The report as it comes back from the file, as [`super::outcome_as_filed`].
+/// Returns the report as it would be read back from the file, like [`super::outcome_as_filed`].
 pub fn report_as_filed(report: &MotionReport) -> MotionReport {
     let motion = |motion: &Motion| Motion {
         pose: pose::as_filed(&motion.pose),
@@ -145,14 +146,14 @@ pub fn report_as_filed(report: &MotionReport) -> MotionReport {
     MotionReport { best: report.best.as_ref().map(motion), paper: report.paper.as_ref().map(motion) }
 }
 
-/// Reads the table: the report at each field that has one, fields ascending.
+/// Reads the table: the motion report of each field that has one. Field numbers ascend.
 ///
-/// Of a row without the columns of the state, the position follows from ρ, α and β, and the velocity is taken along the
-/// line of sight; of one without the covariances, they are such that the standard deviations come out again, and nothing
-/// else is said by them (they are singular).
+/// For a row without state columns, the position is computed from ρ, α and β, and the velocity is assumed to
+/// be along the line of sight. For a row without covariances, the covariances reproduce the standard
+/// deviations and contain no other information (they are singular).
 ///
 /// # Errors
-/// A [`FileError`] that names line and column of the first cell that is not as it should be.
+/// A [`FileError`] that names line and column of the first invalid cell.
 pub fn read_motion(path: &Path) -> Result<Vec<(u64, MotionReport)>, FileError> {
     let mut table = CsvReader::open::<MotionLine>(path)?;
     let mut reports: Vec<(u64, MotionReport)> = Vec::new();
@@ -223,7 +224,8 @@ fn motion(row: &CsvRow<'_>, line: &MotionLine) -> Result<Motion, FileError> {
     })
 }
 
-/// A covariance of position and velocity that gives the standard deviations of ρ, u, α and β, uncorrelated.
+/// Returns a covariance of position and velocity that reproduces the standard deviations of ρ, u, α and β,
+/// without correlation.
 fn covariance_from_sigmas(
     rho: f64,
     alpha: f64,
@@ -233,7 +235,7 @@ fn covariance_from_sigmas(
 ) -> Matrix6<f64> {
     let (sin_a, cos_a) = (libm::sin(alpha), libm::cos(alpha));
     let (sin_b, cos_b) = (libm::sin(beta), libm::cos(beta));
-    // ∂d/∂ρ, ∂d/∂α, ∂d/∂β, each times its standard deviation.
+    // The derivatives ∂d/∂ρ, ∂d/∂α, ∂d/∂β, each multiplied by its standard deviation.
     let along = [
         towards * sigmas[0],
         Vector3::new(-sin_a * sin_b, cos_a, -sin_a * cos_b) * (rho * sigmas[2].to_radians()),
@@ -302,7 +304,7 @@ mod tests {
         assert_eq!((met.time_s, met.fields, met.velocity_m_s), (12.34, 9, meant.velocity_m_s));
         assert_eq!(met.pose.position_m, meant.pose.position_m);
         assert_eq!(met.position_covariance, meant.position_covariance);
-        // Angles change their unit: to a rounding.
+        // Angles change their unit, which causes a rounding error.
         assert!((met.pose.phi_rad - meant.pose.phi_rad).norm() < 1e-16);
         assert!((met.attitude_covariance - meant.attitude_covariance).norm() < 1e-18);
         assert!((met.cross_covariance - meant.cross_covariance).norm() < 1e-18);

@@ -1,11 +1,11 @@
-//! A pose in files: position in metres, angles in degrees.
+//! Poses in files: position in metres, angles in degrees.
 
 use contract::docking::Pose;
 use nalgebra::Vector3;
 
 use crate::table::field::value;
 
-/// Its columns.
+/// Columns of a pose.
 pub(super) const POSE: [&str; 6] = ["d1_m", "d2_m", "d3_m", "phi1_deg", "phi2_deg", "phi3_deg"];
 
 value!(
@@ -20,12 +20,13 @@ value!(
     }
 );
 
-/// An angle as it comes back from a file, in radians: it has changed its unit twice, which may move its last bit.
+/// Returns an angle, rad, as it would be read back from a file: it is converted twice, which may change its
+/// last bit.
 pub(super) fn angle_as_filed(angle: f64) -> f64 {
     angle.to_degrees().to_radians()
 }
 
-/// A pose as it comes back from a file.
+/// Returns a pose as it would be read back from a file.
 pub(super) fn as_filed(pose: &Pose) -> Pose {
     Pose { phi_rad: pose.phi_rad.map(angle_as_filed), ..*pose }
 }

@@ -1,4 +1,4 @@
-//! `setup.toml`: what a docking pipeline knows before the first field.
+//! `setup.toml`: the data that a docking pipeline receives before the first field.
 
 use std::path::Path;
 
@@ -11,25 +11,25 @@ use serde::{Deserialize, Serialize};
 use crate::FileError;
 use crate::toml_file::toml_table::{self, TomlTable};
 
-/// The cameras, the target's dimensions, and parameters of the built-in pipeline.
+/// Cameras, dimensions of the target, and parameters of the built-in pipeline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SetupFile {
-    /// Bits of the digitiser, 1 to 16.
+    /// Bit depth of the digitiser, 1 to 16.
     #[schemars(range(min = 1, max = 16))]
     pub bit_depth: u8,
-    /// The target's dimensions.
+    /// Dimensions of the target.
     pub target: TargetModel,
-    /// Nominal cameras (lenses), at least one, all with the same columns and rows.
+    /// Nominal cameras (lenses), at least one, all with the same number of columns and rows.
     #[schemars(length(min = 1))]
     pub cameras: Vec<Camera>,
-    /// Parameters of the built-in pipeline; without it, its defaults.
+    /// Parameters of the built-in pipeline; default: its default parameters.
     #[serde(default)]
     pub docking: DockingConfig,
 }
 
 impl SetupFile {
-    /// Of a setup and a configuration.
+    /// Creates the file contents from a setup and a configuration.
     pub fn new(setup: &DockingSetup, docking: &DockingConfig) -> Self {
         Self {
             bit_depth: setup.bit_depth,
@@ -42,8 +42,8 @@ impl SetupFile {
     /// Reads and checks the file.
     ///
     /// # Errors
-    /// [`FileError::Io`]; [`FileError::Toml`] with line and column for what is not TOML, for a wrong, unknown or missing
-    /// field, and for a value outside its range.
+    /// [`FileError::Io`]; [`FileError::Toml`] with line and column for invalid TOML, for a wrong, unknown or
+    /// missing field, and for a value outside its range.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         toml_table::read(path)
     }
@@ -51,12 +51,13 @@ impl SetupFile {
     /// Writes the file.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
+    /// [`FileError::OutputTaken`] if the file exists; [`FileError::Io`] if it cannot be written;
+    /// [`FileError::Value`] for a value that could not be read back.
     pub fn write(&self, path: &Path) -> Result<(), FileError> {
         toml_table::write(self, path)
     }
 
-    /// What a pipeline is told.
+    /// Returns the setup that a pipeline receives.
     pub fn setup(&self) -> DockingSetup {
         DockingSetup { cameras: self.cameras.clone(), bit_depth: self.bit_depth, target: self.target.clone() }
     }

@@ -1,4 +1,4 @@
-//! `telemetry.csv` of a docking dataset: what a pipeline may know about each field.
+//! `telemetry.csv` of a docking dataset: the telemetry that a pipeline may use for each field.
 
 use std::path::Path;
 
@@ -9,17 +9,17 @@ use crate::csv::table::{CsvLine, CsvReader, CsvRow, CsvWriter};
 use crate::{optional, table};
 
 table! {
-    /// A row of the file.
+    /// A row of `telemetry.csv`.
     pub struct FieldTelemetryLine: csv {
         /// number of the field; ascending, gaps allowed
         field: u64,
-        /// its image, a path below the directory; empty when none was saved
+        /// path of the image below the directory; empty when none was saved
         file: String = optional(["file"]),
-        /// its moment, s since the beginning; ascending
+        /// time of the field, s since the beginning; ascending
         time_s: f64,
-        /// its rows of the camera: `even` (0, 2, 4 …), `odd`, `all` (a progressive frame)
+        /// camera rows of the field: `even` (0, 2, 4 …), `odd`, `all` (a progressive frame)
         lines: String,
-        /// which camera took it, from 0; 0 when empty
+        /// index of the camera that took the field, from 0; 0 when empty
         camera: Option<usize> = optional(["camera"]),
         /// contrast of the digitiser; 1 when empty
         contrast: Option<f64> = optional(["contrast"]),
@@ -28,20 +28,21 @@ table! {
     }
 }
 
-/// One row: the telemetry of one field, and where its image is.
+/// Telemetry of one field, with the path of its image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldRow {
     /// Number of the field.
     pub field: u64,
-    /// The image's file, relative to the table; `None` when no image was saved.
+    /// Path of the image relative to the table; `None` if no image was saved.
     pub file: Option<String>,
-    /// Which rows of the camera the image holds.
+    /// Camera rows that the image contains.
     pub lines: Lines,
-    /// What is known of the field. In a table without them the camera is 0 and the digitiser the default one.
+    /// Telemetry of the field. In a table without these columns, the camera is 0 and the digitiser setting
+    /// the default.
     pub telemetry: FieldTelemetry,
 }
 
-/// Writes the table row by row.
+/// Writer of the table, row by row.
 pub type FieldTelemetryWriter = CsvWriter<FieldTelemetryLine>;
 
 impl FieldTelemetryWriter {
@@ -63,11 +64,11 @@ impl FieldTelemetryWriter {
     }
 }
 
-/// Reads the table, each row with its line in the file. Fields and times ascend; fields may be missing.
+/// Reads the table, each row with its line in the file. Field numbers and times ascend; fields may be
+/// missing.
 ///
 /// # Errors
-/// A [`FileError`] that names line and column of the first cell that is not as it should be; an empty table is one
-/// too.
+/// A [`FileError`] that names line and column of the first invalid cell; also for an empty table.
 pub(crate) fn read_with_lines(path: &Path) -> Result<Vec<(u64, FieldRow)>, FileError> {
     CsvReader::open::<FieldTelemetryLine>(path)?.read_all(parse)
 }
@@ -75,8 +76,7 @@ pub(crate) fn read_with_lines(path: &Path) -> Result<Vec<(u64, FieldRow)>, FileE
 /// Reads the table: see [`FieldRow`].
 ///
 /// # Errors
-/// A [`FileError`] that names line and column of the first cell that is not as it should be; an empty table is one
-/// too.
+/// A [`FileError`] that names line and column of the first invalid cell; also for an empty table.
 pub fn read_field_telemetry(path: &Path) -> Result<Vec<FieldRow>, FileError> {
     read_with_lines(path).map(|rows| rows.into_iter().map(|(_, row)| row).collect())
 }

@@ -1,4 +1,4 @@
-//! `truth/fields.parquet`: the truth about each field. Angles are degrees, as everywhere in files.
+//! `truth/fields.parquet`: ground truth of each field. Angles are in degrees, as in all files.
 
 use contract::PixelPoint;
 use contract::docking::{Lines, Pose};
@@ -12,8 +12,9 @@ use crate::table;
 use crate::table::field::{value, words};
 use crate::{Column, Columns, FileError, Row};
 
-/// The truth as it comes back from the file: angles have changed their unit twice, which may move their last bit. A score
-/// of the run is made of these, so that one of the files is the same to the bit.
+/// Returns the truth as it would be read back from the file: angles are converted twice, which may change
+/// their last bit. The score of a run is computed from this truth, which makes it bit-identical to a score of
+/// the files.
 pub fn truth_as_filed(truth: FieldTruth) -> FieldTruth {
     FieldTruth { pose: pose::as_filed(&truth.pose), ..FieldTruthRow::from(&truth).into() }
 }
@@ -27,27 +28,27 @@ value!(
 );
 
 table! {
-    /// A row of the file.
+    /// A row of `truth/fields.parquet`.
     pub(crate) struct FieldTruthRow: parquet(field) {
         /// number of the field; ascending
         field: u64,
-        /// its moment
+        /// time of the field
         time_utc: Epoch,
-        /// its moment, s since the beginning
+        /// time of the field, s since the beginning
         time_s: f64,
-        /// the rows of the camera that it holds: `even` (0, 2, 4 …), `odd`, `all`
+        /// camera rows of the field: `even` (0, 2, 4 …), `odd`, `all`
         lines: Lines,
-        /// which camera took it, from 0
+        /// index of the camera that took the field, from 0
         camera: usize,
-        /// d and φ: the true pose
+        /// true pose: d and φ
         pose: Pose = POSE,
-        /// rate of d
+        /// time derivative of d
         velocity_m_s: Vector3<f64> = ["d1_rate_m_s", "d2_rate_m_s", "d3_rate_m_s"],
-        /// rate of φ
+        /// time derivative of φ
         phi_rate_deg_s: Vector3<f64> = ["phi1_rate_deg_s", "phi2_rate_deg_s", "phi3_rate_deg_s"],
         /// ρ: distance between the camera and the centre of the target's disk
         rho_m: f64,
-        /// u: rate of ρ, negative when closing
+        /// u: time derivative of ρ, negative when closing
         u_m_s: f64,
         /// α: passive pitch
         alpha_deg: f64,
@@ -55,41 +56,42 @@ table! {
         beta_deg: f64,
         /// unit vector towards the Sun, target frame; null on the night side
         sun: Option<Vector3<f64>> = ["sun_y1", "sun_y2", "sun_y3"],
-        /// whether the lamp is on
+        /// true if the lamp is on
         floodlight: bool,
-        /// image of the centre of the cross's front face; null where there is none
+        /// image of the centre of the cross's front face; null if it has no image
         cross_centre: Option<PixelPoint> = ["cross_x_px", "cross_y_px"],
-        /// image of the disk's centre; null where there is none
+        /// image of the disk's centre; null if it has no image
         disk_centre: Option<PixelPoint> = ["disk_x_px", "disk_y_px"],
-        /// radius of the circle of the marks in an image without tilt and distortion
+        /// radius that the circle of the marks has in an image without tilt and distortion
         circle_radius_px: Option<f64>,
-        /// bit i: the whole of mark i is in the picture
+        /// bit i: all of mark i is in the image
         marks_in_field: u64,
-        /// bit i: some of mark i lacks the light of a source that shines on the target's front
+        /// bit i: part of mark i is shadowed from a source that illuminates the front of the target
         marks_shadowed: u64,
-        /// bit i: no source shines on any of mark i
+        /// bit i: no source illuminates any part of mark i
         marks_dark: u64,
-        /// bit i: something stands before some of mark i
+        /// bit i: part of mark i is hidden by an object in front of it
         marks_hidden: u64,
-        /// bit i: glint i of the scenario shines into the picture
+        /// bit i: glint i of the scenario is visible in the image
         glints_shining: u64,
-        /// share of the plate that the Sun or the lamp shines on
+        /// fraction of the plate that the Sun or the lamp illuminates
         plate_lit: f64,
-        /// whether the whole cross is in the picture
+        /// true if the whole cross is in the image
         cross_in_field: bool,
-        /// whether the whole target is in the picture
+        /// true if the whole target is in the image
         target_in_field: bool,
-        /// image of the Sun's centre; null unless some of its disk is in the picture and not hidden
+        /// image of the Sun's centre; null unless part of its disk is in the image and not hidden
         sun_image: Option<PixelPoint> = ["sun_x_px", "sun_y_px"],
-        /// share of the Sun's disk that nothing hides; 0 where it is not in the picture
+        /// unhidden fraction of the Sun's disk; 0 if the Sun is not in the image
         sun_visible: f64,
-        /// the brightest glint in the picture: its number in the scenario, its place, its light (radiance × px²); null without one
+        /// brightest glint in the image: its number in the scenario, its position, and its radiance
+        /// integrated over the image (radiance × px²); null if there is none
         glint: Option<GlintImage> = ["glint", "glint_x_px", "glint_y_px", "glint_light"],
-        /// signal that a radiance of the white level has above the pedestal
+        /// signal above the pedestal for a radiance of the white level
         video_contrast: f64,
         /// signal of a black scene
         video_brightness: f64,
-        /// lines lost on the way
+        /// number of lines lost in transmission
         lost_lines: u32,
     }
 }

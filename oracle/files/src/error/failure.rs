@@ -1,35 +1,35 @@
-//! Why a command gives no answer.
+//! Reasons why a command gives no result.
 
 use thiserror::Error;
 
 use crate::FileError;
 use crate::toml_file::TomlError;
 
-/// Bad input or usage: whatever keeps a command from giving an answer.
+/// Bad input or usage: any reason that keeps a command from giving a result.
 #[derive(Debug, Error)]
 pub enum Failure {
-    /// A mistake in a TOML file, with its place.
+    /// A mistake in a TOML file, with its location.
     #[error(transparent)]
     Toml(Box<TomlError>),
     /// A file that cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// An image that an external renderer did not produce.
+    /// A failure of an external renderer to produce an image.
     #[error(transparent)]
     Renderer(Box<dyn std::error::Error + Send + Sync>),
-    /// A simulation that cannot be made.
+    /// A simulation that cannot be set up.
     #[error(transparent)]
     Simulation(#[from] sim::SimError),
     /// A value that the contract does not allow, or a pipeline that cannot be built.
     #[error(transparent)]
     Contract(#[from] contract::ContractError),
-    /// A pipeline that never began its work.
+    /// A pipeline that never started.
     #[error(transparent)]
     NotStarted(#[from] contract::FailedStarts),
-    /// Whoever asked for the answer does not want it any more.
+    /// The request was cancelled.
     #[error("interrupted")]
     Interrupted,
-    /// Anything else, in words.
+    /// Any other failure, as text.
     #[error("{0}")]
     Usage(String),
 }
@@ -38,7 +38,7 @@ impl Failure {
     /// Exit status of a command that fails.
     pub const EXIT_STATUS: u8 = 2;
 
-    /// The message for a person, with the lines of the file around the mistake where there is one.
+    /// Returns the message for the user, with the lines of the file around the mistake if there is one.
     pub fn explain(&self) -> String {
         match self {
             Self::Toml(error) | Self::File(FileError::Toml(error)) => error.explain(),

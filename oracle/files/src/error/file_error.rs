@@ -1,4 +1,4 @@
-//! The one error type of reading and writing.
+//! Error type of reading and writing files.
 
 use std::fmt;
 use std::fs::File;
@@ -9,27 +9,27 @@ use thiserror::Error;
 
 use crate::toml_file::TomlError;
 
-/// Where in a file a value stands.
+/// Location of a value in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileLocation {
     /// A line of a text file, counted from 1.
     Line(u64),
-    /// A row of a table without lines, counted from 0.
+    /// A row of a table that is not a text file, counted from 0.
     Row(u64),
     /// A pixel; the first is (0, 0).
     Pixel {
-        /// Column.
+        /// Column of the pixel.
         x: usize,
-        /// Row.
+        /// Row of the pixel.
         y: usize,
     },
-    /// The file's header.
+    /// Header of the file.
     Header,
-    /// The file as a whole, a folder, or what is told of it from outside.
+    /// The whole file, a directory, or a property of the file that is stated elsewhere.
     Whole,
 }
 
-/// As it goes on from the file's name: `, line 3`.
+/// Formats the location as a continuation of the file name: `, line 3`.
 impl fmt::Display for FileLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -42,125 +42,126 @@ impl fmt::Display for FileLocation {
     }
 }
 
-/// Why a file cannot be read or written.
+/// Reason why a file cannot be read or written.
 #[derive(Debug, Error)]
 pub enum FileError {
-    /// The operating system refused.
+    /// An error of the operating system.
     #[error("{path}: cannot {doing}: {source}", path = path.display())]
     Io {
-        /// The file or directory.
+        /// Path of the file or directory.
         path: PathBuf,
-        /// What was tried: `open`, `create`, `read`, `write`.
+        /// The attempted operation: `open`, `create`, `read`, `write`.
         doing: &'static str,
-        /// The system's reason.
+        /// Error reported by the operating system.
         source: io::Error,
     },
-    /// A value that is not what it should be.
+    /// An invalid value.
     #[error("{path}{place}: `{field}` is `{value}`, expected {expected}", path = path.display())]
     Value {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Where in it.
+        /// Location in the file.
         place: FileLocation,
         /// Column, keyword or property.
         field: String,
-        /// The value met.
+        /// The rejected value.
         value: String,
-        /// What is allowed.
+        /// Description of the allowed values.
         expected: String,
     },
-    /// A file that is not of its format, is cut short, or uses a part of the format that is not supported.
+    /// A file that does not have the expected format, is truncated, or uses an unsupported part of the
+    /// format.
     #[error("{path}: not a readable {format} file: {reason}", path = path.display())]
     Format {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The format that was tried.
+        /// The expected format.
         format: &'static str,
-        /// What is wrong.
+        /// Description of the fault.
         reason: String,
     },
-    /// A mistake in a TOML file, with its place.
+    /// A mistake in a TOML file, with its location.
     #[error(transparent)]
     Toml(Box<TomlError>),
-    /// A table without a column that it must have.
+    /// A table without a required column.
     #[error("{path}: column `{column}` is missing; found {found}", path = path.display())]
     MissingColumn {
-        /// The table.
+        /// Path of the table.
         path: PathBuf,
         /// The missing column.
         column: String,
-        /// The columns that are there.
+        /// The columns found.
         found: String,
     },
-    /// A table with a column that nobody knows.
+    /// A table with an unknown column.
     #[error("{path}: unknown column `{column}`; did you mean `{nearest}`?", path = path.display())]
     UnknownColumn {
-        /// The table.
+        /// Path of the table.
         path: PathBuf,
-        /// The column met.
+        /// The unknown column.
         column: String,
-        /// The known name nearest to it.
+        /// The most similar known name.
         nearest: String,
     },
-    /// A frame of a dataset whose image is not there.
+    /// A frame of a dataset with a missing or invalid image.
     #[error("{path}, line {line}: the image `{file}` of frame {frame} is {reason}", path = path.display())]
     MissingImage {
-        /// The table that names the image.
+        /// Path of the table that names the image.
         path: PathBuf,
-        /// Line of the frame.
+        /// Line of the frame in the table.
         line: u64,
         /// Number of the frame.
         frame: u64,
-        /// The image, as named there.
+        /// Name of the image in the table.
         file: String,
-        /// What is wrong with it.
+        /// Fault of the image.
         reason: &'static str,
     },
-    /// A place for output that is taken.
+    /// An output path that is already in use.
     #[error("{path} {reason}; give another folder with --out", path = path.display())]
     OutputTaken {
-        /// The directory.
+        /// The output path.
         path: PathBuf,
-        /// Why it cannot be used.
+        /// Reason why the path cannot be used.
         reason: &'static str,
     },
-    /// A file in whose place a new one was to be.
+    /// An existing file that must not be replaced.
     #[error("{path} {reason}, expected {expected}", path = path.display())]
     NotReplaced {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why it stays.
+        /// Reason why the file is kept.
         reason: String,
-        /// What may be there.
+        /// Description of the files that may be replaced.
         expected: String,
     },
-    /// A value that the contract refuses.
+    /// A value that the contract does not allow.
     #[error("{path}: {source}", path = path.display())]
     Contract {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Which value, and why.
+        /// The value and the reason.
         source: contract::ContractError,
     },
 }
 
-/// Opens a file of anybody's making for reading; a pipe or a device is refused.
+/// Opens a file from an untrusted source for reading; a pipe or a device is rejected.
 pub fn open_regular(path: &Path) -> Result<File, FileError> {
     sim::regular_file::open(path).map_err(|source| FileError::io(path, "open", source))
 }
 
 impl FileError {
-    /// An error of the operating system while `doing` something to a file.
+    /// Creates an error of the operating system; `doing` is the attempted operation.
     pub fn io(path: &Path, doing: &'static str, source: io::Error) -> Self {
         Self::Io { path: path.to_owned(), doing, source }
     }
 
-    /// A file that is not of its format or is damaged.
+    /// Creates the error of a file that is damaged or does not have the expected format.
     pub fn format(path: &Path, format: &'static str, reason: impl ToString) -> Self {
         Self::Format { path: path.to_owned(), format, reason: reason.to_string() }
     }
 
-    /// A value that is not as expected.
+    /// Creates the error of an invalid value.
     pub fn value(
         path: &Path,
         place: FileLocation,
@@ -182,7 +183,7 @@ impl FileError {
     }
 }
 
-/// Creates a file for writing; one that exists is refused, not overwritten.
+/// Creates a file for writing; an existing file is an error and is not overwritten.
 pub(crate) fn create_new(path: &Path) -> Result<File, FileError> {
     File::create_new(path).map_err(|source| FileError::io(path, "create", source))
 }

@@ -1,4 +1,4 @@
-//! Failures with their place: of a file, and of a command.
+//! Failures with their location: of a file, and of a command.
 
 pub mod failure;
 pub(crate) mod file_error;

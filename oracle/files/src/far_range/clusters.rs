@@ -1,4 +1,4 @@
-//! `clusters.parquet`: what a pipeline took each cluster for, beside `measurements.csv`.
+//! `clusters.parquet`: a pipeline's classification of each cluster, in addition to `measurements.csv`.
 
 use contract::{Cluster, Label, PixelPoint};
 
@@ -8,7 +8,7 @@ use crate::table::batch::Columns;
 use crate::table::column::Column;
 use crate::{table, without_dictionary};
 
-/// A cluster and the frame it was found in.
+/// A cluster with its frame number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameCluster {
     /// Number of the frame.
@@ -18,7 +18,7 @@ pub struct FrameCluster {
 }
 
 table! {
-    /// A row of the file.
+    /// A row of `clusters.parquet`.
     pub(crate) struct ClusterRow: parquet(frame) {
         /// number of the frame; ascending
         frame: u64,
@@ -28,9 +28,9 @@ table! {
         size: f64 = without_dictionary(["size"]),
         /// number of pixels
         pixels: u32,
-        /// what it was taken for: `star`, `hotspot`, `unlinked`, `candidate`, `target`
+        /// classification: `star`, `hotspot`, `unlinked`, `candidate`, `target`
         label: String,
-        /// number of the star in the catalogue; null unless a star
+        /// number of the star in the catalogue; null unless the cluster is a star
         star_id: Option<u32>,
     }
 }
@@ -66,7 +66,7 @@ impl Row for FrameCluster {
     }
 }
 
-/// The label of a word; a star needs its number.
+/// Returns the label of a name; a star needs its number.
 fn label(word: &str, star: Option<u32>) -> Option<Label> {
     let others = [Label::Hotspot, Label::Unlinked, Label::Candidate, Label::Target];
     match star {

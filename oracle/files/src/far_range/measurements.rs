@@ -1,4 +1,4 @@
-//! `measurements.csv`: a pipeline's answers, ours or anybody's.
+//! `measurements.csv`: outcomes of the built-in or an external pipeline, one row per frame.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -20,43 +20,45 @@ const POSITION_COVARIANCE: [&str; 3] = ["sigma_x_px", "sigma_y_px", "correlation
 const LINE_OF_SIGHT_COVARIANCE: [&str; 3] = ["sigma_ra_deg", "sigma_dec_deg", "correlation_ra_dec"];
 
 table! {
-    /// A row of the file.
+    /// A row of `measurements.csv`.
     pub struct MeasurementLine: csv {
         /// number of the frame; ascending, each once
         frame: u64,
-        /// `detected`; or why not, in which case the position must be empty: `no_target`, `no_previous_frame`, `empty_frame`,
-        /// `saturated_frame`, `failed`, `failed: ` and a reason
+        /// `detected`; or the reason for no solution, in which case the position must be empty: `no_target`,
+        /// `no_previous_frame`, `empty_frame`, `saturated_frame`, `failed`, `failed: ` and a reason
         status: String,
         /// centre of the target's image, on the detector (−0.5 to columns − 0.5, rows − 0.5)
         position: Option<PixelPoint> = POSITION,
-        /// line of sight, unit vector within 1e-5; all three or none. Without it RA and Dec have no figures unless the score is given an attitude
+        /// line of sight, unit vector within 1e-5; all three or none. Without it, RA and Dec have no figures
+        /// unless an attitude is supplied for the score
         line_of_sight: Option<Direction<Icrs>> = optional(LINE_OF_SIGHT),
         /// attitude of the camera, norm 1 within 1e-5; not scored
         camera_from_icrs: Option<Rotation<CameraFrame, Icrs>> =
             optional(["q_cam_j2000_w", "q_cam_j2000_x", "q_cam_j2000_y", "q_cam_j2000_z"]),
-        /// where it comes from: `stars`, `too_few_stars`, `no_stars`, `no_match`
+        /// source of the attitude: `stars`, `too_few_stars`, `no_stars`, `no_match`
         attitude: String = optional(["attitude"]),
-        /// stars identified; empty when the pipeline does not tell
+        /// number of identified stars; empty if the pipeline does not report it
         n_stars: Option<u32> = optional(["n_stars"]),
-        /// standard deviations of the centre along columns and rows, px, more than 0, and their correlation, above −1 and below 1; all three or none,
-        /// and none unless `detected`
+        /// standard deviations of the centre along columns and rows, px, more than 0, and their correlation,
+        /// above −1 and below 1; all three or none, and none unless `detected`
         position_covariance: Option<[f64; 3]> = optional(POSITION_COVARIANCE),
-        /// the same of the line of sight, degrees: of its angles across columns ("RA") and rows ("Dec") in the camera, the error of the attitude
-        /// included; none without a line of sight
+        /// standard deviations of the line of sight, degrees, and their correlation, with the same ranges,
+        /// for its angles across columns ("RA") and rows ("Dec") in the camera, including the error of the
+        /// attitude; none without a line of sight
         line_of_sight_covariance: Option<[f64; 3]> = optional(LINE_OF_SIGHT_COVARIANCE),
     }
 }
 
-/// The status of a row that has a target.
+/// Status of a row with a target.
 const DETECTED: &str = "detected";
-/// What is expected in place of any other word.
+/// Expected values in the message for an unknown status.
 const STATUS: &str = "`detected`, `no_target`, `no_previous_frame`, `empty_frame`, `saturated_frame`, `failed`, or `failed: ` and a reason";
 
-/// Writes the table row by row.
+/// Writer of the table, row by row.
 pub type MeasurementWriter = CsvWriter<MeasurementLine>;
 
 impl MeasurementWriter {
-    /// Writes the answer to one frame. Its clusters have a table of their own ([`crate::FrameCluster`]).
+    /// Writes the outcome of one frame. Its clusters have a separate table ([`crate::FrameCluster`]).
     ///
     /// # Errors
     /// [`FileError::Io`].
@@ -83,22 +85,23 @@ impl MeasurementWriter {
     }
 }
 
-/// The answer as it comes back from the file: the standard deviations of its line of sight have changed their unit twice, which may move
-/// their last bit. A score of the run is made of these, so that one of the file is the same to the bit.
+/// Returns the outcome as it would be read back from the file: the standard deviations of its line of sight
+/// are converted twice, which may change their last bit. The score of a run is computed from these outcomes,
+/// which makes it bit-identical to a score of the file.
 pub fn outcome_as_filed(outcome: &Outcome) -> Cow<'_, Outcome> {
     let Solution::Detected(measurement) = &outcome.solution else { return Cow::Borrowed(outcome) };
     let Some(covariance) = measurement.line_of_sight_covariance else { return Cow::Borrowed(outcome) };
-    // Standard deviations so small that the file has 0 for them have no covariance there.
+    // Standard deviations that underflow to 0 in the file have no covariance there.
     let line_of_sight_covariance = Covariance2::from_degrees(covariance.degrees()).ok();
     let solution = Solution::Detected(Measurement { line_of_sight_covariance, ..*measurement });
     Cow::Owned(Outcome { solution, ..outcome.clone() })
 }
 
-/// Reads the table: the answer to each frame of `camera`, frames ascending, gaps allowed, clusters empty. What the protocol of external
-/// pipelines refuses is refused here too.
+/// Reads the table: the outcome of each frame of `camera`, without clusters. Frame numbers ascend, with gaps
+/// allowed. Values that the protocol of external pipelines rejects are rejected here too.
 ///
 /// # Errors
-/// A [`FileError`] that names line and column of the first cell that is not as it should be.
+/// A [`FileError`] that names line and column of the first invalid cell.
 pub fn read_measurements(path: &Path, camera: &Camera) -> Result<Vec<(u64, Outcome)>, FileError> {
     CsvReader::open_with::<MeasurementLine>(path, &origin::COLUMNS)?.read_rows(
         |row, previous: Option<&(u64, Outcome)>| {
@@ -110,14 +113,14 @@ pub fn read_measurements(path: &Path, camera: &Camera) -> Result<Vec<(u64, Outco
     )
 }
 
-/// Why a row has no target; `None` of a detection.
+/// Returns the reason why a row has no target; `None` for a detection.
 fn reason(row: &CsvRow<'_>) -> Result<Option<NoSolution>, FileError> {
     let status = row.text("status");
-    // Spaces beside a comma are allowed, line feeds and other control characters are not.
+    // Spaces next to a comma are allowed; line feeds and other control characters are not.
     if status.trim_matches(' ') == DETECTED {
         return Ok(None);
     }
-    // What stands behind `failed: ` is kept to the letter.
+    // The text after `failed: ` is kept verbatim.
     let reason =
         NoSolution::parse(status.trim_start_matches(' ')).ok_or_else(|| row.error("status", STATUS))?;
     let of_a_target = [POSITION.as_slice(), &LINE_OF_SIGHT, &POSITION_COVARIANCE, &LINE_OF_SIGHT_COVARIANCE];
@@ -125,7 +128,7 @@ fn reason(row: &CsvRow<'_>) -> Result<Option<NoSolution>, FileError> {
     Ok(Some(reason))
 }
 
-/// The covariance that the cells of three columns say, if they say one.
+/// Returns the covariance in the cells of three columns, if present.
 fn covariance(
     row: &CsvRow<'_>,
     [sigma_x, sigma_y, correlation]: [&'static str; 3],
@@ -274,7 +277,8 @@ mod tests {
         check("no_target,,,,,,,,,,,0", "correlation_ra_dec");
     }
 
-    /// As by the protocol of external pipelines: an unknown word would pass for a miss, a place off the detector for a detection.
+    /// Same rules as in the protocol of external pipelines: otherwise an unknown status would count as a
+    /// miss, and a position off the detector as a detection.
     #[test]
     fn what_an_external_pipeline_may_not_answer_is_refused() {
         let check = |row: &str, column| {

@@ -1,4 +1,4 @@
-//! The tables of the far range: answers, evidence, truth, and what a pipeline knows of stars and frames.
+//! Tables of the far range: outcomes, clusters, truth, star list and telemetry.
 
 pub(crate) mod clusters;
 pub(crate) mod measurements;

@@ -1,4 +1,4 @@
-//! `stars.csv`: the star list that a pipeline is given.
+//! `stars.csv`: the star list that a pipeline receives.
 
 use std::path::Path;
 
@@ -9,23 +9,23 @@ use crate::csv::table::{CsvLine, CsvReader, write_csv};
 use crate::table;
 
 table! {
-    /// One row of the list: catalogued place, ICRS, proper motion applied, without aberration.
+    /// A star of the list: catalogued position in ICRS with proper motion applied, without aberration.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct StarRow: csv {
         /// number in the catalogue (HIP); ascending, each once
         id: u32,
         /// right ascension, ICRS, 0 to 360; proper motion applied, without parallax and aberration
         ra_deg: f64,
-        /// declination, likewise, −90 to 90
+        /// declination, ICRS, −90 to 90; proper motion applied, without parallax and aberration
         dec_deg: f64,
-        /// Johnson V
+        /// Johnson V magnitude
         magnitude: f64,
     }
 }
 
 impl StarRow {
-    /// The star as a pipeline gets it. The list is *defined* by its rows, so that one read back from a file is the
-    /// same to the bit.
+    /// Returns the star as a pipeline receives it. The list is *defined* by its rows, so a list read back
+    /// from a file is bit-identical.
     pub fn to_listed_star(&self) -> ListedStar {
         let direction =
             Direction::from_ra_dec(Angle::from_degrees(self.ra_deg), Angle::from_degrees(self.dec_deg));
@@ -36,15 +36,15 @@ impl StarRow {
 /// Writes the list.
 ///
 /// # Errors
-/// [`FileError::Io`] when the file exists or cannot be written.
+/// [`FileError::OutputTaken`] if the file exists; [`FileError::Io`] if it cannot be written.
 pub fn write_stars(path: &Path, stars: &[StarRow]) -> Result<(), FileError> {
     write_csv(path, stars)
 }
 
-/// Reads the list; numbers ascend, each once.
+/// Reads the list; numbers ascend without repetition.
 ///
 /// # Errors
-/// A [`FileError`] that names line and column of the first cell that is not as it should be.
+/// A [`FileError`] that names line and column of the first invalid cell.
 pub fn read_stars(path: &Path) -> Result<Vec<StarRow>, FileError> {
     CsvReader::open::<StarRow>(path)?.read_rows(|row, previous: Option<&StarRow>| {
         let star = StarRow::read(row)?;

@@ -1,4 +1,4 @@
-//! `telemetry.csv`: what a pipeline may know about each frame.
+//! `telemetry.csv`: the telemetry that a pipeline may use for each frame.
 
 use std::path::Path;
 
@@ -11,18 +11,18 @@ use crate::table::time::{format_utc, parse_utc};
 use crate::table::windows;
 use crate::{optional, table};
 
-/// Components of the velocity.
+/// Columns of the velocity components.
 const VELOCITY: [&str; 3] = ["v_orbital_j2000_x_km_s", "v_orbital_j2000_y_km_s", "v_orbital_j2000_z_km_s"];
 
 table! {
-    /// A row of the file.
+    /// A row of `telemetry.csv`.
     pub struct TelemetryLine: csv {
         /// number of the frame; ascending, gaps allowed
         frame: u64,
-        /// its image, a path below the directory; empty when none was saved. `process` needs it
+        /// path of the image below the directory; empty when none was saved. `process` needs it
         file: String = optional(["file"]),
-        /// middle of the exposure: 2012-04-25T13:02:07.250000000Z; up to nine decimals, `Z` is a must; ascending. Second 60 is read only
-        /// where a leap second was inserted
+        /// middle of the exposure: 2012-04-25T13:02:07.250000000Z; up to nine decimals, `Z` is required;
+        /// ascending. Second 60 is accepted only where a leap second was inserted
         time_utc: String,
         /// exposure time, s, 0 or more
         exposure_s: f64,
@@ -30,25 +30,25 @@ table! {
         body_from_icrs: Rotation<Body, Icrs> = ["q_sc_j2000_w", "q_sc_j2000_x", "q_sc_j2000_y", "q_sc_j2000_z"],
         /// measured velocity about the Earth, km/s, ICRS axes, at most 100 km/s; all three or none
         velocity_km_s: Option<Vector3<f64>> = optional(VELOCITY),
-        /// transmitted regions `x y columns rows`, separated by `;`; `none` when nothing was; empty when the whole image was, or when
-        /// the image's own header tells
+        /// transmitted regions `x y columns rows`, separated by `;`; `none` when nothing was transmitted;
+        /// empty when the whole image was, or when the header of the image states the regions
         windows: String = optional(["windows"]),
     }
 }
 
-/// Faster than any orbit about the Earth, km/s: beyond it the unit is wrong.
+/// Speed above that of any orbit about the Earth, km/s; a larger value indicates a wrong unit.
 const FASTEST_KM_S: f64 = 100.0;
 
-/// One row: the telemetry of one frame, and where its image is.
+/// Telemetry of one frame, with the path of its image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TelemetryRow {
     /// Number of the frame.
     pub frame: u64,
-    /// The image's file, relative to the table; `None` when no image was saved.
+    /// Path of the image relative to the table; `None` if no image was saved.
     pub file: Option<String>,
-    /// What the spacecraft tells.
+    /// Telemetry of the frame.
     pub telemetry: Telemetry,
-    /// Regions that were transmitted; `None`: the whole image, or as the image's own header says.
+    /// Transmitted regions; `None`: the whole image, or the regions stated in the header of the image.
     pub windows: Option<Vec<Window>>,
 }
 
@@ -67,11 +67,11 @@ impl From<&TelemetryRow> for TelemetryLine {
     }
 }
 
-/// Writes the table row by row.
+/// Writer of the table, row by row.
 pub type TelemetryWriter = CsvWriter<TelemetryLine>;
 
 impl TelemetryWriter {
-    /// Writes one row, the time to the nanosecond.
+    /// Writes one row, with the time to the nanosecond.
     ///
     /// # Errors
     /// [`FileError::Io`].
@@ -80,16 +80,15 @@ impl TelemetryWriter {
     }
 }
 
-/// Reads the table. Frames ascend and may have gaps; times ascend.
+/// Reads the table. Frame numbers ascend, with gaps allowed; times ascend.
 ///
 /// # Errors
-/// A [`FileError`] that names line and column of the first cell that is not as it should be; an empty table is
-/// one too.
+/// A [`FileError`] that names line and column of the first invalid cell; also for an empty table.
 pub fn read_telemetry(path: &Path) -> Result<Vec<TelemetryRow>, FileError> {
     read_with_lines(path).map(|rows| rows.into_iter().map(|(_, row)| row).collect())
 }
 
-/// As [`read_telemetry`], each row with its line in the file.
+/// Reads the table like [`read_telemetry`], each row with its line in the file.
 pub(crate) fn read_with_lines(path: &Path) -> Result<Vec<(u64, TelemetryRow)>, FileError> {
     CsvReader::open::<TelemetryLine>(path)?.read_all(parse)
 }
@@ -126,7 +125,7 @@ mod tests {
 
     const HEADER: &str = "frame,file,time_utc,exposure_s,q_sc_j2000_w,q_sc_j2000_x,q_sc_j2000_y,q_sc_j2000_z";
 
-    /// The message that a table of these rows is refused with.
+    /// Returns the error message for a table with these rows.
     fn refused(header: &str, rows: &[&str]) -> String {
         let directory = tempdir().unwrap();
         let path = directory.path().join("telemetry.csv");

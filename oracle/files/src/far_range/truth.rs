@@ -1,8 +1,9 @@
 //! `truth/frames.parquet` and `truth/objects.parquet`.
 //!
-//! Everything is a 64-bit float: a score from the files must be the score from memory to the bit, and each of
-//! position, electrons, SNR, radius and cut decides in it. Directions of frames stand as components, which come back
-//! to the bit; those of objects, which no score uses, as right ascension and declination, good to 1e-13 degrees.
+//! All numbers are 64-bit floats: a score of the files must be bit-identical to the score in memory, and it
+//! depends on position, electrons, SNR, radius and cut. Directions of frames are stored as components, which
+//! are read back bit for bit; those of objects, which no score uses, as right ascension and declination,
+//! accurate to 1e-13 degrees.
 
 use contract::{Body, CameraFrame, Direction, Icrs, PixelPoint, Rotation, Target};
 use hifitime::Epoch;
@@ -17,9 +18,10 @@ words!(Shadow, Visibility, ObjectKind);
 table!(for FrameTruth: parquet(frame) {
     /// number of the frame; ascending
     frame: u64,
-    /// name of its group (day, portion)
+    /// name of the frame's group (day, portion)
     group: String,
-    /// middle of the exposure; of an interlaced frame the middle between its fields, for which all of the row holds
+    /// middle of the exposure; for an interlaced frame the middle between its fields, to which the whole row
+    /// refers
     time: Epoch = ["time_utc"],
     /// exposure time, s
     exposure_s: f64,
@@ -28,7 +30,7 @@ table!(for FrameTruth: parquet(frame) {
     /// true attitude of the camera
     camera_from_icrs: Rotation<CameraFrame, Icrs> =
         ["q_cam_j2000_w", "q_cam_j2000_x", "q_cam_j2000_y", "q_cam_j2000_z"],
-    /// chaser from the centre of the Earth, km, ICRS axes
+    /// position of the chaser from the centre of the Earth, km, ICRS axes
     position_km: Vector3<f64> = ["position_x_km", "position_y_km", "position_z_km"],
     /// velocity of the chaser about the Earth, km/s, ICRS axes
     velocity_km_s: Vector3<f64> = ["velocity_x_km_s", "velocity_y_km_s", "velocity_z_km_s"],
@@ -44,14 +46,14 @@ table!(for FrameTruth: parquet(frame) {
     shadow: Shadow,
     /// fraction of the Sun's disk seen from the target, 0 to 1
     sunlit_fraction: f64,
-    /// photo-electrons a second and pixel of zodiacal light, faint stars and stray light: mean over the detector, without the sensor's
-    /// constant
+    /// photoelectrons per second and pixel from zodiacal light, faint stars and stray light: mean over the
+    /// detector, without the sensor's constant
     background_e_per_s: f64,
-    /// electrons that the frame transfer adds to a pixel in this exposure: mean over the detector, with an even response; 0 without
-    /// `frame_transfer_s`
+    /// electrons that the frame transfer adds to a pixel in this exposure: mean over the detector, for a
+    /// uniform response; 0 without `frame_transfer_s`
     smear_e_per_px: f64,
-    /// where the line of sight meets the image, may be off the detector; null behind the camera. A body's centre of brightness is
-    /// elsewhere: in `objects.parquet`
+    /// position of the line of sight in the image, may be off the detector; null behind the camera. The
+    /// centre of brightness of a body differs from it and is in `objects.parquet`
     target_position: Option<PixelPoint> = ["target_x_px", "target_y_px"],
     /// `detectable` (SNR 5 or more), `ambiguous` (2 to 5), `invisible`
     target_visibility: Visibility,
@@ -65,29 +67,31 @@ table!(for ObjectTruth: parquet(frame) {
     frame: u64,
     /// `target`, `star`, `planet`, `moon`, `hot_pixel` or `cosmic_ray`
     kind: ObjectKind,
-    /// of the target 0; of a star the catalogue's number; of a planet its number from the Sun outwards (1 to 8); of the Moon 0; of a hot
-    /// pixel row × columns + column; of a track its number in the frame
+    /// 0 for the target; catalogue number for a star; number from the Sun outwards (1 to 8) for a planet; 0
+    /// for the Moon; row × columns + column for a hot pixel; number in the frame for a cosmic-ray hit
     id: u32,
-    /// centre of its image without noise (mean by light); may be off the detector; of an interlaced frame the middle between the
-    /// centres in its fields
+    /// flux-weighted centre of the object's noise-free image; may be off the detector; for an interlaced
+    /// frame the middle between the centres in its fields
     position: PixelPoint = without_dictionary(["x_px", "y_px"]),
-    /// astrometric direction: proper motion and parallax applied, no aberration, no deflection; of the target the line of sight, of
-    /// the Moon the centre of its disk; null for a hot pixel or track
+    /// astrometric direction: proper motion and parallax applied, no aberration, no deflection; for the
+    /// target the line of sight, for the Moon the centre of its disk; null for a hot pixel or cosmic-ray hit
     astrometric: Option<Direction<Icrs>> = without_dictionary(["ra_deg", "dec_deg"]),
-    /// V; null for a hot pixel or track
+    /// V magnitude; null for a hot pixel or cosmic-ray hit
     magnitude: Option<f64>,
     /// expected electrons on the detector in this exposure, before saturation
     electrons: f64 = without_dictionary(["electrons"]),
-    /// the same in its brightest pixel
+    /// expected electrons in the brightest pixel of the object in this exposure, before saturation
     peak_electrons: f64 = without_dictionary(["peak_electrons"]),
-    /// √(Σ s²/(s + b + σ²)) over its pixels: s its electrons, b sky and dark current, σ² the variance of the readout: noise of pixel, row
-    /// and column, and gain²/12 of the converter; that of a matched filter
+    /// √(Σ s²/(s + b + σ²)) over the object's pixels, the signal-to-noise ratio of a matched filter: s the
+    /// object's electrons, b sky and dark current, σ² the variance of the readout: noise of pixel, row and
+    /// column, and gain²/12 of the converter
     snr: f64 = without_dictionary(["snr"]),
-    /// distance from the centre to the farthest pixel centre where s exceeds √(b + σ²), before blooming; at least 0.5
+    /// distance from the centre to the farthest pixel centre where s exceeds √(b + σ²), before blooming; at
+    /// least 0.5
     radius_px: f64,
-    /// how much farther than `radius_px` s exceeds it along the columns after blooming of the object alone, up or down, whichever is
-    /// more; 0 without
+    /// additional distance beyond `radius_px` along the columns, up or down, whichever is larger, at which s
+    /// exceeds √(b + σ²) after blooming of the object itself; 0 without blooming
     bloom_px: f64,
-    /// fraction of its electrons outside the transmitted regions, 0 to 1; 0 without regions
+    /// fraction of the object's electrons outside the transmitted regions, 0 to 1; 0 without regions
     cut: f64,
 });

@@ -1,4 +1,4 @@
-//! OpenEXR: frames in DN, the noise-free expectation in electrons, radiances of a scene.
+//! OpenEXR files: frames in DN, noise-free expectations in electrons, radiances of a scene.
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -16,22 +16,23 @@ use crate::error::file_error::{FileLocation, create_new};
 use crate::table::windows;
 use crate::{FileError, FrameHeader};
 
-/// The one attribute that holds what EXR has no name for. One, because the crate keeps a layer's own attributes in
-/// a hash map, and two would be written in an order that changes from run to run.
+/// The single attribute for data without a standard EXR attribute. It is single because the crate keeps a
+/// layer's own attributes in a hash map, and two attributes would be written in an order that changes from
+/// run to run.
 const ATTRIBUTE: &str = "boresight";
 
-/// The noise-free expectation of an exposure.
+/// Noise-free expectation of an exposure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectedImage {
-    /// Columns.
+    /// Number of columns.
     pub columns: usize,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// Electrons a pixel, row by row.
+    /// Electrons per pixel, row by row.
     pub electrons: Vec<f32>,
 }
 
-/// Writes a frame as one float channel `Y` in DN, which holds every 16-bit number exactly.
+/// Writes a frame as one float channel `Y` in DN, which represents every 16-bit integer exactly.
 pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<(), FileError> {
     let regions = match frame.windows() {
         None => "all".to_owned(),
@@ -49,7 +50,7 @@ pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
 /// Writes an expectation as one float channel `Y` in electrons.
 ///
 /// # Errors
-/// [`FileError::Io`] when the file exists or cannot be written; [`FileError::Value`] when the number of values is
+/// [`FileError::Io`] if the file exists or cannot be written; [`FileError::Value`] if the number of values is
 /// not columns × rows.
 pub fn write_expected(path: &Path, expected: &ExpectedImage) -> Result<(), FileError> {
     let (columns, rows) = checked_size(path, expected.columns as u64, expected.rows as u64, None)?;
@@ -67,7 +68,7 @@ pub fn write_expected(path: &Path, expected: &ExpectedImage) -> Result<(), FileE
     write_channel(path, (columns, rows), attributes, FlatSamples::F32(expected.electrons.clone()))
 }
 
-/// Reads what [`write_expected`] writes, or any image of one channel.
+/// Reads an expectation from the output of [`write_expected`] or any image with one channel.
 ///
 /// # Errors
 /// A [`FileError`] for a file that cannot be read or has more than one channel.
@@ -76,10 +77,10 @@ pub fn read_expected(path: &Path) -> Result<ExpectedImage, FileError> {
     Ok(ExpectedImage { columns: channel.columns, rows: channel.rows, electrons: channel.samples })
 }
 
-/// Writes radiances as one channel `Y` of 16-bit floats: small, and within a part in 2048.
+/// Writes radiances as one channel `Y` of 16-bit floats: compact, and accurate to one part in 2048.
 ///
 /// # Errors
-/// [`FileError::Io`] when the file exists or cannot be written; [`FileError::Value`] when the number of values is
+/// [`FileError::Io`] if the file exists or cannot be written; [`FileError::Value`] if the number of values is
 /// not columns × rows.
 pub fn write_radiance(path: &Path, image: &RadianceImage) -> Result<(), FileError> {
     let (columns, rows) = checked_size(path, image.columns as u64, image.rows as u64, None)?;
@@ -98,7 +99,8 @@ pub fn write_radiance(path: &Path, image: &RadianceImage) -> Result<(), FileErro
     write_channel(path, (columns, rows), attributes, FlatSamples::F16(samples))
 }
 
-/// Reads what [`write_radiance`] writes, what Mitsuba renders, or any image of one channel.
+/// Reads radiances from the output of [`write_radiance`], an image rendered by Mitsuba, or any image with one
+/// channel.
 ///
 /// # Errors
 /// A [`FileError`] for a file that cannot be read or has more than one channel.
@@ -107,7 +109,7 @@ pub fn read_radiance(path: &Path) -> Result<RadianceImage, FileError> {
     Ok(RadianceImage { columns: channel.columns, rows: channel.rows, radiance: channel.samples })
 }
 
-/// Reads a frame from an image of one channel in DN.
+/// Reads a frame from an image with one channel in DN.
 pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
     let Channel { columns, rows, samples, own } = read_channel(path, size)?;
     let dn = dn_of_all(path, columns, samples.into_iter().map(f64::from))?;
@@ -151,7 +153,7 @@ fn write_channel(
     let channels = AnyChannels::sort(std::iter::once(channel).collect());
     let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
     let mut file = BufWriter::new(create_new(path)?);
-    // One thread: frames are written by many already, and the order of the blocks is then fixed.
+    // Single-threaded: frames are already written in parallel, and this fixes the order of the blocks.
     Image::from_layer(layer)
         .write()
         .non_parallel()
@@ -164,7 +166,7 @@ struct Channel {
     columns: usize,
     rows: usize,
     samples: Vec<f32>,
-    /// Text of the attribute [`ATTRIBUTE`]; empty when the file has none.
+    /// Text of the attribute [`ATTRIBUTE`]; empty if the file has none.
     own: String,
 }
 
@@ -192,7 +194,7 @@ fn read_channel(path: &Path, size: Option<Size<'_>>) -> Result<Channel, FileErro
     Ok(Channel { columns: layer.size.0, rows: layer.size.1, samples, own })
 }
 
-/// Checks what the header claims before anything is allocated for it.
+/// Checks the sizes that the header states before any memory is allocated for them.
 fn check_header(path: &Path, size: Option<Size<'_>>) -> Result<(), FileError> {
     let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|error| exr_error(path, error))?;
     for header in &meta.headers {

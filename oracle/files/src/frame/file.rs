@@ -1,4 +1,4 @@
-//! A frame in a file, whatever the format.
+//! Frames in files of any supported format.
 
 use std::fmt;
 use std::path::Path;
@@ -12,23 +12,23 @@ use super::image16;
 use super::raw_image::{RawImage, Size};
 use crate::{FileError, FrameHeader};
 
-/// The formats that frames are written in.
+/// Formats in which frames are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ImageFormat {
     /// 16-bit FITS with exposure, times, seed, version, observer velocity, regions and world coordinates.
     Fits,
-    /// 16-bit grey PNG, values in DN and not stretched. It says nothing but the pixels: bit depth and regions
-    /// stand in `camera.toml` and `telemetry.csv`.
+    /// 16-bit grey PNG with unstretched values in DN. The file contains only the pixels: bit depth and
+    /// regions are in `camera.toml` and `telemetry.csv`.
     Png,
     /// One 32-bit float channel `Y` in DN, with bit depth and regions in its header.
     Exr,
 }
 
 impl ImageFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Self; 3] = [Self::Fits, Self::Png, Self::Exr];
 
-    /// The extension of a file's name, without the dot; also the name of the format.
+    /// Returns the extension of the file name, without the dot; also the name of the format.
     pub fn extension(self) -> &'static str {
         match self {
             Self::Fits => "fits",
@@ -52,11 +52,11 @@ impl FromStr for ImageFormat {
     }
 }
 
-/// Writes a frame. PNG has no place for the header.
+/// Writes a frame. PNG files omit the header.
 ///
 /// # Errors
-/// [`FileError::Io`] when the file exists or cannot be written; [`FileError::Value`] for a header value that the
-/// format cannot hold.
+/// [`FileError::Io`] if the file exists or cannot be written; [`FileError::Value`] for a header value that
+/// the format cannot represent.
 pub fn write_frame(
     path: &Path,
     format: ImageFormat,
@@ -70,15 +70,17 @@ pub fn write_frame(
     }
 }
 
-/// Reads a frame of anybody's making, of the format that the extension names: `fits`, `fit`, `fts`, `png`, `tif`,
-/// `tiff` or `exr`, in any case.
+/// Reads a frame from any source. The extension selects the format: `fits`, `fit`, `fts`, `png`, `tif`,
+/// `tiff` or `exr`, in upper or lower case.
 ///
-/// Values are rounded to whole DN, halves away from zero, and raised to 0 where negative. a file that tells another
-/// `bit_depth` is refused; `windows`, when given, come before those of the file.
+/// Values are rounded to integer DN, halves away from zero, and negative values are raised to 0. A file that
+/// states another `bit_depth` is rejected; `windows`, if given, takes precedence over the regions in the
+/// file.
 ///
 /// # Errors
-/// A [`FileError`] for a file that cannot be read, an image that is not grey, larger than
-/// [`contract::Camera::MAX_SIDE_PX`] a side, or has NaN, or a value above the full scale of its bit depth.
+/// A [`FileError`] for a file that cannot be read, or an image that is not grey, is larger than
+/// [`contract::Camera::MAX_SIDE_PX`] per side, contains NaN, or has a value above the full scale of its bit
+/// depth.
 pub fn read_frame(
     path: &Path,
     number: u64,
@@ -88,8 +90,8 @@ pub fn read_frame(
     read_image(path, None)?.into_frame(path, number, bit_depth, windows)
 }
 
-/// Reads what a file of one of the extensions of [`read_frame`] holds, before it is taken for a frame. An image of another size than the
-/// one given is refused before memory is reserved for it.
+/// Reads a file with one of the extensions of [`read_frame`] as a raw image. An image whose size differs from
+/// the given size is rejected before memory is allocated for it.
 pub(crate) fn read_image(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     match extension.as_str() {
@@ -114,7 +116,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::parse_utc;
 
-    /// A 12-bit frame whose values differ from pixel to pixel.
+    /// Returns a 12-bit frame with values that differ from pixel to pixel.
     pub(crate) fn ramp(columns: usize, rows: usize, windows: Option<Vec<Window>>) -> Frame {
         let dn = (0..columns * rows).map(|i| (i * 37 % 4096) as u16).collect();
         Frame::new(7, columns, rows, 12, dn, windows).unwrap()

@@ -1,7 +1,8 @@
-//! Frames as FITS images, on the card and sample layers of `fitsio-pure`.
+//! Frames as FITS images, based on the card and sample layers of `fitsio-pure`.
 //!
-//! Its upper layers are not used: `compat` writes no comments and no COMMENT cards of a chosen place, and
-//! `parse_fits` wants the whole file in memory and adds offsets unchecked, which a lying header can overflow.
+//! Its upper layers are not used: `compat` cannot write comments or COMMENT cards at a chosen position, and
+//! `parse_fits` requires the whole file in memory and adds offsets unchecked, which a malicious header can
+//! overflow.
 
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom};
 use std::ops::Range;
@@ -22,18 +23,18 @@ use crate::table::time::parse_utc;
 use crate::table::windows;
 use crate::{FileError, FrameHeader};
 
-/// Longest header read, in blocks of 36 cards: no frame needs a hundredth of it.
+/// Longest header that is read, in blocks of 36 cards: no frame needs a hundredth of it.
 const MAX_HEADER_BLOCKS: usize = 1024;
 
-/// Writes a frame as unsigned 16-bit FITS. The first row of the frame is the first of the file, as in every
-/// array: viewers that put it at the bottom show the image upside down, and the world coordinates with it.
+/// Writes a frame as unsigned 16-bit FITS. The first row of the frame is the first row of the file, as in
+/// every array: viewers that display it at the bottom show the image and its world coordinates upside down.
 pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<(), FileError> {
     let cards = fits_cards::frame_cards(path, frame, header)?;
     let error = |error: fitsio_pure::Error| match error {
         fitsio_pure::Error::Io(source) => FileError::io(path, "write", source),
         other => FileError::format(path, "FITS", other),
     };
-    // u16 minus 32768 as i16 is the flip of the highest bit.
+    // Subtracting 32768 from a u16 and casting to i16 is a flip of the highest bit.
     let samples = || frame.dn().iter().map(|&dn| (dn ^ 0x8000) as i16);
     let mut header = build_primary_header(16, &[frame.columns(), frame.rows()]).map_err(error)?;
     header.extend(cards);
@@ -45,9 +46,9 @@ pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
     Ok(())
 }
 
-/// Reads the first two-dimensional image of a FITS file: samples of 8, 16, 32 or 64 bits or floating point, BSCALE
-/// and BZERO honoured, converted by the rule of [`crate::frame::raw_image::dn`]; BLANK pixels and NaN are refused.
-/// Tile-compressed images are not read.
+/// Reads the first two-dimensional image of a FITS file: samples of 8, 16, 32 or 64 bits or floating point,
+/// with BSCALE and BZERO applied, converted by the rule of [`crate::frame::raw_image::dn`]; BLANK pixels and
+/// NaN are rejected. Tile-compressed images are not supported.
 pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
     let io = |source| FileError::io(path, "read", source);
     let file = open_regular(path)?;
@@ -102,7 +103,7 @@ fn read_header(path: &Path, reader: &mut impl Read, first: bool) -> Result<Vec<C
     Err(FileError::format(path, "FITS", format!("a header without END in {MAX_HEADER_BLOCKS} blocks")))
 }
 
-/// The cards of one header, read by keyword.
+/// Cards of one header, accessed by keyword.
 struct Header<'a> {
     path: &'a Path,
     cards: &'a [Card],
@@ -117,7 +118,8 @@ impl Header<'_> {
         self.cards.iter().find(|card| card.keyword_str() == keyword).and_then(|card| card.value.as_ref())
     }
 
-    /// Refuses a keyword that says how the pixels are stored and stands there twice: which of the two other readers believe is their affair.
+    /// Rejects a header in which a keyword that defines the storage of the pixels occurs twice: other readers
+    /// may use either value.
     fn check_once(&self) -> Result<(), FileError> {
         const STORED: [&str; 7] = ["BITPIX", "NAXIS", "NAXIS1", "NAXIS2", "BSCALE", "BZERO", "BLANK"];
         let count = |keyword: &str| self.cards.iter().filter(|card| card.keyword_str() == keyword).count();
@@ -127,7 +129,7 @@ impl Header<'_> {
         }
     }
 
-    /// A whole number; `None` when the keyword is not there.
+    /// Returns an integer value; `None` if the keyword is absent.
     fn integer(&self, keyword: &str) -> Result<Option<i64>, FileError> {
         match self.value(keyword) {
             None | Some(Value::Undefined) => Ok(None),
@@ -136,7 +138,7 @@ impl Header<'_> {
         }
     }
 
-    /// A count: a whole number from 0.
+    /// Returns a non-negative integer value.
     fn count(&self, keyword: &str, default: Option<u64>) -> Result<u64, FileError> {
         let number = self.integer(keyword)?;
         match (number.map(u64::try_from), default) {
@@ -174,7 +176,8 @@ impl Header<'_> {
         }
     }
 
-    /// Bytes of data: |BITPIX|/8 · GCOUNT · (PCOUNT + Π NAXISn) (FITS standard 4.0, Eq. 2).
+    /// Returns the number of data bytes: |BITPIX|/8 · GCOUNT · (PCOUNT + Π NAXISn) (FITS standard 4.0, Eq.
+    /// 2).
     fn data_bytes(&self) -> Result<u64, FileError> {
         let axes = self.axes()?;
         let samples = match axes.as_slice() {
@@ -190,7 +193,8 @@ impl Header<'_> {
             .ok_or_else(|| self.error("NAXISn", format!("{axes:?}"), "axes whose product fits 64 bits"))
     }
 
-    /// Whether this unit holds an image with at least two axes; axes of length 1 beyond them are ignored.
+    /// Returns true if this unit contains an image with at least two axes; further axes of length 1 are
+    /// ignored.
     fn is_image(&self) -> Result<bool, FileError> {
         if self.value("ZIMAGE") == Some(&Value::Logical(true)) {
             return Err(FileError::format(
@@ -229,7 +233,7 @@ impl Header<'_> {
             .transpose()
     }
 
-    /// What it tells of its frame, if times are UTC.
+    /// Returns the frame data that the header states; the time only if it is in UTC.
     fn metadata(&self) -> Result<ImageMetadata, FileError> {
         let frame = self.integer("FRAMENO")?.map(|_| self.count("FRAMENO", None)).transpose()?;
         let is_utc = match self.value("TIMESYS") {
@@ -251,7 +255,7 @@ impl Header<'_> {
         })
     }
 
-    /// The transmitted regions, as [`write`] tells them.
+    /// Returns the transmitted regions, in the form written by [`write`].
     fn windows(&self) -> Result<Option<Vec<Window>>, FileError> {
         if self.integer("NROI")?.is_none() {
             return Ok(None);
@@ -265,20 +269,21 @@ impl Header<'_> {
                 _ => Err(self.error(&keyword, "missing", format!("a region, as NROI is {count}"))),
             }
         };
-        // Ends at the first that is missing, so a lying NROI costs nothing.
+        // Stops at the first missing region, so a false NROI costs no memory.
         (1..=count).map(region).collect::<Result<_, _>>().map(Some)
     }
 }
 
-/// Holds header and data, `place` in the file, against the keyword CHECKSUM (FITS standard 4.0, 4.4.2.7 and appendix J: their sum in ones'
-/// complement is minus nought), and the data, from `data_at` on, against DATASUM, where there are such.
+/// Checks header and data, at `place` in the file, against the keyword CHECKSUM (FITS standard 4.0, 4.4.2.7
+/// and appendix J: their sum in ones' complement is minus zero), and the data, from `data_at` on, against
+/// DATASUM, if these keywords are present.
 fn check_sums(
     header: &Header<'_>,
     reader: &mut (impl Read + Seek),
     place: Range<u64>,
     data_at: u64,
 ) -> Result<(), FileError> {
-    // Nothing is the standard's word for a sum that is not known.
+    // The standard uses an empty string for an unknown sum.
     let recorded = |keyword: &str| match header.value(keyword) {
         Some(Value::String(text)) if !text.trim().is_empty() => Some(text),
         _ => None,
@@ -292,7 +297,7 @@ fn check_sums(
     let mut unit = Vec::new();
     let length = (place.end - place.start).next_multiple_of(BLOCK_SIZE as u64);
     reader.take(length).read_to_end(&mut unit).map_err(io)?;
-    // A last block that is cut short, be it by noughts alone, is not what was written.
+    // A truncated last block differs from the written file, even if only zeros are missing.
     let is_whole = unit.len() as u64 == length;
     let refused = |keyword: &str, recorded: &str, of: &str| {
         let expected = format!(
@@ -304,7 +309,7 @@ fn check_sums(
         return refused("CHECKSUM", recorded, "header and data");
     }
     let data = unit.get((data_at - place.start) as usize..).unwrap_or_default();
-    // Nought and minus nought are the same.
+    // Zero and minus zero are equal.
     let is_sum = |text: &str| {
         text.trim()
             .parse::<u32>()
@@ -340,7 +345,8 @@ fn read_image(
             format!("{pixel_bytes} bytes of data, as of the image"),
         ));
     }
-    // The size is bounded twice: by the largest detector, and by the length of the file, checked by the caller.
+    // The size has two limits: the largest detector, and the length of the file, which the caller has
+    // checked.
     let mut data = vec![0; pixel_bytes];
     reader.read_exact(&mut data).map_err(|source| FileError::io(path, "read", source))?;
 
@@ -366,7 +372,7 @@ fn read_image(
     Ok(RawImage { columns, rows, dn, bit_depth, windows, metadata })
 }
 
-/// The bytes of one sample; `chunks_exact` gives exactly as many.
+/// Returns the bytes of one sample; `chunks_exact` supplies exactly this number.
 fn fixed<const N: usize>(bytes: &[u8]) -> [u8; N] {
     std::array::from_fn(|i| bytes.get(i).copied().unwrap_or(0))
 }
@@ -381,7 +387,7 @@ mod tests {
     use super::*;
     use crate::frame::file::tests::{header, ramp};
 
-    /// A FITS file of these cards and this data.
+    /// Returns a FITS file with the given cards and data.
     fn file(cards: &[&str], data: &[u8]) -> Vec<u8> {
         let mut bytes: Vec<u8> =
             cards.iter().chain(&["END"]).flat_map(|c| format!("{c:80}").into_bytes()).collect();
@@ -409,7 +415,8 @@ mod tests {
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
 
-    /// A file with holes claims 2 GiB of doubles and has them: it is the camera that says no, before memory is reserved.
+    /// A sparse file claims and has 2 GiB of doubles: the size of the camera rejects it before memory is
+    /// allocated.
     #[test]
     fn an_image_of_another_size_than_the_cameras_is_refused_before_it_is_read() {
         let directory = tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The header of a frame as FITS cards.
+//! Header of a frame as FITS cards.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::table::time::format_utc;
 use crate::table::windows;
 use crate::{FileError, FrameHeader, SipTerm, TanSip};
 
-/// Cards under construction; each is checked as it is added.
+/// Cards under construction; each card is checked when it is added.
 struct Cards<'a> {
     path: &'a Path,
     cards: Vec<Card>,
@@ -37,7 +37,8 @@ impl Cards<'_> {
     }
 
     fn text(&mut self, keyword: &str, text: &str, comment: &str) -> Result<(), FileError> {
-        // FITS headers are printable ASCII; another character would make the whole file unreadable elsewhere.
+        // FITS headers are printable ASCII; any other character would make the whole file unreadable for
+        // other programs.
         if text.bytes().all(|byte| (b' '..=b'~').contains(&byte)) {
             self.add(keyword, Value::String(text.to_owned()), comment)
         } else {
@@ -62,7 +63,7 @@ impl Cards<'_> {
     }
 }
 
-/// Every card of a frame but the mandatory ones.
+/// Returns all cards of a frame except the mandatory ones.
 pub(crate) fn frame_cards(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<Vec<Card>, FileError> {
     let mut cards = Cards { path, cards: Vec::new() };
     cards.number("BSCALE", 1.0, "DN = BZERO + BSCALE * stored")?;
@@ -79,7 +80,7 @@ pub(crate) fn frame_cards(path: &Path, frame: &Frame, header: &FrameHeader) -> R
         cards.number("OBSVELY", y, "[km/s]")?;
         cards.number("OBSVELZ", z, "[km/s]")?;
     }
-    // As text: a seed has 64 bits, and a FITS integer is signed in most readers.
+    // The seed is written as text, because it has 64 bits and most readers treat FITS integers as signed.
     cards.text("SEED", &header.seed.to_string(), "seed of the scenario")?;
     cards.text("CREATOR", &format!("boresight {}", header.version), "")?;
     cards.text("CONFHASH", &header.configuration_hash, "")?;
@@ -106,7 +107,7 @@ fn times(cards: &mut Cards<'_>, header: &FrameHeader) -> Result<(), FileError> {
         ("DATE-END", header.time + half, "end of the exposure"),
     ] {
         let text = format_utc(time);
-        // FITS takes the scale from TIMESYS and knows no Z.
+        // FITS takes the time scale from TIMESYS and does not allow `Z`.
         cards.text(keyword, text.trim_end_matches('Z'), comment)?;
     }
     Ok(())
@@ -128,7 +129,7 @@ fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileErro
             cards.number(&format!("CD{}_{}", row + 1, column + 1), value, "[deg/pix]")?;
         }
     }
-    // Written out, as its default is another one at the pole.
+    // LONPOLE is written explicitly, because its default differs at the pole.
     cards.number("LONPOLE", 180.0, "[deg]")?;
     let astrometric = "World coordinates are astrometric, made from the truth: stellar";
     match &wcs.sip {

@@ -1,11 +1,11 @@
-//! What is written about a frame besides its pixels.
+//! Header data of a frame file: metadata besides the pixels.
 
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
 use crate::TanSip;
 
-/// What is written about a frame besides its pixels.
+/// Metadata that is written to a file in addition to a frame's pixels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameHeader {
     /// Middle of the exposure.
@@ -20,9 +20,10 @@ pub struct FrameHeader {
     pub version: String,
     /// Hash of the resolved configuration, hexadecimal.
     pub configuration_hash: String,
-    /// Velocity of the observer about the solar system's barycentre, km/s, ICRS axes: the one that aberrates the
-    /// stars. Not the geocentric velocity of `telemetry.csv`.
+    /// Velocity of the observer relative to the barycentre of the solar system, km/s, ICRS axes, which
+    /// determines stellar aberration. It differs from the geocentric velocity in `telemetry.csv`.
     pub observer_velocity_km_s: Option<Vector3<f64>>,
-    /// World coordinates. Made from the true mapping they are truth, and a reader of the header can see them.
+    /// World coordinates. Derived from the true mapping, they are ground truth and visible to every reader of
+    /// the header.
     pub wcs: Option<TanSip>,
 }

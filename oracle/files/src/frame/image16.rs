@@ -1,4 +1,4 @@
-//! Grey PNG and TIFF, 8 or 16 bits a pixel.
+//! Grey PNG and TIFF with 8 or 16 bits per pixel.
 
 use std::io::{BufReader, BufWriter, Write};
 use std::path::Path;
@@ -11,10 +11,10 @@ use super::raw_image::{ImageMetadata, RawImage, Size, check_claim, checked_size}
 use crate::FileError;
 use crate::error::file_error::{FileLocation, create_new, open_regular};
 
-/// Most bytes that a decoder makes of what a file says besides its pixels.
+/// Largest memory of a decoder for data other than pixels, bytes.
 const ABOUT_PIXELS_BYTES: u64 = 1 << 23;
 
-/// Writes the digital numbers as 16-bit grey PNG, not stretched.
+/// Writes the digital numbers as 16-bit grey PNG, unstretched.
 pub(crate) fn write_png(path: &Path, frame: &Frame) -> Result<(), FileError> {
     let (columns, rows) = (frame.columns() as u32, frame.rows() as u32);
     let Some(pixels) = ImageBuffer::<Luma<u16>, _>::from_raw(columns, rows, frame.dn()) else {
@@ -31,7 +31,8 @@ pub(crate) fn write_png(path: &Path, frame: &Frame) -> Result<(), FileError> {
     file.flush().map_err(|source| FileError::io(path, "write", source))
 }
 
-/// Writes the digital numbers as grey PNG of 8 bits where the converter has no more, otherwise of 16, not stretched.
+/// Writes the digital numbers as grey PNG, unstretched, with 8 bits if the converter has at most 8, otherwise
+/// with 16.
 pub(crate) fn write_png_of_depth(path: &Path, frame: &Frame) -> Result<(), FileError> {
     if frame.bit_depth() > 8 {
         return write_png(path, frame);
@@ -49,8 +50,8 @@ pub(crate) fn write_png_of_depth(path: &Path, frame: &Frame) -> Result<(), FileE
     file.flush().map_err(|source| FileError::io(path, "write", source))
 }
 
-/// Reads a grey image of 8 or 16 bits. Colour, alpha, palettes and fewer bits are refused: the values that a
-/// decoder makes of them are not digital numbers.
+/// Reads a grey image of 8 or 16 bits. Colour, alpha, palettes and fewer bits are rejected, because the
+/// values that a decoder derives from them are not digital numbers.
 pub(crate) fn read(
     path: &Path,
     format: image::ImageFormat,
@@ -72,7 +73,7 @@ pub(crate) fn read(
         ));
     }
     check_claim(path, decoder.total_bytes())?;
-    // Pixels, and as much again for the decoder's own strips.
+    // Memory for the pixels, and the same amount for the decoder's own strips.
     let mut limits = limits();
     limits.max_alloc = Some(ABOUT_PIXELS_BYTES.saturating_add(decoder.total_bytes().saturating_mul(2)));
     decoder.set_limits(limits).map_err(|error| image_error(path, error))?;
@@ -88,8 +89,8 @@ pub(crate) fn read(
     Ok(RawImage { columns, rows, dn, bit_depth: None, windows: None, metadata: ImageMetadata::default() })
 }
 
-/// What a PNG of less than 8 bits a sample is, of which its decoder says that it has the 8 that it makes of them: they stand at a fixed
-/// place of the file.
+/// Returns the pixel type of a PNG with fewer than 8 bits per sample, whose decoder reports the 8 bits to
+/// which it expands them. The bit depth is at a fixed position in the file.
 fn fewer_bits(path: &Path) -> Result<Option<ExtendedColorType>, FileError> {
     let mut beginning = [0; 25];
     let mut file = open_regular(path)?;
@@ -100,7 +101,7 @@ fn fewer_bits(path: &Path) -> Result<Option<ExtendedColorType>, FileError> {
     Ok(types.into_iter().find(|(few, _)| *few == bits).map(|(_, color)| color))
 }
 
-/// What a decoder may take before its pixels are asked for.
+/// Returns the limits of a decoder before its pixels are requested.
 fn limits() -> Limits {
     let mut limits = Limits::no_limits();
     limits.max_image_width = Some(Camera::MAX_SIDE_PX as u32);
@@ -109,7 +110,8 @@ fn limits() -> Limits {
     limits
 }
 
-/// A decoder that has read all before the pixels: a PNG's colour profile is left out where it unpacks to more than [`ABOUT_PIXELS_BYTES`].
+/// Returns a decoder that has read all data before the pixels. The colour profile of a PNG is omitted if it
+/// unpacks to more than [`ABOUT_PIXELS_BYTES`].
 fn decoder(path: &Path, format: image::ImageFormat) -> Result<impl ImageDecoder, FileError> {
     let mut reader = ImageReader::with_format(BufReader::new(open_regular(path)?), format);
     reader.limits(limits());
@@ -137,7 +139,7 @@ mod tests {
     use crate::frame::file::tests::ramp;
     use crate::read_frame;
 
-    /// PNG of 1, 2 and 4 bits, which its decoder would stretch to 8.
+    /// PNG with 1, 2 and 4 bits, which the decoder would stretch to 8.
     #[test]
     fn grey_of_fewer_than_8_bits_is_refused() {
         let directory = tempdir().unwrap();
@@ -181,7 +183,7 @@ mod tests {
         let path = directory.path().join("a.png");
         write_png(&path, &ramp(4, 4, None)).unwrap();
         let mut bytes = fs::read(&path).unwrap();
-        // Width and height of IHDR, and its checksum made right again.
+        // Overwrites width and height in IHDR, and corrects its checksum.
         bytes[16..24].copy_from_slice(&[0, 0, 0x3f, 0, 0, 0, 0x3f, 0]);
         let checksum = crc32(&bytes[12..29]);
         bytes[29..33].copy_from_slice(&checksum.to_be_bytes());
@@ -190,7 +192,7 @@ mod tests {
         assert!(message.contains("bytes of pixels"), "{message}");
     }
 
-    /// A colour profile of a gigabyte of zeros is a megabyte of a file.
+    /// A colour profile of a gigabyte of zeros takes a megabyte in a file.
     #[test]
     fn what_a_png_unpacks_besides_its_pixels_is_bounded() {
         let directory = tempdir().unwrap();
@@ -207,7 +209,7 @@ mod tests {
         }
     }
 
-    /// The checksum of a PNG chunk (PNG specification, annex D).
+    /// Computes the checksum of a PNG chunk (PNG specification, annex D).
     fn crc32(bytes: &[u8]) -> u32 {
         let bit = |crc: u32| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 };
         !bytes.iter().fold(u32::MAX, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| bit(crc)))

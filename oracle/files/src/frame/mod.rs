@@ -1,4 +1,4 @@
-//! A frame in a file: FITS with its world coordinates, PNG, TIFF, OpenEXR.
+//! Frames in files: FITS with world coordinates, PNG, TIFF, OpenEXR.
 
 mod exr;
 pub(crate) mod file;

@@ -1,4 +1,4 @@
-//! An image as a file gives it, on its way to a frame.
+//! Images as read from a file, before conversion to a frame.
 
 use std::path::Path;
 
@@ -9,22 +9,22 @@ use crate::error::FileLocation;
 use crate::table::time::format_utc;
 use crate::{FileError, TelemetryRow};
 
-/// Pixels and what the file itself says about them.
+/// Pixels with the metadata in the file.
 #[derive(Debug)]
 pub(crate) struct RawImage {
     pub(crate) columns: usize,
     pub(crate) rows: usize,
     /// Digital numbers, row by row.
     pub(crate) dn: Vec<u16>,
-    /// Bits of the converter, if the file tells.
+    /// Bits of the converter, if stated in the file.
     pub(crate) bit_depth: Option<u8>,
-    /// Regions that were transmitted, if the file tells.
+    /// Transmitted regions, if stated in the file.
     pub(crate) windows: Option<Vec<Window>>,
-    /// What else the file tells of its frame.
+    /// Other frame data stated in the file.
     pub(crate) metadata: ImageMetadata,
 }
 
-/// What an image tells of its frame, each with the keyword that tells it.
+/// Frame data stated in an image, each with its keyword.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct ImageMetadata {
     pub(crate) frame: Option<(&'static str, u64)>,
@@ -34,12 +34,12 @@ pub(crate) struct ImageMetadata {
 }
 
 impl ImageMetadata {
-    /// Most by which the times may differ, s: other cameras write milliseconds.
+    /// Tolerance of the time, s: other cameras write milliseconds.
     const TIME_S: f64 = 1e-3;
-    /// Most by which the exposure times may differ, in parts of them: of a number with six digits.
+    /// Relative tolerance of the exposure time, suitable for a number with six digits.
     const EXPOSURE: f64 = 1e-5;
 
-    /// Holds it against a row of the telemetry: names of files can be swapped, and images with them.
+    /// Checks the stated data against a row of the telemetry, to detect images with interchanged file names.
     pub(crate) fn check(&self, path: &Path, row: &TelemetryRow) -> Result<(), FileError> {
         let refused = |field: &str, found: String, expected: String| {
             let expected = format!("{expected}, that of frame {} in the telemetry which names it", row.frame);
@@ -63,19 +63,20 @@ impl ImageMetadata {
     }
 }
 
-/// The size that an image must have.
+/// Required size of an image.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Size<'a> {
     pub(crate) columns: usize,
     pub(crate) rows: usize,
-    /// Whose it is: `that of camera.toml`.
+    /// Source of the size, for messages: `that of camera.toml`.
     pub(crate) whose: &'a str,
 }
 
 impl RawImage {
-    /// The frame. What the file says of bit depth comes before the camera's; what telemetry says of the regions
-    /// comes before the file. A value above the full scale is refused: the bit depth is wrong, and every
-    /// threshold that a pipeline takes from it would be too.
+    /// Converts the image to a frame. Rejects a file that states another bit depth than `bit_depth`. Regions
+    /// from the telemetry take precedence over those in the file. A value above the full scale is rejected:
+    /// it indicates a wrong bit depth, which would also make every threshold that a pipeline derives from it
+    /// wrong.
     pub(crate) fn into_frame(
         self,
         path: &Path,
@@ -104,15 +105,15 @@ impl RawImage {
     }
 }
 
-/// The digital number of a value: rounded to the nearest, halves away from zero; below zero it is 0, as
-/// calibrated images have noise about zero. `None` for NaN, infinities and what does not fit 16 bits: no digital
-/// number stands for them.
+/// Converts a value to a digital number: rounded to the nearest integer, halves away from zero. Negative
+/// values become 0, because calibrated images have noise about zero. Returns `None` for NaN, infinities and
+/// values that exceed 16 bits, which no digital number can represent.
 pub(crate) fn dn(value: f64) -> Option<u16> {
     let rounded = value.round();
     (rounded.is_finite() && rounded <= f64::from(u16::MAX)).then(|| rounded.max(0.0) as u16)
 }
 
-/// [`dn`] of every value, row by row.
+/// Applies [`dn`] to every value, row by row.
 pub(crate) fn dn_of_all(
     path: &Path,
     columns: usize,
@@ -128,8 +129,8 @@ pub(crate) fn dn_of_all(
     values.enumerate().map(convert).collect()
 }
 
-/// Columns and rows as a header claims them, if they are those of `size`, or without it 1 to [`Camera::MAX_SIDE_PX`]. It is asked before
-/// memory is reserved for the pixels.
+/// Returns columns and rows as stated in a header if they match `size` or, without `size`, are in the range 1
+/// to [`Camera::MAX_SIDE_PX`]. Called before memory is allocated for the pixels.
 pub(crate) fn checked_size(
     path: &Path,
     columns: u64,
@@ -149,8 +150,8 @@ pub(crate) fn checked_size(
     })
 }
 
-/// Refuses a compressed file that claims more than any compression of the formats read here can have packed into
-/// its length: deflate packs at most 1032 bytes into one, LZW of 12 bits 2731.
+/// Rejects a compressed file that claims more bytes than any supported compression could have packed into its
+/// length: deflate packs at most 1032 bytes into one, LZW of 12 bits 2731.
 pub(crate) fn check_claim(path: &Path, claimed_bytes: u64) -> Result<(), FileError> {
     const MAX_FROM_ONE_BYTE: u64 = 4096;
     let length = std::fs::metadata(path).map_err(|source| FileError::io(path, "open", source))?.len();

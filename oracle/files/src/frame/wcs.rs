@@ -4,15 +4,15 @@ use contract::{Angle, Direction, Icrs, PixelPoint};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
 use thiserror::Error;
 
-/// Why no world coordinates fit a mapping.
+/// Reason why no world coordinates fit a mapping.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum WcsError {
     /// No direction maps to a pixel.
     #[error("no direction near the boresight maps to the pixel ({x:.1}, {y:.1})")]
     NotMapped {
-        /// Along columns, first pixel 0.
+        /// Column of the pixel; the first is 0.
         x: f64,
-        /// Along rows, first pixel 0.
+        /// Row of the pixel; the first is 0.
         y: f64,
     },
 }
@@ -20,66 +20,70 @@ pub enum WcsError {
 /// One term of a SIP polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SipTerm {
-    /// Power of the first variable, along columns.
+    /// Exponent of the first variable, along columns.
     pub u_power: usize,
-    /// Power of the second variable, along rows.
+    /// Exponent of the second variable, along rows.
     pub v_power: usize,
     /// Coefficient, px^(1 − u_power − v_power).
     pub coefficient: f64,
 }
 
-/// A distortion as SIP has it.
+/// Distortion in the SIP convention.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sip {
     /// Order of the four polynomials, 3 to 9.
     pub order: usize,
-    /// From distorted to undistorted along columns; terms of order 2 and more.
+    /// Polynomial A from distorted to undistorted offsets along columns; terms of order 2 and higher.
     pub a: Vec<SipTerm>,
-    /// From distorted to undistorted along rows.
+    /// Polynomial B from distorted to undistorted offsets along rows.
     pub b: Vec<SipTerm>,
-    /// From undistorted to distorted along columns; terms of order 1 and more.
+    /// Polynomial AP from undistorted to distorted offsets along columns; terms of order 1 and higher.
     pub ap: Vec<SipTerm>,
-    /// From undistorted to distorted along rows.
+    /// Polynomial BP from undistorted to distorted offsets along rows.
     pub bp: Vec<SipTerm>,
-    /// Largest distance over the detector between the fit and the mapping, either way, px.
+    /// Largest difference between the fit and the mapping over the detector, in either direction, px.
     pub residual_px: f64,
 }
 
-/// World coordinates TAN-SIP (Calabretta & Greisen 2002, A&A 395, 1077; Shupe et al. 2005, ASP Conf. Ser. 347, 491).
+/// World coordinates TAN-SIP (Calabretta & Greisen 2002, A&A 395, 1077; Shupe et al. 2005, ASP Conf. Ser.
+/// 347, 491).
 ///
-/// With (u, v) the offset of a pixel from CRPIX, the offset without distortion is (u + A(u, v), v + B(u, v)); CD
-/// turns it into the tangent plane at CRVAL, x to the east and y to the north, degrees. AP and BP undo A and B.
-/// CRPIX is the principal point and CD the Jacobian there, so that a reader without SIP is right near the centre.
+/// With (u, v) the offset of a pixel from CRPIX, the undistorted offset is (u + A(u, v), v + B(u, v)); CD
+/// transforms it to the tangent plane at CRVAL, x to the east and y to the north, degrees. AP and BP invert A
+/// and B. CRPIX is the principal point and CD the Jacobian there, so a reader without SIP support is correct
+/// near the centre.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TanSip {
     /// ICRS right ascension and declination of the direction that maps to CRPIX, degrees.
     pub crval_deg: [f64; 2],
     /// Principal point; the centre of the first pixel is (1, 1).
     pub crpix: [f64; 2],
-    /// Rows: east, north; columns: along columns, along rows; degrees per pixel.
+    /// Matrix from pixels to the tangent plane, degrees per pixel; its rows are east and north, its columns
+    /// detector columns and rows.
     pub cd_deg_per_px: [[f64; 2]; 2],
-    /// The distortion; `None` when no SIP follows it to the corners of the detector: the coordinates are then right at the principal
-    /// point alone.
+    /// Distortion; `None` if no SIP follows it to the corners of the detector: the coordinates are then
+    /// correct only at the principal point.
     pub sip: Option<Sip>,
 }
 
-/// Halvings of the detector's size in the search for the radius that SIP reaches.
+/// Number of bisections of the detector's size in the search for the radius that SIP reaches.
 const HALVINGS: usize = 8;
-/// The residual at which no higher order is tried: a tenth of what is promised.
+/// Residual below which no higher order is tried, px: a tenth of the guaranteed residual.
 const GOOD_ENOUGH_PX: f64 = 0.001;
-/// The residual that is promised.
+/// Guaranteed residual, px.
 const PROMISED_PX: f64 = 0.01;
 
 impl TanSip {
-    /// Fits the mapping `pixel_from_sky` from astrometric directions to pixels, whatever it holds: aberration,
-    /// rotation, projection and distortion are all folded into the result. The mapping must be smooth, and exact to
-    /// about 1e-6 px; it gives `None` for what is behind the camera.
+    /// Fits the mapping `pixel_from_sky` from astrometric directions to pixels. The result includes all
+    /// effects of the mapping: aberration, rotation, projection and distortion. The mapping must be smooth
+    /// and accurate to about 1e-6 px; it returns `None` for a direction behind the camera.
     ///
-    /// `boresight` is a direction within some degrees of the one that maps to `principal`. The lowest order from 3
-    /// to 9 that leaves 0.001 px is taken; where order 9 leaves more than 0.01 px, there is no SIP.
+    /// `boresight` is a direction within some degrees of the one that maps to `principal`. The fit uses the
+    /// lowest order from 3 to 9 that leaves at most 0.001 px; if order 9 leaves more than 0.01 px, there is
+    /// no SIP.
     ///
     /// # Errors
-    /// [`WcsError::NotMapped`] when the principal point cannot be reached from the boresight.
+    /// [`WcsError::NotMapped`] if the principal point cannot be reached from the boresight.
     pub fn fit(
         columns: usize,
         rows: usize,
@@ -90,11 +94,11 @@ impl TanSip {
         Self::fit_part(columns, rows, principal, boresight, 1.0, &pixel_from_sky)
     }
 
-    /// The distance from the principal point, px, to which SIP follows a mapping, to some pixels; infinite when that is the whole
-    /// detector.
+    /// Returns the distance from the principal point, px, up to which SIP follows a mapping, accurate to some
+    /// pixels; infinite if SIP covers the whole detector.
     ///
     /// # Errors
-    /// As [`TanSip::fit`].
+    /// Those of [`TanSip::fit`].
     pub fn reach_px(
         columns: usize,
         rows: usize,
@@ -149,8 +153,10 @@ impl TanSip {
 }
 
 impl Sip {
-    /// Fits `distort`, from undistorted offsets from the principal point to distorted ones, px, over a part of the detector: it is shrunk
-    /// about the principal point to this share of its size. `None` when order 9 leaves more than 0.01 px, or the distortion is so steep that it is not undone step by step.
+    /// Fits `distort`, from undistorted to distorted offsets from the principal point, px, over a part of the
+    /// detector: the detector shrunk about the principal point to the fraction `share` of its size. Returns
+    /// `None` if order 9 leaves more than 0.01 px, or if the distortion is too steep for the fixed-point
+    /// inversion.
     fn fit(
         columns: usize,
         rows: usize,
@@ -164,7 +170,7 @@ impl Sip {
             .map(|distorted| Some(Sample { distorted, ideal: undistort(distorted, &distort)? }))
             .collect::<Option<Vec<_>>>()?;
 
-        // A scale of one at the border keeps the powers of the fit near one.
+        // Scaling offsets to about 1 at the border keeps the powers in the fit near 1.
         let scale = columns.max(rows) as f64 * share;
         let mut best: Option<Self> = None;
         for order in 3..=9 {
@@ -188,7 +194,7 @@ impl Sip {
     }
 }
 
-/// The plane that touches the sphere at a direction, with axes to the east and to the north.
+/// Tangent plane of the sphere at a direction, with axes to the east and to the north.
 struct TangentPlane {
     center: Vector3<f64>,
     east: Vector3<f64>,
@@ -206,13 +212,13 @@ impl TangentPlane {
         }
     }
 
-    /// The direction of a point of the plane, radians; the sum is never shorter than one.
+    /// Returns the direction of a point of the plane, radians; the length of the sum is at least 1.
     fn direction(&self, tangent: Vector2<f64>) -> Direction<Icrs> {
         Direction::from_unit((self.center + self.east * tangent.x + self.north * tangent.y).normalize())
     }
 }
 
-/// The direction that maps to a pixel, by Newton's method from a direction nearby.
+/// Returns the direction that maps to a pixel, by Newton's method from a nearby direction.
 fn direction_of_pixel(
     pixel: PixelPoint,
     near: Direction<Icrs>,
@@ -220,7 +226,7 @@ fn direction_of_pixel(
 ) -> Result<Direction<Icrs>, WcsError> {
     let not_mapped = WcsError::NotMapped { x: pixel.x, y: pixel.y };
     let mut direction = near;
-    // A few steps do; what has not converged after twenty never will.
+    // A few steps suffice; an iteration that has not converged after twenty steps never converges.
     for _ in 0..20 {
         let plane = TangentPlane::from_center(&direction);
         let offset = |tangent: Vector2<f64>| {
@@ -239,8 +245,9 @@ fn direction_of_pixel(
     Err(not_mapped)
 }
 
-/// Derivative at zero, px/rad. The step is about a quarter of a pixel of a wide camera: the error of the central
-/// difference, step² times the third derivative, is then below 1e-8 of the result, and so is the rounding.
+/// Returns the derivative at zero, px/rad. The step is about a quarter of a pixel of a wide-angle camera:
+/// both the error of the central difference, step² times the third derivative, and the rounding error are
+/// then below 1e-8 of the result.
 fn jacobian(offset: &impl Fn(Vector2<f64>) -> Option<Vector2<f64>>) -> Option<Matrix2<f64>> {
     const STEP_RAD: f64 = 1e-4;
     let along = |step: Vector2<f64>| Some((offset(step)? - offset(-step)?) / (2.0 * STEP_RAD));
@@ -248,8 +255,8 @@ fn jacobian(offset: &impl Fn(Vector2<f64>) -> Option<Vector2<f64>>) -> Option<Ma
     Some(Matrix2::from_columns(&columns)).filter(|jacobian| jacobian.iter().all(|v| v.is_finite()))
 }
 
-/// The undistorted offset of a distorted one, by fixed-point iteration: the derivative of the distortion is well
-/// below one for every camera that SIP can describe.
+/// Returns the undistorted offset of a distorted one, by fixed-point iteration: the derivative of the
+/// distortion is well below 1 for every camera that SIP can describe.
 fn undistort(
     distorted: Vector2<f64>,
     distort: impl Fn(Vector2<f64>) -> Option<Vector2<f64>>,
@@ -265,27 +272,27 @@ fn undistort(
     None
 }
 
-/// Points over the whole detector, its borders included.
+/// Returns points over the whole detector, including its borders.
 fn grid(columns: usize, rows: usize) -> impl Iterator<Item = [f64; 2]> {
     const POINTS: usize = 19;
     let place = |i: usize, n: usize| i as f64 / (POINTS - 1) as f64 * n as f64 - 0.5;
     (0..POINTS * POINTS).map(move |i| [place(i % POINTS, columns), place(i / POINTS, rows)])
 }
 
-/// Offsets from the principal point of one direction, px.
+/// Offsets of one direction from the principal point, px.
 struct Sample {
     distorted: Vector2<f64>,
     ideal: Vector2<f64>,
 }
 
-/// A pair of polynomials that are added to an offset.
+/// Pair of polynomials that are added to an offset.
 struct Distortion {
     u: Vec<SipTerm>,
     v: Vec<SipTerm>,
 }
 
 impl Distortion {
-    /// Least squares by QR over every second sample; the others only judge the fit.
+    /// Fits by least squares (QR) over every second sample; the other samples only evaluate the fit.
     #[expect(
         clippy::indexing_slicing,
         reason = "rows are those of `fitted`, columns those of `powers`, axes two"
@@ -339,7 +346,7 @@ pub(crate) mod tests {
 
     use super::*;
 
-    /// Table 1 of the far-range paper.
+    /// Camera of Table 1 of the far-range paper.
     pub(crate) fn camera() -> Camera {
         Camera {
             columns: 752,
@@ -360,7 +367,7 @@ pub(crate) mod tests {
         Rotation::from_axes(&x, &z.cross(&x), &z)
     }
 
-    /// A whole mapping: first-order aberration, rotation, projection, radial distortion.
+    /// Complete mapping: first-order aberration, rotation, projection, radial distortion.
     pub(crate) fn mapping(
         camera: &Camera,
         camera_from_icrs: Rotation<CameraFrame, Icrs>,
@@ -388,7 +395,7 @@ pub(crate) mod tests {
     fn the_flight_camera_is_fitted_well_below_the_promise_everywhere_on_the_sky() {
         for (ra, dec) in [(0.0, 0.0), (10.0, 80.0), (200.0, -89.999), (359.9999, 45.0), (77.0, 90.0)] {
             let wcs = fit(&camera(), ra, dec).unwrap();
-            // 0.01 px is promised; order 5 or more is taken until 0.001 px.
+            // A residual of 0.01 px is guaranteed; orders from 5 up are tried until it is 0.001 px.
             let sip = wcs.sip.unwrap();
             assert!(sip.residual_px < GOOD_ENOUGH_PX, "{}", sip.residual_px);
             assert_eq!(sip.order, 5);
@@ -396,7 +403,8 @@ pub(crate) mod tests {
         }
     }
 
-    /// The written definition of TAN-SIP, evaluated here from the sky to the detector and held against the mapping.
+    /// Compares the mapping with an independent evaluation of the TAN-SIP definition, from the sky to the
+    /// detector.
     #[test]
     fn the_published_definition_gives_the_pixel() {
         let camera = camera();
@@ -418,7 +426,7 @@ pub(crate) mod tests {
             let got = PixelPoint::from_fits(wcs.crpix[0] + offset.x, wcs.crpix[1] + offset.y);
             let expected = map(&sky).unwrap();
             assert!(expected.is_on_detector(752, 580));
-            // The residual of the fit, and nothing beside it.
+            // The difference is only the residual of the fit.
             assert!(got.distance(expected) < 0.002, "{got:?} {expected:?}");
         }
     }
@@ -429,11 +437,12 @@ pub(crate) mod tests {
         let [ra, dec] = wcs.crval_deg.map(Angle::from_degrees);
         let boresight = camera_from_icrs(83.0, -5.0).inverse() * Direction::z();
         let shift = Direction::from_ra_dec(ra, dec).separation(&boresight).arcsec();
-        // The whole 29 km/s across the boresight would be 20.5″.
+        // The whole 29 km/s perpendicular to the boresight would cause 20.5″.
         assert!(shift > 5.0 && shift < 20.6, "{shift}");
     }
 
-    /// The barrel that order 9 no longer follows at the corners, pincushions that are too steep, and a barrel that folds.
+    /// A barrel distortion that order 9 no longer follows at the corners, pincushion distortions that are too
+    /// steep, and a barrel distortion that folds.
     #[test]
     fn a_distortion_beyond_sip_leaves_the_plane_and_says_how_far_it_goes() {
         let reach = |k1: f64| {

@@ -1,8 +1,9 @@
-//! What a Parquet file claims, held against what it can hold, before the crate `parquet` believes it.
+//! Checks of the sizes that a Parquet file claims against its length, before the crate `parquet` uses them.
 //!
-//! The crate reserves what a header asks for: a schema of 2^31 children, a page of 2 GB, a list of 2^60 lengths. Most of such claims
-//! would be met by an error later on, some by the end of the process, as memory that is refused is no panic. So the headers are
-//! read here first, by [`Compact`], which reserves nothing.
+//! The crate allocates as much as a header claims: a schema of 2^31 children, a page of 2 GB, a list of 2^60
+//! lengths. Most such claims would cause an error later, but some would end the process, because a failed
+//! allocation is not a panic. This module therefore reads the headers first, with [`Compact`], which
+//! allocates nothing.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -13,19 +14,22 @@ use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, RowGroupMeta
 use super::thrift::{Compact, FieldHead, kind};
 use crate::FileError;
 
-/// Most bytes that Snappy makes of one: copies of 64 bytes are three bytes long.
+/// Largest number of bytes that Snappy unpacks from one byte: a copy of 64 bytes takes three bytes.
 const MAX_FROM_ONE_BYTE: u64 = 22;
-/// Most rows that a byte of a file may stand for. A column that ascends, which each of our tables has, needs more.
+/// Largest number of rows per byte of a file. Every Boresight table has an ascending column, which needs more
+/// bytes per row.
 const MAX_ROWS_A_BYTE: u64 = 64;
-/// Bytes that a header of a page is looked for in, first and last: texts in its statistics may make it long.
+/// Number of bytes in which a page header is searched, in the first and the last attempt: texts in its
+/// statistics may make it long.
 const HEADER_BYTES: [u64; 2] = [512, 1 << 16];
-/// Encodings that reserve what the data themselves claim: DELTA_LENGTH_BYTE_ARRAY and DELTA_BYTE_ARRAY.
+/// Encodings whose decoders allocate the sizes that the data themselves claim: DELTA_LENGTH_BYTE_ARRAY and
+/// DELTA_BYTE_ARRAY.
 const BELIEVING: [i64; 2] = [6, 7];
-/// The last bytes of a file.
+/// Last bytes of a Parquet file.
 const MAGIC: [u8; 4] = *b"PAR1";
 
-/// Checks the schema in the footer: a table is flat, a root with as many children as there are columns. A file that is not Parquet at
-/// all is left to the crate.
+/// Checks that the schema in the footer is flat: a root with as many children as there are columns. A file
+/// that is not Parquet is left to the crate, which rejects it.
 pub(crate) fn check_footer(path: &Path, file: &mut File, length: u64) -> Result<(), FileError> {
     let io = |source| FileError::io(path, "read", source);
     let Some(tail) = length.checked_sub(8) else { return Ok(()) };
@@ -46,7 +50,7 @@ pub(crate) fn check_footer(path: &Path, file: &mut File, length: u64) -> Result<
     }
 }
 
-/// Whether the schema of a `FileMetaData` has one level below its root; `None` when it cannot be read.
+/// Returns true if the schema of a `FileMetaData` has one level below its root; `None` if it cannot be read.
 fn is_flat(mut footer: Compact<'_>) -> Option<bool> {
     let mut flat = None;
     let mut before = 0;
@@ -60,7 +64,7 @@ fn is_flat(mut footer: Compact<'_>) -> Option<bool> {
                 let mut children = (0..size).map(|_| children(&mut footer));
                 let root = children.next()??;
                 let leaves = i64::try_from(size).ok()?.checked_sub(1)?;
-                // Every one is read, so that what follows the list is found.
+                // All elements are read, so that the reader ends behind the list.
                 let nested = children.try_fold(false, |nested, count| Some(nested | (count? != 0)))?;
                 flat = Some(root == leaves && !nested);
             }
@@ -71,7 +75,7 @@ fn is_flat(mut footer: Compact<'_>) -> Option<bool> {
     flat
 }
 
-/// The children of a `SchemaElement`.
+/// Reads the number of children of a `SchemaElement`.
 fn children(footer: &mut Compact<'_>) -> Option<i64> {
     let (mut children, mut before) = (0, 0);
     while let Some(field) = footer.field(before)? {
@@ -84,7 +88,8 @@ fn children(footer: &mut Compact<'_>) -> Option<i64> {
     Some(children)
 }
 
-/// Checks the number of rows, and of every column that it lies in the file and that its pages are as large as they may be.
+/// Checks the number of rows, that every column lies inside the file, and that its pages do not exceed their
+/// largest possible size.
 pub(crate) fn check_claims(
     path: &Path,
     file: &mut File,
@@ -107,7 +112,7 @@ pub(crate) fn check_claims(
     Ok(())
 }
 
-/// First byte of a column, and the one after its last.
+/// Returns the position of a column's first byte and the position after its last byte.
 fn extent(column: &ColumnChunkMetaData) -> Option<(u64, u64)> {
     let start = u64::try_from(column.dictionary_page_offset().unwrap_or(column.data_page_offset())).ok()?;
     let size = u64::try_from(column.compressed_size()).ok()?;
@@ -144,7 +149,7 @@ fn check_pages(path: &Path, file: &mut File, mut at: u64, end: u64) -> Result<()
         if unpacked > packed.saturating_mul(MAX_FROM_ONE_BYTE).saturating_add(64) {
             return wrong(at, &format!("claims {unpacked} bytes, packed into {packed}"));
         }
-        // Each value takes a byte or more, and the crate makes room for all of them.
+        // Each value takes at least one byte, and the crate allocates memory for all of them.
         if dictionary_values > unpacked {
             return wrong(at, &format!("claims {dictionary_values} values in {unpacked} bytes"));
         }
@@ -157,15 +162,15 @@ fn check_pages(path: &Path, file: &mut File, mut at: u64, end: u64) -> Result<()
     Ok(())
 }
 
-/// What the header of a page says.
+/// Data of a page header.
 #[derive(Debug, PartialEq)]
 struct Page {
     header_bytes: u64,
     packed: u64,
     unpacked: u64,
-    /// Values of a dictionary; 0 of any other page.
+    /// Number of values in a dictionary; 0 for other pages.
     dictionary_values: u64,
-    /// Whether its encoding is one of [`BELIEVING`].
+    /// True if the encoding of the page is in [`BELIEVING`].
     believes: bool,
 }
 
@@ -178,7 +183,7 @@ fn page(mut header: Compact<'_>) -> Option<Page> {
         match field {
             FieldHead { id: 2, kind: kind::I32 } => unpacked = Some(header.integer()?),
             FieldHead { id: 3, kind: kind::I32 } => packed = Some(header.integer()?),
-            // Of data pages, of a dictionary, of data pages of version 2.
+            // Inner headers of data pages, dictionaries, and data pages of version 2.
             FieldHead { id: 5, kind: kind::STRUCT } => believes |= values(&mut header, 2)?.believes,
             FieldHead { id: 7, kind: kind::STRUCT } => {
                 let inner = values(&mut header, 2)?;
@@ -196,14 +201,14 @@ fn page(mut header: Compact<'_>) -> Option<Page> {
     Some(Page { header_bytes, packed, unpacked, dictionary_values, believes })
 }
 
-/// What the inner header of a page says of its values.
+/// Data of the inner header of a page about its values.
 struct PageValues {
     count: i64,
-    /// Whether their encoding is one of [`BELIEVING`].
+    /// True if the encoding of the values is in [`BELIEVING`].
     believes: bool,
 }
 
-/// Reads the inner header of a page, whose field 1 is the number of values and whose field `encoding` is their encoding.
+/// Reads the inner header of a page: field 1 is the number of values, field `encoding` their encoding.
 fn values(header: &mut Compact<'_>, encoding: i64) -> Option<PageValues> {
     let mut values = PageValues { count: 0, believes: false };
     let mut before = 0;
@@ -226,7 +231,7 @@ mod tests {
 
     #[test]
     fn a_header_of_a_page_is_read_to_its_end() {
-        // {1: DATA_PAGE, 2: 150, 3: 100, 5: {1: 7, 2: PLAIN, 3: RLE, 4: RLE}}, and data behind it.
+        // {1: DATA_PAGE, 2: 150, 3: 100, 5: {1: 7, 2: PLAIN, 3: RLE, 4: RLE}}, followed by data.
         let header =
             [0x15, 0, 0x15, 0xac, 2, 0x15, 0xc8, 1, 0x2c, 0x15, 14, 0x15, 0, 0x15, 6, 0x15, 6, 0, 0, 9, 9];
         let expected =

@@ -1,4 +1,4 @@
-//! Types of columns, as Parquet stores them: a physical type, and a logical one that says what it means.
+//! Column types as stored in Parquet: a physical type, and a logical type that defines its meaning.
 
 use parquet::basic::{ConvertedType, LogicalType, Repetition, TimeUnit, Type as PhysicalType};
 use parquet::errors::ParquetError;
@@ -6,7 +6,7 @@ use parquet::schema::types::{ColumnDescriptor, Type, TypePtr};
 
 use crate::table::column::{Column, ColumnType};
 
-/// The schema of a file with these columns.
+/// Returns the schema of a file with these columns.
 pub(crate) fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
     let fields = columns.iter().map(|column| field(column).map(TypePtr::new));
     let root = Type::group_type_builder("schema").with_fields(fields.collect::<Result<_, _>>()?);
@@ -28,7 +28,7 @@ fn field(column: &Column) -> Result<Type, ParquetError> {
     builder.with_logical_type(logical).with_repetition(repetition).build()
 }
 
-/// The type of a column of a file; of a type that no table of ours has, its name in Arrow.
+/// Returns the type of a column; for a type that Boresight tables do not use, its name in Arrow as the error.
 pub(crate) fn column_type(column: &ColumnDescriptor) -> Result<ColumnType, String> {
     let found = value_type(column);
     if column.max_rep_level() == 0 {
@@ -37,7 +37,8 @@ pub(crate) fn column_type(column: &ColumnDescriptor) -> Result<ColumnType, Strin
     Err(format!("List({})", found.map_or_else(|name| name, |known| known.to_string())))
 }
 
-/// The type of a column's values. Files from before logical types say the same by a converted type.
+/// Returns the type of a column's values. Files written before logical types existed use a converted type
+/// instead.
 fn value_type(column: &ColumnDescriptor) -> Result<ColumnType, String> {
     let (logical, converted) = (column.logical_type_ref(), column.converted_type());
     match (column.physical_type(), logical) {
@@ -133,7 +134,7 @@ mod tests {
 
     use super::*;
 
-    /// The type of the one column of a schema in Parquet's own notation.
+    /// Returns the type of the single column of a schema in Parquet notation.
     fn found(field: &str) -> String {
         let schema = parse_message_type(&format!("message schema {{ {field}; }}")).unwrap();
         let columns = SchemaDescriptor::new(TypePtr::new(schema));

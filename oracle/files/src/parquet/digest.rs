@@ -1,4 +1,4 @@
-//! The digest of a table's content, whatever its compression and its row groups are.
+//! Digest of a table's contents, independent of compression and row groups.
 
 use std::path::Path;
 
@@ -9,18 +9,20 @@ use crate::FileError;
 use crate::complete::sha256::hex;
 use crate::table::column::ColumnValues;
 
-/// Rows that are read at a time.
+/// Number of rows read at a time.
 const ROWS: usize = 8192;
 
-/// SHA-256 over all columns of a Parquet table, hexadecimal: names, types and every value to the bit. Two tables with the same values have the same one.
+/// Computes the SHA-256 over all columns of a Parquet table, hexadecimal: names, types and every value bit
+/// for bit. Tables with identical values have identical digests.
 ///
 /// # Errors
-/// [`FileError`] for a file that cannot be read, is none or is damaged, or has a column of a type that no table of ours has.
+/// [`FileError`] for a file that cannot be read, is damaged or not in Parquet format, or has a column of a
+/// type that Boresight tables do not use.
 pub fn table_sha256(path: &Path) -> Result<String, FileError> {
     let file = ParquetFile::open(path)?;
     let names: Vec<String> = file.columns().iter().map(|column| column.name.clone()).collect();
     let batches = file.batches(&names, ROWS)?;
-    // A digest a column: where one batch ends does not matter.
+    // One digest per column, which makes the result independent of batch boundaries.
     let begun = |column: &crate::Column| {
         Sha256::new_with_prefix(format!("{} {:?}\n", column.name(), column.values().column_type()))
     };
@@ -38,7 +40,8 @@ pub fn table_sha256(path: &Path) -> Result<String, FileError> {
     Ok(hex(whole.finalize()))
 }
 
-/// Appends every value: 0 for a null, 1 and its bytes otherwise, those of a text after their number.
+/// Appends every value: 0 for a null, or 1 and the bytes of the value. The bytes of a text follow their
+/// number, which is 0 for a null.
 fn append(values: &ColumnValues, bytes: &mut Vec<u8>) {
     fn all<const N: usize, T>(
         cells: impl Iterator<Item = Option<T>>,

@@ -1,4 +1,4 @@
-//! A Parquet file that is read: opened by one way, so that no reader forgets a check.
+//! Reading of Parquet files. All readers open files through this module, so none omits a check.
 
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,10 +16,11 @@ use crate::FileError;
 use crate::error::open_regular;
 use crate::table::column::{Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
 
-/// Most bytes of text in a column of a batch. A page of a few kilobytes can repeat one text without end.
+/// Largest number of text bytes in a column of a batch: a page of a few kilobytes can repeat a text without
+/// limit.
 const MAX_TEXT_BYTES: usize = 1 << 25;
 
-/// A Parquet file whose claims were held against its length. Nothing but its headers is read yet.
+/// A Parquet file whose claimed sizes have been checked against its length. Only its headers have been read.
 pub struct ParquetFile {
     path: PathBuf,
     file: File,
@@ -27,14 +28,14 @@ pub struct ParquetFile {
     columns: Vec<FileColumn>,
 }
 
-/// A column of a file.
+/// Column of a Parquet file.
 #[derive(Debug, Clone)]
 pub struct FileColumn {
-    /// The name.
+    /// Name of the column.
     pub name: String,
-    /// The type; of a type that no table of ours has, its name.
+    /// Type of the column; for a type that Boresight tables do not use, its name as the error.
     pub column_type: Result<ColumnType, String>,
-    /// Whether it is declared as one that may have nulls.
+    /// True if the column is declared as nullable.
     is_nullable: bool,
 }
 
@@ -42,8 +43,8 @@ impl ParquetFile {
     /// Opens a file.
     ///
     /// # Errors
-    /// [`FileError::Io`]; [`FileError::Format`] for a file that is not Parquet, is cut short, claims more than it can hold, or has
-    /// nested columns.
+    /// [`FileError::Io`]; [`FileError::Format`] for a file that is not Parquet, is truncated, claims more
+    /// than it can contain, or has nested columns.
     pub fn open(path: &Path) -> Result<Self, FileError> {
         let mut file = open_regular(path)?;
         let length = file.metadata().map_err(|source| FileError::io(path, "read", source))?.len();
@@ -64,26 +65,27 @@ impl ParquetFile {
         Ok(Self { path: path.to_owned(), file, metadata, columns })
     }
 
-    /// The columns.
+    /// Returns the columns of the file.
     pub fn columns(&self) -> &[FileColumn] {
         &self.columns
     }
 
-    /// The column of a name.
+    /// Returns the column with the given name.
     pub fn column(&self, name: &str) -> Option<&FileColumn> {
         self.columns.iter().find(|column| column.name == name)
     }
 
-    /// What the writer said beside the columns.
+    /// Returns the key-value metadata of the file.
     pub fn notes(&self) -> impl Iterator<Item = (&str, &str)> {
         let pairs = self.metadata.file_metadata().key_value_metadata();
         pairs.into_iter().flatten().filter_map(|pair| Some((pair.key.as_str(), pair.value.as_deref()?)))
     }
 
-    /// The rows of these columns, so many at a time.
+    /// Returns an iterator over the rows of the columns `names`, in batches of at most `rows` rows.
     ///
     /// # Errors
-    /// [`FileError::Format`] for a column that is missing, or of a type that no table of ours has.
+    /// [`FileError::Format`] for a column that is missing, duplicated, or of a type that Boresight tables do
+    /// not use.
     pub fn batches<N: AsRef<str>>(self, names: &[N], rows: usize) -> Result<Batches, FileError> {
         let Self { path, file, metadata, columns } = self;
         let mut wanted = Vec::with_capacity(names.len());
@@ -116,40 +118,40 @@ impl ParquetFile {
     }
 }
 
-/// The rows of a file, batch by batch: columns of one length, in the order in which they were asked for. After an error there is
-/// nothing more.
+/// Iterator over batches of rows: columns of equal length, in the order in which they were requested. It ends
+/// after an error.
 pub struct Batches {
     path: PathBuf,
     file: Arc<File>,
     metadata: ParquetMetaData,
     wanted: Vec<WantedColumn>,
     batch_rows: usize,
-    /// Row groups that were begun.
+    /// Number of row groups opened so far.
     groups_read: usize,
     group: Option<OpenGroup>,
     scratch: Scratch,
-    /// Rows that the footer claims and that have not come yet.
+    /// Remaining rows according to the footer.
     rows_left: u64,
     failed: bool,
 }
 
-/// A column that is read.
+/// A requested column.
 struct WantedColumn {
-    /// Its place among the columns of the file.
+    /// Index of the column in the file.
     index: usize,
     name: String,
     column_type: ColumnType,
     is_nullable: bool,
 }
 
-/// A row group that is being read.
+/// The row group that is being read.
 struct OpenGroup {
     readers: Vec<ColumnReader>,
-    /// Rows of the group that have not come yet.
+    /// Remaining rows of the group.
     rows_left: usize,
 }
 
-/// Memory that is used again from batch to batch.
+/// Buffers that are reused from batch to batch.
 #[derive(Default)]
 struct Scratch {
     levels: Vec<i16>,
@@ -160,7 +162,7 @@ struct Scratch {
 type Reason = Box<dyn std::error::Error + Send + Sync>;
 
 impl Batches {
-    /// The columns without rows.
+    /// Returns the requested columns without rows.
     pub fn header(&self) -> Vec<Column> {
         let column = |wanted: &WantedColumn| {
             Column::from_values(
@@ -183,7 +185,7 @@ impl Batches {
         Ok(Some(columns))
     }
 
-    /// The next rows, and how many they are.
+    /// Reads the next batch and returns it with its number of rows.
     fn read_batch(&mut self) -> Result<Option<(usize, Vec<Column>)>, Reason> {
         loop {
             let Some(group) = &mut self.group else {
@@ -227,11 +229,12 @@ impl Batches {
     }
 }
 
-/// Pages may hold more than their footer says, and without end: a run of equal values is a few bytes.
+/// Pages may contain more rows than the footer states, even without limit: a run of equal values takes a few
+/// bytes.
 const MORE_ROWS: &str = "it has more rows than its footer says";
 
 impl OpenGroup {
-    /// Refuses pages that go on after the last row of the group.
+    /// Rejects pages that continue after the last row of the group.
     fn check_end(&mut self, wanted: &[WantedColumn], scratch: &mut Scratch) -> Result<(), Reason> {
         for (wanted, reader) in wanted.iter().zip(&mut self.readers) {
             if !read(wanted, reader, 1, scratch)?.is_empty() {
@@ -255,7 +258,7 @@ impl Iterator for Batches {
     }
 }
 
-/// The next rows of a column, at most so many.
+/// Reads the next rows of a column, at most `rows`.
 fn read(
     wanted: &WantedColumn,
     reader: &mut ColumnReader,
@@ -294,7 +297,7 @@ fn read(
     })
 }
 
-/// Reads cells; `meant` gives values as a table has them. Only columns that may have nulls have levels.
+/// Reads cells; `meant` converts stored values to those of the table. Only nullable columns have levels.
 fn read_cells<T: DataType, V: Copy + Default>(
     reader: &mut ColumnReaderImpl<T>,
     rows: usize,
@@ -340,7 +343,7 @@ fn read_texts(
 
 const DISAGREE: &str = "the values of a column are not as many as its levels say";
 
-/// Reads the values that are not null; of a column that may have nulls gives a flag per row.
+/// Reads the values that are not null; for a nullable column, returns one flag per row.
 fn read_values<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     rows: usize,
@@ -354,8 +357,8 @@ fn read_values<T: DataType>(
     Ok(levels.map(|levels| levels.iter().map(|&level| level == 1).collect()))
 }
 
-/// Runs a call into the crate `parquet`, which has assertions that a damaged file can break: such a panic is the
-/// file's fault and becomes its error.
+/// Runs a call into the crate `parquet`, whose assertions can fail for a damaged file: such a panic is caused
+/// by the file and is returned as an error.
 fn guarded<T>(path: &Path, call: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
     catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|_| Err(damaged(path, "it is damaged")))
 }
@@ -372,7 +375,7 @@ mod tests {
     use super::*;
     use crate::parquet::writer::{TableOptions, write_table};
 
-    /// A table as a file, in its folder.
+    /// Writes a table to a file and returns it with its directory.
     fn written(columns: &[Column]) -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.parquet");
@@ -380,12 +383,12 @@ mod tests {
         (folder, path)
     }
 
-    /// All rows of these columns, so many at a time.
+    /// Reads all rows of the columns `names`, in batches of `rows` rows.
     fn all(path: &Path, names: &[&str], rows: usize) -> Result<Vec<Vec<Column>>, FileError> {
         ParquetFile::open(path)?.batches(names, rows)?.collect()
     }
 
-    /// The columns of a table, each type with and without nulls.
+    /// Returns the columns of a table, each type with and without nulls.
     fn columns(rows: std::ops::Range<u64>) -> [Column; 10] {
         let odd = |n: u64| n % 2 == 1;
         [
@@ -402,7 +405,7 @@ mod tests {
         ]
     }
 
-    /// Which of the two other readers take is their affair.
+    /// Other readers may use either of the two columns.
     #[test]
     fn a_column_that_is_there_twice_is_refused() {
         let [x, y] = [1.0, 2.0].map(|value| Column::new("x", [value]));
@@ -431,7 +434,7 @@ mod tests {
         }
     }
 
-    /// The file with a footer that claims so many rows.
+    /// Replaces the footer of the file by one that claims `rows` rows.
     fn claim(path: &Path, rows: i64) {
         let bytes = std::fs::read(path).unwrap();
         let reader = SerializedFileReader::new(File::open(path).unwrap()).unwrap();
@@ -462,7 +465,7 @@ mod tests {
         }
     }
 
-    /// A dictionary has the text once, and a run of 8192 rows is a few bytes.
+    /// A dictionary contains the text once, and a run of 8192 rows takes a few bytes.
     #[test]
     fn a_long_text_that_repeats_without_end_is_refused() {
         let text = "x".repeat(MAX_TEXT_BYTES / 8192 + 1);

@@ -1,4 +1,4 @@
-//! Tables as Parquet, whose claims are checked before the crate `parquet` allocates for them.
+//! Tables in Parquet format. Claimed sizes are checked before the crate `parquet` allocates memory for them.
 
 mod claims;
 mod column_type;

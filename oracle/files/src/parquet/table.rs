@@ -1,4 +1,5 @@
-//! Parquet tables of rows that belong to frames, written and read in memory that does not grow with the table.
+//! Parquet tables of rows that belong to frames, written and read with memory independent of the table's
+//! length.
 
 use std::collections::VecDeque;
 use std::fs::File;
@@ -11,30 +12,32 @@ use crate::table::batch::Columns;
 use crate::table::column::Column;
 use crate::{AtomicFile, FileError};
 
-/// Rows held before they are encoded, and read at a time.
+/// Number of rows held before encoding, and read at a time.
 const BATCH_ROWS: usize = 1024;
-/// Rows whose encoded bytes are held before they are written.
+/// Number of rows in a row group, whose encoded bytes are held in memory before they are written.
 const ROW_GROUP_ROWS: usize = 16_384;
 
-/// A row of a table that is kept as Parquet.
+/// A row of a table in Parquet format.
 pub trait Row: Sized {
-    /// The columns of some rows, units in their names. Always the same names and types, for no rows as well.
+    /// Returns the columns of some rows, with units in their names. Names and types are the same for any
+    /// number of rows, including zero.
     fn columns(rows: &[Self]) -> Vec<Column>;
 
-    /// The rows of a batch that has those columns.
+    /// Returns the rows of a batch with those columns.
     ///
     /// # Errors
-    /// [`FileError::Value`] for a cell that is not as it should be.
+    /// [`FileError::Value`] for an invalid cell.
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError>;
 
-    /// The frame, or the field, that the row belongs to.
+    /// Returns the number of the frame or field to which the row belongs.
     fn frame(&self) -> u64;
 
-    /// The column that holds it.
+    /// Name of the column with the number of the frame or field.
     const FRAME: &'static str = "frame";
 }
 
-/// Writes a table, in row groups as it goes: memory stays the same however long the table. The file has its name when it is complete.
+/// Writer of a table in row groups, with memory independent of the table's length. The file gets its name
+/// when it is complete.
 pub struct TableWriter<R> {
     file: AtomicFile,
     writer: ParquetWriter<File>,
@@ -45,7 +48,7 @@ impl<R: Row> TableWriter<R> {
     /// Creates the table.
     ///
     /// # Errors
-    /// [`FileError::Io`] when the file exists or cannot be created.
+    /// [`FileError::OutputTaken`] if the file exists; [`FileError::Io`] if it cannot be created.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let options = TableOptions { row_group_rows: ROW_GROUP_ROWS, ..TableOptions::default() };
         let file = AtomicFile::create_new(path)?;
@@ -54,7 +57,7 @@ impl<R: Row> TableWriter<R> {
         Ok(Self { file, writer, waiting: Vec::new() })
     }
 
-    /// Adds rows. Frames must come in ascending order; a reader relies on it.
+    /// Adds rows. Frame numbers must ascend, because readers rely on it.
     ///
     /// # Errors
     /// [`FileError::Io`], [`FileError::Format`].
@@ -63,7 +66,7 @@ impl<R: Row> TableWriter<R> {
         if self.waiting.len() >= BATCH_ROWS { self.encode() } else { Ok(()) }
     }
 
-    /// Completes the file. Without it there is none.
+    /// Completes the file and gives it its name. Without this call no file remains.
     ///
     /// # Errors
     /// [`FileError::Io`], [`FileError::Format`].
@@ -80,10 +83,10 @@ impl<R: Row> TableWriter<R> {
     }
 }
 
-/// Reads a table, frame by frame: an iterator over (number of the frame, its rows), frames ascending, in memory
-/// that holds one batch.
+/// Reader of a table, frame by frame: an iterator over (frame number, rows of the frame), with ascending
+/// frame numbers. It holds one batch in memory.
 ///
-/// A frame without rows is not met; [`TableReader::rows_of`] answers it with none.
+/// The iterator omits frames without rows; [`TableReader::rows_of`] returns no rows for them.
 pub struct TableReader<R> {
     path: PathBuf,
     batches: Batches,
@@ -94,10 +97,10 @@ pub struct TableReader<R> {
 }
 
 impl<R: Row> TableReader<R> {
-    /// Opens a table and checks that it has every column, of the right type. Other columns are ignored.
+    /// Opens a table and checks that it contains every column with the right type. Other columns are ignored.
     ///
     /// # Errors
-    /// [`FileError::Io`]; [`FileError::Format`] for a file that is not Parquet or is cut short;
+    /// [`FileError::Io`]; [`FileError::Format`] for a file that is not Parquet or is truncated;
     /// [`FileError::MissingColumn`]; [`FileError::Value`] for a column of another type.
     pub fn open(path: &Path) -> Result<Self, FileError> {
         let file = ParquetFile::open(path)?;
@@ -115,10 +118,11 @@ impl<R: Row> TableReader<R> {
         })
     }
 
-    /// The rows of one frame, none if it has none. Frames before it are passed over, so calls must ascend.
+    /// Returns the rows of one frame, which may be none. Earlier frames are skipped, so the frame numbers of
+    /// successive calls must ascend.
     ///
     /// # Errors
-    /// As the iterator.
+    /// Those of the iterator.
     pub fn rows_of(&mut self, frame: u64) -> Result<Vec<R>, FileError> {
         while let Some(next) = self.peek_frame()? {
             match next.cmp(&frame) {
@@ -132,7 +136,7 @@ impl<R: Row> TableReader<R> {
         Ok(Vec::new())
     }
 
-    /// The frame of the next row.
+    /// Returns the frame number of the next row.
     fn peek_frame(&mut self) -> Result<Option<u64>, FileError> {
         while self.waiting.is_empty() {
             let Some(batch) = self.batches.next().transpose()? else { return Ok(None) };
@@ -164,7 +168,7 @@ impl<R: Row> TableReader<R> {
 impl<R: Row> Iterator for TableReader<R> {
     type Item = Result<(u64, Vec<R>), FileError>;
 
-    /// After an error there is nothing more.
+    /// The iterator ends after an error.
     fn next(&mut self) -> Option<Self::Item> {
         if self.failed {
             return None;

@@ -1,25 +1,26 @@
-//! Thrift's compact protocol, as far as one must read it to know what a Parquet file claims.
+//! Subset of Thrift's compact protocol that is needed to read the sizes that a Parquet file claims.
 //!
-//! `None` is what ends early or is not of the protocol. Nothing is allocated, and nothing is believed that the bytes at hand do not hold.
+//! Methods return `None` for data that end early or violate the protocol. Nothing is allocated, and claimed
+//! sizes are accepted only if the available bytes can contain them.
 
-/// Deepest nesting that is passed over: Parquet's own structures have six levels.
+/// Deepest nesting that is skipped: Parquet's own structures have six levels.
 const DEEPEST: u8 = 16;
 
-/// The kinds of a field's value.
+/// Kinds of a field's value.
 pub(crate) mod kind {
     pub(crate) const I32: u8 = 5;
     pub(crate) const LIST: u8 = 9;
     pub(crate) const STRUCT: u8 = 12;
 }
 
-/// A field of a struct: its number, and the kind of its value.
+/// Header of a struct field: its number and the kind of its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FieldHead {
     pub(crate) id: i64,
     pub(crate) kind: u8,
 }
 
-/// Bytes that are read from the front.
+/// Remaining bytes, read from the front.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Compact<'a>(pub(crate) &'a [u8]);
 
@@ -35,7 +36,7 @@ impl Compact<'_> {
         Some(())
     }
 
-    /// A number without sign, seven bits a byte from the lowest on.
+    /// Reads an unsigned number, seven bits per byte, lowest bits first.
     fn varint(&mut self) -> Option<u64> {
         let mut number = 0_u64;
         for shift in (0..64).step_by(7) {
@@ -48,13 +49,14 @@ impl Compact<'_> {
         None
     }
 
-    /// A number with a sign, which is its lowest bit.
+    /// Reads a signed number, whose sign is the lowest bit.
     pub(crate) fn integer(&mut self) -> Option<i64> {
         let number = self.varint()?;
         Some((number >> 1) as i64 ^ -((number & 1) as i64))
     }
 
-    /// The next field after the field `before` (0 at first); the inner `None` is the end of the struct.
+    /// Reads the header of the field after the field number `before` (0 at first); the inner `None` is the
+    /// end of the struct.
     pub(crate) fn field(&mut self, before: i64) -> Option<Option<FieldHead>> {
         let byte = self.byte()?;
         let (step, kind) = (byte >> 4, byte & 0x0f);
@@ -65,7 +67,8 @@ impl Compact<'_> {
         Some(Some(FieldHead { id, kind }))
     }
 
-    /// The kind of a list's elements, and how many there are: no more than there are bytes.
+    /// Reads the kind of a list's elements and their number, which must not exceed the number of remaining
+    /// bytes.
     pub(crate) fn list(&mut self) -> Option<(u8, usize)> {
         let byte = self.byte()?;
         let size = if byte >> 4 == 15 { self.varint()? } else { u64::from(byte >> 4) };
@@ -73,7 +76,7 @@ impl Compact<'_> {
         Some((byte & 0x0f, size))
     }
 
-    /// Passes over the value of a field.
+    /// Skips the value of a field.
     pub(crate) fn skip(&mut self, kind: u8) -> Option<()> {
         self.skip_nested(kind, DEEPEST)
     }
@@ -81,7 +84,7 @@ impl Compact<'_> {
     fn skip_nested(&mut self, kind: u8, depth: u8) -> Option<()> {
         let inner = depth.checked_sub(1)?;
         match kind {
-            // A field's truth value stands in its kind.
+            // The value of a Boolean field is encoded in its kind.
             1 | 2 => Some(()),
             3 => self.pass(1),
             4..=6 => self.varint().map(|_| ()),
@@ -117,7 +120,7 @@ impl Compact<'_> {
         }
     }
 
-    /// In a list a truth value takes a byte.
+    /// Skips an element of a list, in which a Boolean takes one byte.
     fn skip_element(&mut self, kind: u8, depth: u8) -> Option<()> {
         if matches!(kind, 1 | 2) { self.pass(1) } else { self.skip_nested(kind, depth) }
     }
@@ -141,7 +144,7 @@ mod tests {
 
     #[test]
     fn what_is_passed_over_ends_where_the_next_begins() {
-        // {1: true, 2: "ab", 3: [1, 2], 4: {1: 5 (double)}, 5: {7: 8}}, and a byte behind it.
+        // {1: true, 2: "ab", 3: [1, 2], 4: {1: 5 (double)}, 5: {7: 8}}, followed by one byte.
         let bytes = [
             0x11, 0x18, 2, b'a', b'b', 0x19, 0x25, 2, 4, 0x1c, 0x17, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x1b, 1,
             0x55, 14, 16, 0, 0x7f,
@@ -153,7 +156,7 @@ mod tests {
 
     #[test]
     fn claims_beyond_the_bytes_are_refused() {
-        // A list of 2^35 elements, a text of 2^35 bytes, a struct in a struct in a struct …
+        // A list of 2^35 elements, a text of 2^35 bytes, structs nested in each other without end.
         let huge = [0xff, 0xff, 0xff, 0xff, 0x7f];
         assert_eq!(Compact(&[&[0xf5], &huge[..]].concat()).skip(kind::LIST), None);
         assert_eq!(Compact(&huge).skip(8), None);

@@ -1,4 +1,4 @@
-//! Columns into a Parquet file: encoded as they come, written a row group at a time.
+//! Writing of columns to a Parquet file: encoded on arrival, written one row group at a time.
 
 use std::borrow::Cow;
 use std::io::{self, BufWriter, Write};
@@ -22,20 +22,21 @@ use super::file::damaged;
 use crate::FileError;
 use crate::table::column::{Cells, Coding, Column, ColumnValues, TextCells};
 
-/// Bytes that are written at once: the crate copies columns into a file 8 KB at a time.
+/// Size of the write buffer, bytes: the crate copies columns to a file 8 KB at a time.
 const BUFFER_BYTES: usize = 1 << 18;
 
-/// Largest dictionary of a column in a row group: that of a column without repeats would hold all of its values twice.
+/// Largest dictionary of a column in a row group, bytes: the dictionary of a column without repeats would
+/// hold all of its values twice.
 const DICTIONARY_BYTES: usize = 1 << 16;
 
-/// What a file has beside its columns.
+/// Options of a Parquet file.
 #[derive(Debug, Clone)]
 pub struct TableOptions {
-    /// Rows of a row group: their encoded bytes are held before they are written.
+    /// Number of rows in a row group, whose encoded bytes are held in memory before they are written.
     pub row_group_rows: usize,
-    /// Whether the file has the least and the greatest value of each page.
+    /// True if the file contains the minimum and maximum of each page.
     pub has_statistics: bool,
-    /// Names and values that stand beside the rows.
+    /// Keys and values of the metadata.
     pub notes: Vec<(String, String)>,
 }
 
@@ -45,10 +46,10 @@ impl Default for TableOptions {
     }
 }
 
-/// Writes a whole table, compressed by Snappy.
+/// Writes a whole table, compressed with Snappy.
 ///
 /// # Errors
-/// [`FileError`], of `path`, when the file cannot be written.
+/// [`FileError`], with `path`, if the file cannot be written.
 pub fn write_table(
     out: impl Write + Send,
     path: &Path,
@@ -60,7 +61,7 @@ pub fn write_table(
     writer.finish()
 }
 
-/// A Parquet file that is being written, rows at a time.
+/// Writer of a Parquet file, to which rows are added in portions.
 pub struct ParquetWriter<W: Write + Send> {
     path: PathBuf,
     file: SerializedFileWriter<BufWriter<W>>,
@@ -76,10 +77,10 @@ struct RowGroup {
 }
 
 impl<W: Write + Send> ParquetWriter<W> {
-    /// Begins a file with the names, types and codings of these columns, whose rows are not written yet.
+    /// Begins a file with the names, types and codings of these columns, without their rows.
     ///
     /// # Errors
-    /// [`FileError`], of `path`, when the file cannot be written.
+    /// [`FileError`], with `path`, if the file cannot be written.
     pub fn new(out: W, path: &Path, columns: &[Column], options: TableOptions) -> Result<Self, FileError> {
         let properties = Arc::new(properties(columns, &options));
         let out = BufWriter::with_capacity(BUFFER_BYTES, out);
@@ -90,10 +91,11 @@ impl<W: Write + Send> ParquetWriter<W> {
         Ok(Self { path: path.to_owned(), file, properties, row_group_rows, group: None })
     }
 
-    /// Adds rows: columns of the same names and types as the file's, and of one length.
+    /// Adds rows: columns of equal length, with the same names and types as the columns of the file.
     ///
     /// # Errors
-    /// [`FileError`] for columns of several lengths, a null where there may be none, and when the file cannot be written.
+    /// [`FileError`] for columns of different lengths, a null in a non-nullable column, and if the file
+    /// cannot be written.
     pub fn write(&mut self, columns: &[Column]) -> Result<(), FileError> {
         let rows = columns.first().map_or(0, |column| column.values().len());
         check(columns, rows)
@@ -104,7 +106,7 @@ impl<W: Write + Send> ParquetWriter<W> {
     /// Completes the file.
     ///
     /// # Errors
-    /// [`FileError`] when the file cannot be written.
+    /// [`FileError`] if the file cannot be written.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.end_row_group()
             .and_then(|()| self.file.finish().map(drop))
@@ -158,7 +160,7 @@ impl RowGroup {
     }
 }
 
-/// Refuses columns that are not of one length, and nulls where there may be none.
+/// Rejects columns of different lengths, and nulls in non-nullable columns.
 fn check(columns: &[Column], rows: usize) -> ParquetResult<()> {
     for column in columns {
         let (name, found) = (column.name(), column.values().len());
@@ -186,7 +188,8 @@ fn properties(columns: &[Column], options: &TableOptions) -> WriterProperties {
     if !options.has_statistics {
         properties = properties.set_statistics_enabled(EnabledStatistics::None);
     }
-    // Dictionaries, on by default, take the columns that repeat: frame, kind, a star's number and magnitude.
+    // Dictionaries, on by default, compress the columns that repeat: frame, kind, a star's number and
+    // magnitude.
     for column in columns {
         let path = || ColumnPath::from(column.name());
         properties = match column.coding() {
@@ -238,7 +241,7 @@ fn encode(writer: &mut ColumnWriter<'_>, column: &Column, rows: &Range<usize>) -
     }
 }
 
-/// Encodes cells; `stored` gives values as the file has them.
+/// Encodes cells; `stored` converts values to those of the file.
 fn encode_cells<T: DataType, V: Copy + Default>(
     writer: &mut ColumnWriterImpl<'_, T>,
     cells: &Cells<V>,
@@ -267,7 +270,7 @@ fn encode_texts(
     let (Some(first), Some(last)) = (start(rows.start), cells.bytes_of(rows.end.saturating_sub(1))) else {
         return encode_values(writer, &[], flags, 0, is_nullable);
     };
-    // The texts share one buffer.
+    // All texts share one buffer.
     let text = cells.text().get(first..last.end).unwrap_or_default();
     let text = ByteArray::from(text.as_bytes().to_vec());
     let one = |row| cells.bytes_of(row).map(|bytes| text.slice(bytes.start - first, bytes.len()));
@@ -277,12 +280,13 @@ fn encode_texts(
     encode_values(writer, &values, flags, rows.len(), is_nullable)
 }
 
-/// The flags of some rows.
+/// Returns the validity flags of some rows.
 fn flags<'a>(is_valid: Option<&'a [bool]>, rows: &Range<usize>) -> Option<&'a [bool]> {
     is_valid.and_then(|flags| flags.get(rows.clone()))
 }
 
-/// Encodes the values that are not null; of a column that may have nulls with a level per row, 1 for a value and 0 for a null.
+/// Encodes the values that are not null; for a nullable column with one level per row, 1 for a value and 0
+/// for a null.
 fn encode_values<T: DataType>(
     writer: &mut ColumnWriterImpl<'_, T>,
     values: &[T::T],
@@ -297,7 +301,7 @@ fn encode_values<T: DataType>(
     writer.write_batch(values, levels.as_deref(), None).map(drop)
 }
 
-/// The encoded pages of a column: written by the column's writer, taken when its row group ends.
+/// Encoded pages of a column: written by the column's writer, taken at the end of its row group.
 #[derive(Clone, Default)]
 struct EncodedPages(Arc<Mutex<Vec<u8>>>);
 
@@ -317,7 +321,7 @@ impl Write for EncodedPages {
     }
 }
 
-/// Where a column's writer puts its pages: in memory, as a file has its columns one after another.
+/// Destination of a column's pages, in memory, because a file stores its columns one after another.
 struct PageSink(TrackedWrite<EncodedPages>);
 
 impl PageWriter for PageSink {
@@ -331,7 +335,8 @@ impl PageWriter for PageSink {
     }
 }
 
-/// The error of a table that cannot be written: that of the operating system, where it is one.
+/// Returns the error of a table that cannot be written: the error of the operating system if it was the
+/// cause.
 fn unwritten(path: &Path, error: ParquetError) -> FileError {
     match error {
         ParquetError::External(source) => match source.downcast::<io::Error>() {

@@ -1,4 +1,4 @@
-//! The columns of a batch of rows.
+//! Columns of a batch of rows.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use super::column::{Cell, Cells, Column, ColumnValues, TextCells};
 use crate::FileError;
 use crate::error::FileLocation;
 
-/// The columns of a batch, by name.
+/// Columns of a batch, accessed by name.
 pub struct Columns<'a> {
     path: &'a Path,
     batch: &'a [Column],
@@ -14,22 +14,22 @@ pub struct Columns<'a> {
 }
 
 impl<'a> Columns<'a> {
-    /// The columns of a batch of a file, of which `first_row` rows come before.
+    /// Creates the columns of a batch that starts at row `first_row` of a file.
     pub fn new(path: &'a Path, batch: &'a [Column], first_row: u64) -> Self {
         Self { path, batch, first_row }
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.batch.first().map_or(0, |column| column.values().len())
     }
 
-    /// Whether there is no row.
+    /// Returns true if there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The error of a cell, `row` counted within the batch.
+    /// Creates the error of a cell; `row` is counted within the batch.
     pub fn error(
         &self,
         row: usize,
@@ -40,10 +40,10 @@ impl<'a> Columns<'a> {
         FileError::value(self.path, FileLocation::Row(self.first_row + row as u64), column, value, expected)
     }
 
-    /// A column of a type.
+    /// Returns a column of cells of type `T`.
     pub(crate) fn cells<T: Cell>(&self, name: &str) -> Result<&Cells<T>, FileError> {
         let cells = T::cells(self.values(name)?).ok_or_else(|| self.damaged(name))?;
-        // At a null stands 0.
+        // A null is stored as 0, which is valid.
         match cells.values().iter().position(|value| !value.is_sound()) {
             Some(row) => {
                 let shown = format!("{:?}", cells.get(row).unwrap_or_default());
@@ -53,7 +53,7 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// A column of texts.
+    /// Returns a column of texts.
     pub(crate) fn texts(&self, name: &str) -> Result<&TextCells, FileError> {
         match self.values(name)? {
             ColumnValues::Utf8(texts) => Ok(texts),
@@ -66,7 +66,7 @@ impl<'a> Columns<'a> {
         column.map(Column::values).ok_or_else(|| self.damaged(name))
     }
 
-    /// The names and types were checked when the file was opened; a batch with others is a damaged file.
+    /// Names and types were checked when the file was opened; a batch that differs indicates a damaged file.
     fn damaged(&self, name: &str) -> FileError {
         FileError::format(self.path, "Parquet", format!("column `{name}` is damaged"))
     }

@@ -4,10 +4,10 @@ use std::fmt;
 use std::num::ParseIntError;
 use std::str::FromStr;
 
-/// Type of a column. Displayed by its name in Arrow, which error messages and documentation use.
+/// Type of a column. Displayed as its name in Arrow, as used in error messages and documentation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColumnType {
-    /// Truth values.
+    /// Boolean values.
     Boolean,
     /// 32-bit counts.
     UInt32,
@@ -37,8 +37,8 @@ impl fmt::Display for ColumnType {
     }
 }
 
-/// Time of a row: nanoseconds since 1970-01-01, leap seconds not counted, as every reader of Parquet and Arrow expects of a UTC
-/// timestamp.
+/// Time of a row: nanoseconds since 1970-01-01 without leap seconds, as every reader of Parquet and Arrow
+/// expects of a UTC timestamp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Nanoseconds(pub i64);
 
@@ -53,7 +53,7 @@ impl FromStr for Nanoseconds {
 /// Values of a column, one per row.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ColumnValues {
-    /// Truth values.
+    /// Boolean values.
     Boolean(Cells<bool>),
     /// 32-bit counts.
     UInt32(Cells<u32>),
@@ -70,7 +70,7 @@ pub enum ColumnValues {
 }
 
 impl ColumnValues {
-    /// The type.
+    /// Returns the type of the column.
     pub fn column_type(&self) -> ColumnType {
         match self {
             Self::Boolean(_) => ColumnType::Boolean,
@@ -83,7 +83,7 @@ impl ColumnValues {
         }
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         match self {
             Self::Boolean(cells) => cells.len(),
@@ -101,7 +101,7 @@ impl ColumnValues {
         self.len() == 0
     }
 
-    /// No values of a type.
+    /// Creates an empty column of a type.
     pub fn empty(column_type: ColumnType) -> Self {
         match column_type {
             ColumnType::Boolean => Self::Boolean(Cells::default()),
@@ -114,7 +114,7 @@ impl ColumnValues {
         }
     }
 
-    /// Row of the first null.
+    /// Returns the row of the first null.
     pub(crate) fn first_null(&self) -> Option<usize> {
         let is_valid = match self {
             Self::Boolean(cells) => cells.is_valid.as_ref(),
@@ -129,19 +129,19 @@ impl ColumnValues {
     }
 }
 
-/// Value of a fixed size that a column may hold.
+/// A value of fixed size that a column may contain.
 pub trait Cell: Copy + Default + fmt::Debug + FromStr {
-    /// The type of the column.
+    /// Type of the column.
     const TYPE: ColumnType;
-    /// What the cell of a CSV must be.
+    /// Description of a valid CSV cell, for messages.
     const EXPECTED: &'static str;
-    /// Whether a table may hold the value: no table has NaN or infinity.
+    /// Returns true if a table may contain the value: NaN and infinity are not allowed.
     fn is_sound(&self) -> bool {
         true
     }
-    /// The column's values from its cells.
+    /// Converts cells to the values of a column.
     fn values(cells: Cells<Self>) -> ColumnValues;
-    /// The cells, if the column is of this type.
+    /// Returns the cells if the column has this type.
     fn cells(values: &ColumnValues) -> Option<&Cells<Self>>;
 }
 
@@ -176,22 +176,23 @@ cell!(f32, Float32, "a finite number", f32::is_finite);
 cell!(f64, Float64, "a finite number", f64::is_finite);
 cell!(Nanoseconds, Timestamp, "nanoseconds since 1970");
 
-/// Values of a fixed size, any of which may be null.
+/// Values of fixed size, any of which may be null.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cells<T> {
-    /// One per row; at a null the default value.
+    /// One value per row; the default value for a null.
     values: Vec<T>,
-    /// One per row; `None` if no value is null.
+    /// Validity flags, one per row; `None` if no value is null.
     is_valid: Option<Vec<bool>>,
 }
 
 impl<T: Copy + Default> Cells<T> {
-    /// Cells without nulls.
+    /// Creates cells without nulls.
     pub(crate) fn new(values: Vec<T>) -> Self {
         Self { values, is_valid: None }
     }
 
-    /// Cells from the values that are not null and a flag per row. `None` if their numbers do not agree.
+    /// Creates cells from the values that are not null and one validity flag per row. Returns `None` if the
+    /// numbers of values and flags disagree.
     pub(crate) fn spread(present: Vec<T>, is_valid: Vec<bool>) -> Option<Self> {
         if present.len() == is_valid.len() {
             return is_valid.iter().all(|&is_valid| is_valid).then(|| Self::new(present));
@@ -204,7 +205,7 @@ impl<T: Copy + Default> Cells<T> {
         rest.next().is_none().then_some(Self { values, is_valid: Some(is_valid) })
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.values.len()
     }
@@ -214,32 +215,32 @@ impl<T: Copy + Default> Cells<T> {
         self.values.is_empty()
     }
 
-    /// The value of a row; `None` if it is null, or there is no such row.
+    /// Returns the value of a row; `None` if it is null or there is no such row.
     pub fn get(&self, row: usize) -> Option<T> {
         self.values.get(row).copied().filter(|_| is_valid(self.is_valid.as_ref(), row))
     }
 
-    /// Values by row.
+    /// Iterates over the values by row.
     pub fn iter(&self) -> impl Iterator<Item = Option<T>> {
         (0..self.len()).map(|row| self.get(row))
     }
 
-    /// Values by row; at a null the default value.
+    /// Returns the values by row; the default value for a null.
     pub fn values(&self) -> &[T] {
         &self.values
     }
 
-    /// Number of nulls.
+    /// Returns the number of nulls.
     pub fn null_count(&self) -> usize {
         self.is_valid.iter().flatten().filter(|is_valid| !**is_valid).count()
     }
 
-    /// The values, and for each whether it is not null (`None` if none is null).
+    /// Returns the values and their validity flags, true if not null (`None` if no value is null).
     pub fn into_parts(self) -> (Vec<T>, Option<Vec<bool>>) {
         (self.values, self.is_valid)
     }
 
-    /// The flags of [`Cells::into_parts`].
+    /// Returns the validity flags of [`Cells::into_parts`].
     pub(crate) fn is_valid(&self) -> Option<&[bool]> {
         self.is_valid.as_deref()
     }
@@ -262,16 +263,17 @@ impl<T: Copy + Default> FromIterator<Option<T>> for Cells<T> {
 /// Texts, any of which may be null.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TextCells {
-    /// All texts one after another.
+    /// All texts, concatenated.
     text: String,
-    /// Where the text of each row ends; a null is empty.
+    /// End of the text of each row, bytes; a null is empty.
     ends: Vec<usize>,
-    /// One per row; `None` if no text is null.
+    /// Validity flags, one per row; `None` if no text is null.
     is_valid: Option<Vec<bool>>,
 }
 
 impl TextCells {
-    /// Texts from their bytes and ends. `None` if they are not UTF-8 or do not agree.
+    /// Creates texts from their bytes and ends. Returns `None` if they are not UTF-8 or the numbers of texts
+    /// and flags disagree.
     pub(crate) fn from_bytes(bytes: Vec<u8>, ends: Vec<usize>, is_valid: Option<Vec<bool>>) -> Option<Self> {
         let text = String::from_utf8(bytes).ok()?;
         let are_texts = ends.iter().all(|&end| text.is_char_boundary(end)) && ends.is_sorted();
@@ -280,7 +282,7 @@ impl TextCells {
         (are_texts && agree).then_some(Self { text, ends, is_valid })
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
@@ -290,27 +292,27 @@ impl TextCells {
         self.ends.is_empty()
     }
 
-    /// The text of a row; `None` if it is null, or there is no such row.
+    /// Returns the text of a row; `None` if it is null or there is no such row.
     pub fn get(&self, row: usize) -> Option<&str> {
         self.text.get(self.bytes_of(row)?).filter(|_| is_valid(self.is_valid.as_ref(), row))
     }
 
-    /// The text of a row; empty if it is null, or there is no such row.
+    /// Returns the text of a row; empty if it is null or there is no such row.
     pub fn value(&self, row: usize) -> &str {
         self.get(row).unwrap_or_default()
     }
 
-    /// Texts by row.
+    /// Iterates over the texts by row.
     pub fn iter(&self) -> impl Iterator<Item = Option<&str>> {
         (0..self.len()).map(|row| self.get(row))
     }
 
-    /// All texts one after another.
+    /// Returns all texts, concatenated.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// Bytes of the text of a row.
+    /// Returns the byte range of the text of a row.
     pub(crate) fn bytes_of(&self, row: usize) -> Option<std::ops::Range<usize>> {
         let start = match row.checked_sub(1) {
             Some(before) => *self.ends.get(before)?,
@@ -319,7 +321,7 @@ impl TextCells {
         Some(start..*self.ends.get(row)?)
     }
 
-    /// One flag per row; `None` if no text is null.
+    /// Returns the validity flags, one per row; `None` if no text is null.
     pub(crate) fn is_valid(&self) -> Option<&[bool]> {
         self.is_valid.as_deref()
     }
@@ -343,14 +345,14 @@ fn is_valid(flags: Option<&Vec<bool>>, row: usize) -> bool {
     flags.is_none_or(|flags| flags.get(row).is_some_and(|is_valid| *is_valid))
 }
 
-/// How a column is encoded in a file.
+/// Encoding of a column in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Coding {
-    /// With a dictionary, for values that repeat.
+    /// Dictionary, for values that repeat.
     Dictionary,
-    /// Value by value.
+    /// One value after another.
     Plain,
-    /// The first bytes of all values, then the second, and so on (`BYTE_STREAM_SPLIT`).
+    /// First bytes of all values, then second bytes, and so on (`BYTE_STREAM_SPLIT`).
     ByteByByte,
 }
 
@@ -364,22 +366,22 @@ pub struct Column {
 }
 
 impl Column {
-    /// A column in which every row has a value.
+    /// Creates a column with a value in every row.
     pub fn new<T: Cell>(name: impl Into<String>, values: impl IntoIterator<Item = T>) -> Self {
         Self::from_values(name, false, T::values(Cells::new(values.into_iter().collect())))
     }
 
-    /// A column in which rows may have no value.
+    /// Creates a column in which values may be null.
     pub fn nullable<T: Cell>(name: impl Into<String>, values: impl IntoIterator<Item = Option<T>>) -> Self {
         Self::from_values(name, true, T::values(values.into_iter().collect()))
     }
 
-    /// A column of texts, in which every row has one.
+    /// Creates a column with a text in every row.
     pub fn texts<T: AsRef<str>>(name: impl Into<String>, texts: impl IntoIterator<Item = T>) -> Self {
         Self::from_values(name, false, ColumnValues::Utf8(texts.into_iter().collect()))
     }
 
-    /// A column of texts, in which rows may have none.
+    /// Creates a column in which texts may be null.
     pub fn nullable_texts<T: AsRef<str>>(
         name: impl Into<String>,
         texts: impl IntoIterator<Item = Option<T>>,
@@ -393,37 +395,39 @@ impl Column {
         Self::from_values(name, true, ColumnValues::Utf8(cells))
     }
 
-    /// A column of given values. One that is not nullable must have no null among them.
+    /// Creates a column of given values, which must not contain nulls unless `is_nullable`.
     pub fn from_values(name: impl Into<String>, is_nullable: bool, values: ColumnValues) -> Self {
         Self { name: name.into(), is_nullable, coding: Coding::Dictionary, values }
     }
 
-    /// The column for values that seldom repeat: written without a dictionary, which would only add to the file.
+    /// Marks the column as having values that seldom repeat: it is written without a dictionary, which would
+    /// only enlarge the file.
     pub fn without_dictionary(self) -> Self {
         Self { coding: Coding::Plain, ..self }
     }
 
-    /// The column for numbers whose bytes repeat although the numbers do not: written byte by byte, without a dictionary.
+    /// Marks the column as having numbers that differ but share bytes: it is written byte by byte, without a
+    /// dictionary.
     pub fn byte_stream_split(self) -> Self {
         Self { coding: Coding::ByteByByte, ..self }
     }
 
-    /// The name, with the unit.
+    /// Returns the name, including the unit.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Returns true if rows may have no value.
+    /// Returns true if values may be null.
     pub fn is_nullable(&self) -> bool {
         self.is_nullable
     }
 
-    /// The values.
+    /// Returns the values.
     pub fn values(&self) -> &ColumnValues {
         &self.values
     }
 
-    /// The values, without the column.
+    /// Returns the values by value, without the column.
     pub fn into_values(self) -> ColumnValues {
         self.values
     }
@@ -468,7 +472,7 @@ mod tests {
         let all: Vec<_> = texts.iter().collect();
         assert_eq!(all, [Some("a"), None, Some("äöü"), Some("")]);
         assert_eq!((column.values().first_null(), texts.get(4), texts.value(1)), (Some(1), None, ""));
-        // "ä" cut in two is no text, though both halves together are.
+        // "ä" split in the middle is not UTF-8, although the two halves together are.
         let bytes = "ä".as_bytes().to_vec();
         assert_eq!(TextCells::from_bytes(bytes.clone(), vec![1, 2], None), None);
         assert_eq!(TextCells::from_bytes(bytes, vec![0, 2], None).map(|texts| texts.len()), Some(2));

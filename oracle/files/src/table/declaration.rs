@@ -1,5 +1,6 @@
-//! Tables that are declared once: a row is a struct, its fields say what the columns are called and what they mean. The
-//! header of a CSV, its reading and writing, the columns of a Parquet file and the tables of `docs/formats.md` come from it.
+//! Tables with a single declaration: a row is a struct, and its fields define the names and meanings of the
+//! columns. The header of a CSV, its reading and writing, the columns of a Parquet file and the tables of
+//! `docs/formats.md` are derived from it.
 
 use super::column::Column;
 use super::declarations::FieldDeclaration;
@@ -22,23 +23,23 @@ impl<const N: usize> From<[&'static str; N]> for ColumnNames<N> {
     }
 }
 
-/// Columns that a CSV may lack.
+/// Creates columns that a CSV may omit.
 pub fn optional<const N: usize>(names: [&'static str; N]) -> ColumnNames<N> {
     ColumnNames { is_optional: true, ..names.into() }
 }
 
-/// Columns of a Parquet file that are declared nullable although every row has a value.
+/// Creates columns of a Parquet file that are declared nullable although every row has a value.
 pub fn nullable<const N: usize>(names: [&'static str; N]) -> ColumnNames<N> {
     ColumnNames { is_nullable: true, ..names.into() }
 }
 
-/// Columns of a Parquet file whose values seldom repeat ([`Column::without_dictionary`]).
+/// Creates columns of a Parquet file whose values seldom repeat ([`Column::without_dictionary`]).
 pub fn without_dictionary<const N: usize>(names: [&'static str; N]) -> ColumnNames<N> {
     ColumnNames { is_without_dictionary: true, ..names.into() }
 }
 
 impl<const N: usize> ColumnNames<N> {
-    /// What the table says of the field.
+    /// Returns the declaration of the field.
     pub fn declarations<F: Field<N>>(&self, meaning: &str) -> FieldDeclaration {
         FieldDeclaration {
             names: self.names.to_vec(),
@@ -49,7 +50,7 @@ impl<const N: usize> ColumnNames<N> {
         }
     }
 
-    /// The columns of a Parquet file.
+    /// Returns the columns of a Parquet file.
     pub fn columns<'a, F: Field<N> + 'a>(&self, fields: impl Iterator<Item = &'a F>) -> Vec<Column> {
         let cells: Vec<Option<[FieldCell<'a, F, N>; N]>> =
             fields.map(|field| field.value().map(Value::to_cells)).collect();
@@ -61,10 +62,11 @@ impl<const N: usize> ColumnNames<N> {
         self.names.into_iter().enumerate().map(column).collect()
     }
 
-    /// The field of each row of a Parquet file: absent where one of its cells is null.
+    /// Reads the field of each row of a Parquet file; the field is absent if one of its cells is null.
     ///
     /// # Errors
-    /// [`FileError::Value`] for a null where a value must be, or a cell that is not as declared.
+    /// [`FileError::Value`] for a null where a value is required, or a cell that does not match its
+    /// declaration.
     pub fn read_columns<F: Field<N>>(&self, columns: &Columns<'_>) -> Result<Vec<F>, FileError> {
         let mut parts = Vec::with_capacity(N);
         for name in self.names {
@@ -93,7 +95,7 @@ impl<const N: usize> ColumnNames<N> {
         Ok(fields)
     }
 
-    /// The cells of the field in a row of a CSV.
+    /// Returns the cells of the field in a CSV row.
     pub fn texts(&self, field: &impl Field<N>) -> [String; N] {
         field.value().map_or_else(
             || std::array::from_fn(|_| String::new()),
@@ -101,10 +103,10 @@ impl<const N: usize> ColumnNames<N> {
         )
     }
 
-    /// Reads the field from a row of a CSV: all cells of it, or none where it may be absent.
+    /// Reads the field from a CSV row: either all of its cells, or none if the field may be absent.
     ///
     /// # Errors
-    /// [`FileError::Value`] for a cell that is not as declared.
+    /// [`FileError::Value`] for a cell that does not match its declaration.
     pub fn read_texts<F: Field<N>>(&self, row: &CsvRow<'_>) -> Result<F, FileError> {
         let is_absent = F::IS_NULLABLE && self.names.iter().all(|name| row.text(name).trim().is_empty());
         let mut cells = [Default::default(); N];
@@ -116,18 +118,19 @@ impl<const N: usize> ColumnNames<N> {
         F::from_value(value).ok_or_else(|| row.error(self.name(0), "a value"))
     }
 
-    /// The name of a column; errors of the whole field name the first.
+    /// Returns the name of a column; errors about the whole field use the first name.
     fn name(&self, i: usize) -> &'static str {
         self.names.get(i).copied().unwrap_or_default()
     }
 }
 
-/// What the cells of a field hold.
+/// Type of the cells of a field.
 type FieldCell<'a, F, const N: usize> = <<F as Field<N>>::Value as Value<N>>::Cell<'a>;
 
-/// Declares a table: either a new struct, or one that there is (`for`). Each field has its meaning as a comment, its type, and the names
-/// of its columns, where these are not the field's own name. `csv` makes it a row of a CSV; `parquet(FIELD)` one of a Parquet
-/// file, ordered by a field that is the number of the frame or field.
+/// Declares a table, for a new struct or for an existing one (`for`). Each field has its meaning as a doc
+/// comment, its type, and the names of its columns if they differ from the name of the field. `csv` makes the
+/// struct a row of a CSV, `parquet(FIELD)` a row of a Parquet file that is ordered by the field FIELD, the
+/// number of the frame or field.
 #[macro_export]
 macro_rules! table {
     (@names $field:ident) => {
@@ -213,7 +216,7 @@ mod tests {
             turn: Rotation<Body, Icrs> = ["w", "x", "y", "z"],
             /// rows of a field
             lines: Lines,
-            /// a place, or none
+            /// a position, or none
             place: Option<[f64; 2]> = without_dictionary(["x_px", "y_px"]),
             /// a number
             number: f64 = nullable(["number"]),
@@ -229,7 +232,7 @@ mod tests {
         (1..4).map(row).collect()
     }
 
-    /// Reads the rows back, one column of them exchanged for others.
+    /// Reads the rows back, after one column has been replaced by `other`.
     fn read(other: Option<Column>) -> Result<Vec<Turn>, String> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.parquet");

@@ -1,24 +1,24 @@
-//! What a table says of its rows.
+//! Declaration of a table's rows.
 
 use super::column::ColumnType;
 
-/// What a table says of one field of its row.
+/// Declaration of one field of a table row.
 #[derive(Debug, Clone)]
 pub struct FieldDeclaration {
-    /// Names of its columns.
+    /// Names of the field's columns.
     pub names: Vec<&'static str>,
-    /// Their type.
+    /// Type of the columns.
     pub column_type: ColumnType,
-    /// Whether a cell may be empty, or null.
+    /// True if a cell may be empty or null.
     pub is_nullable: bool,
-    /// Whether a CSV may lack the columns.
+    /// True if a CSV may omit the columns.
     pub is_optional: bool,
-    /// What they are.
+    /// Meaning of the columns.
     pub meaning: String,
 }
 
 /// A row of a table.
 pub trait Table: Sized {
-    /// What the table says of its fields, in the order of the columns.
+    /// Returns the declarations of the fields, in the order of the columns.
     fn declarations() -> Vec<FieldDeclaration>;
 }

@@ -1,4 +1,4 @@
-//! What a field of a row is in a table: a cell, or several of a kind that stand together.
+//! Conversion between the fields of a row and table cells: one cell, or several adjacent cells of one type.
 
 use std::borrow::Cow;
 
@@ -12,26 +12,27 @@ use super::column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, 
 use super::unit;
 use crate::FileError;
 
-/// What a cell holds, as long as `'a` lives.
+/// Content of a cell, borrowed for `'a`.
 pub trait Atom<'a>: Copy + Default {
-    /// Type of its column.
+    /// Type of the column.
     const TYPE: ColumnType;
-    /// What the cell of a CSV must be.
+    /// Description of a valid CSV cell, for messages.
     const EXPECTED: &'static str;
-    /// The cells of a column.
+    /// Cells of a column.
     type Cells: 'a;
-    /// The values of a column.
+    /// Converts cells to the values of a column.
     fn values(cells: impl Iterator<Item = Option<Self>>) -> ColumnValues;
-    /// The column of a name.
+    /// Returns the cells of the column with the given name.
     ///
     /// # Errors
-    /// [`FileError`] for a column that is not there or has another type.
+    /// [`FileError`] for a column that is missing or has another type.
     fn cells(columns: &'a Columns<'_>, name: &str) -> Result<&'a Self::Cells, FileError>;
-    /// The cell of a row; `None` if it is null.
+    /// Returns the cell of a row; `None` if it is null.
     fn get(cells: &'a Self::Cells, row: usize) -> Option<Self>;
-    /// As it stands in a CSV and in messages: of a number the shortest text that reads back to the same bits.
+    /// Returns the text in CSV files and messages: for a number the shortest text that reads back to the same
+    /// bits.
     fn text(self) -> String;
-    /// Reads the cell of a CSV; `None` when it is not as [`Atom::EXPECTED`].
+    /// Parses a CSV cell; `None` if it does not match [`Atom::EXPECTED`].
     fn parse(text: &'a str) -> Option<Self>;
 }
 
@@ -88,28 +89,28 @@ impl<'a> Atom<'a> for &'a str {
     }
 }
 
-/// A value that takes `N` cells of a kind.
+/// A value that takes `N` cells of one type.
 pub trait Value<const N: usize>: Sized {
-    /// What each of them holds.
+    /// Type of the cells.
     type Cell<'a>: Atom<'a>;
-    /// The cells.
+    /// Returns the cells of the value.
     fn to_cells(&self) -> [Self::Cell<'_>; N];
-    /// The value of its cells, or what was expected of them.
+    /// Creates the value from its cells.
     ///
     /// # Errors
-    /// What was expected.
+    /// Description of the expected cells.
     fn from_cells(cells: [Self::Cell<'_>; N]) -> Result<Self, String>;
 }
 
-/// A field of a row: a value, or one that may be absent; then its cells are empty, or null.
+/// A field of a row: a value, or an optional value whose cells are empty or null when it is absent.
 pub trait Field<const N: usize>: Sized {
-    /// The value.
+    /// Type of the value.
     type Value: Value<N>;
-    /// Whether it may be absent.
+    /// True if the value may be absent.
     const IS_NULLABLE: bool;
-    /// The value, if there is one.
+    /// Returns the value, if present.
     fn value(&self) -> Option<&Self::Value>;
-    /// The field that has the value; `None` where it must have one.
+    /// Creates the field from its value; `None` if a required value is absent.
     fn from_value(value: Option<Self::Value>) -> Option<Self>;
 }
 
@@ -139,7 +140,8 @@ impl<V: Value<N>, const N: usize> Field<N> for Option<V> {
     }
 }
 
-/// Says how a type is made of cells: `$to` gives them, `$of` makes the value of them, or says what was expected.
+/// Implements the conversion of a type to and from cells: `$to` returns the cells, `$of` the value or a
+/// description of the expected cells.
 macro_rules! value {
     (
         $type:ty: [$cell:ty; $n:literal] $(for<$($parameter:ident),+>)?,
@@ -160,7 +162,7 @@ macro_rules! value {
     };
 }
 
-/// Types with a word for each of their values: `code`, and `parse`, which reads it.
+/// Implements the conversion of types with a name for each value: `code` returns the name, `parse` reads it.
 macro_rules! words {
     ($($type:ty),+) => {
         $($crate::table::field::value!($type: [&'a str; 1], |value| [value.code()], |[word]| {
@@ -177,9 +179,9 @@ value!(u64: [u64; 1], |count| [*count], |[count]| Ok(count));
 value!(f64: [f64; 1], |number| [*number], |[number]| Ok(number));
 value!(String: [&'a str; 1], |text| [text], |[text]| Ok(text.to_owned()));
 value!(Cow<'static, str>: [&'a str; 1], |text| [text], |[text]| Ok(text.to_owned().into()));
-// A place in a list, of at most 32 bits.
+// An index in a list, of at most 32 bits.
 value!(usize: [u32; 1], |index| [*index as u32], |[index]| Ok(index as usize));
-// UTC; leap seconds are not counted.
+// UTC without leap seconds.
 value!(
     Epoch: [Nanoseconds; 1],
     |time| [Nanoseconds(clock::unix_ns(*time))],
@@ -187,11 +189,11 @@ value!(
 );
 value!(Vector3<f64>: [f64; 3], |vector| (*vector).into(), |xyz| Ok(xyz.into()));
 value!(PixelPoint: [f64; 2], |point| [point.x, point.y], |[x, y]| Ok(Self::new(x, y)));
-// Its quaternion, scalar first.
+// Components of the quaternion, scalar first.
 value!(Rotation<To, From>: [f64; 4] for<To, From>, |rotation| rotation.wxyz(), |wxyz| {
     Self::from_wxyz(wxyz).map_err(|error| format!("a unit quaternion: {error}"))
 });
-// Components of its unit vector.
+// Components of the unit vector.
 value!(Direction<F>: [f64; 3] for<F>, |direction| (*direction.vector()).into(), |xyz| {
     unit::direction(xyz).ok_or_else(|| unit::EXPECTED.to_owned())
 });

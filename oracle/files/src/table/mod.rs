@@ -1,4 +1,4 @@
-//! A table in memory, declared once: its columns, and how the fields of a row become cells.
+//! Tables in memory with a single declaration: their columns, and the conversion of a row's fields to cells.
 
 pub(crate) mod batch;
 pub(crate) mod column;

@@ -3,11 +3,11 @@
 use contract::Direction;
 use nalgebra::Vector3;
 
-/// What [`direction`] expects, for messages.
+/// Description of the input of [`direction`], for messages.
 pub(crate) const EXPECTED: &str = "components of a unit vector, norm 1 within 1e-5";
 
-/// The direction of three components. A norm within 1e-12 of one is kept to the bit, so that a file can be read
-/// back exactly; one within 1e-5 is normalised; any other is refused.
+/// Returns the direction of three components. A norm within 1e-12 of one is kept bit for bit, which makes
+/// reading a file back exact; a norm within 1e-5 is normalised; any other norm is rejected.
 pub(crate) fn direction<F>(xyz: [f64; 3]) -> Option<Direction<F>> {
     let vector = Vector3::from(xyz);
     let error = (vector.norm() - 1.0).abs();

@@ -2,7 +2,7 @@
 
 use contract::{Camera, Window};
 
-/// The text of the regions; empty when the whole image was transmitted, `none` when nothing was.
+/// Returns the regions as text; empty if the whole image was transmitted, `none` if nothing was.
 pub(crate) fn format(windows: Option<&[Window]>) -> String {
     match windows {
         None => String::new(),
@@ -11,16 +11,16 @@ pub(crate) fn format(windows: Option<&[Window]>) -> String {
     }
 }
 
-/// One region as `x y columns rows`.
+/// Returns one region as `x y columns rows`.
 pub(crate) fn format_one(window: &Window) -> String {
     format!("{} {} {} {}", window.x, window.y, window.columns, window.rows)
 }
 
-/// What [`parse`] expects, for messages.
+/// Description of the input of [`parse`], for messages.
 pub(crate) const EXPECTED: &str =
     "regions `x y columns rows` separated by `;`, `none`, or nothing for the whole image";
 
-/// Reads [`format`]'s text; the inner `Option` is `None` when the whole image was transmitted.
+/// Parses the output of [`format`]; the inner `Option` is `None` if the whole image was transmitted.
 pub(crate) fn parse(text: &str) -> Result<Option<Vec<Window>>, &'static str> {
     match text.trim() {
         "" => Ok(None),
@@ -29,7 +29,8 @@ pub(crate) fn parse(text: &str) -> Result<Option<Vec<Window>>, &'static str> {
     }
 }
 
-/// Reads one region. No number is larger than a detector, so that sums of them cannot overflow.
+/// Parses one region. No number may exceed the size of the largest detector, which excludes overflow of their
+/// sums.
 pub(crate) fn parse_one(text: &str) -> Option<Window> {
     let mut numbers = text
         .split_ascii_whitespace()

@@ -1,4 +1,5 @@
-//! TOML files whose mistakes are explained: file, line, column, what was met, what was expected, the nearest valid name.
+//! TOML files with explained mistakes: file, line, column, the value found, the expected value, the most
+//! similar valid name.
 
 pub(crate) mod toml_table;
 
@@ -13,19 +14,19 @@ use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-/// A mistake in a TOML file, with its place.
+/// A mistake in a TOML file, with its location.
 #[derive(Debug)]
 pub struct TomlError {
     text: String,
     file: String,
-    /// Line, from 1.
+    /// Line of the mistake, from 1.
     pub line: usize,
-    /// Column in characters, from 1.
+    /// Column of the mistake in characters, from 1.
     pub column: usize,
     span: Range<usize>,
-    /// Dotted path of the key, where one is known.
+    /// Dotted path of the key; empty if unknown.
     pub path: String,
-    /// The mistake, without its place.
+    /// Description of the mistake, without its location.
     pub message: String,
     help: Option<String>,
 }
@@ -60,7 +61,7 @@ impl fmt::Display for TomlError {
 impl std::error::Error for TomlError {}
 
 impl TomlError {
-    /// The mistake with the lines of the file around it, as plain text for a terminal or a log.
+    /// Returns the mistake with the surrounding lines of the file, as plain text for a terminal or a log.
     pub fn explain(&self) -> String {
         let annotation = AnnotationKind::Primary.span(self.span.clone());
         let snippet = Snippet::source(&self.text).path(&self.file).annotation(annotation);
@@ -74,7 +75,7 @@ impl TomlError {
 /// Largest TOML file that is read, bytes.
 const MAX_BYTES: u64 = 1 << 24;
 
-/// The text of a TOML file: a pipe or a device, which may have no end, is refused.
+/// Reads the text of a TOML file. A pipe or a device is rejected, because it may have no end.
 ///
 /// # Errors
 /// Those of the operating system, and for a file that is not regular, larger than 16 MiB, or not UTF-8.
@@ -82,10 +83,10 @@ pub fn read_text(file: &Path) -> std::io::Result<String> {
     sim::regular_file::read_text(file, MAX_BYTES)
 }
 
-/// Reads `text`, which came from `file`, as a `T`.
+/// Parses `text`, the contents of `file`, as a `T`.
 ///
 /// # Errors
-/// A [`TomlError`] for text that is not TOML, a key that does not exist, a value of the wrong type or a key missing.
+/// A [`TomlError`] for text that is not TOML, an unknown key, a value of the wrong type or a missing key.
 pub fn parse<T: DeserializeOwned + Serialize>(file: &Path, text: &str) -> Result<T, Box<TomlError>> {
     let refused = |error: toml::de::Error| {
         let span = error.span().filter(|span| !is_whole(span, text));
@@ -102,8 +103,8 @@ pub fn parse<T: DeserializeOwned + Serialize>(file: &Path, text: &str) -> Result
     }
 }
 
-/// The dotted path of the first array of a file that was read as a table with its values in the order of the keys: serde's tagged enums
-/// allow it where [`sim::exact_toml`] does not see it.
+/// Returns the dotted path of the first array that was read as a table, with its values in the order of the
+/// keys: serde's tagged enums allow this where [`sim::exact_toml`] cannot detect it.
 fn array_for_table(found: &Value, meant: &Value) -> Option<String> {
     match (found, meant) {
         (Value::Array(_), Value::Table(_)) => Some(String::new()),
@@ -123,19 +124,20 @@ fn array_for_table(found: &Value, meant: &Value) -> Option<String> {
     }
 }
 
-/// A value that was read but is not allowed: `path` is its dotted path, as in `sensor.gain_e_per_dn` or
-/// `schedule[2].count`. The place is that of the longest part of the path that the file has.
+/// Creates the error of a value that was read but is not allowed: `path` is its dotted path, for example
+/// `sensor.gain_e_per_dn` or `schedule[2].count`. The location is that of the longest part of the path that
+/// exists in the file.
 pub fn refuse(file: &Path, text: &str, path: &str, message: String) -> Box<TomlError> {
     let span = locate(text, path).unwrap_or(0..0);
     Box::new(TomlError::new(file, text, span, path.to_owned(), message))
 }
 
-/// A value that a check refuses; see [`refuse`].
+/// Creates the error of a value that a check rejects; see [`refuse`].
 pub fn out_of_range(file: &Path, text: &str, error: &OutOfRange) -> Box<TomlError> {
     refuse(file, text, &error.path, format!("is {}, expected {}", error.value, error.expected))
 }
 
-/// The place of the value at a dotted path, or of the longest part of it that exists.
+/// Returns the location of the value at a dotted path, or of the longest existing part of the path.
 fn locate(text: &str, path: &str) -> Option<Range<usize>> {
     let document = DeTable::parse(text).ok()?;
     let mut found = None;
@@ -161,7 +163,7 @@ fn locate(text: &str, path: &str) -> Option<Range<usize>> {
     found
 }
 
-/// The dotted path of the key or value whose text includes `span`: the inverse of [`locate`].
+/// Returns the dotted path of the key or value whose text includes `span`: the inverse of [`locate`].
 fn path_of(text: &str, span: &Range<usize>) -> Option<String> {
     path_in_table(DeTable::parse(text).ok()?.get_ref(), span, "")
 }
@@ -175,7 +177,7 @@ fn path_in_table(table: &DeTable<'_>, span: &Range<usize>, parent: &str) -> Opti
 }
 
 fn path_in_value(value: &Spanned<DeValue<'_>>, span: &Range<usize>, path: String) -> Option<String> {
-    // The span of a table is that of its header: its keys may lie anywhere below.
+    // The span of a table is that of its header; its keys may be anywhere below.
     let inner = match value.get_ref() {
         DeValue::Table(table) => path_in_table(table, span, &path),
         DeValue::Array(values) => values
@@ -187,17 +189,18 @@ fn path_in_value(value: &Spanned<DeValue<'_>>, span: &Range<usize>, path: String
     inner.or_else(|| includes(&value.span(), span).then_some(path))
 }
 
-/// Returns true if `inner` is some text within `outer`: the empty span of a missing value is in no key.
+/// Returns true if `inner` is non-empty text within `outer`: the empty span of a missing value belongs to no
+/// key.
 fn includes(outer: &Range<usize>, inner: &Range<usize>) -> bool {
     !inner.is_empty() && outer.start <= inner.start && inner.end <= outer.end
 }
 
-/// Whether a span covers the whole text, which says nothing about the place.
+/// Returns true if a span covers the whole text and therefore contains no location.
 fn is_whole(span: &Range<usize>, text: &str) -> bool {
     span.start == 0 && span.end >= text.trim_end().len()
 }
 
-/// serde names Rust's types; a person reads what they mean.
+/// Replaces the names of Rust types in messages of serde by their meaning.
 fn in_plain_words(message: &str) -> String {
     let types = ["usize", "u64", "u32", "u8"];
     let whole = "a whole number from 0";
@@ -209,7 +212,8 @@ fn in_plain_words(message: &str) -> String {
         .replace("expected f64", "expected a number")
 }
 
-/// What there is to say to a radial distortion that is not three numbers: OpenCV lists the tangential ones between them.
+/// Returns a hint for a radial distortion that is not three numbers: OpenCV lists the tangential coefficients
+/// between the radial ones.
 fn opencv_order(path: &str, message: &str) -> &'static str {
     if path.ends_with("radial") && message.starts_with("invalid length") {
         ": k1, k2, k3; OpenCV's order is k1, k2, p1, p2, k3, of which p1, p2 are `tangential` here"
@@ -221,7 +225,8 @@ fn opencv_order(path: &str, message: &str) -> &'static str {
 /// Keys and kinds of earlier versions, with their present names.
 const RENAMED: [(&str, &str); 2] = [("law", "distribution"), ("whole", "integer")];
 
-/// For serde's "unknown field `x`, expected one of `a`, `b`": the present name of `x`, or the nearest of the names.
+/// Returns a hint with the most similar of the names in serde's "unknown field `x`, expected one of `a`,
+/// `b`".
 fn nearest_valid_name(message: &str) -> Option<String> {
     if !(message.starts_with("unknown field") || message.starts_with("unknown variant")) {
         return None;
@@ -236,7 +241,7 @@ fn nearest_valid_name(message: &str) -> Option<String> {
     nearest(met, names).map(|name| format!("did you mean `{name}`?"))
 }
 
-/// The candidate that is most like `word`, if any is like it at all.
+/// Returns the candidate that is most similar to `word`, or `None` if none is sufficiently similar.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     candidates
         .into_iter()

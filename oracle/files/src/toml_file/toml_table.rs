@@ -1,4 +1,4 @@
-//! TOML files that are one table of ours: read and checked, checked and written.
+//! TOML files that contain one table of Boresight: checked after reading and before writing.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::error::FileLocation;
 use crate::toml_file;
 use crate::{AtomicFile, FileError};
 
-/// A table that is a file of its own.
+/// A table that is stored as a file of its own.
 pub(crate) trait TomlTable: Serialize + DeserializeOwned {
     /// Checks every value.
     fn check(&self) -> Result<(), OutOfRange>;
@@ -19,8 +19,8 @@ pub(crate) trait TomlTable: Serialize + DeserializeOwned {
 /// Reads and checks a file.
 ///
 /// # Errors
-/// [`FileError::Io`]; [`FileError::Toml`] with line and column for what is not TOML, for a wrong, unknown or missing field,
-/// and for a value that is not allowed.
+/// [`FileError::Io`]; [`FileError::Toml`] with line and column for invalid TOML, for a wrong, unknown or
+/// missing field, and for a value that is not allowed.
 pub(crate) fn read<T: TomlTable>(path: &Path) -> Result<T, FileError> {
     let text = toml_file::read_text(path).map_err(|source| FileError::io(path, "read", source))?;
     let table: T = toml_file::parse(path, &text).map_err(FileError::Toml)?;
@@ -28,10 +28,11 @@ pub(crate) fn read<T: TomlTable>(path: &Path) -> Result<T, FileError> {
     Ok(table)
 }
 
-/// Writes a file, at once or not at all.
+/// Writes a file, which appears complete or not at all.
 ///
 /// # Errors
-/// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
+/// [`FileError::OutputTaken`] if the file exists; [`FileError::Io`] if it cannot be written;
+/// [`FileError::Value`] for a value that could not be read back.
 pub(crate) fn write<T: TomlTable>(table: &T, path: &Path) -> Result<(), FileError> {
     table.check().map_err(|OutOfRange { path: key, value, expected }| {
         FileError::value(path, FileLocation::Whole, key, value, expected)

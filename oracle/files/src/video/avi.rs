@@ -1,7 +1,7 @@
-//! AVI: uncompressed frames and Motion-JPEG.
+//! AVI reader for uncompressed frames and Motion-JPEG.
 //!
-//! The file is read from front to back; its index is not needed and not believed. Parts after the first (`RIFF AVIX`
-//! of files over 1 GB, OpenDML) are read on.
+//! The file is read from front to back; its index is neither needed nor used. Parts after the first (`RIFF
+//! AVIX` in files over 1 GB, OpenDML) are read in sequence.
 
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
@@ -14,7 +14,7 @@ use super::riff::{Chunk, Item, Walker};
 use super::video_frame::VideoFrame;
 use crate::FileError;
 
-/// The frames of an AVI file.
+/// Iterator over the frames of an AVI file.
 pub(super) struct AviReader {
     walker: Walker,
     stream: VideoStream,
@@ -24,14 +24,14 @@ pub(super) struct AviReader {
 }
 
 impl AviReader {
-    /// Reads the header; `size` is columns and rows of the camera.
+    /// Reads the header; `size` is the number of columns and rows of the camera.
     pub(super) fn open(input: Input, size: (usize, usize)) -> Result<Self, FileError> {
         let mut walker = Walker::new(input);
         let stream = avi_header::read(&mut walker, size)?;
         Ok(Self { walker, stream, bytes: Vec::new(), next: 0, in_frames: true })
     }
 
-    /// Frames a second, if the file says.
+    /// Returns the number of frames per second, if stated in the file.
     pub(super) fn rate_hz(&self) -> Option<f64> {
         self.stream.rate_hz
     }
@@ -41,7 +41,7 @@ impl AviReader {
             let chunk = match self.walker.step()? {
                 Item::End => return Ok(None),
                 Item::List(kind) => {
-                    // Frames lie in `movi`, maybe in a `rec ` in it; what lies in other lists is no frame.
+                    // Frames are in `movi`, or in a `rec ` inside it; other lists contain no frames.
                     self.in_frames = matches!(&kind.0, b"movi" | b"rec ");
                     continue;
                 }
@@ -59,7 +59,8 @@ impl AviReader {
             }
             let index = self.next;
             self.next += 1;
-            // An empty chunk stands for a frame that the recorder dropped: its number passes, and no field comes.
+            // An empty chunk represents a frame that the recorder dropped: it advances the frame number, but
+            // produces no field.
             if chunk.size > 0 {
                 return self.decode(&chunk).map(|dn| Some(VideoFrame { index, dn }));
             }
@@ -81,7 +82,7 @@ impl AviReader {
                 frame.grey(&self.bytes).ok_or_else(wrong)
             }
             Coding::MotionJpeg => {
-                // No picture needs more bytes than its colours uncompressed, but for headers and noise.
+                // A JPEG image takes at most the size of its uncompressed colours, plus headers and noise.
                 let most = 6 * self.stream.columns * self.stream.rows + (1 << 16);
                 if size > most {
                     let reason =
@@ -104,8 +105,8 @@ impl Iterator for AviReader {
     }
 }
 
-/// The brightness of a JPEG image of a known size. Strict: a decoder that makes grey of what is missing would make
-/// pixels that no camera saw.
+/// Returns the brightness of a JPEG image of a known size. The decoder is strict: filling missing data with
+/// grey would invent pixels that no camera recorded.
 fn decode_jpeg(bytes: &[u8], columns: usize, rows: usize) -> Result<Vec<u16>, String> {
     let options = DecoderOptions::default()
         .set_max_width(columns)

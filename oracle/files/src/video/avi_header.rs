@@ -1,33 +1,33 @@
-//! The header of an AVI file: which stream is the video, how large, how fast, in what pixels.
+//! Header of an AVI file: video stream, image size, frame rate and pixel format.
 
 use super::luma::{Layout, UncompressedFormat, grey_of_bgr};
 use super::riff::{Chunk, FourCc, Item, Walker};
 use crate::FileError;
 
-/// How a frame is stored.
+/// Storage format of a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Coding {
     Uncompressed(UncompressedFormat),
     MotionJpeg,
 }
 
-/// The first video stream of a file.
+/// First video stream of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct VideoStream {
-    /// The two digits that its chunks begin with.
+    /// Two digits at the beginning of the stream's chunk names.
     pub(super) prefix: [u8; 2],
     pub(super) columns: usize,
     pub(super) rows: usize,
-    /// Frames a second, if the file says.
+    /// Frames per second, if stated in the file.
     pub(super) rate_hz: Option<f64>,
     pub(super) coding: Coding,
 }
 
-/// Longest header chunk that is read: a bitmap header with its palette is 1,064 bytes.
+/// Longest header chunk that is read, bytes: a bitmap header with its palette is 1,064 bytes.
 const LONGEST_BYTES: u32 = 4096;
 
-/// Reads the headers up to the list of frames (`movi`), where the walker is left. `size` is what the video must be,
-/// so that no other size is ever allocated.
+/// Reads the headers up to the list of frames (`movi`), where it leaves the walker. `size` is the required
+/// size of the video; memory is never allocated for any other size.
 pub(super) fn read(walker: &mut Walker, size: (usize, usize)) -> Result<VideoStream, FileError> {
     if !matches!(walker.step()?, Item::List(kind) if &kind.0 == b"AVI ") {
         return Err(walker.input().error("AVI", "a RIFF file of another kind"));
@@ -71,12 +71,12 @@ fn read_header_chunk(
     }
 }
 
-/// The little-endian word at a byte; 0 beyond the end.
+/// Returns the little-endian word at a byte position; 0 beyond the end.
 fn word(bytes: &[u8], at: usize) -> u32 {
     bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes)
 }
 
-/// Frames a second of a stream header: dwRate over dwScale.
+/// Returns the frames per second of a stream header: dwRate over dwScale.
 fn rate(walker: &Walker, chunk: &Chunk, bytes: &[u8]) -> Result<Option<f64>, FileError> {
     let (scale, rate) = (word(bytes, 20), word(bytes, 24));
     match (scale, rate) {
@@ -86,7 +86,7 @@ fn rate(walker: &Walker, chunk: &Chunk, bytes: &[u8]) -> Result<Option<f64>, Fil
     }
 }
 
-/// What a bitmap header tells.
+/// Reads the video stream's data from a bitmap header.
 fn video_stream(
     walker: &Walker,
     chunk: &Chunk,
@@ -112,11 +112,11 @@ fn video_stream(
             let prefix = [b'0' + index / 10, b'0' + index % 10];
             return Ok(VideoStream { prefix, columns, rows, rate_hz, coding: Coding::MotionJpeg });
         }
-        // A device-independent bitmap: from the bottom up unless the height is negative.
+        // A device-independent bitmap is stored from the bottom up unless the height is negative.
         (b"\0\0\0\0" | b"DIB ", 8) => (Layout::Grey { palette: palette(walker, chunk, bytes)? }, height > 0),
         (b"\0\0\0\0" | b"DIB ", 24) => (Layout::Bgr { bytes: 3 }, height > 0),
         (b"\0\0\0\0" | b"DIB ", 32) => (Layout::Bgr { bytes: 4 }, height > 0),
-        // Named pixels: from the top down, whatever the sign.
+        // Named pixel formats are stored from the top down, independently of the sign.
         (b"Y800" | b"Y8  " | b"GREY", _) => (Layout::Grey { palette: None }, false),
         (b"YUY2" | b"YUYV", _) => (Layout::Packed422 { first: 0 }, false),
         (b"UYVY", _) => (Layout::Packed422 { first: 1 }, false),
@@ -133,8 +133,9 @@ fn video_stream(
     Ok(VideoStream { prefix: [b'0' + index / 10, b'0' + index % 10], columns, rows, rate_hz, coding })
 }
 
-/// The grey values of a bitmap's palette, four bytes a colour after the header; `None` when there is none, and the
-/// bytes are grey values themselves. Entries beyond the palette's end are black, as no pixel should use them.
+/// Returns the grey values of a bitmap's palette, stored as four bytes per colour after the header; `None` if
+/// there is no palette and the bytes are grey values themselves. Entries beyond the end of the palette are
+/// black, because no pixel should use them.
 fn palette(walker: &Walker, chunk: &Chunk, bytes: &[u8]) -> Result<Option<Box<[u8; 256]>>, FileError> {
     let header = word(bytes, 0) as usize;
     let Some(colours) = bytes.get(header.max(40)..) else {

@@ -1,4 +1,4 @@
-//! AVI files, uncompressed grey or Motion-JPEG.
+//! AVI writer for uncompressed grey or Motion-JPEG.
 
 use std::fs::File;
 use std::io::{BufWriter, Seek, SeekFrom, Write};
@@ -12,19 +12,21 @@ use super::weaver::Weaver;
 use crate::error::file_error::{FileLocation, create_new};
 use crate::{FileError, PartialFiles};
 
-/// How frames are stored.
+/// Storage format of frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AviCoding {
-    /// A device-independent bitmap of 8 bits with a palette of greys: lossless, 11 MB for a second of 768 × 576.
+    /// Device-independent bitmap of 8 bits with a grey palette: lossless, 11 MB per second of 768 × 576
+    /// video.
     Grey,
-    /// Motion-JPEG, grey, of a quality from 1 to 100.
+    /// Grey Motion-JPEG of a quality from 1 to 100.
     MotionJpeg {
         /// Quality, 1 to 100.
         quality: u8,
     },
 }
 
-/// Writes fields into an AVI file (AVI 1.0, with an index), two of a frame woven into one image.
+/// Writer of fields to an AVI file (AVI 1.0, with an index). The two fields of a frame are interleaved in one
+/// image.
 pub struct AviWriter {
     files: PartialFiles,
     file: BufWriter<File>,
@@ -34,29 +36,30 @@ pub struct AviWriter {
     rows: usize,
     weaver: Weaver,
     chunk: Vec<u8>,
-    /// Where each frame's chunk stands, from the kind of the list `movi`, and its bytes.
+    /// Offset of each frame's chunk from the kind of the list `movi`, and its length, bytes.
     index: Vec<(u32, u32)>,
     position: u64,
 }
 
-/// The headers before the list of frames, with the kind of the list.
+/// Length of the list kind `movi`, which ends the headers, bytes.
 const HEADERS_MOVI_KIND: u64 = 4;
-/// A file stays below this, and with its index below 4 GiB: sizes have 32 bits.
+/// Largest size of a file, bytes: sizes have 32 bits, so a file with its index must stay below 4 GiB.
 const MAX_BYTES: u64 = 0xF000_0000;
 
 impl AviCoding {
-    /// Most whole frames of a size that one file holds; `None` for a coding whose frames differ in size.
+    /// Returns the largest number of whole frames of a size that one file can hold; `None` for a coding whose
+    /// frames differ in size.
     pub fn max_frames(self, (columns, rows): (usize, usize)) -> Option<u64> {
         let frame = columns.next_multiple_of(4) as u64 * rows as u64 + 1;
         (self == Self::Grey).then(|| MAX_BYTES / (frame + 32) - 1)
     }
 }
 
-/// Checks what every writer of video needs.
+/// Checks the requirements common to all video writers.
 ///
 /// # Errors
-/// [`FileError::Value`] for a side that is not 1 to [`contract::Camera::MAX_SIDE_PX`], and a rate that is not 0.001 to
-/// 1000 Hz.
+/// [`FileError::Value`] for a side that is not 1 to [`contract::Camera::MAX_SIDE_PX`], and a rate that is not
+/// 0.001 to 1000 Hz.
 pub(super) fn check_frames(
     path: &Path,
     (columns, rows): (usize, usize),
@@ -70,13 +73,13 @@ pub(super) fn check_frames(
 }
 
 impl AviWriter {
-    /// Creates the file, for images of `columns` × `rows` and `frame_rate_hz` whole frames a second (kept to the
-    /// millionth). It has its name when it is complete.
+    /// Creates the file, for images of `columns` × `rows` and `frame_rate_hz` whole frames per second (stored
+    /// to one millionth). The file gets its name when it is complete.
     ///
     /// # Errors
-    /// [`FileError::OutputTaken`] when it exists; [`FileError::Value`] for a side that is not 1 to
-    /// [`contract::Camera::MAX_SIDE_PX`], a rate that is not 0.001 to 1000 Hz, a quality that is not 1 to 100;
-    /// [`FileError::Io`].
+    /// [`FileError::OutputTaken`] if it exists; [`FileError::Value`] for a side that is not 1 to
+    /// [`contract::Camera::MAX_SIDE_PX`], a rate that is not 0.001 to 1000 Hz, a quality that is not 1 to
+    /// 100; [`FileError::Io`].
     pub fn create(
         path: &Path,
         coding: AviCoding,
@@ -108,17 +111,19 @@ impl AviWriter {
         Ok(writer)
     }
 
-    /// Writes a field: a progressive frame, or one of two fields that make a frame together. Fields come in pairs of
-    /// an even and an odd one, in either order.
+    /// Writes a field: a progressive frame, or one of the two fields of a frame. Fields come in pairs of an
+    /// even and an odd field, in either order.
     ///
     /// # Errors
-    /// [`FileError::Value`] for a field of another size, for one that is not the other half of the one before, and for
-    /// a value above 255; [`FileError::Io`]; [`FileError::Format`] when the file would pass 4 GB.
+    /// [`FileError::Value`] for a field of another size, for a field that does not complete the frame of the
+    /// previous one, and for a value above 255; [`FileError::Io`]; [`FileError::Format`] if the file would
+    /// exceed 4 GB.
     pub fn write(&mut self, field: &Field) -> Result<(), FileError> {
         if self.weaver.add(field)? { self.put_frame() } else { Ok(()) }
     }
 
-    /// Completes the file and gives it its name. A last field without its other half leaves those rows black.
+    /// Completes the file and gives it its name. If the last frame has only one field, the rows of the other
+    /// remain black.
     ///
     /// # Errors
     /// [`FileError::Io`].
@@ -158,7 +163,7 @@ impl AviWriter {
         }
     }
 
-    /// Writes the frame in hand.
+    /// Writes the current frame.
     fn put_frame(&mut self) -> Result<(), FileError> {
         self.chunk.clear();
         match self.coding {
@@ -210,7 +215,7 @@ impl AviWriter {
             .map_err(|source| FileError::io(&self.path, "write", source))
     }
 
-    /// Colours of the palette.
+    /// Returns the number of colours in the palette.
     fn colours(&self) -> u32 {
         match self.coding {
             AviCoding::Grey => 256,
@@ -218,12 +223,12 @@ impl AviWriter {
         }
     }
 
-    /// Bytes before the first frame.
+    /// Returns the number of bytes before the first frame.
     fn headers_len(&self) -> u64 {
         FORMAT_OF_STREAM + 8 + 40 + 4 * u64::from(self.colours()) + 12
     }
 
-    /// Everything before the first frame; sizes and counts that are not known yet are 0.
+    /// Returns the header before the first frame; sizes and counts that are not known yet are 0.
     fn header(&self, frame_rate_hz: f64) -> Vec<u8> {
         let colours = self.colours();
         let (columns, rows) = (self.columns as u32, self.rows as u32);
@@ -266,7 +271,7 @@ impl AviWriter {
     }
 }
 
-/// Places in the header: dwTotalFrames of `avih`, dwLength of `strh`, the chunk `strf`.
+/// Byte positions in the header: dwTotalFrames of `avih`, dwLength of `strh`, the chunk `strf`.
 const FRAMES_OF_FILE: u64 = 32 + 16;
 const FRAMES_OF_STREAM: u64 = 108 + 32;
 const FORMAT_OF_STREAM: u64 = 164;

@@ -1,4 +1,4 @@
-//! A folder of images: fields as its `telemetry.csv` lists them, or whole frames by name.
+//! Directory of images: fields as listed in its `telemetry.csv`, or whole frames in the order of their names.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,14 +14,15 @@ use crate::error::FileLocation;
 use crate::frame::file::read_image;
 use crate::frame::raw_image::Size;
 
-/// A field of a folder, not read yet.
+/// A field of a directory, whose image has not been read yet.
 pub(super) struct ListedField {
     path: PathBuf,
     row: FieldRow,
     camera: Camera,
 }
 
-/// The fields that a folder's table lists. Every image is looked for; none is read yet.
+/// Returns the fields that a directory's table lists. The existence of each image is checked, but none is
+/// read yet.
 pub(super) fn list_fields(
     directory: &Path,
     rows: Vec<(u64, FieldRow)>,
@@ -47,12 +48,12 @@ pub(super) fn list_fields(
     Ok(fields)
 }
 
-/// Reads the image of a field that a row of a folder's `telemetry.csv` names; `None` where the row names none. Other images of the
-/// folder may be missing.
+/// Reads the image of a field that a row of a directory's `telemetry.csv` names; `None` if the row names no
+/// image. Other images of the directory may be missing.
 ///
 /// # Errors
-/// [`FileError::Value`] for a camera that the setup does not have, and for an image that is missing, outside the folder or of another
-/// size; the errors of reading it.
+/// [`FileError::Value`] for a camera that is not in the setup, and for an image that is missing, outside the
+/// directory or of another size; the errors of reading the image.
 pub fn read_listed_field(
     directory: &Path,
     row: &FieldRow,
@@ -70,7 +71,7 @@ pub fn read_listed_field(
     listed.read(setup).map(|(field, _)| Some(field))
 }
 
-/// The camera of a row, which is one of the setup.
+/// Returns the camera of a row, which must be in the setup.
 pub(super) fn camera_of<'a>(
     table: &Path,
     line: u64,
@@ -85,7 +86,7 @@ pub(super) fn camera_of<'a>(
 }
 
 impl ListedField {
-    /// Reads the image.
+    /// Reads the image of the field.
     pub(super) fn read(&self, setup: &DockingSetup) -> Result<(Field, FieldTelemetry), FileError> {
         let camera = &self.camera;
         let (columns, rows) = (camera.columns, self.row.lines.rows(camera.rows));
@@ -99,9 +100,9 @@ impl ListedField {
     }
 }
 
-/// The images of a folder in the order of their names: whole frames.
+/// Returns the PNG images of a directory in the order of their names, as whole frames.
 ///
-/// Digits in names are compared as numbers, so that `frame10.png` comes after `frame9.png`.
+/// Digits in names are compared as numbers: `frame10.png` comes after `frame9.png`.
 pub(super) fn by_name(directory: &Path) -> Result<Vec<PathBuf>, FileError> {
     let error = |source| FileError::io(directory, "open", source);
     let mut images = Vec::new();
@@ -129,7 +130,8 @@ pub(super) fn read_frame(path: &Path, index: u64, format: &Format) -> Result<Vid
     Ok(VideoFrame { index, dn: frame.dn().to_vec() })
 }
 
-/// A part of a name: text, or a number by length and digits (longer is larger once leading zeros are gone).
+/// A part of a name: text, or a number represented by the count of its digits and the digits (after removal
+/// of leading zeros, more digits are a larger number).
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum NamePart {
     Number(usize, String),
@@ -149,7 +151,7 @@ fn natural_key(path: &Path) -> (Vec<NamePart>, PathBuf) {
     };
     let letters: Vec<char> = name.chars().collect();
     let parts = letters.chunk_by(|a, b| a.is_ascii_digit() == b.is_ascii_digit()).map(part).collect();
-    // Names that differ in leading zeros alone still have one order.
+    // The path makes the order of names that differ only in leading zeros definite.
     (parts, path.to_owned())
 }
 

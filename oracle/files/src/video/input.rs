@@ -1,4 +1,4 @@
-//! Bytes that come in order, from a file or a pipe, and how far they have been read.
+//! Sequential byte input from a file or a pipe, with the current position.
 
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -20,7 +20,8 @@ impl Input {
     }
 
     pub(super) fn standard_input() -> Self {
-        // Standard input is buffered, and gives what has arrived: a frame is there as soon as its last byte is.
+        // Standard input is buffered and returns the bytes that have arrived: a frame is available as soon as
+        // its last byte is.
         Self::new(Path::new("standard input"), io::stdin())
     }
 
@@ -32,12 +33,12 @@ impl Input {
         &self.path
     }
 
-    /// Bytes read so far.
+    /// Returns the number of bytes read so far.
     pub(super) fn position(&self) -> u64 {
         self.position
     }
 
-    /// Fills the buffer, or as much of it as there are bytes left; the number of bytes.
+    /// Fills the buffer as far as bytes are available, and returns their number.
     pub(super) fn fill(&mut self, buffer: &mut [u8]) -> Result<usize, FileError> {
         let mut filled = 0;
         while let Some(rest) = buffer.get_mut(filled..).filter(|rest| !rest.is_empty()) {
@@ -52,7 +53,7 @@ impl Input {
         Ok(filled)
     }
 
-    /// Passes over bytes; the number that there were.
+    /// Skips bytes, and returns the number actually skipped.
     pub(super) fn skip(&mut self, bytes: u64) -> Result<u64, FileError> {
         let skipped = io::copy(&mut self.bytes.by_ref().take(bytes), &mut io::sink())
             .map_err(|source| FileError::io(&self.path, "read", source))?;
@@ -60,7 +61,7 @@ impl Input {
         Ok(skipped)
     }
 
-    /// The error of bytes that are not of the format.
+    /// Creates the error of bytes that do not have the format.
     pub(super) fn error(&self, format: &'static str, reason: impl ToString) -> FileError {
         FileError::format(&self.path, format, reason)
     }

@@ -1,4 +1,4 @@
-//! The fields of a video with a `telemetry.csv` beside it, as `boresight render --format avi` writes them.
+//! Fields of a video with an accompanying `telemetry.csv`, as written by `boresight render --format avi`.
 
 use std::path::{Path, PathBuf};
 
@@ -11,23 +11,23 @@ use crate::FileError;
 use crate::docking::telemetry::FieldRow;
 use crate::error::FileLocation;
 
-/// What a video with telemetry may be called, in the order in which they are looked for.
+/// File names of a video with telemetry, in the order of the search.
 const NAMES: [&str; 2] = ["fields.avi", "fields.y4m"];
 
-/// The video of a folder whose table names no images.
+/// Returns the video of a directory whose table names no images.
 pub(super) fn video_of(directory: &Path, rows: &[(u64, FieldRow)]) -> Option<PathBuf> {
     let named = rows.iter().any(|(_, row)| row.file.is_some());
     NAMES.iter().map(|name| directory.join(name)).find(|path| !named && path.is_file())
 }
 
-/// The fields of a video's frames, with the numbers, moments, lenses and settings of the table: two rows a frame, or one
-/// where the table says that a field holds all lines.
+/// Iterator over the fields of a video's frames, with the numbers, times, lenses and settings of the table:
+/// two rows per frame, or one row if the table states that a field contains all lines.
 pub(super) struct ListedVideo<F> {
     table: PathBuf,
     setup: DockingSetup,
     rows: std::vec::IntoIter<(u64, FieldRow)>,
     frames: F,
-    /// The frame of which only one field was taken.
+    /// Frame from which only one field has been taken.
     frame: Option<VideoFrame>,
 }
 

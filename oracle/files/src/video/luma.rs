@@ -1,28 +1,28 @@
-//! Grey values from the pixel layouts of uncompressed video.
+//! Conversion of the pixel layouts of uncompressed video to grey values.
 
-/// How pixels lie in a frame of uncompressed video.
+/// Pixel layout of a frame of uncompressed video.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Layout {
-    /// One byte a pixel, looked up in a table of grey values where there is one.
+    /// One byte per pixel, converted by a table of grey values if there is one.
     Grey {
-        /// The palette's grey values.
+        /// Grey values of the palette.
         palette: Option<Box<[u8; 256]>>,
     },
-    /// Blue, green, red and, with 4 bytes, one that means nothing.
+    /// Blue, green, red and, with 4 bytes, one unused byte.
     Bgr {
-        /// 3 or 4.
+        /// Number of bytes per pixel, 3 or 4.
         bytes: usize,
     },
     /// Two pixels in four bytes: Y U Y V, or U Y V Y with the first brightness at byte 1.
     Packed422 {
-        /// 0 or 1.
+        /// Index of the first brightness byte, 0 or 1.
         first: usize,
     },
-    /// A plane of brightness, then two of a quarter of its size (4:2:0).
+    /// One plane of brightness, then two planes of a quarter of its size (4:2:0).
     Planar420,
 }
 
-/// An uncompressed frame: its layout, its size, the order of its rows.
+/// An uncompressed frame: pixel layout, size and order of rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct UncompressedFormat {
     pub(super) layout: Layout,
@@ -32,7 +32,7 @@ pub(super) struct UncompressedFormat {
 }
 
 impl UncompressedFormat {
-    /// Bytes of a row of the brightness, without padding.
+    /// Returns the number of bytes in a row of brightness, without padding.
     fn row_bytes(&self) -> usize {
         match self.layout {
             Layout::Grey { .. } | Layout::Planar420 => self.columns,
@@ -41,7 +41,8 @@ impl UncompressedFormat {
         }
     }
 
-    /// The lengths that a frame may have: rows packed, or padded to four bytes as in a device-independent bitmap.
+    /// Returns the possible lengths of a frame: rows packed, or padded to four bytes as in a
+    /// device-independent bitmap.
     pub(super) fn lengths(&self) -> [usize; 2] {
         let packed = self.row_bytes() * self.rows;
         match self.layout {
@@ -50,10 +51,11 @@ impl UncompressedFormat {
         }
     }
 
-    /// The grey values, row by row from the top; `None` when the length is none of [`Self::lengths`].
+    /// Returns the grey values, row by row from the top; `None` if the length of the frame is not in
+    /// [`Self::lengths`].
     ///
-    /// Y is taken as it is, whatever range a player would stretch it from: it is the digital number. Colour is
-    /// turned to grey by the weights of BT.601, (299 R + 587 G + 114 B)/1000, rounded.
+    /// Y is used unscaled as the digital number, even if a player would stretch its range. Colour is
+    /// converted to grey with the weights of BT.601, (299 R + 587 G + 114 B)/1000, rounded.
     pub(super) fn grey(&self, frame: &[u8]) -> Option<Vec<u16>> {
         let [packed, padded] = self.lengths();
         let stride = match (&self.layout, frame.len()) {
@@ -91,7 +93,7 @@ impl UncompressedFormat {
     }
 }
 
-/// Brightness of a colour, BT.601.
+/// Returns the brightness of a colour, BT.601.
 pub(super) fn grey_of_bgr(blue: u8, green: u8, red: u8) -> u8 {
     ((299 * u32::from(red) + 587 * u32::from(green) + 114 * u32::from(blue) + 500) / 1000) as u8
 }

@@ -1,11 +1,12 @@
-//! Digitised sequences of television, in and out.
+//! Reading and writing of digitised television sequences.
 //!
-//! In: folders of images, AVI (uncompressed and Motion-JPEG), Y4M, raw frames, from files or from standard input; a
-//! [`FieldSource`] gives the fields of any of them, one whole frame in memory at a time. Out: AVI and Y4M
-//! ([`AviWriter`], [`Y4mWriter`]); fields as images are written one by one ([`write_field`]).
+//! Input: directories of images, AVI (uncompressed and Motion-JPEG), Y4M, raw frames, from files or from
+//! standard input. A [`FieldSource`] returns the fields of any of them, with one whole frame in memory at a
+//! time. Output: AVI and Y4M ([`AviWriter`], [`Y4mWriter`]); fields as images are written individually
+//! ([`write_field`]).
 //!
-//! A file of another size than the camera is refused before a frame is allocated. Of a file that is cut short every
-//! whole frame is given, then an error that names the chunk and its place.
+//! A file whose size differs from that of the camera is rejected before memory is allocated for a frame. A
+//! truncated file returns every complete frame, then an error that names the chunk and its position.
 
 mod avi;
 mod avi_header;
@@ -36,11 +37,11 @@ use contract::docking::Field;
 use crate::FileError;
 use crate::frame::image16;
 
-/// Writes the image of a field as grey PNG: of 8 bits where its digitiser has no more, otherwise of 16; values in DN
-/// and not stretched.
+/// Writes the image of a field as grey PNG, with 8 bits if its digitiser has at most 8, otherwise with 16.
+/// Values are in DN and unstretched.
 ///
 /// # Errors
-/// [`FileError::Io`] when the file exists or cannot be written.
+/// [`FileError::Io`] if the file exists or cannot be written.
 pub fn write_field(path: &Path, field: &Field) -> Result<(), FileError> {
     image16::write_png_of_depth(path, field.image())
 }

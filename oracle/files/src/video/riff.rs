@@ -1,12 +1,12 @@
-//! RIFF: chunks and lists of chunks, walked from front to back.
+//! RIFF files: chunks and lists of chunks, read from front to back.
 //!
-//! A size is believed only as far as the list around it goes, so no chunk reaches out of its list, and nothing is
-//! allocated here: who wants a chunk's bytes knows how many they may be.
+//! The size of a chunk must fit in the list around it, so no chunk extends beyond its list. The walker
+//! allocates no memory: the caller that requests the bytes of a chunk limits their number.
 
 use super::input::Input;
 use crate::FileError;
 
-/// Four letters that name a chunk or a kind of list.
+/// Four letters that identify a chunk or a kind of list.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct FourCc(pub(super) [u8; 4]);
 
@@ -16,23 +16,23 @@ impl std::fmt::Display for FourCc {
     }
 }
 
-/// A chunk whose bytes are still to be read.
+/// A chunk whose bytes have not been read yet.
 #[derive(Clone, Copy)]
 pub(super) struct Chunk {
     pub(super) id: FourCc,
-    /// Where its header stands in the file.
+    /// Position of the chunk's header in the file, bytes.
     pub(super) offset: u64,
-    /// Bytes after the header, without padding.
+    /// Number of bytes after the header, without padding.
     pub(super) size: u32,
 }
 
-/// What comes next.
+/// Next element of a RIFF file.
 pub(super) enum Item {
-    /// A list begins (`RIFF` or `LIST`); its kind.
+    /// Beginning of a list (`RIFF` or `LIST`) of this kind.
     List(FourCc),
     /// A chunk.
     Chunk(Chunk),
-    /// The file ends where a list of the outermost level does.
+    /// End of the file, at the end of a list of the outermost level.
     End,
 }
 
@@ -42,16 +42,16 @@ struct OpenList {
     end: u64,
 }
 
-/// A position in a RIFF file.
+/// Reading position in a RIFF file.
 pub(super) struct Walker {
     input: Input,
     lists: Vec<OpenList>,
-    /// Where the next header stands.
+    /// Position of the next header, bytes.
     next: u64,
 }
 
 impl Walker {
-    /// Deeper than any AVI nests its lists.
+    /// Deepest nesting of lists; deeper than in any AVI file.
     const DEEPEST: usize = 8;
 
     pub(super) fn new(input: Input) -> Self {
@@ -62,12 +62,12 @@ impl Walker {
         &self.input
     }
 
-    /// The error of a chunk.
+    /// Creates the error of a chunk.
     pub(super) fn error(&self, chunk: &Chunk, reason: impl std::fmt::Display) -> FileError {
         self.input.error("AVI", format!("chunk `{}` at byte {}: {reason}", chunk.id, chunk.offset))
     }
 
-    /// Goes to the next header; bytes of a chunk that were not read are passed over.
+    /// Advances to the next header; unread bytes of a chunk are skipped.
     pub(super) fn step(&mut self) -> Result<Item, FileError> {
         self.input.skip(self.next.saturating_sub(self.input.position()))?;
         if self.input.position() < self.next {
@@ -92,7 +92,8 @@ impl Walker {
         let chunk = Chunk { id, offset, size: u32::from_le_bytes([s0, s1, s2, s3]) };
         let outermost = self.lists.is_empty();
         if outermost && &id.0 != b"RIFF" {
-            // What follows the last RIFF chunk is padding of some recorder's; what comes before the first is not.
+            // Bytes after the last RIFF chunk are padding of some recorder; bytes before the first are an
+            // error.
             return if offset == 0 {
                 Err(self.input.error("AVI", "it does not begin with RIFF"))
             } else {
@@ -108,7 +109,7 @@ impl Walker {
         if outermost || &id.0 == b"LIST" {
             self.open(&chunk)
         } else {
-            // Chunks begin at even bytes; the padding of a list's last chunk may be missing.
+            // Chunks begin at even bytes; the padding of the last chunk in a list may be missing.
             let end = offset + 8 + u64::from(chunk.size);
             self.next = (end + end % 2).min(self.lists.last().map_or(u64::MAX, |list| list.end));
             Ok(Item::Chunk(chunk))
@@ -117,7 +118,7 @@ impl Walker {
 
     fn open(&mut self, chunk: &Chunk) -> Result<Item, FileError> {
         if chunk.size < 4 {
-            // What a recorder leaves that was stopped before it could write the size.
+            // Left by a recorder that was stopped before it could write the size.
             return Err(
                 self.error(chunk, format!("a list of {} bytes; the recording was not completed", chunk.size))
             );
@@ -139,7 +140,8 @@ impl Walker {
         Ok(Item::List(kind))
     }
 
-    /// Reads the bytes of the chunk that [`Walker::step`] gave last into a buffer of its size.
+    /// Reads the bytes of the chunk that [`Walker::step`] returned last; the buffer is resized to the size of
+    /// the chunk.
     pub(super) fn read(&mut self, chunk: &Chunk, bytes: &mut Vec<u8>) -> Result<(), FileError> {
         bytes.resize(chunk.size as usize, 0);
         let got = self.input.fill(bytes)?;

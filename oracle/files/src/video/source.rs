@@ -1,4 +1,4 @@
-//! Where fields come from.
+//! Sources of fields.
 
 use std::iter;
 use std::path::{Path, PathBuf};
@@ -16,17 +16,17 @@ use crate::FileError;
 use crate::docking::telemetry::{FieldRow, read_with_lines};
 use crate::error::FileLocation;
 
-/// Frames a second of a sequence that does not say: 625-line television.
+/// Default frame rate of a sequence, frames per second: 625-line television.
 const DEFAULT_RATE_HZ: f64 = 25.0;
-/// Rates that a sequence may have, Hz.
+/// Allowed frame rates of a sequence, Hz.
 const RATES_HZ: std::ops::RangeInclusive<f64> = 0.001..=100_000.0;
 
 /// Columns and rows of raw frames, written `768x576`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameSize {
-    /// Columns.
+    /// Number of columns.
     pub columns: usize,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
 }
 
@@ -41,23 +41,23 @@ impl FromStr for FrameSize {
     }
 }
 
-/// What a sequence does not say of itself.
+/// Properties of a sequence that the sequence itself does not state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SequenceOptions {
-    /// What the rows of whole frames are. A field order that a header may name is not consulted: too many are wrong.
+    /// Scan of the rows in whole frames. A field order in a header is ignored, because too many are wrong.
     pub scan: Scan,
-    /// Which of [`DockingSetup::cameras`] took it, 0-based.
+    /// Index in [`DockingSetup::cameras`] of the camera that took the sequence, from 0.
     pub camera: usize,
-    /// Whole frames a second; without it as the file says, or 25.
+    /// Whole frames per second; default: the rate in the file, or 25.
     pub frame_rate_hz: Option<f64>,
-    /// The input is raw bytes of grey, frames of this size; without it, standard input is Y4M.
+    /// Size of the frames if the input is raw grey bytes; without it, standard input is Y4M.
     pub raw: Option<FrameSize>,
-    /// How the video was digitised.
+    /// Setting with which the video was digitised.
     pub digitiser: Digitiser,
 }
 
 impl SequenceOptions {
-    /// Interlaced television of the first camera, the top field first.
+    /// Options for interlaced television of the first camera, with the top field first.
     pub const INTERLACED: Self = Self {
         scan: Scan::Interlaced(FieldOrder::Top),
         camera: 0,
@@ -67,27 +67,30 @@ impl SequenceOptions {
     };
 }
 
-/// The fields of a sequence, in the order of time.
+/// Iterator over the fields of a sequence, in order of time.
 ///
-/// A sequence ends at its end or at its first error, which is the last item. Numbers of fields ascend; those of frames
-/// that a recorder dropped are missing.
+/// A sequence ends at its end or at its first error, which is the last item. Field numbers ascend; those of
+/// frames that a recorder dropped are missing.
 pub struct FieldSource(Box<dyn Iterator<Item = Result<(Field, FieldTelemetry), FileError>> + Send>);
 
 impl FieldSource {
     /// Opens a sequence:
     ///
-    /// - a folder with a `telemetry.csv` ([`crate::FieldRow`]): the fields that it lists, their images or, where it names
-    ///   none, those of `fields.avi` or `fields.y4m`; `options` do not apply to it;
-    /// - another folder: its images `*.png`, whole frames, in the order of their names;
-    /// - `-`: standard input, Y4M or, with `options.raw`, raw frames; live: a field is given as soon as the last byte
-    ///   of its frame has arrived, and a pipe that is closed between two frames is the end;
+    /// - a directory with a `telemetry.csv` ([`crate::FieldRow`]): the fields that the table lists, with
+    ///   their images or, if the table names none, those of `fields.avi` or `fields.y4m`; `options` do not
+    ///   apply;
+    /// - another directory: its images `*.png`, as whole frames in the order of their names;
+    /// - `-`: standard input, Y4M or, with `options.raw`, raw frames. Works for live input: a field is
+    ///   returned as soon as the last byte of its frame has arrived, and a pipe that is closed between two
+    ///   frames ends the sequence;
     /// - a file `*.avi` or `*.y4m`, or with `options.raw` any file of raw frames.
     ///
-    /// Field k of a sequence without telemetry is at k/(fields a second).
+    /// Field k of a sequence without telemetry has the time k/(fields per second).
     ///
     /// # Errors
-    /// A [`FileError`] for what is not there or not of its format, for a size that is not the camera's, for a
-    /// sequence of 8 bits where the setup's digitiser has other, and for options outside their ranges.
+    /// A [`FileError`] for a file that is missing or does not have its format, for a size that differs from
+    /// that of the camera, for a sequence of 8 bits if the digitiser of the setup has another bit depth, and
+    /// for options outside their ranges.
     pub fn open(path: &Path, setup: &DockingSetup, options: &SequenceOptions) -> Result<Self, FileError> {
         let is = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
         let table = path.join("telemetry.csv");
@@ -132,7 +135,7 @@ impl FieldSource {
         }
     }
 
-    /// The whole frames of a video, fields by the rows of a table.
+    /// Returns the fields of a video's whole frames, as listed in a table.
     fn listed_video(
         video: &Path,
         table: PathBuf,
@@ -229,7 +232,7 @@ impl Iterator for FieldSource {
     }
 }
 
-/// Columns and rows of the camera that took the sequence.
+/// Returns the number of columns and rows of the camera that took the sequence.
 fn size(path: &Path, setup: &DockingSetup, options: &SequenceOptions) -> Result<(usize, usize), FileError> {
     let camera = setup.cameras.get(options.camera).ok_or_else(|| {
         let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
@@ -239,7 +242,7 @@ fn size(path: &Path, setup: &DockingSetup, options: &SequenceOptions) -> Result<
     Ok((camera.columns, camera.rows))
 }
 
-/// What the frames of a sequence have in common; `bit_depth` is what the file holds, `rate_hz` what it says.
+/// Returns the common properties of a sequence's frames; `bit_depth` and `rate_hz` are those of the file.
 fn format(
     path: &Path,
     setup: &DockingSetup,

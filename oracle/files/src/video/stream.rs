@@ -1,23 +1,23 @@
-//! Frames without a container: YUV4MPEG2 (Y4M) and raw bytes. Both can be live: a frame is given as soon as its last
-//! byte has arrived, and nothing beyond it is waited for.
+//! Frames without a container: YUV4MPEG2 (Y4M) and raw bytes. Both can be live: a frame is returned as soon
+//! as its last byte has arrived, without waiting for further bytes.
 
 use super::input::Input;
 use super::video_frame::VideoFrame;
 use crate::FileError;
 
-/// The frames of a Y4M stream (8 bits, mono, 4:2:0, 4:2:2 or 4:4:4) or of raw grey bytes. Of Y4M the plane Y is
-/// taken as it is.
+/// Iterator over the frames of a Y4M stream (8 bits, mono, 4:2:0, 4:2:2 or 4:4:4) or of raw grey bytes. The
+/// plane Y of Y4M is used unscaled.
 pub(super) struct StreamReader {
     input: Input,
     framing: Framing,
     grey: Vec<u8>,
-    /// Bytes of colour after the grey ones.
+    /// Number of colour bytes after the grey bytes.
     colour_bytes: u64,
     rate_hz: Option<f64>,
     next: u64,
 }
 
-/// What stands before each frame.
+/// Header before each frame.
 #[derive(Clone, Copy, PartialEq)]
 enum Framing {
     Nothing,
@@ -25,17 +25,17 @@ enum Framing {
 }
 
 const Y4M: &str = "Y4M";
-/// Longest line of a header, as in mjpegtools.
+/// Longest line of a header, bytes, as in mjpegtools.
 const LONGEST_LINE: usize = 1024;
 
 impl StreamReader {
-    /// Raw frames: one byte a pixel, row by row, one frame after the other.
+    /// Creates a reader of raw frames: one byte per pixel, row by row, frame after frame.
     pub(super) fn raw(input: Input, (columns, rows): (usize, usize)) -> Self {
         let grey = vec![0; columns * rows];
         Self { input, framing: Framing::Nothing, grey, colour_bytes: 0, rate_hz: None, next: 0 }
     }
 
-    /// Reads the header of a Y4M stream; `size` is columns and rows of the camera.
+    /// Reads the header of a Y4M stream; `size` is the number of columns and rows of the camera.
     pub(super) fn y4m(mut input: Input, size: (usize, usize)) -> Result<Self, FileError> {
         let Some(line) = read_line(&mut input, "the header")? else {
             return Err(input.error(Y4M, "it is empty"));
@@ -87,7 +87,7 @@ impl StreamReader {
         })
     }
 
-    /// Frames a second, if the stream says.
+    /// Returns the number of frames per second, if stated in the stream.
     pub(super) fn rate_hz(&self) -> Option<f64> {
         self.rate_hz
     }
@@ -130,7 +130,7 @@ impl Iterator for StreamReader {
     }
 }
 
-/// A line without its end; `None` when the input ends before it.
+/// Reads a line without its terminator; `None` if the input ends before the line begins.
 fn read_line(input: &mut Input, what: &str) -> Result<Option<String>, FileError> {
     let begin = input.position();
     let mut line = Vec::new();
@@ -152,7 +152,7 @@ fn read_line(input: &mut Input, what: &str) -> Result<Option<String>, FileError>
         .map_err(|_| input.error(Y4M, format!("byte {begin}: {what} is not text")))
 }
 
-/// Frames a second, as `25:1`; `0:0` means unknown.
+/// Parses the number of frames per second, for example `25:1`; `0:0` means unknown.
 fn rate(input: &Input, text: &str) -> Result<Option<f64>, FileError> {
     let ratio =
         text.split_once(':').and_then(|(n, d)| Some((n.parse::<u32>().ok()?, d.parse::<u32>().ok()?)));

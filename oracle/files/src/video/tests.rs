@@ -1,4 +1,4 @@
-//! Sequences of independent writers, our own round trips, and files that are broken.
+//! Sequences from independent writers, round trips through the writers of this crate, and damaged files.
 
 use std::fs;
 use std::io::{Cursor, Read};
@@ -56,7 +56,7 @@ fn options(scan: Scan) -> SequenceOptions {
 
 const TOP: Scan = Scan::Interlaced(FieldOrder::Top);
 
-/// Grey of the golden files: golden/video/make.py.
+/// Grey value of the golden files: golden/video/make.py.
 fn golden_grey(x: usize, y: usize, frame: usize) -> u16 {
     (20 + 2 * x + 2 * y + 15 * frame) as u16
 }
@@ -69,7 +69,7 @@ fn input(bytes: &[u8]) -> Input {
     Input::new(Path::new("tiny"), Cursor::new(bytes.to_vec()))
 }
 
-/// The fields before the error, and the error.
+/// Returns the fields before the error, and the error.
 fn split(items: impl Iterator<Item = Item>) -> (Vec<(Field, FieldTelemetry)>, Option<String>) {
     let mut fields = Vec::new();
     let mut error = None;
@@ -90,7 +90,7 @@ fn opened(result: Result<FieldSource, FileError>) -> (Vec<(Field, FieldTelemetry
     }
 }
 
-/// `tolerance` is that of golden/manifest.toml: lossless files 0, JPEG 4 grey values.
+/// `tolerance` is taken from golden/manifest.toml: 0 for lossless files, 4 grey values for JPEG.
 fn check_golden(name: &str, rows: usize, tolerance: u16) {
     let setup = setup(48, rows);
     let (fields, error) = opened(FieldSource::open(&golden(name), &setup, &options(TOP)));
@@ -133,7 +133,7 @@ fn y4m_of_another_writer_is_read() {
     }
 }
 
-/// A field whose pixels differ; `step` is small where JPEG must follow them.
+/// Returns a field with varying pixels; `step` is small if JPEG must reproduce them.
 fn field(number: u64, lines: Lines, columns: usize, rows: usize, step: usize) -> Field {
     let field_rows = lines.rows(rows);
     let value = |i: usize| ((i % columns + i / columns) * step + 3 * number as usize) % 200 + 20;
@@ -185,7 +185,7 @@ fn fields_come_back_from_motion_jpeg_to_a_few_grey_values() {
     assert_eq!((error, read.len()), (None, 3));
     for ((read, _), written) in read.iter().zip(&fields) {
         let pairs = read.image().dn().iter().zip(written.image().dn());
-        // A ramp at quality 95: quantisation of its few coefficients.
+        // A ramp at quality 95 differs by the quantisation of its few coefficients.
         assert!(pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap() <= 4);
     }
 }
@@ -276,7 +276,7 @@ fn raw_frames_are_read_in_either_field_order() {
     assert_eq!("768x576".parse(), Ok(FrameSize { columns: 768, rows: 576 }));
 }
 
-/// A pipe: what is sent, and nothing more until then.
+/// A pipe that returns only the bytes sent so far.
 struct Pipe(mpsc::Receiver<u8>);
 
 impl Read for Pipe {
@@ -334,7 +334,7 @@ fn a_header_of_y4m_that_lies_is_refused() {
     assert!(message.contains("longer than"), "{message}");
 }
 
-/// A grey AVI of three frames of 5 × 3 pixels, and where its frames' chunks end.
+/// Returns a grey AVI of three frames of 5 × 3 pixels, and the ends of its frame chunks.
 fn tiny_avi(coding: AviCoding) -> (Vec<u8>, Vec<usize>) {
     let directory = tempdir().unwrap();
     let path = directory.path().join("a.avi");
@@ -433,7 +433,7 @@ fn a_jpeg_of_another_size_is_refused_before_it_is_decoded() {
 fn dropped_frames_leave_their_numbers_and_parts_of_a_large_file_are_read_on() {
     let (one, ends) = tiny_avi(AviCoding::Grey);
     let first = ends[0] - 32;
-    // The second frame is empty, as a recorder marks a dropped one.
+    // The second frame is empty, which is how a recorder marks a dropped frame.
     let mut bytes = one[..ends[0]].to_vec();
     bytes.extend(b"00db\0\0\0\0");
     bytes.extend(&one[ends[1]..ends[2]]);
@@ -445,7 +445,7 @@ fn dropped_frames_leave_their_numbers_and_parts_of_a_large_file_are_read_on() {
     let end = bytes.len();
     set(&mut bytes, movi - 4, end);
     set(&mut bytes, 4, end);
-    // A second part, as OpenDML has it.
+    // A second part, in the form used by OpenDML.
     bytes.extend(b"RIFF\x30\0\0\0AVIXLIST\x24\0\0\0movi");
     bytes.extend(&one[first..ends[0]]);
     let (fields, error) = read_avi(&bytes);
@@ -494,7 +494,7 @@ proptest! {
         let begin = Instant::now();
         let (fields, _) = read_avi(&bytes);
         prop_assert!(fields.len() <= 3);
-        // Milliseconds are enough; seconds would be a loop that a file can lengthen.
+        // Milliseconds suffice; seconds would indicate a loop whose length depends on the file.
         prop_assert!(begin.elapsed() < Duration::from_secs(2));
     }
 

@@ -1,25 +1,25 @@
-//! A whole frame of television, and the two fields that it is woven of.
+//! Whole television frames, and their two fields.
 
 use std::str::FromStr;
 
 use contract::docking::{Digitiser, Field, FieldTelemetry, Lines};
 use contract::{ContractError, Frame};
 
-/// A frame of a sequence, of the camera's size.
+/// A frame of a sequence, with the size of the camera.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct VideoFrame {
-    /// Its place in the sequence, dropped frames counted.
+    /// Index in the sequence; dropped frames count.
     pub(super) index: u64,
     /// Digital numbers, row by row from the top.
     pub(super) dn: Vec<u16>,
 }
 
-/// Which field of an interlaced frame came first.
+/// Order in time of the fields of an interlaced frame: which field is first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FieldOrder {
-    /// The field with the top row: rows 0, 2, 4, …
+    /// The field with the top row is first: rows 0, 2, 4, …
     Top,
-    /// The other one: rows 1, 3, 5, …
+    /// The field without the top row is first: rows 1, 3, 5, …
     Bottom,
 }
 
@@ -35,17 +35,17 @@ impl FromStr for FieldOrder {
     }
 }
 
-/// What the rows of a frame are.
+/// Scan of the rows in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Scan {
-    /// All of one moment: a frame is one field.
+    /// All rows have the same time: a frame is one field.
     Progressive,
-    /// Even and odd rows are half a frame apart in time: a frame is two fields.
+    /// Even and odd rows differ by half a frame period: a frame is two fields.
     Interlaced(FieldOrder),
 }
 
 impl Scan {
-    /// The rows of the fields of a frame, in the order of time.
+    /// Returns the camera rows of each field in a frame, in order of time.
     pub(super) fn fields(self) -> &'static [Lines] {
         match self {
             Self::Progressive => &[Lines::All],
@@ -55,7 +55,7 @@ impl Scan {
     }
 }
 
-/// What frames have in common.
+/// Common properties of the frames of a sequence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Format {
     pub(super) columns: usize,
@@ -68,7 +68,8 @@ pub(super) struct Format {
 }
 
 impl Format {
-    /// The fields of a frame, in the order of time: field k of the sequence is at the time k/(fields a second).
+    /// Returns the fields of a frame, in order of time: field k of the sequence has the time k/(fields per
+    /// second).
     pub(super) fn split(&self, frame: &VideoFrame) -> Result<Vec<(Field, FieldTelemetry)>, ContractError> {
         let fields = self.scan.fields();
         let field = |(nth, &lines): (usize, &Lines)| {
@@ -87,13 +88,13 @@ impl Format {
     }
 }
 
-/// The rows of an image that a field holds.
+/// Returns the rows of an image that belong to a field.
 pub(super) fn take_rows(dn: &[u16], columns: usize, lines: Lines) -> Vec<u16> {
     let first = lines.camera_row(0);
     dn.chunks_exact(columns).skip(first).step_by(lines.step()).flatten().copied().collect()
 }
 
-/// Puts the rows of a field into a whole frame of its camera, which has the camera's size.
+/// Copies the rows of a field to a whole frame, which has the size of the field's camera.
 pub(super) fn weave(field: &Field, frame: &mut [u8]) -> Option<()> {
     let image = field.image();
     for row in 0..image.rows() {

@@ -1,4 +1,4 @@
-//! Fields into whole frames, for the writers of video.
+//! Interleaving of fields to whole frames, for the video writers.
 
 use std::path::{Path, PathBuf};
 
@@ -8,27 +8,27 @@ use super::video_frame::weave;
 use crate::FileError;
 use crate::error::FileLocation;
 
-/// Weaves fields, which come in pairs of an even and an odd one in either order, into frames of 8 bits.
+/// Interleaves fields, which come in pairs of an even and an odd field in either order, to frames of 8 bits.
 pub(super) struct Weaver {
     path: PathBuf,
     columns: usize,
     rows: usize,
-    /// Rows that the frame in hand still waits for.
+    /// Rows that are still missing in the current frame.
     waits_for: Option<Lines>,
     frame: Vec<u8>,
 }
 
 impl Weaver {
-    /// For the file at `path`, with frames of `columns` × `rows`.
+    /// Creates a weaver for the file at `path`, with frames of `columns` × `rows`.
     pub(super) fn new(path: &Path, (columns, rows): (usize, usize)) -> Self {
         Self { path: path.to_owned(), columns, rows, waits_for: None, frame: vec![0; columns * rows] }
     }
 
-    /// Takes a field; whether the frame is complete.
+    /// Adds a field to the current frame. Returns true if the frame is complete.
     ///
     /// # Errors
-    /// [`FileError::Value`] for a field of another size, for one that is not the other half of the one before, and for
-    /// a value above 255.
+    /// [`FileError::Value`] for a field of another size, for a field that does not complete the frame of the
+    /// previous one, and for a value above 255.
     pub(super) fn add(&mut self, field: &Field) -> Result<bool, FileError> {
         let number = field.number();
         let wrong = |what: &str, value: String, expected: &str| {
@@ -58,17 +58,17 @@ impl Weaver {
         Ok(self.waits_for.is_none())
     }
 
-    /// Whether a field waits for its other half, which from now on is taken to stay black.
+    /// Returns true if the current frame has only one field; the rows of the other then remain black.
     pub(super) fn rest(&mut self) -> bool {
         self.waits_for.take().is_some()
     }
 
-    /// The frame in hand, row by row from the top.
+    /// Returns the current frame, row by row from the top.
     pub(super) fn frame(&self) -> &[u8] {
         &self.frame
     }
 
-    /// Begins the next frame, black.
+    /// Begins the next frame, in black.
     pub(super) fn next(&mut self) {
         self.frame.fill(0);
     }

@@ -1,4 +1,5 @@
-//! YUV4MPEG2 (Y4M), grey: a header line, then a line and the bytes of each frame. Can be a pipe.
+//! Writer of grey YUV4MPEG2 (Y4M): a header line, then a line and the bytes of each frame. The output may be
+//! a pipe.
 
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -10,11 +11,11 @@ use super::weaver::Weaver;
 use crate::error::file_error::create_new;
 use crate::{FileError, PartialFiles};
 
-/// Writes fields as Y4M, two of a frame woven into one image.
+/// Writer of fields as Y4M. The two fields of a frame are interleaved in one image.
 pub struct Y4mWriter {
     weaver: Weaver,
     path: PathBuf,
-    /// `None`: standard output.
+    /// Output file; `None` for standard output.
     files: Option<PartialFiles>,
     out: Box<dyn Write>,
     columns: usize,
@@ -24,11 +25,11 @@ pub struct Y4mWriter {
 }
 
 impl Y4mWriter {
-    /// Creates a file, which has its name when it is complete, for images of `columns` × `rows` and `frame_rate_hz` whole
-    /// frames a second (kept to the millionth).
+    /// Creates a file for images of `columns` × `rows` and `frame_rate_hz` whole frames per second (stored to
+    /// one millionth). The file gets its name when it is complete.
     ///
     /// # Errors
-    /// [`FileError::OutputTaken`] when it exists; [`FileError::Value`] for a side that is not 1 to
+    /// [`FileError::OutputTaken`] if it exists; [`FileError::Value`] for a side that is not 1 to
     /// [`contract::Camera::MAX_SIDE_PX`] or a rate that is not 0.001 to 1000 Hz; [`FileError::Io`].
     pub fn create(path: &Path, size: (usize, usize), frame_rate_hz: f64) -> Result<Self, FileError> {
         check_frames(path, size, frame_rate_hz)?;
@@ -37,10 +38,10 @@ impl Y4mWriter {
         Ok(Self::new(path, Some(files), Box::new(file), size, frame_rate_hz))
     }
 
-    /// Writes to standard output, each frame as soon as it is complete.
+    /// Creates a writer to standard output, which receives each frame once it is complete.
     ///
     /// # Errors
-    /// As [`Y4mWriter::create`].
+    /// [`FileError::Value`] under the same conditions as for [`Y4mWriter::create`].
     pub fn standard_output(size: (usize, usize), frame_rate_hz: f64) -> Result<Self, FileError> {
         let path = Path::new("standard output");
         check_frames(path, size, frame_rate_hz)?;
@@ -66,12 +67,12 @@ impl Y4mWriter {
         }
     }
 
-    /// Writes a field: a progressive frame, or one of two fields that make a frame together. Fields come in pairs of
-    /// an even and an odd one, in either order; the header names that of the first.
+    /// Writes a field: a progressive frame, or one of the two fields of a frame. Fields come in pairs of an
+    /// even and an odd field, in either order; the header names that of the first field.
     ///
     /// # Errors
-    /// [`FileError::Value`] for a field of another size, for one that is not the other half of the one before, and for
-    /// a value above 255; [`FileError::Io`].
+    /// [`FileError::Value`] for a field of another size, for a field that does not complete the frame of the
+    /// previous one, and for a value above 255; [`FileError::Io`].
     pub fn write(&mut self, field: &Field) -> Result<(), FileError> {
         if !self.header_is_written {
             self.header_is_written = true;
@@ -88,7 +89,7 @@ impl Y4mWriter {
         if self.weaver.add(field)? { self.put_frame() } else { Ok(()) }
     }
 
-    /// Completes the file. A last field without its other half leaves those rows black.
+    /// Completes the file. If the last frame has only one field, the rows of the other remain black.
     ///
     /// # Errors
     /// [`FileError::Io`].

@@ -1,10 +1,12 @@
-//! A baseline: what was good enough once, kept to be compared with.
+//! Baselines: accepted results that are kept for comparison with later ones.
 //!
-//! A folder with two files: `baseline.toml`, readable in a diff, says what was run, by which pipeline, why this is the baseline, how it is
-//! cut into blocks, and the figures; `rows.parquet` has a row a unit. The one holds the SHA-256 of the other.
+//! A baseline is a directory with two files. `baseline.toml`, readable in a diff, states the run, the
+//! pipeline, the reason for this baseline, its division into blocks, and the figures; `rows.parquet` has one
+//! row per unit. `baseline.toml` contains the SHA-256 of `rows.parquet`.
 //!
-//! Two files cannot be replaced at once. New rows wait under a name of their hash until the header is there that holds it, and then get
-//! theirs; a reader takes those that the header means. So whenever it is killed, the old baseline is there, or the new one.
+//! Two files cannot be replaced in one operation. New rows are first stored under a name with their hash, and
+//! get their final name once the header that contains this hash exists; a reader uses the rows that match the
+//! header. A process that is killed at any time therefore leaves either the old or the new baseline.
 
 pub(crate) mod rows;
 pub(crate) mod tolerance;
@@ -23,15 +25,15 @@ use crate::dependence::memory::{Memory, memory};
 use crate::identity::Identity;
 use crate::sample::Sample;
 
-/// Version of the form of these files.
+/// Version of the file format.
 const FORMAT: u32 = 2;
 /// Largest `rows.parquet` that is read, bytes.
 const MAX_BYTES: u64 = 1 << 28;
 
-/// The files of a baseline.
+/// Names of the files of a baseline.
 const NAMES: [&str; 2] = ["baseline.toml", "rows.parquet"];
 
-/// What a later one replaces.
+/// Files that a newer baseline may replace.
 const HEADERS: ReplaceableFile<'static> = ReplaceableFile {
     description: "the baseline.toml of an earlier baseline",
     matches: &|beginning| beginning.starts_with(b"format = "),
@@ -40,48 +42,49 @@ const ROWS: ReplaceableFile<'static> = ReplaceableFile {
     description: "the rows of an earlier baseline",
     matches: &|beginning| beginning.starts_with(b"PAR1"),
 };
-/// What becomes of a baseline that is there already.
+/// Treatment of an existing baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Replacement {
-    /// It stays, and making another in its place is an error.
+    /// The existing baseline is kept, and writing another one to its directory is an error.
     Refuse,
-    /// It is replaced.
+    /// The existing baseline is replaced.
     Allow,
 }
 
-/// `baseline.toml`.
+/// Contents of `baseline.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BaselineHeader {
-    /// Version of the form of these files.
+    /// Version of the file format.
     pub format: u32,
-    /// Why this is the baseline.
+    /// Reason why the result became the baseline.
     pub reason: String,
     /// SHA-256 of `rows.parquet`.
     pub rows_sha256: String,
     /// Number of rows: frames, fields or cases.
     pub units: u64,
-    /// How it is cut.
+    /// Division into blocks.
     pub blocks: BlockRule,
     /// Figures by name.
     pub figures: IndexMap<String, BaselineFigure>,
-    /// What was run.
+    /// Identity of the run.
     pub run: Identity,
 }
 
-/// How a baseline is cut into blocks.
+/// Division of a baseline into blocks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BlockRule {
-    /// How many there are.
+    /// Number of blocks.
     pub count: u64,
-    /// Units of a block, about; blocks do not cross gaps, and are shorter where a sequence is.
+    /// Approximate number of units per block; blocks do not cross gaps, and are shorter in short sequences.
     pub length: u64,
-    /// Whether `--block-length` gave it: then it holds for results of other frames too, which have longer blocks otherwise.
+    /// True if `--block-length` set the length: it then also holds for results of other frames, which
+    /// otherwise use longer blocks.
     pub is_given: bool,
-    /// The longest autocorrelation time of the figures, units.
+    /// Longest autocorrelation time of the figures, units.
     pub memory: f64,
-    /// The figure that has it; empty when none remembers anything.
+    /// Figure with the longest autocorrelation time; empty if no figure is correlated.
     pub memory_of: String,
 }
 
@@ -89,19 +92,19 @@ pub struct BlockRule {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BaselineFigure {
-    /// How the values of the units are summed up: `rate`, `mean`, `rms`, `median`.
+    /// Reduction of the unit values to the figure: `rate`, `mean`, `rms`, `median`.
     pub by: String,
-    /// The value; absent when it is counted over nothing.
+    /// Value of the figure; absent if no unit has a value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// How many values it is counted over.
+    /// Number of values from which the figure is computed.
     pub of: u64,
-    /// By how much a result may be worse and pass, in the unit of the figure.
+    /// Largest worsening of a result that still passes, in the unit of the figure.
     pub tolerance: f64,
-    /// Of a rate of errors "within" something: the limit, degrees.
+    /// Limit of a rate that counts errors "within" a limit, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit_deg: Option<f64>,
-    /// Of a figure of lines of sight: the attitude that they rest on.
+    /// Attitude on which a figure of lines of sight is based.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude: Option<String>,
 }
@@ -109,20 +112,21 @@ pub struct BaselineFigure {
 /// A baseline in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baseline {
-    /// `baseline.toml`.
+    /// Contents of `baseline.toml`.
     pub header: BaselineHeader,
-    /// What was run and what came of each unit.
+    /// Identity of the run, and the results of each unit.
     pub sample: Sample,
     /// The block of each unit.
     pub blocks: Blocks,
 }
 
 impl Baseline {
-    /// A baseline of a sample, cut into blocks of about `length` units; without it, ten times as long as its figures remember, but not
-    /// so long that there are fewer than twenty, and not shorter than thirty units.
+    /// Creates a baseline from a sample, divided into blocks of about `length` units. The default length is
+    /// ten times the longest autocorrelation time of the figures, but short enough to leave twenty blocks,
+    /// and at least thirty units.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for an empty reason, or fewer blocks than can show anything.
+    /// [`Failure::Usage`] for an empty reason, or for too few blocks to show any change.
     pub fn new(sample: Sample, reason: &str, length: Option<u64>) -> Result<Self, Failure> {
         let reason = reason.trim();
         if reason.is_empty() {
@@ -163,10 +167,10 @@ impl Baseline {
         Ok(Self { header, sample, blocks })
     }
 
-    /// The same with tolerances of its own for some figures, in their units.
+    /// Returns the baseline with the given tolerances for some figures, in their units.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a figure that it does not have.
+    /// [`Failure::Usage`] for a figure that the baseline does not have.
     pub fn with_tolerances(mut self, tolerances: &IndexMap<String, f64>) -> Result<Self, Failure> {
         for (name, tolerance) in tolerances {
             match self.header.figures.get_mut(name) {
@@ -177,7 +181,7 @@ impl Baseline {
         Ok(self)
     }
 
-    /// The blocks for a result of other frames.
+    /// Returns the blocks for comparison with a result of other frames.
     pub(crate) fn blocks_for_other_frames(&self) -> Blocks {
         let BlockRule { memory, is_given, .. } = self.header.blocks;
         if is_given {
@@ -188,11 +192,12 @@ impl Baseline {
         Blocks::cut(identity.kind, &identity.world, table, length)
     }
 
-    /// Writes the files into a folder, which is made when it is not there. Each gets its name when both are complete.
+    /// Writes the files to a directory, which is created if it does not exist. The files get their names when
+    /// both are complete.
     ///
     /// # Errors
-    /// [`Failure`] when there is a baseline already and `replace` refuses it, when the folder has other files of these names or checksums
-    /// of other files, or when a file cannot be written.
+    /// [`Failure`] if a baseline exists and `replace` does not allow its replacement, if the directory has
+    /// other files with these names or checksums of other files, or if a file cannot be written.
     pub fn write(&mut self, folder: &Path, replace: Replacement) -> Result<(), Failure> {
         let [header, rows] = paths(folder);
         HEADERS.check(&header)?;
@@ -215,7 +220,7 @@ impl Baseline {
         let new_header = AtomicFile::with_text(&header, &text)?;
         let waiting = waiting_rows(folder, &self.header.rows_sha256);
         new_rows.with_path(&waiting).replace(ROWS)?;
-        // Those of the earlier baseline, which would say that the new header is damaged.
+        // The checksums of the earlier baseline would report the new header as damaged.
         Checksums::remove(folder)?;
         match replace {
             Replacement::Allow => new_header.replace(HEADERS)?,
@@ -229,7 +234,7 @@ impl Baseline {
     /// Reads a baseline.
     ///
     /// # Errors
-    /// [`Failure`] for a folder that holds none, or one that was damaged.
+    /// [`Failure`] for a directory without a baseline, or with a damaged one.
     pub fn read(folder: &Path) -> Result<Self, Failure> {
         let [path, rows_path] = paths(folder);
         if !path.is_file() {
@@ -301,7 +306,7 @@ impl Baseline {
     }
 }
 
-/// The error of an option that names no figure of a baseline.
+/// Creates the error of an option that names an unknown figure.
 pub(crate) fn unknown_figure<'a>(
     option: &str,
     name: &str,
@@ -314,7 +319,7 @@ pub(crate) fn unknown_figure<'a>(
     Failure::Usage(format!("{option} names `{name}`, expected a figure of the baseline; {hint}"))
 }
 
-/// What is told of a figure.
+/// Returns the header entry of a figure.
 fn baseline_figure(figure: &FigureTerms) -> BaselineFigure {
     BaselineFigure {
         by: figure.reduction.code().to_owned(),
@@ -330,12 +335,12 @@ fn paths(folder: &Path) -> [PathBuf; 2] {
     NAMES.map(|name| folder.join(name))
 }
 
-/// How the names of rows begin that wait for their header.
+/// Prefix of the names of rows that are stored before their header.
 const WAITING: &str = ".rows-";
 
-/// Where rows wait until the header is there that means them.
+/// Returns the path of the rows until the header that refers to them exists.
 fn waiting_rows(folder: &Path, sha256: &str) -> PathBuf {
-    // Of a header of anybody's making: no path.
+    // The hash may come from an untrusted header: it must not form a path.
     let digits: String = sha256.chars().filter(char::is_ascii_hexdigit).collect();
     folder.join(format!("{WAITING}{digits}.parquet"))
 }
@@ -357,7 +362,7 @@ mod tests {
     use super::*;
     use crate::hand_made::{figure, sample};
 
-    /// Units of which the last is missed and the others have a hit with an error.
+    /// Returns units of which the last is missed and the others have a hit with an error.
     fn run(units: usize) -> Sample {
         let hits: Vec<_> = (1..=units).map(|unit| Some(f64::from(u8::from(unit < units)))).collect();
         let errors: Vec<_> =
@@ -366,7 +371,7 @@ mod tests {
         sample(vec![figure("hit_rate", Reduction::Rate, &hits), median])
     }
 
-    /// A baseline of so many blocks of one unit, and the folder that it is in.
+    /// Writes a baseline of `units` blocks of one unit, and returns it with its directory.
     fn written(units: usize) -> (Baseline, TempDir) {
         let mut baseline = Baseline::new(run(units), "a test", Some(1)).unwrap();
         let folder = tempfile::tempdir().unwrap();
@@ -387,7 +392,7 @@ mod tests {
         }
     }
 
-    /// What a figure counts by stands in the header alone.
+    /// Limit and attitude of a figure are stored only in the header.
     #[test]
     fn limits_and_attitudes_are_read_back() {
         let mut sample = run(6);
@@ -402,7 +407,8 @@ mod tests {
         assert_eq!(read.header.figures["ra_median_deg"].attitude.as_deref(), Some("true"));
     }
 
-    /// The states that a `--replace` goes through, as a kill leaves them: there is always one of the two.
+    /// Intermediate states of a `--replace` that is killed: either the old or the new baseline is always
+    /// complete.
     #[test]
     fn a_replacement_that_is_killed_leaves_one_of_the_two() {
         let [(old, folder), (new, other)] = [written(6), written(7)];
@@ -414,7 +420,8 @@ mod tests {
         assert_eq!(Baseline::read(folder.path()).unwrap(), old);
         std::fs::copy(other.path().join("baseline.toml"), at("baseline.toml")).unwrap();
         assert_eq!(Baseline::read(folder.path()).unwrap(), new);
-        // Of what was killed here, the next one has no need; and until it has its own header, it leaves what the old one means.
+        // The next baseline does not need the files of the killed replacement; until it has written its own
+        // header, it keeps the rows to which the old header refers.
         let mut third = Baseline::new(run(8), "third", Some(1)).unwrap();
         third.write(folder.path(), Replacement::Allow).unwrap();
         assert_eq!(Baseline::read(folder.path()).unwrap(), third);
@@ -452,7 +459,7 @@ mod tests {
         other.write(folder.path(), Replacement::Allow).unwrap();
         assert_eq!(Baseline::read(folder.path()).unwrap(), other);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
-        // A folder that is not there yet, and one with the rows alone.
+        // A directory that does not exist yet, and a directory with only the rows.
         let inner = folder.path().join("a/b");
         other.write(&inner, Replacement::Allow).unwrap();
         std::fs::remove_file(inner.join("baseline.toml")).unwrap();
@@ -478,17 +485,18 @@ mod tests {
         // 0.5, 1, … 3.5.
         assert_eq!(header.figures["ra_median_deg"], read("median", Some(2.0), 7));
         assert_eq!(header.run, baseline.sample.identity);
-        // Nothing said of the length: thirty units, of 200 seven blocks.
+        // Without a given length, blocks have thirty units: seven blocks for 200 units.
         let of_days = Baseline::new(run(200), " why ", None).unwrap();
         assert_eq!((of_days.blocks.count(), of_days.header.blocks.length), (7, 30));
         assert_eq!(of_days.header.reason, "why");
-        // Errors that grow all the time are remembered all the time.
+        // Errors that grow throughout the run are correlated over the whole run.
         assert_eq!(of_days.header.blocks.memory_of, "ra_median_deg");
         let memory = of_days.header.blocks.memory;
         assert!(memory > 10.0 && memory * 10.0 == (memory * 10.0).round(), "{memory}");
     }
 
-    /// Errors that grow through 400 units are remembered all along: thirteen blocks of thirty, and eight of fifty for other frames.
+    /// Errors that grow through 400 units are correlated throughout: thirteen blocks of thirty, and eight of
+    /// fifty for other frames.
     #[test]
     fn blocks_for_other_frames_are_longer_unless_their_length_was_given() {
         let counts = |length| {
@@ -528,7 +536,7 @@ mod tests {
         assert_eq!(Baseline::new(run(5), "a test", Some(1)).unwrap().blocks.count(), 5);
     }
 
-    /// Fewer blocks than can be found different, however they came into the file.
+    /// Too few blocks to show a difference, regardless of the program that wrote the file.
     #[test]
     fn a_baseline_of_four_blocks_is_refused_when_it_is_read() {
         let mut baseline = Baseline::new(run(8), "a test", Some(1)).unwrap();
@@ -571,7 +579,7 @@ mod tests {
         refused("tolerance = 0.001", "tolerance = inf", &["figures.hit_rate.tolerance", "is inf"]);
         refused("of = 5", "of = 4", &["figures.ra_median_deg", "expected 1.5 of 5"]);
         refused(&baseline.header.rows_sha256, "00", &["rows_sha256", "one of the two files was changed"]);
-        // What nothing in the rows can contradict, the checksums do.
+        // Values that the rows cannot contradict are protected by the checksums.
         refused("reason = \"a test\"", "reason = \"a text\"", &["SHA-256", "damaged"]);
     }
 

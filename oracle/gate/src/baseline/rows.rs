@@ -1,4 +1,4 @@
-//! `rows.parquet` of a baseline: a row a unit, with its block and what it adds to each figure.
+//! `rows.parquet` of a baseline: one row per unit, with its block and its contribution to each figure.
 
 use std::fs::File;
 use std::path::Path;
@@ -9,33 +9,34 @@ use files::{
 };
 use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 
-/// After the name of a figure of whose values a unit may have several: how many they are.
+/// Suffix of the column that counts the values, for a figure that may have several values per unit.
 const OF: &str = ".of";
-/// Rows read at a time.
+/// Number of rows read at a time.
 const BATCH_ROWS: usize = 8192;
 
 table! {
-    /// The columns that the rows of every baseline have.
+    /// Columns common to the rows of every baseline.
     struct UnitRow: parquet(number) {
         /// number of the frame, field or case; ascending
         number: u64,
-        /// number of the block that the unit belongs to, from 0; ascending by one
+        /// number of the unit's block, from 0; ascending by one
         block: u32,
         /// group of the unit: its day, range or lens
         group: String,
-        /// verdict: far range `correct`, `wrong`, `missed`; docking `success`, `range_only`, `doubtful`, `wrong`, `missed`; of a case `37 of 40`, the frames that are right
+        /// verdict: far range `correct`, `wrong`, `missed`; docking `success`, `range_only`, `doubtful`,
+        /// `wrong`, `missed`; for a case `37 of 40`, the number of frames that are right
         verdict: String,
-        /// cause of the verdict; null where there is none
+        /// cause of the verdict; null if there is none
         cause: Option<String>,
     }
 }
 
-/// The columns of `rows.parquet` that every baseline has.
+/// Returns the columns of `rows.parquet` that every baseline has.
 pub fn row_columns() -> Vec<FieldDeclaration> {
     UnitRow::declarations()
 }
 
-/// Writes the rows, with the number of each one's block, into a file that will be `path`.
+/// Writes the rows, with the number of the block of each, to a file that will become `path`.
 pub(crate) fn write(
     file: &File,
     path: &Path,
@@ -54,7 +55,7 @@ pub(crate) fn write(
     for figure in &table.figures {
         let sums = figure.terms.iter().map(|term| (term.of > 0).then_some(term.sum as f32));
         let sums = Column::nullable(&figure.name, sums);
-        // Amounts seldom repeat, and the last of their bytes are nought: byte by byte they are short.
+        // Amounts seldom repeat, and their last bytes are zero, so byte-by-byte coding makes them short.
         columns.push(if figure.reduction == Reduction::Rate { sums } else { sums.byte_stream_split() });
         if figure.terms.iter().any(|term| term.of > 1) {
             columns.push(Column::new(count_column(&figure.name), figure.terms.iter().map(|term| term.of)));
@@ -63,12 +64,12 @@ pub(crate) fn write(
     write_table(file, path, &columns, TableOptions { has_statistics: false, ..TableOptions::default() })
 }
 
-/// The column that says of how many values each amount of a figure is.
+/// Returns the name of the column with the number of values in each amount of a figure.
 fn count_column(figure: &str) -> String {
     format!("{figure}{OF}")
 }
 
-/// Reads the rows of these figures, and the numbers of their blocks, which ascend by one from 0.
+/// Reads the rows of the given figures, and the numbers of their blocks, which ascend by one from 0.
 pub(crate) fn read(
     path: &Path,
     figures: &[(String, Reduction)],
@@ -88,7 +89,7 @@ pub(crate) fn read(
             return Err(no_column(path, column.name()));
         }
     }
-    // What is there: a column that is missing is missed by its type below.
+    // Only existing columns are requested; the checks of types below report the missing ones.
     let names: Vec<String> = names(figures).filter(|name| file.column(name).is_some()).collect();
     let of_other_type = names.iter().find(|name| file.column(name).is_some_and(|c| c.column_type.is_err()));
     if let Some(name) = of_other_type {
@@ -120,13 +121,13 @@ pub(crate) fn read(
     }
 }
 
-/// The columns of a table of these figures.
+/// Returns the names of the table's columns for the given figures.
 fn names(figures: &[(String, Reduction)]) -> impl Iterator<Item = String> {
     let ofs = figures.iter().flat_map(|(name, _)| [name.clone(), count_column(name)]);
     ["number", "block", "group", "verdict", "cause"].map(str::to_owned).into_iter().chain(ofs)
 }
 
-/// Either file may be the damaged one, so the message names both.
+/// Creates the error of a missing column. Either file may be damaged, so the message names both.
 fn no_column(path: &Path, name: &str) -> FileError {
     let wanted = "of its type, though the figures of baseline.toml ask for it";
     FileError::format(path, "Parquet", format!("it has no column `{name}` {wanted}"))
@@ -180,7 +181,8 @@ mod tests {
     use super::*;
     use crate::hand_made::{figure, sample, unit};
 
-    /// A rate of several values a unit, a rate of one, and an amount; each with a unit that has no value.
+    /// Returns a rate with several values per unit, a rate with one value, and an amount; each has a unit
+    /// without a value.
     fn table() -> UnitTable {
         let term = |sum, of| Term { sum, of };
         let pooled = vec![term(2.0, 3), Term::default(), term(0.0, 1), term(0.0, 2)];
@@ -194,7 +196,7 @@ mod tests {
         table
     }
 
-    /// What is read of a table that was written with the numbers of its blocks.
+    /// Writes a table with the numbers of its blocks, and reads it back.
     fn there_and_back(table: &UnitTable, blocks: &[usize]) -> Result<(UnitTable, Vec<usize>), FileError> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rows.parquet");
@@ -212,14 +214,14 @@ mod tests {
     fn what_is_read_is_what_was_written() {
         let table = table();
         assert_eq!(there_and_back(&table, &[0, 0, 1, 2]).unwrap(), (table, vec![0, 0, 1, 2]));
-        // Of two values or none, none alone.
+        // Units with two values or none, but none with one.
         let terms = vec![Term { sum: 1.0, of: 2 }, Term::default()];
         let pairs = FigureTerms::from_terms("held_rate", Reduction::Rate, terms);
         let table = sample(vec![pairs]).table;
         assert_eq!(there_and_back(&table, &[0, 1]).unwrap().0, table);
     }
 
-    /// Of a gate's repository, a baseline is the largest part: nothing is in a file that need not be.
+    /// A baseline is the largest part of a gate's repository, so the file contains only necessary data.
     #[test]
     fn counts_are_written_where_they_are_more_than_one_and_amounts_byte_by_byte() {
         let folder = tempfile::tempdir().unwrap();
@@ -269,7 +271,7 @@ mod tests {
         assert!(message.contains("`number of rows` is `0`, expected at least 1"), "{message}");
     }
 
-    /// Rows are counted over the whole file, and not over what is read at a time.
+    /// Rows are counted from the beginning of the file, not of the batch.
     #[test]
     fn a_value_that_is_no_number_is_reported_with_its_row() {
         let row = BATCH_ROWS + 3;

@@ -1,17 +1,18 @@
-//! By how much a figure may be worse and pass.
+//! Tolerances: worsening of a figure that still passes.
 use run::figure_by_name;
 use score::{Better, FigureTerms, Kind};
 
 use crate::dependence::influence::values;
 
-/// Of a rate: a tenth of a percent.
+/// Tolerance of a rate: a tenth of a percent.
 const OF_RATE: f64 = 0.001;
-/// Of an amount: so much of its own size. What a change of the last digits or of a compiler does is no worsening, however surely it is
-/// seen.
+/// Tolerance of an amount, relative to its size. The effect of a change in the last digits or of another
+/// compiler is not a worsening, however significant it is.
 const OF_AMOUNT: f64 = 0.01;
 
-/// The tolerance of a figure of a baseline that is given none, in its unit: of a rate a tenth of a percent, of an amount a hundredth of the
-/// root mean square of its values (about the best value of what has one), to two digits.
+/// Returns the default tolerance of a figure in a baseline, in its unit: a tenth of a percent for a rate; for
+/// an amount a hundredth of the root mean square of its values (about the best value, if the figure has one),
+/// to two digits.
 pub(crate) fn default_tolerance(figure: &FigureTerms) -> f64 {
     let sense = figure_by_name(&figure.name).sense;
     match sense.kind {
@@ -26,7 +27,7 @@ pub(crate) fn default_tolerance(figure: &FigureTerms) -> f64 {
     }
 }
 
-/// As it is read in a file.
+/// Rounds to two digits, for readable files.
 fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }

@@ -1,4 +1,5 @@
-//! Whether a result can be held against a baseline: the same units, and figures that count the same thing.
+//! Checks that a result is comparable with a baseline: identical units, and figures with identical
+//! definitions.
 use files::Failure;
 use score::{FigureTerms, UnitVerdict};
 
@@ -6,10 +7,10 @@ use super::options::CompareOptions;
 use crate::baseline::{Baseline, unknown_figure};
 use crate::sample::Sample;
 
-/// The cause, in either world, of a unit without a row.
+/// Cause, in all worlds, of a unit without a row.
 const NOT_REPORTED: &str = "not_reported";
 
-/// The same units, by number.
+/// Checks that baseline and result have the same unit numbers.
 pub(crate) fn check_units(baseline: &Baseline, result: &Sample, what: &str) -> Result<(), Failure> {
     let (before, after) = (&baseline.sample.table.units, &result.table.units);
     let differs = before.iter().zip(after).find(|(before, after)| before.number != after.number);
@@ -23,7 +24,8 @@ pub(crate) fn check_units(baseline: &Baseline, result: &Sample, what: &str) -> R
     )))
 }
 
-/// A result that is silent about units of which the baseline is not is not complete: no solution is a row, too.
+/// Checks that the result does not lack rows for more units than the baseline. Otherwise it is incomplete: a
+/// unit without a solution needs a row, too.
 pub(crate) fn check_reported(baseline: &Baseline, result: &Sample, what: &str) -> Result<(), Failure> {
     let silent = |units: &[UnitVerdict]| {
         let is_silent = |unit: &&UnitVerdict| unit.cause.as_deref() == Some(NOT_REPORTED);
@@ -40,7 +42,7 @@ pub(crate) fn check_reported(baseline: &Baseline, result: &Sample, what: &str) -
     }
 }
 
-/// The figures to compare, of either sample.
+/// Returns the figures to compare, as pairs from baseline and result.
 pub(crate) fn pairs<'a>(
     baseline: &'a Baseline,
     result: &'a Sample,
@@ -57,7 +59,7 @@ pub(crate) fn pairs<'a>(
     options.tolerances.keys().try_for_each(|name| check("--tolerance", name))?;
     let is_asked =
         |figure: &&FigureTerms| options.figures.is_empty() || options.figures.contains(&figure.name);
-    // In the order of the result, which is that of the score.
+    // Sorted in the order of the result, which is that of the score.
     let place =
         |before: &FigureTerms| result.table.figures.iter().position(|figure| figure.name == before.name);
     let mut asked: Vec<&FigureTerms> = known.iter().filter(is_asked).collect();
@@ -85,8 +87,8 @@ pub(crate) fn pairs<'a>(
         .collect()
 }
 
-/// Refuses a figure that counts other things under the same name: within another limit, or of lines of sight by another attitude. Where
-/// nothing was detected there is no attitude, and nothing to be confused.
+/// Rejects a figure with the same name but another definition: another limit, or lines of sight based on
+/// another attitude. A sample without detections has no attitude, which excludes confusion.
 fn check_alike(before: &FigureTerms, after: &FigureTerms) -> Result<(), Failure> {
     let cannot = |is: &str, of_baseline: String, of_result: String, hint: &str| {
         Err(Failure::Usage(format!(
@@ -149,7 +151,7 @@ mod tests {
         for (before, after) in [(vec![], vec![]), (vec![1], vec![7]), (vec![1, 2], vec![3])] {
             compared(silent(&BEFORE, &before), &silent(&AFTER, &after));
         }
-        // Another cause is an answer.
+        // A unit with another cause has been reported.
         let mut answered = hits(&AFTER);
         answered.table.units[4] = unit(4, "missed", Some("not_linked"));
         compared(hits(&BEFORE), &answered);
@@ -215,7 +217,7 @@ mod tests {
             of(Some(0.024), Some("own")),
             "`ra_within_1px` is of lines of sight by the attitude `true` in the baseline and `own` in the result",
         );
-        // What found nothing has no attitude: it is worse, and no other thing.
+        // A result without detections has no attitude: it is worse, but comparable.
         let report = compared(of(None, Some("own")), &of(None, None));
         assert!(report.notes.is_empty(), "{:?}", report.notes);
         let report = compared(of(None, Some("true")), &of(None, Some("true")));
@@ -237,7 +239,7 @@ mod tests {
         let expected =
             "`ra_mean_deg` is a `mean` in the baseline and a `rms` in the result, expected the same";
         assert!(message.contains(expected), "{message}");
-        // What the result alone has is nothing to be held against.
+        // A figure that only the result has is not compared.
         let report = compared(hits(&BEFORE), &both(mean("ra_mean_deg")));
         assert_eq!(report.figures.keys().collect::<Vec<_>>(), ["hit_rate"]);
     }

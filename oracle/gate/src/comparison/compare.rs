@@ -1,4 +1,4 @@
-//! A result against a baseline.
+//! Comparison of a result with a baseline.
 use files::Failure;
 use indexmap::IndexMap;
 use run::figure_by_name;
@@ -21,8 +21,9 @@ use crate::sample::Sample;
 /// Compares a result with a baseline.
 ///
 /// # Errors
-/// [`Failure::Usage`] for options that are not allowed, for two samples that cannot be compared (with what differs), and when no figure
-/// has enough data to be found worse whatever happens: a gate that cannot shut must not pass for one.
+/// [`Failure::Usage`] for options that are not allowed, for two samples that cannot be compared (with the
+/// difference), and if no figure has enough data to be found worse in any case: a gate that cannot shut must
+/// not appear to pass.
 pub fn compare(
     baseline: &Baseline,
     result: &Sample,
@@ -53,7 +54,8 @@ pub fn compare(
             let tolerance = options.tolerances.get(&before.name).copied().unwrap_or(of_baseline);
             let sense = figure_by_name(&before.name).sense;
             let effect = FigureEffect::from_runs(sense, before, after, blocks, tolerance);
-            // On the same frames what slowly varies is in both runs; with others it is in the difference.
+            // With the same frames, slow variations are present in both runs; with other frames, they are
+            // part of the difference.
             match pairing {
                 Pairing::Frames => effect,
                 Pairing::Blocks if thirds.are_remembered(before, after) => effect.beyond_blocks(),
@@ -61,7 +63,8 @@ pub fn compare(
             }
         })
         .collect();
-    // What shuts the gate is tested together: every worsening, and of figures with a best value the change to the other side too.
+    // All changes that can shut the gate are tested jointly: every worsening, and for figures with a best
+    // value also the change to the other side.
     let with_best_value: Vec<usize> = (0..effects.len()).filter(|i| effects[*i].has_best_value()).collect();
     let other_side = with_best_value.iter().map(|i| effects[*i].better());
     let worse: Vec<BlockEffects> =
@@ -76,7 +79,7 @@ pub fn compare(
     let better: Vec<BlockEffects> = effects.iter().map(for_the_better).collect();
     let (worse, better) = (joint_test(&worse, &exchanges, alpha), joint_test(&better, &exchanges, alpha));
 
-    // The draws of a study are independent of one another, and none of their order is an event.
+    // The cases of a study are independent draws, so their order contains no events.
     let have_runs = pairing == Pairing::Frames && identity.kind == SourceKind::Run;
     let units_of_baseline = &baseline.sample.table.units;
     let loss_runs = if have_runs {
@@ -155,7 +158,8 @@ mod tests {
     use crate::hand_made::{AFTER, BEFORE, baseline, compared, figure, hits, rate, refusal, sample, unit};
     use score::Reduction;
 
-    /// Of nine frames that changed eight were lost: that of a fair coin, (9 + 1)/2⁹, and of one that were won, (2⁹ − 1)/2⁹.
+    /// Eight of nine changed frames were lost: for a fair coin the probability is (9 + 1)/2⁹, and for one
+    /// that was won (2⁹ − 1)/2⁹.
     #[test]
     fn of_hits_and_misses_the_probability_is_that_of_mcnemars_exact_test() {
         let report = compared(hits(&BEFORE), &hits(&AFTER));
@@ -177,7 +181,7 @@ mod tests {
         assert_eq!(report.figures["hit_rate"].verdict, FigureVerdict::Better);
     }
 
-    /// A bias of −1 that becomes one of −0.5, of +0.9 or of −1.5: the first two are nearer to nought and no improvement.
+    /// A bias of −1 changes to −0.5, +0.9 or −1.5: the first two are closer to zero, but no improvement.
     #[test]
     fn a_bias_that_points_to_nought_has_changed_and_shuts_the_gate() {
         let bias = |bias: f64| {
@@ -220,7 +224,7 @@ mod tests {
         assert_eq!((report.alpha, report.blocks, report.block_length), (0.05, 12, 1.0));
         let flips = report.flips.unwrap();
         assert_eq!((report.pairing, flips.lost, flips.units[0].number), (Pairing::Frames, 1, 3));
-        // Of other frames nobody can say which changed.
+        // With other frames, changed frames cannot be identified.
         after.identity.seed = 2;
         let report = compared(hits(&BEFORE), &after);
         assert_eq!((report.pairing, report.result_seed, report.flips), (Pairing::Blocks, 2, None));
@@ -237,7 +241,7 @@ mod tests {
         assert!(report.flips.unwrap().units.is_empty() && report.notes.is_empty());
     }
 
-    /// Of two figures one rises from block to block, and one alternates.
+    /// One figure rises from block to block, the other alternates.
     #[test]
     fn the_correlation_of_neighbours_is_the_largest_of_any_figure() {
         let errors = |name: &str, values: [f64; 8]| figure(name, Reduction::Mean, &values.map(Some));
@@ -247,7 +251,8 @@ mod tests {
             errors("a_mean", [11.0, 11.0, 12.0, 12.0, 14.0, 14.0, 15.0, 15.0]),
             errors("b_mean", [11.0, 15.0, 11.0, 15.0, 11.0, 15.0, 11.0, 15.0]),
         ]);
-        // About their mean the differences of the first are −2 −2 −1 −1 1 1 2 2: products 4 + 2 + 1 − 1 + 1 + 2 + 4 over squares of 20.
+        // About their mean, the differences of the first are −2 −2 −1 −1 1 1 2 2: products 4 + 2 + 1 − 1 +
+        // 1 + 2 + 4 over squares of 20.
         assert!((compared(before, &after).neighbour_correlation - 0.65).abs() < 1e-12);
     }
 
@@ -259,14 +264,14 @@ mod tests {
             let expected = format!("--alpha is {alpha}, expected a number above 0 and below 0.5");
             assert!(message.contains(&expected), "{message}");
         }
-        // 10/512 is what the test finds.
+        // The probability found by the test is 10/512.
         for (alpha, verdict) in [(0.49, FigureVerdict::Worse), (0.015, FigureVerdict::NoWorse)] {
             let report = compare(&baseline(hits(&BEFORE)), &hits(&AFTER), &with(alpha)).unwrap();
             assert_eq!((report.verdict, report.alpha), (verdict, alpha));
         }
     }
 
-    /// Forty of 400 frames are lost: two or three blocks of twenty have it.
+    /// Forty of 400 frames are lost, which lie in two or three blocks of twenty.
     #[test]
     fn what_is_lost_in_a_row_on_the_same_frames_is_worse_however_few_blocks_have_it() {
         let bits = |lost: std::ops::Range<usize>| -> Vec<u8> {
@@ -287,7 +292,7 @@ mod tests {
         let report = compare(&baseline, &hits(&bits(180..220)), &CompareOptions::default()).unwrap();
         let expected = "hit rate: 39 frames were lost and 0 won, 39 of them in a row (numbers 180 to 219).";
         assert!(report.notes[0].to_lowercase().starts_with(expected), "{}", report.notes[0]);
-        // What was won instead is no loss, and with another seed no frame is the same.
+        // Frames that are won instead are not a loss, and with another seed no frame is the same.
         let better = compare(
             &Baseline::new(hits(&bits(0..40)), "a test", Some(20)).unwrap(),
             &hits(&bits(0..0)),
@@ -300,7 +305,8 @@ mod tests {
         assert_eq!((report.is_shut(), report.figures["hit_rate"].loss_run.clone()), (false, None));
     }
 
-    /// Of five blocks no exchange has a probability below 1/32: at 5 % they can be found different, at 3 % not.
+    /// With five blocks, no exchange has a probability below 1/32: a difference can be found at 5 %, but not
+    /// at 3 %.
     #[test]
     fn a_gate_that_cannot_shut_is_an_error() {
         let with = |alpha| CompareOptions { alpha, ..CompareOptions::default() };
@@ -312,7 +318,7 @@ mod tests {
         assert!(message.contains(expected), "{message}");
     }
 
-    /// Seven of twelve are lost: no worse where as many may be, and worse where one less may.
+    /// Seven of twelve frames are lost: no worse if the tolerance allows seven, worse if it allows one fewer.
     #[test]
     fn a_figure_may_be_worse_by_its_tolerance() {
         let with = |tolerance: f64| {

@@ -1,53 +1,55 @@
-//! The units whose verdict is another one than in the baseline.
+//! Units whose verdict differs from that in the baseline.
 use score::UnitVerdict;
 use serde::Serialize;
 
-/// How a verdict changed.
+/// Kind of change of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FlipKind {
-    /// It was right and is not any more; of a case: fewer of its frames are right.
+    /// A unit that was right in the baseline and is not in the result; for a case: fewer of its frames are
+    /// right.
     Lost,
-    /// It is right and was not; of a case: more of its frames are right.
+    /// A unit that is right in the result and was not in the baseline; for a case: more of its frames are
+    /// right.
     Won,
-    /// It is wrong or missed in another way.
+    /// A unit that is wrong or missed in another way.
     Other,
 }
 
-/// A unit that changed.
+/// A unit whose verdict changed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Flip {
     /// Number of the frame, field or case.
     pub number: u64,
-    /// The group that it belongs to.
+    /// Group of the unit.
     pub group: String,
-    /// How it changed.
+    /// Kind of the change.
     pub kind: FlipKind,
-    /// The verdict in the baseline.
+    /// Verdict in the baseline.
     pub baseline: String,
-    /// Its cause there.
+    /// Cause in the baseline.
     pub baseline_cause: Option<String>,
-    /// The verdict in the result.
+    /// Verdict in the result.
     pub result: String,
-    /// Its cause there.
+    /// Cause in the result.
     pub result_cause: Option<String>,
 }
 
-/// All units that changed, by number.
+/// All units whose verdict changed, ordered by number.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Flips {
-    /// How many were lost.
+    /// Number of lost units.
     pub lost: u64,
-    /// How many were won.
+    /// Number of won units.
     pub won: u64,
-    /// How many changed otherwise.
+    /// Number of units that changed in another way.
     pub other: u64,
-    /// Each of them.
+    /// The changed units.
     pub units: Vec<Flip>,
 }
 
 impl Flips {
-    /// Of units that go together one by one.
+    /// Returns the changes between units that correspond one by one.
     pub(crate) fn from_verdicts(baseline: &[UnitVerdict], result: &[UnitVerdict]) -> Self {
         let mut flips = Self { lost: 0, won: 0, other: 0, units: Vec::new() };
         for (before, after) in baseline.iter().zip(result) {
@@ -78,7 +80,8 @@ impl Flips {
     }
 }
 
-/// How many of a unit's frames are right, by its verdict's word: of a frame 1 or 0, of a case the count in `37 of 40`.
+/// Returns the number of a unit's frames that are right, from its verdict: 1 or 0 for a frame, the count in
+/// `37 of 40` for a case.
 fn goodness(verdict: &str) -> u64 {
     match verdict {
         "correct" | "success" => 1,

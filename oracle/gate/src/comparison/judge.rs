@@ -1,4 +1,4 @@
-//! The verdict on one figure.
+//! Verdict on one figure.
 use score::{Better, Kind, Sense};
 use statistics::{FigureTest, JointTest, normal_quantile};
 
@@ -6,23 +6,24 @@ use crate::dependence::effects::FigureEffect;
 use crate::dependence::runs::LossRun;
 use crate::report::{FigureReport, FigureVerdict};
 
-/// The 95 % quantile of the standard normal law: the power at which the smallest visible change is told.
+/// The 95 % quantile of the standard normal distribution: the power for which the smallest visible change is
+/// reported.
 const Z_POWER: f64 = 1.644_853_626_951_472_2;
-/// What runs of losses may add to alpha, of alpha.
+/// Share of alpha that runs of losses may add to alpha.
 pub(crate) const ALPHA_OF_RUNS: f64 = 0.05;
-/// A figure that the result lacks is gone when that would be chance with no more than this probability.
+/// Largest probability of chance at which a figure that the result lacks counts as gone.
 const GONE_BY_CHANCE: f64 = 1e-3;
 
-/// What is needed to judge one figure.
+/// Data needed to judge one figure.
 pub(crate) struct Judge<'a> {
     pub(crate) effect: &'a FigureEffect,
     pub(crate) worse: &'a JointTest,
     pub(crate) better: &'a JointTest,
     pub(crate) index: usize,
-    /// Of a figure with a best value, where the change towards less was tested.
+    /// Index of the test for a decrease, for a figure with a best value.
     pub(crate) other_side: Option<usize>,
     pub(crate) alpha: f64,
-    /// Of a rate on the same frames.
+    /// Run of losses, for a rate on the same frames.
     pub(crate) loss_run: Option<&'a LossRun>,
 }
 
@@ -43,7 +44,7 @@ impl Judge<'_> {
             result: effect.result,
             result_of: effect.result_of,
             difference,
-            // Of skewed values the difference may lie outside the quantiles of its own sets.
+            // For skewed values, the difference may lie outside the quantiles of its own sets.
             low: interval.zip(difference).map(|((low, _), difference)| low.min(difference)),
             high: interval.zip(difference).map(|((_, high), difference)| high.max(difference)),
             worse_by: effect.worsening(),
@@ -57,7 +58,8 @@ impl Judge<'_> {
         }
     }
 
-    /// What was found for the worse; of a figure with a best value on the side of the change, its own p for both sides.
+    /// Returns the test for a worsening. For a figure with a best value, returns the test for the side of the
+    /// change, with its own p for both sides.
     fn figure_test(&self) -> FigureTest {
         let up = self.worse.figures[self.index];
         let Some(down) = self.other_side.map(|place| self.worse.figures[place]) else { return up };
@@ -83,7 +85,8 @@ impl Judge<'_> {
         } else if !self.can_be_seen() {
             FigureVerdict::TooLittleData
         } else if self.figure_test().adjusted_p <= self.alpha && change > effect.tolerance {
-            // Farther from the best value by what counts is worse; nearer to it, or across it, is another result.
+            // A result farther from the best value by more than the tolerance is worse; a result closer to
+            // it, or across it, has changed.
             if worsening > effect.tolerance { FigureVerdict::Worse } else { FigureVerdict::Changed }
         } else if self.better.figures[self.index].adjusted_p <= self.alpha && -worsening > effect.tolerance {
             FigureVerdict::Better
@@ -92,19 +95,21 @@ impl Judge<'_> {
         }
     }
 
-    /// Whether so many losses, or so long a run of them, are no chance.
+    /// Returns true if the number of losses, or the length of a run of them, is not due to chance.
     fn is_lost_in_runs(&self) -> bool {
         self.loss_run.is_some_and(|run| run.adjusted_p <= ALPHA_OF_RUNS * self.alpha)
     }
 
-    /// Whether a figure that differed alike in every block it has would be found.
+    /// Returns true if a figure with equal differences in all of its blocks would be found.
     fn can_be_seen(&self) -> bool {
         !self.effect.is_beyond_blocks && (self.effect.blocks as f64).sqrt() > self.worse.critical + 1e-9
     }
 
-    /// The worsening that is seen with a probability of 95 %: of which the statistic lies as far above the critical value as one in
-    /// twenty falls short. A worsening of a rate brings scatter of its own: with δ of n more that are lost, at least δ/n. The critical
-    /// value is that of this comparison, or of Bonferroni where few figures differ at all and it is less: a change brings differences.
+    /// Returns the worsening that is found with a probability of 95 %: its expected statistic exceeds the
+    /// critical value by the margin that one statistic in twenty falls short of. A worsening of a rate adds
+    /// scatter: a loss of the fraction δ of n units has a variance of at least δ/n. The critical value is
+    /// that of this comparison, or that of Bonferroni if the former is smaller because few figures differ at
+    /// all: a real change brings differences.
     fn smallest_visible(&self) -> Option<f64> {
         let effect = self.effect;
         effect.worsening()?;
@@ -131,7 +136,8 @@ mod tests {
     use run::figure_by_name;
     use statistics::{BlockEffects, FigureTest};
 
-    /// A figure best when less, of ten blocks, from 2 in the baseline to `result`.
+    /// Returns a figure that is best when small, with ten blocks, which changes from 2 in the baseline to
+    /// `result`.
     fn effect(result: f64) -> FigureEffect {
         FigureEffect {
             sense: figure_by_name("ra_rms_deg").sense,
@@ -147,8 +153,8 @@ mod tests {
         }
     }
 
-    /// What is reported of an effect that is the first of so many figures, at 5 %, with these adjusted probabilities of a worsening and of
-    /// an improvement.
+    /// Returns the report on an effect that is the first of `figures` figures, at 5 %, with the given
+    /// adjusted probabilities of a worsening and of an improvement.
     fn judged(
         effect: &FigureEffect,
         [worse, better]: [f64; 2],
@@ -168,24 +174,24 @@ mod tests {
     fn worse_is_what_is_improbable_and_beyond_the_tolerance() {
         use FigureVerdict::{Better, NoWorse, Worse};
         let verdict = |result: f64, probabilities| judged(&effect(result), probabilities, 2.0, 1).verdict;
-        // At most alpha; a worsening of more than 0.5.
+        // A probability of at most alpha, and a worsening of more than 0.5.
         assert_eq!(verdict(2.75, [0.05, 1.0]), Worse);
         assert_eq!(verdict(2.75, [0.01, 1.0]), Worse);
         assert_eq!(verdict(2.75, [0.051, 1.0]), NoWorse);
         assert_eq!(verdict(2.5, [0.01, 1.0]), NoWorse);
         assert_eq!(verdict(2.25, [0.01, 1.0]), NoWorse);
-        // The same the other way round.
+        // Equivalent conditions for an improvement.
         assert_eq!(verdict(1.25, [1.0, 0.05]), Better);
         assert_eq!(verdict(1.25, [1.0, 0.01]), Better);
         assert_eq!(verdict(1.25, [1.0, 0.051]), NoWorse);
         assert_eq!(verdict(1.5, [1.0, 0.01]), NoWorse);
         assert_eq!(verdict(1.75, [1.0, 0.01]), NoWorse);
-        // Neither is said of the other's probability.
+        // Neither verdict follows from the probability of the other.
         assert_eq!(verdict(2.75, [1.0, 0.01]), NoWorse);
         assert_eq!(verdict(1.25, [0.01, 1.0]), NoWorse);
     }
 
-    /// Ten blocks that all agree have a statistic of √10.
+    /// Ten blocks with equal differences have a statistic of √10.
     #[test]
     fn what_cannot_exceed_the_critical_value_has_too_little_data() {
         let report = |critical: f64| judged(&effect(2.75), [0.01, 1.0], critical, 1);
@@ -200,7 +206,8 @@ mod tests {
         }
     }
 
-    /// That all of ten blocks lose a figure by chance has a probability of 2⁻¹⁰, less than a thousandth; of nine, or of two figures, more.
+    /// The probability that all of ten blocks lose a figure by chance is 2⁻¹⁰, less than a thousandth; for
+    /// nine blocks, or for two figures, it is larger.
     #[test]
     fn a_figure_that_the_result_lacks_is_gone_when_that_is_no_chance() {
         let verdict = |baseline, result, blocks, figures| {
@@ -215,7 +222,7 @@ mod tests {
         assert_eq!(verdict(Some(2.0), None, 9, 1), too_little);
         assert_eq!(verdict(Some(2.0), None, 10, 2), too_little);
         assert_eq!(verdict(Some(2.0), None, 11, 2), FigureVerdict::Gone);
-        // What the baseline did not have cannot be worse.
+        // A figure that the baseline lacks cannot become worse.
         assert_eq!(verdict(None, Some(2.0), 100, 1), too_little);
         assert_eq!(verdict(None, None, 100, 1), too_little);
     }
@@ -236,7 +243,8 @@ mod tests {
         assert_eq!(judged(&near, [1.0, 1.0], 2.0, 1).better, "near 1");
     }
 
-    /// The statistic must lie 1.645 standard errors above the critical value, that of the comparison or of Bonferroni (0.05/2: 1.960).
+    /// The statistic must exceed the critical value, that of the comparison or of Bonferroni (0.05/2: 1.960),
+    /// by 1.645 standard errors.
     #[test]
     fn the_smallest_visible_amount_is_a_multiple_of_its_standard_error() {
         let seen = |critical, figures, tolerance| {
@@ -247,11 +255,12 @@ mod tests {
         is(seen(3.0, 2, 0.0), 0.25 * (3.0 + 1.644_854));
         is(seen(1.0, 2, 0.0), 0.25 * (1.959_964 + 1.644_854));
         is(seen(1.0, 1, 0.0), 0.25 * (1.644_854 + 1.644_854));
-        // A tolerance beyond what is found: it is exceeded with a probability of 95 %.
+        // A tolerance above the change that the test finds: the smallest visible change exceeds it with a
+        // probability of 95 %.
         is(seen(1.0, 2, 5.0), 5.0 + 0.25 * 1.644_854);
     }
 
-    /// A loss of δ of n scatters by √(δ/n) of its own beside the standard error e: δ = z √(e² + δ/n).
+    /// A loss of δ of n has a scatter of √(δ/n) in addition to the standard error e: δ = z √(e² + δ/n).
     #[test]
     fn the_smallest_visible_loss_of_a_rate_brings_its_own_scatter() {
         for (standard_error, result_of) in [(0.25, 50), (0.01, 7), (0.0, 400)] {
@@ -267,7 +276,7 @@ mod tests {
             let expected = z * (standard_error * standard_error + seen / result_of as f64).sqrt();
             assert!(seen > 0.0 && (seen - expected).abs() < 1e-12, "{seen}, not {expected}");
         }
-        // Of nothing it is that of one.
+        // The value for zero units is that for one unit.
         let none = FigureEffect {
             sense: figure_by_name("hit_rate").sense,
             tolerance: 0.0,

@@ -1,4 +1,4 @@
-//! A result against a baseline, figure by figure.
+//! Comparison of a result with a baseline, figure by figure.
 
 pub(crate) mod comparable;
 #[allow(

@@ -1,4 +1,4 @@
-//! What a reader of a gate's report must know beside its figures.
+//! Notes that a reader of a gate's report needs in addition to its figures.
 use indexmap::IndexMap;
 use run::figure_by_name;
 use score::attitude_note;
@@ -10,24 +10,24 @@ use crate::identity::Pairing;
 use crate::report::FigureReport;
 use crate::sample::Sample;
 
-/// Figures that a note names; of more it gives the number.
+/// Largest number of figures that a note names; for further figures it states only their number.
 const NAMED: usize = 3;
 
-/// What notes are made of.
+/// Data from which the notes are derived.
 pub(crate) struct NoteInputs<'a> {
     pub(crate) baseline: &'a Baseline,
     pub(crate) result: &'a Sample,
     pub(crate) pairing: Pairing,
     pub(crate) alpha: f64,
     pub(crate) figures: &'a IndexMap<String, FigureReport>,
-    /// Figures whose difference is remembered from block to block.
+    /// Figures whose difference is correlated from block to block.
     pub(crate) beyond_blocks: &'a [&'a str],
-    /// The largest correlation of neighbouring blocks, of any figure.
+    /// Largest correlation of neighbouring blocks among all figures.
     pub(crate) correlation: f64,
     pub(crate) blocks: usize,
 }
 
-/// What a reader must know.
+/// Returns the notes for a reader of the report.
 pub(crate) fn notes(noted: &NoteInputs<'_>) -> Vec<String> {
     let NoteInputs { baseline, result, pairing, .. } = *noted;
     let mut notes = Vec::new();
@@ -48,7 +48,8 @@ pub(crate) fn notes(noted: &NoteInputs<'_>) -> Vec<String> {
             labels(noted.beyond_blocks)
         ));
     }
-    // What the largest of so many independent correlations exceeds in one comparison of twenty.
+    // Value that the largest of independent correlations, one per figure, exceeds in one of twenty
+    // comparisons.
     let by_chance = normal_quantile(1.0 - 0.05 / noted.figures.len() as f64) / (noted.blocks as f64).sqrt();
     if noted.correlation > by_chance {
         notes.push(format!(
@@ -60,7 +61,7 @@ pub(crate) fn notes(noted: &NoteInputs<'_>) -> Vec<String> {
     notes
 }
 
-/// Which units were lost, where that alone shuts the gate.
+/// Returns a note that names the lost units if their run of losses is the only reason to shut the gate.
 fn loss_note(noted: &NoteInputs<'_>) -> Option<String> {
     let found_by_run = |figure: &&FigureReport| {
         let run = figure.loss_run.as_ref();
@@ -84,7 +85,7 @@ fn loss_note(noted: &NoteInputs<'_>) -> Option<String> {
     ))
 }
 
-/// The labels of some figures, and how many others there are.
+/// Returns the labels of some figures, and the number of further ones.
 fn labels(names: &[&str]) -> String {
     let named: Vec<String> = names.iter().take(NAMED).map(|name| figure_by_name(name).words).collect();
     match names.len().saturating_sub(NAMED) {
@@ -112,7 +113,7 @@ mod tests {
         assert_eq!(note(2, "g"), Vec::<String>::new());
     }
 
-    /// Of two figures in 25 blocks the 97.5 % quantile over 5, 0.392.
+    /// For two figures in 25 blocks the limit is the 97.5 % quantile divided by 5, 0.392.
     #[test]
     fn blocks_that_go_together_more_than_by_chance_are_noted() {
         let baseline = baseline(sample(vec![rate("hit_rate", &[1; 25]), rate("correct_rate", &[1; 25])]));

@@ -1,16 +1,16 @@
-//! What a comparison is asked for.
+//! Options of a comparison.
 use indexmap::IndexMap;
 
-/// What a comparison is asked.
+/// Options of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompareOptions {
     /// Probability of shutting the gate when no figure is worse, above 0 and below 0.5.
     pub alpha: f64,
-    /// Names of the figures to compare; empty: all of the baseline.
+    /// Names of the figures to compare; if empty, all figures of the baseline.
     pub figures: Vec<String>,
-    /// By how much figures may be worse and pass, in their units, in place of the baseline's tolerances.
+    /// Tolerances of figures, in their units, which replace those of the baseline.
     pub tolerances: IndexMap<String, f64>,
-    /// Why figures with a best value may change; absent: a change shuts the gate.
+    /// Reason why figures with a best value may change; if absent, a change shuts the gate.
     pub accept_changed: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Blocks: stretches of a sequence that are long enough to be independent of one another.
+//! Blocks: sections of a sequence that are long enough to be independent of one another.
 use std::ops::Range;
 
 use run::world_by_name;
@@ -6,19 +6,20 @@ use score::{UnitTable, UnitVerdict};
 
 use crate::identity::SourceKind;
 
-/// Fewer blocks than this cannot show anything at a level of 5 %: 2⁻⁵ = 3 %.
+/// Smallest number of blocks that can show a change at a level of 5 %: 2⁻⁵ = 3 %.
 pub const LEAST_BLOCKS: usize = 5;
-/// Blocks are not made shorter than this, units: in a shorter sequence a memory cannot be seen, and it is one block.
+/// Length of the shortest block, units: in a shorter sequence a correlation is not visible, and the sequence
+/// is one block.
 const SHORTEST_BLOCK: usize = 30;
-/// A block is so many autocorrelation times long. Of a sequence whose correlation falls off exponentially, neighbouring means are then
-/// correlated by 2.5 %, and a test at 5 % rejects in 5.4 % (docs/gate.md).
+/// Length of a block in autocorrelation times. In a sequence with exponential autocorrelation, neighbouring
+/// means are then correlated by 2.5 %, and a test at 5 % rejects in 5.4 % (docs/gate.md).
 const MEMORIES_A_BLOCK: f64 = 10.0;
-/// Blocks are not made so long that there are fewer than these, if the sequence has a way to give them.
+/// Smallest number of blocks that a longer block length must leave, if the sequence is long enough.
 const ENOUGH_BLOCKS: usize = 20;
-/// The same where frames are others.
+/// Smallest number of blocks that a longer block length must leave in comparisons with other frames.
 const ENOUGH_OF_OTHER_FRAMES: usize = 8;
 
-/// Which block each unit belongs to.
+/// Assignment of units to blocks.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Blocks {
     of_units: Vec<usize>,
@@ -26,13 +27,14 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Blocks from the number of each unit's, as they stand in a file: whole numbers that ascend by one from 0.
+    /// Creates blocks from the block number of each unit as stored in a file: integers that ascend by one
+    /// from 0.
     pub(crate) fn from_numbers(numbers: Vec<usize>) -> Self {
         Self { count: numbers.last().map_or(0, |last| last + 1), of_units: numbers }
     }
 
-    /// Cuts each sequence of neighbouring units into equal pieces of about `length` units. A draw of a study is one block, however many
-    /// points its sweep has.
+    /// Divides each sequence of neighbouring units into equal blocks of about `length` units. A draw of a
+    /// study is one block, for any number of points in its sweep.
     pub(crate) fn cut(kind: SourceKind, world: &str, table: &UnitTable, length: usize) -> Self {
         let sequences = sequences(kind, world, table);
         let mut of_units = Vec::with_capacity(table.units.len());
@@ -49,31 +51,32 @@ impl Blocks {
         Self { of_units, count }
     }
 
-    /// Blocks of so many units each, of one sequence.
+    /// Divides one sequence into blocks of `length` units.
     #[cfg(test)]
     pub(crate) fn every(units: usize, length: usize) -> Self {
         let of_units: Vec<usize> = (0..units).map(|unit| unit / length).collect();
         Self { count: units.div_ceil(length), of_units }
     }
 
-    /// Number of blocks.
+    /// Returns the number of blocks.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The block of a unit.
+    /// Returns the block of a unit.
     pub fn block_of(&self, unit: usize) -> usize {
         self.of_units[unit]
     }
 
-    /// Units of a block in the mean; 0 without any.
+    /// Returns the mean number of units per block; 0 if there are no blocks.
     pub fn mean_length(&self) -> f64 {
         if self.count == 0 { 0.0 } else { self.of_units.len() as f64 / self.count as f64 }
     }
 }
 
-/// The sequences of neighbouring units. Far range: a group (day) or a gap begins one. Docking: an approach is one sequence, but for gaps;
-/// its groups are ranges. A study: the cases of a draw.
+/// Returns the sequences of neighbouring units. In the far range, a new group (day) or a gap begins a
+/// sequence. In docking, only a gap does: an approach is one sequence, and its groups are ranges. In a study,
+/// the cases of a draw are a sequence.
 pub(crate) fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec<Range<usize>> {
     let are_groups_apart = world_by_name(world).is_ok_and(|world| world.are_groups_apart());
     let go_together = |before: &UnitVerdict, this: &UnitVerdict| {
@@ -91,19 +94,21 @@ pub(crate) fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec
     table.units.chunk_by(go_together).map(&mut next).collect()
 }
 
-/// A length of blocks for a run of this memory, units: ten times that, or shorter where that would leave fewer than so many, but at
-/// least thirty.
+/// Returns a block length, units, for a run with the autocorrelation time `memory`: ten times that, or less
+/// if this would leave fewer than `least` blocks, but at least thirty.
 fn length_leaving(least: usize, memory: f64, units: usize) -> usize {
     let wanted = (MEMORIES_A_BLOCK * memory).ceil() as usize;
     wanted.min(units / least).max(SHORTEST_BLOCK)
 }
 
-/// A length of blocks for a run of this memory, units: it leaves twenty blocks.
+/// Returns a block length, units, for a run with the autocorrelation time `memory`, which leaves twenty
+/// blocks.
 pub(crate) fn length_for(memory: f64, units: usize) -> usize {
     length_leaving(ENOUGH_BLOCKS, memory, units)
 }
 
-/// The same for runs of other frames, where what slowly varies is in the difference: it leaves eight blocks.
+/// Returns a block length, units, for comparison with other frames, where slow variations are part of the
+/// difference; it leaves eight blocks.
 pub(crate) fn length_for_other_frames(memory: f64, units: usize) -> usize {
     length_leaving(ENOUGH_OF_OTHER_FRAMES, memory, units)
 }
@@ -131,7 +136,7 @@ mod tests {
     #[test]
     fn a_gap_and_in_far_range_a_day_part_sequences() {
         let mut table = table(&[("day 1", 3), ("day 2", 2), ("day 3", 2)]);
-        // A frame is missing between days 2 and 3.
+        // One frame is missing between days 2 and 3.
         table.units[5..].iter_mut().for_each(|unit| unit.number += 1);
         assert_eq!(sequences(SourceKind::Run, "far_range", &table), [0..3, 3..5, 5..7]);
         assert_eq!(sequences(SourceKind::Run, "docking", &table), [0..5, 5..7]);
@@ -139,7 +144,7 @@ mod tests {
         assert_eq!(sequences(SourceKind::Run, "far_range", &UnitTable::default()), []);
     }
 
-    /// 7 units in two pieces are 4 and 3, 5 in two 3 and 2, and none is without a unit.
+    /// Two pieces of 7 units have 4 and 3 units, two pieces of 5 have 3 and 2, and no piece is empty.
     #[test]
     fn a_sequence_is_cut_into_pieces_that_differ_by_a_unit_at_most() {
         let table = table(&[("day 1", 7), ("day 2", 5), ("day 3", 1)]);

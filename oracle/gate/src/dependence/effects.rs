@@ -1,39 +1,41 @@
-//! What each block adds to the difference of a figure.
+//! Contribution of each block to the difference of a figure.
 //!
-//! A rate, a mean and a mean square are a sum over a count, r = Σ s/Σ n. With r₀ of both runs together, block k of a run with the sums
-//! s, n adds s − r₀ n to it, and the difference of two runs is, exactly, Σ [(s − r₀ n) of the result − the same of the baseline] / N with N
-//! the harmonic mean of their counts. Exchanging a block of the two changes the sign of its term and nothing else. A root mean square is
-//! the root of the mean square, and a median counts on which side of the median of both runs together values lie.
+//! A rate, a mean and a mean square are a sum divided by a count, r = Σ s/Σ n. Let r₀ be this ratio for both
+//! runs together. Block k of a run with the sums s, n then contributes s − r₀ n, and the difference of two
+//! runs is exactly Σ [(s − r₀ n) of the result − (s − r₀ n) of the baseline] / N, where N is the harmonic
+//! mean of their counts. Exchanging a block between the runs changes only the sign of its term. A root mean
+//! square is the root of the mean square, and a median is treated by counting the values on each side of the
+//! common median of both runs.
 use score::{Better, FigureTerms, Reduction, Sense, Term};
 use statistics::{BlockEffects, Interval, SETS, median};
 
 use super::blocks::Blocks;
 use super::influence::{Sums, values};
 
-/// One figure of two runs, by blocks.
+/// One figure of two runs, divided into blocks.
 #[derive(Debug, Clone)]
 pub(crate) struct FigureEffect {
     pub(crate) sense: Sense,
-    /// Its value in the baseline and in the result; `None` when counted over nothing.
+    /// Value of the figure, in the baseline and in the result; `None` if no unit has a value.
     pub(crate) baseline: Option<f64>,
     pub(crate) result: Option<f64>,
-    /// What they are counted over.
+    /// Number of values from which the figure is computed, in the baseline and in the result.
     pub(crate) baseline_of: u64,
     pub(crate) result_of: u64,
-    /// Blocks in which either has a value.
+    /// Number of blocks in which either run has a value.
     pub(crate) blocks: usize,
-    /// By how much each block makes the result worse, in the unit of the figure; of a figure with a best value by how much each block makes
-    /// it greater.
+    /// Contribution of each block to the worsening of the result, in the unit of the figure; for a figure
+    /// with a best value, contribution to its increase.
     pub(crate) worse: BlockEffects,
-    /// Standard error of the difference, by the scatter of the blocks.
+    /// Standard error of the difference, from the scatter of the blocks.
     pub(crate) standard_error: f64,
-    /// By how much the result may be worse and no worse be said.
+    /// Largest worsening that still counts as no worse.
     pub(crate) tolerance: f64,
-    /// Whether the difference is remembered for longer than blocks allow: nothing is said of such a figure.
+    /// True if the difference is correlated for longer than the blocks allow: the figure then has no verdict.
     pub(crate) is_beyond_blocks: bool,
 }
 
-/// The value of a figure over some terms.
+/// Returns the value of a figure for some terms.
 pub(crate) fn value(reduction: Reduction, terms: &[Term]) -> Option<f64> {
     match reduction {
         Reduction::Median => median(&[values(terms)]),
@@ -45,7 +47,7 @@ pub(crate) fn value(reduction: Reduction, terms: &[Term]) -> Option<f64> {
 }
 
 impl FigureEffect {
-    /// Of a figure of two runs whose units go together one by one.
+    /// Creates the effect for a figure of two runs whose units correspond one by one.
     pub(crate) fn from_runs(
         sense: Sense,
         baseline: &FigureTerms,
@@ -95,14 +97,15 @@ impl FigureEffect {
         }
     }
 
-    /// The same figure with no effect, as its difference is remembered for so long that blocks are not independent of one another.
+    /// Returns the figure without an effect, because its difference is correlated for so long that blocks are
+    /// not independent of one another.
     pub(crate) fn beyond_blocks(mut self) -> Self {
         self.worse.effects.fill(0.0);
         self.is_beyond_blocks = true;
         self
     }
 
-    /// By how much the result is worse, in the unit of the figure; negative where it is better.
+    /// Returns the worsening of the result, in the unit of the figure; negative if it is better.
     pub(crate) fn worsening(&self) -> Option<f64> {
         let (baseline, result) = (self.baseline?, self.result?);
         Some(match self.sense.better {
@@ -112,26 +115,29 @@ impl FigureEffect {
         })
     }
 
-    /// Whether it has a best value: it is held against the baseline, not against that value, and a change to either side is found. A bias
-    /// that a change of the pipeline brings may point towards nought, as the baseline has one of its own.
+    /// Returns true if the figure has a best value. Such a figure is compared with the baseline, not with the
+    /// best value, and a change to either side is found: a bias that a change of the pipeline causes may be
+    /// directed towards zero, because the baseline has a bias of its own.
     pub(crate) fn has_best_value(&self) -> bool {
         matches!(self.sense.better, Better::Near(_))
     }
 
-    /// By how much the result differs: of a figure with a best value to either side, of another one for the worse.
+    /// Returns the change of the result: for a figure with a best value to either side, for other figures the
+    /// worsening.
     pub(crate) fn change(&self) -> Option<f64> {
         if self.has_best_value() { Some((self.result? - self.baseline?).abs()) } else { self.worsening() }
     }
 
-    /// The same as an effect for the better; of a figure with a best value towards less.
+    /// Returns the effect with the opposite sign: an improvement, or for a figure with a best value a
+    /// decrease.
     pub(crate) fn better(&self) -> BlockEffects {
         let effects = self.worse.effects.iter().map(|effect| -effect).collect();
         BlockEffects { effects }
     }
 }
 
-/// By how much a median moves when a share of the values changes sides by one: 1/(2 f) with the density f at the median, from the middle
-/// fifth of the values.
+/// Returns the change of a median per unit change in the difference between the shares of values on its two
+/// sides: 1/(2 f) with the density f at the median, estimated from the middle fifth of the values.
 fn half_width_of_a_side(values: &[Vec<f64>]) -> f64 {
     let mut all = values.concat();
     all.sort_by(f64::total_cmp);
@@ -139,7 +145,7 @@ fn half_width_of_a_side(values: &[Vec<f64>]) -> f64 {
     at(0.6).zip(at(0.4)).map_or(0.0, |(high, low)| (high - low) / 0.4)
 }
 
-/// Of a sum of independent terms.
+/// Returns the standard error of a sum of independent terms.
 fn standard_error(terms: &[f64]) -> f64 {
     let n = terms.len() as f64;
     if n < 2.0 {
@@ -150,7 +156,7 @@ fn standard_error(terms: &[f64]) -> f64 {
     (off.map(|off| off * off).sum::<f64>() * n / (n - 1.0)).sqrt()
 }
 
-/// An interval of 95 % for the difference, result minus baseline.
+/// Returns the 95 % interval of the difference, result minus baseline.
 pub(crate) fn interval(
     baseline: &FigureTerms,
     result: &FigureTerms,
@@ -165,11 +171,11 @@ pub(crate) fn interval(
     })
 }
 
-/// One run, ready to be summed up over sets of blocks.
+/// One run, prepared for reductions over sets of blocks.
 enum Side {
-    /// Sum and count of each block; whether the figure is the root of their ratio.
+    /// Sum and count of each block; `is_root` is true if the figure is the root of their ratio.
     Ratio { blocks: Vec<(f64, f64)>, is_root: bool },
-    /// Values in order, the block of each, and how many each block has.
+    /// Values in ascending order, the block of each value, and the number of values in each block.
     Sorted { values: Vec<f64>, blocks: Vec<u32>, counts: Vec<usize> },
 }
 
@@ -216,7 +222,7 @@ impl Side {
                     counts.iter().zip(&taken).map(|(count, taken)| count * usize::from(*taken)).sum();
                 let mut before = count.checked_sub(1)? / 2;
                 let is_taken = |block: &u32| taken[*block as usize];
-                // Whole parts before the middle are counted without a branch.
+                // Complete chunks before the median are counted without branches.
                 let mut first = 0;
                 for part in blocks.chunks(64) {
                     let of_part: usize = part.iter().map(|block| usize::from(is_taken(block))).sum();
@@ -236,8 +242,8 @@ impl Side {
     }
 }
 
-/// The correlation of the effects of neighbouring blocks, about their mean; 0 where no block differs. Of independent ones it scatters
-/// by 1/√n about 0.
+/// Returns the correlation of the effects of neighbouring blocks, about their mean; 0 if no block differs.
+/// For independent blocks it scatters about 0 by 1/√n.
 pub(crate) fn neighbour_correlation(effects: &[f64]) -> f64 {
     let mean = effects.iter().sum::<f64>() / effects.len().max(1) as f64;
     let off: Vec<f64> = effects.iter().map(|effect| effect - mean).collect();
@@ -291,7 +297,7 @@ mod tests {
         assert!((effect.worsening().unwrap() - 1.0 / 6.0).abs() < 1e-12);
     }
 
-    /// Exchanging a block of the two runs changes the sign of its effect and of no other.
+    /// Exchanging a block between the two runs changes only the sign of its effect.
     #[test]
     fn an_exchanged_block_has_the_opposite_effect() {
         for (name, reduction) in [
@@ -303,7 +309,8 @@ mod tests {
             let before = effect(name, reduction, &a, &b).worse;
             a[2..4].swap_with_slice(&mut b[2..4]);
             let after = effect(name, reduction, &a, &b).worse;
-            // Counts change hands too: all effects may be scaled alike, which no statistic sees.
+            // The counts are exchanged too: this may scale all effects by a common factor, which does not
+            // affect any statistic.
             let scale = after.effects[0] / before.effects[0];
             for (block, (x, y)) in before.effects.iter().zip(&after.effects).enumerate() {
                 let expected = if block == 1 { -scale * x } else { scale * x };
@@ -312,7 +319,7 @@ mod tests {
         }
     }
 
-    /// Towards nought, across it, away from it: each is a change of its own size.
+    /// Changes towards zero, across zero and away from zero are each measured by their own size.
     #[test]
     fn a_bias_is_held_against_the_baseline_and_not_against_nought() {
         let bias = |bias: f64| [0.1, -0.1, 0.2, -0.2].map(|x| Some(x + bias));
@@ -354,7 +361,7 @@ mod tests {
         }
     }
 
-    /// Of one unit a block: both have a value, the one, the other, none.
+    /// Four blocks of one unit: both runs have a value, only the first, only the second, neither.
     #[test]
     fn a_block_counts_when_either_run_has_a_value_in_it() {
         let [a, b] = [[Some(1.0), Some(2.0), None, None], [Some(1.0), None, Some(3.0), None]]
@@ -373,7 +380,7 @@ mod tests {
         assert!(same.worse.effects.iter().all(|effect| *effect == 0.0), "{same:?}");
     }
 
-    /// Above the best value, below it, across it: what is tested is the difference itself.
+    /// Above the best value, below it or across it, the test uses the difference itself.
     #[test]
     fn what_is_best_near_a_value_is_tested_by_its_difference() {
         for (reduction, a, b) in [
@@ -398,10 +405,10 @@ mod tests {
             Side::from_run(reduction, &terms("any", reduction, &values).terms, &blocks).value(&taken)
         };
         let (all, some) = ([true; 4], [true, true, false, true]);
-        // 4 + 1 + 8 − 2 + 5 = 16 of 5; without the third block 13 of 3.
+        // 4 + 1 + 8 − 2 + 5 = 16 for 5 values; without the third block 13 for 3.
         assert_eq!(of(Reduction::Mean, all), Some(16.0 / 5.0));
         assert_eq!(of(Reduction::Mean, some), Some(13.0 / 3.0));
-        // 16 + 1 + 64 + 4 + 25 = 110 of 5; of the second block 65 of 2.
+        // 16 + 1 + 64 + 4 + 25 = 110 for 5 values; in the second block 65 for 2.
         assert_eq!(of(Reduction::Rms, all), Some(22f64.sqrt()));
         assert_eq!(of(Reduction::Rms, [false, true, false, false]), Some(32.5f64.sqrt()));
         // −2 1 4 5 8; 1 4 8; 1 8; −2 1 5 8; 4.
@@ -415,14 +422,16 @@ mod tests {
         }
     }
 
-    /// A fortieth of the 127 sets of seven blocks is left at either end: the third from there is the limit.
+    /// A fortieth of the 127 sets of seven blocks is excluded at each end: the limit is the third set from
+    /// the end.
     #[test]
     fn the_interval_is_that_of_the_differences_over_sets_of_blocks() {
         let nought = terms("ra_mean_deg", Reduction::Mean, &[Some(1.0); 7]);
         let powers = [0, 1, 2, 3, 4, 5, 6].map(|block| Some(1.0 + f64::from(1 << block)));
         let powers = terms("ra_mean_deg", Reduction::Mean, &powers);
         let interval = interval(&nought, &powers, &Blocks::every(7, 1), &Exchanges::new(7)).unwrap();
-        // Means of sets from below: 1, (1 + 2)/2, 2; from above: 64, (64 + 32)/2, (64 + 16)/2.
+        // Means of sets in ascending order: 1, (1 + 2)/2, 2; in descending order: 64, (64 + 32)/2, (64 +
+        // 16)/2.
         assert!((interval.low - 2.0).abs() < 1e-12, "{interval:?}");
         assert!((interval.high - 40.0).abs() < 1e-12, "{interval:?}");
     }
@@ -451,25 +460,27 @@ mod tests {
         is(worsening("stars_mean", Reduction::Mean, 20.0, 17.0), 3.0);
         is(worsening("ra_rms_deg", Reduction::Rms, 0.5, 0.75), 0.25);
         is(worsening("ra_rms_deg", Reduction::Rms, 0.75, 0.5), -0.25);
-        // A NEES is best at 1: from 0.7 to 1.5 it goes from 0.3 beside it to 0.5.
+        // A NEES is best at 1: from 0.7 to 1.5 its distance from 1 grows from 0.3 to 0.5.
         is(worsening("nees_mean", Reduction::Mean, 0.7, 1.5), 0.2);
         is(worsening("nees_mean", Reduction::Mean, 1.5, 0.7), -0.2);
     }
 
-    /// Ten values of which each is one more than it was. The middle fifth lies within 2, so the density at the median is 1/10.
+    /// Ten values, each increased by one. The middle fifth has a width of 2, so the density at the median is
+    /// 1/10.
     #[test]
     fn the_blocks_of_a_median_are_the_values_that_change_sides() {
         let count = |from: usize| (from..from + 10).map(|x| Some(x as f64)).collect::<Vec<_>>();
         let effect = effect("ra_median_deg", Reduction::Median, &count(1), &count(2));
-        // The median of both is 6. One value comes up to it and one leaves it, both in the third block: together one of ten changes
-        // sides, and the median moves by 1/10 over the density.
+        // The common median is 6. One value rises to it and one value rises above it, both in the third
+        // block: together, one of ten values changes sides, and the median changes by 1/10 divided by the
+        // density.
         for (got, expected) in effect.worse.effects.iter().zip([0.0, 0.0, 1.0, 0.0, 0.0]) {
             assert!((got - expected).abs() < 1e-12, "{effect:?}");
         }
         assert_eq!(effect.worse.effects.len(), 5);
     }
 
-    /// Of 0, 1, 4 … 81 the middle fifth is from 16 to 36, with a density of 1/100.
+    /// For 0, 1, 4 … 81 the middle fifth is from 16 to 36, with a density of 1/100.
     #[test]
     fn the_density_at_the_median_is_that_of_the_middle_fifth() {
         let squares: Vec<f64> = (0..10).map(|x| f64::from(x * x)).collect();
@@ -478,7 +489,7 @@ mod tests {
         assert_eq!(half_width_of_a_side(&[vec![], vec![]]), 0.0);
     }
 
-    /// Of 1, 2, 4, 5 the sample variance is 10/3, that of the sum of four 40/3.
+    /// For 1, 2, 4, 5 the sample variance is 10/3, and the variance of the sum of four terms 40/3.
     #[test]
     fn the_standard_error_of_a_sum_is_that_of_its_terms_scatter() {
         assert!((standard_error(&[1.0, 2.0, 4.0, 5.0]) - (40.0f64 / 3.0).sqrt()).abs() < 1e-12);
@@ -490,15 +501,15 @@ mod tests {
 
     #[test]
     fn neighbouring_blocks_are_correlated_about_their_mean() {
-        // About 3: −2 −1 1 2. (2 − 1 + 2)/(4 + 1 + 1 + 4).
+        // Deviations from the mean 3: −2 −1 1 2. (2 − 1 + 2)/(4 + 1 + 1 + 4).
         assert!((neighbour_correlation(&[1.0, 2.0, 4.0, 5.0]) - 0.3).abs() < 1e-12);
-        // About 3: −1 1 −1 1.
+        // Deviations from the mean 3: −1 1 −1 1.
         assert!((neighbour_correlation(&[2.0, 4.0, 2.0, 4.0]) + 0.75).abs() < 1e-12);
         assert_eq!(neighbour_correlation(&[2.0; 4]), 0.0);
         assert_eq!(neighbour_correlation(&[]), 0.0);
     }
 
-    /// The other way round it is the same effect with the other sign, and no larger.
+    /// An improvement has the same effect with the opposite sign and the same size.
     #[test]
     fn an_improvement_is_a_worsening_with_the_other_sign() {
         let effect = effect("ra_mean_deg", Reduction::Mean, &A, &B);

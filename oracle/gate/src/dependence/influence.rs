@@ -1,11 +1,11 @@
-//! What each unit of a run adds to a figure.
+//! Contribution of each unit of a run to a figure.
 
 use score::{FigureTerms, Reduction, Term};
 use statistics::median;
 
-/// One run's sums for a figure.
+/// Sums of one run for a figure.
 pub(crate) struct Sums {
-    /// Per unit: sum and count, linearised.
+    /// Linearised sum and count of each unit.
     pub(crate) units: Vec<(f64, f64)>,
     pub(crate) sum: f64,
     pub(crate) of: f64,
@@ -29,12 +29,12 @@ impl Sums {
     }
 }
 
-/// The values of a figure that has at most one a unit.
+/// Returns the values of a figure that has at most one value per unit.
 pub(crate) fn values(terms: &[Term]) -> Vec<f64> {
     terms.iter().filter(|term| term.of > 0).map(|term| term.sum).collect()
 }
 
-/// What each unit of one run adds to a figure, about its value.
+/// Returns the contribution of each unit of one run to a figure, relative to the figure's value.
 pub(crate) fn influence(figure: &FigureTerms) -> Vec<f64> {
     let own = values(&figure.terms);
     let centre = if figure.reduction == Reduction::Median { median(&[own]).unwrap_or(0.0) } else { 0.0 };
@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn the_influence_of_a_unit_is_what_it_adds_about_the_value() {
         let of = |reduction, values: &[Option<f64>]| influence(&terms("any", reduction, values));
-        // About the mean of 4; about the mean square of 9.
+        // Relative to the mean of 4, and to the mean square of 9.
         let values = [Some(1.0), None, Some(4.0), Some(7.0)];
         assert_eq!(of(Reduction::Mean, &values), [-3.0, 0.0, 0.0, 3.0]);
         assert_eq!(of(Reduction::Rms, &[Some(1.0), Some(-1.0), Some(5.0)]), [-8.0, -8.0, 16.0]);

@@ -1,4 +1,4 @@
-//! How long figures remember: their autocorrelation times.
+//! Memory of figures: their autocorrelation times.
 use std::ops::Range;
 
 use score::{FigureTerms, UnitTable};
@@ -8,32 +8,33 @@ use super::blocks::{Blocks, sequences};
 use super::influence::influence;
 use crate::identity::SourceKind;
 
-/// How long the figures of a run remember.
+/// Longest autocorrelation time of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Memory {
-    /// The longest autocorrelation time of its figures, units.
+    /// Longest autocorrelation time of the run's figures, units.
     pub(crate) units: f64,
-    /// The figure that has it.
+    /// Figure with the longest autocorrelation time.
     pub(crate) figure: String,
 }
 
-/// Where the thirds of blocks have a longer memory than this, thirds, blocks go together too much to be exchanged: of an exponential memory
-/// the means of neighbouring blocks are then correlated by 0.18. Of eight independent blocks one figure in thirty seems to have it.
+/// Longest autocorrelation time of the thirds of blocks, in thirds, for which blocks may be exchanged. At
+/// this time, with an exponential autocorrelation, the means of neighbouring blocks are correlated by 0.18.
+/// With eight independent blocks, one figure in thirty appears to exceed it.
 const MAX_THIRDS: f64 = 2.2;
 
-/// The autocorrelation time of a series over some sequences of it, units; at least 1.
+/// Returns the autocorrelation time of a series over some of its sequences, units; at least 1.
 fn autocorrelation_time(series: &[f64], sequences: &[Range<usize>]) -> f64 {
     let cut: Vec<Vec<f64>> = sequences.iter().map(|sequence| series[sequence.clone()].to_vec()).collect();
     let count: usize = cut.iter().map(Vec::len).sum();
     if count == 0 { 1.0 } else { count as f64 / effective_size(&cut) }
 }
 
-/// The autocorrelation time of a figure of one run over its sequences, units; at least 1.
+/// Returns the autocorrelation time of a figure of one run over its sequences, units; at least 1.
 pub(crate) fn memory_of(figure: &FigureTerms, sequences: &[Range<usize>]) -> f64 {
     autocorrelation_time(&influence(figure), sequences)
 }
 
-/// The longest autocorrelation time of the figures of a run.
+/// Returns the longest autocorrelation time of the figures of a run.
 pub(crate) fn memory(kind: SourceKind, world: &str, table: &UnitTable) -> Memory {
     let sequences = sequences(kind, world, table);
     let of_figures = table.figures.iter().map(|figure| (memory_of(figure, &sequences), &figure.name));
@@ -42,7 +43,8 @@ pub(crate) fn memory(kind: SourceKind, world: &str, table: &UnitTable) -> Memory
     })
 }
 
-/// Thirds of the blocks of every sequence that is cut into several blocks. A sequence that is one block needs no memory to be short.
+/// Thirds of the blocks in every sequence that is cut into several blocks. A sequence that is a single block
+/// may have any autocorrelation time.
 pub(crate) struct Thirds {
     sequences: Vec<Vec<Range<usize>>>,
 }
@@ -64,11 +66,14 @@ impl Thirds {
         Self { sequences: sequences(kind, world, table).into_iter().filter_map(thirds_of).collect() }
     }
 
-    /// Whether what two runs of other frames differ by in a figure is remembered for too long: by how many thirds of blocks.
+    /// Returns true if the difference of a figure between two runs of other frames is correlated over too
+    /// many thirds of blocks.
     ///
-    /// The memory that counts is that of the difference, as what the scene does to both cancels in it. A weak memory that lasts, a drift
-    /// under white noise, does not stand out unit by unit, and does between thirds of blocks. A fault that lasts has a memory of its
-    /// own, which is none of the null hypothesis: the memory is at most that of the baseline.
+    /// The relevant autocorrelation is that of the difference, in which effects of the scene on both runs
+    /// cancel. A weak but long correlation, such as a drift under white noise, is not visible between single
+    /// units, but is visible between thirds of blocks. A lasting fault has an autocorrelation of its own,
+    /// which does not belong to the null hypothesis: the autocorrelation time is therefore limited to that of
+    /// the baseline.
     pub(crate) fn are_remembered(&self, before: &FigureTerms, after: &FigureTerms) -> bool {
         let before = influence(before);
         let difference: Vec<f64> =
@@ -76,7 +81,7 @@ impl Thirds {
         self.memory_of(&difference).min(self.memory_of(&before)) > MAX_THIRDS
     }
 
-    /// The autocorrelation time of the sums over thirds, thirds.
+    /// Returns the autocorrelation time of the sums over thirds, in thirds.
     fn memory_of(&self, series: &[f64]) -> f64 {
         let sum_of = |third: &Range<usize>| series[third.clone()].iter().sum::<f64>();
         let sums: Vec<Vec<f64>> =
@@ -115,7 +120,7 @@ mod tests {
         assert_eq!((length_for(memory.units, 1000), length_for(memory.units, 100)), (50, 30));
     }
 
-    /// Values that alternate are worth as much as independent ones, and so are those that never vary.
+    /// Alternating values count as much as independent ones, and so do constant values.
     #[test]
     fn of_figures_that_remember_nothing_none_has_the_memory() {
         let mut table = table(&[("day 1", 100)]);
@@ -129,7 +134,8 @@ mod tests {
         assert_eq!(super::memory(SourceKind::Run, "far_range", &UnitTable::default()), memory);
     }
 
-    /// Differences that are white, that drift for half the run, and that a fault makes last while the baseline is white.
+    /// Differences that are white, that drift for half the run, and that last because of a fault while the
+    /// baseline is white.
     #[test]
     fn what_drifts_through_the_blocks_of_both_runs_is_remembered() {
         let random = &mut Seed { seed: 9, case: 0 }.stream(0, Effect::PixelNoise, 0);
@@ -149,7 +155,7 @@ mod tests {
         assert!(!thirds.are_remembered(&white, &other));
         assert!(thirds.are_remembered(&drifting, &lasting));
         assert!(!thirds.are_remembered(&white, &lasting), "a fault is not chance");
-        // Blocks that are whole sequences are apart whatever they remember.
+        // Blocks that are whole sequences are separate, independently of their autocorrelation.
         let days = Blocks::cut(SourceKind::Run, "far_range", &table, 400);
         let thirds = Thirds::from_table(SourceKind::Run, "far_range", &table, &days);
         assert!(!thirds.are_remembered(&drifting, &lasting));

@@ -1,4 +1,5 @@
-//! How units of a run depend on one another: memory, blocks, and what each adds to a figure.
+//! Dependence between the units of a run: autocorrelation, blocks, and the contribution of each unit or block
+//! to a figure.
 
 #[allow(
     clippy::indexing_slicing,

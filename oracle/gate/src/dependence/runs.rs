@@ -1,10 +1,11 @@
-//! Runs of losses: what one event took away.
+//! Runs of losses: units lost through one event.
 //!
-//! Exchanging whole blocks cannot see what happens in one stretch alone. On the same frames the flips of a rate say more: of units whose
-//! outcome changed, some were lost and some won, and if the pipelines are alike, each is as likely. Flips come in episodes, which are no
-//! longer than the episodes in which the baseline itself fails: so many flips are worth as many fair coins as they are autocorrelation
-//! times of the rate. Two counts are tested: how many were lost of all that changed (the sign test), and how long the longest run of
-//! losses is among them.
+//! Exchanging whole blocks cannot detect an event in a single section. With the same frames, the flips of a
+//! rate contain more information: of the units whose outcome changed, some were lost and some won, and if the
+//! pipelines are alike, both are equally likely. Flips come in episodes, which are no longer than the
+//! episodes in which the baseline itself fails: n flips are worth n/τ tosses of a fair coin, with the
+//! autocorrelation time τ of the rate. Two counts are tested: the number of losses among all changed units
+//! (the sign test), and the length of the longest run of losses among them.
 use std::ops::Range;
 
 use run::figure_by_name;
@@ -14,39 +15,41 @@ use statistics::binomial_at_least;
 
 use super::memory::memory_of;
 
-/// Episodes are taken to be at least so long, units: where a baseline hardly ever fails, its memory is not seen.
+/// Shortest assumed length of an episode, units: if a baseline hardly ever fails, its autocorrelation is not
+/// visible.
 const SHORTEST_EPISODE: f64 = 3.0;
 
-/// What became of the units that a rate counts, in order.
+/// Changes of the units that a rate counts, in order.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LossRun {
-    /// Units that counted for the better in the baseline and do not in the result.
+    /// Number of units that counted for the better in the baseline and do not in the result.
     pub lost: u64,
-    /// The other way round.
+    /// Number of units that count for the better in the result and did not in the baseline.
     pub won: u64,
-    /// The longest run of losses with none won in it.
+    /// Length of the longest run of losses without a win.
     pub longest: u64,
-    /// Number of the first unit of that run; null without any.
+    /// Number of the first unit of the longest run; null if there is no loss.
     pub first: Option<u64>,
-    /// Number of its last unit.
+    /// Number of the last unit of the longest run; null if there is no loss.
     pub last: Option<u64>,
-    /// How long an episode is taken to be, units: the autocorrelation time of the rate in the baseline, at least 3.
+    /// Assumed length of an episode, units: the autocorrelation time of the rate in the baseline, at least 3.
     pub episode: f64,
-    /// Probability of as many losses, or as long a run of them, when losing and winning are alike; of all rates together.
+    /// Probability of at least this many losses, or of a run at least this long, if losing and winning are
+    /// equally likely; adjusted for all rates together.
     pub adjusted_p: f64,
-    /// So many units lost in a row, and nothing else, would be found.
+    /// Shortest run of losses, without any other flip, that the test would detect, units.
     pub smallest_visible: u64,
 }
 
-/// The flips of one rate.
+/// Flips of one rate.
 struct Series {
-    /// Of each unit that changed its place and whether it was lost.
+    /// Index of each changed unit, and true if the unit was lost.
     flips: Vec<(usize, bool)>,
     episode: f64,
 }
 
 impl Series {
-    /// `None` of a figure that is no rate, or is best near a value.
+    /// Returns `None` for a figure that is not a rate, or whose best value is a given value.
     fn from_terms(before: &FigureTerms, after: &FigureTerms, sequences: &[Range<usize>]) -> Option<Self> {
         let sense = figure_by_name(&before.name).sense;
         let sign = match (sense.kind, sense.better) {
@@ -68,26 +71,27 @@ impl Series {
         self.flips.iter().filter(|(_, is_lost)| *is_lost).count()
     }
 
-    /// The longest run of losses.
+    /// Returns the longest run of losses.
     fn longest(&self) -> &[(usize, bool)] {
         let runs =
             self.flips.chunk_by(|a, b| a.1 == b.1).filter(|run| run.first().is_some_and(|flip| flip.1));
         runs.max_by_key(|run| run.len()).unwrap_or_default()
     }
 
-    /// Probability of so many losses in so many flips with so long a run of them.
+    /// Probability of at least `lost` losses among `flips` flips, or of a run of at least `longest` losses.
     fn p(&self, lost: usize, longest: usize, flips: usize) -> f64 {
         let episodes = |units: usize| units as f64 / self.episode;
         let (lost_of, won_of) = (episodes(lost).floor() as u64, episodes(flips - lost).ceil() as u64);
         let by_count = binomial_at_least(lost_of, lost_of + won_of, 0.5);
         let (run, of) = (episodes(longest).floor(), episodes(flips).ceil());
-        // A run begins with the first episode or after one that was won.
+        // A run begins at the first episode, or after a won episode.
         let by_run = libm::exp2(-run) * (1.0 + 0.5 * (of - run).max(0.0));
         (2.0 * by_count.min(by_run)).min(1.0)
     }
 }
 
-/// The runs of losses of each figure, on the same frames; `None` of what is no rate with a direction.
+/// Returns the run of losses of each figure, for a result on the same frames; `None` for a figure that is not
+/// a rate with a direction.
 pub(crate) fn loss_runs(
     pairs: &[(&FigureTerms, &FigureTerms)],
     units: &[UnitVerdict],
@@ -96,8 +100,9 @@ pub(crate) fn loss_runs(
 ) -> Vec<Option<LossRun>> {
     let series: Vec<Option<Series>> =
         pairs.iter().map(|(before, after)| Series::from_terms(before, after, sequences)).collect();
-    // Rates that changed in the same way in the same units are one: hits and misses, say. Which units changed is fixed under the null
-    // hypothesis, so that counting what changed is no choice by the outcome.
+    // Rates that changed in the same way in the same units (hits and misses, for instance) count once. The
+    // set of changed units is fixed under the null hypothesis, so counting the changed units does not depend
+    // on the outcome.
     let mut distinct: Vec<&[(usize, bool)]> = Vec::new();
     for Series { flips, .. } in series.iter().flatten().filter(|series| !series.flips.is_empty()) {
         if !distinct.contains(&flips.as_slice()) {
@@ -136,7 +141,8 @@ mod tests {
         loss_runs(&[(&before, &after)], &units, std::slice::from_ref(&whole), 0.0025)[0].clone().unwrap()
     }
 
-    /// Of 30 frames that alternate none remembers anything: an episode has three. Nine lost in a row are three throws, 2 · 2⁻³.
+    /// 30 frames without correlation: an episode has three units. Nine consecutive losses are three throws, 2
+    /// · 2⁻³.
     #[test]
     fn losses_count_as_throws_of_a_coin_by_episodes() {
         let before: Vec<u8> = (0..30).map(|frame| u8::from(frame % 15 != 0)).collect();
@@ -148,16 +154,16 @@ mod tests {
         let is = |p: f64, expected: f64| assert!((p - expected).abs() < 1e-12, "{p}, not {expected}");
         assert_eq!(run.episode, 3.0);
         is(run.adjusted_p, 0.25);
-        // Eleven are three whole ones; twelve are four.
+        // Eleven losses contain three complete episodes; twelve contain four.
         is(run_of(&before, &lost(1..12)).adjusted_p, 0.25);
         is(run_of(&before, &lost(1..13)).adjusted_p, 0.125);
-        // 2 · 2⁻ᵏ ≤ 0.0025 for ten throws.
+        // 2 · 2⁻ᵏ ≤ 0.0025 holds from ten throws on.
         assert_eq!(run.smallest_visible, 30);
         let none = run_of(&before, &before);
         assert_eq!((none.lost, none.longest, none.first, none.adjusted_p), (0, 0, None, 1.0));
     }
 
-    /// Six lost, three won, six lost: 4 of 5 throws, 6/32 by count; by run 2⁻² (1 + (5 − 2)/2).
+    /// Six lost, three won, six lost. By count: 4 of 5 throws, 6/32. By run: 2⁻² (1 + (5 − 2)/2).
     #[test]
     fn what_was_won_parts_a_run() {
         let before = [1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 1, 0, 1, 0, 1];
@@ -167,12 +173,12 @@ mod tests {
         let series = Series { flips: Vec::new(), episode: 3.0 };
         assert!((series.p(12, 6, 15) - 2.0 * 6.0 / 32.0).abs() < 1e-12);
         assert!((series.p(12, 12, 12) - 2.0 / 16.0).abs() < 1e-12);
-        // Thousands of either are no reason to overflow.
+        // Thousands of losses and wins do not overflow.
         assert!((0.9..=1.0).contains(&series.p(6000, 9, 12_000)));
         assert!(series.p(9000, 9, 12_000) < 1e-100);
     }
 
-    /// A baseline that fails in episodes of twenty makes one loss of twenty a single throw.
+    /// If the baseline fails in episodes of twenty units, twenty consecutive losses are a single throw.
     #[test]
     fn a_memory_of_the_baseline_makes_losses_fewer_throws() {
         let before: Vec<u8> = (0..400).map(|frame| u8::from(frame % 100 >= 20)).collect();
@@ -182,7 +188,8 @@ mod tests {
         assert_eq!((run.lost, run.first, run.last), (80, Some(20), Some(99)));
     }
 
-    /// Misses are hits the other way round: the two are one series, and cost nothing.
+    /// Miss rate and hit rate are complementary: they form one series, and the second adds no correction for
+    /// multiple tests.
     #[test]
     fn rates_with_the_same_terms_are_counted_once() {
         let [before, after] = [[1u8; 60], [0u8; 60]];

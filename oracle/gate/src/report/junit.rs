@@ -1,13 +1,14 @@
-//! A report as JUnit XML, which continuous integration reads: a test case a figure.
+//! Report as JUnit XML for continuous integration, with one test case per figure.
 use files::Failure;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use crate::report::{FigureReport, FigureVerdict, GateReport};
 
-/// The report as a JUnit document: figures that are worse or gone are failures, as are those that changed unless that was accepted, those with too little data are skipped.
+/// Returns the report as a JUnit document. Figures that are worse or gone are failures, as are changed
+/// figures unless the change was accepted; figures with too little data are skipped.
 ///
 /// # Errors
-/// [`Failure::Usage`] when it cannot be written as XML.
+/// [`Failure::Usage`] when the report cannot be written as XML.
 pub fn junit(report: &GateReport) -> Result<String, Failure> {
     let mut suite = TestSuite::new(format!("gate {}", report.name));
     for (name, figure) in &report.figures {
@@ -19,7 +20,7 @@ pub fn junit(report: &GateReport) -> Result<String, Failure> {
             }
             FigureVerdict::TooLittleData => TestCaseStatus::skipped(),
         };
-        // Of a success both are nothing, and nothing is written.
+        // For a success these calls have no effect, and nothing is written.
         status.set_message(message(name, figure));
         status.set_type(figure.verdict.words());
         let mut case = TestCase::new(name.as_str(), status);
@@ -30,10 +31,10 @@ pub fn junit(report: &GateReport) -> Result<String, Failure> {
     written(suite)
 }
 
-/// A comparison that could not be made, as a JUnit document: one test case, which is an error.
+/// Returns a JUnit document for a comparison that could not be made: one test case, which is an error.
 ///
 /// # Errors
-/// [`Failure::Usage`] when it cannot be written as XML.
+/// [`Failure::Usage`] when the document cannot be written as XML.
 pub fn junit_of_failure(failure: &Failure) -> Result<String, Failure> {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
     status.set_message(failure.to_string());
@@ -53,7 +54,7 @@ fn written(suite: TestSuite) -> Result<String, Failure> {
         .map_err(|error| Failure::Usage(format!("the report cannot be written as JUnit XML: {error}")))
 }
 
-/// A figure in a sentence.
+/// Describes a figure in one sentence.
 fn message(name: &str, figure: &FigureReport) -> String {
     let shown = |value: Option<f64>| value.map_or_else(|| "nothing".to_owned(), |value| value.to_string());
     format!(

@@ -1,4 +1,4 @@
-//! What a gate found.
+//! Report of a gate.
 
 pub(crate) mod junit;
 
@@ -9,32 +9,32 @@ use crate::comparison::flips::Flips;
 use crate::dependence::runs::LossRun;
 use crate::identity::Pairing;
 
-/// What is said of a figure, and of all of them together.
+/// Verdict on one figure, or on all figures together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FigureVerdict {
-    /// It is worse, beyond chance and beyond its tolerance.
+    /// Worse, beyond chance and beyond the tolerance.
     Worse,
-    /// The baseline has it and the result does not, in more blocks than chance would do: worse.
+    /// Present in the baseline and absent from the result, in more blocks than by chance: counts as worse.
     Gone,
-    /// Nothing says that it is worse.
+    /// Without evidence that the figure is worse.
     NoWorse,
-    /// It is better, beyond chance and beyond its tolerance.
+    /// Better, beyond chance and beyond the tolerance.
     Better,
-    /// A figure with a best value differs from the baseline, beyond chance and beyond its tolerance, and is no farther from that value: a bias
-    /// has another size or side.
+    /// For a figure with a best value: different from the baseline, beyond chance and beyond the tolerance,
+    /// but not farther from the best value. An example is a bias of another size or sign.
     Changed,
-    /// It has values in too few blocks to show anything, whatever they are.
+    /// Present in too few blocks for any significant result, regardless of the values.
     TooLittleData,
 }
 
 impl FigureVerdict {
-    /// Whether the gate is shut by it.
+    /// Returns true if this verdict makes the gate fail.
     pub fn is_worse(self) -> bool {
         matches!(self, Self::Worse | Self::Gone)
     }
 
-    /// As a person reads it.
+    /// Returns the verdict as text for the user.
     pub fn words(self) -> &'static str {
         match self {
             Self::Worse => "worse",
@@ -47,91 +47,94 @@ impl FigureVerdict {
     }
 }
 
-/// One figure of baseline and result.
+/// One figure of a baseline and of a result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FigureReport {
-    /// What is said of it.
+    /// Verdict on the figure.
     pub verdict: FigureVerdict,
-    /// Which way is better: `more`, `less`, or `near X`.
+    /// Direction that is better: `more`, `less`, or `near X`.
     pub better: String,
-    /// The value in the baseline; null when it is counted over nothing.
+    /// Value in the baseline; null when its denominator is 0.
     pub baseline: Option<f64>,
-    /// What it is counted over there.
+    /// Denominator of the baseline's value.
     pub baseline_of: u64,
-    /// The value in the result.
+    /// Value in the result; null when its denominator is 0.
     pub result: Option<f64>,
-    /// What it is counted over there.
+    /// Denominator of the result's value.
     pub result_of: u64,
-    /// Result minus baseline.
+    /// Value of the result minus value of the baseline.
     pub difference: Option<f64>,
-    /// Lower limit of the difference's interval of 95 %.
+    /// Lower limit of the 95 % interval of the difference.
     pub low: Option<f64>,
-    /// Upper limit.
+    /// Upper limit of the 95 % interval of the difference.
     pub high: Option<f64>,
-    /// By how much the result is worse; negative where it is better. Of what is best near a value it is the growth of the distance from it.
+    /// Amount by which the result is worse; negative where it is better. For a figure with a best value:
+    /// increase of the distance from that value.
     pub worse_by: Option<f64>,
-    /// By how much it may be worse and pass.
+    /// Amount by which the result may be worse and still pass.
     pub tolerance: f64,
-    /// Probability of as large a worsening if there is none, of this figure alone.
+    /// Probability of at least this worsening if there is none, for this figure considered separately.
     pub p: f64,
-    /// The same, adjusted for all figures together: worse when at most alpha.
+    /// Probability `p` adjusted for all figures together; the figure is worse when it is at most alpha.
     pub adjusted_p: f64,
-    /// The same for an improvement.
+    /// Adjusted probability of at least this improvement if there is none.
     pub better_adjusted_p: f64,
-    /// A worsening of this size is seen with a probability of 95 %, or more.
+    /// Smallest worsening that is detected with a probability of at least 95 %.
     pub smallest_visible: Option<f64>,
-    /// Blocks in which it has a value.
+    /// Number of blocks in which the figure has a value.
     pub blocks: u64,
-    /// Of a rate on the same frames: what was lost and won, and the longest run of losses.
+    /// Lost and won units and the longest run of losses, for a rate on the same frames.
     pub loss_run: Option<LossRun>,
 }
 
-/// What a gate found: the document of `--json`.
+/// Report of a gate: the document of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GateReport {
-    /// `worse` when any figure is, otherwise `changed` when any figure is, otherwise `no_worse`.
+    /// `worse` when any figure is worse, otherwise `changed` when any figure changed, otherwise `no_worse`.
     pub verdict: FigureVerdict,
-    /// Why a change passes, where it was accepted.
+    /// Reason for accepting a change; absent if none was accepted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accepted: Option<String>,
     /// Name of the scenario or study.
     pub name: String,
     /// `far_range` or `docking`.
     pub world: String,
-    /// Why the baseline is one.
+    /// Reason why this result became the baseline.
     pub reason: String,
-    /// What the units are: `frames`, `fields` or `cases`.
+    /// Name of the units: `frames`, `fields` or `cases`.
     pub units: String,
-    /// How many there are.
+    /// Number of units.
     pub count: u64,
-    /// Whether frames or only blocks of them go together.
+    /// Pairing: by frames, or only by blocks of frames.
     pub pairing: Pairing,
     /// Seed of the baseline.
     pub baseline_seed: u64,
     /// Seed of the result.
     pub result_seed: u64,
-    /// Version that made the baseline's run.
+    /// Version of Boresight that made the baseline's run.
     pub baseline_version: String,
-    /// Version that made the result.
+    /// Version of Boresight that made the result.
     pub result_version: String,
-    /// Probability of shutting the gate when no figure is worse.
+    /// Probability that the gate fails when no figure is worse.
     pub alpha: f64,
     /// Number of blocks.
     pub blocks: u64,
-    /// Units of a block, in the mean.
+    /// Mean number of units per block.
     pub block_length: f64,
-    /// The largest correlation of the effects of neighbouring blocks, of any figure. Blocks that are long enough have little.
+    /// Largest correlation, over all figures, between the effects of neighbouring blocks. It is small for
+    /// blocks that are long enough.
     pub neighbour_correlation: f64,
-    /// What a reader must know of how far to trust it.
+    /// Notes on the limits of the comparison.
     pub notes: Vec<String>,
-    /// Figures by name.
+    /// Figures, keyed by name.
     pub figures: IndexMap<String, FigureReport>,
-    /// Units that changed; null where the frames are not the same.
+    /// Units that changed; null if the frames differ.
     pub flips: Option<Flips>,
 }
 
 impl GateReport {
-    /// Whether the gate is shut: a figure is worse, or one with a best value changed and that was not accepted.
+    /// Returns true if the gate fails: a figure is worse, or a figure with a best value changed and the
+    /// change was not accepted.
     pub fn is_shut(&self) -> bool {
         match self.verdict {
             FigureVerdict::Changed => self.accepted.is_none(),
@@ -139,13 +142,13 @@ impl GateReport {
         }
     }
 
-    /// Names of the figures that changed.
+    /// Returns the names of the figures that changed.
     pub fn changed_figures(&self) -> impl Iterator<Item = &str> {
         let changed = self.figures.iter().filter(|(_, figure)| figure.verdict == FigureVerdict::Changed);
         changed.map(|(name, _)| name.as_str())
     }
 
-    /// Names of the figures that are worse.
+    /// Returns the names of the figures that are worse.
     pub fn worse_figures(&self) -> impl Iterator<Item = &str> {
         self.figures.iter().filter(|(_, figure)| figure.verdict.is_worse()).map(|(name, _)| name.as_str())
     }

@@ -1,4 +1,4 @@
-//! Docking as the page shows it.
+//! Docking on the page of the monitor.
 
 #[allow(
     clippy::indexing_slicing,
@@ -27,7 +27,7 @@ use crate::server::overview::camera;
 use crate::session::Session;
 use crate::session::picture::Stretch;
 
-/// Least half width of the corridor, m/s.
+/// Smallest half width of the corridor, m/s.
 const MARGIN_M_S: f64 = 0.05;
 
 impl MonitoredWorld for DockingMission {
@@ -158,6 +158,6 @@ struct Facet {
 }
 
 fn ring(corners: &[nalgebra::Vector3<f64>]) -> Vec<[f64; 3]> {
-    // A tenth of a millimetre is as fine as it is drawn.
+    // Coordinates are rounded to the resolution of the drawing, a tenth of a millimetre.
     corners.iter().map(|corner| corner.map(|v| (v * 1e4).round() / 1e4).into()).collect()
 }

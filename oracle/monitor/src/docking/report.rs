@@ -1,4 +1,4 @@
-//! What is shown of a docking field.
+//! Reports of docking fields for the monitor.
 use std::collections::BTreeMap;
 
 use contract::docking::{DockingOutcome, DockingSetup, DockingSolution, Lines, Motion, Pose};
@@ -11,12 +11,12 @@ use sim::truth::approach::target_from_camera;
 use crate::ground::GroundTrack;
 use crate::report::{CameraPose, Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape};
 
-/// Arm of a cross whose size in the picture is not known, px.
+/// Arm length of a cross of unknown size, px of the image.
 const PLAIN_ARM_PX: f64 = 14.0;
-/// Half side of the box about a mark, px.
+/// Half side of the box around a mark, px.
 const MARK_PX: f64 = 6.0;
 
-/// Makes the reports of a sequence of fields, in order: what a portion said holds until the next one.
+/// Makes the reports of consecutive fields; the result of a portion remains valid until the next portion.
 pub(crate) struct DockingReporter<'a> {
     setup: &'a DockingSetup,
     names: Vec<String>,
@@ -24,7 +24,7 @@ pub(crate) struct DockingReporter<'a> {
     portion: Option<Portion>,
 }
 
-/// What was said at the end of the last portion, and what was true then.
+/// Result at the end of the last portion, with the truth at that time.
 struct Portion {
     shown: ApproachParameters,
     sigmas: Option<[f64; 7]>,
@@ -32,12 +32,13 @@ struct Portion {
 }
 
 impl<'a> DockingReporter<'a> {
-    /// For the cameras of these names.
+    /// Creates a reporter for cameras with the given names.
     pub(crate) fn new(setup: &'a DockingSetup, names: Vec<String>, ground: Option<&'a GroundTrack>) -> Self {
         Self { setup, names, ground, portion: None }
     }
 
-    /// The report of the next field. `features` are the rows of `features.parquet`; no outcome is a field that nobody answered.
+    /// Returns the report of the next field. `features` are the rows of `features.parquet`; `outcome` is
+    /// `None` for a field that the pipeline did not report.
     pub(crate) fn report(
         &mut self,
         truth: &FieldTruth,
@@ -189,7 +190,8 @@ impl<'a> DockingReporter<'a> {
     }
 }
 
-/// The truth at the moment of a report: that of the field it came with, as if nothing accelerated since.
+/// Returns the truth at the time of the motion: the truth of the reporting field, extrapolated at constant
+/// velocity.
 fn true_at(truth: &FieldTruth, motion: &Motion) -> ApproachParameters {
     let seconds = motion.time_s - truth.time_s;
     let pose = Pose {
@@ -199,7 +201,7 @@ fn true_at(truth: &FieldTruth, motion: &Motion) -> ApproachParameters {
     ApproachParameters::from_motion(&pose, &truth.velocity_m_s)
 }
 
-/// A section of six parameters: its title, and the name and label of each.
+/// A section of six parameters: its title, and the name and label of each parameter.
 type Section = (&'static str, [(&'static str, &'static str); 6]);
 
 const BEST: Section = (

@@ -1,4 +1,4 @@
-//! The far range as the page shows it.
+//! The far range on the page of the monitor.
 
 mod report;
 
@@ -19,11 +19,11 @@ use crate::server::overview::camera;
 use crate::session::Session;
 use crate::session::picture::Stretch;
 
-/// Frames a second at which a sequence is played: its own cadence is many seconds a frame.
+/// Playback rate of a sequence, frames per second; the true cadence is many seconds per frame.
 const RATE_HZ: f64 = 25.0;
-/// Least half width of the corridor, m/s.
+/// Smallest half width of the corridor, m/s.
 const MARGIN_M_S: f64 = 0.1;
-/// Points of the relative orbit that are drawn.
+/// Number of plotted points of the relative orbit.
 const ORBIT_POINTS: u64 = 3000;
 
 impl MonitoredWorld for FarRangeMission {
@@ -58,7 +58,7 @@ impl MonitoredWorld for FarRangeMission {
                 at(frame).map(|time| (frame, trajectory.states_at(time).chaser_rtn_km().into()))
             })
             .collect();
-        // Nobody looked between one day and the next: no line crosses that time.
+        // The camera took no images between one day and the next: no line spans that time.
         let begins: Vec<u64> = schedule.sequences().map(|day| day.frames.start).collect();
         let session = json!({
             "world": Self::CODE,

@@ -1,4 +1,4 @@
-//! What is shown of a far-range frame.
+//! Reports of far-range frames for the monitor.
 use contract::{Camera, Label, Outcome, Solution};
 use files::format_utc;
 use hifitime::Epoch;
@@ -8,26 +8,27 @@ use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Trajectory, Visibility};
 use crate::ground::GroundTrack;
 use crate::report::{CameraPose, Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape};
 
-/// Half side of the box about a cluster, px.
+/// Half side of the box around a cluster, px.
 const CLUSTER_PX: f64 = 5.0;
-/// Smallest circle about a true place, px.
+/// Radius of the smallest circle around a true position, px.
 const TRUTH_PX: f64 = 9.0;
-/// Most true objects that are drawn: a picture full of particles says no more with all of them.
+/// Maximum number of true objects drawn: in an image full of cosmic-ray hits, more would add no information.
 const MAX_TRUTHS: usize = 300;
-/// Of an object's light, what the regions may cut away before it counts as not in the picture.
+/// Largest fraction of an object's flux that the regions may cut off before the object counts as outside the
+/// image.
 const MAX_CUT: f64 = 0.5;
 
-/// Makes the reports of frames.
+/// Makes the reports of far-range frames.
 pub(crate) struct FarRangeReporter<'a> {
     pub(crate) camera: &'a Camera,
     pub(crate) trajectory: &'a Trajectory,
     pub(crate) ground: &'a GroundTrack,
-    /// The moment of the scenario's first frame.
+    /// Time of the scenario's first frame.
     pub(crate) start: Epoch,
 }
 
 impl FarRangeReporter<'_> {
-    /// The report of a frame; no outcome is a frame that nobody answered.
+    /// Returns the report of a frame; `outcome` is `None` for a frame that the pipeline did not report.
     pub(crate) fn report(
         &self,
         truth: &FrameTruth,
@@ -72,7 +73,7 @@ impl FarRangeReporter<'_> {
     }
 }
 
-/// Range, km, and range rate, m/s.
+/// Returns range, km, and range rate, m/s.
 pub(crate) fn range_and_rate(trajectory: &Trajectory, time: Epoch) -> [f64; 2] {
     let states = trajectory.states_at(time);
     let apart = states.line_of_sight_km();

@@ -1,17 +1,17 @@
-//! The page, embedded when it has been built.
+//! Files of the page, embedded if the page has been built.
 
-/// What builds the page, at the top of the repository.
+/// Command that builds the page, run at the top of the repository.
 pub const BUILD_COMMAND: &str = "npm ci --prefix monitor && npm run build --prefix monitor";
 
-/// The files of the page, sorted by name; written by the build script, empty if the page was not built.
+/// Files of the page, sorted by name. Written by the build script; empty if the page was not built.
 const PAGE: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
-/// Whether the page is in this executable.
+/// Returns true if this executable contains the page.
 pub fn is_page_built() -> bool {
     file("index.html").is_some()
 }
 
-/// A file of the page by its exact name, and its type.
+/// Returns the content and the media type of a file of the page, by its exact name.
 pub(crate) fn asset(name: &str) -> Option<(&'static [u8], &'static str)> {
     let kind = match name.rsplit_once('.')?.1 {
         "html" => "text/html; charset=utf-8",

@@ -1,41 +1,42 @@
-//! Who may ask: requests to the server's own address, from its own page or from a program.
+//! Admission of requests: those to the server's own address, from its own page or from a program.
 
 use std::net::{IpAddr, SocketAddr};
 
 use axum::http::header::{self, HeaderMap, HeaderName};
 
-/// The port that an address without one means.
+/// Port of an address that names none.
 const HTTP: u16 = 80;
-/// What a browser says of the page that asks, and of how.
+/// Headers in which a browser states the site of the requesting page and the mode of the request.
 const FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 const FETCH_MODE: HeaderName = HeaderName::from_static("sec-fetch-mode");
 
-/// What becomes of a request.
+/// Decision on a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Admission {
-    /// It is answered.
+    /// The request is answered.
     Granted,
-    /// It is for another host.
+    /// The request is for another host.
     OtherHost,
-    /// It is of another page.
+    /// The request comes from another page.
     OtherPage,
 }
 
-/// The addresses by which the server answers. A name that an attacker's own name server points here (DNS rebinding) is none.
+/// Admits requests to the addresses of this server only. A host name that an attacker's name server resolves
+/// to this machine (DNS rebinding) is not admitted.
 #[derive(Debug, Clone)]
 pub(crate) struct Guard {
     address: SocketAddr,
 }
 
 impl Guard {
-    /// Of the address that the server is bound to.
+    /// Creates the guard of the address that the server is bound to.
     pub(crate) fn new(address: SocketAddr) -> Self {
         Self { address }
     }
 
-    /// Whether a request for `path` with these headers is answered.
+    /// Decides on a request for `path` with these headers.
     pub(crate) fn admits(&self, path: &str, headers: &HeaderMap) -> Admission {
-        // What is not text is no address of ours, and of two hosts nobody knows which is meant.
+        // A header that is not text is never an address of this server, and two `Host` headers are ambiguous.
         let text = |name: &HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or_default());
         let is_one = headers.get_all(header::HOST).iter().count() == 1;
         if !is_one || !text(&header::HOST).is_some_and(|host| self.is_own_host(host)) {
@@ -45,14 +46,16 @@ impl Guard {
         if !origins.all(|origin| origin.to_str().is_ok_and(|origin| self.is_own_origin(origin))) {
             return Admission::OtherPage;
         }
-        // An image or a script of another page comes without an origin. A link to the page itself may be followed.
+        // Requests for images or scripts from another page carry no `Origin`. A link to the page itself is
+        // admitted.
         let is_own_page = text(&FETCH_SITE).is_none_or(|site| matches!(site, "same-origin" | "none"));
         let is_link = path == "/" && text(&FETCH_MODE) == Some("navigate");
         if is_own_page || is_link { Admission::Granted } else { Admission::OtherPage }
     }
 
-    /// Whether `Host` is this server: its address, the loopback's names where it listens there, and any literal address where
-    /// it listens on all of them; the port must be right, and may be missing if it is that of HTTP.
+    /// Returns true if `Host` names this server: its address, `localhost` if it listens on loopback, or any
+    /// literal address if it listens on all addresses. The port must match, and may be omitted if it is the
+    /// HTTP port.
     fn is_own_host(&self, host: &str) -> bool {
         let (name, port) = match host.rsplit_once(':') {
             Some((name, port)) if !host.ends_with(']') => (name, port.parse().ok()),
@@ -70,7 +73,7 @@ impl Guard {
         literal.parse::<IpAddr>().is_ok_and(|asked| asked == ip || ip.is_unspecified())
     }
 
-    /// Whether `Origin` is a page of this server.
+    /// Returns true if `Origin` is a page of this server.
     fn is_own_origin(&self, origin: &str) -> bool {
         origin.strip_prefix("http://").is_some_and(|host| self.is_own_host(host))
     }

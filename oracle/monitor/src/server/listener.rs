@@ -1,5 +1,6 @@
-//! A listener that accepts so many connections and no more: others wait in the system's queue. A connection on which nothing is answered
-//! for a minute, as it asks nothing or never comes to the end of its question, gives up its place.
+//! A listener with a bounded number of connections; further clients wait in the queue of the operating
+//! system. A connection is closed if no byte of an answer is sent on it for a minute, for instance because
+//! its request is absent or never completed.
 
 use std::io;
 use std::net::SocketAddr;
@@ -14,12 +15,12 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
-/// What clients may take of the server.
+/// Limits on the clients of the server.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bounds {
-    /// Connections at the same time: a browser opens six a page.
+    /// Maximum number of simultaneous connections; a browser opens six per page.
     pub(crate) connections: usize,
-    /// Longest time without a byte of an answer. A question that is asked is answered within seconds.
+    /// Longest time without a byte of an answer. A complete request is answered within seconds.
     pub(crate) quiet: Duration,
 }
 
@@ -46,11 +47,11 @@ impl Listener for BoundedListener {
     type Addr = SocketAddr;
 
     async fn accept(&mut self) -> (Connection, SocketAddr) {
-        // The semaphore is never closed: without a permit there would be no bound, so none is waited for again.
+        // The semaphore is never closed. If it were, the connection would be accepted without a permit.
         let permit = Arc::clone(&self.permits).acquire_owned().await.ok();
-        // The listener's own accept waits out what passes, such as too many open files.
+        // The listener's `accept` waits until transient errors pass, such as too many open files.
         let (stream, address) = Listener::accept(&mut self.listener).await;
-        // What is late by 40 ms to save a packet is late for a frame.
+        // A delay of 40 ms to save a packet (Nagle's algorithm) is too long for a frame.
         let _ = stream.set_nodelay(true);
         let connection =
             Connection { stream, quiet: self.quiet, end: Box::pin(sleep(self.quiet)), _permit: permit };
@@ -62,17 +63,18 @@ impl Listener for BoundedListener {
     }
 }
 
-/// A connection that holds its place until it is closed, or has been quiet for too long.
+/// A connection that holds its permit until it is closed, or has been quiet for too long.
 pub(crate) struct Connection {
     stream: TcpStream,
     quiet: Duration,
-    /// When it has been.
+    /// Time at which the connection will have been quiet for too long.
     end: Pin<Box<Sleep>>,
     _permit: Option<OwnedSemaphorePermit>,
 }
 
 impl Connection {
-    /// An error once the connection has been quiet for too long. What is asked byte by byte is no answer, so it does not count.
+    /// Returns an error once the connection has been quiet for too long. Bytes received from the client do
+    /// not reset the time.
     fn poll_end(&mut self, context: &mut Context<'_>) -> io::Result<()> {
         match self.end.as_mut().poll(context) {
             Poll::Ready(()) => Err(io::ErrorKind::TimedOut.into()),
@@ -104,7 +106,7 @@ impl AsyncWrite for Connection {
                 let end = Instant::now() + self.quiet;
                 self.end.as_mut().reset(end);
             }
-            // A client that does not take its answer.
+            // The client does not read its answer.
             Poll::Pending => self.poll_end(context)?,
         }
         written
@@ -130,7 +132,7 @@ mod tests {
     use super::*;
 
     const QUIET: Duration = Duration::from_millis(200);
-    /// Longer than anything here takes on a busy machine.
+    /// Longer than any operation of these tests takes on a busy machine.
     const HANGS: Duration = Duration::from_secs(30);
 
     async fn read_some(connection: &mut Connection) -> io::Result<()> {
@@ -200,7 +202,8 @@ mod tests {
         with_listener(1, async |mut listener, address| {
             let client = std::net::TcpStream::connect(address).unwrap();
             let (mut connection, _) = listener.accept().await;
-            // Answers that go out keep it for longer than it may be quiet: so many fit into what the system buffers.
+            // Sent answers keep the connection open for longer than `QUIET`; this number of answers fits into
+            // the buffers of the operating system.
             for _ in 0..6 {
                 sleep(QUIET / 4).await;
                 write_some(&mut connection).await.unwrap();

@@ -1,4 +1,4 @@
-//! The server: any frame by its number, and nothing kept of a client.
+//! The server: provides any frame by its number and keeps no state of its clients.
 
 pub(crate) mod assets;
 pub(crate) mod guard;
@@ -32,14 +32,15 @@ use crate::server::overview::Overview;
 use crate::session::painter::paint;
 use crate::session::{PictureAnswer, Session};
 
-/// How long a request for a frame that is not processed yet waits before it is told to ask again.
+/// Longest time that a request waits for a frame that is not yet processed, before the answer requests a
+/// retry.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// How long connections have to end when the monitor stops.
+/// Time allowed for connections to end when the monitor stops.
 const FAREWELL: Duration = Duration::from_secs(1);
-/// Threads that draw pictures again.
+/// Number of threads that draw pictures again.
 const PAINTERS: usize = 2;
 
-/// Sent with every answer. The page needs its own files and nothing else, and nobody may frame or read it.
+/// Headers of every answer. The page needs only its own files, and no other page may frame or read it.
 const HEADERS: [(HeaderName, &str); 6] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -52,11 +53,12 @@ const HEADERS: [(HeaderName, &str); 6] = [
     (header::CACHE_CONTROL, "no-store"),
 ];
 
-/// Serves the page of `monitored` at `bind` until `stop`; `ready` is told the address. Threads of its own simulate and process,
-/// or read, as far as the page asks.
+/// Serves the page of `monitored` at `bind` until `stop`; `ready` receives the address. Separate threads
+/// simulate and process frames, or read them, as far as the page requests them.
 ///
 /// # Errors
-/// A [`Failure`] when the address cannot be bound, a run directory not be read, or there are too many frames.
+/// A [`Failure`] when the address cannot be bound, a run directory cannot be read, or there are too many
+/// frames.
 pub fn serve(
     monitored: &Feed,
     bind: SocketAddr,
@@ -74,7 +76,7 @@ pub fn serve(
         first: context.frames.start,
         session: Arc::clone(&session),
     });
-    // A thread that fails tells the page, unless it only was told to stop.
+    // A failed thread reports its failure to the page, unless the session is already closed.
     let publish_failure = |result: Result<(), Failure>| {
         if let Err(failure) = result
             && !session.is_closed()
@@ -93,7 +95,7 @@ pub fn serve(
     })
 }
 
-/// What requests look at.
+/// Data shared by all requests.
 struct ServerState {
     overview: Overview,
     ground: Option<GroundTrack>,
@@ -123,13 +125,13 @@ fn answer_requests(
         let goodbye = async move {
             stop.await;
             session.close();
-            // Nobody listens when the server has ended by itself.
+            // The receiver is gone if the server has already ended by itself.
             let _ = ended.send(());
         };
         let service = router(Arc::clone(shared), Guard::new(address));
         let server = axum::serve(BoundedListener::new(listener, Bounds::default()), service)
             .with_graceful_shutdown(goodbye);
-        // Clients that keep their connection are not waited for.
+        // Does not wait for clients that keep their connections open.
         tokio::select! {
             result = server.into_future() => {
                 result.map_err(|error| Failure::Usage(format!("the server ended: {error}")))
@@ -171,7 +173,7 @@ async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Resp
     response
 }
 
-/// A file of the page, by its exact name.
+/// Returns a file of the page by its exact name.
 async fn page(uri: Uri, request: Request) -> Response {
     if request.method() != axum::http::Method::GET && request.method() != axum::http::Method::HEAD {
         return StatusCode::METHOD_NOT_ALLOWED.into_response();
@@ -213,7 +215,7 @@ async fn history(State(shared): State<Arc<ServerState>>) -> Response {
     document(StatusCode::OK, &shared.session.history())
 }
 
-/// The track over the ground about a frame: longitude and latitude, degrees.
+/// Returns the ground track around the time of a frame: longitude and latitude, degrees.
 async fn ground(State(shared): State<Arc<ServerState>>, Path(file): Path<String>) -> Response {
     let number = file.strip_suffix(".json").and_then(|number| number.parse::<u64>().ok());
     let index = number.and_then(|number| usize::try_from(number.checked_sub(shared.first)?).ok());
@@ -226,7 +228,7 @@ async fn ground(State(shared): State<Arc<ServerState>>, Path(file): Path<String>
     }
 }
 
-/// `N.json`, what is known of a frame, or `N.gray`, its picture: one byte a pixel, row by row.
+/// Returns `N.json`, the report of a frame, or `N.gray`, its picture with one byte per pixel, row by row.
 async fn frame(State(shared): State<Arc<ServerState>>, Path(file): Path<String>) -> Response {
     let Some((number, kind)) = file.split_once('.') else { return not_a_frame() };
     let Some(number) = number.parse().ok().filter(|number| shared.session.contains(*number)) else {
@@ -263,7 +265,7 @@ async fn picture(session: &Session, frame: u64) -> Response {
     }
 }
 
-/// Waits for a frame, not for ever.
+/// Waits for a frame up to a time limit; returns true if the frame is processed.
 async fn is_processed(session: &Session, frame: u64) -> bool {
     session.request(frame);
     let mut processed = session.subscribe();
@@ -281,7 +283,8 @@ async fn is_processed(session: &Session, frame: u64) -> bool {
     timeout(PATIENCE, arrived).await.unwrap_or(false)
 }
 
-/// How far the run is, and that it is worth asking again, unless it has failed. No error: a browser would log each.
+/// Returns the progress of the run with a request to retry, or an error if the run has failed. A frame that
+/// is not yet processed is no error, because a browser would log each.
 fn not_yet(session: &Session) -> Response {
     let progress = session.progress();
     if progress.failure.is_some() {

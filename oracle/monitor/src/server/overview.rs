@@ -1,4 +1,4 @@
-//! What the page is told once: the scenario, its cameras, the plan, and the scene's facets.
+//! Documents that the page receives once: the scenario, its cameras, the plan, and the facets of the scene.
 use axum::body::Bytes;
 use contract::Camera;
 use files::Failure;
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::feed::{Feed, MonitorContext};
 
-/// The documents that do not change.
+/// The constant documents.
 #[derive(Debug, Clone)]
 pub(crate) struct Overview {
     pub(crate) session: Bytes,

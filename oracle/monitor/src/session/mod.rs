@@ -1,4 +1,5 @@
-//! What the threads of a monitor share: what is known of every frame, the latest pictures, what the page is waiting for.
+//! State shared by the threads of a monitor: reports of all frames, the latest pictures, and the pending
+//! requests of the page.
 
 pub(crate) mod painter;
 pub(crate) mod picture;
@@ -14,24 +15,24 @@ use tokio::sync::{oneshot, watch};
 
 use crate::report::{FrameReport, Phase};
 
-/// How many frames are processed beyond the last one that was asked for.
+/// Number of frames that are processed beyond the last requested frame.
 const AHEAD: u64 = 120;
-/// Bytes of pictures that are kept, at most: some 290 far-range frames, some 580 fields.
+/// Maximum size of the kept pictures, bytes: about 290 far-range frames, about 580 fields.
 const PICTURE_BYTES: usize = 128 << 20;
-/// Pictures that may wait to be drawn, all clients together.
+/// Maximum number of pictures that wait to be drawn, for all clients together.
 const MAX_WAITING: usize = 64;
-/// Points of the history in the phase chart, at most about.
+/// Approximate maximum number of points of the history in the phase chart.
 const HISTORY_POINTS: usize = 1500;
 
-/// One monitored run. Frames are processed in order; `goal` moves ahead of the clients, so that a page that is left alone
-/// leaves the processor alone.
+/// One monitored run. Frames are processed in order. `goal` moves ahead of the clients, so an idle page
+/// causes no processing.
 #[derive(Debug)]
 pub(crate) struct Session {
     frames: Range<u64>,
     state: Mutex<State>,
-    /// Something changed for the threads: the goal, a picture to be drawn, the end.
+    /// Signals the threads: the goal has moved, a picture is to be drawn, or the session is closed.
     changed: Condvar,
-    /// Frames processed, for the clients that wait.
+    /// End of the processed frames, published to waiting clients.
     processed: watch::Sender<u64>,
 }
 
@@ -46,7 +47,7 @@ struct State {
     is_closed: bool,
 }
 
-/// What is kept of a frame.
+/// Stored data of a frame.
 #[derive(Debug)]
 struct FrameEntry {
     report: Bytes,
@@ -54,7 +55,7 @@ struct FrameEntry {
     digitiser: Digitiser,
 }
 
-/// A picture to be drawn.
+/// A request to draw a picture.
 #[derive(Debug)]
 pub(crate) struct PictureOrder {
     pub(crate) frame: u64,
@@ -62,12 +63,12 @@ pub(crate) struct PictureOrder {
     pub(crate) answer: oneshot::Sender<Bytes>,
 }
 
-/// How far the run is.
+/// Progress of the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Progress {
     pub(crate) from: u64,
     pub(crate) to: u64,
-    /// Frames `from` up to and without this one are processed.
+    /// End (exclusive) of the processed frames, which start at `from`.
     pub(crate) processed: u64,
     pub(crate) failure: Option<String>,
 }
@@ -79,14 +80,14 @@ pub(crate) struct History {
     truth: Vec<(u64, f64, f64)>,
 }
 
-/// The answer to a wish for a picture.
+/// Answer to a request for a picture.
 #[derive(Debug)]
 pub(crate) enum PictureAnswer {
     Ready(Bytes),
     Ordered(oneshot::Receiver<Bytes>),
     /// The frame is not processed yet.
     NotYet,
-    /// Too many are waiting.
+    /// Too many pictures are waiting to be drawn.
     Busy,
 }
 
@@ -106,7 +107,8 @@ impl Session {
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
-        // A thread that panicked left whole values: each change is one assignment or one push.
+        // The state is consistent even after a panic in another thread: each change is one assignment or one
+        // push.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -114,7 +116,7 @@ impl Session {
         self.frames.contains(&frame)
     }
 
-    /// Waits until somebody wants `frame`.
+    /// Waits until `frame` is at or below the goal.
     ///
     /// # Errors
     /// [`Failure::Usage`] when the monitor is closed.
@@ -147,13 +149,13 @@ impl Session {
         Ok(())
     }
 
-    /// Ends the sequence before its last frame, with the reason.
+    /// Ends the sequence before its last frame, for the given reason.
     pub(crate) fn fail(&self, reason: String) {
         self.state().failure = Some(reason);
         self.processed.send_modify(|_| ());
     }
 
-    /// Has frames processed up to this one and some more.
+    /// Requests the processing of frames up to this one and `AHEAD` more.
     pub(crate) fn request(&self, frame: u64) {
         let mut state = self.state();
         let goal = frame.saturating_add(AHEAD);
@@ -163,13 +165,13 @@ impl Session {
         }
     }
 
-    /// The report of a frame; `None` as long as it is not processed.
+    /// Returns the report of a frame, or `None` if the frame is not yet processed.
     pub(crate) fn report(&self, frame: u64) -> Option<Bytes> {
         let index = usize::try_from(frame.checked_sub(self.frames.start)?).ok()?;
         self.state().entries.get(index).map(|entry| entry.report.clone())
     }
 
-    /// A picture that is kept, or the promise of one.
+    /// Returns a stored picture, or orders one to be drawn.
     pub(crate) fn picture(&self, frame: u64) -> PictureAnswer {
         let mut state = self.state();
         if let Some((_, picture)) = state.pictures.iter().rev().find(|(kept, _)| *kept == frame) {
@@ -179,7 +181,7 @@ impl Session {
         let Some(digitiser) = index.and_then(|i| state.entries.get(i)).map(|entry| entry.digitiser) else {
             return PictureAnswer::NotYet;
         };
-        // Those whose clients have gone make room.
+        // Orders of clients that have disconnected make room.
         state.orders.retain(|order| !order.answer.is_closed());
         if state.orders.len() >= MAX_WAITING || state.is_closed {
             return PictureAnswer::Busy;
@@ -190,7 +192,7 @@ impl Session {
         PictureAnswer::Ordered(promise)
     }
 
-    /// The next picture to be drawn, once there is one; `None` at the end.
+    /// Waits for the next picture to be drawn and returns its order; `None` when the session is closed.
     pub(crate) fn next_order(&self) -> Option<PictureOrder> {
         let mut state = self.state();
         loop {
@@ -205,10 +207,10 @@ impl Session {
         }
     }
 
-    /// Hands a picture to who ordered it, and keeps it.
+    /// Sends a picture to the client that ordered it, and stores it.
     pub(crate) fn deliver(&self, order: PictureOrder, picture: Bytes) {
         self.state().keep(order.frame, picture.clone());
-        // Nobody is there any more: it is kept for the next one.
+        // If the client has disconnected, the stored picture remains for the next request.
         let _ = order.answer.send(picture);
     }
 
@@ -222,12 +224,12 @@ impl Session {
         }
     }
 
-    /// Tells of every frame that is processed, and of the end.
+    /// Returns a receiver that is notified of every processed frame, and of the end.
     pub(crate) fn subscribe(&self) -> watch::Receiver<u64> {
         self.processed.subscribe()
     }
 
-    /// Range and range rate of the frames processed so far, thinned.
+    /// Returns range and range rate of the frames processed so far, thinned.
     pub(crate) fn history(&self) -> History {
         let state = self.state();
         let step = state.entries.len().div_ceil(HISTORY_POINTS).max(1);
@@ -242,11 +244,11 @@ impl Session {
         }
     }
 
-    /// Wakes whoever waits, for the last time.
+    /// Closes the session and wakes all waiting threads.
     pub(crate) fn close(&self) {
         let mut state = self.state();
         state.is_closed = true;
-        // Dropped promises tell their clients.
+        // Dropping the orders notifies their clients.
         state.orders.clear();
         self.changed.notify_all();
         self.processed.send_modify(|_| ());
@@ -258,7 +260,7 @@ impl Session {
 }
 
 impl State {
-    /// Keeps a picture, and lets go of the oldest ones.
+    /// Stores a picture, and discards the oldest ones beyond `PICTURE_BYTES`.
     fn keep(&mut self, frame: u64, picture: Bytes) {
         if self.pictures.iter().any(|(kept, _)| *kept == frame) {
             return;

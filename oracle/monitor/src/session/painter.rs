@@ -1,10 +1,11 @@
-//! Draws a picture again that is not kept any more, or never was: frame N alone is the frame N of the run.
+//! Draws pictures that are no longer stored, or never were: frame N can be drawn independently of the other
+//! frames of the run.
 use files::Failure;
 
 use super::Session;
 use crate::feed::{Feed, MonitorContext};
 
-/// Draws what is ordered, until the monitor is closed.
+/// Draws ordered pictures until the monitor is closed.
 ///
 /// # Errors
 /// A [`Failure`] when a frame cannot be made.

@@ -1,23 +1,24 @@
-//! Pictures as the page draws them: one grey byte a pixel, row by row.
+//! Pictures in the form that the page draws: one grey byte per pixel, row by row.
 
 use axum::body::Bytes;
 use contract::Frame;
 use sim::sensor::SensorConfig;
 
-/// Of full scale, where the stretch turns from linear to logarithmic: faint stars show, and bright ones still differ.
+/// Fraction of full scale at which the stretch changes from linear to logarithmic: faint stars are visible,
+/// and bright ones still differ.
 const SOFTENING: f64 = 1.0 / 1500.0;
 
-/// From digital numbers to grey.
+/// Table from digital numbers to grey levels.
 #[derive(Debug, Clone)]
 pub(crate) struct Stretch(Vec<u8>);
 
 impl Stretch {
-    /// Eight bits as they are.
+    /// Returns the identity for eight-bit pixels.
     pub(crate) fn plain() -> Self {
         Self((0..=u8::MAX).collect())
     }
 
-    /// From the detector's bias to its full scale, by the inverse hyperbolic sine.
+    /// Returns the inverse hyperbolic sine from the detector's bias to its full scale.
     pub(crate) fn from_sensor(sensor: &SensorConfig) -> Self {
         let full_dn = f64::from(sensor.full_scale_dn());
         let span = (full_dn - sensor.bias_dn).max(1.0);
@@ -28,7 +29,7 @@ impl Stretch {
         Self((0..=sensor.full_scale_dn()).map(|dn| grey(dn).round() as u8).collect())
     }
 
-    /// The picture of a frame; what is above the scale is white.
+    /// Returns the picture of a frame; values above full scale become white.
     pub(crate) fn picture(&self, frame: &Frame) -> Bytes {
         let grey = |dn: &u16| self.0.get(usize::from(*dn)).copied().unwrap_or(u8::MAX);
         frame.dn().iter().map(grey).collect()
@@ -49,7 +50,7 @@ mod tests {
         assert_eq!((table[0], table[sensor.bias_dn as usize]), (0, 0));
         assert_eq!((table.len(), table.last()), (usize::from(sensor.full_scale_dn()) + 1, Some(&255)));
         assert!(table.windows(2).all(|pair| pair[0] <= pair[1]));
-        // A pixel of a star of ten read noises, 15 DN, is well above black.
+        // A pixel of a star with ten times the read noise, 15 DN, is well above black.
         assert!(table[sensor.bias_dn as usize + 15] > 64);
     }
 }

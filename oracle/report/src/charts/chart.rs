@@ -1,4 +1,5 @@
-//! Charts of the report, and the traces and layouts that they share: lines, clouds of points, intervals, bars, stacked panels.
+//! Charts of the report, and their common traces and layouts: lines, point clouds, intervals, bars, stacked
+//! panels.
 
 use serde::Serialize;
 
@@ -7,28 +8,28 @@ use super::thin::{extremes, sampled};
 use crate::page::data_table::DataTable;
 use crate::page::script_safe::script_safe;
 
-/// What is true.
+/// Colour of true values.
 pub(crate) const TRUTH: &str = "#2f9e69";
-/// What was measured, and is right.
+/// Colour of correct measurements.
 pub(crate) const MEASURED: &str = "#3686c9";
-/// What was measured, and is wrong.
+/// Colour of wrong measurements.
 pub(crate) const WRONG: &str = "#c9415a";
-/// A second thing beside the measured one: a mean, a limit.
+/// Colour of a second quantity beside the measurement: a mean, a limit.
 pub(crate) const BESIDE: &str = "#e0752d";
-/// What is only there to be compared with.
+/// Colour of reference values.
 pub(crate) const REFERENCE: &str = "#7c8792";
 
-/// Points that are few.
+/// Number of points below which each point is drawn larger and more opaque.
 const FEW: usize = 300;
 
-/// A chart, the words below it and the table behind it.
+/// A chart, its caption and its data table.
 #[derive(Clone)]
 pub struct Chart {
-    /// What it shows.
+    /// Caption below the chart.
     pub caption: String,
     /// Height on the page, px.
     pub height_px: u32,
-    /// The numbers in it, or a summary of them.
+    /// Numbers in the chart, or a summary of them.
     pub data: DataTable,
     traces: Vec<Trace>,
     layout: Layout,
@@ -41,7 +42,7 @@ impl std::fmt::Debug for Chart {
 }
 
 impl Chart {
-    /// A chart of these traces.
+    /// Creates a chart of these traces.
     pub(crate) fn new(
         caption: impl Into<String>,
         height_px: u32,
@@ -52,43 +53,44 @@ impl Chart {
         Self { caption: caption.into(), height_px, data, traces, layout }
     }
 
-    /// The figure as plotly.js takes it, safe inside a script tag.
+    /// Returns the figure as JSON for plotly.js, escaped for use inside a script tag.
     pub fn json(&self) -> String {
         #[derive(Serialize)]
         struct Figure<'a> {
             data: &'a [Trace],
             layout: &'a Layout,
         }
-        // Values of JSON alone, which always have a text.
+        // The figure consists of JSON values only, so serialisation cannot fail.
         let json = serde_json::to_string(&Figure { data: &self.traces, layout: &self.layout });
         script_safe(&json.unwrap_or_default())
     }
 }
 
-/// A number with so many decimals: more would only make the page longer.
+/// Rounds a number to `decimals` decimals; more would only lengthen the page.
 pub(crate) fn rounded(value: f64, decimals: i32) -> f64 {
     let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
     (value * unit).round() / unit
 }
 
-/// Words of somebody else's for a chart, which would take tags in them for markup.
+/// Escapes external text for a chart, because plotly.js interprets tags as markup.
 pub(crate) fn plain(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// A line.
+/// Returns a line trace.
 pub(crate) fn line(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
     Trace::scatter(Mode::Lines, x, y).name(plain(name)).line(Line::new(1.6).colour(colour))
 }
 
-/// Points.
+/// Returns a trace of points.
 pub(crate) fn points(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
     let marker = Marker::new().size(4).colour(colour).opacity(0.85);
     Trace::scatter(Mode::Markers, x, y).name(plain(name)).marker(marker)
 }
 
-/// A cloud of the points of some rows, and, where they are too many to be drawn, a sample of them with their extremes as rings. `make` draws
-/// rows; `value` is what the extremes are of, and where there is none no extremes are drawn.
+/// Returns a cloud of points for the given rows. If there are too many to draw, the cloud is a sample of them
+/// with the extremes of `value` as rings. `make` returns the trace of given rows; without `value` no extremes
+/// are drawn.
 pub(crate) fn cloud(
     name: &str,
     rows: &[usize],
@@ -100,7 +102,7 @@ pub(crate) fn cloud(
         let rows: Vec<usize> = places.into_iter().map(|place| rows[place]).collect();
         make(&rows).mode(Mode::Markers)
     };
-    // Few points are looked at one by one, of many their density.
+    // Few points are seen one by one, many points as a density.
     let (size, opacity) = if rows.len() < FEW { (5, 0.85) } else { (4, 0.6) };
     let marker = Marker::new().size(size).colour(colour).opacity(opacity);
     let mut traces = vec![of(sampled(rows.len())).name(plain(name)).marker(marker)];
@@ -112,13 +114,13 @@ pub(crate) fn cloud(
     traces
 }
 
-/// Points that stand out.
+/// Returns a trace of points that stand out.
 pub(crate) fn crosses(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
     let marker = Marker::new().size(6).colour(colour).symbol(Symbol::Cross);
     Trace::scatter(Mode::Markers, x, y).name(plain(name)).marker(marker)
 }
 
-/// Values with the limits of their intervals, as points with bars; the limits are absolute.
+/// Returns values with the limits of their intervals, as points with error bars; the limits are absolute.
 pub(crate) fn intervals(
     name: &str,
     x: impl Into<Values>,
@@ -132,7 +134,7 @@ pub(crate) fn intervals(
     Trace::scatter(Mode::Markers, x, y).name(plain(name)).marker(marker).error_y(bars)
 }
 
-/// The same along x, for names down the side.
+/// Returns values with the limits of their intervals along x, for names on the vertical axis.
 pub(crate) fn intervals_across(
     name: &str,
     x: Vec<f64>,
@@ -147,50 +149,51 @@ pub(crate) fn intervals_across(
     Trace::scatter(Mode::Markers, x, names).name(plain(name)).marker(marker).error_x(bars)
 }
 
-/// Bars from values to the limits of their intervals.
+/// Returns error bars from values to the limits of their intervals.
 fn bars_to(values: &[f64], low: &[f64], high: &[f64]) -> ErrorBars {
     let up: Vec<f64> = high.iter().zip(values).map(|(high, value)| (high - value).max(0.0)).collect();
     let down: Vec<f64> = low.iter().zip(values).map(|(low, value)| (value - low).max(0.0)).collect();
     ErrorBars::new(&up, &down)
 }
 
-/// The room between two lines, as two traces: its lower edge, and its upper one with the fill.
+/// Returns the band between two lines, as two traces: the lower edge, and the upper edge with the fill.
 pub(crate) fn band(name: &str, x: Vec<f64>, low: Vec<f64>, high: Vec<f64>, fill: &str) -> [Trace; 2] {
     let edge = |x, y| Trace::scatter(Mode::Lines, x, y).line(Line::new(0.0)).name(plain(name));
     let below = edge(x.clone(), low).not_in_legend();
     [below, edge(x, high).fill_to_previous(fill)]
 }
 
-/// A line that is there to be compared with.
+/// Returns a dashed line for a reference.
 pub(crate) fn dashed(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
     let style = Line::new(1.2).colour(colour).dashed();
     Trace::scatter(Mode::Lines, x, y).name(plain(name)).line(style)
 }
 
-/// Bars, one a name.
+/// Returns a bar chart with one bar per name.
 pub(crate) fn bars(name: &str, x: &[String], y: Vec<f64>, colour: &str) -> Trace {
     let names: Vec<String> = x.iter().map(|x| plain(x)).collect();
     Trace::bars(names, y).name(plain(name)).marker(Marker::new().colour(colour))
 }
 
-/// The layout of stacked bars.
+/// Returns the layout of stacked bars.
 pub(crate) fn stacked_bars(x_title: &str, y_title: &str) -> Layout {
-    // One kind of bar alone would have no name otherwise.
+    // The legend is forced: with a single kind of bar it would be hidden, and the kind unnamed.
     axes(x_title, y_title).stacked_bars(0.4).legend(true)
 }
 
-/// The layout of one pair of axes.
+/// Returns the layout of one pair of axes.
 pub(crate) fn axes(x_title: &str, y_title: &str) -> Layout {
     Layout::new(Axis::titled(x_title), Axis::titled(y_title))
 }
 
-/// An axis in powers of ten, with whole numbers at its ticks: a lone 2 may be 20. Few of them, as those before a power are close.
+/// Returns a logarithmic axis whose tick labels are complete numbers, since the default label 2 may mean 20.
+/// It has few ticks, because those below a power of ten are close together.
 pub(crate) fn log_axis(title: &str) -> Axis {
     Axis::titled(title).logarithmic().tick_format("~g").max_ticks(4)
 }
 
-/// Ticks of a low panel with an axis in powers of ten: powers, or 1 and 3, or 1, 2 and 5 of each, the fewest that are two, so that no label
-/// covers another.
+/// Returns the ticks of a low panel with a logarithmic axis: powers of ten, or 1 and 3, or 1, 2 and 5 times
+/// each power. The coarsest set with at least two ticks is chosen, so that labels do not overlap.
 fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     let (first, last) = (libm::floor(libm::log10(low)) as i32, libm::ceil(libm::log10(high)) as i32);
     let every = ((last - first) / 4).max(1) as usize;
@@ -203,15 +206,15 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     sets.into_iter().map(ticks).find(|ticks| ticks.len() > 1).unwrap_or_else(|| vec![low, high])
 }
 
-/// Some traces with an axis of their own, in a stack of them over one common axis.
+/// Traces with a separate vertical axis, in a stack of panels over one common horizontal axis.
 pub(crate) struct Panel {
-    /// Title of its axis.
+    /// Title of the vertical axis.
     pub(crate) title: String,
-    /// What is drawn in it.
+    /// Traces drawn in the panel.
     pub(crate) traces: Vec<Trace>,
-    /// Limits of its axis; `None`: those of what is drawn.
+    /// Limits of the vertical axis; `None`: those of the traces.
     pub(crate) range: Option<[f64; 2]>,
-    /// Limits of an axis in powers of ten; `None` for a common one.
+    /// Limits of a logarithmic vertical axis; `None` for a linear axis.
     pub(crate) log: Option<[f64; 2]>,
 }
 
@@ -221,7 +224,7 @@ impl Panel {
     }
 }
 
-/// Panels above each other over one common axis. The legend is that of the first.
+/// Stacks panels above each other over one common axis. Only the traces of the first panel are in the legend.
 pub(crate) fn stacked(x: Axis, panels: Vec<Panel>) -> (Vec<Trace>, Layout) {
     let count = panels.len().max(1);
     let (height, gap) = (1.0 / count as f64, 0.035);

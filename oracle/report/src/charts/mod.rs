@@ -1,4 +1,4 @@
-//! Charts: their traces and layouts, series made short, a map of the sky.
+//! Charts: traces, layouts, thinned series, and a map of the sky.
 
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 pub(crate) mod chart;

@@ -1,7 +1,8 @@
-//! Traces and layouts of charts, as the JSON that plotly.js reads.
+//! Traces and layouts of charts, as JSON for plotly.js.
 //!
-//! The types hold only the attributes that the charts use, under the field's names; <https://plotly.com/javascript/reference/> defines the
-//! attributes. Numbers are as short as a reader can use: whole ones without a point, others with nine significant digits at most.
+//! The types hold only the attributes that the charts use, under plotly.js's names;
+//! <https://plotly.com/javascript/reference/> defines the attributes. Numbers are as short as is useful:
+//! integers without a decimal point, other numbers with at most nine significant digits.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -23,14 +24,14 @@ impl Attributes {
     }
 }
 
-/// A number as JSON; null, a gap, for one that is not finite.
+/// Returns a number as JSON; a number that is not finite becomes null, which leaves a gap.
 fn number(value: f64) -> Value {
-    /// Above it not every whole number is a float.
+    /// Limit (2⁵³) above which not every integer is representable as a float.
     const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
     if value.fract() == 0.0 && value.abs() <= LARGEST_WHOLE {
         return Value::from(value as i64);
     }
-    // The text of a float is a float, and what is not finite has no JSON.
+    // The formatted text always parses as a float, and a number that is not finite has no JSON.
     let short = format!("{value:.8e}").parse().unwrap_or(value);
     serde_json::Number::from_f64(short).map_or(Value::Null, Value::Number)
 }
@@ -61,7 +62,7 @@ impl From<Vec<String>> for Values {
     }
 }
 
-/// What a scatter trace draws of its points.
+/// Drawing mode of a scatter trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mode {
     Lines,
@@ -81,7 +82,7 @@ impl Mode {
     }
 }
 
-/// The shape of a marker other than a dot.
+/// Shape of a marker other than a dot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Symbol {
     Cross,
@@ -99,7 +100,7 @@ impl Symbol {
     }
 }
 
-/// Where a text stands beside its point.
+/// Position of a text relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TextPosition {
     TopRight,
@@ -115,7 +116,7 @@ impl TextPosition {
     }
 }
 
-/// The colours of a heat map, from its smallest value to its largest.
+/// Colour scale of a heat map, from its smallest to its largest value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ColourScale {
     /// From dark blue to yellow.
@@ -133,12 +134,12 @@ impl ColourScale {
     }
 }
 
-/// The style of a line.
+/// Style of a line.
 #[derive(Debug, Clone)]
 pub(crate) struct Line(Attributes);
 
 impl Line {
-    /// A solid line, width in px.
+    /// Creates a solid line; `width` in px.
     pub(crate) fn new(width: f64) -> Self {
         Self(Attributes::default().with("width", number(width)))
     }
@@ -152,17 +153,17 @@ impl Line {
     }
 }
 
-/// The style of the markers of points or of bars.
+/// Style of the markers of points or of bars.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Marker(Attributes);
 
 impl Marker {
-    /// Dots of the default size, or bars.
+    /// Creates the style of dots of the default size, or of bars.
     pub(crate) fn new() -> Self {
         Self::default()
     }
 
-    /// Diameter, px.
+    /// Sets the diameter, px.
     pub(crate) fn size(self, px: u32) -> Self {
         Self(self.0.with("size", px))
     }
@@ -180,12 +181,13 @@ impl Marker {
     }
 }
 
-/// Bars from a point to the limits of its interval.
+/// Error bars from a point to the limits of its interval.
 #[derive(Debug, Clone)]
 pub(crate) struct ErrorBars(Attributes);
 
 impl ErrorBars {
-    /// Bars of these lengths, one per point: upwards, or to the right, and downwards, or to the left.
+    /// Creates error bars of these lengths, one per point: `up` extends upwards or to the right, `down`
+    /// downwards or to the left.
     pub(crate) fn new(up: &[f64], down: &[f64]) -> Self {
         let bars = Attributes::default().with("type", "data").with("symmetric", false).with("thickness", 1.2);
         Self(bars.with("array", numbers(up)).with("arrayminus", numbers(down)))
@@ -198,7 +200,7 @@ impl ErrorBars {
 pub(crate) struct Trace(Attributes);
 
 impl Trace {
-    /// Every trace type that a report draws; the embedded bundle must have them.
+    /// All trace types that a report draws; the embedded plotly.js bundle must support them.
     #[cfg(test)]
     pub(crate) const TYPES: [&str; 3] = ["scatter", "bar", "heatmap"];
 
@@ -206,17 +208,17 @@ impl Trace {
         Self(Attributes::default().with("type", kind).with("x", x.into().0).with("y", y.into().0))
     }
 
-    /// Points, a line through them, or texts beside them.
+    /// Creates points, a line through them, or texts beside them.
     pub(crate) fn scatter(mode: Mode, x: impl Into<Values>, y: impl Into<Values>) -> Self {
         Self::new("scatter", x, y).mode(mode)
     }
 
-    /// Upright bars.
+    /// Creates vertical bars.
     pub(crate) fn bars(x: impl Into<Values>, y: impl Into<Values>) -> Self {
         Self::new("bar", x, y)
     }
 
-    /// Coloured cells; `z` has a row of numbers for each `y`, a number for each `x`.
+    /// Creates coloured cells; `z` has a row of numbers for each `y`, and each row a number for each `x`.
     pub(crate) fn heat_map(x: impl Into<Values>, y: impl Into<Values>, z: &[Vec<f64>]) -> Self {
         let rows: Value = z.iter().map(|row| numbers(row)).collect();
         Self::new("heatmap", x, y).with("z", rows)
@@ -226,7 +228,7 @@ impl Trace {
         Self(self.0.with(name, value))
     }
 
-    /// The name in the legend and on hover. Plotly.js reads tags in it.
+    /// Sets the name in the legend and on hover. Plotly.js interprets tags in it.
     pub(crate) fn name(self, name: String) -> Self {
         self.with("name", name)
     }
@@ -252,7 +254,7 @@ impl Trace {
         self.with("showlegend", false)
     }
 
-    /// Fills the area between this line and that of the trace before it.
+    /// Fills the area between this line and the line of the preceding trace.
     pub(crate) fn fill_to_previous(self, colour: &str) -> Self {
         self.with("fill", "tonexty").with("fillcolor", colour)
     }
@@ -265,22 +267,22 @@ impl Trace {
         self.with("error_y", bars.0.into_value())
     }
 
-    /// A value per point that is not drawn; the hover template names it `%{customdata}`.
+    /// Sets a value per point that is not drawn; the hover template refers to it as `%{customdata}`.
     pub(crate) fn custom_data(self, values: Vec<u64>) -> Self {
         self.with("customdata", Values::from(values).0)
     }
 
-    /// What a reader who points at a point is told, in the template language of plotly.js.
+    /// Sets the hover text of a point, in the template language of plotly.js.
     pub(crate) fn hover_template(self, template: &str) -> Self {
         self.with("hovertemplate", template)
     }
 
-    /// Tells a reader who points at the trace nothing.
+    /// Disables the hover text of the trace.
     pub(crate) fn no_hover(self) -> Self {
         self.with("hoverinfo", "skip")
     }
 
-    /// A text per point.
+    /// Sets a text per point.
     pub(crate) fn texts(self, texts: Vec<String>) -> Self {
         self.with("text", texts)
     }
@@ -289,17 +291,17 @@ impl Trace {
         self.with("textposition", position.code())
     }
 
-    /// Colour of the texts, and their size in px.
+    /// Sets the colour of the texts, and their size in px.
     pub(crate) fn text_font(self, colour: &str, px: u32) -> Self {
         self.with("textfont", Attributes::default().with("color", colour).with("size", px).into_value())
     }
 
-    /// The name of the vertical axis: `y`, `y2`, and so on.
+    /// Sets the name of the vertical axis: `y`, `y2`, and so on.
     pub(crate) fn y_axis(self, name: &str) -> Self {
         self.with("yaxis", name)
     }
 
-    /// A text per cell of a heat map.
+    /// Sets a text per cell of a heat map.
     pub(crate) fn cell_texts(self, texts: Vec<Vec<String>>) -> Self {
         self.with("text", texts)
     }
@@ -308,17 +310,18 @@ impl Trace {
         self.with("colorscale", scale.code())
     }
 
-    /// The title of the colour bar beside a heat map.
+    /// Sets the title of the colour bar beside a heat map.
     pub(crate) fn colour_bar_title(self, title: &str) -> Self {
         self.with("colorbar", Attributes::default().with("title", titled(title)).into_value())
     }
 
-    /// The values that the ends of the colour scale stand for; without it, the smallest and the largest of the map.
+    /// Sets the values at the ends of the colour scale; the default is the smallest and the largest value of
+    /// the map.
     pub(crate) fn colour_range(self, [low, high]: [f64; 2]) -> Self {
         self.with("zmin", number(low)).with("zmax", number(high))
     }
 
-    /// Tells a reader who points at an empty cell nothing.
+    /// Disables the hover text of empty cells.
     pub(crate) fn no_hover_on_gaps(self) -> Self {
         self.with("hoverongaps", false)
     }
@@ -333,12 +336,12 @@ fn titled(text: &str) -> Value {
 pub(crate) struct Axis(Attributes);
 
 impl Axis {
-    /// An axis without a title; its kind follows from the values.
+    /// Creates an axis without a title; its type follows from the values.
     pub(crate) fn new() -> Self {
         Self::default()
     }
 
-    /// An axis with a title, which is left out when empty. Plotly.js reads tags in it.
+    /// Creates an axis with a title, which is left out when empty. Plotly.js interprets tags in the title.
     pub(crate) fn titled(title: &str) -> Self {
         if title.is_empty() { Self::new() } else { Self::new().with("title", titled(title)) }
     }
@@ -347,63 +350,63 @@ impl Axis {
         Self(self.0.with(name, value))
     }
 
-    /// An axis in powers of ten. Its range is given as logarithms.
+    /// Makes the axis logarithmic. Its range is then given as logarithms to base ten.
     pub(crate) fn logarithmic(self) -> Self {
         self.with("type", "log")
     }
 
-    /// An axis of time; values are milliseconds of UTC since 1970-01-01.
+    /// Makes the axis an axis of time; values are milliseconds of UTC since 1970-01-01.
     pub(crate) fn with_time_axis(self) -> Self {
         self.with("type", "date")
     }
 
-    /// The values at the ends of the axis, first that at the left or at the bottom.
+    /// Sets the values at the ends of the axis, the left or bottom end first.
     pub(crate) fn range(self, ends: [f64; 2]) -> Self {
         self.with("range", numbers(&ends))
     }
 
-    /// The part of the chart's height, or width, that the axis takes, from 0 to 1.
+    /// Sets the part of the chart's height or width that the axis covers, from 0 to 1.
     pub(crate) fn domain(self, ends: [f64; 2]) -> Self {
         self.with("domain", numbers(&ends))
     }
 
-    /// The name of the axis that this one lies against.
+    /// Sets the name of the axis that this axis is attached to.
     pub(crate) fn anchor(self, name: &str) -> Self {
         self.with("anchor", name)
     }
 
-    /// Gives a unit of this axis the length of a unit of another one.
+    /// Gives this axis the same length per unit as the named axis.
     pub(crate) fn same_scale_as(self, name: &str) -> Self {
         self.with("scaleanchor", name)
     }
 
-    /// Shortens the axis, and not its range, where scales are bound together.
+    /// Shortens the axis instead of its range if its scale is bound to another axis.
     pub(crate) fn constrain_domain(self) -> Self {
         self.with("constrain", "domain")
     }
 
-    /// How ticks are written, as a format of d3.
+    /// Sets the format of tick labels, as a d3 format.
     pub(crate) fn tick_format(self, format: &str) -> Self {
         self.with("tickformat", format)
     }
 
-    /// Ticks at most.
+    /// Sets the maximum number of ticks.
     pub(crate) fn max_ticks(self, count: u32) -> Self {
         self.with("nticks", count)
     }
 
-    /// The values that have a tick.
+    /// Sets the values with a tick.
     pub(crate) fn ticks(self, values: &[f64]) -> Self {
         self.with("tickvals", numbers(values))
     }
 
-    /// Neither line nor ticks.
+    /// Hides the line, the ticks and the labels of the axis.
     pub(crate) fn hidden(self) -> Self {
         self.with("visible", false)
     }
 }
 
-/// The axes of a chart, and whether it has a legend.
+/// Axes and legend of a chart.
 #[derive(Debug, Clone, Default, Serialize)]
 #[serde(transparent)]
 pub(crate) struct Layout(Attributes);
@@ -421,17 +424,17 @@ impl Layout {
         self.with("xaxis", axis.0.into_value())
     }
 
-    /// The vertical axis that traces name `y`, `y2`, and so on.
+    /// Sets the vertical axis that traces refer to as `y`, `y2`, and so on.
     pub(crate) fn y_axis(self, name: &str, axis: Axis) -> Self {
         self.with(&name.replacen('y', "yaxis", 1), axis.0.into_value())
     }
 
-    /// Shows or hides the legend; without it, charts of one trace have none.
+    /// Shows or hides the legend; by default a chart with a single trace has none.
     pub(crate) fn legend(self, is_shown: bool) -> Self {
         self.with("showlegend", is_shown)
     }
 
-    /// Lays bars of one place upon each other, with so much of a bar's room between places.
+    /// Stacks bars with the same x value, with a gap of this fraction of the bar spacing.
     pub(crate) fn stacked_bars(self, gap: f64) -> Self {
         self.with("barmode", "stack").with("bargap", number(gap))
     }

@@ -1,4 +1,5 @@
-//! A map of stars over the sky in Mollweide's projection, whole: dots of pointings would overlap, and leave holes where one is excluded.
+//! Map of star counts over the complete sky, in the Mollweide projection, as cells. Dots, one per pointing,
+//! would overlap and leave holes at excluded pointings.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -8,14 +9,15 @@ use visibility::PointingStars;
 use super::chart::{REFERENCE, rounded};
 use super::plotly::{Axis, ColourScale, Layout, Line, Mode, TextPosition, Trace};
 
-/// Cells of the map, twice as many across as upwards.
+/// Rows of cells of the map; it has twice as many columns.
 const CELLS_UP: usize = 90;
-/// Distances between pointings within which the nearest one stands for a place.
+/// Largest distance from a map cell to the nearest pointing that it shows, in units of the mean distance
+/// between pointings.
 const REACH: f64 = 1.5;
-/// Points of a line of the net from one end to the other.
+/// Number of segments of each grid line.
 const OF_A_LINE: usize = 60;
 
-/// The map of the pointings that count, of so many in all.
+/// Returns the map of the counted pointings; `of` is the number of all pointings.
 pub(crate) fn sky_map(counted: &[&PointingStars], of: usize) -> (Vec<Trace>, Layout) {
     let reach = REACH * (4.0 * PI / of.max(1) as f64).sqrt();
     let pointings = Pointings::new(counted);
@@ -48,7 +50,7 @@ pub(crate) fn sky_map(counted: &[&PointingStars], of: usize) -> (Vec<Trace>, Lay
     (vec![map, net(), right_ascensions(), declinations()], layout)
 }
 
-/// Meridians and parallels every 30°, and the edge.
+/// Returns the grid: meridians and parallels every 30°, and the edge.
 fn net() -> Trace {
     let (mut x, mut y) = (Vec::new(), Vec::new());
     let mut add = |place: &dyn Fn(f64) -> (f64, f64)| {
@@ -69,7 +71,7 @@ fn net() -> Trace {
     Trace::scatter(Mode::Lines, x, y).line(Line::new(0.7).colour(REFERENCE)).no_hover()
 }
 
-/// Right ascensions along the equator, white upon the colours.
+/// Returns the right ascension labels along the equator, white on the colours of the map.
 fn right_ascensions() -> Trace {
     let ra_deg = [240, 300, 0, 60, 120];
     let places: Vec<(f64, f64)> =
@@ -82,7 +84,7 @@ fn right_ascensions() -> Trace {
         .no_hover()
 }
 
-/// Declinations beside the left edge.
+/// Returns the declination labels beside the left edge.
 fn declinations() -> Trace {
     let dec_deg = [-60, -30, 0, 30, 60];
     let (x, y): (Vec<f64>, Vec<f64>) = dec_deg.iter().map(|&dec| map_of(180.0, f64::from(dec))).unzip();
@@ -92,11 +94,13 @@ fn declinations() -> Trace {
         .no_hover()
 }
 
-/// Where the map has a place, right ascension from −180 to 180°; it grows to the left, as the sky is seen from within.
+/// Converts sky coordinates to map coordinates. The right ascension, from −180 to 180°, increases to the
+/// left, as in the sky seen from within.
 fn map_of(ra_deg: f64, dec_deg: f64) -> (f64, f64) {
     let dec = dec_deg.to_radians();
     let wanted = PI * libm::sin(dec);
-    // 2 θ + sin 2θ = π sin δ grows with θ: halving finds it where Newton's steps fail, at the poles.
+    // 2 θ + sin 2θ = π sin δ is monotonic in θ. Bisection solves it at the poles too, where Newton's method
+    // fails.
     let (mut low, mut high) = (-PI / 2.0, PI / 2.0);
     for _ in 0..50 {
         let middle = 0.5 * (low + high);
@@ -105,7 +109,7 @@ fn map_of(ra_deg: f64, dec_deg: f64) -> (f64, f64) {
     (-2.0 * SQRT_2 / PI * ra_deg.to_radians() * libm::cos(low), SQRT_2 * libm::sin(low))
 }
 
-/// Which place a point of the map has; none outside of its edge.
+/// Converts map coordinates to right ascension and declination, degrees; `None` outside the edge.
 fn sky_of(across: f64, up: f64) -> Option<(f64, f64)> {
     let theta = libm::asin(up / SQRT_2);
     let ra = -PI * across / (2.0 * SQRT_2 * libm::cos(theta));
@@ -113,7 +117,7 @@ fn sky_of(across: f64, up: f64) -> Option<(f64, f64)> {
     (ra.abs() <= PI).then(|| (ra.to_degrees(), dec.to_degrees()))
 }
 
-/// Pointings by declination.
+/// Pointings sorted by declination.
 struct Pointings<'a> {
     by_declination: Vec<(f64, Direction<Icrs>, &'a PointingStars)>,
 }
@@ -126,7 +130,7 @@ impl<'a> Pointings<'a> {
         Self { by_declination }
     }
 
-    /// The nearest one within `reach`, rad.
+    /// Returns the nearest pointing within `reach`, rad.
     fn nearest(&self, ra_deg: f64, dec_deg: f64, reach: f64) -> Option<&'a PointingStars> {
         let (place, dec) = (direction(ra_deg, dec_deg), dec_deg.to_radians());
         let from = self.by_declination.partition_point(|p| p.0 < dec - reach);
@@ -152,7 +156,7 @@ mod tests {
             let (ra_again, dec_again) = sky_of(across, up).unwrap();
             assert!((ra - ra_again).abs() < 1e-6 && (dec - dec_again).abs() < 1e-6, "{ra} {dec}");
         }
-        // Half of the sky is within 30° of the equator, and half of the ellipse.
+        // The band within 30° of the equator is half of the sky, and half of the ellipse.
         let theta = libm::asin(map_of(0.0, 30.0).1 / SQRT_2);
         assert!(((2.0 * theta + libm::sin(2.0 * theta)) / PI - 0.5).abs() < 1e-9);
         assert_eq!(sky_of(2.8, 1.0), None);

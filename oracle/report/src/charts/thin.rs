@@ -1,17 +1,21 @@
-//! Long series made short. Of a line what is left out is not seen at the size of a screen; of a cloud of points a sample is drawn that
-//! lies as all of them do: extremes of stretches drawn as points would be read as the law of the points.
+//! Thinning of long series. The omitted points of a line are invisible at screen resolution. For a point
+//! cloud a random sample is drawn, which has the distribution of all points; drawing the extremes of each
+//! stretch would misrepresent that distribution.
 
-/// Points of a cloud that are drawn, at most: each is an element of the page, and a browser is slow with more.
+/// Maximum number of drawn points of a cloud: each is an element of the page, and more would slow a browser
+/// down.
 const CLOUD: usize = 2500;
 /// Parts of a long cloud whose extremes are drawn beside the sample.
 const PARTS: usize = 50;
-/// Points of a curve in a plane, at most.
+/// Maximum number of points of a curve in a plane.
 const CURVE: usize = 5000;
-/// Stretches that a series is cut into. Twice as many points as a chart has pixels across are no different from all.
+/// Number of stretches that a series is cut into. Two points per pixel column of a chart look the same as all
+/// points.
 const STRETCHES: usize = 700;
 
-/// The places of `count` rows that are drawn of a cloud of points: all, or of every stretch of rows that follow each other one at random,
-/// so that any part of the rows has the law of its own. Ascending, and the same for the same `count`.
+/// Returns the indices of the points of a cloud of `count` rows that are drawn: all, or a random one of each
+/// stretch of consecutive rows, so that any part of the rows keeps its distribution. The indices ascend, and
+/// depend only on `count`.
 pub(crate) fn sampled(count: usize) -> Vec<usize> {
     if count <= CLOUD {
         return (0..count).collect();
@@ -23,7 +27,8 @@ pub(crate) fn sampled(count: usize) -> Vec<usize> {
     (0..CLOUD).map(one_of).collect()
 }
 
-/// A number that looks random (SplitMix64: Steele, Lea & Flood 2014): with regular places a period of the rows would show.
+/// Returns a pseudo-random number (SplitMix64: Steele, Lea & Flood 2014). Regularly spaced indices would
+/// reveal a period of the rows.
 fn scrambled(number: u64) -> u64 {
     let mut z = number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -31,7 +36,8 @@ fn scrambled(number: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The smallest and the largest value of every fiftieth of the rows of a cloud that is not drawn whole; none of one that is.
+/// Returns the indices of the smallest and the largest value in each fiftieth of the rows of a sampled cloud;
+/// none for a cloud that is drawn completely.
 pub(crate) fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize> {
     let mut kept = Vec::new();
     if count > CLOUD {
@@ -46,7 +52,8 @@ pub(crate) fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize>
     kept
 }
 
-/// How much is drawn of clouds of points, by what they are points of; `rings` where their extremes are drawn beside.
+/// Describes how many points of each cloud are drawn; each cloud has a count and a name of its points.
+/// `rings` is true if the extremes are drawn as rings.
 pub(crate) fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String {
     let of = |&(count, what): &(usize, &str)| format!("{} of {count} {what}", sampled(count).len());
     let parts: Vec<String> = clouds.iter().filter(|(count, _)| *count > 0).map(of).collect();
@@ -60,8 +67,8 @@ pub(crate) fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String 
     text
 }
 
-/// The places of `count` rows that are drawn of a curve in a plane, at even steps: where both coordinates turn, extremes alone would
-/// be a polygon.
+/// Returns the indices of the rows, of `count`, that are drawn for a curve in a plane, at even steps. Where
+/// both coordinates turn, the extremes would give only a polygon.
 pub(crate) fn evenly(count: usize) -> Vec<usize> {
     let step = count.div_ceil(CURVE).max(1);
     let mut kept: Vec<usize> = (0..count).step_by(step).collect();
@@ -71,9 +78,9 @@ pub(crate) fn evenly(count: usize) -> Vec<usize> {
     kept
 }
 
-/// The places of `count` rows that a line needs: of every stretch of rows that follow each other, the first, and those with the
-/// smallest and the largest of each of the `series`. All of them where they are few. Ascending. Values that are no number are
-/// passed over.
+/// Returns the indices of the rows, of `count`, that a line needs: of each stretch of consecutive rows the
+/// first, and those with the smallest and the largest value of each of the `series`. All indices are returned
+/// if they are few. The indices ascend. Values that are not finite are ignored.
 pub(crate) fn thinned(count: usize, series: &[&dyn Fn(usize) -> f64]) -> Vec<usize> {
     let most = STRETCHES * (1 + 2 * series.len());
     if count <= most {
@@ -94,13 +101,14 @@ pub(crate) fn thinned(count: usize, series: &[&dyn Fn(usize) -> f64]) -> Vec<usi
     kept
 }
 
-/// A range of places for each of at most so many bins, all places of `count` in them, in order.
+/// Returns the index range of each of at most `most` bins, which together contain all `count` indices in
+/// order.
 pub(crate) fn bins(count: usize, most: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
     let bins = count.min(most);
     (0..bins).map(move |bin| bin * count / bins..(bin + 1) * count / bins)
 }
 
-/// Number, smallest, mean and largest of some values, as cells; values that are no number are passed over.
+/// Returns count, minimum, mean and maximum of some values, as cells; values that are not finite are ignored.
 pub(crate) fn summary(values: impl Iterator<Item = f64>, decimals: usize) -> [String; 4] {
     let (mut count, mut sum, mut low, mut high) = (0_u64, 0.0, f64::INFINITY, f64::NEG_INFINITY);
     for value in values.filter(|value| value.is_finite()) {
@@ -128,7 +136,7 @@ mod tests {
 
     #[test]
     fn of_many_rows_every_extreme_is_kept_and_order_too() {
-        // One row in 997 stands out, up or down by turns, and others are no number at all.
+        // One row in 997 is an outlier, alternately up and down; other rows are NaN.
         let value = |i: usize| match i % 1994 {
             11 => 5.0 + i as f64,
             1008 => -5.0 - i as f64,
@@ -144,7 +152,7 @@ mod tests {
 
     #[test]
     fn a_sample_has_the_quantiles_of_all_and_of_any_part_of_them() {
-        // Sharply peaked, wider at the end, with a period of its own.
+        // A sharply peaked distribution that widens towards the end, with a periodic component.
         let value = |i: usize| {
             let uniform = (scrambled(77 + i as u64) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
             (1.0 + i as f64 / 30_000.0) * 8.0 * uniform * uniform * uniform + 0.1 * libm::sin(i as f64 / 3.0)
@@ -157,7 +165,7 @@ mod tests {
             let drawn: Vec<f64> = kept.iter().copied().filter(|i| part.contains(i)).map(value).collect();
             for level in [-0.5, -0.1, -0.02, 0.0, 0.05, 0.3] {
                 let below = |of: &[f64]| of.iter().filter(|&&v| v < level).count() as f64 / of.len() as f64;
-                // Three deviations of a share of so many.
+                // Three standard deviations of a fraction in a sample of this size.
                 let limit = 1.5 / (drawn.len() as f64).sqrt();
                 assert!((below(&all) - below(&drawn)).abs() < limit, "{level} in {part:?}");
             }

@@ -1,4 +1,4 @@
-//! Fields of a docking run, drawn anew one by one, with what was recognised.
+//! Fields of a docking run, drawn anew one by one, with the recognised features.
 
 use std::path::{Path, PathBuf};
 
@@ -16,18 +16,18 @@ use crate::figures::words::{capital, display_name};
 use crate::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
 use crate::read::rows_of_each;
 
-/// Smallest side of a picture across columns, px.
+/// Smallest width of a picture, px.
 const LEAST_COLUMNS: f64 = 160.0;
 
-/// The simulator of a run, and what the pipeline recognised.
+/// The simulator of a run, and the file of the recognised features.
 pub struct FieldDetail {
     simulator: Result<(DockingSimulator, DockingSetup), String>,
     features: Option<PathBuf>,
 }
 
 impl FieldDetail {
-    /// The fields of a run directory. Where its scenario cannot be simulated any more, there are no pictures, and
-    /// [`FieldDetail::reason`] says why.
+    /// Opens the fields of a run directory. If its scenario can no longer be simulated, there are no
+    /// pictures, and [`FieldDetail::reason`] returns the reason.
     ///
     /// # Errors
     /// A [`Failure`] when `run.toml` cannot be read.
@@ -46,15 +46,15 @@ impl FieldDetail {
         })
     }
 
-    /// Why there are no pictures.
+    /// Returns the reason why there are no pictures.
     pub fn reason(&self) -> Option<&str> {
         self.simulator.as_ref().err().map(String::as_str)
     }
 
-    /// Pictures of some rows of a run, in their order.
+    /// Returns pictures of the given rows of a run, in their order.
     ///
     /// # Errors
-    /// A [`Failure`] when a field cannot be drawn, or the features not be read.
+    /// A [`Failure`] when a field cannot be drawn, or the features cannot be read.
     pub fn pictures(&self, run: &DockingRun, rows: &[usize]) -> Result<Vec<Picture>, Failure> {
         let Ok((simulator, setup)) = &self.simulator else { return Ok(Vec::new()) };
         let mut workspace = simulator.workspace()?;
@@ -93,7 +93,8 @@ impl FieldDetail {
     }
 }
 
-/// The window around what was recognised, or around the true target; the whole field where neither is in it.
+/// Returns the window around the recognised circle, or else around the true target; the whole field if
+/// neither is in it.
 fn window(
     truth: &FieldTruth,
     features: &[FeatureRow],
@@ -157,7 +158,7 @@ fn feature_mark(row: &FeatureRow) -> Mark {
     Mark { at, shape, class, title }
 }
 
-/// What a field's answer was, in words.
+/// Describes the outcome of a field in words.
 fn answer_words(outcome: Option<&DockingOutcome>) -> String {
     match outcome.map(|outcome| &outcome.solution) {
         None => "no answer".to_owned(),
@@ -169,7 +170,7 @@ fn answer_words(outcome: Option<&DockingOutcome>) -> String {
         }
         Some(DockingSolution::RangeOnly { range_m, .. }) => format!("range alone {range_m:.2} m"),
         Some(DockingSolution::NoSolution(reason)) => match reason.to_string() {
-            // Words of the pipeline's own.
+            // A reason in the pipeline's wording.
             text if text.contains(' ') => format!("the pipeline says: {text}"),
             code => format!("the pipeline says: {}", display_name(&code)),
         },

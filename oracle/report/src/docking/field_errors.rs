@@ -10,10 +10,10 @@ use crate::charts::thin::{bins, sampled, summary, thinning_caption};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 
-/// Rows of the table behind the chart.
+/// Number of rows of the table behind the chart.
 const TABLE_BINS: usize = 60;
 
-/// Errors of every measured field.
+/// Returns the section on the errors of all measured fields.
 pub(super) fn field_errors(run: &DockingRun) -> Section {
     let section = Section::new("field-errors", "Errors of single fields");
     let rows: Vec<usize> = (0..run.truths.len())

@@ -1,11 +1,11 @@
-//! Axes that leave out the wildest values, and tell of it.
+//! Axis limits that leave out the largest outliers, and a note on them.
 
-/// How many of some values an axis leaves out.
+/// Returns the number of values outside the axis.
 pub(super) fn outside(range: [f64; 2], values: impl Iterator<Item = f64>) -> usize {
     values.filter(|value| *value < range[0] || *value > range[1]).count()
 }
 
-/// What a caption says of errors that the axes leave out.
+/// Returns the sentence of a caption on the errors outside the axes.
 pub(super) fn note_outside(count: usize, of: usize) -> String {
     match count {
         0 => format!("All {of} errors lie inside of the axes."),
@@ -13,7 +13,7 @@ pub(super) fn note_outside(count: usize, of: usize) -> String {
     }
 }
 
-/// Limits of an axis that shows all but the wildest hundredth of some values.
+/// Returns the limits of an axis that shows all values except the most extreme hundredth.
 pub(super) fn limits(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let mut sorted: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);

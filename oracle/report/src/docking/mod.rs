@@ -1,4 +1,4 @@
-//! The report of a docking run: the figures of the docking paper, errors against the truth, fields.
+//! Report of a docking run: the figures of the docking paper, errors against the truth, pictures of fields.
 
 mod field_detail;
 mod field_errors;
@@ -26,14 +26,14 @@ use files::{Checksums, Failure};
 use score::docking::DockingGroup;
 use score::{Figure, UnitVerdict, warm_up_note};
 
-/// The page of a run directory.
+/// Reads a run directory and returns its page.
 pub(crate) fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
     let page = docking_page(&DockingRun::read(directory)?, &FieldDetail::open(directory)?)?;
     Checksums::check(directory, |_| true)?;
     Ok(page)
 }
 
-/// Pictures of some fields of a run directory.
+/// Returns pictures of the given fields of a run directory.
 pub(crate) fn pictures(directory: &Path, fields: &[u64]) -> Result<RenderedPictures, Failure> {
     let run = DockingRun::read(directory)?;
     let row = |field: &u64| run.truths.binary_search_by_key(field, |truth| truth.field).ok();
@@ -42,7 +42,7 @@ pub(crate) fn pictures(directory: &Path, fields: &[u64]) -> Result<RenderedPictu
     Ok((pictures, sheet.reason().map(str::to_owned)))
 }
 
-/// The page of a docking run; `sheet` draws its fields anew.
+/// Returns the page of a docking run; `sheet` draws its fields anew.
 ///
 /// # Errors
 /// A [`Failure`] when a field cannot be drawn.
@@ -86,7 +86,8 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldDetail) -> Result<Page, Failu
     })
 }
 
-/// Figures by range: how accurate, how honest, how often in doubt or wrong, then how often there is an answer; and all of them.
+/// Returns the tables of figures by range: accuracy, consistency of σ, rates of doubtful and wrong fields,
+/// and rates of measured fields; then all figures.
 fn figures_section(run: &DockingRun) -> Section {
     let score = &run.score;
     let groups = || {
@@ -134,7 +135,7 @@ fn figures_section(run: &DockingRun) -> Section {
         .folded("All figures", figure_table(&score.figures))
 }
 
-/// What became of the fields, by range.
+/// Returns the chart of the verdicts on the fields, by range.
 fn verdicts(run: &DockingRun) -> Section {
     let score = &run.score;
     let groups: Vec<String> = score.groups.keys().cloned().collect();
@@ -190,7 +191,8 @@ fn verdicts(run: &DockingRun) -> Section {
     ))
 }
 
-/// A sheet of fields: a success of every range, every kind of miss and of wrong answer.
+/// Returns pictures of fields: successes of every range, and one of every kind of miss and of wrong
+/// measurement.
 fn fields(run: &DockingRun, sheet: &FieldDetail) -> Result<Section, Failure> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut evenly = |count: usize, is: &dyn Fn(&UnitVerdict) -> bool| {
@@ -198,7 +200,7 @@ fn fields(run: &DockingRun, sheet: &FieldDetail) -> Result<Section, Failure> {
         let count = count.min(rows.len());
         chosen.extend((0..count).map(|k| rows[(2 * k + 1) * rows.len() / (2 * count)]));
     };
-    // Of an approach through few ranges more of each.
+    // An approach through few ranges shows more successes of each.
     let successes = if run.score.groups.len() <= 3 { 3 } else { 1 };
     for group in run.score.groups.keys() {
         evenly(successes, &|unit| unit.verdict == "success" && unit.group == *group);

@@ -1,4 +1,4 @@
-//! What is said at the end of portions: parameters of the motion, their accuracy.
+//! Reported motion at the end of portions: its parameters and their accuracy.
 
 use contract::docking::{Motion, Pose};
 use nalgebra::Vector3;
@@ -14,13 +14,13 @@ use crate::charts::thin::{bins, summary, thinned, thinning_caption};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 
-/// Rows of the tables behind the charts.
+/// Number of rows of the tables behind the charts.
 const TABLE_BINS: usize = 60;
-/// Said above a table that has some of the reports.
+/// Caption of a table that contains a sample of the reports.
 const SAMPLED: &str = "Every so many reports; motion.csv has all of them.";
 /// Fill of a band of three standard deviations.
 const BAND: &str = "rgba(47,127,193,0.2)";
-/// The seven parameters of the paper (3.2): name, unit, decimals.
+/// The seven parameters of the paper (3.2): name, unit, number of decimals.
 const PARAMETERS: [(&str, &str, i32); 7] = [
     ("ρ", "m", 6),
     ("u", "m/s", 6),
@@ -31,19 +31,19 @@ const PARAMETERS: [(&str, &str, i32); 7] = [
     ("φ3", "°", 5),
 ];
 
-/// What an estimator said at the end of a portion, metres and degrees.
+/// Motion reported by an estimator at the end of a portion, metres and degrees.
 struct MotionEstimate {
     time_s: f64,
     field: u64,
     values: [f64; 7],
-    /// NaN where there are none.
+    /// Standard deviations; NaN if the estimator states none.
     sigmas: [f64; 7],
-    /// Measured minus true.
+    /// Measured minus true values.
     errors: [f64; 7],
 }
 
 impl MotionEstimate {
-    /// All that `pick` takes of the reports of a run.
+    /// Collects all motions that `pick` selects from the reports of a run.
     fn from_reports(run: &DockingRun, pick: fn(&PortionReport) -> &Option<Motion>) -> Vec<Self> {
         let estimate = |report: &PortionReport| {
             let (motion, truth) = (pick(report).as_ref()?, &run.truths[report.row]);
@@ -62,7 +62,7 @@ impl MotionEstimate {
     }
 }
 
-/// The seven parameters, metres and degrees.
+/// Returns the seven parameters, metres and degrees.
 fn approach_parameters(pose: &Pose, velocity_m_s: &Vector3<f64>) -> [f64; 7] {
     let shown = ApproachParameters::from_motion(pose, velocity_m_s);
     let phi = shown.phi_rad;
@@ -70,7 +70,7 @@ fn approach_parameters(pose: &Pose, velocity_m_s: &Vector3<f64>) -> [f64; 7] {
     [shown.rho_m, shown.u_m_s, degrees[0], degrees[1], degrees[2], degrees[3], degrees[4]]
 }
 
-/// Figs. 5 and 6: the motion and its accuracy.
+/// Returns the sections on Figs. 5 and 6: the motion and its accuracy.
 pub(super) fn sections(run: &DockingRun) -> [Section; 2] {
     let five = Section::new("fig-5", "Fig. 5: parameters of the motion");
     let six = Section::new("fig-6", "Fig. 6: accuracy of the motion");
@@ -82,14 +82,15 @@ pub(super) fn sections(run: &DockingRun) -> [Section; 2] {
     let paper = MotionEstimate::from_reports(run, |report| &report.paper);
     let about = "Errors of the best estimate";
     let six = six.chart(sigmas(&best)).chart(errors(&best, about, "best estimate", MEASURED));
-    // On axes of their own: they scatter ten times as far, and not about nothing.
+    // The errors of the paper's formulas have separate axes: their scatter is ten times larger and not
+    // centred on zero.
     let about = "Errors of the paper's formulas";
     let has_paper = !paper.is_empty();
     let six = if has_paper { six.chart(errors(&paper, about, "paper's formulas", BESIDE)) } else { six };
     [five.chart(parameters(run, &best)), six]
 }
 
-/// A number of everything that was said, as points over time.
+/// Returns a quantity of all reported motions, as points over time.
 fn estimate_points(
     name: &str,
     estimate: &[MotionEstimate],
@@ -104,7 +105,7 @@ fn estimate_points(
     })
 }
 
-/// Times of some of what was said, and a number of each with so many decimals.
+/// Returns the times of the kept motions, and a quantity of each, rounded to `decimals` decimals.
 fn series(
     estimate: &[MotionEstimate],
     kept: &[usize],
@@ -114,7 +115,7 @@ fn series(
     kept.iter().map(|&k| (estimate[k].time_s, rounded(number(&estimate[k]), decimals))).unzip()
 }
 
-/// The seven parameters with three standard deviations, and the truth.
+/// Returns the chart of the seven parameters with three standard deviations, and of their true values.
 fn parameters(run: &DockingRun, best: &[MotionEstimate]) -> Chart {
     let truth: Vec<(f64, [f64; 7])> = thinned(run.truths.len(), &[])
         .into_iter()
@@ -164,14 +165,14 @@ fn parameters(run: &DockingRun, best: &[MotionEstimate]) -> Chart {
     Chart::new(caption, 1080, data, traces, layout)
 }
 
-/// Standard deviations over time, as the paper's Fig. 6 has them.
+/// Returns the chart of the standard deviations over time, as in the paper's Fig. 6.
 fn sigmas(best: &[MotionEstimate]) -> Chart {
     let of = |name: &str, i: usize, colour| {
         let kept = thinned(best.len(), &[&|k| best[k].sigmas[i]]);
         let (x, y) = series(best, &kept, 7, |estimate| estimate.sigmas[i]);
         line(name, x, y, colour)
     };
-    // From decimetres far away to micrometres at the end.
+    // The standard deviations range from decimetres at long range to micrometres at the end.
     let log = |title: &str, shown: std::ops::Range<usize>, traces| {
         let numbers =
             || best.iter().flat_map(|estimate| &estimate.sigmas[shown.clone()]).copied().filter(|s| *s > 0.0);
@@ -186,7 +187,8 @@ fn sigmas(best: &[MotionEstimate]) -> Chart {
         log("σ of φ, °", 4..7, vec![of("φ1", 4, MEASURED), of("φ2", 5, BESIDE), of("φ3", 6, REFERENCE)]),
     ];
     let (mut traces, layout) = stacked(Axis::titled("time, s"), panels);
-    // The colours of the last two panels, which the first, whose legend it is, has not.
+    // Legend entries of the last two panels, whose colours the first panel lacks; the legend is that of the
+    // first panel.
     for (name, colour) in [("β, φ2", BESIDE), ("φ3", REFERENCE)] {
         traces.push(line(name, vec![f64::NAN], vec![f64::NAN], colour));
     }
@@ -202,7 +204,8 @@ fn sigmas(best: &[MotionEstimate]) -> Chart {
     Chart::new(caption, 640, data, traces, layout)
 }
 
-/// Errors of an estimator against the truth, with bands of three standard deviations.
+/// Returns the chart of the errors of an estimator against the truth, with bands of three standard
+/// deviations.
 fn errors(all: &[MotionEstimate], about: &str, name: &str, colour: &'static str) -> Chart {
     let mut beyond = 0;
     let mut panels = Vec::new();

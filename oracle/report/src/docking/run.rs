@@ -1,4 +1,4 @@
-//! What a docking run left in its directory.
+//! Results of a docking run, read from its directory.
 
 #![cfg_attr(
     not(test),
@@ -24,31 +24,31 @@ use sim::docking::FieldTruth;
 
 use crate::read::{missing, read_json};
 
-/// What a docking run left in its directory.
+/// Results of a docking run, read from its directory.
 pub struct DockingRun {
-    /// `run.toml`.
+    /// Content of `run.toml`.
     pub run_file: RunFile<DockingScenario>,
-    /// `score.json`.
+    /// Content of `score.json`.
     pub score: DockingScore,
-    /// A verdict a field, from truth and measurements.
+    /// One verdict per field, from truth and measurements.
     pub verdicts: Vec<UnitVerdict>,
-    /// `truth/fields.parquet`, in the order of the verdicts.
+    /// Content of `truth/fields.parquet`, in the order of the verdicts.
     pub truths: Vec<FieldTruth>,
-    /// `measurements.csv`, of the same fields; `None` where there is no row.
+    /// Content of `measurements.csv`, for the same fields; `None` for a field without a row.
     pub outcomes: Vec<Option<DockingOutcome>>,
-    /// `telemetry.csv`, of the same fields.
+    /// Content of `telemetry.csv`, for the same fields.
     pub telemetry: Vec<FieldRow>,
-    /// What was said at the end of portions, with the place of the field that ended it.
+    /// Motions reported at the end of portions, with the index of the field at which each portion ended.
     pub reports: Vec<PortionReport>,
 }
 
-/// What was said at the end of a portion.
+/// Motion reported at the end of a portion.
 pub struct PortionReport {
-    /// Place of the field that ended it.
+    /// Index of the field at which the portion ended.
     pub row: usize,
-    /// By the best estimator.
+    /// Motion from the best estimator.
     pub best: Option<Motion>,
-    /// By the paper's formulas.
+    /// Motion from the paper's formulas.
     pub paper: Option<Motion>,
 }
 
@@ -56,7 +56,8 @@ impl DockingRun {
     /// Reads a run directory.
     ///
     /// # Errors
-    /// A [`Failure`] that names the file which is missing, cannot be read, or is not of the same fields as the others.
+    /// A [`Failure`] that names the file which is missing, cannot be read, or does not cover the same fields
+    /// as the other files.
     pub fn read(directory: &Path) -> Result<Self, Failure> {
         for name in ["score.json", "measurements.csv", "telemetry.csv", "setup.toml", "truth/fields.parquet"]
         {

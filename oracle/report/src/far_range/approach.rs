@@ -1,4 +1,4 @@
-//! Where the chaser was: the relative orbit.
+//! Position of the chaser: the relative orbit.
 
 use files::Failure;
 use sim::truth::Trajectory;
@@ -10,10 +10,10 @@ use crate::charts::thin::{bins, evenly};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 
-/// Rows of the table behind the chart.
+/// Number of rows of the table behind the chart.
 const TABLE_BINS: usize = 60;
 
-/// Fig. 4: the chaser in the orbital frame of the target.
+/// Returns the section on Fig. 4: the chaser in the orbital frame of the target.
 pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
     let trajectory = Trajectory::new(&run.run_file.scenario.orbit)?;
     let rtn_km: Vec<[f64; 3]> =
@@ -23,7 +23,7 @@ pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
         let (mut along, mut values, mut frames) = (Vec::new(), Vec::new(), Vec::new());
         let mut last: Option<usize> = None;
         for &row in &rows {
-            // Groups are apart: no line between them.
+            // Groups are separated in time and not joined by a line.
             if last.is_some_and(|last| run.verdicts[last].group != run.verdicts[row].group) {
                 along.push(f64::NAN);
                 values.push(f64::NAN);

@@ -1,4 +1,4 @@
-//! The camera's attitude, and what aberration does to it.
+//! Attitude of the camera, and the effect of aberration on it.
 
 use contract::{Body, CameraFrame, Direction, Rotation};
 use files::Failure;
@@ -12,12 +12,12 @@ use crate::charts::thin::{bins, thinned, thinning_caption};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 
-/// Rows of the table behind the correction of aberration.
+/// Number of rows of the table behind the chart of aberration corrections.
 const TABLE_BINS: usize = 60;
 /// Speed of light, km/s.
 const LIGHT_KM_S: f64 = 299_792.458;
 
-/// Fig. 8: the camera's attitude with respect to the chaser.
+/// Returns the section on Fig. 8: the camera's attitude with respect to the chaser.
 pub(super) fn mounting(run: &FarRangeRun) -> Section {
     let count = run.truths.len();
     let degrees = |rotation: Rotation<CameraFrame, Body>| {
@@ -72,10 +72,10 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
     ))
 }
 
-/// Fig. 9: the angles by which aberration is corrected.
+/// Returns the section on Fig. 9: the correction angles of the aberration.
 pub(super) fn aberration(run: &FarRangeRun) -> Result<Section, Failure> {
     let count = run.truths.len();
-    // A smooth function of time: a point in a few is enough.
+    // The angles are smooth functions of time: a sparse sample suffices.
     let rows = thinned(count, &[]);
     let mut angles = Vec::with_capacity(rows.len());
     for &row in &rows {

@@ -1,4 +1,5 @@
-//! The error budget: the same frames with the truth in the place of one stage's result, beside the honest run.
+//! Error budget: runs on the same frames with the result of one stage replaced by the truth, beside the run
+//! without replacement.
 
 use run::figure_by_name;
 use score::{Score, names};
@@ -10,7 +11,7 @@ use crate::figures::{cell, percent_cell};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 
-/// What each stage costs.
+/// Returns the section on the error contribution of each stage.
 pub(super) fn budget(run: &FarRangeRun) -> Section {
     let section = Section::new("budget", "Error budget by stage");
     if run.run_file.inject.is_some() {

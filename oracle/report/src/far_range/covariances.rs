@@ -1,4 +1,4 @@
-//! Whether the covariances of the answers are honest, by group, state of the image and source of the attitude.
+//! Consistency of the stated covariances, by group, state of the image and source of the attitude.
 
 use indexmap::IndexMap;
 use run::figure_by_name;
@@ -9,7 +9,7 @@ use super::super::page::Section;
 use crate::figures::words::display_name;
 use crate::page::data_table::DataTable;
 
-/// The figures of consistency, in the order of the columns.
+/// Figures of consistency, in the order of the columns.
 const FIGURES: [&str; 6] = [
     names::CENTROID_NEES_MEAN,
     names::CENTROID_WITHIN_1SIGMA_RATE,
@@ -19,7 +19,7 @@ const FIGURES: [&str; 6] = [
     names::LINE_OF_SIGHT_WITHIN_3SIGMA_RATE,
 ];
 
-/// The table; empty where no correct answer has a covariance.
+/// Returns the table of consistency; empty if no correct measurement states a covariance.
 pub(super) fn covariances(score: &Score) -> Section {
     let section = Section::new("covariances", "Covariances of the answers");
     if score.consistency.is_empty() {
@@ -48,7 +48,7 @@ pub(super) fn covariances(score: &Score) -> Section {
     section.table(table.narrow())
 }
 
-/// A figure with its interval; a dash where it is counted over nothing.
+/// Formats a figure with its interval; a dash if its denominator is 0.
 fn figure_text(name: &str, figure: Option<&Figure>) -> String {
     let Some(figure) = figure.filter(|figure| figure.value.is_some()) else { return cell(None) };
     if figure_by_name(name).is_rate() {

@@ -1,4 +1,5 @@
-//! Frames of a far-range run, rendered anew one by one: frame N alone is frame N of the run.
+//! Frames of a far-range run, rendered anew one by one: frame N can be rendered independently of the other
+//! frames of the run.
 
 use std::path::Path;
 
@@ -16,15 +17,15 @@ use crate::figures::words::display_name;
 use crate::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch, window_around};
 use crate::read::rows_of_each;
 
-/// The simulator of a run, and what the pipeline told of its clusters.
+/// The simulator of a run, and the file of the pipeline's clusters.
 pub struct FrameDetail {
     simulator: Result<Simulator, String>,
     clusters: Option<std::path::PathBuf>,
 }
 
 impl FrameDetail {
-    /// The frames of a run directory. Where its scenario cannot be simulated any more (a file that it names is gone), there are no
-    /// pictures, and [`FrameDetail::reason`] says why.
+    /// Opens the frames of a run directory. If its scenario can no longer be simulated (a file that it names
+    /// is missing), there are no pictures, and [`FrameDetail::reason`] returns the reason.
     ///
     /// # Errors
     /// A [`Failure`] when `run.toml` cannot be read.
@@ -38,15 +39,15 @@ impl FrameDetail {
         })
     }
 
-    /// Why there are no pictures.
+    /// Returns the reason why there are no pictures.
     pub fn reason(&self) -> Option<&str> {
         self.simulator.as_ref().err().map(String::as_str)
     }
 
-    /// Pictures of some rows of a run, in their order.
+    /// Returns pictures of the given rows of a run, in their order.
     ///
     /// # Errors
-    /// A [`Failure`] when a frame cannot be rendered, or the clusters not be read.
+    /// A [`Failure`] when a frame cannot be rendered, or the clusters cannot be read.
     pub fn pictures(&self, run: &FarRangeRun, rows: &[usize]) -> Result<Vec<Picture>, Failure> {
         let Ok(simulator) = &self.simulator else { return Ok(Vec::new()) };
         let mut camera = simulator.camera()?;
@@ -61,10 +62,10 @@ impl FrameDetail {
         rows.iter().zip(clusters).map(picture).collect()
     }
 
-    /// A row of a run as a picture of the whole detector.
+    /// Returns a picture of the whole detector for a row of a run.
     ///
     /// # Errors
-    /// As [`FrameDetail::pictures`].
+    /// Those of [`FrameDetail::pictures`].
     pub fn full_frame(&self, run: &FarRangeRun, row: usize) -> Result<Option<Picture>, Failure> {
         let Ok(simulator) = &self.simulator else { return Ok(None) };
         let exposure = simulator.camera()?.expose(run.truths[row].frame)?;
@@ -76,7 +77,7 @@ impl FrameDetail {
         Ok(Some(picture))
     }
 
-    /// Some rows of a run over one another: of every pixel the brightest.
+    /// Returns one picture of several rows of a run, with the maximum of each pixel.
     ///
     /// # Errors
     /// A [`Failure`] when a frame cannot be rendered.
@@ -92,7 +93,7 @@ impl FrameDetail {
             for (brightest, dn) in brightest.iter_mut().zip(exposure.frame.dn()) {
                 *brightest = (*brightest).max(*dn);
             }
-            // Small ones: those of its wings would hide its track.
+            // Small circles: circles of the size of the target's image would hide its track.
             let small = |target| Mark { shape: Shape::Circle(4.0), ..true_mark(target) };
             marks.extend(target(&exposure).map(small));
         }
@@ -114,7 +115,8 @@ impl FrameDetail {
         Ok(Some(picture))
     }
 
-    /// The first of some rows whose target lost such a share of its light to its region, as a close picture.
+    /// Returns a close picture of the first of the rows for which `is_wanted` accepts the fraction of the
+    /// target's electrons that its region cuts off.
     ///
     /// # Errors
     /// A [`Failure`] when a frame cannot be rendered.
@@ -148,14 +150,14 @@ impl FrameDetail {
             picture.marks = regions(&exposure);
             picture.marks.push(true_mark(target));
             picture.marks.extend(answer_mark(run.outcomes[row].as_ref()));
-            // Above the answer, and shorter: where both agree both are seen.
+            // Drawn over the measured position, and smaller: if the two agree, both remain visible.
             picture.marks.push(Mark { shape: Shape::Cross(2.5), ..true_mark(target) });
             return Ok(Some(picture));
         }
         Ok(None)
     }
 
-    /// The clusters of some rows, in their order.
+    /// Returns the clusters of the given rows, in their order.
     fn clusters_of(&self, run: &FarRangeRun, rows: &[usize]) -> Result<Vec<Vec<Cluster>>, Failure> {
         let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
         let found = rows_of_each::<FrameCluster>(self.clusters.as_deref(), &frames)?;
@@ -164,7 +166,7 @@ impl FrameDetail {
     }
 }
 
-/// What became of a frame, in words.
+/// Describes the verdict on a frame in words.
 fn title(verdict: &FrameVerdict) -> String {
     match verdict.verdict {
         Verdict::Correct { .. } => "Right.".to_owned(),
@@ -175,7 +177,7 @@ fn title(verdict: &FrameVerdict) -> String {
     }
 }
 
-/// Which frame it is.
+/// Describes the frame: number, group, range and exposure time.
 fn caption(run: &FarRangeRun, row: usize, exposure: &Exposure) -> String {
     let verdict = &run.verdicts[row];
     format!(
@@ -188,7 +190,7 @@ fn caption(run: &FarRangeRun, row: usize, exposure: &Exposure) -> String {
     )
 }
 
-/// How far an answer is from the target.
+/// Describes the distance of the measured position from the target.
 fn distance(outcome: Option<&Outcome>, exposure: &Exposure) -> String {
     let measured = outcome.and_then(Outcome::measurement);
     match measured.zip(target(exposure)) {
@@ -203,7 +205,7 @@ fn target(exposure: &Exposure) -> Option<&ObjectTruth> {
     exposure.objects.iter().find(|object| object.kind == ObjectKind::Target)
 }
 
-/// A frame about the target and the answer, with everything that is known of it drawn over it.
+/// Returns a picture around the target and the measured position, with all marks of the frame.
 fn framed(exposure: &Exposure, outcome: Option<&Outcome>, clusters: &[Cluster]) -> Result<Picture, Failure> {
     let measured = outcome.and_then(Outcome::measurement).map(|measured| measured.position);
     let points: Vec<PixelPoint> =
@@ -213,7 +215,7 @@ fn framed(exposure: &Exposure, outcome: Option<&Outcome>, clusters: &[Cluster]) 
     Ok(picture)
 }
 
-/// Draws everything that is known of a frame over a picture of it.
+/// Draws regions, clusters, detectable objects, target and measured position over a picture of a frame.
 fn draw_over(picture: &mut Picture, exposure: &Exposure, outcome: Option<&Outcome>, clusters: &[Cluster]) {
     let window = picture.window;
     let is_shown = |at: PixelPoint| {

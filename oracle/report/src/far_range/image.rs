@@ -1,4 +1,4 @@
-//! What is seen in the images: whole ones, the track of the target, regions, frames of every kind.
+//! Images of the report: whole images, the track of the target, regions, frames of every kind.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -15,17 +15,17 @@ use crate::charts::plotly::{Axis, Layout, Trace};
 use crate::charts::thin::{bins, evenly, sampled, thinning_caption};
 use crate::page::Section;
 
-/// Room about the detector, so that a mark at its edge is whole, px.
+/// Margin around the detector, so that a mark at its edge is drawn completely, px.
 const ROOM_PX: f64 = 8.0;
-/// What the marks in a picture stand for.
+/// Legend of the marks in a picture.
 const KEY: &str = "Green: the target's true place; orange cross: the answer; blue: true stars that can be detected, violet: planets, the \
                    Moon, hot pixels, tracks of particles; yellow: clusters, with what the pipeline took them for; dashed: transmitted regions.";
 /// Range of the images in the paper's Fig. 2, km.
 const SAMPLE_RANGE_KM: f64 = 16.0;
-/// Images that are laid over one another: ten degrees of an orbit from one to the next.
+/// Number of overlaid images: ten degrees of an orbit between consecutive images.
 const OVERLAID: usize = 36;
 
-/// Fig. 2: a whole image, and images of one orbit over one another.
+/// Returns the section on Fig. 2: a whole image, and overlaid images of one orbit.
 pub(super) fn sample(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
     let section = Section::new("fig-2", "Fig. 2: a whole image, and the images of an orbit over one another");
     if let Some(reason) = sheet.reason() {
@@ -47,7 +47,7 @@ pub(super) fn sample(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, 
         .pictures(pictures.into_iter().flatten().collect()))
 }
 
-/// The rows of a run within half an orbit of one of them, and in its group.
+/// Returns the rows within half an orbit of the given row, in the same group.
 fn one_orbit(run: &FarRangeRun, row: usize) -> Range<usize> {
     let truth = &run.truths[row];
     let state = State { position_km: truth.position_km, velocity_km_s: truth.velocity_km_s };
@@ -61,7 +61,7 @@ fn one_orbit(run: &FarRangeRun, row: usize) -> Range<usize> {
     first..last + 1
 }
 
-/// Fig. 3: the target in the image.
+/// Returns the section on Fig. 3: the target in the image.
 pub(super) fn track(run: &FarRangeRun) -> Section {
     let camera = &run.run_file.scenario.camera;
     let at = |row: usize| run.truths[row].target_position.map_or([f64::NAN; 2], |p| [p.x, p.y]);
@@ -101,7 +101,8 @@ pub(super) fn track(run: &FarRangeRun) -> Section {
     ))
 }
 
-/// The way of the target over the detector, broken where it is in no image and where another group begins.
+/// Returns the track of the target over the detector, broken where the target is outside the image and where
+/// another group begins.
 fn true_track(run: &FarRangeRun, at: &dyn Fn(usize) -> [f64; 2]) -> Trace {
     let (mut x, mut y, mut frames) = (Vec::new(), Vec::new(), Vec::new());
     let mut last: Option<usize> = None;
@@ -120,7 +121,7 @@ fn true_track(run: &FarRangeRun, at: &dyn Fn(usize) -> [f64; 2]) -> Trace {
     line("true", x, y, TRUTH).custom_data(frames).opacity(0.7)
 }
 
-/// Fig. 6: a whole and a truncated region.
+/// Returns the section on Fig. 6: a whole and a truncated region.
 pub(super) fn regions(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
     let section = Section::new("fig-6", "Fig. 6: a whole and a truncated region of interest");
     if run.run_file.scenario.roi.is_none() {
@@ -134,7 +135,7 @@ pub(super) fn regions(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section,
     by_error
         .sort_by(|&a, &b| dec(b).partial_cmp(&dec(a)).unwrap_or(std::cmp::Ordering::Equal).then(a.cmp(&b)));
     let truncated = sheet.first_region(run, by_error.iter().copied().take(12), |cut| cut > 0.05)?;
-    // The nearest of some ranges from near to far: there the image is as large as that of the other.
+    // Searches from near to far: at short range the target is as large as in the truncated region.
     let mut near: Vec<usize> =
         by_error.iter().copied().filter(|&row| dec(row).is_some_and(|error| error < 0.5)).collect();
     near.sort_by(|&a, &b| run.truths[a].range_km.total_cmp(&run.truths[b].range_km).then(a.cmp(&b)));
@@ -156,7 +157,7 @@ pub(super) fn regions(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section,
     Ok(section.text(format!("{note} {key}")).pictures(pictures))
 }
 
-/// A sheet of frames: every kind of miss and of wrong answer, and right ones to compare with.
+/// Returns pictures of frames: every kind of miss and of wrong measurement, and correct ones for comparison.
 pub(super) fn frames(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut middle = |is: &dyn Fn(&Verdict) -> bool| {

@@ -1,4 +1,4 @@
-//! The runs of an error budget.
+//! Runs of an error budget.
 
 use std::path::{Path, PathBuf};
 
@@ -10,17 +10,17 @@ use score::Score;
 
 use crate::read::{is_far_range_run, missing, read_json};
 
-/// A run of the same frames that was told the truth for one stage.
+/// A run on the same frames in which the result of one stage was replaced by the truth.
 pub struct InjectedRun {
     pub(super) stage: Stage,
     pub(super) score: Score,
 }
 
 impl InjectedRun {
-    /// Reads the directory of one, to be held against the honest run.
+    /// Reads the directory of a run with one replaced stage, for comparison with the run without replacement.
     ///
     /// # Errors
-    /// A [`Failure`] for a directory that is none, or is of other frames.
+    /// A [`Failure`] for a directory that is not such a run, or has other frames.
     fn read(
         directory: &Path,
         honest: &RunFile<FarRangeScenario>,
@@ -62,10 +62,10 @@ impl InjectedRun {
         Ok(Self { stage, score })
     }
 
-    /// Reads several, in the order of the stages.
+    /// Reads several runs, and returns them in the order of the stages.
     ///
     /// # Errors
-    /// A [`Failure`] for a directory that is none, or is of other frames.
+    /// A [`Failure`] for a directory that is not such a run, or has other frames.
     pub fn read_all(
         directories: &[PathBuf],
         honest: &RunFile<FarRangeScenario>,
@@ -79,7 +79,7 @@ impl InjectedRun {
     }
 }
 
-/// The runs of an error budget that are kept with a run, in `budget/STAGE`.
+/// Returns the directories of an error budget that are stored with a run, in `budget/STAGE`.
 pub fn kept_budget(directory: &Path) -> Vec<PathBuf> {
     let folder = |stage: &Stage| directory.join("budget").join(stage.to_string());
     let folders = Stage::value_variants().iter().map(folder);

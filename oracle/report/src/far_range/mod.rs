@@ -1,4 +1,4 @@
-//! The report of a far-range run: the figures of the far-range paper by name, its Table 2, causes, frames.
+//! Report of a far-range run: the figures of the far-range paper by name, its Table 2, causes, frames.
 
 mod approach;
 mod attitude;
@@ -32,7 +32,8 @@ use files::{Checksums, Failure};
 use scenario::is_argon;
 use score::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore, angle, attitude_note, warm_up_note};
 
-/// The page of a run directory with the error budget that is kept there; without one, of a run whose verdicts are known.
+/// Returns the page of a run directory with its stored error budget; if `scored` holds the verdicts, they are
+/// used, and the page has no error budget.
 pub(crate) fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
     let run = match scored.and_then(|scored| scored.as_any_mut().downcast_mut::<FarRangeJudgement>()) {
         Some(scored) => FarRangeRun::with_verdicts(directory, std::mem::take(&mut scored.verdicts))?,
@@ -46,7 +47,7 @@ pub(crate) fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> R
     far_range_page(&run, &FrameDetail::open(directory)?)
 }
 
-/// Pictures of some frames of a run directory.
+/// Returns pictures of the given frames of a run directory.
 pub(crate) fn pictures(directory: &Path, frames: &[u64]) -> Result<RenderedPictures, Failure> {
     let run = FarRangeRun::read(directory)?;
     let row = |frame: &u64| run.truths.binary_search_by_key(frame, |truth| truth.frame).ok();
@@ -55,10 +56,10 @@ pub(crate) fn pictures(directory: &Path, frames: &[u64]) -> Result<RenderedPictu
     Ok((pictures, sheet.reason().map(str::to_owned)))
 }
 
-/// The page of a far-range run; `sheet` renders its frames anew.
+/// Returns the page of a far-range run; `sheet` renders its frames anew.
 ///
 /// # Errors
-/// A [`Failure`] when a frame cannot be drawn, or the truth is of no moment that there is.
+/// A [`Failure`] when a frame cannot be drawn, or a time of the truth is invalid.
 pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Failure> {
     let scenario = &run.run_file.scenario;
     let (first, last) = (&run.truths[0], &run.truths[run.truths.len() - 1]);
@@ -118,7 +119,7 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Fa
     })
 }
 
-/// Table 2, beside the paper's where the frames are those of the paper, and all figures.
+/// Returns Table 2, with the paper's values if the frames are those of the paper, and all figures.
 fn figures_section(run: &FarRangeRun) -> Section {
     let score = &run.score;
     let published = is_argon(&run.run_file.scenario).then_some(&ARGON_TABLE_2);
@@ -150,7 +151,8 @@ fn figures_section(run: &FarRangeRun) -> Section {
             limit.map_or_else(|| label.to_owned(), |limit| format!("{label} < {}{attitude}", angle(limit)));
         table.push(row(&label, ours.collect()));
         if published.is_some() {
-            // A group is the paper's day of the same name; all is the paper's only where every frame was flown.
+            // A group corresponds to the paper's day of the same name; the column `all` corresponds to the
+            // paper's only if every frame was processed.
             let day = |group: &&String| {
                 let number = group.strip_prefix("day ").and_then(|number| number.parse::<usize>().ok());
                 number.filter(|number| (1..=5).contains(number)).map(|number| rates[number - 1])
@@ -176,7 +178,7 @@ fn figures_section(run: &FarRangeRun) -> Section {
     section.table(table).folded("All figures", figure_table(&score.figures))
 }
 
-/// Misses and wrong answers by cause.
+/// Returns the section on misses and wrong measurements by cause.
 fn causes(run: &FarRangeRun) -> Section {
     let score = &run.score;
     let groups: Vec<&String> = score.groups.keys().collect();

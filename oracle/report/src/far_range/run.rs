@@ -1,4 +1,4 @@
-//! What a far-range run left in its directory, and its frames as series.
+//! Results of a far-range run, read from its directory, and its frames as time series.
 
 #![cfg_attr(
     not(test),
@@ -28,24 +28,25 @@ use crate::charts::thin::{bins, summary};
 use crate::page::data_table::DataTable;
 use crate::read::{missing, read_json};
 
-/// Rows of the table behind a long series.
+/// Number of rows of the table behind a long series.
 const TABLE_BINS: usize = 60;
 
-/// What a far-range run left in its directory.
+/// Results of a far-range run, read from its directory.
 pub struct FarRangeRun {
-    /// `run.toml`.
+    /// Content of `run.toml`.
     pub run_file: RunFile<FarRangeScenario>,
-    /// `score.json`.
+    /// Content of `score.json`.
     pub score: Score,
-    /// A verdict a frame, from truth and measurements.
+    /// One verdict per frame, from truth and measurements.
     pub verdicts: Vec<FrameVerdict>,
-    /// `truth/frames.parquet`, in the order of the verdicts.
+    /// Content of `truth/frames.parquet`, in the order of the verdicts.
     pub truths: Vec<FrameTruth>,
-    /// `measurements.csv`, of the same frames; `None` where there is no row.
+    /// Content of `measurements.csv`, for the same frames; `None` for a frame without a row.
     pub outcomes: Vec<Option<Outcome>>,
-    /// `telemetry.csv`, of the same frames.
+    /// Content of `telemetry.csv`, for the same frames.
     pub telemetry: Vec<TelemetryRow>,
-    /// Runs of the same frames with the truth for a stage each; empty where there is no error budget.
+    /// Runs on the same frames, each with the truth in place of one stage's result; empty without an error
+    /// budget.
     pub budget: Vec<InjectedRun>,
 }
 
@@ -53,7 +54,8 @@ impl FarRangeRun {
     /// Reads a run directory.
     ///
     /// # Errors
-    /// A [`Failure`] that names the file which is missing, cannot be read, or is not of the same frames as the others.
+    /// A [`Failure`] that names the file which is missing, cannot be read, or does not cover the same frames
+    /// as the other files.
     pub fn read(directory: &Path) -> Result<Self, Failure> {
         check_files(directory)?;
         let clusters = Some(directory.join("clusters.parquet")).filter(|path| path.is_file());
@@ -66,10 +68,11 @@ impl FarRangeRun {
         Self::with_verdicts(directory, scored.verdicts)
     }
 
-    /// Reads the directory of a run whose verdicts are at hand: the table of objects, by far the longest, is then left alone.
+    /// Reads the directory of a run whose verdicts are available. The table of objects, by far the longest,
+    /// is then not read.
     ///
     /// # Errors
-    /// As [`FarRangeRun::read`].
+    /// Those of [`FarRangeRun::read`].
     pub fn with_verdicts(directory: &Path, verdicts: Vec<FrameVerdict>) -> Result<Self, Failure> {
         check_files(directory)?;
         let run_file = RunFile::<FarRangeScenario>::read(&directory.join("run.toml"))?;
@@ -104,7 +107,7 @@ impl FarRangeRun {
         Ok(Self { run_file, score, verdicts, truths, outcomes, telemetry, budget: Vec::new() })
     }
 
-    /// Times of some frames, as an axis of time takes them.
+    /// Returns the times of the given rows in the unit of the time axis.
     #[expect(
         clippy::indexing_slicing,
         reason = "rows are the run's, which has a truth and a verdict for each and one at least"
@@ -114,7 +117,7 @@ impl FarRangeRun {
     }
 }
 
-/// Refuses a directory without the files of a run.
+/// Refuses a directory that lacks a file of a run.
 fn check_files(directory: &Path) -> Result<(), Failure> {
     let names =
         ["score.json", "measurements.csv", "telemetry.csv", "truth/frames.parquet", "truth/objects.parquet"];
@@ -124,7 +127,8 @@ fn check_files(directory: &Path) -> Result<(), Failure> {
     }
 }
 
-/// A line through some rows of a run, in order, that breaks where another group begins: days are apart.
+/// Returns a line through the given rows of a run, in order, broken where another group begins, since days
+/// are not contiguous.
 #[expect(
     clippy::indexing_slicing,
     reason = "rows are the run's, which has a truth and a verdict for each and one at least"
@@ -144,12 +148,12 @@ pub(super) fn broken(run: &FarRangeRun, rows: impl Iterator<Item = (usize, f64)>
     (times, values)
 }
 
-/// The time of a frame to the second, for people.
+/// Formats the time of a frame to the second, for display.
 pub(super) fn shown_time(truth: &FrameTruth) -> String {
     cut_time(truth, 19)
 }
 
-/// The time of a frame to the millisecond, for people.
+/// Formats the time of a frame to the millisecond, for display.
 pub(super) fn shown_time_ms(truth: &FrameTruth) -> String {
     cut_time(truth, 23)
 }
@@ -158,12 +162,13 @@ fn cut_time(truth: &FrameTruth, length: usize) -> String {
     format_utc(truth.time).get(..length).unwrap_or_default().replace('T', " ")
 }
 
-/// An instant on an axis of time, to the millisecond.
+/// Returns the position of an instant on a time axis, to the millisecond.
 pub(super) fn axis_time(time: Epoch) -> f64 {
     clock::unix_ms(time) as f64
 }
 
-/// The axis of time of a run: the same in all of its charts, so that they can be held one below another.
+/// Returns the time axis of a run, which is the same in all of its charts, so that they can be compared one
+/// below another.
 #[expect(
     clippy::indexing_slicing,
     reason = "rows are the run's, which has a truth and a verdict for each and one at least"
@@ -174,10 +179,10 @@ pub(super) fn time_axis(run: &FarRangeRun) -> Axis {
     Axis::titled("time, UTC").with_time_axis().range([first - room, last + room].map(axis_time))
 }
 
-/// A column of a table behind a chart: its name, its value in a row, and decimals.
+/// A column of a table behind a chart: its name, its value in a row, and its number of decimals.
 pub(super) type BinColumn<'a> = (&'a str, &'a dyn Fn(usize) -> f64, usize);
 
-/// A summary of long series, stretch by stretch: number, smallest, mean and largest of each.
+/// Summarises long series by stretches of frames: count, minimum, mean and maximum of each.
 #[expect(
     clippy::indexing_slicing,
     reason = "rows are the run's, which has a truth and a verdict for each and one at least"

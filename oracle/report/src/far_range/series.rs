@@ -1,4 +1,4 @@
-//! What is measured over time: errors, stars.
+//! Measurements over time: errors, stars.
 
 use run::far_range::limits;
 use score::{Verdict, angle};
@@ -10,10 +10,10 @@ use crate::charts::chart::{
 use crate::charts::thin::{sampled, thinned, thinning_caption};
 use crate::page::Section;
 
-/// Images that the mean of Fig. 7 is taken over.
+/// Number of images in the moving mean of Fig. 7.
 const MEAN_OF: usize = 100;
 
-/// Fig. 5: errors over time.
+/// Returns the section on Fig. 5: errors over time.
 pub(super) fn errors(run: &FarRangeRun) -> Section {
     let section = Section::new("fig-5", "Fig. 5: errors of right ascension and declination");
     if run.score.attitude.as_deref() == Some("none") {
@@ -35,7 +35,8 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
     };
     let (right, wrong) = (rows_of(false), rows_of(true));
     let largest = right.iter().flat_map(|&row| [component(row, 0).abs(), component(row, 1).abs()]);
-    // Errors of wrong answers are those of another object: they would leave nothing to be seen of the others.
+    // The errors of wrong measurements are distances to another object; on the same axis they would hide the
+    // other errors.
     let limit = (1.15 * largest.fold(0.0, f64::max)).max(0.06);
     let ends = [&run.truths[0], &run.truths[run.truths.len() - 1]].map(|truth| axis_time(truth.time));
     let limits = limits(&run.run_file.scenario);
@@ -88,7 +89,7 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
     ))
 }
 
-/// Fig. 7: stars per image.
+/// Returns the section on Fig. 7: stars per image.
 pub(super) fn stars(run: &FarRangeRun) -> Section {
     let count = run.verdicts.len();
     let number = |row: usize| run.verdicts[row].n_stars.map_or(f64::NAN, f64::from);

@@ -1,4 +1,4 @@
-//! Figures of a score as words and as a table.
+//! Figures of a score, as text and as a table.
 
 pub(crate) mod run_page;
 pub(crate) mod words;
@@ -8,7 +8,7 @@ use score::Figure;
 
 use crate::page::data_table::DataTable;
 
-/// A rate in percent with its interval: `93.86 (92.1–95.2)`; a dash where it is counted over nothing.
+/// Formats a rate in percent with its interval: `93.86 (92.1–95.2)`; a dash if its denominator is 0.
 pub(crate) fn shown_percent(figure: &Figure) -> String {
     let Some(value) = figure.value else { return "–".to_owned() };
     let interval = figure.low.zip(figure.high);
@@ -16,12 +16,12 @@ pub(crate) fn shown_percent(figure: &Figure) -> String {
     format!("{:.2} %{}", 100.0 * value, interval.unwrap_or_default())
 }
 
-/// The same for a table that says percent above.
+/// Formats a rate with its interval for a table whose caption states percent.
 pub(crate) fn percent_cell(figure: Option<&Figure>) -> String {
     figure.map_or_else(String::new, |figure| shown_percent(figure).replacen(" %", "", 1))
 }
 
-/// A number with four significant digits, or as it is when it is whole.
+/// Formats a number with four significant digits, or exactly if it is an integer.
 pub(crate) fn significant(value: f64) -> String {
     if !value.is_finite() {
         return "–".to_owned();
@@ -29,7 +29,7 @@ pub(crate) fn significant(value: f64) -> String {
     if value.fract() == 0.0 && value.abs() < 1e9 {
         return format!("{value:.0}");
     }
-    // By the number as it is written: 9.999 97 has one digit more before the point than after rounding.
+    // The exponent is taken from the rounded text: 9.999 97 gains a digit before the point by rounding.
     let written = format!("{value:.3e}");
     let exponent = written.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
     let places = 3 - exponent.unwrap_or(0);
@@ -40,7 +40,7 @@ pub(crate) fn significant(value: f64) -> String {
     }
 }
 
-/// A probability in percent. What is not quite certain or impossible is not written as if it were.
+/// Formats a probability in percent. A probability close to 0 or 1 is not rounded to 0 or 100 %.
 pub(crate) fn probability(value: f64) -> String {
     if value > 0.0 && value < 0.000_5 {
         "<\u{a0}0.1\u{a0}%".to_owned()
@@ -51,19 +51,19 @@ pub(crate) fn probability(value: f64) -> String {
     }
 }
 
-/// The least and the most of some values: `2.94 to 30.83 km`.
+/// Formats the minimum and the maximum of some values: `2.94 to 30.83 km`.
 pub(crate) fn least_to_most(values: impl Iterator<Item = f64>, unit: &str) -> String {
     let (low, high) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     format!("{low:.2} to {high:.2} {unit}")
 }
 
-/// A value or nothing.
+/// Formats a value, or a dash for `None`.
 pub(crate) fn cell(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), significant)
 }
 
-/// Every figure with its count and its interval. Rates are fractions, as in `score.json`.
+/// Returns a table of all figures with count and interval. Rates are fractions, as in `score.json`.
 pub(crate) fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
     let head = ["figure", "value", "95 % low", "95 % high", "count", "of", "independent"];
     let mut table = DataTable::new(head).caption(

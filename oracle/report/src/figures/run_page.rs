@@ -1,4 +1,4 @@
-//! The report of a run of any world: its figures and its verdicts.
+//! Report of a run of any world: its figures and its verdicts.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::page::data_table::DataTable;
 use crate::page::{Page, Section};
 use crate::read::missing;
 
-/// Reads a run directory and makes the page.
+/// Reads a run directory and returns its page.
 ///
 /// # Errors
 /// A [`Failure`] that names the file which is missing or cannot be read.

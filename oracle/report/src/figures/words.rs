@@ -1,11 +1,11 @@
-//! Names of files as people read them.
+//! Names from files, in readable form.
 
-/// A name with blanks: `cut by roi`.
+/// Returns a name with spaces: `cut by roi`.
 pub(crate) fn display_name(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// With a capital letter at its beginning.
+/// Returns a word with a capital first letter.
 pub(crate) fn capital(word: &str) -> String {
     let mut letters = word.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

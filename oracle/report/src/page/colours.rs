@@ -1,18 +1,18 @@
-//! A colour for every cause, the same in every chart.
+//! Colours of causes, the same in every chart.
 use contract::docking::FailedCheck;
 use score::Cause;
 use score::docking::{GrossError, MissCause};
 
-/// As many as a world has causes; those that are met most are the least alike.
+/// One colour per cause of a world; the most frequent causes have the most distinct colours.
 const PALETTE: [&str; 18] = [
     "#9aa3ac", "#5b6570", "#3f4a8a", "#b9a3d8", "#c9415a", "#7d8a1f", "#f0a3b0", "#3aa6b0", "#e0752d",
     "#8a5a1f", "#d9b23c", "#8d6bc4", "#d36bb0", "#6d2b3a", "#2f7fc1", "#2f9e69", "#a9c96a", "#c8cdd2",
 ];
 
-/// Failed tests of a doubtful pose.
+/// Colours of the failed tests of a doubtful pose.
 const DOUBTS: [&str; 4] = ["#fff0b8", "#fbdc76", "#f2c230", "#b58a00"];
 
-/// The colour of a cause by its word.
+/// Returns the colour of a cause by its code.
 pub(crate) fn colour_of(cause: &str) -> &'static str {
     let far_range = |cause: &str| Cause::ALL.iter().position(|of| of.code() == cause);
     if let Some(place) = far_range(cause) {
@@ -21,7 +21,7 @@ pub(crate) fn colour_of(cause: &str) -> &'static str {
     if let Some(place) = FailedCheck::ALL.iter().position(|of| of.code() == cause) {
         return DOUBTS[place];
     }
-    // Docking shares some causes: its others take the colours that are left.
+    // Docking shares some causes with the far range; its other causes take the remaining colours.
     let codes = || MissCause::CODES.into_iter().chain(GrossError::ALL.map(GrossError::code));
     let shared: Vec<usize> = codes().filter_map(far_range).collect();
     let left = (0..PALETTE.len()).filter(|place| !shared.contains(place));

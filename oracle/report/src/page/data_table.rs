@@ -1,45 +1,45 @@
 //! Tables of a report.
 
-/// A table of words and numbers, written out.
+/// A table of text and numbers.
 #[derive(Debug, Clone, Default)]
 pub struct DataTable {
-    /// A line above it; empty for none.
+    /// Caption above the table; empty for none.
     pub caption: String,
     /// Names of the columns.
     pub head: Vec<String>,
-    /// The rows, each as long as the head.
+    /// Rows, each with as many cells as the head.
     pub rows: Vec<Vec<String>>,
-    /// Whether its cells are sentences rather than numbers.
+    /// True if the cells are sentences rather than numbers.
     pub is_wordy: bool,
-    /// Whether cells may be broken, as of many columns which a page has no room for otherwise.
+    /// True if cells may be wrapped, because the page is too narrow for the number of columns.
     pub is_narrow: bool,
 }
 
 impl DataTable {
-    /// A table without rows.
+    /// Creates a table without rows.
     pub fn new<S: Into<String>>(head: impl IntoIterator<Item = S>) -> Self {
         Self { head: head.into_iter().map(Into::into).collect(), ..Self::default() }
     }
 
-    /// With a line above it.
+    /// Sets the caption above the table.
     pub fn caption(mut self, caption: impl Into<String>) -> Self {
         self.caption = caption.into();
         self
     }
 
-    /// Of sentences rather than numbers.
+    /// Marks the cells as sentences rather than numbers.
     pub fn wordy(mut self) -> Self {
         self.is_wordy = true;
         self
     }
 
-    /// Of many columns.
+    /// Permits wrapped cells, for a table with many columns.
     pub fn narrow(mut self) -> Self {
         self.is_narrow = true;
         self
     }
 
-    /// With one more row.
+    /// Adds a row and returns the table.
     pub fn row<S: Into<String>>(mut self, cells: impl IntoIterator<Item = S>) -> Self {
         self.push(cells);
         self

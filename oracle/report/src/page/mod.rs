@@ -1,4 +1,4 @@
-//! The page: sections of text, tables, charts and pictures, as one HTML file that asks nothing of any network.
+//! The page: sections of text, tables, charts and pictures, as one HTML file that needs no network.
 
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 pub(crate) mod colours;
@@ -18,93 +18,93 @@ use crate::page::picture::{Picture, Shape};
 use crate::page::plotly_js::plotly_js;
 use crate::page::script_safe::script_safe;
 
-/// A report, before it is text.
+/// A report before it is formatted.
 #[derive(Debug, Clone)]
 pub struct Page {
-    /// What the page is about.
+    /// Title of the page.
     pub title: String,
-    /// What kind of result it shows.
+    /// Kind of result that the page shows.
     pub kind: &'static str,
     /// Version of Boresight that made the result.
     pub version: String,
-    /// First sentences.
+    /// Opening sentences.
     pub lead: Vec<String>,
-    /// What a reader must know before believing anything below.
+    /// Warnings that apply to all results below.
     pub warnings: Vec<String>,
-    /// What was run, by name.
+    /// Properties of the result, by name.
     pub facts: Vec<(&'static str, String)>,
-    /// The sections, in their order.
+    /// Sections in order.
     pub sections: Vec<Section>,
-    /// The figures as they stand in the result's own file, for programs that read the page.
+    /// Figures as in the file of the result, for programs that read the page.
     pub data: Value,
 }
 
 /// A section with a heading.
 #[derive(Debug, Clone)]
 pub struct Section {
-    /// Its anchor.
+    /// Anchor of the section.
     pub id: &'static str,
-    /// Its heading.
+    /// Heading.
     pub title: String,
-    /// What it holds.
+    /// Content of the section.
     pub blocks: Vec<Block>,
 }
 
 impl Section {
-    /// A section that holds nothing yet.
+    /// Creates an empty section.
     pub fn new(id: &'static str, title: impl Into<String>) -> Self {
         Self { id, title: title.into(), blocks: Vec::new() }
     }
 
-    /// With a paragraph at its end.
+    /// Appends a paragraph.
     pub fn text(mut self, text: impl Into<String>) -> Self {
         self.blocks.push(Block::Text(text.into()));
         self
     }
 
-    /// With a table at its end.
+    /// Appends a table.
     pub fn table(mut self, table: DataTable) -> Self {
         self.blocks.push(Block::Table(table));
         self
     }
 
-    /// With a chart at its end.
+    /// Appends a chart.
     pub fn chart(mut self, chart: Chart) -> Self {
         self.blocks.push(Block::Chart(Box::new(chart)));
         self
     }
 
-    /// With small charts at its end, two side by side.
+    /// Appends small charts, two side by side.
     pub fn charts(mut self, charts: Vec<Chart>) -> Self {
         self.blocks.push(Block::Charts(charts));
         self
     }
 
-    /// With a table at its end that is folded away under some words.
+    /// Appends a collapsed table under the heading `words`.
     pub fn folded(mut self, words: impl Into<String>, table: DataTable) -> Self {
         self.blocks.push(Block::Folded(words.into(), table));
         self
     }
 
-    /// With pictures at its end, side by side.
+    /// Appends pictures side by side.
     pub fn pictures(mut self, pictures: Vec<Picture>) -> Self {
         self.blocks.push(Block::Pictures(pictures));
         self
     }
 }
 
-/// One thing in a section.
+/// One element of a section.
 #[derive(Debug, Clone)]
 pub enum Block {
     /// A paragraph.
     Text(String),
     /// A table.
     Table(DataTable),
-    /// A chart with the table behind it.
+    /// A chart and its data table.
     Chart(Box<Chart>),
     /// Small charts, two side by side where there is room.
     Charts(Vec<Chart>),
-    /// A table that is folded away until a reader opens it, and the words that it is folded under.
+    /// A collapsed table that the reader can open, and its heading.
     Folded(String, DataTable),
     /// Pictures side by side.
     Pictures(Vec<Picture>),
@@ -121,10 +121,10 @@ struct PageTemplate<'a> {
 }
 
 impl Page {
-    /// The page as HTML. All text of it is escaped; the same page gives the same bytes.
+    /// Returns the page as HTML. All text is escaped; the same page gives the same bytes.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when the page cannot be put together.
+    /// [`Failure::Usage`] when the page cannot be composed.
     pub fn html(&self) -> Result<String, Failure> {
         let failure = |error: &dyn std::fmt::Display| {
             Failure::Usage(format!("the report cannot be put together: {error}"))

@@ -1,4 +1,4 @@
-//! Pictures of frames: a window of the pixels, stretched to be seen, and what is drawn over it.
+//! Pictures of frames: a window of the pixels, stretched for display, with marks over it.
 use std::io::Cursor;
 
 use base64::Engine;
@@ -7,43 +7,44 @@ use contract::{PixelPoint, Window};
 use files::Failure;
 use image::{GrayImage, ImageFormat};
 
-/// Samples of a picture at most: of more pixels, squares of them are drawn as their brightest.
+/// Maximum number of samples of a picture. If a window has more pixels, each square of pixels is drawn as its
+/// brightest pixel.
 const MAX_SAMPLES: usize = 60_000;
 
-/// Pictures of frames; without them the reason why there are none.
+/// Pictures of frames, and the reason if there are none.
 pub(crate) type RenderedPictures = (Vec<Picture>, Option<String>);
 
-/// A window of a frame, with what is drawn over it.
+/// A window of a frame with marks.
 #[derive(Debug, Clone)]
 pub struct Picture {
-    /// First words of its caption.
+    /// First words of the caption.
     pub title: String,
-    /// The rest of its caption.
+    /// Caption after the title.
     pub caption: String,
-    /// The window that it shows, columns and rows of the image.
+    /// Window that the picture shows, columns and rows of the image.
     pub window: Window,
-    /// Where the rows of the image are in the camera.
+    /// Camera rows of the rows of the image.
     pub lines: RowMapping,
-    /// The pixels, as a PNG in a `data:` URI.
+    /// Pixels, as a PNG in a `data:` URI.
     pub png: String,
-    /// What is drawn over them.
+    /// Marks drawn over the pixels.
     pub marks: Vec<Mark>,
 }
 
-/// Something drawn over the pixels.
+/// A mark drawn over the pixels.
 #[derive(Debug, Clone)]
 pub struct Mark {
-    /// Its place in the frame: the centre, or the upper left corner of a rectangle.
+    /// Position in the frame: the centre, or the upper left corner of a rectangle.
     pub at: PixelPoint,
-    /// Its shape.
+    /// Shape of the mark.
     pub shape: Shape,
-    /// What it stands for, by the name of its style.
+    /// Meaning of the mark, as the name of its style.
     pub class: &'static str,
-    /// What is told when a reader points at it.
+    /// Text shown when the pointer is over the mark.
     pub title: String,
 }
 
-/// The shape of a mark; lengths are pixels of the frame.
+/// Shape of a mark; lengths are pixels of the frame.
 #[derive(Debug, Clone, Copy)]
 pub enum Shape {
     /// A circle of this radius.
@@ -52,15 +53,15 @@ pub enum Shape {
     Cross(f64),
     /// A rectangle.
     Rectangle {
-        /// Its width.
+        /// Width of the rectangle.
         width: f64,
-        /// Its height.
+        /// Height of the rectangle.
         height: f64,
     },
 }
 
 impl Mark {
-    /// The edge of a rectangle of pixels.
+    /// Creates the outline of a rectangle of pixels.
     pub fn region(window: &Window, title: impl Into<String>) -> Self {
         Self {
             at: PixelPoint::new(window.x as f64 - 0.5, window.y as f64 - 0.5),
@@ -71,42 +72,42 @@ impl Mark {
     }
 }
 
-/// Which row of the camera a row of an image is: `first` + `pitch` × row.
+/// Camera row of each row of an image: `first` + `pitch` × row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RowMapping {
-    /// Row of the camera of the first row.
+    /// Camera row of the first image row.
     pub first: f64,
-    /// Rows of the camera from one row to the next.
+    /// Number of camera rows per image row.
     pub pitch: f64,
 }
 
 impl RowMapping {
-    /// Of a whole frame.
+    /// Mapping of a whole frame.
     pub const WHOLE: Self = Self { first: 0.0, pitch: 1.0 };
 }
 
-/// How digital numbers become shades.
+/// Conversion of digital numbers to grey levels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stretch {
-    /// By asinh from the median to the brightest pixel: noise and bright cores are both seen.
+    /// Asinh from the median to the brightest pixel: both noise and bright cores are visible.
     Stars,
-    /// In proportion, from the darkest to the brightest pixel.
+    /// Linear from the darkest to the brightest pixel.
     Linear,
 }
 
 /// Digital numbers, row by row.
 #[derive(Debug, Clone, Copy)]
 pub struct Pixels<'a> {
-    /// Columns.
+    /// Number of columns.
     pub columns: usize,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// The values.
+    /// Digital numbers.
     pub dn: &'a [u16],
 }
 
 impl Picture {
-    /// A picture of `window` of the pixels; it must lie in them.
+    /// Creates a picture of `window`, which must lie within the pixels.
     ///
     /// # Errors
     /// [`Failure::Usage`] when the PNG cannot be encoded.
@@ -120,17 +121,18 @@ impl Picture {
         Ok(Self { title: String::new(), caption: String::new(), window, lines, png, marks: Vec::new() })
     }
 
-    /// The part of the frame that is shown: pixel centres are whole numbers.
+    /// Returns the displayed part of the frame as an SVG view box, in which pixel centres have integer
+    /// coordinates.
     pub fn view_box(&self) -> String {
         format!("{} {} {} {}", self.left(), self.top(), self.window.columns, self.height())
     }
 
-    /// Left edge.
+    /// Left edge, px of the frame.
     pub fn left(&self) -> f64 {
         self.window.x as f64 - 0.5
     }
 
-    /// Upper edge.
+    /// Upper edge, rows of the camera.
     pub fn top(&self) -> f64 {
         self.lines.first + self.lines.pitch * (self.window.y as f64 - 0.5)
     }
@@ -141,8 +143,8 @@ impl Picture {
     }
 }
 
-/// The window that shows all of `points` with `margin_px` around, four to three, inside a detector; all of it where no point is on
-/// it.
+/// Returns the window with aspect ratio 4:3 that contains all `points` with a margin of `margin_px`, limited
+/// to the detector; the whole detector if no point is on it.
 pub(crate) fn window_around(points: &[PixelPoint], margin_px: f64, columns: usize, rows: usize) -> Window {
     let inside: Vec<_> = points.iter().filter(|point| point.is_on_detector(columns, rows)).collect();
     let whole = Window { x: 0, y: 0, columns, rows };
@@ -163,7 +165,7 @@ pub(crate) fn window_around(points: &[PixelPoint], margin_px: f64, columns: usiz
     Window { x, y, columns, rows }
 }
 
-/// A window of the pixels as a PNG of 8 bits.
+/// Encodes a window of the pixels as an 8-bit PNG.
 fn png(pixels: Pixels<'_>, window: Window, stretch: Stretch) -> Result<String, Failure> {
     let mut step = 1;
     while (window.columns / step) * (window.rows / step) > MAX_SAMPLES {
@@ -190,7 +192,7 @@ fn png(pixels: Pixels<'_>, window: Window, stretch: Stretch) -> Result<String, F
     }
 }
 
-/// The brightest pixel of a square in a window: a star stays one.
+/// Returns the brightest pixel of a square in a window, so that a star remains visible.
 fn brightest(pixels: Pixels<'_>, window: Window, (column, row): (usize, usize), step: usize) -> u16 {
     let (left, top) = (window.x + column, window.y + row);
     let right = (left + step).min(window.x + window.columns);
@@ -200,13 +202,13 @@ fn brightest(pixels: Pixels<'_>, window: Window, (column, row): (usize, usize), 
 }
 
 fn asinh_shades(samples: &[u16]) -> Vec<u8> {
-    // What was not transmitted is 0, and says nothing of the noise.
+    // Pixels that were not transmitted are 0 and contain no noise.
     let mut lit: Vec<u16> = samples.iter().copied().filter(|&dn| dn > 0).collect();
     lit.sort_unstable();
     let at = |part: usize| f64::from(lit.get(lit.len() / part).copied().unwrap_or(0));
     let (middle, below) = (at(2), at(6));
     let high = f64::from(lit.last().copied().unwrap_or(1)).max(middle + 1.0);
-    // Two deviations of the noise below the median.
+    // Black is two standard deviations of the noise below the median.
     let black = (middle - 2.0 * (middle - below)).max(0.0);
     let softening = ((high - black) / 25.0).max(1.0);
     let full = libm::asinh((high - black) / softening);

@@ -1,4 +1,5 @@
-//! plotly.js, the library that draws the charts: a third-party file in the tree, embedded in the executable and in every report.
+//! plotly.js, the library that draws the charts: a third-party file in the source tree, embedded in the
+//! executable and in every report.
 
 use std::io::{self, Read};
 
@@ -7,7 +8,7 @@ use flate2::read::ZlibDecoder;
 /// The minified bundle, compressed by `build.rs`.
 static COMPRESSED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/plotly.js.zlib"));
 
-/// The minified bundle, as a script tag may contain it: it has no `</script`.
+/// Returns the minified bundle. It contains no `</script`, so a script tag may contain it.
 ///
 /// # Errors
 /// An [`io::Error`] when the executable is damaged.
@@ -25,7 +26,7 @@ mod tests {
 
     const README: &str = include_str!("../../third_party/plotly/README.md");
 
-    /// A cell of the table of the README.
+    /// Returns a cell of the table in the README.
     fn documented(row: &str) -> &'static str {
         let prefix = format!("| {row} | ");
         let cell = README.lines().find_map(|line| line.strip_prefix(&prefix)?.strip_suffix(" |"));
@@ -63,7 +64,7 @@ mod tests {
     #[test]
     fn the_bundle_cannot_end_its_script_tag() {
         let script = PLOTLY_JS.to_ascii_lowercase();
-        // After `<!--` a browser reads `<script` as the start of another script.
+        // After `<!--` a browser interprets `<script` as the start of another script.
         for text in ["</script", "<!--"] {
             assert!(!script.contains(text), "{text}");
         }

@@ -1,4 +1,4 @@
-//! Worlds, scenarios, simulators and scores without their types.
+//! Type-erased worlds, scenarios, simulators and scores.
 
 use std::any::{Any, TypeId};
 use std::fmt::Debug;
@@ -51,11 +51,11 @@ impl<S: Judgement + Send + 'static> AnyJudgement for S {
     }
 }
 
-/// The world `W`, without its types.
+/// The world `W` without its type parameters.
 pub struct ErasedWorld<W>(PhantomData<fn() -> W>);
 
 impl<W> ErasedWorld<W> {
-    /// It.
+    /// The only value of this type.
     pub const NEW: Self = Self(PhantomData);
 }
 
@@ -65,7 +65,7 @@ impl<W: World> ErasedWorld<W> {
     }
 }
 
-/// A scenario with its world.
+/// A scenario of the world `W`.
 #[derive(Clone)]
 struct ErasedScenario<W: World>(W::Scenario);
 
@@ -315,7 +315,7 @@ impl<S: Judgement + Send + 'static> RunResult<S> {
 }
 
 impl FrameJobs<String> {
-    /// The flight with the format of a world's images.
+    /// Returns the flight with the image format parsed for a world.
     fn parse<F: std::str::FromStr<Err = String>>(&self) -> Result<FrameJobs<F>, Failure> {
         let images = self.images.as_deref().map(str::parse).transpose().map_err(Failure::Usage)?;
         Ok(FrameJobs { frames: self.frames.clone(), jobs: self.jobs, images, expectation: self.expectation })
@@ -323,10 +323,12 @@ impl FrameJobs<String> {
 }
 
 impl PipelineChoice {
-    /// The factory of a pipeline of the world `W`, whose built-in pipeline has the parameters `config`. A program finds its images in `scratch`.
+    /// Returns the factory of a pipeline of the world `W`, whose built-in pipeline has the parameters
+    /// `config`. An external program receives its images in `scratch`.
     ///
     /// # Errors
-    /// A [`Failure`] for a word that names no pipeline of that world, a command that is none, or a limit outside its range.
+    /// A [`Failure`] for a name that is not a pipeline of that world, an invalid command, or a limit outside
+    /// its range.
     pub fn factory<W: World>(
         &self,
         config: &W::Config,
@@ -342,7 +344,7 @@ impl PipelineChoice {
         factory.timeout_s = self.timeout_s;
         factory.memory_mb = self.memory_mb;
         factory.sandbox.clone_from(&self.sandbox);
-        // Now, while nothing has been written for it.
+        // Checked here, before anything is written for the program.
         factory.check()?;
         Ok(Box::new(factory))
     }

@@ -1,4 +1,4 @@
-//! Worlds behind one face: all that commands, studies and gates need of any of them.
+//! Common interface of all worlds, for commands, studies and gates.
 
 pub(crate) mod erased;
 mod provenance;
@@ -26,89 +26,91 @@ use crate::choice::renderer_choice::RendererChoice;
 use crate::frame_jobs::FrameJobs;
 use crate::run_result::{AnswerSummary, FirstFailure, RunResult};
 
-/// What a run is asked for beside its scenario. A world refuses what it does not have.
+/// Options of a run in addition to its scenario. A world refuses options that it does not support.
 #[derive(Debug, Default)]
 pub struct Options {
-    /// The stage of the built-in pipeline whose result is replaced by the truth.
+    /// Stage of the built-in pipeline whose result is replaced by the truth.
     pub inject: Option<Stage>,
-    /// The attitude granted to answers with a centroid alone, in place of what the scenario says.
+    /// Attitude granted to measurements that have only a centroid; overrides the scenario.
     pub attitude: Option<AttitudeChoice>,
-    /// Who draws the scene.
+    /// Renderer of the scene.
     pub renderer: RendererChoice,
 }
 
-/// A world, without its types. [`ErasedWorld`](crate::Of) makes one of a [`World`](crate::World).
+/// A world without its types. [`Of`](crate::Of) converts a [`World`](crate::World) to it.
 pub trait AnyWorld: Sync {
-    /// [`World::CODE`](crate::World::CODE).
+    /// Code of the world, [`World::CODE`](crate::World::CODE).
     fn code(&self) -> &'static str;
 
-    /// What an image is called: `frame` or `field`.
+    /// Name of an image: `frame` or `field`.
     fn image(&self) -> &'static str;
 
-    /// [`World::STARTING_POINT`](crate::World::STARTING_POINT).
+    /// See [`World::STARTING_POINT`](crate::World::STARTING_POINT).
     fn starting_point(&self) -> &'static str;
 
-    /// [`World::SETUP_FILE`](crate::World::SETUP_FILE).
+    /// See [`World::SETUP_FILE`](crate::World::SETUP_FILE).
     fn setup_file(&self) -> &'static str;
 
-    /// [`World::TRUTH_FILE`](crate::World::TRUTH_FILE).
+    /// See [`World::TRUTH_FILE`](crate::World::TRUTH_FILE).
     fn truth_file(&self) -> &'static str;
 
-    /// [`World::EVIDENCE_FILE`](crate::World::EVIDENCE_FILE).
+    /// See [`World::EVIDENCE_FILE`](crate::World::EVIDENCE_FILE).
     fn evidence_file(&self) -> Option<&'static str>;
 
-    /// [`World::ARE_GROUPS_APART`](crate::World::ARE_GROUPS_APART).
+    /// See [`World::ARE_GROUPS_APART`](crate::World::ARE_GROUPS_APART).
     fn are_groups_apart(&self) -> bool;
 
-    /// [`World::HEADLINE`](crate::World::HEADLINE).
+    /// See [`World::HEADLINE`](crate::World::HEADLINE).
     fn headline(&self) -> &'static str;
 
-    /// [`World::PICTURES`](crate::World::PICTURES).
+    /// See [`World::PICTURES`](crate::World::PICTURES).
     fn pictures(&self) -> &'static str;
 
-    /// [`World::figures`](crate::World::figures).
+    /// See [`World::figures`](crate::World::figures).
     fn figures(&self) -> Vec<FigureSpec>;
 
-    /// [`World::causes`](crate::World::causes).
+    /// See [`World::causes`](crate::World::causes).
     fn causes(&self) -> Vec<(&'static str, &'static str)>;
 
-    /// Whether its scenarios are of the type `type_id`.
+    /// Returns true if the scenarios of the world have the type `type_id`.
     fn has_scenario_type(&self, type_id: TypeId) -> bool;
 
-    /// The JSON Schema of its scenario files.
+    /// Returns the JSON Schema of the scenario files.
     fn schema(&self, generator: SchemaGenerator) -> Schema;
 
-    /// The same as a part of another schema.
+    /// Returns the JSON Schema of the scenario files as a part of another schema.
     fn subschema(&self, generator: &mut SchemaGenerator) -> Schema;
 
-    /// Reads the text of a scenario, which came from `file`.
+    /// Parses the text of a scenario, which was read from `file`.
     ///
     /// # Errors
-    /// A [`TomlError`] with the place of the first mistake.
+    /// A [`TomlError`] with the location of the first mistake.
     fn parse(&self, file: &Path, text: &str) -> Result<Box<dyn AnyScenario>, Box<TomlError>>;
 
     /// Reads a `run.toml`.
     ///
     /// # Errors
-    /// As [`RunFile::read`].
+    /// Those of [`RunFile::read`].
     fn read_run(&self, file: &Path) -> Result<RunFile<Box<dyn AnyScenario>>, Failure>;
 
     /// Checks all values of a scenario of this world and prepares its simulator.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the first value that is not allowed, or for an option that the world does not have.
+    /// A [`Failure`] with the location of the first invalid value, or for an option that the world does not
+    /// support.
     fn prepare(&self, source: &ScenarioSource, options: Options) -> Result<Box<dyn AnyMission>, Failure>;
 
-    /// Checks that the built-in pipeline can be run on the cameras of a scenario.
+    /// Checks that the built-in pipeline can run with the cameras of a scenario.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the parameter by which it cannot.
+    /// A [`Failure`] with the location of the parameter that prevents it.
     fn check_built_in(&self, source: &ScenarioSource) -> Result<(), Failure>;
 
-    /// The factory of the pipeline chosen, for a scenario of this world. A program finds its images in `scratch`.
+    /// Returns the factory of the chosen pipeline, for a scenario of this world. An external program receives
+    /// its images in `scratch`.
     ///
     /// # Errors
-    /// As [`PipelineChoice::factory`].
+    /// Those of [`PipelineChoice::factory`].
     fn factory(
         &self,
         scenario: &dyn AnyScenario,
@@ -116,22 +118,23 @@ pub trait AnyWorld: Sync {
         scratch: &Path,
     ) -> Result<AnyFactory, Failure>;
 
-    /// Refuses a format of images that the world does not have.
+    /// Refuses an image format that the world does not support.
     ///
     /// # Errors
-    /// A message with the word and those that there are.
+    /// A message with the unknown format and the supported ones.
     fn check_images(&self, word: &str) -> Result<(), String>;
 
-    /// Has a pipeline process a dataset, and writes its answers to the file `measurements` and those beside it.
+    /// Processes a dataset with a pipeline, and writes the outcomes to the file `measurements` and the files
+    /// beside it.
     ///
     /// # Errors
     /// A [`Failure`] for a dataset that cannot be read, or files that cannot be written.
     fn process(&self, order: &ProcessingOrder<'_>) -> Result<DatasetAnswers, Failure>;
 
-    /// [`World::score_files`](crate::World::score_files).
+    /// See [`World::score_files`](crate::World::score_files).
     ///
     /// # Errors
-    /// A [`Failure`] for a file that cannot be read, or a row of a frame that the truth does not have.
+    /// A [`Failure`] for a file that cannot be read, or a row of a frame that the truth does not contain.
     fn score_files(
         &self,
         directory: &Path,
@@ -140,7 +143,7 @@ pub trait AnyWorld: Sync {
         attitude: Option<AttitudeChoice>,
     ) -> Result<Box<dyn AnyJudgement>, Failure>;
 
-    /// [`World::telemetry_rows`](crate::World::telemetry_rows).
+    /// See [`World::telemetry_rows`](crate::World::telemetry_rows).
     ///
     /// # Errors
     /// A [`Failure`] for a file that cannot be read.
@@ -148,20 +151,20 @@ pub trait AnyWorld: Sync {
 }
 
 impl dyn AnyWorld {
-    /// Refuses a pipeline that the world does not have, or a program that is not there.
+    /// Refuses a pipeline that the world does not have, or a program that does not exist.
     ///
     /// # Errors
-    /// As [`PipelineChoice::factory`].
+    /// Those of [`PipelineChoice::factory`].
     pub fn check_choice(&self, scenario: &dyn AnyScenario, choice: &PipelineChoice) -> Result<(), Failure> {
         self.factory(scenario, choice, Path::new("")).map(drop)
     }
 
-    /// Keys of the figures of its scores, in their order.
+    /// Returns the keys of the figures in a score, in order.
     pub fn figure_names(&self) -> Vec<String> {
         self.figures().into_iter().map(|figure| figure.name).collect()
     }
 
-    /// Whether its scenarios have the type `S`.
+    /// Returns true if the scenarios of the world have the type `S`.
     pub fn has_scenario<S: 'static>(&self) -> bool {
         self.has_scenario_type(TypeId::of::<S>())
     }
@@ -179,71 +182,71 @@ impl PartialEq for dyn AnyWorld {
     }
 }
 
-/// A dataset to be processed.
+/// A request to process a dataset.
 pub struct ProcessingOrder<'a> {
-    /// The dataset.
+    /// Directory of the dataset.
     pub directory: &'a Path,
-    /// Where the answers go.
+    /// File to which the measurements are written.
     pub measurements: &'a Path,
-    /// The pipeline.
+    /// Chosen pipeline.
     pub choice: &'a PipelineChoice,
-    /// Folder in which a program finds its images.
+    /// Directory in which an external program receives its images.
     pub scratch: &'a Path,
-    /// Called with the pipeline's name and the number of frames, where it is known, before the first.
+    /// Called before the first frame, with the name of the pipeline and the number of frames, if known.
     pub begin: &'a dyn Fn(&str, Option<u64>),
     /// Called after each frame.
     pub done: &'a dyn Fn(),
 }
 
-/// What came of a dataset that was processed.
+/// Result of processing a dataset.
 #[derive(Debug)]
 pub struct DatasetAnswers {
     /// Number of frames.
     pub frames: u64,
-    /// The files of answers, the measurements first.
+    /// Written files, the measurements first.
     pub files: Vec<PathBuf>,
-    /// The first failure of the pipeline, if it failed at all.
+    /// First failure of the pipeline, if any.
     pub first_failure: Option<FirstFailure>,
-    /// The answers in a few numbers, where the world has any.
+    /// Summary of the outcomes, if the world provides one.
     pub summary: Option<AnswerSummary>,
 }
 
 /// A scenario of any world.
 pub trait AnyScenario: Debug + Send + Sync {
-    /// Its world.
+    /// Returns the world of the scenario.
     fn world(&self) -> &'static dyn AnyWorld;
 
-    /// What it is, in one line.
+    /// Returns the title of the scenario, one line.
     fn title(&self) -> &str;
 
-    /// Seed of its random draws.
+    /// Returns the seed of the random draws.
     fn seed(&self) -> u64;
 
-    /// Gives it another seed.
+    /// Sets the seed of the random draws.
     fn set_seed(&mut self, seed: u64);
 
-    /// [`ScenarioFile::paths`].
+    /// See [`ScenarioFile::paths`].
     fn paths(&mut self) -> Vec<(&'static str, &mut String)>;
 
-    /// All its values, defaults included.
+    /// Returns all values of the scenario, including defaults.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when they cannot be written as JSON.
+    /// [`Failure::Usage`] when the values cannot be written as JSON.
     fn to_json(&self) -> Result<Value, Failure>;
 
-    /// The scenario as TOML, all defaults written out.
+    /// Returns the scenario as TOML, including defaults.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a value that TOML does not have.
+    /// [`Failure::Usage`] for a value that TOML cannot express.
     fn to_toml(&self) -> Result<String, Failure>;
 
-    /// A copy.
+    /// Returns a boxed copy.
     fn boxed(&self) -> Box<dyn AnyScenario>;
 
-    /// The scenario with its type.
+    /// Returns the scenario for a downcast to its type.
     fn as_any(&self) -> &dyn Any;
 
-    /// The same to be changed.
+    /// Returns the mutable scenario for a downcast to its type.
     fn as_any_mut(&mut self) -> &mut dyn Any;
 }
 
@@ -253,23 +256,23 @@ impl Clone for Box<dyn AnyScenario> {
     }
 }
 
-/// The factory of a pipeline of any world.
+/// Factory of a pipeline of any world.
 pub struct AnyFactory {
-    /// Name of the pipeline, for tables and logs.
+    /// Name of the pipeline in tables and logs.
     pub name: String,
     factory: Box<dyn Any + Send + Sync>,
 }
 
 impl AnyFactory {
-    /// That of a world's factory.
+    /// Creates a factory from that of a world.
     pub fn new<I: Interface>(factory: Box<dyn PipelineFactory<I> + Send>) -> Self {
         Self { name: factory.name(), factory: Box::new(factory) }
     }
 
-    /// The factory of pipelines with the interface `I`.
+    /// Returns the factory of pipelines with the interface `I`.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when it is one of another world.
+    /// [`Failure::Usage`] when the factory belongs to another world.
     pub fn downcast<I: Interface>(&self) -> Result<&dyn PipelineFactory<I>, Failure> {
         match self.factory.downcast_ref::<Box<dyn PipelineFactory<I> + Send>>() {
             Some(factory) => Ok(factory.as_ref()),
@@ -278,30 +281,31 @@ impl AnyFactory {
     }
 }
 
-/// A scenario with its simulator, of any world. Its methods are those of [`World`](crate::World).
+/// A scenario with its simulator, of any world. The methods correspond to those of [`World`](crate::World).
 pub trait AnyMission: Send + Sync {
-    /// [`World::frame_count`](crate::World::frame_count).
+    /// See [`World::frame_count`](crate::World::frame_count).
     fn frame_count(&self) -> u64;
 
-    /// [`World::summary`](crate::World::summary).
+    /// See [`World::summary`](crate::World::summary).
     fn summary(&self) -> (Value, String);
 
-    /// [`World::warnings`](crate::World::warnings).
+    /// See [`World::warnings`](crate::World::warnings).
     fn warnings(&self) -> Vec<String>;
 
-    /// The factory of the pipeline chosen.
+    /// Returns the factory of the chosen pipeline.
     ///
     /// # Errors
-    /// As [`PipelineChoice::factory`].
+    /// Those of [`PipelineChoice::factory`].
     fn factory(&self, choice: &PipelineChoice, scratch: &Path) -> Result<AnyFactory, Failure>;
 
-    /// Refuses a flight that cannot succeed, while nothing has been written.
+    /// Refuses a flight that cannot succeed, before anything is written.
     ///
     /// # Errors
-    /// A [`Failure`] that says why it cannot.
+    /// A [`Failure`] with the reason.
     fn check_frame_jobs(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure>;
 
-    /// [`World::render`](crate::World::render); gives what the dataset holds for a pipeline, in words.
+    /// Renders a dataset, as [`World::render`](crate::World::render); returns a description of the files that
+    /// it contains for a pipeline.
     ///
     /// # Errors
     /// A [`Failure`] when a file cannot be written.
@@ -312,22 +316,22 @@ pub trait AnyMission: Send + Sync {
         done: &dyn Fn(),
     ) -> Result<String, Failure>;
 
-    /// [`World::check_stream`](crate::World::check_stream).
+    /// See [`World::check_stream`](crate::World::check_stream).
     ///
     /// # Errors
-    /// [`Failure::Usage`] for a format that is no stream, or a world that has none.
+    /// [`Failure::Usage`] for a format that cannot be streamed, or a world without a stream.
     fn check_stream(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure>;
 
-    /// [`World::stream`](crate::World::stream).
+    /// See [`World::stream`](crate::World::stream).
     ///
     /// # Errors
     /// A [`Failure`] when standard output cannot be written, or the world has no stream.
     fn stream(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure>;
 
-    /// [`World::run`](crate::World::run).
+    /// See [`World::run`](crate::World::run).
     ///
     /// # Errors
-    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built; what `go_on` says.
+    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built; the error of `go_on`.
     fn run(
         &self,
         directory: &RunDirectory,
@@ -336,7 +340,7 @@ pub trait AnyMission: Send + Sync {
         go_on: &dyn Fn() -> Result<(), Failure>,
     ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure>;
 
-    /// [`World::score`](crate::World::score).
+    /// See [`World::score`](crate::World::score).
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
@@ -346,48 +350,50 @@ pub trait AnyMission: Send + Sync {
         factory: &AnyFactory,
     ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure>;
 
-    /// The mission with its type.
+    /// Returns the mission for a downcast to its type.
     fn into_any(self: Box<Self>) -> Box<dyn Any>;
 }
 
 /// A scored run of any world.
 pub trait AnyJudgement: Send {
-    /// The content of `score.json`.
+    /// Returns the content of `score.json`.
     ///
     /// # Errors
-    /// A [`Failure`] when it cannot be written as JSON.
+    /// A [`Failure`] when the score cannot be written as JSON.
     fn json(&self) -> Result<String, Failure>;
 
-    /// The figures over all frames.
+    /// Returns the figures over all frames.
     fn figures(&self) -> &IndexMap<String, Figure>;
 
-    /// The run frame by frame, for a comparison with another.
+    /// Returns the run frame by frame, for a comparison with another run.
     fn units(&self) -> UnitTable;
 
-    /// The scored run with its type.
+    /// Returns the scored run for a downcast to its type.
     fn as_any(&self) -> &dyn Any;
 
-    /// The same to be changed.
+    /// Returns the mutable scored run for a downcast to its type.
     fn as_any_mut(&mut self) -> &mut dyn Any;
 }
 
-/// A scenario that was read, with its text for the places of later mistakes. [`ScenarioSource::prepare`] checks its values.
+/// A scenario that was read, with its text to locate mistakes found later. [`ScenarioSource::prepare`] checks
+/// its values.
 #[derive(Debug, Clone)]
 pub struct ScenarioSource {
-    /// Name: that of the built-in one, or the file's without its extension.
+    /// Name of the built-in scenario, or of the file without its extension.
     pub name: String,
-    /// Folder that relative paths in the scenario start from.
+    /// Directory that relative paths in the scenario refer to.
     pub folder: PathBuf,
-    /// The scenario.
+    /// Scenario with its world.
     pub scenario: Box<dyn AnyScenario>,
     pub(crate) file: PathBuf,
     pub(crate) text: String,
-    /// SHA-256 of files as they were when the scenario was read, by absolute path. A file that changes before it is used is refused.
+    /// SHA-256 of the files at the time when the scenario was read, by absolute path. A file that changes
+    /// before it is used is refused.
     pub(crate) contents: BTreeMap<PathBuf, String>,
 }
 
 impl ScenarioSource {
-    /// The world of the scenario.
+    /// Returns the world of the scenario.
     pub fn world(&self) -> &'static dyn AnyWorld {
         self.scenario.world()
     }
@@ -395,15 +401,16 @@ impl ScenarioSource {
     /// Checks all values of the scenario and prepares its simulator.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the first value that is not allowed, or for an option that the world does not have.
+    /// A [`Failure`] with the location of the first invalid value, or for an option that the world does not
+    /// support.
     pub fn prepare(&self, options: Options) -> Result<Box<dyn AnyMission>, Failure> {
         self.world().prepare(self, options)
     }
 
-    /// The scenario as one of the world that has the type `S`, for what that world alone can do.
+    /// Returns the scenario with its type `S`, for an operation that only the world of `S` supports.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when it is of another world; `what` is what was meant to be done with it.
+    /// [`Failure::Usage`] when the scenario is of another world; `what` names the operation.
     pub fn typed<S: ScenarioFile>(&self, what: &str) -> Result<&S, Failure> {
         self.scenario.as_any().downcast_ref().ok_or_else(|| {
             Failure::Usage(format!(
@@ -414,7 +421,7 @@ impl ScenarioSource {
         })
     }
 
-    /// Gives a value that the simulator refuses its place in the file.
+    /// Adds the location in the file to an error about a value that the simulator refuses.
     pub fn explain(&self, error: SimError) -> Failure {
         match error {
             SimError::OutOfRange(error) => self.out_of_range(&error),
@@ -422,20 +429,20 @@ impl ScenarioSource {
         }
     }
 
-    /// Gives a value that is refused in the table `table` of the scenario its place in the file.
+    /// Adds the location in the file to an error about a value in the table `table` of the scenario.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the value.
+    /// A [`Failure`] with the location of the value.
     pub fn check_part(&self, table: &str, checked: Result<(), OutOfRange>) -> Result<(), Failure> {
         checked.map_err(|error| self.out_of_range(&error.under(table)))
     }
 
-    /// Gives a value outside its range its place in the file.
+    /// Adds the location in the file to an error about a value outside its range.
     pub fn out_of_range(&self, error: &OutOfRange) -> Failure {
         toml_file::out_of_range(&self.file, &self.text, error).into()
     }
 
-    /// The failure of a value at a path of the scenario.
+    /// Returns the failure for a value at a path of the scenario.
     pub fn refuse(&self, path: &str, message: String) -> Failure {
         toml_file::refuse(&self.file, &self.text, path, message).into()
     }

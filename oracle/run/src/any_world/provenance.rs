@@ -1,4 +1,4 @@
-//! Whether answers are of the frames that they are to be scored with, as far as records tell.
+//! Check that outcomes belong to the frames that they are scored with, as far as records show.
 
 use std::path::Path;
 
@@ -14,17 +14,18 @@ use toml::{Table, Value};
 use crate::any_world::source::world_of_run;
 use crate::any_world::{AnyJudgement, AnyScenario, AnyWorld};
 
-/// How far a time in a table of answers may be off, s: half of a millisecond is rounded away by whoever writes three decimals.
+/// Tolerance of a time in a table of outcomes, s: a tool that writes three decimals rounds by up to half a
+/// millisecond.
 const TIME_TOLERANCE_S: f64 = 1e-3;
-/// Rows that are read at a time.
+/// Number of rows read at a time.
 const ROWS: usize = 8192;
 
 impl dyn AnyWorld {
-    /// Scores answers with the truth of `directory`, if they are of its frames as far as records tell; centroids with `attitude` in the place
-    /// of what the scenario says.
+    /// Scores outcomes with the truth of `directory`, after a check that they belong to its frames as far as
+    /// records show. Centroids are scored with `attitude` instead of the attitude that the scenario names.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for answers that are of other frames; those of [`AnyWorld::score_files`].
+    /// [`Failure::Usage`] for outcomes of other frames; those of [`AnyWorld::score_files`].
     pub fn score(
         &self,
         directory: &Path,
@@ -40,10 +41,12 @@ impl dyn AnyWorld {
     }
 }
 
-/// Refuses answers that lie beside the `run.toml` of other frames than those of `directory`. The parameters of the pipeline may differ.
+/// Refuses outcomes beside a `run.toml` that describes other frames than those of `directory`. The parameters
+/// of the pipeline may differ.
 ///
 /// # Errors
-/// [`Failure::Usage`] with what differs first and both its values; a [`Failure`] for a `run.toml` that cannot be read.
+/// [`Failure::Usage`] with the first difference and both values; a [`Failure`] for a `run.toml` that cannot
+/// be read.
 fn check_record_beside(world: &dyn AnyWorld, directory: &Path, answers: &Path) -> Result<(), Failure> {
     let [truth, record] =
         [directory, answers.parent().unwrap_or(Path::new(""))].map(|folder| folder.join("run.toml"));
@@ -71,12 +74,12 @@ fn check_record_beside(world: &dyn AnyWorld, directory: &Path, answers: &Path) -
     }
 }
 
-/// All that the frames of a run depend on.
+/// Returns all values that the frames of a run depend on.
 fn frames(world: &dyn AnyWorld, run: &RunFile<Box<dyn AnyScenario>>) -> Result<Table, Failure> {
     let text = run.scenario.to_toml()?;
     let unreadable = |error| Failure::Usage(format!("the scenario cannot be read again: {error}"));
     let mut scenario = split(world.code(), text.parse().map_err(unreadable)?, &run.files)?.scenario;
-    // How a run is scored is no property of its frames.
+    // The scoring of a run does not affect its frames.
     scenario.remove("score");
     let optional = [
         ("catalog_sha256", run.catalog_sha256.clone()),
@@ -93,10 +96,10 @@ fn frames(world: &dyn AnyWorld, run: &RunFile<Box<dyn AnyScenario>>) -> Result<T
     Ok(table)
 }
 
-/// Refuses rows of answers whose time or configuration is not that of the dataset `directory`.
+/// Refuses rows of outcomes whose time or configuration differs from that of the dataset `directory`.
 ///
 /// # Errors
-/// A [`Failure`] with line and column of the first one, or for a file that cannot be read.
+/// A [`Failure`] with line and column of the first difference, or for a file that cannot be read.
 fn check_origins(world: &dyn AnyWorld, directory: &Path, answers: &Path) -> Result<(), Failure> {
     let origins = read_origins(answers, world.image())?;
     if origins.is_empty() {
@@ -123,7 +126,7 @@ fn check_origins(world: &dyn AnyWorld, directory: &Path, answers: &Path) -> Resu
     Ok(())
 }
 
-/// The times of the frames of a truth table, by their numbers.
+/// Returns the times of the frames of a truth table, by frame number.
 fn times(world: &dyn AnyWorld, truth: &Path) -> Result<IndexMap<u64, Epoch>, Failure> {
     let mut times = IndexMap::new();
     for batch in ParquetFile::open(truth)?.batches(&[world.image(), "time_utc"], ROWS)? {

@@ -1,4 +1,4 @@
-//! Reading scenarios, of whatever world.
+//! Reading of scenarios of any world.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,10 +12,11 @@ use crate::any_world::{AnyScenario, AnyWorld, ScenarioSource};
 use crate::worlds::world_by_name;
 
 impl ScenarioSource {
-    /// Reads `word`: a built-in name, the path of a TOML file, or of the `run.toml` of a run to be repeated.
+    /// Reads the scenario `word`: a built-in name, the path of a TOML file, or of the `run.toml` of a run to
+    /// be repeated.
     ///
     /// # Errors
-    /// A [`Failure`] when there is no such scenario, or with the place of the first mistake in it.
+    /// A [`Failure`] when there is no such scenario, or with the location of the first mistake in it.
     pub fn read(word: &str) -> Result<Self, Failure> {
         if let Some(built_in) = BUILT_IN.iter().find(|built_in| built_in.name == word) {
             let file = PathBuf::from(format!("scenarios/{word}.toml"));
@@ -47,15 +48,15 @@ impl ScenarioSource {
         Self::parse(name, folder, file, text)
     }
 
-    /// Reads the text of a scenario that came from `file`. Its key `world` says which kind it is.
+    /// Parses the text of a scenario that was read from `file`. The key `world` names its world.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the first mistake.
+    /// A [`Failure`] with the location of the first mistake.
     pub fn parse(name: String, folder: PathBuf, file: PathBuf, text: String) -> Result<Self, Failure> {
         let mut scenario = world_in(&file, &text, "world")?.parse(&file, &text)?;
         let mut contents = BTreeMap::new();
         for (_, path) in scenario.paths() {
-            // So that run.toml can be run from anywhere.
+            // Absolute paths let run.toml be used from any directory.
             if let Ok(absolute) = std::path::absolute(folder.join(&*path)) {
                 *path = absolute.to_string_lossy().into_owned();
                 contents.extend(content_of(absolute));
@@ -64,7 +65,8 @@ impl ScenarioSource {
         Ok(Self { name, folder, scenario, file, text, contents })
     }
 
-    /// Notes the content of the file at a path, as a value of the scenario may name it later; `None` where there is no file.
+    /// Records the digest of the file at a path that a later value of the scenario may name; `None` if the
+    /// file does not exist.
     pub fn note_file(&mut self, path: &str) -> Option<&str> {
         let path = self.folder.join(path);
         if !self.contents.contains_key(&path) {
@@ -73,15 +75,17 @@ impl ScenarioSource {
         self.contents.get(&path).map(String::as_str)
     }
 
-    /// The files whose content is known: those that the scenario reads, or may read with other values.
+    /// Returns the files with a recorded digest: those that the scenario reads, or may read with other
+    /// values.
     pub fn known_files(&self) -> impl Iterator<Item = &Path> {
         self.contents.keys().map(PathBuf::as_path)
     }
 
-    /// SHA-256 of the files that the scenario reads, by their roles.
+    /// Returns the SHA-256 of the files that the scenario reads, by their roles.
     ///
     /// # Errors
-    /// A [`Failure`] for a file that cannot be read, or is not what it was when the scenario was read; of a `run.toml`, when it was run.
+    /// A [`Failure`] for a file that cannot be read, or has changed since the scenario was read or, for a
+    /// `run.toml`, since the run.
     pub fn files(&self) -> Result<FileDigests, Failure> {
         let mut digests = FileDigests::new();
         for (role, path) in self.scenario.clone().paths() {
@@ -100,7 +104,8 @@ impl ScenarioSource {
         Ok(digests)
     }
 
-    /// The scenario with the content of every file, as it was when the scenario was read, in the place of its path.
+    /// Returns the scenario with the path of every file replaced by the digest of its content at the time
+    /// when the scenario was read.
     pub fn identity(&self) -> Box<dyn AnyScenario> {
         let mut scenario = self.scenario.clone();
         for (_, path) in scenario.paths() {
@@ -111,10 +116,11 @@ impl ScenarioSource {
         scenario
     }
 
-    /// The same scenario with other values, from [`AnyScenario::to_json`], and another seed. `label` is what mistakes are told of.
+    /// Returns the scenario with other values, in the form of [`AnyScenario::to_json`], and another seed.
+    /// `label` is the origin named in error messages.
     ///
     /// # Errors
-    /// A [`Failure`] with the path of a value of the wrong type, or of one that there is not.
+    /// A [`Failure`] with the path of an unknown value, or of a value of the wrong type.
     pub fn with_values(&self, values: &Value, seed: u64, label: String) -> Result<Self, Failure> {
         let unwritten = |error| Failure::Usage(format!("{label}: cannot be written: {error}"));
         let text = toml::to_string(&without_nulls(values)).map_err(unwritten)?;
@@ -127,16 +133,17 @@ impl ScenarioSource {
     }
 }
 
-/// A path with the SHA-256 of its file; none where no file can be read, which is refused when it is used.
+/// Returns a path with the SHA-256 of its file; `None` if the file cannot be read, which is refused when it
+/// is used.
 fn content_of(path: PathBuf) -> Option<(PathBuf, String)> {
     let sha256 = file_sha256(&path).ok()??;
     Some((path, sha256))
 }
 
-/// The world of a run or dataset, by its `run.toml`.
+/// Returns the world of a run or dataset, by its `run.toml`.
 ///
 /// # Errors
-/// A [`Failure`] for a file that cannot be read, or with the place of a world that there is not.
+/// A [`Failure`] for a file that cannot be read, or with the location of an unknown world.
 pub fn world_of_run(run_file: &Path) -> Result<&'static dyn AnyWorld, Failure> {
     let text = toml_file::read_text(run_file).map_err(|source| FileError::Io {
         path: run_file.to_owned(),
@@ -146,10 +153,11 @@ pub fn world_of_run(run_file: &Path) -> Result<&'static dyn AnyWorld, Failure> {
     world_in(run_file, &text, "scenario.world")
 }
 
-/// The world that a file names at a dotted path; the first one where it names none.
+/// Returns the world that a file names at a dotted path; the first world if it names none.
 ///
 /// # Errors
-/// A [`Failure`] with the place of a world that there is not. Text that is not TOML is left to the reader of the whole.
+/// A [`Failure`] with the location of an unknown world. Text that is not TOML is reported by the reader of
+/// the complete file.
 fn world_in(file: &Path, text: &str, path: &str) -> Result<&'static dyn AnyWorld, Failure> {
     let table = text.parse::<toml::Table>().unwrap_or_default();
     let mut steps = path.split('.');
@@ -158,12 +166,12 @@ fn world_in(file: &Path, text: &str, path: &str) -> Result<&'static dyn AnyWorld
         Some(toml::Value::String(word)) => {
             world_by_name(word).map_err(|message| toml_file::refuse(file, text, path, message).into())
         }
-        // Of another type: its place is told when the whole is read.
+        // A value of another type is reported when the complete file is read.
         _ => Ok(crate::worlds::FIRST),
     }
 }
 
-/// `values` without null members, which TOML cannot express: an absent key means the same.
+/// Returns `values` without null members, which TOML cannot express: an absent key has the same meaning.
 fn without_nulls(values: &Value) -> Value {
     match values {
         Value::Object(members) => {

@@ -1,10 +1,11 @@
-//! What follows from a scenario's numbers, for a person who looks whether they mean what they should.
+//! Quantities derived from the values of a scenario, with which the user can check the intended meaning.
 
 use sim::optics::Projection;
 
-/// Field of view and pixels of a camera.
+/// Field of view and pixel size of a camera.
 pub(crate) struct FieldOfView {
-    /// Width and height through the principal point, degrees; `None` where that is far off the detector.
+    /// Width and height of the field of view through the principal point, degrees; `None` if the principal
+    /// point is far off the detector.
     pub(crate) field_deg: Option<[f64; 2]>,
     /// Width and height of a pixel at the principal point, arcseconds.
     pub(crate) pixel_arcsec: [f64; 2],
@@ -19,7 +20,7 @@ impl FieldOfView {
         }
     }
 
-    /// In words.
+    /// Formats the field of view and the pixel size.
     pub(crate) fn text(&self) -> String {
         let [x, y] = self.pixel_arcsec;
         let field = self.field_deg.map_or_else(String::new, |[width, height]| {
@@ -29,7 +30,7 @@ impl FieldOfView {
     }
 }
 
-/// A size in words: 872 kB, 5.6 GB.
+/// Formats a size: 872 kB, 5.6 GB.
 pub(crate) fn size(bytes: u64) -> String {
     let size = bytes as f64;
     match bytes {

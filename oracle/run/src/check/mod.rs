@@ -1,4 +1,4 @@
-//! What a check of a scenario says beside its errors.
+//! Results of a scenario check in addition to its errors.
 
 pub(crate) mod derived;
 pub(crate) mod slips;

@@ -1,8 +1,8 @@
-//! Numbers that are allowed, but look as if their unit were mistaken by a factor of a thousand.
+//! Permitted values that suggest a unit mistaken by a factor of a thousand.
 
 use serde_json::Value;
 
-/// Keys of scenarios, and from where to where their numbers usually are.
+/// Keys of scenarios with the lower and upper limit of their usual values.
 const USUAL: [(&str, f64, f64); 12] = [
     ("aperture_diameter_mm", 0.5, 1e4),
     ("cadence_s", 1e-3, 1e5),
@@ -18,7 +18,8 @@ const USUAL: [(&str, f64, f64); 12] = [
     ("readout_s", 1e-5, 100.0),
 ];
 
-/// Remarks on the numbers of a scenario that are unusual, and would not be if they were a thousand times as large or as small.
+/// Returns remarks on the unusual values of a scenario that would be usual if they were a thousand times
+/// larger or smaller.
 pub(crate) fn slips(scenario: &Value) -> Vec<String> {
     let mut remarks = Vec::new();
     collect(scenario, "", &mut remarks);
@@ -60,7 +61,7 @@ mod tests {
         let scenario = json!({
             "camera": { "focal_length_mm": 0.020187, "pixel_width_um": 8.6 },
             "shutter": { "max_s": 250.0, "min_s": 0.001 },
-            // As strange, but no thousandfold.
+            // Unusual values that a factor of a thousand does not explain.
             "cameras": [{ "camera": { "focal_length_mm": 1e8 } }, { "camera": { "focal_length_mm": 24211.1 } }],
             "sensor": { "cosmic_rays": { "readout_s": 0.0 } },
         });

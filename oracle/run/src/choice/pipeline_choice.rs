@@ -1,4 +1,4 @@
-//! Which pipeline runs: the built-in one, or somebody else's program.
+//! Choice of the pipeline: the built-in one, or an external program.
 use std::path::{Path, PathBuf};
 
 use files::{Failure, toml_file};
@@ -7,29 +7,31 @@ use sha2::{Digest, Sha256};
 
 const EXEC: &str = "exec:";
 
-/// A larger file among a program's words counts by its name alone.
+/// Maximum size, bytes, up to which a file named in a command is hashed; a larger file is represented only by
+/// its name.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// A pipeline by the word of the command line: the name of a world's built-in one, or `exec:COMMAND`.
+/// A pipeline as chosen on the command line: the name of a world's built-in pipeline, or `exec:COMMAND`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PipelineChoice {
-    /// The word; none: the built-in pipeline of the scenario's world.
+    /// Value from the command line; `None`: the built-in pipeline of the scenario's world.
     pub word: Option<String>,
-    /// Longest time that a program may take for a frame, s.
+    /// Time limit of a program per frame, s.
     pub timeout_s: f64,
-    /// Most memory of a program, and of each process that it starts, MB (10⁶ bytes).
+    /// Memory limit of a program, and of each process that it starts, MB (10⁶ bytes).
     pub memory_mb: u64,
-    /// What a program may reach of the file system and the network; none: all that this process may.
+    /// Access of a program to the file system and the network; `None`: the access of this process.
     pub sandbox: Option<Sandbox>,
 }
 
 impl PipelineChoice {
-    /// Whether it is the built-in one of a world.
+    /// Returns true for the built-in pipeline of a world.
     pub fn is_built_in(&self, world: &str) -> bool {
         self.word.as_deref().is_none_or(|word| word == world)
     }
 
-    /// Words of a command line that choose it; none for the built-in one of a world.
+    /// Returns the command-line arguments that select this pipeline; none for the built-in pipeline of a
+    /// world.
     pub fn arguments(&self, world: &str) -> Vec<String> {
         match &self.word {
             Some(word) if !self.is_built_in(world) => {
@@ -49,8 +51,9 @@ impl PipelineChoice {
         }
     }
 
-    /// SHA-256 of what a program's answers depend on, as far as it can be known: its words, the files among them, its limits of time and memory;
-    /// none for the built-in pipeline of a world, whose parameters are the scenario's.
+    /// SHA-256 of the known inputs that determine a program's outcomes: the words of its command, the files
+    /// among them, its limits of time and memory, and the use of a sandbox. `None` for the built-in pipeline
+    /// of a world, whose parameters are part of the scenario.
     pub fn hash(&self, world: &str) -> Option<[u8; 32]> {
         let word = self.word.as_ref().filter(|_| !self.is_built_in(world))?;
         let mut hash = Sha256::new();
@@ -65,7 +68,7 @@ impl PipelineChoice {
             part(b"sandbox");
         }
         for file in words(word) {
-            // A word that names no file is a program of the search path, or an option.
+            // A word that is not a file is a program on the search path, or an option.
             if let Ok(bytes) = sim::regular_file::read(Path::new(&file), MAX_BYTES) {
                 part(&bytes);
             }
@@ -73,13 +76,14 @@ impl PipelineChoice {
         Some(hash.finalize().into())
     }
 
-    /// The files among a program's words, as they are written; none for the built-in pipeline of a world.
+    /// Returns the files among the words of a program's command, as written; none for the built-in pipeline
+    /// of a world.
     pub fn files(&self, world: &str) -> Vec<PathBuf> {
         let word = self.word.as_deref().filter(|_| !self.is_built_in(world));
         word.into_iter().flat_map(words).map(PathBuf::from).filter(|file| file.is_file()).collect()
     }
 
-    /// The command of a program; `None` for the built-in pipeline of the world called `built_in`.
+    /// Returns the command of a program; `None` for the built-in pipeline of the world called `built_in`.
     pub(crate) fn command(&self, built_in: &str) -> Result<Option<&str>, Failure> {
         let Some(word) = self.word.as_deref().filter(|word| *word != built_in) else { return Ok(None) };
         if let Some(command) = word.strip_prefix(EXEC) {
@@ -93,7 +97,7 @@ impl PipelineChoice {
     }
 }
 
-/// The words of a program's command.
+/// Splits the command of a program into words.
 fn words(word: &str) -> impl Iterator<Item = String> {
     shlex::split(word.strip_prefix(EXEC).unwrap_or(word)).into_iter().flatten()
 }

@@ -1,11 +1,11 @@
-//! Who draws a scene: the renderer of its world, or another.
+//! Choice of the renderer: that of the world, or another.
 #[cfg(feature = "mitsuba")]
 use mitsuba::MitsubaOptions;
 
-/// A renderer by its name and options; a world refuses one that cannot draw its scenes.
+/// A renderer with its options; a world refuses a renderer that cannot draw its scenes.
 #[derive(Debug, Default)]
 pub enum RendererChoice {
-    /// That of the world.
+    /// Renderer of the world.
     #[default]
     BuiltIn,
     /// Mitsuba 3.
@@ -14,7 +14,7 @@ pub enum RendererChoice {
 }
 
 impl RendererChoice {
-    /// The word of the command line; `None` for the renderer of the world.
+    /// Returns the name on the command line; `None` for the renderer of the world.
     pub fn word(&self) -> Option<&'static str> {
         match self {
             Self::BuiltIn => None,

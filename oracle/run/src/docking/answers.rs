@@ -1,4 +1,5 @@
-//! The files of a pipeline's answers: `measurements.csv`, `motion.csv` and `features.parquet`, or a stream of measurements.
+//! Output files of a pipeline: `measurements.csv`, `motion.csv` and `features.parquet`, or a stream of
+//! measurements.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,12 +13,12 @@ use crate::world::{Answers, paths};
 /// Writes measurements, motions and features.
 pub struct FieldAnswers {
     measurements: FieldMeasurementWriter,
-    /// What is said at the end of portions, and what was recognised; not in a stream.
+    /// Writers of the motions at the end of portions, and of the recognised features; `None` for a stream.
     more: Option<(MotionWriter, TableWriter<FeatureRow>)>,
 }
 
 impl FieldAnswers {
-    /// The measurements alone to standard output, each as soon as it is there.
+    /// Writes only the measurements, to standard output, each immediately.
     ///
     /// # Errors
     /// [`FileError::Io`] when standard output cannot be written.
@@ -61,7 +62,7 @@ impl Answers<Docking> for FieldAnswers {
     }
 }
 
-/// An answer as it stands in the files.
+/// Rounds an outcome to the precision of the files.
 pub(crate) fn answer_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
     let mut answered = outcome_as_filed(outcome);
     answered.motion = outcome.motion.as_ref().map(report_as_filed);

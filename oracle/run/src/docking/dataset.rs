@@ -1,4 +1,4 @@
-//! What a docking run and a rendered dataset have in common on disk: images, telemetry and truth.
+//! Files common to a docking run and a rendered dataset: images, telemetry and truth.
 
 use contract::docking::{DockingSetup, Field, FieldTelemetry};
 use files::docking::SetupFile;
@@ -13,31 +13,31 @@ use sim::docking::FieldTruth;
 use super::DockingMission;
 use crate::world::Dataset;
 
-/// Quality of Motion-JPEG: its error is below the noise of a field.
+/// Quality of Motion-JPEG, whose error is below the noise of a field.
 const JPEG_QUALITY: u8 = 95;
 
-/// How images of fields are kept.
+/// Format in which the images of fields are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FieldImages {
-    /// One grey PNG a field.
+    /// One grey PNG per field.
     Png,
-    /// One uncompressed AVI of whole frames, two fields each.
+    /// One uncompressed AVI of complete frames, two fields each.
     Avi,
-    /// The same in Motion-JPEG: a tenth of the size, with small losses.
+    /// One Motion-JPEG AVI of complete frames, two fields each: a tenth of the size, with small losses.
     MotionJpeg,
-    /// One Y4M of whole frames, two fields each.
+    /// One Y4M of complete frames, two fields each.
     Y4m,
 }
 
 impl FieldImages {
-    /// Most fields that one file holds, of images of this size; `None` where there is no limit.
+    /// Maximum number of fields in one file, for images of this size; `None` if there is no limit.
     pub fn max_fields(self, setup: &DockingSetup) -> Option<u64> {
         let camera = setup.cameras.first()?;
         let frames = AviCoding::Grey.max_frames((camera.columns, camera.rows))?;
         (self == Self::Avi).then_some(2 * frames)
     }
 
-    /// Where the images are, in a run directory.
+    /// Path of the images in a run directory.
     pub fn file_pattern(self) -> &'static str {
         match self {
             Self::Png => "frames/",
@@ -61,14 +61,14 @@ impl std::str::FromStr for FieldImages {
     }
 }
 
-/// A file of video.
+/// A video file.
 enum Video {
     Avi(Box<AviWriter>),
     Y4m(Box<Y4mWriter>),
 }
 
 impl Video {
-    /// That of a run directory; `None` where images are kept one by one, or not at all.
+    /// Creates the video file of a run directory; `None` if images are stored separately, or not at all.
     fn create(
         directory: &RunDirectory,
         images: Option<FieldImages>,
@@ -103,7 +103,7 @@ impl Video {
     }
 }
 
-/// What a run and a rendered dataset have in common on disk: everything but answers and score.
+/// Files common to a run and a rendered dataset: all except outcomes and score.
 pub struct FieldDataset<'a> {
     directory: &'a RunDirectory,
     telemetry: FieldTelemetryWriter,

@@ -1,4 +1,4 @@
-//! A docking scenario, ready to fly.
+//! A docking scenario that is ready to run.
 
 use contract::docking::DockingSetup;
 use files::{Failure, toml_file};
@@ -10,7 +10,7 @@ use sim::scene::docking::TargetFile;
 use super::renderer::DockingRenderer;
 use crate::any_world::ScenarioSource;
 
-/// A docking scenario with its simulator, ready to fly.
+/// A docking scenario with its simulator, ready to run.
 pub struct DockingMission {
     pub(super) simulator: DockingSimulator,
     pub(super) setup: DockingSetup,
@@ -22,7 +22,7 @@ impl DockingMission {
     /// Checks a scenario and prepares its simulator.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the first value that is not allowed.
+    /// A [`Failure`] with the location of the first invalid value.
     pub fn new(source: &ScenarioSource, renderer: DockingRenderer) -> Result<Self, Failure> {
         let scenario = source.typed::<DockingScenario>("docking")?;
         let simulator = simulator(source, scenario)?;
@@ -31,17 +31,17 @@ impl DockingMission {
         Ok(Self { setup: simulator.setup(), simulator, renderer, run_file })
     }
 
-    /// What makes its fields, as the fast renderer draws them.
+    /// Returns the simulator of the fields, which draws them with the fast renderer.
     pub fn simulator(&self) -> &DockingSimulator {
         &self.simulator
     }
 
-    /// Who draws the scene.
+    /// Returns the renderer of the scene.
     pub fn renderer(&self) -> &DockingRenderer {
         &self.renderer
     }
 
-    /// Draws a field and forgets it: before anything is written, it shows whether the renderer can.
+    /// Draws a field and discards it, to check the renderer before anything is written.
     pub(super) fn probe(&self, field: u64) -> Result<(), Failure> {
         let mut workspace = self.simulator.workspace()?;
         self.renderer.expose(&self.simulator, &self.setup, &mut workspace, field)?;
@@ -49,17 +49,18 @@ impl DockingMission {
     }
 }
 
-/// The simulator of a scenario, which came from `source`; every value is checked, those of the target's file too.
+/// Creates the simulator of a scenario that was read from `source`. All values are checked, including those
+/// of the target's file.
 ///
 /// # Errors
-/// A [`Failure`] with the place of the first value that is not allowed.
+/// A [`Failure`] with the location of the first invalid value.
 pub fn simulator(source: &ScenarioSource, scenario: &DockingScenario) -> Result<DockingSimulator, Failure> {
     source.check_part("docking", scenario.docking.check())?;
     check_target(source, &scenario.target)?;
     DockingSimulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
 }
 
-/// Checks the target's file, so that a mistake in it is told with its place there.
+/// Checks the target's file, so that a mistake in it is reported with its location in that file.
 fn check_target(source: &ScenarioSource, target: &str) -> Result<(), Failure> {
     if TargetFile::built_in(target).is_some() {
         return Ok(());

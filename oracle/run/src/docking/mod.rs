@@ -1,7 +1,7 @@
-//! Docking: the approach to a target, seen by a television camera.
+//! Docking: the approach to a target, imaged by a television camera.
 //!
-//! Fields are drawn in parallel, as video signals. They are digitised one after the other, because a pipeline may ask for another contrast
-//! and brightness of the digitiser, which is in force from the next field on.
+//! Fields are drawn in parallel, as video signals. They are digitised sequentially, because a pipeline may
+//! request another contrast and brightness of the digitiser, which take effect from the next field on.
 
 pub mod answers;
 pub mod dataset;
@@ -57,7 +57,7 @@ impl World for DockingMission {
     type Exposure = FieldExposure;
     type Workspace<'a> = DockingWorkspace;
     type Truth = FieldTruth;
-    /// The setting of the digitiser.
+    /// Settings of the digitiser.
     type Feedback = Digitiser;
     type Dataset<'a> = FieldDataset<'a>;
     type Answers = FieldAnswers;
@@ -126,7 +126,7 @@ impl World for DockingMission {
         Ok(Box::new(factory.map_err(|error| Failure::Usage(error.to_string()))?))
     }
 
-    /// PNG, which tells nothing but the pixels.
+    /// Writes a PNG, which contains only the pixels.
     fn write_image(field: &Field, _: &FieldTelemetry, path: &Path) -> Result<(), String> {
         write_field(path, field).map_err(|error| error.to_string())
     }
@@ -160,7 +160,7 @@ impl World for DockingMission {
         Err(Failure::Usage(message.to_owned()))
     }
 
-    /// Fields, digitised as they are by default, as Y4M.
+    /// Writes fields, digitised with the default settings, as Y4M.
     fn stream(&self, frame_jobs: &FrameJobs<FieldImages>) -> Result<(), Failure> {
         self.check_stream(frame_jobs)?;
         let size = self.setup.cameras.first().map_or((0, 0), |camera| (camera.columns, camera.rows));
@@ -193,7 +193,7 @@ impl World for DockingMission {
         for FieldRow { field, lines, mut telemetry, .. } in
             read_field_telemetry(&directory.join("telemetry.csv"))?
         {
-            // What the pipeline asked of the digitiser is its own doing.
+            // The digitiser settings depend on the requests of the pipeline and are excluded.
             telemetry.digitiser = Digitiser::default();
             add(&(field, lines, telemetry));
         }
@@ -217,7 +217,7 @@ impl World for DockingMission {
         &self.setup
     }
 
-    /// A video signal is kept as f32; a progressive field is a whole frame.
+    /// A video signal is stored as f32; a progressive field is a complete frame.
     fn exposure_bytes(&self) -> usize {
         let frame = |camera: &Camera| camera.columns * camera.rows * size_of::<f32>();
         self.setup.cameras.first().map_or(0, frame) / self.scenario().television.interlace.lines(0).step()
@@ -235,7 +235,7 @@ impl World for DockingMission {
         (exposure.video.digitise(digitiser), exposure.telemetry(*digitiser), exposure.truth)
     }
 
-    /// A wish that no digitiser has leaves it as it is.
+    /// Ignores settings that the digitiser does not support.
     fn feedback(before: Digitiser, outcome: &DockingOutcome) -> Digitiser {
         outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(before)
     }
@@ -283,7 +283,7 @@ impl World for DockingMission {
     }
 }
 
-/// Judges the fields of a run.
+/// Scores the fields of a run.
 pub struct Scorer {
     scorer: DockingScorer,
     marks: usize,
@@ -306,7 +306,8 @@ impl Scorer {
 }
 
 impl world::Scorer<DockingMission> for Scorer {
-    /// Truth and answer are judged as their files would give them back, so that a run and its files have the same score to the bit.
+    /// Truth and outcome are scored with the precision of their files, so that a run and its files have
+    /// bit-identical scores.
     fn add(
         &mut self,
         truth: &FieldTruth,
@@ -322,9 +323,9 @@ impl world::Scorer<DockingMission> for Scorer {
     }
 }
 
-/// The score of a docking run, with the fields that it was counted from.
+/// Score of a docking run, with the scored fields.
 pub struct DockingJudgement {
-    /// The score.
+    /// Score of the run.
     pub score: DockingScore,
     scorer: DockingScorer,
 }

@@ -1,4 +1,4 @@
-//! Who draws a docking scene: the fast renderer, or Mitsuba, its judge.
+//! Renderer of a docking scene: the fast renderer, or Mitsuba, its reference.
 use contract::docking::DockingSetup;
 use files::Failure;
 #[cfg(feature = "mitsuba")]
@@ -8,18 +8,19 @@ use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure};
 
 use crate::choice::renderer_choice::RendererChoice;
 
-/// What draws the light that falls on the detector. The television chain after it is the same, draw by draw.
+/// Renderer of the radiance at the detector. The television chain after it is the same, including every
+/// random draw.
 #[derive(Debug, Default)]
 pub enum DockingRenderer {
     /// The fast renderer ([`sim::vector`]).
     #[default]
     Fast,
-    /// Mitsuba 3, an image at a time.
+    /// Mitsuba 3, one image at a time.
     #[cfg(feature = "mitsuba")]
     Mitsuba(Box<MitsubaImages>),
 }
 
-/// Mitsuba, and how its images are made.
+/// Mitsuba with its settings.
 #[cfg(feature = "mitsuba")]
 #[derive(Debug)]
 pub struct MitsubaImages {
@@ -28,10 +29,10 @@ pub struct MitsubaImages {
 }
 
 impl DockingRenderer {
-    /// The renderer chosen.
+    /// Creates the chosen renderer.
     ///
     /// # Errors
-    /// As [`DockingRenderer::mitsuba`].
+    /// Those of [`DockingRenderer::mitsuba`].
     pub fn new(choice: RendererChoice) -> Result<Self, Failure> {
         match choice {
             RendererChoice::BuiltIn => Ok(Self::Fast),
@@ -40,10 +41,10 @@ impl DockingRenderer {
         }
     }
 
-    /// Mitsuba with these options; it is not looked for yet.
+    /// Creates a Mitsuba renderer with these options; Mitsuba is not searched for yet.
     ///
     /// # Errors
-    /// A [`Failure`] for options outside their ranges, and a cache that cannot be made.
+    /// A [`Failure`] for options outside their ranges, or a cache that cannot be created.
     #[cfg(feature = "mitsuba")]
     pub fn mitsuba(options: MitsubaOptions) -> Result<Self, Failure> {
         let settings = MitsubaRecord {
@@ -55,7 +56,7 @@ impl DockingRenderer {
         Ok(Self::Mitsuba(Box::new(MitsubaImages { renderer, settings })))
     }
 
-    /// The word used on the command line and in `score.json`.
+    /// Returns the name on the command line and in `score.json`.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Fast => "fast",
@@ -64,7 +65,7 @@ impl DockingRenderer {
         }
     }
 
-    /// What images depend on besides the scenario; `None` for the fast renderer.
+    /// Returns the settings, besides the scenario, that the images depend on; `None` for the fast renderer.
     pub fn record(&self) -> Option<&MitsubaRecord> {
         match self {
             Self::Fast => None,
@@ -73,10 +74,10 @@ impl DockingRenderer {
         }
     }
 
-    /// Draws a field and makes its video signal; `setup` is that of the simulator.
+    /// Draws a field and returns its video signal; `setup` is that of the simulator.
     ///
     /// # Errors
-    /// A [`Failure`] when there is no such field, or Mitsuba gives no image.
+    /// A [`Failure`] when the field does not exist, or Mitsuba provides no image.
     #[allow(clippy::indexing_slicing, reason = "the simulator names a camera of its own setup")]
     #[cfg_attr(not(feature = "mitsuba"), expect(unused_variables, reason = "only Mitsuba needs the setup"))]
     pub fn expose(

@@ -1,4 +1,4 @@
-//! The files of a pipeline's answers: `measurements.csv` and `clusters.parquet`.
+//! Output files of a pipeline: `measurements.csv` and `clusters.parquet`.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 use crate::run_result::AnswerSummary;
 use crate::world::{Answers, paths};
 
-/// Writes measurements, and what clusters were taken for.
+/// Writes measurements, and the labels of clusters.
 pub struct FrameAnswers {
     measurements: MeasurementWriter,
     clusters: TableWriter<FrameCluster>,
@@ -46,7 +46,7 @@ impl Answers<FarRange> for FrameAnswers {
     }
 }
 
-/// Where the attitudes of some answers come from.
+/// Counts of the sources of attitudes.
 #[derive(Default)]
 struct AttitudeCounts {
     frames: u64,
@@ -61,7 +61,8 @@ impl AttitudeCounts {
         }
     }
 
-    /// `attitude from stars in 5 of 8 frames; 2 with too few stars, 1 without a match`; `None` where no answer states a source.
+    /// Summarises the sources, for instance `attitude from stars in 5 of 8 frames; 2 with too few stars, 1
+    /// without a match`; `None` if no outcome states a source.
     fn summary(&self) -> Option<AnswerSummary> {
         let count = |source: AttitudeSource| self.stated.get(source.code()).copied().unwrap_or(0);
         let others = AttitudeSource::ALL.into_iter().filter_map(|source| {

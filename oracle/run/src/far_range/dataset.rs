@@ -1,4 +1,4 @@
-//! What a run and a rendered dataset have in common on disk: everything but measurements and score.
+//! Files common to a run and a rendered dataset: all except measurements and score.
 
 use contract::{Camera, CameraFrame, Direction, Frame, Telemetry};
 use files::{
@@ -23,7 +23,7 @@ pub struct FrameDataset {
 }
 
 impl FrameDataset {
-    /// Writes what does not depend on frames, and begins the tables.
+    /// Writes the files that do not depend on frames, and begins the tables.
     ///
     /// # Errors
     /// A [`Failure`] when a file cannot be written.
@@ -59,7 +59,7 @@ impl FrameDataset {
 }
 
 impl Dataset<FarRangeMission> for FrameDataset {
-    /// Adds a frame to the tables. Its image is not in them: if images are kept, it was saved by [`save_image`].
+    /// Adds a frame to the tables. Its image is saved separately by [`save_image`], if images are kept.
     fn add(&mut self, frame: &Frame, telemetry: Telemetry, truth: SceneTruth) -> Result<(), FileError> {
         let number = frame.number();
         self.telemetry.write(&TelemetryRow {
@@ -79,10 +79,10 @@ impl Dataset<FarRangeMission> for FrameDataset {
     }
 }
 
-/// Saves the image of an exposure, FITS with world coordinates made from the truth.
+/// Saves the image of an exposure, as FITS with world coordinates derived from the truth.
 ///
 /// # Errors
-/// [`Failure`] when the file cannot be written, or the camera has no world coordinates to be fitted.
+/// [`Failure`] when the file cannot be written, or no world coordinates can be fitted to the camera.
 pub fn save_image(
     directory: &RunDirectory,
     format: ImageFormat,
@@ -110,7 +110,8 @@ pub fn save_image(
     Ok(())
 }
 
-/// The distance from the principal point, px, to which SIP follows a camera's distortion, where that is not the whole detector.
+/// Returns the distance from the principal point, px, up to which SIP approximates a camera's distortion;
+/// `None` if it covers the whole detector.
 pub(super) fn sip_reach_px(simulator: &Simulator, camera: &Camera) -> Option<f64> {
     let principal = contract::PixelPoint::new(camera.principal_x_px, camera.principal_y_px);
     let ahead = Direction::from_unit(*Direction::<CameraFrame>::z().vector());
@@ -120,7 +121,7 @@ pub(super) fn sip_reach_px(simulator: &Simulator, camera: &Camera) -> Option<f64
     reach_px.ok().filter(|reach_px| reach_px.is_finite())
 }
 
-/// World coordinates of a frame: from astrometric directions (ICRS) to pixels, aberration folded in.
+/// Fits the world coordinates of a frame, from astrometric directions (ICRS) to pixels, including aberration.
 fn world_coordinates(
     simulator: &Simulator,
     scenario: &FarRangeScenario,

@@ -1,4 +1,5 @@
-//! An error budget: the truth in the place of one stage's result, to see what that stage costs.
+//! Error budget: the result of one stage is replaced by the truth, which shows the error contribution of that
+//! stage.
 use contract::{Direction, Frame, Icrs, ListedStar, Outcome, PixelPoint, Setup, Telemetry};
 use files::Failure;
 use pipeline::far_range::{FarRangeConfig, FarRangePipeline, Identity, Overrides};
@@ -9,7 +10,7 @@ use sim::truth::{ObjectKind, Observer};
 use super::{FarRangeMission, SceneTruth};
 use crate::world::InformedPipeline;
 
-/// The built-in pipeline with the truth in the place of one stage's result.
+/// The built-in pipeline with the result of one stage replaced by the truth.
 #[derive(Debug)]
 pub(super) struct InjectedPipeline {
     stage: Stage,
@@ -17,10 +18,10 @@ pub(super) struct InjectedPipeline {
 }
 
 impl InjectedPipeline {
-    /// A pipeline that has seen no frame.
+    /// Creates a pipeline in its initial state.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when the configuration or the setup does not allow the pipeline.
+    /// [`Failure::Usage`] when the configuration or the setup is invalid for the pipeline.
     pub(super) fn new(stage: Stage, config: &FarRangeConfig, setup: &Setup) -> Result<Self, Failure> {
         let pipeline = FarRangePipeline::new(config.clone(), setup)
             .map_err(|error| Failure::Usage(error.to_string()))?;
@@ -36,7 +37,8 @@ impl InformedPipeline<FarRangeMission> for InjectedPipeline {
         SceneTruth { frame: truth, objects }: &SceneTruth,
     ) -> Result<Outcome, Failure> {
         let observer = Observer::new(truth.time, truth.position_km, truth.velocity_km_s)?;
-        // A place beside the detector would be no detection: there the cluster keeps its own.
+        // A true position off the detector would not be a detection; the cluster then keeps the measured
+        // position.
         let centroid = |centre: PixelPoint| {
             brightest_member(centre, objects)
                 .map(|object| object.position)
@@ -55,7 +57,7 @@ impl InformedPipeline<FarRangeMission> for InjectedPipeline {
             Stage::Identities => Overrides { identity: Some(&identity), ..own },
             Stage::Attitude => Overrides { camera_from_icrs: Some(truth.camera_from_icrs), ..own },
             Stage::Aberration => Overrides { apparent: Some(&apparent), ..own },
-            // The frames themselves are other ones.
+            // This stage is replaced in the frames themselves.
             Stage::Roi => own,
         };
         Ok(self.pipeline.process_with(frame, telemetry, &overrides))

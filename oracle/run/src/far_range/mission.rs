@@ -1,4 +1,4 @@
-//! A scenario of the far range, ready to fly.
+//! A far-range scenario that is ready to run.
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use sim::truth::{FrameTruth, ObjectTruth};
 use super::star_list::star_list;
 use crate::any_world::ScenarioSource;
 
-/// A scenario with its simulator and star list, ready to fly.
+/// A far-range scenario with its simulator and star list, ready to run.
 pub struct FarRangeMission {
     pub(super) simulator: Simulator,
     pub(super) run_file: RunFile,
@@ -25,12 +25,12 @@ pub struct FarRangeMission {
     pub(super) star_epoch: Epoch,
 }
 
-/// The ground truth of a frame.
+/// Ground truth of a frame.
 #[derive(Debug, Clone)]
 pub struct SceneTruth {
-    /// The frame.
+    /// Truth of the frame as a whole.
     pub frame: FrameTruth,
-    /// Every object in it.
+    /// All objects in the frame.
     pub objects: Vec<ObjectTruth>,
 }
 
@@ -38,16 +38,17 @@ impl FarRangeMission {
     /// Checks a scenario and prepares its simulator.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the first value that is not allowed.
+    /// A [`Failure`] with the location of the first invalid value.
     pub fn new(source: &ScenarioSource) -> Result<Self, Failure> {
         Self::with_options(source, None, None)
     }
 
-    /// [`FarRangeMission::new`], for a run of the built-in pipeline in which the truth stands in the place of a stage's result, or with an
-    /// attitude granted to answers with a centroid alone.
+    /// Prepares a scenario as [`FarRangeMission::new`], for a run of the built-in pipeline with one stage's
+    /// result replaced by the truth, or with an attitude granted to measurements that have only a centroid.
     ///
     /// # Errors
-    /// As [`FarRangeMission::new`]; [`Failure::Usage`] for the regions of interest of a scenario that has none.
+    /// Those of [`FarRangeMission::new`]; [`Failure::Usage`] for the replacement of regions of interest in a
+    /// scenario that has none.
     pub fn with_options(
         source: &ScenarioSource,
         inject: Option<Stage>,
@@ -78,16 +79,16 @@ impl FarRangeMission {
         Ok(Self { simulator, run_file, setup, stars: stars.clone(), star_epoch })
     }
 
-    /// What makes its frames.
+    /// Returns the simulator of the frames.
     pub fn simulator(&self) -> &Simulator {
         &self.simulator
     }
 }
 
-/// The simulator of a scenario, which came from `source`; every value is checked.
+/// Creates the simulator of a scenario that was read from `source`; every value is checked.
 ///
 /// # Errors
-/// A [`Failure`] with the place of the first value that is not allowed.
+/// A [`Failure`] with the location of the first invalid value.
 pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<Simulator, Failure> {
     bounds::check(&scenario.star_list, "star_list").map_err(|error| source.out_of_range(&error))?;
     source.check_part("far_range", scenario.far_range.check())?;
@@ -95,7 +96,7 @@ pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result
     Simulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
 }
 
-/// A star list as a file has it, and as a pipeline has it.
+/// A star list in the form of its file, and in the form passed to a pipeline.
 type StarListPair = (Vec<StarRow>, Vec<ListedStar>);
 
 /// Star lists of embedded catalogues, by magnitude limit and epoch.
@@ -114,7 +115,7 @@ fn uploaded(scenario: &FarRangeScenario, simulator: &Simulator, epoch: Epoch) ->
             let Ok(shared) = UPLOADED.get(key, |_| Ok::<_, Infallible>(list()));
             shared
         }
-        // The file may have changed.
+        // Not cached, because the file may have changed.
         CatalogSource::File(_) => Arc::new(list()),
     }
 }

@@ -1,4 +1,4 @@
-//! The far range: star fields with a distant spacecraft.
+//! Far range: star fields with a distant spacecraft.
 
 pub mod answers;
 pub mod dataset;
@@ -43,10 +43,10 @@ use crate::frame_jobs::{Expectation, FrameJobs};
 use crate::rows_by_number::RowsByNumber;
 use crate::world::{self, InformedPipeline, OpenDataset, World, unscorable};
 
-/// The signal-to-noise ratio of the faintest star that a check tells of.
+/// Signal-to-noise ratio of the faintest star that a check reports.
 const LIMITING_SNR: f64 = 5.0;
 
-/// Bytes of a FITS file of 16 bits, its header of three blocks or so included.
+/// Size of a 16-bit FITS file, bytes, including a header of about three blocks.
 fn fits_bytes(columns: usize, rows: usize) -> u64 {
     const BLOCK: u64 = 2880;
     ((columns * rows * size_of::<u16>()) as u64).div_ceil(BLOCK) * BLOCK + 3 * BLOCK
@@ -68,7 +68,7 @@ impl World for FarRangeMission {
     type Exposure = sim::Exposure;
     type Workspace<'a> = sim::SimulatedCamera<'a>;
     type Truth = SceneTruth;
-    /// The camera controls its exposure time on its own.
+    /// No feedback: the camera controls its exposure time without the pipeline.
     type Feedback = ();
     type Dataset<'a> = FrameDataset;
     type Answers = FrameAnswers;
@@ -162,7 +162,7 @@ impl World for FarRangeMission {
         source.check_part(Self::CODE, scenario.far_range.check_suppression(floor_dn, bit_depth))
     }
 
-    /// FITS with no more in its header than telemetry says.
+    /// Writes FITS with only the telemetry in its header.
     fn write_image(frame: &Frame, telemetry: &Telemetry, path: &Path) -> Result<(), String> {
         let header = FrameHeader {
             time: telemetry.time,
@@ -258,7 +258,8 @@ impl World for FarRangeMission {
         camera.reuse(frame);
     }
 
-    /// The best mode beside the paper's mode on ARGON, where the paper's own figures stand beside it as well.
+    /// Returns the best mode for comparison with the paper's mode on ARGON; there the paper's published
+    /// figures are shown too.
     fn comparison_pipeline(&self) -> Result<Option<Box<dyn PipelineFactory<FarRange> + Send>>, Failure> {
         let scenario = self.scenario();
         let is_papers = scenario.far_range.mode == Mode::Paper && self.run_file.inject.is_none();
@@ -346,7 +347,8 @@ impl World for FarRangeMission {
     }
 }
 
-/// What the pipeline is told of a dataset: its own star list, or the built-in catalogue to its magnitude limit.
+/// Returns the setup of a dataset for the pipeline, with the dataset's star list, or the built-in catalogue
+/// down to the magnitude limit of the dataset.
 fn setup_of(directory: &Path, dataset: &Dataset) -> Result<Setup, Failure> {
     let camera = dataset.camera();
     let file = directory.join("stars.csv");
@@ -369,7 +371,7 @@ fn setup_of(directory: &Path, dataset: &Dataset) -> Result<Setup, Failure> {
     })
 }
 
-/// Judges the frames of a run.
+/// Scores the frames of a run.
 pub struct Scorer<'a> {
     scorer: score::Scorer<'a>,
     is_argon: bool,
@@ -389,7 +391,8 @@ impl<'a> Scorer<'a> {
         }
     }
 
-    /// What is granted in a frame with this measured attitude; `None` where that is asked for and there is none.
+    /// Returns the attitude that is granted in a frame with this measured attitude; `None` if the measured
+    /// attitude is requested and missing.
     fn granted(&self, measured: Option<Rotation<Body, Icrs>>) -> Option<GrantedAttitude> {
         Some(match self.attitude {
             None => GrantedAttitude::None,
@@ -434,7 +437,7 @@ impl world::Judgement for FarRangeJudgement {
     }
 }
 
-/// What "within one pixel" and "within two" mean in a scenario.
+/// Returns the angular limits of "within one pixel" and "within two" in a scenario.
 pub fn limits(scenario: &FarRangeScenario) -> WithinLimits {
     let of_camera = || WithinLimits::from_pixels(&scenario.camera);
     scenario.score.within_deg.map_or_else(of_camera, WithinLimits::from_degrees)

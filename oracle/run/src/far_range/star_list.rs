@@ -1,8 +1,8 @@
-//! The star list that is uploaded to a pipeline.
+//! Star list that is uploaded to a pipeline.
 //!
-//! Made on ground from the catalogue: proper motion is applied up to one epoch by the plain formula of an
-//! ephemeris table (linear in the angles), and nothing else. The simulator's truth is rigorous; the difference is
-//! part of what the oracle measures.
+//! The list is made on ground from the catalogue. Only proper motion is applied, up to one epoch, by the
+//! plain formula of an ephemeris table (linear in the angles). The simulator's truth is rigorous; the
+//! difference is part of the error that the oracle measures.
 use contract::Angle;
 use files::StarRow;
 use hifitime::Epoch;
@@ -13,14 +13,15 @@ use sim::truth::clock;
 const CATALOG_EPOCH_TO_J2000_YR: f64 = 8.75;
 const SECONDS_PER_JULIAN_YEAR: f64 = 31_557_600.0;
 
-/// The stars of `catalog` not fainter than `magnitude_limit` (V), where they are at `epoch`, ordered by number.
+/// Returns the stars of `catalog` not fainter than `magnitude_limit` (V), at their positions at `epoch`,
+/// ordered by number.
 pub fn star_list(catalog: &Catalog, magnitude_limit: f64, epoch: Epoch) -> Vec<StarRow> {
     let years = CATALOG_EPOCH_TO_J2000_YR + clock::tt_j2000_s(epoch) / SECONDS_PER_JULIAN_YEAR;
     let stars = catalog.stars().iter().filter(|star| star.v_mag() <= magnitude_limit);
     stars.map(|star| moved(star, years)).collect()
 }
 
-/// A star after `years` of proper motion.
+/// Returns a star after `years` of proper motion.
 fn moved(star: &CatalogStar, years: f64) -> StarRow {
     let degrees = |mas_per_yr: f64| Angle::from_arcsec(mas_per_yr * years / 1000.0).degrees();
     let ra_deg =
@@ -39,13 +40,14 @@ mod tests {
     use super::*;
     use files::parse_utc;
 
-    /// Barnard's star, the fastest. SIMBAD gives its place of Hipparcos-2 at J2000.0 as 17 57 48.49803 +04 41 36.2072.
+    /// Barnard's star, the star with the largest proper motion. SIMBAD gives its Hipparcos-2 position at
+    /// J2000.0 as 17 57 48.49803 +04 41 36.2072.
     #[test]
     fn proper_motion_is_applied_up_to_the_epoch() {
         let list = star_list(&Catalog::hipparcos2(), 10.0, parse_utc("2000-01-01T11:58:55.816Z").unwrap());
         let barnard = list.iter().find(|star| star.id == 87937).unwrap();
         let arcsec = |degrees: f64| degrees * 3600.0;
-        // 1 mas: the rounding of the published place.
+        // 1 mas: the rounding of the published position.
         assert!(arcsec(barnard.ra_deg - (269.0 + 27.0 / 60.0 + 7.47045 / 3600.0)).abs() < 0.001);
         assert!(arcsec(barnard.dec_deg - (4.0 + 41.0 / 60.0 + 36.2072 / 3600.0)).abs() < 0.001);
     }

@@ -5,7 +5,7 @@ use crate::hand_made::{
 use crate::report::Figure;
 use contract::{Covariance2, Measurement, NoSolution, PixelPoint, Solution};
 
-/// The paper's, of the hand-made camera's square pixels too.
+/// Limits of the paper, which also are one and two square pixels of the hand-made camera.
 const LIMITS: WithinLimits = WithinLimits { ra_deg: [0.024, 0.048], dec_deg: [0.024, 0.048] };
 
 fn scorer() -> Scorer<'static> {
@@ -48,7 +48,7 @@ fn judged(
     scorer.finish()
 }
 
-/// The figures of days without their first frames, which have verdicts and figures of their own.
+/// Figures exclude the first frames of a day, which have separate verdicts and figures.
 #[test]
 fn frames_of_the_warm_up_count_in_their_own_group_alone() {
     let outcomes: Vec<_> = day().into_iter().cycle().take(20).collect();
@@ -67,7 +67,7 @@ fn frames_of_the_warm_up_count_in_their_own_group_alone() {
         let counted: u32 = figure.terms.iter().map(|term| term.of).sum();
         assert_eq!(u64::from(counted), score.figures[&figure.name].of, "{}", figure.name);
     }
-    // Frames that are not there belong to it by their numbers.
+    // Missing frames count towards the warm-up by their numbers.
     let mut scorer = self::scorer();
     scorer.context.warm_up_frames = 10;
     for number in [100, 109, 110] {
@@ -77,7 +77,7 @@ fn frames_of_the_warm_up_count_in_their_own_group_alone() {
     assert_eq!(scorer.finish().score.frames, 1);
 }
 
-/// Ten frames a day: 6 correct (4 of them within a pixel), 1 wrong, 2 without a target, 1 without a row.
+/// Ten frames per day: 6 correct (4 of them within a pixel), 1 wrong, 2 without a target, 1 without a row.
 fn day() -> Vec<Option<Outcome>> {
     let none = || Some(Outcome::none(NoSolution::NoTarget));
     let at = |px| Some(right_of_target(px));
@@ -88,7 +88,7 @@ fn counts_of(score: &Score, name: &str) -> (u64, u64) {
     (score.figures[name].count, score.figures[name].of)
 }
 
-/// Its figures would be numbers all the same.
+/// Figures could still be computed from impossible values.
 #[test]
 fn what_no_frame_has_is_refused() {
     let refused = |truth: FrameTruth, objects: &[ObjectTruth], parts: [&str; 2]| {
@@ -111,7 +111,7 @@ fn what_no_frame_has_is_refused() {
     refused(FrameTruth { range_km: -10.0, ..frame(0) }, &[target], ["`range_km` is -10", "more than 0"]);
 }
 
-/// The definition of every rate: what it counts and what it is divided by.
+/// Defines numerator and denominator of every rate.
 #[test]
 fn rates_are_of_all_frames_and_accuracies_of_the_detected() {
     let score = score(&day());
@@ -125,7 +125,7 @@ fn rates_are_of_all_frames_and_accuracies_of_the_detected() {
         (names::RA_WITHIN_2PX, 6, 7),
         (names::DEC_WITHIN_1PX, 7, 7),
         (names::RA_RMS_DEG, 6, 6),
-        // The hand-made answers tell no number of stars, and none is invented.
+        // The hand-made outcomes state no number of stars, and no number is assumed.
         (names::STARS_MEAN, 0, 0),
         (names::ATTITUDE_FROM_STARS_RATE, 0, 10),
     ] {
@@ -137,8 +137,8 @@ fn rates_are_of_all_frames_and_accuracies_of_the_detected() {
     assert!((score.figures[names::RA_RMS_DEG].value.unwrap() - rms_px * 0.024).abs() < 1e-7);
 }
 
-/// A pipeline that measures in the image alone was scored with the true attitude: its errors stood beside those of pipelines that had
-/// to find theirs.
+/// Previously a pipeline that measures only in the image was scored with the true attitude, and its errors
+/// were shown beside those of pipelines that determine their attitude.
 #[test]
 fn centroids_have_figures_in_pixels_and_of_lines_of_sight_only_where_they_are_granted() {
     let [none, with] =
@@ -152,7 +152,7 @@ fn centroids_have_figures_in_pixels_and_of_lines_of_sight_only_where_they_are_gr
         assert_eq!(counts_of(score, names::HIT_RATE), (7, 10));
         assert_eq!(counts_of(score, names::LINE_OF_SIGHT_RATE), (0, 7));
         let value = |name: &str| score.figures[name].value.unwrap();
-        // Of the correct: 0, 0.1, −0.5, 1.2, −1.2, 0.3.
+        // Errors of the correct measurements: 0, 0.1, −0.5, 1.2, −1.2, 0.3.
         let rms_px = ((0.01 + 0.25 + 1.44 + 1.44 + 0.09) / 6.0f64).sqrt();
         assert!((value(names::CENTROID_X_RMS_PX) - rms_px).abs() < 1e-9);
         assert!((value(names::CENTROID_X_MEAN_PX) + 0.1 / 6.0).abs() < 1e-9);
@@ -166,7 +166,7 @@ fn centroids_have_figures_in_pixels_and_of_lines_of_sight_only_where_they_are_gr
 fn a_rate_of_errors_within_a_limit_records_the_limit() {
     let limits = WithinLimits { ra_deg: [0.5, 1.0], dec_deg: [0.25, 0.75] };
     let mut scorer = Scorer::new(ScoreContext { limits, ..scorer().context });
-    // 1.2 px, 0.0288°.
+    // 1.2 px correspond to 0.0288°.
     let objects = [target_with(1000.0)];
     scorer.add(&frame(0), &objects, Some(&right_of_target(1.2)), GrantedAttitude::True).unwrap();
     let scored = scorer.finish();
@@ -199,7 +199,7 @@ fn every_frame_is_counted_exactly_once() {
     }
 }
 
-/// An answer so many pixels off, with the covariance of its centroid, px.
+/// A measurement with this error and the covariance of its centroid, px.
 fn with_covariance([x, y]: [f64; 2], covariance: Option<[f64; 3]>) -> Option<Outcome> {
     let mut measurement = Measurement::new(PixelPoint::new(CENTRE.x + x, CENTRE.y + y), None);
     measurement.position_covariance =
@@ -208,7 +208,8 @@ fn with_covariance([x, y]: [f64; 2], covariance: Option<[f64; 3]>) -> Option<Out
     Some(Outcome { solution, ..Outcome::none(NoSolution::NoTarget) })
 }
 
-/// In units of σ the errors are (2, 0) with ρ = 1/2 and (1, 2) with ρ = −1/2: eᵀ C⁻¹ e is 4/0.75 and 7/0.75, half of it 8/3 and 14/3.
+/// In units of σ the errors are (2, 0) with ρ = 1/2 and (1, 2) with ρ = −1/2: eᵀ C⁻¹ e is 4/0.75 and 7/0.75,
+/// half of it 8/3 and 14/3.
 #[test]
 fn consistency_is_counted_over_the_correct_with_a_covariance_by_closed_forms() {
     let outcomes = [
@@ -234,11 +235,12 @@ fn consistency_is_counted_over_the_correct_with_a_covariance_by_closed_forms() {
     for row in &score.consistency {
         assert_eq!(row.figures[names::CENTROID_NEES_MEAN], score.figures[names::CENTROID_NEES_MEAN]);
     }
-    // Without a covariance there is nothing to tell, and no table of it.
+    // Without a covariance there are no figures of consistency, and no table of them.
     assert!(self::score(&outcomes[3..]).consistency.is_empty());
 }
 
-/// Camera axes, whatever way the camera looks: an error of one pixel to the right with σ of half a pixel, down with σ of two.
+/// The axes are those of the camera at any attitude: an error of one pixel to the right with σ of half a
+/// pixel, and of one pixel down with σ of two.
 #[test]
 fn the_covariance_of_a_line_of_sight_is_in_the_axes_of_the_true_camera() {
     let truth = tilted(0);
@@ -255,7 +257,7 @@ fn the_covariance_of_a_line_of_sight_is_in_the_axes_of_the_true_camera() {
     let objects = [ObjectTruth { cut: 0.4, ..target_with(1000.0) }];
     scorer.add(&truth, &objects, Some(&outcome), GrantedAttitude::None).unwrap();
     let judgement = scorer.finish();
-    // (2² + 0.5²)/2; the arc tangent of a pixel is its argument to 1e-7 of it.
+    // (2² + 0.5²)/2; the arc tangent of a pixel equals its argument to 1e-7 of it.
     let nees = judgement.score.figures[names::LINE_OF_SIGHT_NEES_MEAN].value.unwrap();
     assert!((nees - 2.125).abs() < 1e-5, "{nees}");
     assert_eq!(counts_of(&judgement.score, names::LINE_OF_SIGHT_WITHIN_1SIGMA_RATE), (1, 2));
@@ -270,7 +272,8 @@ fn the_covariance_of_a_line_of_sight_is_in_the_axes_of_the_true_camera() {
     );
 }
 
-/// The start is what the warm-up is: it counts there, whatever else is left out of the figures.
+/// The start includes the warm-up: it is counted from the first frame, regardless of the frames that figures
+/// exclude.
 #[test]
 fn a_start_is_counted_from_the_first_frame_whatever_the_warm_up() {
     let lost = || Some(Outcome::none(NoSolution::NoTarget));
@@ -377,7 +380,8 @@ fn groups_keep_the_order_of_their_frames() {
 #[test]
 fn a_run_of_nothing_but_missing_rows_has_no_nan() {
     let text = serde_json::to_string(&score(&[None, None])).unwrap();
-    // serde_json writes null for a NaN: read it back and look for a value counted over something.
+    // serde_json writes null for a NaN: read the score back and search for a figure with a denominator but no
+    // value.
     let score: Score = serde_json::from_str(&text).unwrap();
     assert_eq!(score.figures[names::HIT_RATE].value, Some(0.0));
     assert_eq!(score.figures[names::RA_WITHIN_1PX].value, None);
@@ -415,12 +419,12 @@ fn units_are_the_frames_and_add_up_to_the_figures() {
     assert_eq!(table.units.iter().map(|unit| unit.number).collect::<Vec<_>>(), (0..10).collect::<Vec<_>>());
     assert_eq!((table.units[6].group.as_str(), table.units[6].verdict.as_str()), ("day 1", "wrong"));
     assert_eq!(table.units[8].cause.as_deref(), Some("not_reported"));
-    // A start is the whole sequence's.
+    // The figure of the start is defined only for a complete sequence.
     let from_frames = scored.score.figures.keys().filter(|name| *name != names::FRAMES_UNTIL_SETTLED);
     assert!(table.figures.iter().map(|figure| &figure.name).eq(from_frames));
 }
 
-/// The pixel of the hand-made camera is the paper's.
+/// The pixel of the hand-made camera has the angle of the paper's pixel.
 #[test]
 fn the_hand_made_pixel_is_one_pixel() {
     assert!((PIXEL - Angle::from_degrees(LIMITS.ra_deg[0]).radians()).abs() < 1e-15);

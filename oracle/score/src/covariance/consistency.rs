@@ -1,4 +1,4 @@
-//! Whether the errors of correct answers are as large as their covariances say.
+//! Consistency of the errors of correct measurements with their stated covariances.
 
 use contract::AttitudeSource;
 
@@ -10,14 +10,14 @@ use crate::figure_spec::Better;
 use crate::report::{ConsistencyRow, names};
 use crate::verdict::{FrameVerdict, Verdict};
 
-/// Shares of normal errors within one and three standard deviations.
+/// Fractions of normally distributed errors within one and three standard deviations.
 const HONEST: [(&str, f64, f64); 2] = [("1", 1.0, 0.6827), ("3", 3.0, 0.9973)];
 
-/// Word for answers that state no source of their attitude.
+/// Name for outcomes that state no source of their attitude.
 const UNSTATED: &str = "unstated";
 
-/// The figures of consistency, in their order: of the centroid and of the line of sight the mean NEES and the shares of
-/// components within one and three standard deviations.
+/// Returns the figures of consistency, in order: for the centroid and for the line of sight, the mean NEES
+/// and the fractions of components within one and three standard deviations.
 pub(crate) fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
     let centroid = |frame: &FrameVerdict| right(frame)?.centroid_normalised;
     let line_of_sight = |frame: &FrameVerdict| right(frame)?.line_of_sight_normalised;
@@ -55,7 +55,7 @@ fn error_figures(
     list
 }
 
-/// The error of a correct answer.
+/// Returns the error of a correct measurement.
 fn right(frame: &FrameVerdict) -> Option<AnswerError> {
     match frame.verdict {
         Verdict::Correct { error } => Some(error),
@@ -63,14 +63,14 @@ fn right(frame: &FrameVerdict) -> Option<AnswerError> {
     }
 }
 
-/// Whether a frame has a correct answer with a covariance.
+/// Returns true if a frame has a correct measurement with a covariance.
 fn has_covariance(frame: &FrameVerdict) -> bool {
     right(frame)
         .is_some_and(|error| error.centroid_normalised.is_some() || error.line_of_sight_normalised.is_some())
 }
 
-/// The rows of `consistency`: by the state of the image, then by the source of the attitude; kinds that do not occur are left out.
-/// Each sequence is in order of time.
+/// Returns the rows of `consistency`: by the state of the image, then by the source of the attitude, without
+/// kinds that do not occur. Each sequence must be in order of time.
 pub(crate) fn rows(sequences: &[&[&FrameVerdict]]) -> Vec<ConsistencyRow> {
     let image = |state: ImageState| move |frame: &FrameVerdict| frame.image == Some(state);
     let of_images =

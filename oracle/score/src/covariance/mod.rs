@@ -1,4 +1,4 @@
-//! Covariances of answers against their errors.
+//! Consistency of stated covariances with the errors of measurements.
 
 pub(crate) mod consistency;
 pub(crate) mod image_state;

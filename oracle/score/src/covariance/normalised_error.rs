@@ -1,31 +1,33 @@
-//! An error in units of its covariance.
+//! Error in units of its covariance.
 
 use contract::Covariance2;
 
-/// What a larger NEES counts as: an error beyond all proportion is counted, and leaves the mean a number.
+/// Upper limit of NEES: a larger value counts as this one, so that extreme errors are counted and the mean
+/// remains finite.
 const LARGEST_NEES: f64 = 1e12;
 
-/// What a larger error over its standard deviation counts as.
+/// Upper limit of an error over its standard deviation.
 const LARGEST_OVER_SIGMA: f64 = 1e6;
 
-/// An error of two components in units of its covariance.
+/// Error of two components in units of its covariance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalisedError {
-    /// Each component over its own standard deviation; at most 1e6 in size.
+    /// Each component over its standard deviation; at most 1e6 in magnitude.
     pub over_sigma: [f64; 2],
-    /// Normalised estimation error squared per dimension, eᵀ C⁻¹ e / 2: 1 in the mean for an honest covariance C; at most 1e12.
+    /// Normalised estimation error squared per dimension, eᵀ C⁻¹ e / 2: 1 in the mean for a correct
+    /// covariance C; at most 1e12.
     pub nees: f64,
 }
 
 impl NormalisedError {
-    /// An error and its covariance, both in one unit.
+    /// Normalises an error by its covariance; both must have the same unit.
     pub fn from_error(error: [f64; 2], covariance: &Covariance2) -> Self {
         let sigmas = [covariance.sigma_x(), covariance.sigma_y()];
         let over = |i: usize| match (error.get(i), sigmas.get(i)) {
             (Some(error), Some(sigma)) => (error / sigma).clamp(-LARGEST_OVER_SIGMA, LARGEST_OVER_SIGMA),
             _ => 0.0,
         };
-        // `min` drops the NaN of errors so large that their squares are infinite.
+        // `min` replaces the NaN of errors so large that their squares are infinite.
         let nees = (covariance.mahalanobis_squared(error) / 2.0).min(LARGEST_NEES);
         Self { over_sigma: [over(0), over(1)], nees }
     }

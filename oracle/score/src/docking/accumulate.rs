@@ -1,4 +1,4 @@
-//! From fields to figures.
+//! Accumulation of fields into figures.
 
 use std::collections::BTreeMap;
 
@@ -18,21 +18,21 @@ use super::verdict::{GrossError, Verdict, gross};
 use crate::accumulate::{WARM_UP, counts};
 use crate::{Better, Figure, FigureSpec, FigureTerms, ScoreError, UnitTable, UnitVerdict};
 
-/// What the score of a docking run needs besides the fields.
+/// Inputs of the score of a docking run besides the fields.
 #[derive(Debug, Clone)]
 pub struct DockingContext {
     /// Name of the scenario.
     pub scenario: String,
-    /// Its seed.
+    /// Seed of the scenario.
     pub seed: u64,
     /// Version of Boresight.
     pub version: String,
-    /// What drew the scene: `fast` or `mitsuba`.
+    /// Renderer of the scene: `fast` or `mitsuba`.
     pub renderer: String,
-    /// From the first field on, so many numbers of fields belong to the pipeline's start-up: their verdicts are a group of their own
-    /// ([`WARM_UP`]), and all other figures but the latency leave them out.
+    /// Number of field numbers, from the first field on, in which the pipeline starts up: their verdicts form
+    /// a separate group ([`WARM_UP`]), and all other figures except the latency exclude them.
     pub warm_up_frames: u64,
-    /// The true cameras and the target's true dimensions.
+    /// True cameras, and the target's true dimensions.
     pub setup: DockingSetup,
 }
 
@@ -45,24 +45,26 @@ pub struct DockingScorer {
     portions: PortionClock,
 }
 
-/// Where the running portion began and the last one ended.
+/// Start of the current portion and end of the previous one.
 #[derive(Debug, Default)]
 struct PortionClock {
-    /// Whether the best estimator gave a motion, and whether the paper's did.
+    /// True if the best estimator, or the paper's, has already reported a motion.
     has_best: bool,
     has_paper: bool,
-    /// Fields since the portion's first measured one, that one included; 0: there is none yet.
+    /// Number of fields from the portion's first measured one on, including it; 0 before that field.
     fields: u64,
-    /// When a field was first measured, s.
+    /// Time of the first measured field, s.
     begin_s: Option<f64>,
     last_report_s: Option<f64>,
 }
 
-/// Longest time between two reports, s (docking paper, section 2), and a microsecond for the rounding of times.
+/// Longest time between two reports, s (docking paper, section 2), plus a microsecond for the rounding of
+/// times.
 const RENEWAL_S: f64 = 1.0 + 1e-6;
 
 impl PortionClock {
-    /// Whether the last report is at most a second old; `None` until a second after the first measured field.
+    /// Returns true if the last report is at most a second old; `None` until a second after the first
+    /// measured field.
     fn is_renewed(&self, time_s: f64) -> Option<bool> {
         let renewed = |since_s: f64| time_s - since_s <= RENEWAL_S;
         self.begin_s.filter(|begin_s| !renewed(*begin_s))?;
@@ -71,25 +73,27 @@ impl PortionClock {
 }
 
 impl DockingScorer {
-    /// A scorer that has seen no field.
+    /// Creates a scorer without fields.
     pub fn new(context: DockingContext) -> Self {
         let geometry = ImagingGeometry::new(&context.setup);
         let portions = PortionClock::default();
         Self { context, geometry, verdicts: Vec::new(), last_field: None, portions }
     }
 
-    /// Judges the next field; `outcome` is `None` when the measurements have no row for it.
+    /// Scores the next field; `outcome` is `None` when the measurements have no row for the field.
     ///
     /// # Errors
-    /// [`ScoreError::Order`] unless the number is larger than the one before. The field is then not counted.
+    /// [`ScoreError::Order`] unless the field number is larger than the previous one. The field is then not
+    /// counted.
     pub fn add(&mut self, truth: &TrueField, outcome: Option<&DockingOutcome>) -> Result<(), ScoreError> {
         self.add_with_report(truth, outcome, outcome.and_then(|outcome| outcome.motion.as_ref()))
     }
 
-    /// [`DockingScorer::add`] with a report that stands apart from the answer, as in files.
+    /// Scores the next field like [`DockingScorer::add`], with a report that is separate from the outcome, as
+    /// in files.
     ///
     /// # Errors
-    /// As [`DockingScorer::add`].
+    /// Those of [`DockingScorer::add`].
     pub fn add_with_report(
         &mut self,
         truth: &TrueField,
@@ -168,7 +172,8 @@ impl DockingScorer {
         Some(verdict)
     }
 
-    /// Every field by itself, with what it adds to each figure but the latency, which only a whole sequence has.
+    /// Returns every field with its contributions to each figure, except the latency, which is defined only
+    /// for a complete sequence.
     pub fn units(&self) -> UnitTable {
         let lenses = lens_names(&self.context.setup.cameras);
         let unit = |field: &FieldVerdict| {
@@ -197,10 +202,10 @@ impl DockingScorer {
         }
     }
 
-    /// The figures over all fields. A bin of range and lens is one sequence for the statistics, even where another one
-    /// interrupts it.
+    /// Returns the figures over all fields. For the statistics a bin of range and lens is one sequence, even
+    /// if another bin interrupts it.
     pub fn score(&self) -> DockingScore {
-        // The warm-up is before all bins.
+        // The warm-up, with the key `None`, sorts before all bins.
         let mut groups: BTreeMap<Option<(usize, usize)>, Vec<&FieldVerdict>> = BTreeMap::new();
         for verdict in &self.verdicts {
             groups.entry(verdict.group).or_default().push(verdict);
@@ -238,20 +243,21 @@ fn group_key(group: Option<(usize, usize)>, lenses: &[String]) -> String {
     group_name(bin, &lens)
 }
 
-/// The figures of every score, in their order.
+/// Returns the figures of every score, in order.
 pub fn figures() -> Vec<FigureSpec> {
     let latency = FigureSpec::amount(names::LATENCY_FIELDS, "latency fields", Better::Less);
     definitions().into_iter().map(|definition| definition.figure).chain([latency]).collect()
 }
 
-/// Fields from the first clear one to the first success at or after it; `None` when there is no such pair.
+/// Returns the number of fields from the first clear one to the first success at or after it; `None` if
+/// either is missing.
 fn latency(verdicts: &[FieldVerdict]) -> Option<f64> {
     let after = &verdicts[verdicts.iter().position(|field| field.is_clear)?..];
     let waited = after.iter().position(|field| matches!(field.verdict, Verdict::Success { .. }))?;
     Some(waited as f64)
 }
 
-/// The score of some sequences of fields taken together.
+/// Returns the score of several sequences of fields taken together.
 fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
     let fields = || sequences.iter().copied().flatten();
     let misses = fields().filter_map(|field| match &field.verdict {

@@ -1,4 +1,4 @@
-//! What the operator is shown at the end of a portion: the seven parameters of the docking paper (3.2).
+//! Motion as shown to the operator at the end of a portion: the seven parameters of the docking paper (3.2).
 
 use contract::docking::{Motion, Pose};
 use nalgebra::{SVector, Vector3, Vector6};
@@ -6,24 +6,24 @@ use nalgebra::{SVector, Vector3, Vector6};
 /// Range, range rate, passive pitch and yaw, and the three active angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ApproachParameters {
-    /// ρ = |d|, m.
+    /// Range ρ = |d|, m.
     pub rho_m: f64,
-    /// u = dρ/dt, m/s; negative while approaching.
+    /// Range rate u = dρ/dt, m/s; negative while approaching.
     pub u_m_s: f64,
-    /// α = atan2(d2, √(d1² + d3²)), rad.
+    /// Passive pitch α = atan2(d2, √(d1² + d3²)), rad.
     pub alpha_rad: f64,
-    /// β = atan2(d1, d3), rad.
+    /// Passive yaw β = atan2(d1, d3), rad.
     pub beta_rad: f64,
-    /// φ, rad.
+    /// Active angles φ, rad.
     pub phi_rad: Vector3<f64>,
 }
 
 impl ApproachParameters {
-    /// The parameters of a pose that changes at `velocity_m_s`.
+    /// Computes the parameters of a pose that changes at `velocity_m_s`.
     pub fn from_motion(pose: &Pose, velocity_m_s: &Vector3<f64>) -> Self {
         let d = &pose.position_m;
         let rho_m = d.norm();
-        // At the target's very centre the range has no direction to change in.
+        // At the target's origin the range has no direction in which to change; its rate is set to 0.
         let u_m_s = if rho_m > 0.0 { d.dot(velocity_m_s) / rho_m } else { 0.0 };
         Self {
             rho_m,
@@ -34,8 +34,9 @@ impl ApproachParameters {
         }
     }
 
-    /// Standard deviations of the seven, in the order of the fields, from the covariances of a motion by the gradients
-    /// at its own values; `None` where d lies on the axis y2, where β has none.
+    /// Standard deviations of the seven parameters, in the order of the fields, propagated from the
+    /// covariances of a motion with the gradients at its values; `None` if d is on the axis y2, where β is
+    /// undefined.
     pub fn sigmas(motion: &Motion) -> Option<[f64; 7]> {
         let (d, v) = (&motion.pose.position_m, &motion.velocity_m_s);
         let (rho, s) = (d.norm(), across(d));
@@ -68,7 +69,7 @@ impl ApproachParameters {
         Some(sigmas)
     }
 
-    /// The seven in the order of the fields, less those of `truth`.
+    /// Returns the differences of the seven parameters from those of `truth`, in the order of the fields.
     pub fn difference(&self, truth: &Self) -> SVector<f64, 7> {
         let phi = self.phi_rad - truth.phi_rad;
         SVector::from([
@@ -83,7 +84,7 @@ impl ApproachParameters {
     }
 }
 
-/// √(d1² + d3²).
+/// Returns √(d1² + d3²), the distance from the y2 axis.
 fn across(d: &Vector3<f64>) -> f64 {
     (d.x * d.x + d.z * d.z).sqrt()
 }
@@ -121,7 +122,7 @@ mod tests {
         assert_eq!((shown.rho_m, shown.u_m_s), (0.0, 0.0));
     }
 
-    /// The gradients against differences of the parameters themselves.
+    /// Compares the gradients with central differences of the parameters.
     #[test]
     fn sigmas_are_those_of_differences_of_the_parameters() {
         let motion = motion();
@@ -141,7 +142,8 @@ mod tests {
         for (k, sigma) in sigmas.iter().take(4).enumerate() {
             let gradient = Vector6::from_fn(|i, _| gradients[i][k]);
             let expected = (motion.position_covariance * gradient).dot(&gradient).sqrt();
-            // Central differences of step h err by h² times third derivatives below 1: 1e-10.
+            // Error of central differences with step h: h² times the third derivatives, which are below 1;
+            // 1e-10 here.
             assert!((sigma - expected).abs() < 1e-8, "parameter {k}: {sigma}, expected {expected}");
         }
         assert_eq!(sigmas[4..], [0.002; 3]);

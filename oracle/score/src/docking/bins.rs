@@ -2,16 +2,16 @@
 
 use contract::Camera;
 
-/// Limits of the bins, m: a bin is above its lower limit, up to and with its upper one. The farthest has no upper one: an
-/// approach from d3 = 500 m begins a few centimetres beyond 500 m.
+/// Limits of the bins, m. A bin excludes its lower limit and includes its upper one. The farthest bin has no
+/// upper limit: an approach from d3 = 500 m begins a few centimetres beyond 500 m.
 pub const RANGE_BINS_M: [f64; 9] = [200.0, 100.0, 50.0, 30.0, 20.0, 10.0, 5.0, 3.0, 1.5];
 
-/// The bin of a range, counted from the farthest: 0 is beyond 200 m, 9 is 1.5 m or less.
+/// Returns the bin of a range, counted from the farthest: 0 is beyond 200 m, 9 is 1.5 m or less.
 pub(super) fn bin(range_m: f64) -> usize {
     RANGE_BINS_M.iter().filter(|limit| range_m <= **limit).count()
 }
 
-/// The name of the group of a bin and a lens: `20–10 m, 15.0°`.
+/// Returns the name of the group of a bin and a lens: `20–10 m, 15.0°`.
 pub fn group_name(bin: usize, lens: &str) -> String {
     let upper = bin.checked_sub(1).and_then(|before| RANGE_BINS_M.get(before));
     match (upper, RANGE_BINS_M.get(bin)) {
@@ -22,7 +22,8 @@ pub fn group_name(bin: usize, lens: &str) -> String {
     }
 }
 
-/// A name for each lens: its field of view along columns, 2 atan(columns/2f); where two have the same, with its number.
+/// Returns a name for each lens: its field of view along columns, 2 atan(columns/2f), followed by its number
+/// if two lenses have the same field of view.
 pub fn lens_names(cameras: &[Camera]) -> Vec<String> {
     let field_of_view = |camera: &Camera| {
         let half_width = 0.5 * camera.columns as f64 / camera.focal_length_px().0;

@@ -1,34 +1,35 @@
-//! Why a field was not measured: every miss has exactly one cause.
+//! Causes of missed fields: every miss has exactly one cause.
 
 use contract::docking::NoPose;
 
 use super::truth::{TargetVisibility, TrueField};
 
-/// Why there is no pose and no range. When several hold, the first in this order is the cause: what is known of the answer
-/// at all, then what no pipeline could have helped, by the truth alone, then what the pipeline says.
+/// Cause of a field with neither pose nor range. When several apply, the first in this order is taken: a
+/// missing row, then, by the truth only, a cause that no pipeline could have avoided, then the reason that
+/// the pipeline states.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum MissCause {
     /// The measurements have no row for the field.
     NotReported,
     /// The target is not resolved: a bar of its cross is narrower than two pixels.
     TooFar,
-    /// The target is outside the image ([`TargetVisibility::Outside`]), or partly so and the pipeline says it.
+    /// The target is outside the image ([`View::Outside`]), or partly outside if the pipeline states so.
     OutsideField,
     /// At least [`MissCause::LOST_LINES`] of the image's lines were lost.
     LostLines,
-    /// Neither Sun nor lamp shines on any of half of the marks or more.
+    /// At least half of the marks are illuminated by neither Sun nor lamp.
     InShadow,
     /// The pipeline failed.
     PipelineFailed,
-    /// The pipeline's own reason, and the truth knows no better; never [`NoPose::Failed`].
+    /// The reason that the pipeline states, if the truth shows no other cause; never [`NoPose::Failed`].
     NoPose(NoPose),
 }
 
 impl MissCause {
-    /// Fraction of lost lines from which on they are the cause.
+    /// Smallest fraction of lost lines that counts as the cause.
     pub const LOST_LINES: f64 = 0.1;
 
-    /// Every cause's word, in the order of precedence.
+    /// Codes of all causes, in order of precedence.
     pub const CODES: [&str; 13] = [
         "not_reported",
         "too_far",
@@ -45,7 +46,8 @@ impl MissCause {
         "inconsistent",
     ];
 
-    /// The cause of a field without a pose; `reason` is the pipeline's reason, `None` when it did not answer.
+    /// Returns the cause of a field without a pose; `said` is the reason stated by the pipeline, `None`
+    /// without an outcome.
     pub(super) fn from_truth(truth: &TrueField, is_resolved: bool, reason: Option<&NoPose>) -> Self {
         let Some(reason) = reason else { return Self::NotReported };
         let visibility = truth.visibility;
@@ -66,7 +68,7 @@ impl MissCause {
         }
     }
 
-    /// The word used in files.
+    /// Returns the name used in files.
     pub fn code(&self) -> &'static str {
         match self {
             Self::NotReported => "not_reported",

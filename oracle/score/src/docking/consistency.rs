@@ -1,23 +1,25 @@
-//! Whether errors are as large as their covariance says.
+//! Consistency of errors with their covariances.
 
 use nalgebra::{SMatrix, SVector};
 
-/// Smallest pivot of a correlation matrix that is taken for more than rounding. Lateral position and attitude of a pose
-/// are correlated to 1 − 1e-6 at most (a direction known to 0.1 px, a tilt to a degree); rounding is at 1e-16.
+/// Smallest pivot of a correlation matrix that is distinguished from rounding. Lateral position and attitude
+/// of a pose are correlated to 1 − 1e-6 at most (a direction known to 0.1 px, a tilt to a degree); rounding
+/// is at 1e-16.
 const SMALLEST_PIVOT: f64 = 1e-10;
 
-/// What a larger NEES counts as.
+/// Upper limit of NEES: a larger value counts as this one.
 const LARGEST: f64 = 1e12;
 
-/// The normalised estimation error squared, eᵀ P⁻¹ e / N: 1 in the mean for a covariance P that says the truth (its N-fold
-/// follows χ² with N degrees of freedom). At most
-/// 1e12. `None` where P is not positive definite: it then says nothing.
+/// Returns the normalised estimation error squared, eᵀ P⁻¹ e / N: 1 in the mean for a correct covariance P (N
+/// times this value follows a χ² distribution with N degrees of freedom). At most 1e12. Returns `None` if P
+/// is not positive definite and thus contains no information.
 pub fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N, N>) -> Option<f64> {
-    // Of unit diagonal, so that metres and radians are alike; factored as L Lᵀ and solved forwards by the same rows.
+    // The matrix is scaled to unit diagonal, so that metres and radians are comparable, then factored as L Lᵀ
+    // and solved forwards row by row.
     let mut sigma = [0.0; N];
     for (i, sigma) in sigma.iter_mut().enumerate() {
         *sigma = covariance[(i, i)].sqrt();
-        // Negated, so that a NaN says nothing as well.
+        // The condition is negated, so that a NaN also returns `None`.
         if !(*sigma > 0.0 && sigma.is_finite()) {
             return None;
         }
@@ -46,15 +48,15 @@ pub fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N
         solved[i] = rest / lower[(i, i)];
         sum += solved[i] * solved[i];
     }
-    // An error beyond all proportion is counted, and leaves the mean a number.
+    // Extreme errors are counted, and the mean remains finite.
     if sum.is_nan() { None } else { Some((sum / N as f64).min(LARGEST)) }
 }
 
-/// Share of errors within three standard deviations under the normal law.
+/// Fraction of normally distributed errors within three standard deviations.
 pub const WITHIN_3_SIGMA: f64 = 0.9973;
 
-/// Whether an error is at most three standard deviations; `None` for a standard deviation that is not positive: it then
-/// says nothing.
+/// Returns true if an error is at most three standard deviations; `None` for a standard deviation that is not
+/// positive and finite and thus contains no information.
 pub fn within_3_sigma(error: f64, sigma: f64) -> Option<bool> {
     (sigma > 0.0 && sigma.is_finite()).then(|| error.abs() <= 3.0 * sigma)
 }
@@ -73,7 +75,7 @@ mod tests {
         assert!((value - (2.25 + 1.0) / 2.0).abs() < 1e-15);
     }
 
-    /// Worked out in fractions: eᵀ P⁻¹ e = 1473/479.
+    /// Computed in fractions: eᵀ P⁻¹ e = 1473/479.
     #[test]
     fn three_correlated_errors_count_as_worked_out_in_fractions() {
         let covariance = Matrix3::new(4.0, 2.0, 1.0, 2.0, 9.0, 3.0, 1.0, 3.0, 16.0);
@@ -89,7 +91,7 @@ mod tests {
         assert_eq!(nees(&Vector2::new(1.0, 1.0), &Matrix2::new(1.0, f64::NAN, f64::NAN, 1.0)), None);
     }
 
-    /// For correlation c: (x² − 2 c x y + y²)/(1 − c²)/2, in closed form.
+    /// Closed form for the correlation c: (x² − 2 c x y + y²)/(1 − c²)/2.
     #[test]
     fn a_correlation_counts_as_its_closed_form_says() {
         let (c, x, y) = (0.9, 1.5, -0.5);
@@ -116,7 +118,7 @@ mod tests {
         assert_eq!(within_3_sigma(1.0, f64::NAN), None);
     }
 
-    /// Errors drawn from the law that the covariance states.
+    /// Errors are drawn from the distribution that the covariance states.
     #[test]
     fn honest_errors_have_a_mean_of_one_and_lie_within_three_sigma() {
         let root = Matrix6::from_fn(|i, j| match i.cmp(&j) {
@@ -133,9 +135,10 @@ mod tests {
             sum += nees(&error, &covariance).unwrap();
             within += usize::from(within_3_sigma(error[5], covariance[(5, 5)].sqrt()).unwrap());
         }
-        // χ² with 6 degrees of freedom over 6 scatters by √(2/6): the mean of 20,000 by 0.4 %.
+        // χ² with 6 degrees of freedom over 6 has a standard deviation of √(2/6), the mean of 20,000 values
+        // one of 0.4 %.
         assert!((sum / trials as f64 - 1.0).abs() < 0.02, "{}", sum / trials as f64);
-        // 99.73 %, scatter 0.04 %.
+        // 99.73 %, with a standard deviation of 0.04 %.
         assert!((within as f64 / trials as f64 - 0.9973).abs() < 0.002, "{within}");
     }
 }

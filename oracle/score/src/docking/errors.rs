@@ -1,4 +1,4 @@
-//! How far a measured pose is from the true one.
+//! Errors of a measured pose against the true one.
 
 use contract::docking::Pose;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -8,31 +8,32 @@ use super::approach_parameters::ApproachParameters;
 /// Differences of a measured pose from the true one, measured minus true.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseErrors {
-    /// Of d, m, target frame.
+    /// Error of d, m, target frame.
     pub position_m: Vector3<f64>,
-    /// Of φ, component by component, rad; a φ longer than π counts as the shorter one of the same rotation.
+    /// Error of φ by component, rad; a φ longer than π is replaced by the shorter vector of the same
+    /// rotation.
     pub phi_rad: Vector3<f64>,
-    /// Of ρ = |d|, m.
+    /// Error of ρ = |d|, m.
     pub range_m: f64,
-    /// Of α, rad.
+    /// Error of α, rad.
     pub alpha_rad: f64,
-    /// Of β, rad.
+    /// Error of β, rad.
     pub beta_rad: f64,
     /// Length of the error of (d1, d2), m, 0 or more.
     pub lateral_m: f64,
     /// Angle of the rotation from the true to the measured attitude, rad, 0 to π.
     pub attitude_rad: f64,
-    /// Angle between the directions in which the target's origin is seen, rad, 0 to π.
+    /// Angle between the measured and true directions of the target's origin, rad, 0 to π.
     pub direction_rad: f64,
-    /// Angle between the normals of the target's disk as the camera sees them, rad, 0 to π.
+    /// Angle between the measured and true normals of the target's disk in the camera frame, rad, 0 to π.
     pub tilt_rad: f64,
-    /// The pose score of SPEED (Kisantal et al. 2020, Eqs. 1 to 4): ‖Δr‖/‖r‖ of the target's place in the camera frame
-    /// and the angle of the rotation, rad, added up.
+    /// Pose score of SPEED (Kisantal et al. 2020, Eqs. 1 to 4): the sum of ‖Δr‖/‖r‖ of the target's position
+    /// in the camera frame and the angle of the rotation, rad.
     pub speed_score: f64,
 }
 
 impl PoseErrors {
-    /// The errors of a pose whose true one is not at the target's origin itself.
+    /// Computes the errors of a pose; the true pose must not be at the target's origin.
     pub fn new(measured: &Pose, truth: &Pose) -> Self {
         let zero = Vector3::zeros();
         let shown = ApproachParameters::from_motion(measured, &zero)
@@ -57,7 +58,7 @@ impl PoseErrors {
     }
 }
 
-/// Measured minus true φ, rad, of the shortest rotation vector of each.
+/// Returns measured minus true φ, rad, with the shortest rotation vector of each.
 pub(super) fn phi_error(measured: &Pose, truth: &Pose) -> Vector3<f64> {
     let shortest = |phi: Vector3<f64>| {
         if phi.norm() <= std::f64::consts::PI {
@@ -69,27 +70,28 @@ pub(super) fn phi_error(measured: &Pose, truth: &Pose) -> Vector3<f64> {
     shortest(measured.phi_rad) - shortest(truth.phi_rad)
 }
 
-/// The target as seen from a pose, in the camera frame.
+/// Target relative to the camera at a pose, in the camera frame.
 struct TargetInCamera {
-    /// exp(\[φ\]×).
+    /// Rotation exp(\[φ\]×).
     ideal_from_camera: UnitQuaternion<f64>,
-    /// The way from the target's origin to the camera, m.
+    /// Vector from the target's origin to the camera, m.
     from_origin_m: Vector3<f64>,
-    /// The disk's normal.
+    /// Normal of the target's disk.
     normal: Vector3<f64>,
 }
 
 impl TargetInCamera {
     fn from_pose(pose: &Pose) -> Self {
         let ideal_from_camera = UnitQuaternion::from_scaled_axis(pose.phi_rad);
-        // x = Aᵀ (y − d), A = diag(1, −1, −1) exp([φ]×): Aᵀ d is the way from y = 0, and Aᵀ turns the direction y3.
+        // x = Aᵀ (y − d), A = diag(1, −1, −1) exp([φ]×): Aᵀ d is the vector from y = 0 to the camera, and Aᵀ
+        // rotates the direction y3.
         let flip = |v: Vector3<f64>| Vector3::new(v.x, -v.y, -v.z);
         let to_camera = |v: Vector3<f64>| ideal_from_camera.inverse() * flip(v);
         Self { ideal_from_camera, from_origin_m: to_camera(pose.position_m), normal: to_camera(Vector3::z()) }
     }
 }
 
-/// The angle between two vectors, rad; exact for small ones too.
+/// Returns the angle between two vectors, rad; accurate also for small angles.
 fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     libm::atan2(a.cross(b).norm(), a.dot(b))
 }
@@ -126,7 +128,7 @@ mod tests {
         assert!((errors.speed_score - 0.2).abs() < 1e-15, "{errors:?}");
     }
 
-    /// A pitch φ1 turns the camera about its x axis: everything it sees moves by φ1 across the image.
+    /// A pitch φ1 turns the camera about its x axis: the whole image moves by φ1.
     #[test]
     fn a_pitch_moves_the_target_and_tilts_its_disk_by_its_angle() {
         let errors =
@@ -138,11 +140,12 @@ mod tests {
         assert!((errors.speed_score - (2.0 * libm::sin(0.05) + 0.1)).abs() < 1e-14, "{errors:?}");
     }
 
-    /// The pair that an image tells apart worst: to the side, and turned so that the target stays where it was.
+    /// The two poses that an image distinguishes worst: a sideways displacement with a rotation that keeps
+    /// the target at the same position in the image.
     #[test]
     fn a_step_aside_with_the_turn_that_hides_it_is_a_tilt_and_no_displacement() {
         let turn = libm::atan2(0.5, 10.0);
-        // Of a camera at d1 the origin is at x1/x3 = −d1/d3 − φ2: φ2 = −turn brings it back to the middle.
+        // For a camera at d1 the origin is at x1/x3 = −d1/d3 − φ2: φ2 = −turn moves it back to the centre.
         let errors =
             PoseErrors::new(&pose([0.5, 0.0, 10.0], [0.0, -turn, 0.0]), &pose([0.0, 0.0, 10.0], [0.0; 3]));
         assert!(errors.direction_rad < 1e-15 && (errors.tilt_rad - turn).abs() < 1e-15, "{errors:?}");
@@ -150,7 +153,7 @@ mod tests {
         assert!((errors.beta_rad - turn).abs() < 1e-15);
     }
 
-    /// The same across rows: of a camera at d2 the origin is at x2/x3 = d2/d3 + φ1.
+    /// Displacement and rotation across rows: for a camera at d2 the origin is at x2/x3 = d2/d3 + φ1.
     #[test]
     fn a_step_up_with_the_turn_that_hides_it_is_a_tilt_and_no_displacement() {
         let turn = libm::atan2(0.5, 10.0);

@@ -1,4 +1,4 @@
-//! The figures of a docking score, from the verdicts of fields and of the portions that they end.
+//! Figures of a docking score, from the verdicts on fields and on the portions that they end.
 
 use super::consistency::{WITHIN_3_SIGMA, within_3_sigma};
 use super::errors::PoseErrors;
@@ -8,16 +8,16 @@ use super::report::names;
 use super::verdict::Verdict;
 use crate::{Better, Definition, Reduction};
 
-/// A unit: what it is called in keys, and its sign.
+/// A unit: its name in keys, and its symbol.
 type Unit = (&'static str, &'static str);
 const M: Unit = ("m", "m");
 const M_S: Unit = ("m_s", "m/s");
 const DEG: Unit = ("deg", "°");
 
-/// A parameter: what it is called in keys, its words and its unit.
+/// A parameter: its name in keys, its words and its unit.
 type Parameter = (&'static str, &'static str, Unit);
 
-/// The six of a pose.
+/// Six parameters of a pose.
 const PARAMETERS: [Parameter; 6] = [
     ("d1", "d1", M),
     ("d2", "d2", M),
@@ -27,7 +27,7 @@ const PARAMETERS: [Parameter; 6] = [
     ("phi3", "φ3", DEG),
 ];
 
-/// The seven that are shown.
+/// Seven parameters shown to the operator.
 const SHOWN: [Parameter; 7] = [
     ("range", "range", M),
     ("range_rate", "range rate", M_S),
@@ -38,7 +38,7 @@ const SHOWN: [Parameter; 7] = [
     ("phi3", "φ3", DEG),
 ];
 
-/// NEES of what is shown: of (d, φ), of (d, d'), of (φ, φ').
+/// NEES of the motion: of (d, φ), of (d, d'), of (φ, φ').
 const MOTION_NEES: [(&str, &str); 3] = [
     (names::NEES_MEAN, "NEES mean"),
     ("position_nees_mean", "position NEES mean"),
@@ -48,7 +48,7 @@ const MOTION_NEES: [(&str, &str); 3] = [
 const HONEST_NEES: Better = Better::Near(1.0);
 const HONEST_3_SIGMA: Better = Better::Near(WITHIN_3_SIGMA);
 
-/// Figures whose keys and words begin alike.
+/// Figures with a common prefix of keys and words.
 struct Figures<'l> {
     key: &'static str,
     words: &'static str,
@@ -67,7 +67,7 @@ impl Figures<'_> {
         self.list.push(Definition::rate(name, words, holds).with_direction(better));
     }
 
-    /// The share of errors within three standard deviations, of which a field may have several.
+    /// Adds the fraction of errors within three standard deviations; a field may have several errors.
     fn within_3_sigma(&mut self, within: impl Fn(&FieldVerdict) -> Option<Vec<Option<bool>>> + 'static) {
         let name = format!("{}{}", self.key, names::WITHIN_3_SIGMA);
         let values = move |field: &FieldVerdict, values: &mut Vec<f64>| {
@@ -78,7 +78,7 @@ impl Figures<'_> {
         self.list.push(definition.with_direction(HONEST_3_SIGMA));
     }
 
-    /// The same of a parameter.
+    /// Adds the fraction of errors of one parameter within three standard deviations.
     fn parameter_within_3_sigma(
         &mut self,
         (key, words, _): Parameter,
@@ -110,7 +110,7 @@ impl Figures<'_> {
     }
 }
 
-/// All figures over fields, those about single fields first.
+/// Returns all figures over fields, those of single fields first.
 pub(super) fn definitions() -> Vec<Definition<'static, FieldVerdict>> {
     let mut list = Vec::new();
     let mut figures = Figures { key: "", words: "", list: &mut list };
@@ -135,7 +135,7 @@ pub(super) fn definitions() -> Vec<Definition<'static, FieldVerdict>> {
     list
 }
 
-/// The errors of a pose that is not grossly wrong.
+/// Returns the errors of a pose that is not grossly wrong.
 fn success(field: &FieldVerdict) -> Option<PoseErrors> {
     match &field.verdict {
         Verdict::Success { errors } => Some(*errors),
@@ -143,12 +143,12 @@ fn success(field: &FieldVerdict) -> Option<PoseErrors> {
     }
 }
 
-/// The same of the paper's pose.
+/// Returns the errors of the paper's pose, if it is not grossly wrong.
 fn right_by_paper(field: &FieldVerdict) -> Option<PoseErrors> {
     field.paper.filter(|_| !field.paper_is_wrong)
 }
 
-/// What became of the fields.
+/// Adds the rates of the verdicts on fields.
 fn rates(figures: &mut Figures<'_>) {
     fn is_success(field: &FieldVerdict) -> bool {
         matches!(field.verdict, Verdict::Success { .. })
@@ -180,7 +180,7 @@ fn rates(figures: &mut Figures<'_>) {
     });
 }
 
-/// How large the errors of poses are.
+/// Adds the sizes of the errors of poses.
 fn errors(pick: fn(&FieldVerdict) -> Option<PoseErrors>, figures: &mut Figures<'_>) {
     let of =
         |value: fn(&PoseErrors) -> f64| move |field: &FieldVerdict| pick(field).map(|errors| value(&errors));
@@ -216,7 +216,7 @@ fn errors(pick: fn(&FieldVerdict) -> Option<PoseErrors>, figures: &mut Figures<'
     figures.mean(names::SPEED_SCORE_MEAN, "speed score mean", Better::Less, score);
 }
 
-/// Whether the errors of single fields are as large as their covariances say.
+/// Adds the consistency of the errors of single fields with their covariances.
 fn consistency(figures: &mut Figures<'_>) {
     figures.within_3_sigma(|field| field.within.map(Vec::from));
     for (axis, parameter) in PARAMETERS.into_iter().enumerate() {
@@ -228,7 +228,7 @@ fn consistency(figures: &mut Figures<'_>) {
     });
 }
 
-/// Ranges that are given alone.
+/// Adds the figures of range-only measurements.
 fn range_only(figures: &mut Figures<'_>) {
     let range_error = |field: &FieldVerdict| match field.verdict {
         Verdict::RangeOnly { error_m, sigma_m } => Some((error_m, sigma_m)),
@@ -244,8 +244,8 @@ fn range_only(figures: &mut Figures<'_>) {
     });
 }
 
-/// What is said at the end of portions. Consistency is counted from an estimator's second motion on: the first has no
-/// portion before it to lean on.
+/// Adds the figures of motions reported at the end of portions. Consistency is counted from an estimator's
+/// second motion on: the first has no previous portion as a prior.
 fn motion(pick: fn(&PortionVerdict) -> Option<MotionVerdict>, mut figures: Figures<'_>) {
     let motion_of = move |field: &FieldVerdict| field.portion.as_ref().and_then(pick);
     let right = move |field: &FieldVerdict| motion_of(field).filter(|motion| !motion.is_wrong);

@@ -1,4 +1,4 @@
-//! Truth and answers made by hand, for the tests of the score.
+//! Hand-made truth and outcomes for the tests of the score.
 
 use contract::Camera;
 use contract::docking::{
@@ -9,7 +9,7 @@ use nalgebra::{Matrix6, Vector3};
 
 use super::truth::{TargetVisibility, TrueField};
 
-/// 768 × 576 square pixels, without distortion.
+/// A camera of 768 × 576 square pixels, without distortion.
 pub(crate) fn camera(focal_px: f64) -> Camera {
     Camera {
         columns: 768,
@@ -24,7 +24,7 @@ pub(crate) fn camera(focal_px: f64) -> Camera {
     }
 }
 
-/// A narrow lens (0), a wide one (1), and a target with four marks that reach from 0.23 to 0.27 m.
+/// A narrow lens (0), a wide lens (1), and a target with four marks that extend from 0.23 to 0.27 m.
 pub(crate) fn setup() -> DockingSetup {
     let mark = |x: f64, y: f64| {
         let corner = |r: f64, side: f64| [r * x - side * y, r * y + side * x];
@@ -52,12 +52,12 @@ pub(crate) fn setup() -> DockingSetup {
     }
 }
 
-/// Straight ahead of the target.
+/// A pose straight ahead of the target.
 pub(crate) fn ahead(range_m: f64) -> Pose {
     Pose { position_m: Vector3::new(0.0, 0.0, range_m), phi_rad: Vector3::zeros() }
 }
 
-/// A field of a camera straight ahead of the target that approaches at 0.2 m/s, seen with the narrow lens.
+/// A field of a camera straight ahead of the target, which approaches at 0.2 m/s, with the narrow lens.
 pub(crate) fn field(number: u64, range_m: f64) -> TrueField {
     TrueField {
         field: number,
@@ -72,7 +72,7 @@ pub(crate) fn field(number: u64, range_m: f64) -> TrueField {
     }
 }
 
-/// A measurement of this pose, with 0.01 m and 0.01 rad of standard deviation in each parameter.
+/// A measurement of this pose, with standard deviations of 0.01 m and 0.01 rad in each parameter.
 pub(crate) fn measured_outcome(pose: Pose) -> DockingOutcome {
     let covariance = Matrix6::from_diagonal_element(1e-4);
     let best = PoseEstimate { pose, covariance };
@@ -84,7 +84,7 @@ pub(crate) fn measured_outcome(pose: Pose) -> DockingOutcome {
     }
 }
 
-/// The same measurement, doubtful.
+/// A doubtful measurement of this pose.
 pub(crate) fn doubtful_outcome(pose: Pose, doubt: FailedCheck) -> DockingOutcome {
     let DockingSolution::Measured(measurement) = measured_outcome(pose).solution else {
         unreachable!("it is measured")
@@ -92,7 +92,7 @@ pub(crate) fn doubtful_outcome(pose: Pose, doubt: FailedCheck) -> DockingOutcome
     DockingOutcome { solution: DockingSolution::Doubtful { measurement, doubt }, ..measured_outcome(pose) }
 }
 
-/// A range alone.
+/// A range-only measurement.
 pub(crate) fn range_only(range_m: f64, sigma_m: f64) -> DockingOutcome {
     DockingOutcome {
         solution: DockingSolution::RangeOnly { range_m, sigma_m },

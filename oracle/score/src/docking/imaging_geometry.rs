@@ -1,17 +1,18 @@
-//! How large the target is in the image, by geometry alone.
+//! Size of the target in the image, from geometry only.
 
 use contract::docking::{DockingSetup, Pose, TargetModel};
 
-/// The cameras and the target, as far as they decide what an image can show.
+/// Dimensions of the target and focal lengths of the cameras, which determine the details that an image
+/// resolves.
 #[derive(Debug, Clone)]
 pub(super) struct ImagingGeometry {
-    /// Focal length of each camera, px, the shorter of both.
+    /// Focal length of each camera, px: the shorter of the two axes.
     focal_px: Vec<f64>,
     target: TargetModel,
 }
 
 impl ImagingGeometry {
-    /// Narrowest bar of the cross that is resolved, px: one line of a field is two rows of the camera.
+    /// Narrowest resolved bar of the cross, px: one line of a field spans two rows of the camera.
     pub(super) const RESOLVED_BAR_PX: f64 = 2.0;
 
     pub(super) fn new(setup: &DockingSetup) -> Self {
@@ -20,17 +21,17 @@ impl ImagingGeometry {
         Self { focal_px, target: setup.target.clone() }
     }
 
-    /// The target's dimensions.
+    /// Returns the dimensions of the target.
     pub(super) fn target(&self) -> &TargetModel {
         &self.target
     }
 
-    /// Focal length of a camera, px; `None` for a camera that the setup does not have.
+    /// Returns the focal length of a camera, px; `None` for a camera that the setup does not have.
     pub(super) fn focal_px(&self, camera: usize) -> Option<f64> {
         self.focal_px.get(camera).copied()
     }
 
-    /// Whether the cross's bars are wide enough in the image to have two edges.
+    /// Returns true if the bars of the cross are wide enough in the image to have two edges.
     pub(super) fn resolves(&self, camera: usize, pose: &Pose) -> bool {
         let cross = &self.target.cross;
         let distance_m = pose.position_m.z - cross.height_m;
@@ -53,7 +54,7 @@ mod tests {
         assert!(!geometry.resolves(0, &ahead(44.1)) && geometry.resolves(0, &ahead(44.0)));
         assert!(!geometry.resolves(1, &ahead(16.2)) && geometry.resolves(1, &ahead(16.1)));
         assert!(!geometry.resolves(2, &ahead(5.0)), "a camera that is not there");
-        // The cross stands out 0.3 m: who is at it or behind it sees no bar.
+        // The cross is 0.3 m in front of the disk: from this distance or nearer, no bar is visible.
         assert!(geometry.resolves(0, &ahead(0.31)) && !geometry.resolves(0, &ahead(0.3)));
     }
 }

@@ -1,9 +1,10 @@
-//! The score of a docking run: a pure function of the truth and of what a pipeline said about each field.
+//! Score of a docking run: a pure function of the truth and of the pipeline's outcome for each field.
 //!
-//! Every field is counted exactly once and gets one [`Verdict`]: measured and right, measured and grossly wrong, the
-//! range alone, or missed for one cause. How large the errors are is counted over the right ones, whether they are as
-//! large as the pipeline says ([`consistency`]) as well; what is said at the end of a portion (`portions`) and how
-//! long it takes has figures of its own. `docs/score.md` has the definitions in full.
+//! Every field is counted exactly once and has one [`Verdict`]: success, range only, doubtful, grossly wrong,
+//! or missed with one cause. The sizes of the errors, and their consistency with the stated covariances
+//! ([`consistency`]), are counted over the successes. The motions reported at the end of portions
+//! (`portions`), and the time until a report, have separate figures. `docs/score.md` has the complete
+//! definitions.
 
 mod accumulate;
 mod approach_parameters;

@@ -1,4 +1,4 @@
-//! What is said at the end of a portion, against the truth of the moment that it is said of.
+//! Motion reported at the end of a portion, compared with the truth at the time that it refers to.
 
 use contract::docking::Motion;
 use nalgebra::{Matrix6, Vector6};
@@ -10,19 +10,20 @@ use super::imaging_geometry::ImagingGeometry;
 use super::truth::TrueField;
 use super::verdict::gross;
 
-/// A motion of a moment farther than this from the field that reports it is wrong whatever it says, s.
+/// Largest time difference between a motion and the field that reports it, s; beyond it the motion counts as
+/// wrong.
 const MAX_AGE_S: f64 = 1.0;
 
-/// One estimator's motion at the end of a portion.
+/// Verdict on one estimator's motion at the end of a portion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MotionVerdict {
-    /// Whether its estimator gave a motion before: the first of a sequence has none to lean on.
+    /// True if the estimator has reported an earlier motion; the first of a sequence has no prior.
     pub(super) is_led: bool,
-    /// Whether its pose is grossly wrong, as that of a field may be.
+    /// True if the pose is grossly wrong, by the criteria for fields.
     pub(super) is_wrong: bool,
-    /// Measured minus true: ρ (m), u (m/s), α, β, φ1, φ2, φ3 (rad).
+    /// Errors, measured minus true: ρ (m), u (m/s), α, β, φ1, φ2, φ3 (rad).
     pub(super) errors: [f64; 7],
-    /// Whether each lies within three of its standard deviations.
+    /// True for each error within three of its standard deviations.
     pub(super) within: [Option<bool>; 7],
     /// NEES over its dimension: of (d, φ), of (d, d'), of (φ, φ').
     pub(super) nees: [Option<f64>; 3],
@@ -35,11 +36,12 @@ impl MotionVerdict {
         motion: &Motion,
         is_led: bool,
     ) -> Self {
-        // A portion's last fields may not be measured: its motion is then of an earlier moment than the field that reports
-        // it. A few fields back the true rates carry the truth there to micrometres.
+        // The last fields of a portion may be without measurement: its motion then refers to an earlier time
+        // than the field that reports it. Over a few fields the true rates extrapolate the truth to
+        // micrometres.
         let since_s = motion.time_s - truth.time_s;
         let moved = TrueField { pose: truth.moved(since_s), ..truth.clone() };
-        // Times of files are rounded: what is nearer than a microsecond is the same moment.
+        // Times in files are rounded: times closer than a microsecond are equal.
         let truth = if since_s.abs() < 1e-6 { truth } else { &moved };
         let shown = ApproachParameters::from_motion(&motion.pose, &motion.velocity_m_s);
         let errors = shown.difference(&ApproachParameters::from_motion(&truth.pose, &truth.velocity_m_s));
@@ -66,7 +68,7 @@ impl MotionVerdict {
     }
 }
 
-/// The covariance of (d, φ) of a motion.
+/// Returns the covariance of (d, φ) of a motion.
 fn pose_covariance(motion: &Motion) -> Matrix6<f64> {
     let mut covariance = Matrix6::zeros();
     covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&motion.position_covariance.fixed_view::<3, 3>(0, 0));
@@ -76,14 +78,14 @@ fn pose_covariance(motion: &Motion) -> Matrix6<f64> {
     covariance
 }
 
-/// The report at the end of a portion.
+/// Verdict on the report at the end of a portion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PortionVerdict {
-    /// By the pipeline's own best estimator, where it gave one.
+    /// Motion from the pipeline's best estimator, if reported.
     pub(super) best: Option<MotionVerdict>,
-    /// By the paper's formulas, where they gave one.
+    /// Motion from the paper's formulas, if reported.
     pub(super) paper: Option<MotionVerdict>,
-    /// Fields from the portion's first measured one to the report, both counted.
+    /// Number of fields from the portion's first measured one to the report, including both.
     pub(super) fields: u64,
 }
 
@@ -95,7 +97,8 @@ mod tests {
     use super::*;
     use crate::docking::hand_made::{field, setup};
 
-    /// The same motion told of a moment 0.1 s earlier, where the camera was 20 mm farther away, is as good.
+    /// A motion reported for a time 0.1 s earlier, when the camera was 20 mm farther away, is equally
+    /// correct.
     #[test]
     fn a_motion_is_held_against_the_truth_of_its_own_time() {
         let truth = TrueField {
@@ -128,7 +131,7 @@ mod tests {
             MotionVerdict::from_motion(&geometry, &truth, &motion(3.9, 10.22), false).is_wrong,
             "too old"
         );
-        // A tenth of a microsecond is the rounding of a file, and moves nothing.
+        // A tenth of a microsecond is the rounding of a file and has no effect.
         let rounded = MotionVerdict::from_motion(&geometry, &truth, &motion(5.0 + 1e-7, 10.0), false);
         assert_eq!(rounded.errors[..6], [0.0; 6]);
     }
@@ -157,7 +160,7 @@ mod tests {
         for (error, expected) in verdict.errors.iter().zip(expected) {
             assert!((error - expected).abs() < 1e-12, "{:?}", verdict.errors);
         }
-        // 2σ, 1σ; of φ 1σ and 2σ, of its rate 2σ.
+        // Errors of d: 2σ, of its rate: 1σ; of φ: 1σ and 2σ, of its rate: 2σ.
         assert_eq!(verdict.within, [Some(true); 7]);
         for (met, expected) in verdict.nees.iter().zip([(4.0 + 1.0 + 4.0) / 6.0, 5.0 / 6.0, 9.0 / 6.0]) {
             assert!((met.unwrap() - expected).abs() < 1e-9, "{:?}", verdict.nees);

@@ -1,45 +1,45 @@
-//! What of the truth about a field the score uses.
+//! Part of a field's ground truth that the score uses.
 
 use contract::docking::Pose;
 use nalgebra::Vector3;
 use sim::docking::FieldTruth;
 
-/// How much of the target lies inside the image.
+/// Portion of the target inside the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TargetVisibility {
-    /// Plate, marks and cross, all of them.
+    /// Plate, all marks and cross.
     Full,
     /// The whole cross and at least half of the marks.
     Partial,
-    /// Less than that.
+    /// Less than the whole cross and half of the marks.
     Outside,
 }
 
-/// The truth about one field, at its own moment.
+/// Ground truth of one field, at the time of this field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrueField {
     /// Number of the field.
     pub field: u64,
-    /// Its moment, s since the beginning of the sequence.
+    /// Time of the field, s since the beginning of the sequence.
     pub time_s: f64,
-    /// The camera that took it, as in [`contract::docking::DockingSetup::cameras`].
+    /// Camera that took the field: index into [`contract::docking::DockingSetup::cameras`].
     pub camera: usize,
     /// Pose of the camera.
     pub pose: Pose,
     /// Velocity of the camera in the target frame, m/s.
     pub velocity_m_s: Vector3<f64>,
-    /// dφ/dt, rad/s.
+    /// Time derivative of φ, rad/s.
     pub phi_rate_rad_s: Vector3<f64>,
-    /// How much of the target is in the picture.
+    /// Portion of the target inside the image.
     pub visibility: TargetVisibility,
-    /// Fraction of the image's lines that were lost on the way, 0 to 1.
+    /// Fraction of the image's lines that were lost in transmission, 0 to 1.
     pub lost_lines: f64,
-    /// Fraction of the marks on which neither Sun nor lamp shines, 0 to 1.
+    /// Fraction of the marks that neither the Sun nor the lamp illuminates, 0 to 1.
     pub marks_in_shadow: f64,
 }
 
 impl TrueField {
-    /// The pose `since_s` later, or earlier, at the rates of this moment.
+    /// Returns the pose `since_s` later (earlier if negative), extrapolated with the rates of this field.
     pub(super) fn moved(&self, since_s: f64) -> Pose {
         Pose {
             position_m: self.pose.position_m + self.velocity_m_s * since_s,
@@ -47,7 +47,8 @@ impl TrueField {
         }
     }
 
-    /// From the whole truth, of a target with `marks` marks and a camera with `camera_rows` rows.
+    /// Extracts the truth that the score needs from the complete truth, for a target with `marks` marks and a
+    /// camera with `camera_rows` rows.
     pub fn new(truth: &FieldTruth, marks: usize, camera_rows: usize) -> Self {
         let share = |bits: u64| if marks == 0 { 0.0 } else { f64::from(bits.count_ones()) / marks as f64 };
         let rows = truth.lines.rows(camera_rows).max(1) as f64;

@@ -1,4 +1,4 @@
-//! What became of a field: one verdict each.
+//! Verdict on one field: every field gets exactly one.
 
 use contract::docking::{DockingOutcome, DockingSolution, FailedCheck, NoPose, Pose};
 
@@ -7,26 +7,28 @@ use super::errors::PoseErrors;
 use super::imaging_geometry::ImagingGeometry;
 use super::truth::TrueField;
 
-/// In what a pose is grossly wrong: not measured badly, but of something else.
+/// Kind of a gross pose error, which means that another object was measured, rather than the target
+/// inaccurately.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GrossError {
-    /// ρ is off by more than [`Limits::RANGE`].
+    /// The error of ρ exceeds [`Limits::RANGE`].
     Range,
-    /// The target is said to be where it is not.
+    /// The error of the target's direction exceeds [`Limits::direction_rad`].
     Direction,
-    /// φ3 is off by more than [`Limits::ANGLE_RAD`].
+    /// The error of φ3 exceeds [`Limits::ANGLE_RAD`].
     Roll,
-    /// The disk's normal is off by more than the image allows.
+    /// The error of the disk's normal exceeds [`Limits::tilt_rad`], which depends on the resolution of the
+    /// image.
     Tilt,
-    /// A range from the outline is off by more than [`Limits::OUTLINE`].
+    /// The error of a range from the station's outline exceeds [`Limits::OUTLINE`].
     Outline,
 }
 
 impl GrossError {
-    /// Every one, in the order in which they are looked for.
+    /// All kinds, in the order in which they are tested.
     pub const ALL: [Self; 5] = [Self::Range, Self::Direction, Self::Roll, Self::Tilt, Self::Outline];
 
-    /// The word used in files.
+    /// Returns the word used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Range => "range",
@@ -38,30 +40,33 @@ impl GrossError {
     }
 }
 
-/// How far a pose may be off before it is wrong, at a true pose and with a lens.
+/// Largest pose errors that do not count as gross, for a true pose and a lens.
 ///
-/// The limits are those of mistaking one thing for another (a block of the docking ring for the cross, the plate's shadow
-/// for its edge, a target turned by a mark) and lie many standard deviations from a sound measurement.
+/// The limits correspond to mistaking one object for another (a block of the docking ring for the cross, the
+/// plate's shadow for its edge, a target rotated by one mark) and exceed the errors of a sound measurement by
+/// many standard deviations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Of ρ, m.
+    /// Limit of the error of ρ, m.
     pub range_m: f64,
-    /// Of the direction of the target's origin, rad: half of the marks' circle as seen from here.
+    /// Limit of the error in the direction of the target's origin, rad: half the radius of the circle of
+    /// marks as seen from the true position.
     pub direction_rad: f64,
-    /// Of the disk's normal, rad: [`Limits::ANGLE_RAD`], or the tilt that moves the cross over the disk by one pixel,
-    /// ρ/(f b), where that is more: an image does not show less.
+    /// Limit of the error of the disk's normal, rad: the larger of [`Limits::ANGLE_RAD`] and the tilt that
+    /// moves the cross over the disk by one pixel, ρ/(f b), since an image shows no smaller tilt.
     pub tilt_rad: f64,
 }
 
 impl Limits {
-    /// Of ρ, as a fraction of it.
+    /// Limit of the error of ρ, as a fraction of ρ.
     pub const RANGE: f64 = 0.05;
-    /// Of ρ from the outline of the station, as a fraction of it: its dimensions are assumed, its edges are many.
+    /// Limit of the error of a range from the station's outline, as a fraction of ρ: the dimensions of the
+    /// station are assumed, and it has many edges.
     pub const OUTLINE: f64 = 0.2;
-    /// Of roll and tilt, rad: 5°.
+    /// Limit of the errors of roll and tilt, rad: 5°.
     pub const ANGLE_RAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
-    /// Of a true pose; `None` for a camera that is not there.
+    /// Returns the limits at a true pose; `None` for a camera that the setup does not have.
     pub(super) fn for_pose(geometry: &ImagingGeometry, camera: usize, truth: &Pose) -> Option<Self> {
         let rho = truth.position_m.norm();
         let target = geometry.target();
@@ -73,9 +78,9 @@ impl Limits {
         })
     }
 
-    /// In what a pose of these errors is grossly wrong, if it is.
+    /// Returns the first gross error among these pose errors, if any.
     pub(super) fn gross(&self, errors: &PoseErrors) -> Option<GrossError> {
-        // Negated, so that a NaN is gross.
+        // Tests for "within the limit" and negates the result, which makes a NaN gross.
         let within = |error: f64, limit: f64| error.abs() <= limit;
         let held = [
             (GrossError::Range, within(errors.range_m, self.range_m)),
@@ -87,47 +92,47 @@ impl Limits {
     }
 }
 
-/// An angle brought to −π to π.
+/// Reduces an angle to the range from −π to π.
 fn turn(angle_rad: f64) -> f64 {
     libm::remainder(angle_rad, 2.0 * std::f64::consts::PI)
 }
 
-/// What became of a field.
+/// Verdict on one field.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
-    /// All six parameters, none grossly wrong.
+    /// All six parameters were measured, and none of them is grossly wrong.
     Success {
-        /// How far they are off.
+        /// Errors of the measured pose.
         errors: PoseErrors,
     },
-    /// The range alone, not grossly wrong.
+    /// Only the range was measured, and it is not grossly wrong.
     RangeOnly {
         /// Measured minus true d3, m.
         error_m: f64,
-        /// The standard deviation told, m.
+        /// Stated standard deviation, m.
         sigma_m: f64,
     },
-    /// A pose that the pipeline itself doubts, right or wrong.
+    /// A pose that failed a test of the pipeline, whether correct or wrong.
     Doubtful {
-        /// The test that it failed.
+        /// Test that the pose failed.
         doubt: FailedCheck,
-        /// In what it is grossly wrong, if it is.
+        /// Gross error of the pose, if any.
         gross: Option<GrossError>,
     },
-    /// An answer that is grossly wrong.
+    /// A measurement that is grossly wrong.
     Wrong {
-        /// In what.
+        /// Kind of the gross error.
         gross: GrossError,
     },
-    /// No answer.
+    /// No measurement.
     Missed {
-        /// Why.
+        /// Cause of the miss.
         cause: MissCause,
     },
 }
 
 impl Verdict {
-    /// Judges an answer; `None`: there is none.
+    /// Classifies an outcome; `None` stands for a field without an outcome.
     pub(super) fn from_outcome(
         geometry: &ImagingGeometry,
         truth: &TrueField,
@@ -166,7 +171,8 @@ impl Verdict {
     }
 }
 
-/// In what a pose is grossly wrong. Of a camera that the setup does not have nothing can be said, and nothing is.
+/// Returns the gross error of a pose, if any; always `None` for a camera that the setup does not have, since
+/// its limits are unknown.
 pub(super) fn gross(
     geometry: &ImagingGeometry,
     truth: &TrueField,
@@ -210,14 +216,15 @@ mod tests {
         assert_eq!(gross_of(10.0, |pose| pose.phi_rad.z = 0.08), None);
     }
 
-    /// Half of the circle's radius of 0.25 m at 10 m is 12.5 mrad.
+    /// Half of the circle's radius of 0.25 m, seen from 10 m, is 12.5 mrad.
     #[test]
     fn a_position_beyond_half_the_circle_is_of_something_else() {
         assert_eq!(gross_of(10.0, |pose| pose.phi_rad.x = 0.0124), None);
         assert_eq!(gross_of(10.0, |pose| pose.phi_rad.x = 0.0126), Some(GrossError::Direction));
     }
 
-    /// With the target where it was: at 10 m the limit is 5°, at 100 m one pixel of parallax, 100/(2917 × 0.3) = 6.55°.
+    /// The target's direction is kept: at 10 m the limit is 5°, at 100 m one pixel of parallax, 100/(2917 ×
+    /// 0.3) = 6.55°.
     #[test]
     fn a_tilt_is_wrong_beyond_what_the_image_shows() {
         let tilted = |range_m: f64, degrees: f64| {
@@ -231,7 +238,7 @@ mod tests {
         assert_eq!((tilted(100.0, 6.5), tilted(100.0, 6.6)), (None, Some(GrossError::Tilt)));
     }
 
-    /// A doubtful pose is neither success nor wrong, and its error is looked at all the same.
+    /// A doubtful pose is neither a success nor wrong, but its error is still tested for being gross.
     #[test]
     fn a_doubtful_pose_is_doubtful_whatever_its_error() {
         let at = |d3_m| verdict(10.0, &doubtful_outcome(ahead(d3_m), FailedCheck::Motion));

@@ -9,12 +9,12 @@ pub(crate) const BACKGROUND: Rgb = [24, 24, 28];
 pub(crate) const NO_DATA: Rgb = [17, 19, 27];
 /// Headings and values.
 pub(crate) const WHITE: Rgb = [238, 238, 238];
-/// Names of values.
+/// Names of values in tables.
 pub(crate) const GREY: Rgb = [150, 154, 162];
 /// Outlines under marks and text.
 pub(crate) const BLACK: Rgb = [0, 0, 0];
 
-/// The target.
+/// True position of the target; the recognised cross.
 pub(crate) const ORANGE: Rgb = [255, 176, 64];
 /// Stars; the circle of marks.
 pub(crate) const BLUE: Rgb = [96, 200, 255];
@@ -22,18 +22,18 @@ pub(crate) const BLUE: Rgb = [96, 200, 255];
 pub(crate) const VIOLET: Rgb = [212, 140, 240];
 /// Hot pixels; rejected marks.
 pub(crate) const RED: Rgb = [255, 92, 104];
-/// Cosmic-ray hits; partial answers.
+/// Cosmic-ray hits; partial measurements.
 pub(crate) const YELLOW: Rgb = [236, 222, 96];
-/// Answers.
+/// Measurements of the pipeline.
 pub(crate) const GREEN: Rgb = [110, 236, 130];
 /// Transmitted regions.
 pub(crate) const SLATE: Rgb = [122, 134, 158];
 
-/// Every colour that is not a grey of the frame.
+/// All colours other than the greys of a frame.
 pub(crate) const ACCENTS: [Rgb; 10] =
     [BACKGROUND, NO_DATA, GREY, ORANGE, BLUE, VIOLET, RED, YELLOW, GREEN, SLATE];
 
-/// `over` on `under`, with a coverage of 0 to 255.
+/// Blends `over` onto `under` with a coverage of 0 to 255.
 pub(crate) fn blend(under: Rgb, over: Rgb, coverage: u8) -> Rgb {
     let part = u32::from(coverage);
     let mix =

@@ -1,4 +1,4 @@
-//! Names beside marks, where they cover nothing.
+//! Labels beside marks, placed where they cover nothing.
 
 use super::colour::BLACK;
 use super::text::Font;
@@ -6,23 +6,24 @@ use crate::canvas::{Area, Canvas};
 use crate::layout::view::Placement;
 use crate::panel::Mark;
 
-/// Names of one panel, at most: more of them are a tapestry.
+/// Largest number of labels in one panel; more would be unreadable.
 const MOST: usize = 24;
-/// From a mark to its name, px.
+/// Distance from a mark to its label, px.
 const GAP: f64 = 3.0;
 
-/// A region of more than this is no frame around one mark, px of the picture.
+/// Largest side of a region that frames a single mark, px of the picture.
 const LARGEST_REGION: f64 = 80.0;
 
-/// The area of a mark in a panel.
+/// Returns the area of a mark in a panel.
 pub(crate) fn bounds(mark: &Mark, placement: &Placement) -> Area {
     let (x, y) = placement.inner(mark.at);
     let reach = mark.shape.reach(placement.zoom);
     Area { left: x - reach, top: y - reach, width: 2.0 * reach, height: 2.0 * reach }
 }
 
-/// Writes the names of marks into a panel. Each stands beside its mark, and beside the transmitted region around that, where it meets
-/// no other mark, no region, no name and nothing of `taken`; where there is no such place it is left out. Earlier marks come first.
+/// Writes the labels of marks into a panel. Each label stands beside its mark and the small transmitted
+/// regions around it, where it overlaps no mark, no small region, no other label and no area of `taken`; it
+/// is left out if there is no such position. Earlier marks have precedence.
 pub(crate) fn write(
     canvas: &mut Canvas,
     placement: &Placement,

@@ -1,4 +1,4 @@
-//! Lines, circles and text on an opaque picture.
+//! Drawing of lines, circles and text on an opaque picture.
 
 pub(crate) mod colour;
 pub(crate) mod label;
@@ -12,17 +12,17 @@ use crate::canvas::text::Font;
 use crate::layout::view::Placement;
 use crate::panel::{Mark, Shape};
 
-/// Most pixels of a side: more than any layout has.
+/// Largest side of a picture, px: more than any layout needs.
 const MAX_SIDE: usize = 20_000;
 /// Width of the lines of marks, px.
 pub(crate) const LINE: f64 = 1.8;
 
-/// From this enlargement on a picture is a close-up.
+/// Smallest zoom of a close-up: pixels of the picture per pixel of the frame.
 pub(crate) const CLOSE: f64 = 4.0;
-/// Radius of the circle around a position in a close-up, px.
+/// Radius of the circle around an object in a close-up, px.
 const CLOSE_RADIUS: f64 = 15.0;
 
-/// A rectangle of the picture, px.
+/// Rectangle of the picture, px.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Area {
     pub(crate) left: f64,
@@ -32,14 +32,14 @@ pub(crate) struct Area {
 }
 
 impl Area {
-    /// Whether two areas have a point in common.
+    /// Returns true if two areas have a point in common.
     pub(crate) fn meets(&self, other: &Self) -> bool {
         let apart = |a: f64, wide: f64, b: f64, wide_b: f64| a + wide <= b || b + wide_b <= a;
         !(apart(self.left, self.width, other.left, other.width)
             || apart(self.top, self.height, other.top, other.height))
     }
 
-    /// The smallest area that holds two.
+    /// Returns the smallest area that contains two areas.
     pub(crate) fn with(&self, other: &Self) -> Self {
         let (left, top) = (self.left.min(other.left), self.top.min(other.top));
         let right = (self.left + self.width).max(other.left + other.width);
@@ -47,7 +47,7 @@ impl Area {
         Self { left, top, width: right - left, height: bottom - top }
     }
 
-    /// Whether it lies inside of a picture of this size.
+    /// Returns true if the area lies inside a picture of this size.
     pub(crate) fn is_inside(&self, width: usize, height: usize) -> bool {
         self.left >= 0.0
             && self.top >= 0.0
@@ -56,14 +56,14 @@ impl Area {
     }
 }
 
-/// An opaque picture that is drawn on.
+/// Opaque picture to draw on.
 pub(crate) struct Canvas(Pixmap);
 
 impl Canvas {
-    /// A picture of one colour.
+    /// Creates a picture of one colour.
     ///
     /// # Errors
-    /// [`ShowError::Size`] for a picture without pixels, or of more than can be allocated.
+    /// [`ShowError::Size`] for a picture without pixels, or one that is too large to be allocated.
     pub(crate) fn new(width: usize, height: usize, [red, green, blue]: Rgb) -> Result<Self, ShowError> {
         let error = || ShowError::Size { width, height };
         let side =
@@ -81,12 +81,12 @@ impl Canvas {
         self.0.height() as usize
     }
 
-    /// All pixels, row by row.
+    /// Returns all pixels, row by row.
     pub(crate) fn rgb(&self) -> Vec<Rgb> {
         self.0.pixels().iter().map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect()
     }
 
-    /// The bytes of a run of pixels in a row, cut at the picture's edge.
+    /// Returns the bytes of `count` consecutive pixels in a row, clipped at the picture's edge.
     fn row(&mut self, left: usize, top: usize, count: usize) -> impl Iterator<Item = &mut [u8; 4]> {
         let (width, height) = (self.width(), self.height());
         let count = if top < height { count.min(width.saturating_sub(left)) } else { 0 };
@@ -95,7 +95,7 @@ impl Canvas {
         pixels.iter_mut().skip(first).take(count)
     }
 
-    /// Copies pixels, rows of `width`, with their upper left corner at a point.
+    /// Copies rows of `width` pixels into the picture, with their upper left corner at a point.
     pub(crate) fn copy(&mut self, left: usize, top: usize, width: usize, pixels: &[Rgb]) {
         for (y, row) in pixels.chunks(width.max(1)).enumerate() {
             for (to, [red, green, blue]) in self.row(left, top + y, width).zip(row) {
@@ -104,7 +104,7 @@ impl Canvas {
         }
     }
 
-    /// Darkens an area, so that text on it can be read.
+    /// Darkens an area to make text on it legible.
     pub(crate) fn shade(&mut self, area: &Area) {
         let rectangle = rectangle(area);
         let mut paint = paint(BLACK);
@@ -114,18 +114,18 @@ impl Canvas {
         }
     }
 
-    /// The edge of an area.
+    /// Draws the edge of an area.
     pub(crate) fn frame(&mut self, area: &Area, colour: Rgb, width: f64) {
         let path = rectangle(area).map(PathBuilder::from_rect);
         self.stroke(path, colour, width);
     }
 
-    /// A circle.
+    /// Draws a circle.
     pub(crate) fn circle(&mut self, (x, y): (f64, f64), radius: f64, colour: Rgb, width: f64) {
         self.stroke(PathBuilder::from_circle(x as f32, y as f32, radius as f32), colour, width);
     }
 
-    /// Straight lines, each from a point to another one.
+    /// Draws straight lines, each given by its two end points.
     pub(crate) fn lines(&mut self, lines: &[[(f64, f64); 2]], colour: Rgb, width: f64) {
         let mut path = PathBuilder::new();
         for [from, to] in lines {
@@ -136,7 +136,8 @@ impl Canvas {
     }
 
     fn stroke(&mut self, path: Option<tiny_skia::Path>, colour: Rgb, width: f64) {
-        // Circles of outlines may be a thousand times as large as the picture; the rasteriser takes no such coordinates.
+        // The rasteriser rejects such coordinates: circles of outlines may be a thousand times as large as
+        // the picture.
         let drawable = path.filter(|path| {
             let bounds = path.bounds();
             [bounds.left(), bounds.top(), bounds.right(), bounds.bottom()].iter().all(|side| side.abs() < 1e5)
@@ -147,7 +148,7 @@ impl Canvas {
         }
     }
 
-    /// A line of text with its upper left corner at a point.
+    /// Writes a line of text with its upper left corner at a point.
     pub(crate) fn text(&mut self, left: usize, top: usize, text: &str, font: Font, colour: Rgb) {
         for (i, character) in text.chars().enumerate() {
             let Some(glyph) = font.glyph(character) else { continue };
@@ -162,7 +163,7 @@ impl Canvas {
         }
     }
 
-    /// A mark at a point, with a dark edge: it is seen on bright pixels too.
+    /// Draws a mark at a point, with a dark edge that makes it visible on bright pixels too.
     pub(crate) fn mark(&mut self, mark: &Mark, placement: &Placement) {
         let at = placement.inner(mark.at);
         if !(at.0.is_finite() && at.1.is_finite()) {
@@ -190,13 +191,13 @@ impl Canvas {
         }
     }
 
-    /// Four arms around a point that stays free.
+    /// Draws four arms around a point, which itself is left free.
     fn open_cross(&mut self, (x, y): (f64, f64), axes: [(f64, f64); 2], arm: f64, colour: Rgb, width: f64) {
         let inner = (0.3 * arm).max(2.0);
         let ends = |(dx, dy): (f64, f64)| {
             [-1.0, 1.0].map(|sign: f64| {
                 let point = |length: f64| (x + sign * length * dx, y + sign * length * dy);
-                // The dark edge of a line ends with it.
+                // The dark edge of a line also covers its ends.
                 [point(inner - 0.5 * (width - LINE)), point(arm + 0.5 * (width - LINE))]
             })
         };
@@ -206,10 +207,10 @@ impl Canvas {
 }
 
 impl Shape {
-    /// From the centre to the farthest line, px of the picture.
+    /// Returns the distance from the centre to the farthest line, px of the picture.
     pub(crate) fn reach(self, zoom: f64) -> f64 {
         match self {
-            // Of a close-up the object itself is seen: its position is marked, not its extent.
+            // A close-up shows the object itself: the mark indicates its position, not its extent.
             Self::Around { .. } if zoom >= CLOSE => CLOSE_RADIUS,
             Self::Around { radius_px, least } => (radius_px * zoom + 3.0).max(least),
             Self::Circle { radius_px } => (radius_px * zoom).max(1.0),

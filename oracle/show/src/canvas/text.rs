@@ -1,13 +1,13 @@
-//! Text: glyphs of Noto Sans Mono, rasterised beforehand.
+//! Text rendering with pre-rasterised glyphs of Noto Sans Mono.
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, RasterizedChar, get_raster};
 
 /// A font at one size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Font {
-    /// Names beside marks.
+    /// Labels beside marks.
     Label,
-    /// Everything else.
+    /// All other text.
     Body,
     /// Headings.
     Heading,
@@ -22,22 +22,23 @@ impl Font {
         }
     }
 
-    /// Height of a line, px.
+    /// Returns the height of a line, px.
     pub(crate) fn height(self) -> usize {
         self.face().1.val()
     }
 
-    /// From a character to the next, px.
+    /// Returns the distance from one character to the next, px.
     pub(crate) fn advance(self) -> usize {
         self.glyph(' ').map_or(0, |glyph| glyph.width())
     }
 
-    /// Width of a text, px.
+    /// Returns the width of a text, px.
     pub(crate) fn width(self, text: &str) -> usize {
         self.advance() * text.chars().count()
     }
 
-    /// The picture of a character. The font has Latin characters alone: a few others are written by their like, the rest as `?`.
+    /// Returns the glyph of a character. The font has only Latin characters: a few others are replaced by
+    /// similar ones, all remaining ones by `?`.
     pub(crate) fn glyph(self, character: char) -> Option<RasterizedChar> {
         let (weight, height) = self.face();
         let known = match character {
@@ -49,7 +50,7 @@ impl Font {
         get_raster(known, weight, height).or_else(|| get_raster('?', weight, height))
     }
 
-    /// A text that is no wider than `width`: its end is left out where it must be.
+    /// Shortens a text to at most `width`: a text that is too long ends in `..`.
     pub(crate) fn cut(self, text: &str, width: usize) -> String {
         let most = width / self.advance().max(1);
         if text.chars().count() <= most {

@@ -1,4 +1,4 @@
-//! The legend: what each kind of mark stands for.
+//! Legend of the kinds of marks.
 
 use crate::canvas::colour::GREY;
 use crate::canvas::text::Font;
@@ -6,12 +6,12 @@ use crate::canvas::{Area, Canvas, LINE};
 use crate::panel::Panel;
 use crate::panel::class::{Class, Symbol};
 
-/// Width of a symbol with the room after it, px.
+/// Width of a symbol and the gap after it, px.
 const SYMBOL: usize = 26;
-/// From an entry of a row to the next, px.
+/// Gap between two entries of a row, px.
 const GAP: usize = 26;
 
-/// The classes that are seen in some panels, in the order of the legend.
+/// Returns the classes that are visible in at least one of the panels, in the order of the legend.
 pub(crate) fn classes(panels: &[Panel]) -> Vec<Class> {
     let is_drawn = |class: &Class| {
         panels.iter().any(|panel| match class {
@@ -22,12 +22,12 @@ pub(crate) fn classes(panels: &[Panel]) -> Vec<Class> {
     Class::ALL.into_iter().filter(is_drawn).collect()
 }
 
-/// Width of an entry, px.
+/// Returns the width of an entry, px.
 pub(crate) fn width(class: Class) -> usize {
     SYMBOL + Font::Body.width(class.words())
 }
 
-/// Entries that fill rows of some width.
+/// Arranges entries in rows of at most the width `room`, px.
 pub(crate) fn rows(classes: &[Class], room: usize) -> Vec<Vec<Class>> {
     let mut rows: Vec<Vec<Class>> = Vec::new();
     let mut left = 0;
@@ -45,7 +45,7 @@ pub(crate) fn rows(classes: &[Class], room: usize) -> Vec<Vec<Class>> {
     rows
 }
 
-/// Draws rows of entries, one below the other.
+/// Draws rows of entries, one below another.
 pub(crate) fn draw(canvas: &mut Canvas, left: usize, top: usize, rows: &[Vec<Class>]) {
     for (line, row) in rows.iter().enumerate() {
         let top = top + line * line_height();
@@ -58,7 +58,7 @@ pub(crate) fn draw(canvas: &mut Canvas, left: usize, top: usize, rows: &[Vec<Cla
     }
 }
 
-/// From a row to the next, px.
+/// Returns the distance from one row to the next, px.
 pub(crate) fn line_height() -> usize {
     Font::Body.height() + 2
 }

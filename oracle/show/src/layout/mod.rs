@@ -1,4 +1,4 @@
-//! Panels, text and legend on one sheet.
+//! Layout of panels, text and legend on one sheet.
 
 pub(crate) mod legend;
 pub(crate) mod scale_bar;
@@ -19,13 +19,13 @@ use crate::panel::stretch::White;
 use crate::panel::{Mark, Panel, Table, Tone, Verdict};
 use crate::{MAX_PANELS, ShowError};
 
-/// Border of the sheet, and from a panel to its neighbour, px.
+/// Border of the sheet and gap between two panels, px.
 const MARGIN: usize = 16;
-/// Largest frame that is drawn pixel by pixel, px; larger ones are reduced to it.
+/// Largest frame that is drawn without reduction, px; larger frames are reduced to this size.
 const LARGEST: (usize, usize) = (1280, 1024);
-/// A frame of fewer columns is enlarged towards so many.
+/// Number of columns towards which a narrower frame is enlarged.
 const WANTED_COLUMNS: usize = 768;
-/// Width of the column beside a frame that is drawn alone, px.
+/// Width of the column beside a single frame, px.
 const COLUMN: usize = 400;
 /// Largest close-up beside a frame, px.
 const CLOSE_UP: (usize, usize) = (COLUMN, 300);
@@ -34,41 +34,42 @@ const SHEET: usize = 1000;
 /// Largest enlargement of a close-up.
 const MAX_ZOOM: usize = 24;
 
-/// A picture, and where its panels are.
+/// A picture, and the positions of its panels.
 #[derive(Debug, Clone)]
 pub struct Picture {
     /// Width, px.
     pub width: usize,
     /// Height, px.
     pub height: usize,
-    /// Red, green and blue of its pixels, row by row.
+    /// Red, green and blue of each pixel, row by row.
     pub rgb: Vec<[u8; 3]>,
-    /// The panels, in the order in which they were given.
+    /// Positions of the panels, in the order in which they were given.
     pub panels: Vec<PanelLayout>,
 }
 
-/// Where the parts of a panel are.
+/// Positions of the parts of a panel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PanelLayout {
-    /// The frame.
+    /// Position of the frame.
     pub frame: Placement,
-    /// The close-up, where there is one.
+    /// Position of the close-up, if there is one.
     pub close_up: Option<Placement>,
 }
 
-/// A part of a panel.
+/// Part of a panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
-    /// The view; marks have names in it.
+    /// The view, whose marks have labels.
     Frame,
-    /// The close-up.
+    /// The close-up, whose marks have no labels.
     CloseUp,
 }
 
-/// Draws one panel with a table beside it, or several as a contact sheet.
+/// Draws a single panel with a table beside it, or several panels as a contact sheet.
 ///
 /// # Errors
-/// [`ShowError::PanelCount`] for no panel or more than [`MAX_PANELS`]; [`ShowError::Size`] for a view without pixels.
+/// [`ShowError::PanelCount`] for no panel or more than [`MAX_PANELS`]; [`ShowError::Size`] for a view without
+/// pixels.
 pub fn picture(panels: &[Panel]) -> Result<Picture, ShowError> {
     match panels {
         [only] => single(only),
@@ -77,7 +78,7 @@ pub fn picture(panels: &[Panel]) -> Result<Picture, ShowError> {
     }
 }
 
-/// A frame, and beside it close-up, table and legend.
+/// Draws a frame with its close-up, table and legend.
 fn single(panel: &Panel) -> Result<Picture, ShowError> {
     let most = (WANTED_COLUMNS / panel.view.columns.max(1)).max(1);
     let frame = Placement::fit(panel.view, LARGEST, most).moved_to(MARGIN, MARGIN);
@@ -86,7 +87,7 @@ fn single(panel: &Panel) -> Result<Picture, ShowError> {
         .verdict
         .as_ref()
         .map(|verdict| (wrapped(&verdict.words, COLUMN, Font::Heading), colour_of(verdict)));
-    // Below the frame; below all where the frame is narrow.
+    // The legend stands below the frame, and where the frame is narrow, below everything.
     let room = if frame.width >= COLUMN { frame.width } else { left + COLUMN - MARGIN };
     let entries = legend::rows(&legend::classes(std::slice::from_ref(panel)), room);
 
@@ -121,7 +122,7 @@ fn single(panel: &Panel) -> Result<Picture, ShowError> {
     Ok(finished(&canvas, vec![PanelLayout { frame, close_up }]))
 }
 
-/// Frames side by side, each with its close-up in a corner and a caption below.
+/// Draws frames side by side, each with its close-up in a corner and a caption below.
 fn contact_sheet(panels: &[Panel]) -> Result<Picture, ShowError> {
     let across = match panels.len() {
         0..=4 => 2,
@@ -151,7 +152,7 @@ fn contact_sheet(panels: &[Panel]) -> Result<Picture, ShowError> {
         for (column, (panel, caption)) in row.iter().zip(captions).enumerate() {
             let left = MARGIN + column * (width + MARGIN);
             let frame = fitted(panel);
-            // Narrow frames stand in the middle of their cell.
+            // Narrow frames are centred in their cell.
             let frame = frame
                 .moved_to(left + (width - frame.width.min(width)) / 2, top + (row_height - frame.height) / 2);
             let close_up = panel.close_up.map(|window| in_corner(window, &frame, &panel.marks));
@@ -192,7 +193,8 @@ fn contact_sheet(panels: &[Panel]) -> Result<Picture, ShowError> {
     Ok(finished(&canvas, places))
 }
 
-/// A close-up in that corner of a frame where it covers fewest marks. The lower right one belongs to the scale bar.
+/// Places a close-up in the corner of a frame where it covers the fewest marks. The lower right corner is
+/// reserved for the scale bar.
 fn in_corner(window: Window, frame: &Placement, marks: &[Mark]) -> Placement {
     let room = (frame.width * 9 / 20, frame.height * 9 / 20);
     let fitted = Placement::fit(window, room, MAX_ZOOM);
@@ -215,7 +217,7 @@ fn in_corner(window: Window, frame: &Placement, marks: &[Mark]) -> Placement {
     fitted.moved_to(left, top)
 }
 
-/// Draws a window of a frame, and what lies over it, into a canvas. Names keep clear of `taken`.
+/// Draws a window of a frame and the marks over it into a canvas. Labels keep clear of `taken`.
 fn draw_view(
     canvas: &mut Canvas,
     panel: &Panel,
@@ -224,9 +226,9 @@ fn draw_view(
     part: Part,
     taken: &[Area],
 ) -> Result<(), ShowError> {
-    // The sky of a close-up is not what it is drawn for.
+    // A close-up is stretched for its bright pixels, not for the sky.
     let white = if part == Part::CloseUp || place.zoom >= CLOSE { White::Brightest } else { White::Sky };
-    // On a canvas of its own: marks end at its edge.
+    // Drawn on a separate canvas, which clips marks at its edge.
     let mut inner = Canvas::new(place.width, place.height, BACKGROUND)?;
     inner.copy(0, 0, place.width, &raster(panel, window, place, white));
     let line = if place.zoom >= CLOSE { 2.0 } else { 1.0 };
@@ -262,7 +264,7 @@ fn draw_view(
     Ok(())
 }
 
-/// A line of a caption.
+/// Line of a caption.
 struct Line {
     indent: usize,
     words: String,
@@ -270,13 +272,14 @@ struct Line {
     colour: Rgb,
 }
 
-/// Whether a verdict has room at the right of the title.
+/// Returns true if a verdict fits to the right of the title.
 fn is_beside(panel: &Panel, verdict: &Verdict, width: usize) -> bool {
     let gap = 2 * Font::Heading.advance();
     Font::Heading.width(&panel.short_title) + gap + Font::Heading.width(&verdict.words) <= width
 }
 
-/// Title, verdict and lines below a panel of a contact sheet; what is too long is continued in the next line.
+/// Returns title, verdict and lines below a panel of a contact sheet; long texts are continued in the next
+/// line.
 fn caption(panel: &Panel, width: usize) -> Vec<Line> {
     let title = Font::Heading.cut(&panel.short_title, width);
     let mut lines = vec![Line { indent: 0, words: title, font: Font::Heading, colour: WHITE }];
@@ -306,12 +309,12 @@ fn colour_of(verdict: &Verdict) -> Rgb {
     }
 }
 
-/// From a line of text to the next, px.
+/// Returns the distance from one line of text to the next, px.
 fn line_height() -> usize {
     Font::Body.height() + 1
 }
 
-/// A text in lines of some width.
+/// Breaks a text into lines of at most `width`, px.
 fn wrapped(text: &str, width: usize, font: Font) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -328,12 +331,13 @@ fn wrapped(text: &str, width: usize, font: Font) -> Vec<String> {
 }
 
 impl Table {
-    /// Height of its lines and of the room after them, px.
+    /// Returns the height of the table's lines and the gap after them, px.
     fn height(&self) -> usize {
         (self.rows.len() + usize::from(self.head.is_some())) * line_height() + MARGIN / 2
     }
 
-    /// Draws names at the left; values after them, or, where there are two, each at the right of its column.
+    /// Draws the table: names at the left; a single value follows its name, two values are each aligned at
+    /// the right of their column.
     fn draw(&self, canvas: &mut Canvas, left: usize, top: usize) {
         let names = self.rows.iter().map(|[name, ..]| Font::Body.width(name)).max().unwrap_or(0);
         let values = left + names + 2 * Font::Body.advance();
@@ -373,7 +377,7 @@ mod tests {
     use crate::panel::stretch::Stretch;
     use crate::panel::{Pixels, PlateScale, Reduction, Shape};
 
-    /// A dark frame with a target in it.
+    /// Returns a dark frame that contains a target.
     fn panel(columns: usize, rows: usize) -> Panel {
         let dn = (0..columns * rows).map(|i| 100 + (i * 7 % 11) as u16).collect();
         let pixels = Pixels { columns, rows, dn, full_scale_dn: 4095 };
@@ -407,7 +411,7 @@ mod tests {
         }
     }
 
-    /// The middle of all pixels of a colour inside of a placement, in pixels of the frame.
+    /// Returns the mean position of all pixels of a colour inside a placement, in pixels of the frame.
     fn centre(picture: &Picture, place: &Placement, colour: Rgb) -> Option<(f64, f64)> {
         let (mut count, mut x_sum, mut y_sum) = (0.0, 0.0, 0.0);
         for y in place.top..place.top + place.height {
@@ -433,7 +437,7 @@ mod tests {
                     for (colour, part) in [(ORANGE, 0.3), (GREEN, 0.7)] {
                         let (x, y) = centre(&picture, place, colour).unwrap();
                         let error = (x - part * columns as f64).abs().max((y - 0.4 * rows as f64).abs());
-                        // A pixel of the picture.
+                        // Tolerance: one pixel of the picture.
                         assert!(error * place.zoom < 1.0, "{columns} × {rows}, {count}: ({x}, {y})");
                     }
                 }
@@ -467,7 +471,7 @@ mod tests {
         }
     }
 
-    /// The close-up hides neither target nor answer where there is a corner without them.
+    /// The close-up covers neither the target nor the measurement if a corner without them exists.
     #[test]
     fn a_close_up_stands_where_it_hides_least() {
         let mut panel = panel(752, 580);

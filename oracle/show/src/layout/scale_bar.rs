@@ -1,4 +1,4 @@
-//! The scale bar: a number of pixels, as an angle and, where the range is known, as a length.
+//! Scale bar: a number of pixels, as an angle and, if the range is known, as a length.
 
 use super::view::Placement;
 use crate::canvas::colour::{BLACK, WHITE};
@@ -6,25 +6,25 @@ use crate::canvas::text::Font;
 use crate::canvas::{Area, Canvas};
 use crate::panel::PlateScale;
 
-/// Room between text, bar and the edges of the box, px.
+/// Gap between text, bar and the edges of the box, px.
 const ROOM: usize = 6;
-/// From the box to the edge of the picture, px.
+/// Distance from the box to the edge of the picture, px.
 const INSET: usize = 8;
-/// Height of the ticks at its ends, px.
+/// Height of the ticks at the ends of the bar, px.
 const TICK: f64 = 8.0;
 
-/// A scale bar of a placement.
+/// Scale bar of a placement.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ScaleBar {
     words: String,
     length: f64,
-    /// Box around text and bar, in a lower corner.
+    /// Box around text and bar, in a lower corner of the placement.
     pub(crate) area: Area,
 }
 
 impl ScaleBar {
-    /// The bar of a placement, in the lower right corner, or in the left one where it hides fewer of these areas; `None` where there is
-    /// no room for one.
+    /// Creates the bar of a placement, in the lower right corner, or in the left one if the box overlaps
+    /// fewer of `areas` there; `None` if there is no room for a bar.
     pub(crate) fn new(placement: &Placement, scale: &PlateScale, areas: &[Area]) -> Option<Self> {
         let pixels = round_number(0.2 * placement.width as f64 / placement.zoom)?;
         let words = words(pixels, scale);
@@ -41,11 +41,11 @@ impl ScaleBar {
         };
         let hidden = |area: &Area| areas.iter().filter(|other| other.meets(area)).count();
         let area = [at(right), at(INSET)].into_iter().min_by_key(hidden)?;
-        // It may cover an eighth of the picture.
+        // The box may cover at most an eighth of the picture.
         (8 * width * height <= placement.width * placement.height).then_some(Self { words, length, area })
     }
 
-    /// Draws it.
+    /// Draws the scale bar.
     pub(crate) fn draw(&self, canvas: &mut Canvas) {
         canvas.shade(&self.area);
         let room = ROOM as f64;
@@ -63,7 +63,7 @@ impl ScaleBar {
     }
 }
 
-/// The largest of 1, 2, 5, 10, 20 … that is at most `most`; `None` below 1.
+/// Returns the largest of 1, 2, 5, 10, 20 … that is at most `most`; `None` below 1.
 fn round_number(most: f64) -> Option<f64> {
     let mut found = None;
     let mut decade = 1.0;
@@ -74,7 +74,7 @@ fn round_number(most: f64) -> Option<f64> {
     found
 }
 
-/// What a bar of so many pixels says.
+/// Returns the label of a bar that is `pixels` long.
 fn words(pixels: f64, scale: &PlateScale) -> String {
     let radians = libm::atan(pixels / scale.focal_length_px);
     let degrees = radians.to_degrees();
@@ -99,7 +99,7 @@ fn words(pixels: f64, scale: &PlateScale) -> String {
     format!("{pixels} px = {angle}{}", length.unwrap_or_default())
 }
 
-/// A positive number to two digits, without an exponent.
+/// Formats a positive number to two significant digits, without an exponent.
 fn two_digits(value: f64) -> String {
     let decimals = if value >= 9.95 {
         0
@@ -129,7 +129,7 @@ mod tests {
     fn words_state_the_angle_in_its_unit_and_the_length_at_the_range() {
         let words =
             |pixels, focal_length_px, range_m| words(pixels, &PlateScale { focal_length_px, range_m });
-        // ARGON: 20.187 mm over 8.6 µm; atan(100/2347.3) is 2.4394°.
+        // ARGON: 20.187 mm focal length, 8.6 µm pixels; atan(100/2347.3) is 2.4394°.
         assert_eq!(words(100.0, 2347.3, None), "100 px = 2.4°");
         assert_eq!(words(2.0, 2347.3, None), "2 px = 2.9 arcmin");
         assert_eq!(words(1.0, 1e6, None), "1 px = 0.21 arcsec");

@@ -1,10 +1,11 @@
-//! Where a part of a frame lies in a picture.
+//! Position of a part of a frame in a picture.
 
 use contract::{PixelPoint, Window};
 use serde::Serialize;
 
-/// A part of a frame, placed in a picture. The point (x, y) of the frame is drawn at `left` + (x − `first_column` + 0.5) × `zoom`,
-/// `top` + (y − `first_row` + 0.5) × `zoom`, where 0 is the edge of the picture's first pixel.
+/// Position of a part of a frame in a picture. The point (x, y) of the frame is drawn at `left` + (x −
+/// `first_column` + 0.5) × `zoom`, `top` + (y − `first_row` + 0.5) × `zoom`, where 0 is the edge of the
+/// picture's first pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Placement {
     /// Left edge, px of the picture.
@@ -15,17 +16,17 @@ pub struct Placement {
     pub width: usize,
     /// Height, px of the picture.
     pub height: usize,
-    /// First column of the frame.
+    /// First column of the frame that is drawn.
     pub first_column: usize,
-    /// First row of the frame.
+    /// First row of the frame that is drawn.
     pub first_row: usize,
     /// Pixels of the picture per pixel of the frame.
     pub zoom: f64,
 }
 
 impl Placement {
-    /// The largest placement of a window in some width and height. Enlarged windows are enlarged by a whole number, by `most` at
-    /// most.
+    /// Returns the largest placement of a window that fits a width and height, at the upper left corner. A
+    /// window is enlarged only by an integer, at most `most`.
     pub(crate) fn fit(window: Window, (width, height): (usize, usize), most: usize) -> Self {
         let side = |length: usize, room: usize| room as f64 / length.max(1) as f64;
         let room = side(window.columns, width).min(side(window.rows, height));
@@ -42,18 +43,19 @@ impl Placement {
         }
     }
 
-    /// The same with its upper left corner at a point of the picture.
+    /// Moves the placement's upper left corner to a point of the picture.
     pub(crate) fn moved_to(self, left: usize, top: usize) -> Self {
         Self { left, top, ..self }
     }
 
-    /// A point of the frame from the placement's upper left corner, px of the picture.
+    /// Converts a point of the frame to its position relative to the placement's upper left corner, px of the
+    /// picture.
     pub(crate) fn inner(&self, at: PixelPoint) -> (f64, f64) {
         let place = |at: f64, first: usize| (at - first as f64 + 0.5) * self.zoom;
         (place(at.x, self.first_column), place(at.y, self.first_row))
     }
 
-    /// Whether a point of the frame is drawn.
+    /// Returns true if a point of the frame lies inside the placement.
     pub fn shows(&self, at: PixelPoint) -> bool {
         let (x, y) = self.inner(at);
         (0.0..self.width as f64).contains(&x) && (0.0..self.height as f64).contains(&y)

@@ -1,8 +1,8 @@
-//! Kinds of marks: their colours, their symbols in the legend, their names in files.
+//! Kinds of marks, with their colours, legend symbols and names in files.
 
 use crate::canvas::colour::{BLUE, GREEN, ORANGE, RED, Rgb, SLATE, VIOLET, WHITE, YELLOW};
 
-/// What a mark stands for.
+/// Kind of object that a mark represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Class {
     /// True position of the target.
@@ -15,27 +15,27 @@ pub enum Class {
     HotPixel,
     /// A cosmic-ray hit.
     CosmicRay,
-    /// The pipeline's answer.
+    /// Measurement of the pipeline.
     Answer,
-    /// A region that the camera transmitted.
+    /// Region that the camera transmitted.
     Region,
     /// True centre of the docking target's cross or disk.
     TrueCentre,
-    /// The docking target's cross, recognised.
+    /// Detected cross of the docking target.
     Cross,
-    /// The circle of the docking target's marks, recognised.
+    /// Detected circle of the docking target's marks.
     Circle,
-    /// The outline of the station, recognised.
+    /// Detected outline of the station.
     Station,
-    /// The outline of the docking unit, recognised.
+    /// Detected outline of the docking unit.
     DockingUnit,
-    /// A mark of the docking target that the pose was measured with.
+    /// Mark of the docking target that was used to measure the pose.
     UsedMark,
-    /// A mark of the docking target that was rejected.
+    /// Mark of the docking target that was rejected.
     RejectedMark,
 }
 
-/// How a class is drawn in the legend.
+/// Symbol of a class in the legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Symbol {
     Circle,
@@ -63,7 +63,7 @@ impl Class {
         Self::Region,
     ];
 
-    /// The word used in files.
+    /// Returns the word used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Target => "target",
@@ -83,7 +83,7 @@ impl Class {
         }
     }
 
-    /// The words of the legend.
+    /// Returns the words of the legend.
     pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Target => "target, truth",

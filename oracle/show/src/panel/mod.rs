@@ -1,4 +1,4 @@
-//! What a picture is made of.
+//! Input of a picture: pixels, marks and text.
 
 pub(crate) mod class;
 pub(crate) mod raster;
@@ -9,10 +9,10 @@ use contract::{PixelPoint, Window};
 use crate::panel::class::Class;
 use crate::panel::stretch::Stretch;
 
-/// One frame, and everything drawn over and beside it.
+/// One frame, with everything drawn over and beside it.
 #[derive(Debug, Clone)]
 pub struct Panel {
-    /// The digital numbers.
+    /// Digital numbers of the frame.
     pub pixels: Pixels,
     /// Transmitted regions; `None` when the whole frame was transmitted.
     pub regions: Option<Vec<Window>>,
@@ -20,28 +20,28 @@ pub struct Panel {
     pub view: Window,
     /// Part of the frame that is drawn again, enlarged; it must lie in the frame.
     pub close_up: Option<Window>,
-    /// From digital numbers to grey.
+    /// Conversion of digital numbers to grey.
     pub stretch: Stretch,
-    /// How several pixels become one where the frame is reduced.
+    /// Method of combining several pixels into one where the frame is reduced.
     pub reduction: Reduction,
     /// Angles and lengths of the scale bar.
     pub scale: PlateScale,
-    /// What is drawn over the pixels; later marks lie over earlier ones.
+    /// Marks drawn over the pixels; later marks cover earlier ones.
     pub marks: Vec<Mark>,
     /// Heading: scenario and frame.
     pub title: String,
     /// Heading of a panel of a contact sheet.
     pub short_title: String,
-    /// Verdict of the score.
+    /// Verdict of the score on the frame.
     pub verdict: Option<Verdict>,
-    /// Values beside a frame that is drawn alone, one table below the other.
+    /// Tables beside a single frame, one below another.
     pub tables: Vec<Table>,
     /// Lines below a panel of a contact sheet.
     pub caption: Vec<String>,
 }
 
 impl Panel {
-    /// Whether a point of the frame is in the view.
+    /// Returns true if a point of the frame is in the view.
     pub(crate) fn shows(&self, at: PixelPoint) -> bool {
         let side = |at: f64, first: usize, length: usize| {
             (first as f64 - 0.5..(first + length) as f64 - 0.5).contains(&at)
@@ -53,70 +53,70 @@ impl Panel {
 /// Digital numbers, row by row from the top.
 #[derive(Debug, Clone)]
 pub struct Pixels {
-    /// Columns.
+    /// Number of columns.
     pub columns: usize,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// The values, `columns` × `rows` of them.
+    /// Values, DN: `columns` × `rows` of them.
     pub dn: Vec<u16>,
-    /// The largest value that the converter gives.
+    /// Largest output of the converter, DN.
     pub full_scale_dn: u16,
 }
 
 impl Pixels {
-    /// All of the frame.
+    /// Returns the window of the entire frame.
     pub fn full_window(&self) -> Window {
         Window { x: 0, y: 0, columns: self.columns, rows: self.rows }
     }
 }
 
-/// How several pixels become one.
+/// Method of combining several pixels into one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reduction {
-    /// The brightest of them: a star of one pixel is kept.
+    /// The brightest of the pixels, which preserves a star of one pixel.
     Brightest,
-    /// Their mean.
+    /// The mean of the pixels.
     Mean,
 }
 
-/// Angles and lengths of pixels.
+/// Scale of the pixels as an angle and as a length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlateScale {
     /// Focal length in pixels along columns.
     pub focal_length_px: f64,
-    /// Distance at which the scale bar tells a length, m.
+    /// Distance at which the scale bar states a length, m; `None` if the bar states only an angle.
     pub range_m: Option<f64>,
 }
 
-/// Something drawn over the pixels.
+/// Mark drawn over the pixels.
 #[derive(Debug, Clone)]
 pub struct Mark {
-    /// Its centre.
+    /// Centre of the mark, in pixels of the frame.
     pub at: PixelPoint,
-    /// Its shape.
+    /// Shape of the mark.
     pub shape: Shape,
-    /// What it stands for.
+    /// Kind of object that the mark represents.
     pub class: Class,
-    /// Name written beside it, where there is room.
+    /// Label written beside the mark if there is room.
     pub label: Option<String>,
 }
 
 /// Shape of a mark.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// A circle around an object: its radius on the frame, px, and the least one in the picture, px.
+    /// A circle around an object, with a smallest radius in the picture.
     Around {
         /// Radius of the object, px of the frame.
         radius_px: f64,
-        /// Least radius, px of the picture.
+        /// Smallest radius of the circle, px of the picture.
         least: f64,
     },
-    /// A circle of this radius, px of the frame.
+    /// A circle of a given radius.
     Circle {
-        /// Its radius, px of the frame.
+        /// Radius of the circle, px of the frame.
         radius_px: f64,
     },
-    /// An upright cross, open in the middle: its arms are so long, px of the picture.
+    /// An upright cross, open in the middle.
     Cross {
         /// Length of an arm from the centre, px of the picture.
         arm: f64,
@@ -128,17 +128,17 @@ pub enum Shape {
     },
     /// A square.
     Square {
-        /// Half of its side, px of the picture.
+        /// Half of the side length, px of the picture.
         half: f64,
     },
 }
 
-/// Names and values.
+/// Table of names and values.
 #[derive(Debug, Clone, Default)]
 pub struct Table {
-    /// Heads of the second and the third column.
+    /// Headings of the second and the third column.
     pub head: Option<[String; 2]>,
-    /// Name, value, and a second value (empty where there is none).
+    /// Name, value, and a second value (empty if there is none).
     pub rows: Vec<[String; 3]>,
 }
 
@@ -154,22 +154,22 @@ impl Table {
     }
 }
 
-/// Verdict of the score, in words.
+/// Verdict of the score on a frame, in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verdict {
-    /// The words.
+    /// Text of the verdict.
     pub words: String,
-    /// Whether they are good news.
+    /// Tone of the verdict: good, partial or bad.
     pub tone: Tone,
 }
 
-/// Whether a verdict is good news.
+/// Tone of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tone {
-    /// A right answer.
+    /// Correct measurement.
     Good,
-    /// Part of an answer.
+    /// Part of a measurement.
     Partial,
-    /// A wrong answer, or none.
+    /// Wrong measurement, or none.
     Bad,
 }

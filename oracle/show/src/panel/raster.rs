@@ -1,4 +1,4 @@
-//! The pixels of a placement.
+//! Rasterisation of a window of a frame.
 
 use contract::Window;
 
@@ -7,7 +7,7 @@ use crate::canvas::colour::{NO_DATA, Rgb};
 use crate::layout::view::Placement;
 use crate::panel::{Panel, Pixels, Reduction};
 
-/// The window of a placement, stretched and scaled: its pixels row by row.
+/// Returns the pixels of a window, stretched and scaled for a placement, row by row.
 pub(crate) fn raster(panel: &Panel, window: Window, placement: &Placement, white: White) -> Vec<Rgb> {
     let shades = Shades::new(panel, window, white);
     let columns = spans(placement.width, placement.zoom, window.columns);
@@ -22,7 +22,7 @@ pub(crate) fn raster(panel: &Panel, window: Window, placement: &Placement, white
     pixels
 }
 
-/// Greys of a window; `None` where nothing was transmitted.
+/// Greys of a window's pixels; `None` for a pixel that was not transmitted.
 struct Shades {
     columns: usize,
     greys: Vec<Option<u8>>,
@@ -57,7 +57,7 @@ impl Shades {
         }
     }
 
-    /// The grey of a pixel, counted within the window.
+    /// Returns the grey of a pixel, whose column and row count from the window's first.
     fn grey_at(&self, x: usize, y: usize) -> Option<u8> {
         self.greys.get(y * self.columns + x).copied().flatten()
     }
@@ -81,18 +81,18 @@ impl Shades {
     }
 }
 
-/// The stretch of a frame's side that one pixel of the picture covers, px of the window.
+/// Interval along one side of the window that one pixel of the picture covers, px of the window.
 struct Span {
     from: f64,
     to: f64,
-    /// Pixels of the frame's side.
+    /// Number of pixels along this side of the window.
     limit: usize,
 }
 
-/// The spans of a side of `count` pixels.
+/// Returns the intervals of a side of `count` pixels of the picture.
 fn spans(count: usize, zoom: f64, limit: usize) -> Vec<Span> {
     let span = |i: usize| match zoom >= 1.0 {
-        // The pixel under the middle, whole.
+        // The entire pixel under the middle of the picture's pixel.
         true => {
             let from = ((i as f64 + 0.5) / zoom).floor();
             Span { from, to: from + 1.0, limit }
@@ -103,7 +103,7 @@ fn spans(count: usize, zoom: f64, limit: usize) -> Vec<Span> {
 }
 
 impl Span {
-    /// The pixels of the frame that it covers, each with the covered part.
+    /// Returns the pixels of the frame in this interval, each with the covered fraction.
     fn cells(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let last = (self.to.ceil() as usize).min(self.limit);
         let part = |cell: usize| self.to.min(cell as f64 + 1.0) - self.from.max(cell as f64);
@@ -154,7 +154,7 @@ mod tests {
         let dn = vec![0, 100, 0, 40, 0, 0];
         assert_eq!(rastered(&panel(6, 1, dn.clone(), Reduction::Brightest), (3, 1)), [100, 40, 0]);
         assert_eq!(rastered(&panel(6, 1, dn.clone(), Reduction::Mean), (3, 1)), [50, 20, 0]);
-        // Three of two and a half: (0 + 100 + 0/2)/2.5, (0/2 + 40 + 0)/2.5.
+        // Means over two and a half pixels each: (0 + 100 + 0/2)/2.5, (0/2 + 40 + 0)/2.5.
         let five = panel(5, 1, dn.into_iter().take(5).collect(), Reduction::Mean);
         assert_eq!(rastered(&five, (2, 1)), [40, 16]);
     }

@@ -1,29 +1,31 @@
-//! From digital numbers to shades of grey.
+//! Conversion of digital numbers to shades of grey.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// How digital numbers become grey.
+/// Method of converting digital numbers to grey.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stretch {
-    /// Inverse hyperbolic sine from the median of the background to the brightest pixel: faint stars show, bright ones still differ.
+    /// Inverse hyperbolic sine from the median of the background to the brightest pixel: shows faint stars,
+    /// and bright ones still differ.
     Asinh,
-    /// In proportion from the darkest to the brightest pixel.
+    /// Linear from the darkest to the brightest pixel.
     Linear,
-    /// In proportion from 0 to full scale, as a television shows it.
+    /// Linear from 0 to full scale, as on a television.
     Full,
 }
 
-/// Deviations of the noise above the background at which the sky of a whole frame is white: one bright object does not darken the stars.
+/// Upper limit of white in the view of a whole frame, in standard deviations of the noise above the
+/// background: prevents one bright object from darkening the stars.
 const WHITE_SIGMAS: f64 = 150.0;
-/// White over the value where asinh turns from linear to logarithmic.
+/// Ratio of white to the value at which asinh turns from linear to logarithmic.
 const SOFTENING: f64 = 40.0;
 
 impl Stretch {
-    /// Every stretch.
+    /// All stretches.
     pub const ALL: [Self; 3] = [Self::Asinh, Self::Linear, Self::Full];
 
-    /// The word used on the command line.
+    /// Returns the word used on the command line.
     pub fn code(self) -> &'static str {
         match self {
             Self::Asinh => "asinh",
@@ -48,21 +50,21 @@ impl FromStr for Stretch {
     }
 }
 
-/// What white stands for.
+/// Value that is drawn white.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum White {
-    /// The brightest pixel, at most [`WHITE_SIGMAS`] above the background.
+    /// The brightest pixel, but at most [`WHITE_SIGMAS`] above the background.
     Sky,
     /// The brightest pixel.
     Brightest,
 }
 
-/// A table from digital numbers to grey; it never falls.
+/// Lookup table from digital numbers to grey; never decreases.
 #[derive(Debug, Clone)]
 pub(crate) struct Greys(Vec<u8>);
 
 impl Greys {
-    /// Of the pixels that are shown. `samples` are sorted in place.
+    /// Creates the table from the pixels that are shown. `samples` are sorted in place.
     pub(crate) fn new(stretch: Stretch, white: White, full_scale_dn: u16, samples: &mut [u16]) -> Self {
         samples.sort_unstable();
         let last = samples.last().copied().unwrap_or(0);
@@ -74,7 +76,7 @@ impl Greys {
                 Box::new(move |dn| (dn - low) / span)
             }
             Stretch::Asinh => {
-                // A pixel of 0 was suppressed, and says nothing of the noise.
+                // A pixel of 0 was suppressed and contains no information about the noise.
                 let lit = samples.partition_point(|&dn| dn == 0);
                 let lit = samples.get(lit..).unwrap_or_default();
                 let part = |of: usize| f64::from(lit.get(lit.len() / of).copied().unwrap_or(0));
@@ -98,7 +100,7 @@ impl Greys {
         Self(table.collect())
     }
 
-    /// The grey of a digital number; white above the table.
+    /// Returns the grey of a digital number; white above the table.
     pub(crate) fn grey(&self, dn: u16) -> u8 {
         self.0.get(usize::from(dn)).copied().unwrap_or(u8::MAX)
     }
@@ -121,7 +123,8 @@ mod tests {
         }
     }
 
-    /// Of noise of 3 DN, a pixel of five deviations stands out of the sky by more than the sky's own grain.
+    /// With noise of ±3 DN, a pixel of five times this amount stands out from the sky by more than the sky's
+    /// noise.
     #[test]
     fn asinh_shows_a_faint_star_beside_a_saturated_one() {
         let mut samples: Vec<u16> = (0..4000_u16).map(|i| 97 + i % 7).collect();

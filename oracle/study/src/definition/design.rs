@@ -1,4 +1,4 @@
-//! Where in the unit cube the draws of a case lie.
+//! Positions of the draws of a case in the unit cube.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,47 +6,49 @@ use sim::randomness::{Effect, Seed, uniform};
 use sobol::Sobol;
 use sobol::params::JoeKuoD6;
 
-/// How the dispersed parameters are spread over their distributions.
+/// Method of spreading the dispersed parameters over their distributions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DesignKind {
-    /// Every case is drawn by itself: the plain Monte Carlo method, whose intervals are those of independent draws.
+    /// Every case is an independent draw: the plain Monte Carlo method, whose intervals are those of
+    /// independent draws.
     #[default]
     Random,
-    /// Latin hypercube (McKay, Beckman & Conover 1979): each parameter's distribution is cut into as many equally likely parts as there
-    /// are cases, and each part has one case.
+    /// Latin hypercube (McKay, Beckman & Conover 1979): each parameter's distribution is cut into as many
+    /// equally likely parts as there are cases, and each part has one case.
     LatinHypercube,
-    /// Sobol's sequence with the direction numbers of Joe & Kuo (2008), shifted digitally by the seed; best with a power of two
-    /// of cases.
+    /// Sobol's sequence with the direction numbers of Joe & Kuo (2008), with a digital shift derived from the
+    /// seed; works best when the number of cases is a power of two.
     Sobol,
-    /// The design of Saltelli et al. (2010) for Sobol indices: N points A, N points B, and N points A with one parameter of B, for
-    /// each of d parameters; N (d + 2) cases.
+    /// Design of Saltelli et al. (2010) for Sobol indices: N points A, N points B, and, for each of d
+    /// parameters, N points A with this parameter taken from B; N (d + 2) cases.
     Saltelli,
 }
 
-/// Most dimensions of a low-discrepancy design.
+/// Largest number of dimensions of a low-discrepancy design.
 const MAX_DIMENSIONS: usize = 100;
 
-/// A number of 53 bits as one of the open unit interval.
+/// Factor that maps a number of 53 bits to the unit interval.
 const UNIT: f64 = 1.0 / 9_007_199_254_740_992.0;
 
-/// The points of a study's cases.
+/// Points of a study's cases in the unit cube.
 pub(crate) struct Design {
     kind: DesignKind,
     dimensions: usize,
-    /// Points of a replication.
+    /// Number of points per replication.
     points: u64,
-    /// Of the first replication; the others have their own.
+    /// Seed of the first replication; each further replication has a different one.
     seed: u64,
-    /// By dimension, then by bit: direction numbers of 64 bits.
+    /// Direction numbers of 64 bits, by dimension, then by bit.
     directions: Vec<Vec<u64>>,
 }
 
 impl Design {
-    /// A design of so many points a replication, or of any number of points that are drawn each by itself.
+    /// Creates a design with a given number of points per replication; the random design has no limit on the
+    /// number of points.
     ///
     /// # Errors
-    /// What is expected, for a number of points or dimensions that the design cannot have.
+    /// The expected value, for a number of points or dimensions that the design cannot have.
     pub(crate) fn new(kind: DesignKind, dimensions: usize, points: u64, seed: u64) -> Result<Self, String> {
         let of_sequence = match kind {
             DesignKind::Random | DesignKind::LatinHypercube => 0,
@@ -70,9 +72,9 @@ impl Design {
         Ok(Self { kind, dimensions, points, seed, directions })
     }
 
-    /// The point of a number, from 0: as many numbers of the open unit interval as there are dimensions.
+    /// Returns the point with a given number, from 0: one number of the open unit interval per dimension.
     ///
-    /// Replications follow each other: the same kind of design, each by a seed of its own.
+    /// Replications follow one another: each is a design of the same kind with a different seed.
     pub(crate) fn point(&self, number: u64) -> Vec<f64> {
         let all = 0..self.dimensions;
         let (replication, number) = (number / self.points, number % self.points);
@@ -85,7 +87,7 @@ impl Design {
             DesignKind::LatinHypercube => all
                 .map(|dimension| {
                     let stratum = self.shuffled(seed, number, dimension);
-                    // As far from the ends as a number of 53 bits can be.
+                    // Keeps the smallest distance from the ends that a number of 53 bits can have.
                     ((stratum as f64 + draw(seed, number, dimension)) / self.points as f64)
                         .clamp(0.5 * UNIT, 1.0 - 0.5 * UNIT)
                 })
@@ -103,8 +105,9 @@ impl Design {
         }
     }
 
-    /// Points of the sequence come in the order of its Gray code, the XOR of one direction number for each bit; the XOR with
-    /// a random word keeps what makes the sequence even.
+    /// Returns a coordinate of a shifted Sobol point. Points are in the order of the sequence's Gray code,
+    /// the XOR of one direction number per set bit; the XOR with a random word preserves the uniformity of
+    /// the sequence.
     #[allow(clippy::indexing_slicing, reason = "there are directions for every dimension of the study")]
     fn sobol(&self, seed: u64, number: u64, dimension: usize) -> f64 {
         let gray = number ^ (number >> 1);
@@ -118,9 +121,10 @@ impl Design {
         (((point ^ shift) >> 11) as f64 + 0.5) * UNIT
     }
 
-    /// Where a number goes in a permutation of 0 to `points`, one for each dimension: Feistel's network over the next even
-    /// number of bits, walked on while it leads beyond (Black & Rogaway 2002, cycle walking). So a case is known without the
-    /// others.
+    /// Returns the position of `number` in a pseudorandom permutation of 0 to `points`, one permutation per
+    /// dimension: a Feistel network over the next even number of bits, repeated while its result is not below
+    /// `points` (Black & Rogaway 2002, cycle walking). Each case is therefore computed without the other
+    /// cases.
     fn shuffled(&self, seed: u64, number: u64, dimension: usize) -> u64 {
         let bits = u64::BITS - (self.points.max(2) - 1).leading_zeros();
         let half = bits.div_ceil(2);
@@ -145,7 +149,7 @@ fn draw(seed: u64, number: u64, dimension: usize) -> f64 {
     uniform(&mut Seed { seed, case: number }.stream(0, Effect::StudyParameter, dimension as u64))
 }
 
-/// The random word of a dimension of Sobol's sequence.
+/// Returns the random word that shifts a dimension of Sobol's sequence.
 fn shift(seed: u64, dimension: usize) -> u64 {
     Seed { seed, case: 0 }.streams(0, Effect::StudyDesign).word(dimension as u64)
 }
@@ -171,17 +175,17 @@ mod tests {
         }
     }
 
-    /// Two dimensions of a Latin hypercube are shuffled apart: their ranks are uncorrelated.
+    /// Two dimensions of a Latin hypercube have independent permutations: their ranks are uncorrelated.
     #[test]
     fn dimensions_of_a_latin_hypercube_are_uncorrelated() {
         let n = 4000;
         let design = design(DesignKind::LatinHypercube, 2, n);
         let sum: f64 = (0..n).map(|k| design.point(k)).map(|p| (p[0] - 0.5) * (p[1] - 0.5)).sum();
-        // Standard error of a correlation 1/√n = 0.016; four of them.
+        // The standard error of a correlation is 1/√n = 0.016; the tolerance is four of these.
         assert!((12.0 * sum / n as f64).abs() < 0.064, "{}", 12.0 * sum / n as f64);
     }
 
-    /// scipy 1.17.1, `qmc.Sobol(d=3, scramble=False).random(8)`: shifted by the same words, these points.
+    /// scipy 1.17.1, `qmc.Sobol(d=3, scramble=False).random(8)`: the expected points before the shift.
     #[test]
     fn points_of_the_sequence_are_those_of_scipy() {
         let published = [

@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use statistics::normal_quantile;
 
-/// The distribution of a parameter. Every distribution is drawn by its quantile function from numbers of the unit interval, so that a design (Sobol,
-/// Latin hypercube) spreads any of them.
+/// Distribution of a parameter. Every distribution is drawn by its quantile function from numbers of the unit
+/// interval, and any design (Sobol, Latin hypercube) can therefore spread it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Distribution {
     /// Normal, truncated where limits are given.
     Normal {
-        /// Mean, before any cutting.
+        /// Mean, before truncation.
         #[schemars(range(min = -1e18, max = 1e18))]
         mean: f64,
-        /// Standard deviation, before any cutting, > 0.
+        /// Standard deviation, before truncation, > 0.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e18))]
         sigma: f64,
         /// Lower limit.
@@ -39,14 +39,14 @@ pub enum Distribution {
     },
     /// Uniform over the integers from `min` to `max`, both included: for counts and seeds.
     Integer {
-        /// Smallest number, from 0.
+        /// Smallest integer, at least 0.
         #[schemars(range(max = 1_u64 << 53))]
         min: u64,
-        /// Largest number, to 2⁵³.
+        /// Largest integer, at most 2⁵³.
         #[schemars(range(max = 1_u64 << 53))]
         max: u64,
     },
-    /// The logarithm is normal.
+    /// Log-normal.
     LogNormal {
         /// Median, > 0.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e18))]
@@ -60,31 +60,31 @@ pub enum Distribution {
         /// Lower limit.
         #[schemars(range(min = -1e18, max = 1e18))]
         min: f64,
-        /// Where the density is highest.
+        /// Position of the highest density.
         #[schemars(range(min = -1e18, max = 1e18))]
         mode: f64,
         /// Upper limit.
         #[schemars(range(min = -1e18, max = 1e18))]
         max: f64,
     },
-    /// One of some values, of any type.
+    /// One of several values, of any type.
     Choice {
-        /// The values.
+        /// Possible values.
         #[schemars(length(min = 1))]
         values: Vec<Value>,
-        /// How often each comes, in proportion; absent: equally often.
+        /// Relative frequencies of the values; absent: equal frequencies.
         #[schemars(inner(range(min = 0, max = 1e18)))]
         weights: Option<Vec<f64>>,
     },
-    /// An attitude without a preferred direction. The path is a table with `ra_deg`, `dec_deg`, `roll_deg` (a boresight uniform on
-    /// the sphere and any roll) or with `phi_deg`, `theta_deg`, `psi_deg` (Euler angles 123 of a rotation that is uniform over
-    /// all rotations).
+    /// Attitude without a preferred direction. The path is a table with `ra_deg`, `dec_deg`, `roll_deg` (a
+    /// boresight uniform on the sphere and a uniform roll) or with `phi_deg`, `theta_deg`, `psi_deg` (Euler
+    /// angles 123 of a rotation that is uniform over all rotations).
     IsotropicAttitude,
-    /// A column of a CSV file, every row as likely as any other.
+    /// Column of a CSV file, every row with equal probability.
     Table {
-        /// The file, starting from the study's folder.
+        /// Path of the file, relative to the study's directory.
         path: String,
-        /// The column's name; all its cells numbers.
+        /// Name of the column; all its cells must be numbers.
         column: String,
     },
 }
@@ -94,12 +94,12 @@ pub enum Distribution {
 pub(crate) enum PreparedDistribution {
     /// A distribution with its parameters.
     Distribution(Distribution),
-    /// The column of a table.
+    /// Values of a table's column.
     Column(Vec<f64>),
 }
 
 impl Distribution {
-    /// Checks the parameters.
+    /// Checks the parameters of the distribution.
     pub(crate) fn check(&self, path: &str) -> Result<(), OutOfRange> {
         bounds::check(self, path)?;
         let require = |is_allowed: bool, field: &str, value: &dyn std::fmt::Display, expected| {
@@ -132,12 +132,12 @@ impl Distribution {
         }
     }
 
-    /// How many numbers of the unit interval a draw takes.
+    /// Returns how many numbers of the unit interval a draw needs.
     pub(crate) fn dimensions(&self) -> usize {
         if matches!(self, Self::IsotropicAttitude) { 3 } else { 1 }
     }
 
-    /// Reads what the distribution needs from files; paths start from `folder`.
+    /// Reads the files that the distribution needs; paths are relative to `folder`.
     pub(crate) fn load(&self, folder: &Path) -> Result<PreparedDistribution, files::FileError> {
         match self {
             Self::Table { path, column } => {
@@ -149,8 +149,8 @@ impl Distribution {
 }
 
 impl PreparedDistribution {
-    /// The value at numbers of the open unit interval, as many as the distribution has dimensions. Attitudes are not drawn here
-    /// ([`euler_123`], [`boresight`]): null.
+    /// Returns the value at the probability `u` in the open unit interval. Null for attitudes, which have
+    /// other functions ([`euler_123`], [`boresight`]).
     pub(crate) fn value(&self, u: f64) -> Value {
         let number = |value: f64| serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number);
         match self {
@@ -162,7 +162,7 @@ impl PreparedDistribution {
                     };
                     let (low, high) = (at(*min, 0.0), at(*max, 1.0));
                     let value = mean + sigma * normal_quantile(low + u * (high - low));
-                    // Rounding of the probabilities may lead beyond a limit by a unit in the last place.
+                    // Rounding of the probabilities may exceed a limit by one floating-point step.
                     number(value.clamp(min.unwrap_or(f64::MIN), max.unwrap_or(f64::MAX)))
                 }
                 Distribution::Uniform { min, max } => number(min + u * (max - min)),
@@ -195,7 +195,7 @@ impl PreparedDistribution {
     }
 }
 
-/// Which of `count` equal parts of the unit interval a number lies in.
+/// Returns the index of the part that contains `u`, out of `count` equal parts of the unit interval.
 fn index_at(u: f64, count: usize) -> usize {
     ((u * count as f64) as usize).min(count.saturating_sub(1))
 }
@@ -208,21 +208,23 @@ fn weighted_index_at(u: f64, weights: &[f64]) -> usize {
         }
         left -= weight;
     }
-    // Rounding at the end of the interval: the last value that comes at all.
+    // Reached by rounding at the end of the interval: the last value with a positive weight.
     weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0)
 }
 
-/// Right ascension and declination of a direction that is uniform on the sphere, and a uniform roll; degrees.
+/// Returns right ascension and declination of a direction that is uniform on the sphere, and a uniform roll;
+/// degrees.
 pub(crate) fn boresight([u, v, w]: [f64; 3]) -> [f64; 3] {
     [360.0 * u, libm::asin(2.0 * v - 1.0).to_degrees(), 360.0 * w]
 }
 
-/// Euler angles 123 (φ, θ, ψ) of a rotation that is uniform over all rotations (Haar's measure has the density cos θ), degrees.
+/// Returns Euler angles 123 (φ, θ, ψ) of a rotation that is uniform over all rotations (Haar's measure has
+/// the density cos θ), degrees.
 pub(crate) fn euler_123([u, v, w]: [f64; 3]) -> [f64; 3] {
     [360.0 * u - 180.0, libm::asin(2.0 * v - 1.0).to_degrees(), 360.0 * w - 180.0]
 }
 
-/// Probability of a standard normal number below x.
+/// Returns the probability that a standard normal random variable is below x.
 fn standard_normal(x: f64) -> f64 {
     0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
 }
@@ -232,7 +234,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Values at the middles of so many equal parts of the unit interval.
+    /// Returns the values at the midpoints of `n` equal parts of the unit interval.
     fn values(distribution: Distribution, n: usize) -> Vec<f64> {
         assert_eq!(distribution.check("distribution"), Ok(()));
         let distribution = PreparedDistribution::Distribution(distribution);
@@ -245,7 +247,8 @@ mod tests {
         (mean, (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt())
     }
 
-    /// Mean and standard deviation of each distribution in closed form; the sum over 100,000 middles is good to a few parts in 10⁵.
+    /// Mean and standard deviation of each distribution in closed form; the sum over 100,000 midpoints is
+    /// accurate to a few parts in 10⁵.
     #[test]
     fn the_moments_are_those_of_the_distributions() {
         let near = |distribution: Distribution, mean: f64, sigma: f64| {
@@ -266,7 +269,7 @@ mod tests {
         let s2 = 0.25f64;
         let mean = 2.0 * libm::exp(0.5 * s2);
         near(Distribution::LogNormal { median: 2.0, sigma_ln: 0.5 }, mean, mean * libm::expm1(s2).sqrt());
-        // (a² + b² + c² − ab − ac − bc)/18.
+        // Variance of the triangular distribution: (a² + b² + c² − ab − ac − bc)/18.
         near(Distribution::Triangular { min: 0.0, mode: 1.0, max: 4.0 }, 5.0 / 3.0, (13.0f64 / 18.0).sqrt());
     }
 
@@ -281,8 +284,8 @@ mod tests {
         assert_eq!([count(1.0), count(2.0), count(3.0)], [250, 0, 750]);
     }
 
-    /// Archimedes: each coordinate of a direction that is uniform on the sphere is uniform. And a rotation that is uniform over
-    /// all rotations takes any direction to a uniform one.
+    /// Archimedes: each coordinate of a direction that is uniform on the sphere is uniform. A rotation that
+    /// is uniform over all rotations turns any direction into a uniform one.
     #[test]
     fn isotropic_attitudes_prefer_no_direction() {
         use nalgebra::{Rotation3, Vector3};

@@ -1,4 +1,4 @@
-//! The file of a study.
+//! Structure of a study file.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,44 +8,50 @@ use super::design::DesignKind;
 use super::distribution::Distribution;
 use crate::findings::requirement::StudyRequirement;
 
-/// A study, as a TOML file holds it. Unknown keys are errors.
+/// A study, as stored in a TOML file. Unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
-    /// What it is, in one line.
+    /// Description of the study, in one line.
     pub title: String,
-    /// A built-in scenario, or the path of a scenario file, starting from the study's folder.
+    /// A built-in scenario, or the path of a scenario file, relative to the study's directory.
     pub scenario: String,
-    /// Seed of all draws of the study; the seed of a case's scenario is made from it and the case's number.
+    /// Seed of all draws of the study; the seed of a case's scenario is derived from this seed and the number
+    /// of the case's draw.
     #[schemars(range(max = u64::MAX))]
     pub seed: u64,
-    /// Frames (docking: fields) of every case, `A..B`: from A up to and without B; absent: all of the scenario.
+    /// Frames (docking: fields) of every case, `A..B`: from A inclusive to B exclusive; absent: all of the
+    /// scenario.
     pub frames: Option<String>,
-    /// The first frames of every case, in which the pipeline starts up: they count in no figure. Absent: as the scenario says.
+    /// Number of first frames of every case, during which the pipeline starts up: they count in no figure.
+    /// Absent: as stated in the scenario.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1_u64 << 40))]
     pub warm_up_frames: Option<u64>,
-    /// How the dispersed parameters are spread over their distributions.
+    /// Method of spreading the dispersed parameters over their distributions.
     #[serde(default)]
     pub design: DesignKind,
-    /// Of a Latin hypercube or of Sobol's sequence: independent replications of a smaller design, which the cases are cut into. Their scatter
-    /// gives the intervals; five are the fewest of a mean. One has no scatter, and intervals as wide as those of independent draws.
+    /// Number of independent replications of a smaller design, into which the cases of a Latin hypercube or
+    /// of Sobol's sequence are divided. The scatter of the replications gives the intervals; a mean needs at
+    /// least five. A single replication has no scatter, and its intervals are as wide as those of independent
+    /// draws.
     #[serde(default = "default_replications", skip_serializing_if = "is_default")]
     #[schemars(range(min = 1, max = 10_000))]
     pub replications: u64,
-    /// Parameters that vary by a distribution.
+    /// Parameters that vary according to a distribution.
     #[serde(default)]
     pub vary: Vec<Dispersion>,
-    /// Parameters that take each of some values; of several, every combination is run, and each with the same draws of all other
-    /// parameters, so that what differs is the sweep's doing.
+    /// Parameters that take each of a list of values. With several of them, every combination is run, and
+    /// each with the same draws of all other parameters: differences between sweep points are therefore due
+    /// to the swept values.
     #[serde(default)]
     pub sweep: Vec<Sweep>,
-    /// When it is done.
+    /// Stopping rule of the study.
     pub stop: Stop,
-    /// What is recorded.
+    /// Values that are recorded.
     #[serde(default)]
     pub record: Record,
-    /// What the figures must reach.
+    /// Requirements on the figures.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub require: Vec<StudyRequirement>,
 }
@@ -63,7 +69,8 @@ const fn is_default(replications: &u64) -> bool {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Dispersion {
-    /// Its path in the scenario, as in `psf.sigma_px`, `attitude.control.jitter_arcsec[2]` or `cameras[0].camera.focal_length_mm`.
+    /// Path of the parameter in the scenario, as in `psf.sigma_px`, `attitude.control.jitter_arcsec[2]` or
+    /// `cameras[0].camera.focal_length_mm`.
     pub path: String,
     /// Its distribution.
     pub distribution: Distribution,
@@ -73,42 +80,45 @@ pub struct Dispersion {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sweep {
-    /// Its path in the scenario.
+    /// Path of the parameter in the scenario.
     pub path: String,
-    /// Its values, of any type.
+    /// Values of the parameter, of any type.
     pub values: Vec<Value>,
 }
 
-/// When a study is done.
+/// Stopping rule of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stop {
-    /// Number of cases; with `until`, the most there are. A multiple of the sweep's combinations.
+    /// Number of cases; with `until`, the largest number of cases. A multiple of the sweep's combinations.
     #[schemars(range(min = 1, max = 1_u64 << 40))]
     pub cases: u64,
-    /// Stop earlier, as soon as a figure is known well enough. With the random design alone, whose first cases are a sample too.
+    /// Condition for stopping earlier, as soon as a figure is known accurately enough. Only for the random
+    /// design, whose first cases are also a sample.
     pub until: Option<Until>,
 }
 
-/// How well a figure is to be known.
+/// Required accuracy of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Until {
     /// Name of a figure of the score, as in `hit_rate`.
     pub figure: String,
-    /// Half the width of its 95 % interval, in its own unit, > 0. Looked at after 16 draws (a draw is one case at every point of the
-    /// sweep), 32, 48, from 256 on after a sixteenth more each time, and after all, however the study is cut. A figure that is the same in
-    /// all but seven draws or fewer is not waited for: its scatter is not known.
+    /// Half the width of the figure's 95 % interval, in the unit of the figure, > 0. Tested after 16 draws (a
+    /// draw is one case at every point of the sweep), 32, 48, from 256 on after each further sixteenth, and
+    /// after all draws, regardless of the division into shards. A figure that has the same value in all but
+    /// seven or fewer draws does not stop the study, because its scatter is unknown.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e12))]
     pub half_width: f64,
 }
 
-/// What is recorded of a case.
+/// Values that are recorded for each case.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Record {
-    /// Names of figures; absent: all of the score.
+    /// Names of the recorded figures; absent: all figures of the score.
     pub figures: Option<Vec<String>>,
-    /// The figure by which cases are good or bad; absent: `correct_rate` in far range, `success_rate` in docking.
+    /// Figure that ranks cases from good to bad; absent: `correct_rate` in far range, `success_rate` in
+    /// docking.
     pub worst_by: Option<String>,
 }

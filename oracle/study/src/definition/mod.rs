@@ -25,20 +25,21 @@ use crate::definition::distribution::{Distribution, PreparedDistribution, boresi
 use crate::definition::file::StudyFile;
 use crate::definition::overlay::ValuePath;
 
-/// What is no parameter.
+/// Keys of a scenario that cannot be varied.
 const NOT_VARIED: [&str; 4] = ["title", "world", "seed", "score"];
 
-/// Names of the angles of an attitude: of a boresight, or of Euler's.
+/// Names of the angles of an attitude given as a boresight; [`EULER_123`] has those of one given as Euler
+/// angles.
 const BORESIGHT: [&str; 3] = ["ra_deg", "dec_deg", "roll_deg"];
 const EULER_123: [&str; 3] = ["phi_deg", "theta_deg", "psi_deg"];
 
 /// A study that was read and checked.
 pub struct Study {
-    /// Name: that of its file without the extension.
+    /// Name of the study: its file name without the extension.
     pub name: String,
-    /// What is asked for.
+    /// Content of the study file.
     pub file: StudyFile,
-    /// The scenario that the cases begin from.
+    /// Scenario from which the cases are derived.
     base: ScenarioSource,
     base_values: Value,
     vary: Vec<VariedParameter>,
@@ -54,7 +55,7 @@ pub struct Study {
 struct VariedParameter {
     path: ValuePath,
     distribution: PreparedDistribution,
-    /// Of an attitude: its angles.
+    /// Paths of the three angles; only for an attitude.
     angles: Option<[ValuePath; 3]>,
     is_euler: bool,
 }
@@ -64,50 +65,50 @@ struct SweptParameter {
     values: Vec<Value>,
 }
 
-/// A case: a scenario of its own.
+/// A case of a study, with its scenario.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// Its number.
+    /// Number of the case.
     pub number: u64,
-    /// Seed of its scenario.
+    /// Seed of the case's scenario.
     pub seed: u64,
-    /// What was drawn, in the order of [`Study::drawn_columns`].
+    /// Drawn values, in the order of [`Study::drawn_columns`].
     pub drawn: Vec<DrawnValue>,
-    /// Its scenario.
+    /// Scenario of the case.
     pub source: ScenarioSource,
 }
 
-/// Cases that cannot be run, before any can, that end a study: none could.
+/// Number of first cases that cannot be run after which a study ends.
 pub(crate) const MAX_FAILED_CASES: u64 = 10;
 
-/// Most replications of a design.
+/// Largest number of replications of a design.
 const MAX_REPLICATIONS: u64 = 10_000;
 
-/// What was drawn for a case.
+/// Values drawn for a case.
 pub(crate) struct DrawnCase {
     pub(crate) number: u64,
     pub(crate) seed: u64,
     pub(crate) drawn: Vec<DrawnValue>,
-    /// The scenario with it.
+    /// Scenario with the drawn values.
     values: Value,
 }
 
 impl Study {
-    /// The attitude that its scenario grants to answers with a centroid alone.
+    /// Returns the attitude that the scenario grants to measurements with a centroid only.
     pub(crate) fn granted_attitude(&self) -> Option<&str> {
         self.base_values.get("score")?.get("attitude")?.as_str()
     }
 
-    /// The first frames of every case, which count in no figure.
+    /// Returns the number of first frames of every case that count in no figure.
     pub(crate) fn warm_up_frames(&self) -> u64 {
         self.base_values.pointer("/score/warm_up_frames").and_then(Value::as_u64).unwrap_or(0)
     }
 
-    /// Reads and checks a study, the scenario that it names included; the first case is made, so that a path that leads nowhere or a
-    /// value of the wrong type is found before anything runs.
+    /// Reads and checks a study and its scenario. The first case is also created, to find an invalid path or
+    /// a value of the wrong type before anything runs.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the first mistake.
+    /// A [`Failure`] with the location of the first mistake.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let text = toml_file::read_text(path).map_err(|error| {
             Failure::Usage(format!("`{}` is no study that can be read: {error}", path.display()))
@@ -248,10 +249,10 @@ impl Study {
         Ok(study)
     }
 
-    /// Frames of the first case that can be run, of the first ten.
+    /// Returns the number of frames of the first case that can be run, among the first ten.
     ///
     /// # Errors
-    /// The [`Failure`] of the first case where none can be.
+    /// The [`Failure`] of the first case if none of them can be run.
     fn first_frame_count(&self) -> Result<u64, Failure> {
         let count = |number| Ok(self.case(number)?.source.prepare(Options::default())?.frame_count());
         let first = count(0);
@@ -263,13 +264,14 @@ impl Study {
         })
     }
 
-    /// Number of cases, the most there are.
+    /// Returns the largest number of cases.
     pub fn cases(&self) -> u64 {
         self.file.stop.cases
     }
 
-    /// Number of cases that belong together, from the first on: those of a draw at every point of the sweep, or of a replicated design all of a
-    /// replication. Others are independent of them.
+    /// Returns the number of successive cases that form one group, from the first case on: the cases of a
+    /// draw at every point of the sweep, or, in a replicated design, all cases of a replication. Different
+    /// groups are independent.
     pub(crate) fn cases_together(&self) -> u64 {
         match self.file.replications {
             1 => self.sweep_points(),
@@ -277,19 +279,19 @@ impl Study {
         }
     }
 
-    /// Number of points of the sweep: the first so many cases are one of each.
+    /// Returns the number of points of the sweep: this many first cases cover each point once.
     pub(crate) fn sweep_points(&self) -> u64 {
         self.sweep.iter().map(|swept| swept.values.len() as u64).product()
     }
 
-    /// Checks that the built-in pipeline can be run on the cameras of the sweep, of its first thousand points.
+    /// Checks that the built-in pipeline can run on the cameras of the sweep, at its first thousand points.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the parameter by which it cannot, in the case's scenario.
+    /// A [`Failure`] with the location, in the case's scenario, of the parameter that prevents this.
     pub fn check_built_in_pipeline(&self) -> Result<(), Failure> {
         const MAX_POINTS: u64 = 1000;
         for number in 0..self.sweep_points().min(self.cases()).min(MAX_POINTS) {
-            // A case that makes no scenario has a row that says so.
+            // A case without a valid scenario has a row with the error.
             if let Ok(Case { source, .. }) = self.case(number) {
                 source.world().check_built_in(&source)?;
             }
@@ -297,8 +299,9 @@ impl Study {
         Ok(())
     }
 
-    /// Cases at the limits of the design: of every parameter that varies those where it is smallest and largest among all cases (the first
-    /// 100,000 draws), of a choice one of each value, at the first and the last point of the sweep; and every point of the sweep once.
+    /// Returns cases at the limits of the design: for every parameter that varies, the cases with its
+    /// smallest and largest value among all cases (of the first 100,000 draws); for a choice, one case per
+    /// value; all of these at the first and the last point of the sweep; and every point of the sweep once.
     /// At most a thousand, in order.
     pub fn extremes(&self) -> BTreeSet<u64> {
         const MAX_DRAWS: u64 = 100_000;
@@ -344,26 +347,28 @@ impl Study {
         (0..points).chain(at_ends).take(MAX_CASES).collect()
     }
 
-    /// SHA-256 of all that the rows depend on but the pipeline: the study, its scenario, the content of the files that they read; hexadecimal.
+    /// Returns the SHA-256 of everything that the rows depend on, except the pipeline: the study, its
+    /// scenario, and the content of the files that these read; hexadecimal.
     pub fn hash(&self) -> &str {
         &self.hash
     }
 
-    /// The file of the study with the content of every file (`sha256:` and the digits) in the place of its path, and without the path of its
-    /// scenario.
+    /// Returns the study file with the content of every file (`sha256:` and the digits) in place of the
+    /// file's path, and without the path of its scenario.
     pub(crate) fn identity(&self) -> &StudyFile {
         &self.identity
     }
 
-    /// SHA-256 of the files that its scenario reads, by their roles.
+    /// Returns the SHA-256 of each file that the scenario reads, by the role of the file.
     ///
     /// # Errors
-    /// As [`ScenarioSource::files`].
+    /// The errors of [`ScenarioSource::files`].
     pub(crate) fn files(&self) -> Result<FileDigests, Failure> {
         self.base.files()
     }
 
-    /// The files that it reads: its own, its scenario's as far as it has one, and those that cases read.
+    /// Returns the files that the study reads: the study file, its scenario file if it has one, and the files
+    /// that cases read.
     pub fn files_read(&self) -> Vec<PathBuf> {
         let scenario = self.scenario_file();
         let own = [self.path.as_path(), scenario.as_path()];
@@ -374,20 +379,20 @@ impl Study {
             .collect()
     }
 
-    /// The file of its scenario, as far as it has one.
+    /// Returns the path of the scenario file; no file exists there for a built-in scenario.
     pub fn scenario_file(&self) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(&self.file.scenario)
     }
 
-    /// The scenario that the cases begin from.
+    /// Returns the scenario from which the cases are derived.
     pub fn scenario(&self) -> &dyn AnyScenario {
         self.base.scenario.as_ref()
     }
 
-    /// Frames of every case of a scenario that has `count`.
+    /// Returns the frames of every case, for a scenario with `count` frames.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of a range that the scenario does not have.
+    /// A [`Failure`] with the location of a range that the scenario does not have.
     pub fn frames(&self, count: u64) -> Result<Range<u64>, Failure> {
         let Some(text) = &self.file.frames else { return Ok(0..count) };
         let range = text
@@ -404,12 +409,13 @@ impl Study {
         }
     }
 
-    /// A mistake in the study's file.
+    /// Creates the failure for a mistake in the study file.
     pub(crate) fn refuse(&self, at: &str, message: String) -> Failure {
         toml_file::refuse(&self.path, &self.text, at, message).into()
     }
 
-    /// Names of what is drawn, each with whether it is a number: the sweep first, then what varies.
+    /// Returns the names of the drawn values, each with true if its values are numbers: swept parameters
+    /// first, then varying ones.
     pub fn drawn_columns(&self) -> IndexMap<String, bool> {
         let mut columns = IndexMap::new();
         for swept in &self.sweep {
@@ -431,7 +437,7 @@ impl Study {
         columns
     }
 
-    /// A table of this study without rows.
+    /// Returns a table of this study without rows.
     pub fn table(&self) -> CaseTable {
         let causes = self.scenario().world().causes();
         CaseTable {
@@ -442,29 +448,30 @@ impl Study {
         }
     }
 
-    /// Names of the figures that are recorded.
+    /// Returns the names of the recorded figures.
     pub fn figures(&self) -> Vec<String> {
         self.file.record.figures.clone().unwrap_or_else(|| self.scenario().world().figure_names())
     }
 
-    /// The figure by which cases are good or bad.
+    /// Returns the figure that ranks cases from good to bad.
     pub fn worst_by(&self) -> String {
         let headline = || self.scenario().world().headline().to_owned();
         self.file.record.worst_by.clone().unwrap_or_else(headline)
     }
 
-    /// A case, by its number alone.
+    /// Returns a case, which depends only on its number and the study.
     ///
     /// # Errors
-    /// A [`Failure`] when the values drawn make no scenario; the place is that of the value in the case's scenario.
+    /// A [`Failure`] when the drawn values do not form a valid scenario, with the location of the value in
+    /// the case's scenario.
     pub fn case(&self, number: u64) -> Result<Case, Failure> {
         self.prepare_case(self.draw(number)?)
     }
 
-    /// The scenario of a case.
+    /// Returns the case of a draw, with its scenario.
     ///
     /// # Errors
-    /// As [`Study::case`].
+    /// The errors of [`Study::case`].
     pub(crate) fn prepare_case(
         &self,
         DrawnCase { number, seed, drawn, values }: DrawnCase,
@@ -473,10 +480,10 @@ impl Study {
         Ok(Case { number, seed, drawn, source: self.base.with_values(&values, seed, name)? })
     }
 
-    /// The values of a case.
+    /// Draws the values of a case.
     ///
     /// # Errors
-    /// A [`Failure`] for a path that leads nowhere.
+    /// A [`Failure`] for a path that does not exist in the scenario.
     pub(crate) fn draw(&self, number: u64) -> Result<DrawnCase, Failure> {
         let cells = self.sweep_points();
         let (mut cell, replicate) = (number % cells, number / cells);
@@ -484,7 +491,7 @@ impl Study {
         let mut drawn = Vec::new();
         for (i, swept) in self.sweep.iter().enumerate().rev() {
             let count = swept.values.len() as u64;
-            // A sweep has a value, which was checked when it was read.
+            // Every sweep has a value, as checked when the study was read.
             let value = swept.values.get((cell % count) as usize).cloned().unwrap_or_default();
             cell /= count;
             drawn.insert(0, recorded(&value));
@@ -512,7 +519,8 @@ impl Study {
                 set(&varied.path, varied.distribution.value(u.next().unwrap_or(0.5)))?;
             }
         }
-        // The same at every point of a sweep. TOML's whole numbers have a sign: one bit less.
+        // The seed is the same at every point of a sweep. It has one bit less, because TOML's integers are
+        // signed.
         let seed = Seed { seed: self.file.seed, case: replicate }.streams(0, Effect::CaseSeed).word(0) >> 1;
         Ok(DrawnCase { number, seed, drawn, values })
     }
@@ -521,7 +529,7 @@ impl Study {
         self.refuse(at, format!("is `{}`, expected {expected}", path.text()))
     }
 
-    /// Figures and paths that there are.
+    /// Checks that all named figures exist and are recorded.
     fn check_names(&self) -> Result<(), Failure> {
         let known = self.scenario().world().figure_names();
         let check = |at: &str, name: &str| {
@@ -567,7 +575,8 @@ impl Study {
     }
 }
 
-/// [`Study::identity`] of a file. Files that its values name are noted in `base`, so that a case refuses one that changed.
+/// Computes [`Study::identity`] of a file. Files named in its values are recorded in `base`: a case later
+/// rejects a file that changed.
 fn identity(file: &StudyFile, folder: &Path, base: &mut ScenarioSource) -> Result<StudyFile, Failure> {
     let mut identity = file.clone();
     identity.require.clear();
@@ -592,7 +601,8 @@ fn identity(file: &StudyFile, folder: &Path, base: &mut ScenarioSource) -> Resul
     Ok(identity)
 }
 
-/// Puts the content of a file in the place of every text that is the path of one, as the scenario would read it.
+/// Replaces every text that is the path of a file by the content of the file, with paths resolved as in the
+/// scenario.
 fn replace_paths(value: &mut Value, base: &mut ScenarioSource) {
     match value {
         Value::String(text) => {
@@ -644,10 +654,10 @@ impl VariedParameter {
     }
 }
 
-/// What is wrong with an entry: the field, and why.
+/// Field of an entry that is wrong, and the reason.
 type Problem = (&'static str, String);
 
-/// Refuses numbers that are none: JSON, in which values are kept, has null for them.
+/// Rejects non-finite numbers: values are stored as JSON, which has null for them.
 fn check_finite(values: &[Value]) -> Result<(), (usize, String)> {
     let message = || "is not finite, expected a finite number or another value".to_owned();
     values.iter().position(Value::is_null).map_or(Ok(()), |place| Err((place, message())))
@@ -671,7 +681,7 @@ fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String
     Ok(())
 }
 
-/// As it stands in a table.
+/// Converts a value to its form in a table.
 fn recorded(value: &Value) -> DrawnValue {
     match (value, value.as_f64()) {
         (_, Some(number)) => DrawnValue::Number(number),

@@ -1,12 +1,14 @@
-//! A scenario with some of its values replaced.
+//! Replacement of values in a scenario.
 use files::Failure;
 use run::ScenarioSource;
 use serde_json::Value;
 
-/// A scenario with values of its own at some paths, as in `sensor.gain_e_per_dn`, and its seed as it is or as one of them says.
+/// Returns a scenario with new values at some paths, as in `sensor.gain_e_per_dn`. The seed stays the same
+/// unless one of the values sets it.
 ///
 /// # Errors
-/// [`Failure::Usage`] for a path that leads nowhere, or a value of the wrong type. Whether the scenario can be simulated shows when it is.
+/// [`Failure::Usage`] for a path that does not exist, or a value of the wrong type. Whether the scenario can
+/// be simulated is checked only when it is simulated.
 pub fn with_overlay(source: &ScenarioSource, values: &[(String, Value)]) -> Result<ScenarioSource, Failure> {
     let mut document = source.scenario.to_json()?;
     for (text, value) in values {
@@ -22,10 +24,11 @@ pub fn with_overlay(source: &ScenarioSource, values: &[(String, Value)]) -> Resu
     source.with_values(&document, seed, source.name.clone())
 }
 
-/// The value of a scenario at a path, as in `sensor.gain_e_per_dn`; what a scenario leaves out is null.
+/// Returns the value of a scenario at a path, as in `sensor.gain_e_per_dn`; null for a key that the scenario
+/// omits.
 ///
 /// # Errors
-/// [`Failure::Usage`] for a path that leads nowhere.
+/// [`Failure::Usage`] for a path that does not exist.
 pub fn value_at(source: &ScenarioSource, path: &str) -> Result<Value, Failure> {
     let refuse = |expected: &str| Failure::Usage(format!("`{path}` is given, expected {expected}"));
     let document = source.scenario.to_json()?;
@@ -33,14 +36,14 @@ pub fn value_at(source: &ScenarioSource, path: &str) -> Result<Value, Failure> {
     found.ok_or_else(|| refuse("the path of a value in the scenario, which has none there"))
 }
 
-/// A step on the way to a value.
+/// Step of a path to a value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Step {
     Key(String),
     Index(usize),
 }
 
-/// The path of a value in a scenario, as in `cameras[0].camera.focal_length_mm`.
+/// Path of a value in a scenario, as in `cameras[0].camera.focal_length_mm`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct ValuePath {
     text: String,
@@ -48,7 +51,7 @@ pub(crate) struct ValuePath {
 }
 
 impl ValuePath {
-    /// Reads a path; the error says what is expected.
+    /// Parses a path; the error states the expected form.
     pub(crate) fn parse(text: &str) -> Result<Self, &'static str> {
         const EXPECTED: &str =
             "a path of names and places, as in `sensor.gain_e_per_dn` or `schedule[2].count`";
@@ -68,17 +71,17 @@ impl ValuePath {
         Ok(Self { text: text.to_owned(), steps })
     }
 
-    /// As it was written.
+    /// Returns the text of the path.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// Whether setting this value and another one would touch the same place.
+    /// Returns true if setting the values at both paths would change a common value.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         self.steps.starts_with(&other.steps) || other.steps.starts_with(&self.steps)
     }
 
-    /// The value there; `None` where there is none.
+    /// Returns the value at the path; `None` if there is none.
     pub(crate) fn get<'a>(&self, document: &'a Value) -> Option<&'a Value> {
         self.steps.iter().try_fold(document, |value, step| match step {
             Step::Key(name) => value.get(name),
@@ -86,8 +89,9 @@ impl ValuePath {
         })
     }
 
-    /// Puts a value there. The last name may be new, so that a value which a scenario leaves to its default can be set; whether
-    /// there is such a name, the scenario's type decides. The error says what is missing on the way.
+    /// Sets the value at the path. The last name may be new, which allows setting a value that the scenario
+    /// leaves at its default; the scenario's type decides whether the name exists. The error states the part
+    /// of the path that is missing.
     pub(crate) fn set(&self, document: &mut Value, new: Value) -> Result<(), String> {
         let Some((last, way)) = self.steps.split_last() else { return Ok(()) };
         let mut at = document;
@@ -123,7 +127,7 @@ impl ValuePath {
     }
 }
 
-/// A whole number where a whole number was.
+/// Converts the new value to an integer if the old one is an integer.
 fn like(old: Option<&Value>, new: Value) -> Value {
     match (old, new.as_f64()) {
         (Some(Value::Number(old)), Some(number))

@@ -1,4 +1,4 @@
-//! Runs the cases of a shard on the threads of this machine.
+//! Execution of the cases of a shard on the threads of this machine.
 use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,23 +12,24 @@ use crate::cases::CaseRow;
 use crate::definition::Study;
 use crate::evaluate::{CaseResult, evaluate};
 
-/// How the cases of a campaign are run.
+/// Resources with which the cases of a campaign are run.
 #[derive(Debug, Clone, Copy)]
 pub struct Workers<'a> {
-    /// Threads; the rows do not depend on it.
+    /// Number of threads; the rows do not depend on it.
     pub jobs: usize,
-    /// A program finds its images in folders of its own below this one.
+    /// Directory below which each case has a separate directory for the images of an external program.
     pub scratch: &'a Path,
-    /// Set from outside, it ends the campaign: no other case is begun.
+    /// External flag that ends the campaign: no further case is begun once it is set.
     pub ended: Option<&'a AtomicBool>,
 }
 
-/// Evaluates cases on `jobs` threads, a case a thread; `done` is told of each, in no order, and may end them all. The rows are in order,
-/// and depend on neither. A program finds its images in folders of its own below `scratch`.
+/// Evaluates cases on `jobs` threads, one case per thread. `done` is called with each case, in no particular
+/// order, and may end the evaluation. The rows are in order, and depend neither on the number of threads nor
+/// on `done`. An external program finds its images in a separate directory per case below `scratch`.
 ///
 /// # Errors
-/// That of `done`; the failure of the first case, in order, that has one; [`Failure::Interrupted`] of those that were not done when it
-/// was ended.
+/// The error of `done`; the failure of the first case, in order, that has one; [`Failure::Interrupted`] for
+/// cases that were not complete when the campaign was ended.
 pub(crate) fn run_cases(
     study: &Study,
     cases: Vec<u64>,
@@ -48,7 +49,7 @@ pub(crate) fn run_cases(
         let own = tempfile::tempdir_in(scratch)
             .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))?;
         let evaluated = evaluate(study, case, pipeline, own.path())?;
-        // What a pipeline answered while it was ended is no result.
+        // A result computed while the campaign was being ended is discarded.
         go_on()?;
         if let Err(failure) = done(&evaluated) {
             refused.get_or_init(|| failure);

@@ -1,4 +1,4 @@
-//! What comes of a case.
+//! Evaluation of a case.
 
 pub(crate) mod engine;
 pub(crate) mod study_pipeline;
@@ -13,23 +13,24 @@ use crate::cases::{CaseFigure, CaseRow};
 use crate::definition::{Case, Study};
 use crate::evaluate::study_pipeline::StudyPipeline;
 
-/// What came of a case.
+/// Result of a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaseResult {
-    /// Its row.
+    /// Row of the case.
     pub row: CaseRow,
-    /// The first failure of the pipeline, if it failed at all.
+    /// First failure of the pipeline, if there was one.
     pub first_failure: Option<FirstFailure>,
-    /// Whether the pipeline started, if it has to be started at all.
+    /// True if the pipeline started, or needs no start.
     pub has_started: bool,
 }
 
-/// Simulates, processes and scores a case on this thread; nothing is written. A program finds its images in `scratch`.
+/// Simulates, processes and scores a case on this thread; writes no results. An external program finds its
+/// images in `scratch`.
 ///
-/// A case whose values make no scenario that can be simulated has a row that says why.
+/// A case whose values do not form a scenario that can be simulated has a row with the reason.
 ///
 /// # Errors
-/// A [`Failure`] of files, a renderer, or a pipeline that is not there.
+/// A [`Failure`] of files, a renderer, or a missing pipeline.
 pub fn evaluate(
     study: &Study,
     number: u64,

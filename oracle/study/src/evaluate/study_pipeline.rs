@@ -1,4 +1,4 @@
-//! The pipeline that a study tries.
+//! Pipeline under test in a study.
 use std::path::Path;
 
 use files::Failure;
@@ -8,34 +8,36 @@ use run::{AnyFactory, AnyScenario, AnyWorld};
 
 use crate::definition::Study;
 
-/// Digits of a study's hash in the line that replays a case.
+/// Number of digits of a study's hash in the command that replays a case.
 const SHORT_HASH: usize = 12;
 
-/// The pipeline that a study tries, built anew for every case: one that a command line can name ([`PipelineChoice`]), or one of the
-/// caller's own, alive in this process. Cases ask it from several threads at once.
+/// Pipeline under test in a study, created anew for every case: either one that a command line can name
+/// ([`PipelineChoice`]), or an object of the caller in this process. Several threads call it at once.
 pub trait StudyPipeline: Sync {
-    /// Refuses a scenario of a world that it is not for, before anything is written.
+    /// Rejects a scenario of a world that the pipeline does not support, before anything is written.
     ///
     /// # Errors
-    /// A [`Failure`] that says what was expected.
+    /// A [`Failure`] that states the expected world.
     fn check(&self, scenario: &dyn AnyScenario) -> Result<(), Failure>;
 
-    /// SHA-256 of what its answers depend on, as far as it can be known, so that rows of two pipelines never mix; none for the built-in
-    /// pipeline of a world, whose parameters are the scenario's.
+    /// Returns the SHA-256 of everything that the pipeline's outcomes depend on, as far as it can be
+    /// determined, which keeps rows of two pipelines apart. `None` for the built-in pipeline of a world,
+    /// whose parameters belong to the scenario.
     fn hash(&self, world: &dyn AnyWorld) -> Option<[u8; 32]>;
 
-    /// What runs a case of a study again, as a reader would type it; `path` is the study's file.
+    /// Returns the command that runs a case of a study again, as a user would type it; `path` is the study's
+    /// file.
     fn replay(&self, study: &Study, path: &Path, case: u64) -> String;
 
-    /// The factory of the pipeline for a case. A program finds its images in `scratch`.
+    /// Returns the factory of the pipeline for a case. An external program finds its images in `scratch`.
     ///
     /// # Errors
-    /// A [`Failure`] when there is no such pipeline in the world of the scenario.
+    /// A [`Failure`] when the world of the scenario has no such pipeline.
     fn factory(&self, scenario: &dyn AnyScenario, scratch: &Path) -> Result<AnyFactory, Failure>;
 }
 
 impl Study {
-    /// The hash of rows by a pipeline.
+    /// Returns the hash of the rows that a pipeline produces.
     pub fn hash_with(&self, pipeline: &dyn StudyPipeline) -> String {
         match pipeline.hash(self.scenario().world()) {
             Some(own) => sha256_hex(format!("{} {}", self.hash(), hex(own))),
@@ -70,8 +72,8 @@ impl StudyPipeline for PipelineChoice {
     }
 }
 
-/// Words as a shell takes them.
+/// Joins words to a command line, quoted for a shell.
 pub fn command_line(words: &[String]) -> String {
-    // A word of a command line has no zero byte.
+    // A command-line argument contains no zero byte, the only cause of an error here.
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }

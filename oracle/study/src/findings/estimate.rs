@@ -1,4 +1,4 @@
-//! Values of many cases together, with their intervals.
+//! Estimates over many cases, with their intervals.
 
 use rand::Rng;
 use run::figure_by_name;
@@ -11,29 +11,30 @@ use statistics::{
 
 use crate::cases::CaseFigure;
 
-/// Samples of blocks drawn with replacement, for the intervals of Sobol indices.
+/// Number of samples of blocks, drawn with replacement, for the intervals of Sobol indices.
 pub(crate) const RESAMPLES: usize = 1000;
-/// A value with its 95 % interval.
+/// Estimated value with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// The value.
+    /// Estimated value.
     pub value: f64,
-    /// Lower limit; absent where too few cases are known.
+    /// Lower limit; absent if there are too few cases.
     pub low: Option<f64>,
-    /// Upper limit.
+    /// Upper limit; absent if there are too few cases.
     pub high: Option<f64>,
 }
 
 impl Estimate {
-    /// A value with its interval, which holds it: that of a quantile between two cases may lie beside it.
+    /// Creates an estimate, whose interval is extended to contain the value: the interval of a quantile
+    /// between two cases may exclude it.
     pub(crate) fn new(value: f64, interval: Option<Interval>) -> Self {
         let (low, high) = (interval.map(|i| i.low.min(value)), interval.map(|i| i.high.max(value)));
         Self { value, low, high }
     }
 }
 
-/// A figure over all cases together; `draws` are the numbers of their draws ([`CaseTable::draws`]), of which only different ones are
-/// independent.
+/// Estimates a figure over all cases together; `draws` are the numbers of their draws ([`CaseTable::draws`]):
+/// only cases of different draws are independent.
 ///
 /// [`CaseTable::draws`]: crate::CaseTable::draws
 pub fn overall(name: &str, cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
@@ -44,7 +45,7 @@ pub fn overall(name: &str, cases: &[CaseFigure], draws: &[usize]) -> Option<Esti
     Some(Estimate::new(ratio(&sums)?, cluster_mean_interval(&sums)))
 }
 
-/// A rate over the frames of all cases together.
+/// Estimates a rate over the frames of all cases together.
 pub(crate) fn share(cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
     let sums = sums(true, cases, draws);
     Some(Estimate::new(ratio(&sums)?, cluster_rate_interval(&sums)))
@@ -55,7 +56,8 @@ pub(crate) fn ratio(sums: &[ClusterSum]) -> Option<f64> {
     (of > 0.0).then(|| sum / of)
 }
 
-/// What each draw adds to a figure: of a rate its frames, of another figure the values of its cases.
+/// Returns the contribution of each draw to a figure: the counted frames for a rate, the values of the draw's
+/// cases for another figure.
 pub(crate) fn sums(is_rate: bool, cases: &[CaseFigure], draws: &[usize]) -> Vec<ClusterSum> {
     let mut sums = vec![ClusterSum::default(); draws.iter().map(|draw| draw + 1).max().unwrap_or_default()];
     for (case, draw) in cases.iter().zip(draws) {
@@ -71,7 +73,7 @@ pub(crate) fn sums(is_rate: bool, cases: &[CaseFigure], draws: &[usize]) -> Vec<
     sums
 }
 
-/// Quantiles of the cases; without an interval where too few are known for one.
+/// Estimates quantiles of the cases; without an interval if there are too few cases.
 pub(crate) fn quantiles<const N: usize>(
     cases: &[CaseFigure],
     draws: &[usize],
@@ -87,7 +89,8 @@ pub(crate) fn quantiles<const N: usize>(
     })
 }
 
-/// The quantile of sorted values, between two neighbours in proportion (type 7 of Hyndman & Fan 1996).
+/// Returns the quantile of sorted values, interpolated linearly between neighbours (type 7 of Hyndman & Fan
+/// 1996).
 pub(crate) fn sorted_quantile(sorted: &[f64], p: f64) -> f64 {
     let at = p * (sorted.len() - 1) as f64;
     let (below, part) = (at.floor(), at.fract());
@@ -101,7 +104,7 @@ pub(crate) fn stream(seed: u64, place: u64) -> Stream {
 }
 
 pub(crate) fn pick(stream: &mut Stream, count: usize) -> usize {
-    // 64 bits over a few million cases: the bias is below 1e-12.
+    // With 64 bits and a few million cases, the bias is below 1e-12.
     ((u128::from(stream.next_u64()) * count as u128) >> 64) as usize
 }
 
@@ -134,7 +137,7 @@ mod tests {
         assert_eq!(quantiles(&[case(0, 0)], &[0], [0.5]), [None]);
     }
 
-    /// Four points of a sweep are not four times as many cases.
+    /// Four points of a sweep are not four times as many independent cases.
     #[test]
     fn cases_of_one_draw_count_as_one() {
         let value = |k: usize| CaseFigure { value: Some((k * 7 % 41) as f64), count: 0, of: 1 };
@@ -145,7 +148,7 @@ mod tests {
         let once = overall("ra_rms_deg", &single, &draws).unwrap();
         let four = overall("ra_rms_deg", &swept, &of_swept).unwrap();
         assert_eq!(once, four);
-        // Seven of 41 and of the swept cases are quite as far apart.
+        // Quantile intervals of the 41 single cases and of the swept cases have about the same width.
         let width = |estimate: &Option<Estimate>| estimate.and_then(|e| Some(e.high? - e.low?)).unwrap();
         let [once] = quantiles(&single, &draws, [0.5]);
         let [four] = quantiles(&swept, &of_swept, [0.5]);
@@ -159,7 +162,8 @@ mod tests {
         let draws: Vec<usize> = (0..40).collect();
         let [p05, median] = quantiles(&cases, &draws, [0.05, 0.5]).map(Option::unwrap);
         assert!((p05.value - 1.95).abs() < 1e-12 && p05.low.is_none() && p05.high.is_none(), "{p05:?}");
-        // The 14th and the 27th of 40 are the limits of the exact test at 95 %; the fraction leaves the rest.
+        // The 14th and the 27th of 40 values are the limits of the exact test at 95 %; interpolation widens
+        // them by a fraction.
         let (low, high) = (median.low.unwrap(), median.high.unwrap());
         assert!((12.5..14.0).contains(&low) && (25.0..26.5).contains(&high), "{median:?}");
     }

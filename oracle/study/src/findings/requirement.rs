@@ -1,4 +1,5 @@
-//! Requirements over a study: is a figure on the right side of its limit, with the confidence that is asked for?
+//! Requirements on a study: decides whether a figure is on the required side of its limit, with the requested
+//! confidence.
 
 use indexmap::IndexMap;
 use run::figure_by_name;
@@ -9,25 +10,27 @@ use statistics::{Bounds, ClusterValue, cluster_mean_bounds, cluster_quantile_bou
 use super::estimate::{ratio, sorted_quantile, sums};
 use crate::cases::CaseFigure;
 
-/// Cases at which it is given up to say how many would decide.
+/// Largest number of cases for which the number needed for a decision is computed.
 const MAX_CASES: f64 = 1e9;
 
-/// What a figure must reach. It is decided at each point of the sweep alone, and is no part of the study's hash: the rows are the same
-/// with other requirements.
+/// Requirement on a figure. It is decided separately at each point of the sweep. It is not part of the
+/// study's hash, since the rows do not depend on requirements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyRequirement {
     /// Name of a figure of the score, as in `correct_rate`.
     pub figure: String,
-    /// Lower limit, in the figure's unit; of a rate as a share of one. Exactly one of `at_least` and `at_most` is given.
+    /// Lower limit, in the figure's unit; a fraction from 0 to 1 for a rate. Exactly one of `at_least` and
+    /// `at_most` is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e18, max = 1e18))]
     pub at_least: Option<f64>,
-    /// Upper limit.
+    /// Upper limit, as `at_least`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e18, max = 1e18))]
     pub at_most: Option<f64>,
-    /// Of what: all cases together (a rate over all frames, another figure's mean over the cases), or a quantile of the cases.
+    /// Statistic that has the limit: all cases together (a rate over all frames, the mean over the cases for
+    /// another figure), or a quantile of the cases.
     #[serde(default)]
     pub of: RequiredStatistic,
     /// Confidence of the decision, one-sided.
@@ -40,18 +43,18 @@ const fn default_confidence() -> f64 {
     0.95
 }
 
-/// What of a figure's cases has a limit.
+/// Statistic of a figure's cases that has a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RequiredStatistic {
     /// All cases together.
     #[default]
     All,
-    /// The value that 5 % of the cases are below.
+    /// The value below which 5 % of the cases lie.
     P05,
     /// The median of the cases.
     Median,
-    /// The value that 95 % of the cases are below.
+    /// The value below which 95 % of the cases lie.
     P95,
 }
 
@@ -65,7 +68,7 @@ impl RequiredStatistic {
         }
     }
 
-    /// It in words, before the figure's: empty for all cases together.
+    /// Returns the words that precede the figure's label: empty for all cases together.
     pub fn words(self) -> &'static str {
         match self {
             Self::All => "",
@@ -76,20 +79,20 @@ impl RequiredStatistic {
     }
 }
 
-/// Which side of its limit a figure is allowed on.
+/// Limit of a figure, and the side on which it is allowed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Limit {
-    /// The figure is no less than this.
+    /// The figure is at least this value.
     AtLeast(f64),
-    /// The figure is no more than this.
+    /// The figure is at most this value.
     AtMost(f64),
 }
 
 impl StudyRequirement {
-    /// Its limit.
+    /// Returns the limit of the requirement.
     ///
     /// # Errors
-    /// The field at fault, and what is expected of it.
+    /// The wrong field, and the expected value.
     pub fn limit(&self) -> Result<Limit, (&'static str, &'static str)> {
         match (self.at_least, self.at_most) {
             (Some(limit), None) => Ok(Limit::AtLeast(limit)),
@@ -100,48 +103,52 @@ impl StudyRequirement {
     }
 }
 
-/// The verdict on a requirement.
+/// Verdict on a requirement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RequirementVerdict {
-    /// The bound on the far side keeps to the limit.
+    /// Both bounds are on the allowed side of the limit.
     Met,
-    /// The bound on the near side is beyond the limit.
+    /// Both bounds are on the wrong side of the limit.
     NotMet,
-    /// Neither is known with the confidence asked for.
+    /// The limit lies between the bounds, or a bound is missing: no decision at the requested confidence.
     NotDecided,
 }
 
-/// A requirement with what the cases say of it.
+/// A requirement with its verdict, bounds and cases.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RequirementResult {
-    /// What is required.
+    /// The requirement.
     #[serde(flatten)]
     pub requirement: StudyRequirement,
-    /// The swept values, by path, where it was decided; empty without a sweep.
+    /// Swept values, by path, at which the requirement was decided; empty without a sweep.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub at: IndexMap<String, String>,
     /// The verdict.
     pub verdict: RequirementVerdict,
-    /// What was found; absent without a case that has the figure.
+    /// Estimated value; absent if no case has the figure.
     pub value: Option<f64>,
-    /// The value is at least this with the confidence of the requirement; absent where too few cases are known.
+    /// Lower bound: the value is at least this with the confidence of the requirement; absent if there are
+    /// too few cases.
     pub low: Option<f64>,
-    /// It is at most this with the same confidence.
+    /// Upper bound: the value is at most this with the confidence of the requirement; absent if there are too
+    /// few cases.
     pub high: Option<f64>,
-    /// Cases that it rests on.
+    /// Number of cases used for the decision.
     pub cases: u64,
-    /// Cases among them in which the figure has no value (of a position error, a case without a hit). In a quantile they count as worse
-    /// than the limit; beside a mean they keep a requirement from being met.
+    /// Number of these cases in which the figure has no value (for a position error, a case without a hit).
+    /// In a quantile they count as worse than the limit; with a mean they prevent a requirement from being
+    /// met.
     pub without_value: u64,
-    /// Cases that would decide it if further ones were like these, about; absent when it is decided, or when no number would be enough.
+    /// Approximate number of cases that would decide the requirement if further cases resembled these; absent
+    /// when it is decided, or when no number would be enough.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cases_needed: Option<u64>,
 }
 
 impl RequirementResult {
-    /// The requirement in words, as in `5 % quantile of correct rate, % ≥ 95.0 % (confidence 95 %)`; `label` is the figure's name,
-    /// `number` writes a value of it.
+    /// Returns the requirement in words, as in `5 % quantile of correct rate, % ≥ 95.0 % (confidence 95 %)`;
+    /// `label` is the figure's name, `number` formats one of its values.
     pub fn requirement_words(&self, label: &str, number: impl Fn(f64) -> String) -> String {
         let StudyRequirement { at_least, at_most, of, confidence, .. } = &self.requirement;
         let limits = [("≥", at_least), ("≤", at_most)];
@@ -152,13 +159,14 @@ impl RequirementResult {
         format!("{}{label}{limits} (confidence {} %)", of.words(), 100.0 * confidence)
     }
 
-    /// The swept values where it was decided, as in `sensor.read_noise_e = 5`; empty without a sweep.
+    /// Returns the swept values at which the requirement was decided, as in `sensor.read_noise_e = 5`; empty
+    /// without a sweep.
     pub fn at_words(&self) -> String {
         let at: Vec<String> = self.at.iter().map(|(path, value)| format!("{path} = {value}")).collect();
         at.join(", ")
     }
 
-    /// The verdict in words, with the cases that are needed and those without a value.
+    /// Returns the verdict in words, with the number of cases that are needed and of those without a value.
     pub fn verdict_words(&self) -> String {
         let mut words = match (self.verdict, self.cases_needed) {
             (RequirementVerdict::Met, _) => "met".to_owned(),
@@ -175,7 +183,8 @@ impl RequirementResult {
     }
 }
 
-/// A requirement over the cases of a point of the sweep: the figure of each case that can be run, and the number of its draw.
+/// Decides a requirement over the cases at one point of the sweep: `figures` has the figure of each case that
+/// can be run, `draws` the number of its draw.
 pub(crate) fn decide(
     requirement: &StudyRequirement,
     figures: &[CaseFigure],
@@ -216,7 +225,7 @@ fn verdict(limit: Limit, bounds: Option<Bounds>, may_be_met: bool) -> Requiremen
     }
 }
 
-/// What a requirement is decided by.
+/// Statistic by which a requirement is decided, with its values.
 enum Sample {
     Rate(Vec<statistics::ClusterSum>),
     Mean(Vec<statistics::ClusterSum>),
@@ -261,7 +270,7 @@ impl Sample {
         }
     }
 
-    /// Cases that would decide, if further ones were like these.
+    /// Returns the number of cases that would decide the requirement if further cases resembled these.
     fn cases_needed(&self, limit: Limit, confidence: f64, cases: u64) -> Option<u64> {
         let decides =
             |size: f64| verdict(limit, self.bounds(confidence, size), true) != RequirementVerdict::NotDecided;
@@ -303,7 +312,7 @@ mod tests {
         decide(&requirement, &figures, &draws, &IndexMap::new()).unwrap()
     }
 
-    /// Cases of one frame each.
+    /// Returns cases of one frame each.
     fn frames(hits: u64, of: u64) -> impl Iterator<Item = CaseFigure> {
         (0..of).map(move |frame| {
             let count = u64::from(frame < hits);
@@ -311,7 +320,8 @@ mod tests {
         })
     }
 
-    /// The table of zero failures: 59 trials show 95 % at a confidence of 95 %, 58 do not (0.95⁵⁸ = 0.051); 93 with one failure.
+    /// The textbook's success-run table: 59 trials without a failure show 95 % at a confidence of 95 %, 58 do
+    /// not (0.95⁵⁸ = 0.051); 93 with one failure.
     #[test]
     fn as_many_trials_are_needed_as_the_textbook_says() {
         let at_least = || required("correct_rate", Limit::AtLeast(0.95), RequiredStatistic::All);

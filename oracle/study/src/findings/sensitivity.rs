@@ -1,43 +1,45 @@
-//! What the figures depend on.
+//! Sensitivity of figures to drawn parameters.
 use serde::{Deserialize, Serialize};
 
-/// How a figure goes with a drawn value: Spearman's rank correlation.
+/// Spearman's rank correlation of a figure with a drawn value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RankCorrelation {
     /// Path of the drawn value.
     pub parameter: String,
     /// Name of the figure.
     pub figure: String,
-    /// From −1, the figure falls whenever the value grows, to 1.
+    /// Correlation coefficient, from −1 (the figure falls whenever the value grows) to 1.
     pub correlation: f64,
-    /// Lower limit of the 95 % interval, by Fisher's transformation with the variance of Bonett & Wright (2000); absent where too few
-    /// draws are known.
+    /// Lower limit of the 95 % interval, by Fisher's transformation with the variance of Bonett & Wright
+    /// (2000); absent if there are too few draws.
     pub low: Option<f64>,
-    /// Upper limit.
+    /// Upper limit of the 95 % interval; absent if there are too few draws.
     pub high: Option<f64>,
-    /// Cases that have the figure.
+    /// Number of cases that have the figure.
     pub cases: u64,
 }
 
-/// How much of a figure's variance is a parameter's doing.
+/// Share of a parameter in the variance of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SobolIndex {
     /// Path of the drawn value.
     pub parameter: String,
     /// Name of the figure.
     pub figure: String,
-    /// The parameter alone: the part of the variance that goes when it is known.
+    /// First-order index: the fraction of the variance that vanishes when only this parameter is fixed.
     pub first: f64,
-    /// 95 % interval of it, from points drawn again.
+    /// 95 % interval of the first-order index, from resampled points.
     pub first_interval: [f64; 2],
-    /// With all in which it takes part: the part that stays when all others are known. The noise of a case counts here.
+    /// Total index, including all interactions of the parameter: the fraction of the variance that remains
+    /// when all other parameters are fixed. It includes the noise of a case.
     pub total: f64,
-    /// 95 % interval of it.
+    /// 95 % interval of the total index, from resampled points.
     pub total_interval: [f64; 2],
 }
 
-/// First-order and total index of a parameter by Saltelli et al. (2010), Computer Physics Communications 181, 259–270, Table 2 (b) and
-/// (f, Jansen): f at the points A, B and A with the parameter of B. `None` where f does not vary.
+/// Computes the first-order and total index of a parameter by Saltelli et al. (2010), Computer Physics
+/// Communications 181, 259–270, Table 2 (b) and (f, Jansen), from f at the points A, B and A with the
+/// parameter of B. `None` where f does not vary.
 pub(crate) fn sobol_index(a: &[f64], b: &[f64], ab: &[f64]) -> Option<(f64, f64)> {
     let n = a.len() as f64;
     let mean = a.iter().chain(b).sum::<f64>() / (2.0 * n);
@@ -47,7 +49,7 @@ pub(crate) fn sobol_index(a: &[f64], b: &[f64], ab: &[f64]) -> Option<(f64, f64)
     }
     let (mut first, mut total) = (0.0, 0.0);
     for ((a, b), ab) in a.iter().zip(b).zip(ab) {
-        // Centred on the mean, which changes nothing in the limit and much of the scatter.
+        // Subtracting the mean does not change the limit, but greatly reduces the scatter.
         first += (b - mean) * (ab - a);
         total += 0.5 * (a - ab) * (a - ab);
     }
@@ -59,7 +61,7 @@ mod tests {
     use super::*;
     use crate::definition::design::{Design, DesignKind};
 
-    /// The function of Ishigami & Homma (1990) with a = 7, b = 0.1, whose indices are known in closed form.
+    /// The function of Ishigami & Homma (1990) with a = 7, b = 0.1, whose indices have a closed form.
     #[test]
     fn the_indices_are_those_of_ishigamis_function() {
         let (a, b) = (7.0, 0.1);
@@ -79,7 +81,7 @@ mod tests {
         let total = [alone[0] + shared, alone[1], shared];
         for i in 0..3 {
             let (first_got, total_got) = sobol_index(&member(0), &member(1), &member(2 + i as u64)).unwrap();
-            // 4096 points of a low-discrepancy sequence: errors of about a thousandth.
+            // 4096 points of a low-discrepancy sequence have errors of about a thousandth.
             assert!((first_got - alone[i] / variance).abs() < 0.01, "S{i}: {first_got}");
             assert!((total_got - total[i] / variance).abs() < 0.01, "ST{i}: {total_got}");
         }

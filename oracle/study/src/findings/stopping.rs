@@ -1,4 +1,4 @@
-//! When a study is done: the figure of its stopping rule is known well enough.
+//! Stopping rule of a study, which ends when a figure is known accurately enough.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,41 +7,43 @@ use crate::cases::{CaseFigure, CaseTable};
 use crate::definition::Study;
 use crate::definition::file::Until;
 
-/// Draws after which a study looks for the first time, and the fewest from one look to the next.
+/// Number of draws before the first test, and smallest number from one test to the next.
 const STEP: u64 = 16;
-/// From one look to the next, the draws grow at least by one part of so many.
+/// Inverse of the smallest relative growth in the number of draws from one test to the next.
 const PARTS: u64 = 16;
-/// Draws whose value is another than the most frequent one, at least: of fewer, the scatter is not known.
+/// Smallest number of draws with a value other than the most frequent one; with fewer, the scatter is
+/// unknown.
 const LEAST_OTHERS: usize = 8;
 
-/// What is known of the figure of a stopping rule.
+/// State of the figure of a stopping rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StoppingStatus {
-    /// Its interval is as narrow as asked.
+    /// The figure's interval is as narrow as required.
     NarrowEnough,
-    /// Its interval is wider, or it has none.
+    /// The figure's interval is too wide, or the figure has none.
     TooWide,
-    /// It is the same in nearly every draw: how much it scatters is not known, however narrow its interval is.
+    /// The figure has the same value in nearly every draw: its scatter is unknown, however narrow its
+    /// interval.
     NearlyConstant,
 }
 
-/// Looks whether the figure of a stopping rule is known well enough: after 16 draws, 32, 48, from 256 on after a sixteenth more each time, and
-/// after all. A draw is one case at every point of the sweep. The numbers do not depend on how the study is cut into shards, so neither
-/// does where it stops.
+/// Test whether the figure of a stopping rule is known accurately enough: after 16 draws, 32, 48, from 256 on
+/// after each further sixteenth, and after all draws. A draw is one case at every point of the sweep. Neither
+/// the tests nor the end of the study depend on the division into shards.
 pub(crate) struct StoppingRule<'a> {
     until: Option<&'a Until>,
     points: u64,
     most: u64,
-    /// Draws at the next look.
+    /// Number of draws at the next test.
     next: u64,
-    /// The figure of all cases that are known, and the number of each case's draw.
+    /// Values of the figure in all cases added so far; `draws` has the number of each case's draw.
     figures: Vec<CaseFigure>,
     draws: Vec<usize>,
 }
 
 impl<'a> StoppingRule<'a> {
-    /// Before the first case.
+    /// Creates the test, before the first case.
     pub(crate) fn new(study: &'a Study) -> Self {
         Self::from_rule(study.file.stop.until.as_ref(), study.sweep_points(), study.cases())
     }
@@ -51,7 +53,7 @@ impl<'a> StoppingRule<'a> {
         Self { until, points, most, next: STEP.min(most), figures: Vec::new(), draws: Vec::new() }
     }
 
-    /// Adds the next cases; the number of cases that are enough, if they are known already.
+    /// Adds the next cases; returns the number of cases that are enough, once it is known.
     pub(crate) fn add(&mut self, cases: &CaseTable) -> Option<u64> {
         let until = self.until?;
         self.figures.extend(cases.figure(&until.figure)?);
@@ -74,7 +76,7 @@ impl<'a> StoppingRule<'a> {
     }
 }
 
-/// What cases of the draws of these numbers say of the figure of a stopping rule.
+/// Returns the state of the figure of a stopping rule over cases, whose draws have the numbers `draws`.
 pub(crate) fn stopping_status(until: &Until, figures: &[CaseFigure], draws: &[usize]) -> StoppingStatus {
     let estimate = overall(&until.figure, figures, draws);
     let width = estimate.and_then(|estimate| Some(estimate.high? - estimate.low?));
@@ -82,7 +84,7 @@ pub(crate) fn stopping_status(until: &Until, figures: &[CaseFigure], draws: &[us
         return StoppingStatus::TooWide;
     }
     let others = figures.len() - most_frequent(figures.iter().filter_map(|figure| figure.value));
-    // Cases of a draw that are alike are one.
+    // Equal cases of a draw count as one.
     let points = figures.len() / draws.iter().max().map_or(1, |last| last + 1);
     if others / points.max(1) < LEAST_OTHERS {
         StoppingStatus::NearlyConstant
@@ -91,7 +93,7 @@ pub(crate) fn stopping_status(until: &Until, figures: &[CaseFigure], draws: &[us
     }
 }
 
-/// How often the most frequent value occurs.
+/// Returns how often the most frequent value occurs.
 fn most_frequent(values: impl Iterator<Item = f64>) -> usize {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
@@ -130,7 +132,8 @@ mod tests {
         (table.rows.len() as u64, overall(figure, &cases, &table.draws()).unwrap().value)
     }
 
-    /// Standard deviation over 400 studies of what they stop at, over the one that their interval promises.
+    /// Returns the standard deviation, over 400 studies, of the figure at the stop, relative to the one that
+    /// the interval implies.
     fn promise(
         rule: (&str, f64),
         points: u64,
@@ -144,7 +147,7 @@ mod tests {
         ((square / (studies - 1) as f64).sqrt() / (rule.1 / statistics::Z_95), cases)
     }
 
-    /// The standard deviation of 400 scatters by 3.5 %.
+    /// A standard deviation from 400 values has a relative standard deviation of 3.5 %.
     #[test]
     fn a_study_stops_with_the_scatter_that_it_promises() {
         for half_width in [0.03, 0.015] {
@@ -163,7 +166,8 @@ mod tests {
         }
     }
 
-    /// All of 25 frames in 97 of 100 draws: the interval is narrow from the first look on, and tells little.
+    /// All of 25 frames are hits in 97 of 100 draws: the interval is narrow from the first test on, although
+    /// the scatter is unknown.
     #[test]
     fn a_figure_that_is_nearly_constant_is_not_waited_for() {
         let until = Until { figure: "hit_rate".to_owned(), half_width: 0.03 };
@@ -184,7 +188,7 @@ mod tests {
         assert_eq!(after(8, 0.03), StoppingStatus::NarrowEnough);
         assert_eq!(after(8, 0.0001), StoppingStatus::TooWide);
         assert_eq!(StoppingRule::from_rule(Some(&until), 1, 100).add(&table(3)), None);
-        // The first look that knows eight of either.
+        // The first test with eight draws of either value.
         assert_eq!(StoppingRule::from_rule(Some(&until), 1, 100).add(&table(60)), Some(80));
     }
 }

@@ -1,4 +1,4 @@
-//! What a study found: figures with intervals, sensitivities, the worst cases.
+//! Summary of a study: figures with intervals, sensitivities, the worst cases.
 use std::path::Path;
 
 use files::{Failure, FileError};
@@ -21,157 +21,163 @@ use crate::definition::Study;
 use crate::definition::design::DesignKind;
 use crate::evaluate::study_pipeline::StudyPipeline;
 
-/// How many of the worst cases are named.
+/// Number of worst cases that are listed.
 const WORST: usize = 10;
 
-/// What the cases say of a figure.
+/// Summary of a figure over the cases.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FigureSummary {
-    /// Cases in which it has a value.
+    /// Number of cases in which the figure has a value.
     pub cases: u64,
-    /// Of a rate: all frames of all cases together, with the interval of Wilson for as many independent frames as the scatter
-    /// between the draws tells. Of another figure: the mean of the cases, its interval by Student's t over the draws.
+    /// Estimate over all cases. For a rate: over the frames of all cases together, with the interval of
+    /// Wilson for the number of independent frames that follows from the scatter between the draws. For
+    /// another figure: the mean over the cases, with the interval by Student's t over the draws.
     pub all: Option<Estimate>,
-    /// The value that 5 % of the cases are below; its interval by fractional order statistics, absent where too few cases are known.
+    /// The value below which 5 % of the cases lie; its interval by fractional order statistics, absent if
+    /// there are too few cases.
     pub p05: Option<Estimate>,
     /// The median of the cases.
     pub median: Option<Estimate>,
-    /// The value that 95 % of the cases are below.
+    /// The value below which 95 % of the cases lie.
     pub p95: Option<Estimate>,
 }
 
-/// How often a cause kept frames from being right.
+/// Frequency of a cause of misses or wrong measurements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CauseSummary {
-    /// Frames of all cases together.
+    /// Number of frames with this cause, over all cases.
     pub frames: u64,
-    /// Cases with such a frame.
+    /// Number of cases with at least one such frame.
     pub cases: u64,
-    /// Share of all frames that count, with the interval of a rate.
+    /// Fraction of all frames that count, with the interval of a rate.
     pub share: Option<Estimate>,
 }
 
 /// A case that cannot be run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CaseError {
-    /// Its number.
+    /// Number of the case.
     pub case: u64,
-    /// Why its values make no scenario.
+    /// Reason why the case's values do not form a valid scenario.
     pub error: String,
 }
 
 /// Figures of the cases at one point of the sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepPoint {
-    /// The swept values there, by path.
+    /// Swept values at the point, by path.
     pub at: IndexMap<String, String>,
     /// Number of cases.
     pub cases: u64,
     /// Figures by name.
     pub figures: IndexMap<String, FigureSummary>,
-    /// Misses and wrong answers by cause, as in `missed.cut_by_roi`; causes that did not occur are left out.
+    /// Misses and wrong measurements by cause, as in `missed.cut_by_roi`; causes that did not occur are left
+    /// out.
     #[serde(default)]
     pub causes: IndexMap<String, CauseSummary>,
 }
 
-/// What one step of the sweep makes of a figure: the difference of two points that have the same draws.
+/// Effect of one step of the sweep on a figure: the difference of two points that have the same draws.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepDifference {
     /// Name of the figure.
     pub figure: String,
     /// The swept values at the first point, by path.
     pub from: IndexMap<String, String>,
-    /// The swept values at the second point, of which one differs.
+    /// The swept values at the second point, by path; exactly one of them differs from the first point.
     pub to: IndexMap<String, String>,
-    /// The figure at the second point less that at the first; of a rate over the frames of all draws, of another figure the mean over
-    /// the draws that have it at both points.
+    /// Figure at the second point minus the figure at the first; a rate is taken over the frames of all
+    /// draws, another figure as the mean over the draws that have it at both points.
     #[serde(flatten)]
     pub difference: Estimate,
-    /// Draws that are compared.
+    /// Number of draws that are compared.
     pub draws: u64,
 }
 
-/// A case that came out badly.
+/// One of the worst cases.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WorstCase {
-    /// Its number.
+    /// Number of the case.
     pub case: u64,
-    /// The figure by which it is bad.
+    /// Value of the figure that ranks the cases.
     pub value: f64,
-    /// What was drawn, by path.
+    /// Drawn values, by path.
     pub drawn: IndexMap<String, String>,
-    /// What runs it again: the command, which keeps its frames, or of a pipeline that no command can name the call.
+    /// Command that runs the case again and keeps its frames, or, for a pipeline that no command can name,
+    /// the call that does so.
     pub replay: String,
 }
 
-/// The summary of a study.
+/// Summary of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Name of the study.
     pub study: String,
-    /// What it is, in one line; empty in a summary of an earlier version.
+    /// Title of the study, in one line; empty in a summary of an earlier version.
     #[serde(default)]
     pub title: String,
     /// Hash of the study, its scenario and its pipeline.
     pub hash: String,
     /// Version of Boresight.
     pub version: String,
-    /// The attitude that the lines of sight of the far range rest on ([`crate::CaseTable::attitude`]).
+    /// Attitude that the lines of sight of the far range depend on ([`crate::CaseTable::attitude`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude: Option<String>,
-    /// The first frames of every case, which count in no figure.
+    /// Number of first frames of every case, which count in no figure.
     #[serde(default, skip_serializing_if = "score::is_zero")]
     pub warm_up_frames: u64,
-    /// Cases that were run.
+    /// Number of cases that were run.
     pub cases: u64,
-    /// Cases that were asked for, the most there are.
+    /// Number of cases requested: the largest number of cases.
     pub of: u64,
-    /// Cases in which the pipeline itself failed: it crashed, gave no answer in time, or none that can be read.
+    /// Number of cases in which the pipeline failed: it crashed, exceeded its time limit, or returned an
+    /// unreadable outcome.
     pub failed_cases: u64,
-    /// Cases that cannot be run, as their values make no scenario.
+    /// Number of cases that cannot be run because their values do not form a valid scenario.
     #[serde(default)]
     pub error_cases: u64,
-    /// The first of them.
+    /// The first of the cases that cannot be run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<CaseError>,
-    /// Independent draws among them: with a sweep, every draw is a case at each of its points; of a replicated design, every replication is
-    /// one.
+    /// Number of independent draws among the cases: with a sweep, every draw is a case at each of its points;
+    /// in a replicated design, every replication counts as one draw.
     #[serde(default)]
     pub draws: u64,
-    /// Whether the figure of the stopping rule is known well enough.
+    /// True if the figure of the stopping rule is known accurately enough.
     pub is_narrow_enough: bool,
-    /// What is known of the figure of the stopping rule; absent without one.
+    /// State of the figure of the stopping rule; absent without a stopping rule.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub waited: Option<StoppingStatus>,
-    /// What is required, with its verdicts: at each point of the sweep, point by point.
+    /// Requirements with their verdicts: for each point of the sweep in turn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<RequirementResult>,
     /// Figures by name.
     pub figures: IndexMap<String, FigureSummary>,
-    /// Misses and wrong answers by cause, as in `missed.cut_by_roi`; causes that did not occur are left out.
+    /// Misses and wrong measurements by cause, as in `missed.cut_by_roi`; causes that did not occur are left
+    /// out.
     #[serde(default)]
     pub causes: IndexMap<String, CauseSummary>,
-    /// The same at each point of the sweep; empty without one.
+    /// Figures and causes at each point of the sweep; empty without a sweep.
     pub sweep: Vec<SweepPoint>,
     /// Differences between points of the sweep that differ in one value, each draw compared with itself.
     #[serde(default)]
     pub differences: Vec<SweepDifference>,
-    /// How figures go with what was drawn, by figure, the strongest first.
+    /// Rank correlations of figures with drawn values, by figure, the strongest first.
     pub correlations: Vec<RankCorrelation>,
-    /// Sobol indices, where the design allows them.
+    /// Sobol indices, if the design allows them.
     pub indices: Vec<SobolIndex>,
-    /// The figure that the worst cases are the worst by.
+    /// Figure by which the worst cases are ranked.
     pub worst_by: String,
-    /// The worst cases, the worst first; of equally bad ones some that are spread over the study.
+    /// Worst cases, the worst first; among equally bad cases, some that are spread over the study.
     pub worst: Vec<WorstCase>,
-    /// Cases that are as bad as the last of these, or worse.
+    /// Number of cases that are at least as bad as the last of the worst cases.
     #[serde(default)]
     pub worst_of: u64,
 }
 
 impl Summary {
-    /// The verdict on all requirements together: not met when one is not met at a point of the sweep, met when all are met everywhere.
-    /// `None` without requirements.
+    /// Returns the verdict on all requirements together: not met if one is not met at a point of the sweep,
+    /// met if all are met at every point. `None` without requirements.
     pub fn verdict(&self) -> Option<RequirementVerdict> {
         let has = |verdict| self.requirements.iter().any(|result| result.verdict == verdict);
         if has(RequirementVerdict::NotMet) {
@@ -183,7 +189,8 @@ impl Summary {
         }
     }
 
-    /// The summary of the cases of a study by a pipeline; `path` is the study's file, for the commands. Figures are read one after the other.
+    /// Summarises the cases of a study with a pipeline; `path` is the study's file, used in the commands.
+    /// Figures are read one after another.
     ///
     /// # Errors
     /// A [`Failure`] for a file of cases that cannot be read.
@@ -199,7 +206,7 @@ impl Summary {
             points.at.iter().enumerate().map(|(point, at)| points.summary(point, at, cases)).collect();
         let pairs = points.pairs();
         let mut differences: Vec<Vec<SweepDifference>> = vec![Vec::new(); pairs.len()];
-        // By point, or without a sweep of all cases, then by requirement.
+        // By point (a single entry for all cases without a sweep), then by requirement.
         let mut decided: Vec<Vec<Option<RequirementResult>>> =
             vec![vec![None; required.len()]; sweep.len().max(1)];
         let (mut figures, mut waited_for) = (IndexMap::new(), None);
@@ -307,7 +314,7 @@ fn figure(name: &str, cases: &[CaseFigure], draws: &[usize]) -> FigureSummary {
     FigureSummary { cases: count, all: overall(name, cases, draws), p05, median, p95 }
 }
 
-/// What the cases say of a cause, if it occurred.
+/// Summarises a cause over the cases; `None` if it did not occur.
 fn cause(cases: &[CaseFigure], draws: &[usize]) -> Option<CauseSummary> {
     let frames = cases.iter().map(|case| case.count).sum();
     let share = share(cases, draws);
@@ -315,15 +322,15 @@ fn cause(cases: &[CaseFigure], draws: &[usize]) -> Option<CauseSummary> {
     (frames > 0).then_some(CauseSummary { frames, cases, share })
 }
 
-/// The points of a sweep; none without one.
+/// Points of a sweep; empty without a sweep.
 struct Points {
-    /// The swept values at each, by path.
+    /// Swept values at each point, by path.
     at: Vec<IndexMap<String, String>>,
-    /// Of the cases of a draw: which are at each point. Equal values of a sweep are one point.
+    /// For each point, the indices of its cases within a draw. Equal values of a sweep are one point.
     of_draw: Vec<Vec<usize>>,
-    /// Cases of a draw.
+    /// Number of cases per draw.
     together: usize,
-    /// The number of each case.
+    /// Number of each case.
     rows: Vec<usize>,
 }
 
@@ -343,7 +350,7 @@ impl Points {
         Ok(Self { at, of_draw, together, rows })
     }
 
-    /// The values of a column at a point, in the order of the draws.
+    /// Returns the values of a column at a point, in the order of the draws.
     fn pick<T: Copy>(&self, point: usize, column: &[T]) -> Vec<T> {
         let places = &self.of_draw[point];
         column
@@ -352,7 +359,7 @@ impl Points {
             .collect()
     }
 
-    /// Pairs of points that differ in one value.
+    /// Returns the pairs of points that differ in one value.
     fn pairs(&self) -> Vec<[usize; 2]> {
         let differ = |[a, b]: &[usize; 2]| {
             let values = self.at[*a].values().zip(self.at[*b].values());
@@ -368,7 +375,8 @@ impl Points {
     }
 }
 
-/// A figure at the second of two points less that at the first, over the draws that have it in both, and how many these are.
+/// Returns the figure at the second of two points minus the figure at the first, over the draws that have it
+/// at both points, and the number of these draws.
 fn difference(name: &str, points: [&(Vec<CaseFigure>, Vec<usize>); 2]) -> Option<(Estimate, u64)> {
     let is_rate = figure_by_name(name).is_rate();
     let [first, second] = points.map(|(cases, draws)| sums(is_rate, cases, draws));
@@ -384,7 +392,7 @@ fn difference(name: &str, points: [&(Vec<CaseFigure>, Vec<usize>); 2]) -> Option
     Some((Estimate::new(value, interval), pairs.len() as u64))
 }
 
-/// How a figure goes with each drawn number, the strongest first.
+/// Returns the rank correlation of a figure with each drawn number, the strongest first.
 fn correlations_of(
     figure: &str,
     values: &[CaseFigure],
@@ -410,7 +418,8 @@ fn correlations_of(
     all
 }
 
-/// Sobol indices of a figure over a design of Saltelli's, by whole blocks of d + 2 cases that all have it.
+/// Computes the Sobol indices of a figure over Saltelli's design, from those blocks of d + 2 cases in which
+/// every case has the figure.
 fn indices_of(
     figure: &str,
     place: usize,
@@ -463,8 +472,8 @@ fn indices_of(
     all
 }
 
-/// The worst cases, and how many are as bad as the last of them. Which of equally bad ones is drawn, so that they are not all of the
-/// first draws.
+/// Returns the worst cases, and the number of cases that are at least as bad as the last of them. The choice
+/// among equally bad cases is random, which spreads them over all draws.
 fn worst(
     cases: &CaseFile,
     by: &str,

@@ -1,4 +1,5 @@
-//! The finished cases of a shard that is not whole yet: a line each, so that an interrupted study loses the cases it was at and no other.
+//! Journal of the finished cases of an incomplete shard, one line each: an interrupted study loses only the
+//! cases in progress.
 
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -13,19 +14,21 @@ use crate::cases::CaseRow;
 /// Longest journal that is read, bytes.
 const MAX_BYTES: u64 = 1 << 32;
 
-/// A file that finished cases are added to. Several processes may add to one: each line is written at once.
+/// File to which finished cases are appended. Several processes may append to one file: each line is written
+/// at once.
 pub(crate) struct Journal {
     path: PathBuf,
-    /// What the rows are of, part of the checksum of every line.
+    /// Hash of the study that the rows belong to, part of the checksum of every line.
     hash: String,
     file: Mutex<File>,
 }
 
 impl Journal {
-    /// Opens a journal, new or with the rows that it returns. Lines that are cut short, damaged or of another `hash` are passed over.
+    /// Opens a journal, new or existing, and returns its rows. Lines that are cut short, damaged or of
+    /// another `hash` are skipped.
     ///
     /// # Errors
-    /// [`FileError::Io`] for a file that cannot be read or added to.
+    /// [`FileError::Io`] for a file that cannot be read or appended to.
     pub(crate) fn open(path: PathBuf, hash: &str) -> Result<(Self, Vec<CaseRow>), FileError> {
         let io = |source| FileError::io(&path, "open", source);
         let text = match sim::regular_file::read(&path, MAX_BYTES) {
@@ -38,27 +41,27 @@ impl Journal {
         Ok((Self { path, hash: hash.to_owned(), file: Mutex::new(file) }, rows))
     }
 
-    /// Adds a row.
+    /// Appends a row.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be written.
+    /// [`FileError::Io`] when the row cannot be written.
     pub(crate) fn add(&self, row: &CaseRow) -> Result<(), FileError> {
         let json =
             serde_json::to_string(row).map_err(|error| FileError::format(&self.path, "case", error))?;
-        // A line that was cut short before ends here.
+        // The leading line break ends a line that was cut short before.
         let line = format!("\n{} {json}\n", sum(&self.hash, &json));
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         file.write_all(line.as_bytes()).map_err(|source| FileError::io(&self.path, "write", source))
     }
 
-    /// Removes the file: its rows are in the shard's.
+    /// Removes the file, whose rows are in the shard's file.
     pub(crate) fn remove(self) {
-        // What is left is passed over, as the shard is whole.
+        // A journal that cannot be removed is ignored later, because the shard is complete.
         let _ = std::fs::remove_file(&self.path);
     }
 }
 
-/// The rows of a journal, as [`Journal::open`] reads them; how many a folder keeps.
+/// Returns the number of rows of a journal that [`Journal::open`] would return.
 pub(crate) fn count(path: &Path, hash: &str) -> usize {
     let text = sim::regular_file::read_text(path, MAX_BYTES).unwrap_or_default();
     text.lines().filter(|line| parse(line, hash).is_some()).count()

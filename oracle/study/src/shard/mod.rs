@@ -1,9 +1,10 @@
-//! Shards: a study in pieces, each a file that is whole or not there.
+//! Shards: parts of a study, each a file that is either complete or absent.
 //!
-//! Shard i of n has the cases from ⌊i N/n⌋ on. Its file is written under another name, synced, and linked to its own, which never
-//! replaces a file; in it stand the study's hash, the version, which shard it is, and the hash of its rows. What is not exactly so,
-//! to the byte, is no shard: it is made again. So any number of processes may work on the same folder, be killed at any moment,
-//! and be started again.
+//! Shard i of n, counted from 1, starts at case ⌊(i − 1) N/n⌋. Its file is written under another name,
+//! synced, and linked to its final name, which never replaces a file. It contains the study's hash, the
+//! version, the number of the shard, and the hash of its rows. A file that differs from this by a single byte
+//! is not a shard: the shard is run again. Any number of processes may therefore work on the same directory,
+//! be killed at any time, and be started again.
 
 pub(crate) mod journal;
 pub(crate) mod record;
@@ -22,14 +23,14 @@ use crate::definition::Study;
 use crate::shard::journal::Journal;
 use crate::shard::record::StudyRecord;
 
-/// Cases of a shard, about, when their number is not given.
+/// Approximate number of cases per shard, when the number of shards is not given.
 const CASES_PER_SHARD: u64 = 32;
-/// Extension of the journal of a shard that is not whole.
+/// Extension of the journal of an incomplete shard.
 const JOURNAL: &str = "journal";
-/// Most shards of a study, when their number is not given.
+/// Largest number of shards of a study, when their number is not given.
 const MAX_SHARDS: u64 = 1000;
 
-/// How a study is cut.
+/// Division of a study into shards.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
@@ -43,15 +44,15 @@ pub struct Plan {
     pub cases: u64,
     /// Number of shards.
     pub shards: u64,
-    /// SHA-256 of all that stands before it: a plan that was damaged is not taken for another study's.
+    /// SHA-256 of all preceding fields, which distinguishes a damaged plan from the plan of another study.
     #[serde(default)]
     pub sha256: String,
 }
 
-/// What a shard's file says of itself.
+/// Metadata in a shard's file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardManifest {
-    /// Its number, from 1.
+    /// Number of the shard, from 1.
     pub shard: u64,
     /// Number of shards.
     pub of: u64,
@@ -59,16 +60,16 @@ pub struct ShardManifest {
     pub study_hash: String,
     /// Version of Boresight.
     pub version: String,
-    /// First case.
+    /// Number of the first case.
     pub first_case: u64,
-    /// Number of rows, one a case.
+    /// Number of rows, one per case.
     pub rows: u64,
     /// SHA-256 of the rows ([`CaseTable::sha256`]).
     pub rows_sha256: String,
 }
 
 impl Plan {
-    /// A plan of a study; of about 32 cases a shard where `shards` is not given.
+    /// Creates a plan of a study, with about 32 cases per shard if `shards` is not given.
     ///
     /// # Errors
     /// [`Failure::Usage`] for more shards than cases.
@@ -91,10 +92,11 @@ impl Plan {
         sha256_hex(format!("{study:?} {hash} {version:?} {cases} {shards}"))
     }
 
-    /// Reads the plan of a folder, if it has one.
+    /// Reads the plan of a directory.
     ///
     /// # Errors
-    /// [`FileError`] when it cannot be read, and [`Failure::Usage`] when it is damaged: what it says is not what was written.
+    /// [`FileError`] when it cannot be read, and [`Failure::Usage`] when it is damaged: its content does not
+    /// match its checksum.
     fn read(path: &Path) -> Result<Self, Failure> {
         let text = sim::regular_file::read_text(path, 1 << 20)
             .map_err(|source| FileError::io(path, "read", source))?;
@@ -108,14 +110,14 @@ impl Plan {
         })
     }
 
-    /// Cases of a shard, counted from 1.
+    /// Returns the cases of a shard, counted from 1.
     pub fn cases_of(&self, shard: u64) -> Range<u64> {
         let at = |i: u64| (u128::from(i) * u128::from(self.cases) / u128::from(self.shards)) as u64;
         at(shard - 1)..at(shard)
     }
 }
 
-/// The folder of a study's results.
+/// Directory of a study's results.
 #[derive(Debug, Clone)]
 pub struct ShardStore {
     folder: PathBuf,
@@ -123,11 +125,12 @@ pub struct ShardStore {
 }
 
 impl ShardStore {
-    /// Opens a folder for a plan, and makes it when it is not there. What is in it must be of the same plan; without a plan, nothing in it
-    /// may have a name of a study's files.
+    /// Opens a directory for a plan, and creates it if it is missing. Its content must belong to the same
+    /// plan; a directory without a plan must not contain any of a study's file names.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when the folder holds another study, or the same one in other pieces; [`Failure`] of files.
+    /// [`Failure::Usage`] when the directory holds another study, or the same study in other shards;
+    /// [`Failure`] of files.
     pub fn open(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let store = Self { folder: folder.to_owned(), plan };
         let path = store.folder.join("plan.json");
@@ -145,7 +148,8 @@ impl ShardStore {
         AtomicFile::remove_abandoned(&store.shards());
         let text = to_json(&store.plan)?;
         if !path.exists() {
-            // Several processes may come to this at once: all write the same, and the first one's stays.
+            // Several processes may write the plan at once: all write the same content, and the first file
+            // stays.
             AtomicFile::with_text(&path, &text)?.commit()?;
         }
         store.check_plan(&path)?;
@@ -172,25 +176,25 @@ impl ShardStore {
         }
     }
 
-    /// The folder.
+    /// Returns the directory.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// How the study is cut.
+    /// Returns the division of the study into shards.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// The number of shards of the plan that a folder already holds.
+    /// Returns the number of shards in the plan of a directory, if it holds one.
     pub fn planned_shards(folder: &Path) -> Option<u64> {
         Plan::read(&folder.join("plan.json")).ok().map(|plan| plan.shards)
     }
 
-    /// Refuses files among the shards that are none of the plan's.
+    /// Checks that the directory of shards holds only files of the plan.
     ///
     /// # Errors
-    /// [`Failure::Usage`] that names the first one.
+    /// [`Failure::Usage`] that names the first other file.
     pub fn check_foreign(&self) -> Result<(), Failure> {
         let folder = self.shards();
         let known: Vec<PathBuf> = (1..=self.plan.shards).map(|shard| self.path(shard)).collect();
@@ -216,21 +220,21 @@ impl ShardStore {
         self.folder.join("shards")
     }
 
-    /// The file of a shard.
+    /// Returns the path of a shard's file.
     pub fn path(&self, shard: u64) -> PathBuf {
         let width = self.plan.shards.to_string().len();
         self.shards().join(format!("{shard:0width$}-of-{}.parquet", self.plan.shards))
     }
 
-    /// The journal of a shard that is not whole, with the rows that it keeps.
+    /// Opens the journal of an incomplete shard, and returns the rows that it holds.
     ///
     /// # Errors
-    /// [`FileError::Io`] for a file that cannot be read or added to.
+    /// [`FileError::Io`] for a file that cannot be read or appended to.
     pub(crate) fn journal(&self, shard: u64) -> Result<(Journal, Vec<CaseRow>), FileError> {
         Journal::open(self.path(shard).with_extension(JOURNAL), &self.plan.hash)
     }
 
-    /// How many cases are finished, in whole shards and in others.
+    /// Returns the number of finished cases, in complete and incomplete shards.
     pub fn finished_cases(&self) -> u64 {
         let finished = |shard| {
             let cases = self.plan.cases_of(shard);
@@ -243,10 +247,10 @@ impl ShardStore {
         (1..=self.plan.shards).map(finished).sum()
     }
 
-    /// The rows of a shard when its file is there, whole, and of this study.
+    /// Reads the rows of a shard; `None` unless its file exists, is complete, and belongs to this study.
     ///
     /// # Errors
-    /// [`FileError::Io`] when there is a file that cannot be opened: it may be whole.
+    /// [`FileError::Io`] when a file exists but cannot be opened: it may be complete.
     pub fn read(
         &self,
         shard: u64,
@@ -268,7 +272,7 @@ impl ShardStore {
         }
     }
 
-    /// The manifest of rows, if what is written beside them is just that.
+    /// Returns the manifest of the rows, if the metadata beside them match it exactly.
     fn manifest_of(
         &self,
         shard: u64,
@@ -294,8 +298,8 @@ impl ShardStore {
         }
     }
 
-    /// Writes a shard, at once or not at all. When another process has written it meanwhile, its file stays: it says the same. A
-    /// damaged one gives way.
+    /// Writes a shard atomically. A complete file that another process wrote meanwhile stays, since its
+    /// content is the same; a damaged one is replaced.
     ///
     /// # Errors
     /// [`FileError`] when it cannot be written.
@@ -312,11 +316,11 @@ impl ShardStore {
         Ok(manifest)
     }
 
-    /// The rows of the study with the columns of `empty`, `cases.parquet`: `fill` adds them, and the file takes the place of that of an earlier
-    /// merge when it is complete.
+    /// Writes the rows of the study, `cases.parquet`, with the columns of `empty`: `fill` adds the rows, and
+    /// the complete file replaces that of an earlier merge.
     ///
     /// # Errors
-    /// [`FileError`] when it cannot be written; that of `fill`.
+    /// [`FileError`] when it cannot be written; the error of `fill`.
     pub(crate) fn write_cases(
         &self,
         empty: &CaseTable,
@@ -333,7 +337,7 @@ impl ShardStore {
         Ok(path)
     }
 
-    /// What the study is of, `study.json`, written at once in the place of an earlier one.
+    /// Writes the record of the study, `study.json`, which atomically replaces an earlier one.
     ///
     /// # Errors
     /// [`Failure`] when it cannot be written.
@@ -343,15 +347,15 @@ impl ShardStore {
         Ok(path)
     }
 
-    /// Writes the checksums of what is complete now.
+    /// Writes the checksums of the files that are now complete.
     ///
     /// # Errors
-    /// [`FileError::Io`] when a file cannot be read, or the checksums not be written.
+    /// [`FileError::Io`] when a file cannot be read, or the checksums cannot be written.
     pub fn seal(&self) -> Result<(), FileError> {
         Checksums::write(&self.folder, &SEALED)
     }
 
-    /// The summary, `summary.json`, written at once in the place of an earlier one.
+    /// Writes the summary, `summary.json`, which atomically replaces an earlier one.
     ///
     /// # Errors
     /// [`Failure`] when it cannot be written.
@@ -362,14 +366,16 @@ impl ShardStore {
     }
 }
 
-/// What a file of a folder replaces whose plan is that of the study: whatever it held, it is made of the same cases.
+/// Earlier files that may be replaced in a directory with the plan of the study: any, because all of them
+/// derive from the same cases.
 const OF_THE_PLAN: ReplaceableFile<'static> =
     ReplaceableFile { description: "a file of the study", matches: &|_| true };
 
-/// The files of a study that have checksums: those of the shards stand in them.
+/// Files of a study listed with their checksums; the files of the shards contain their own.
 const SEALED: [&str; 4] = ["plan.json", "study.json", "cases.parquet", "summary.json"];
 
-/// Whether a file holds these rows and nothing else: a byte that was changed where no row shows it may be one that matters tomorrow.
+/// Returns true if a file holds exactly these rows: also rejects a changed byte that affects no row, since it
+/// may matter later.
 fn is_just(table: &CaseTable, manifest: &ShardManifest, path: &Path) -> Result<bool, FileError> {
     let mut bytes = Vec::new();
     table.write(&mut bytes, path, &manifest.pairs())?;
@@ -377,7 +383,7 @@ fn is_just(table: &CaseTable, manifest: &ShardManifest, path: &Path) -> Result<b
 }
 
 impl ShardManifest {
-    /// As it stands beside the rows in the file.
+    /// Returns the manifest as the key-value pairs written beside the rows.
     fn pairs(&self) -> [(&'static str, String); 6] {
         [
             ("shard", self.shard.to_string()),

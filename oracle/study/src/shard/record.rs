@@ -1,4 +1,4 @@
-//! `study.json`: what a study is of, with its scenario, for whoever compares its rows with others.
+//! `study.json`: definition of a study with its scenario, for comparing its rows with others.
 use std::path::Path;
 
 use files::{Failure, FileError};
@@ -9,7 +9,7 @@ use toml::Table;
 
 use crate::definition::Study;
 
-/// A study that was run: resolved, so that nothing else is needed to tell what it is.
+/// Resolved definition of a study that was run, which identifies the study without any other file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyRecord {
@@ -17,22 +17,22 @@ pub struct StudyRecord {
     pub name: String,
     /// `far_range` or `docking`.
     pub world: String,
-    /// Seed of all its draws.
+    /// Seed of all draws of the study.
     pub seed: u64,
     /// Version of Boresight.
     pub version: String,
-    /// What its rows depend on of its file: design, laws, sweeps, frames, number of cases; `sha256:` and the digits in the place of the path
-    /// of a file.
+    /// Content of the study file that the rows depend on: design, distributions, sweeps, frames, number of
+    /// cases; `sha256:` and the digits replace the path of each file.
     pub study: Table,
-    /// The files that the scenario reads: SHA-256 by role.
+    /// SHA-256 of each file that the scenario reads, by role.
     #[serde(default, skip_serializing_if = "FileDigests::is_empty")]
     pub files: FileDigests,
-    /// The scenario that its cases begin from, with all defaults.
+    /// Scenario from which the cases are derived, with all defaults.
     pub scenario: Table,
 }
 
 impl StudyRecord {
-    /// The record of a study.
+    /// Creates the record of a study.
     ///
     /// # Errors
     /// [`Failure::Usage`] when the study cannot be written.
@@ -56,7 +56,7 @@ impl StudyRecord {
     /// Reads a record.
     ///
     /// # Errors
-    /// [`FileError`] when it is not there or is none.
+    /// [`FileError`] when the file is missing or is not a record.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         let text = sim::regular_file::read_text(path, 1 << 24)
             .map_err(|source| FileError::io(path, "read", source))?;
@@ -64,7 +64,7 @@ impl StudyRecord {
     }
 }
 
-/// A JSON object as TOML, which has no null: what is absent is left out.
+/// Converts a JSON object to TOML, which has no null: keys with null are left out.
 fn table(value: Value) -> Result<Table, Failure> {
     fn without_nulls(value: Value) -> Value {
         match value {

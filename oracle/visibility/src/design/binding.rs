@@ -1,4 +1,5 @@
-//! Why a requirement cannot be met: the constraint whose removal would let it be.
+//! Binding constraint of a requirement that cannot be met: the constraint whose removal would make it
+//! possible.
 use files::Failure;
 
 use crate::design::{Design, design_with};
@@ -6,14 +7,15 @@ use crate::detection_model::detection::{background_e, is_flooded};
 use crate::requirement::definition::Requirements;
 use crate::requirement::{Demand, DetectionRule, Parameter, SkyStatistic};
 
-/// Boresights that the question is looked at from.
+/// Number of boresights that are evaluated.
 const POINTINGS: usize = 1000;
 
-/// What binds at a value of a parameter, in words. Constraints are taken away one by one, and the first without which the demand is
-/// met is named: over-exposure of the target, the background, smear, the field, noise; what remains is the signal.
+/// Returns the binding constraint at a value of a parameter, in words. Constraints are removed one by one,
+/// and the result is the first whose removal meets the demand: over-exposure of the target, the background,
+/// smear, the field, noise; otherwise it is the signal.
 ///
 /// # Errors
-/// A [`Failure`] when the camera cannot be made.
+/// A [`Failure`] when the camera cannot be created.
 pub fn binding(
     requirements: &Requirements,
     demand: &Demand,
@@ -25,10 +27,10 @@ pub fn binding(
     binding_of(&design, requirements, demand, exposure_s, required)
 }
 
-/// What binds a design as it is; see [`binding`].
+/// Returns the binding constraint of a given design; see [`binding`].
 ///
 /// # Errors
-/// As [`binding`].
+/// The errors of [`binding`].
 pub fn binding_of(
     design: &Design<'_>,
     requirements: &Requirements,

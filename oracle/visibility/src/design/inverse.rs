@@ -1,7 +1,8 @@
-//! The other way round: the value of a parameter from which on a requirement is met.
+//! Inverse problem: the threshold value of a parameter at which a requirement is met.
 //!
-//! The probability is not always monotone in a parameter (a longer exposure smears), so that it is first looked at on a grid over the
-//! bracket; the crossing nearest to the end that is wanted is then narrowed by bisection in the parameter's logarithm.
+//! The probability is not always monotone in a parameter (a longer exposure smears). It is therefore first
+//! evaluated on a grid over the bracket; the crossing nearest to the requested end is then refined by
+//! bisection in the parameter's logarithm.
 use files::Failure;
 use statistics::{binomial_at_least, clopper_pearson};
 
@@ -10,48 +11,52 @@ use crate::design::{Design, between, design_with};
 use crate::requirement::definition::Requirements;
 use crate::requirement::{Demand, Extreme, FindTable, Parameter};
 
-/// Values of the grid.
+/// Number of values in the grid.
 const GRID: usize = 13;
-/// Steps of the bisection: the bracket of a grid's step shrinks below a thousandth of it.
+/// Number of bisection steps, which shrink the bracket of a grid step below a thousandth of the step.
 const STEPS: usize = 10;
-/// Boresights that the search looks from; its result is then looked at from all.
+/// Number of boresights used by the search; the result is then evaluated at all boresights.
 const SEARCH_POINTINGS: usize = 2000;
-/// Power with which the simulation shows a difference that is there.
+/// Power with which the simulation shows an existing difference.
 const POWER: f64 = 0.95;
 
-/// What was found.
+/// Result of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Search {
-    /// A value meets the requirement.
+    /// A value that meets the requirement.
     Found(FoundValue),
-    /// No value of the bracket does.
+    /// No value of the bracket meets the requirement.
     Impossible {
-        /// The best value of the grid.
+        /// Value of the grid with the highest probability.
         best_value: f64,
-        /// What it reaches.
+        /// Probability at this value.
         best_probability: f64,
-        /// What binds.
+        /// Binding constraint at this value.
         binds: String,
     },
 }
 
-/// A value that meets a requirement, and one that does not.
+/// A value that meets a requirement, and one that fails it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundValue {
-    /// Meets it with so much room that the simulated frames can show it.
+    /// Value that meets the requirement with enough margin for the simulated frames to show it.
     pub value: f64,
-    /// The probability aimed at: what is asked for, or what the simulated frames need to show it.
+    /// Target probability of the search: the required probability, or the higher one that the simulated
+    /// frames need to show it.
     pub goal: f64,
-    /// Where the analytic probability is just what is asked for.
+    /// Value at which the analytic probability equals the required one.
     pub threshold_value: f64,
-    /// Beyond the threshold, so far that the simulated frames can show that it does not; `None` when the whole bracket meets it.
+    /// Value far enough beyond the threshold for the simulated frames to show the failure; `None` when the
+    /// whole bracket meets the requirement, or the frames cannot show a failure.
     pub failing_value: Option<f64>,
-    /// Whether beyond the value, towards the other end of the bracket, the requirement is met throughout.
+    /// True if all values of the grid beyond the found one, to the other end of the bracket, meet the
+    /// requirement.
     pub is_monotone: bool,
 }
 
-/// The probabilities that a number of frames can tell from the one that is asked for, with power 0.95 each: at the greater
-/// the lower bound of their rate is above it, at the smaller the upper bound below. `None` where no rate of so few frames shows it.
+/// Returns the two probabilities that a number of frames can distinguish from the required one, with power
+/// 0.95 each: at the greater one, the lower bound of the frames' rate reaches the required probability; at
+/// the smaller one, the upper bound is below it. `None` where no rate of so few frames shows the difference.
 pub fn resolvable(required: f64, frames: u32, confidence: f64) -> (Option<f64>, Option<f64>) {
     let n = u64::from(frames);
     if n == 0 {
@@ -73,10 +78,11 @@ pub fn resolvable(required: f64, frames: u32, confidence: f64) -> (Option<f64>, 
     )
 }
 
-/// Looks for the value. `own` is the camera as it is: exposures that its sky covers are looked for there.
+/// Searches for the value. `own` is the design of the given camera, which is reused for exposures that its
+/// sky covers.
 ///
 /// # Errors
-/// A [`Failure`] when a camera of the bracket cannot be made.
+/// A [`Failure`] when a camera of the bracket cannot be created.
 pub fn search(
     requirements: &Requirements,
     own: &Design<'_>,
@@ -98,12 +104,13 @@ pub fn search(
     for value in between(find.from, find.to, GRID) {
         grid.push((value, curve.probability(value)?));
     }
-    // From here on the wanted end is the first.
+    // From here on, the requested end of the bracket is the first.
     if find.want == Extreme::Largest {
         grid.reverse();
     }
     if grid.iter().all(|(_, probability)| *probability < goal) {
-        // What the frames could show is nowhere reached: then what is asked for, by the detection model alone.
+        // No value reaches the probability that the frames could show: the search uses the required
+        // probability, by the detection model only.
         goal = required;
     }
     let Some(met) = grid.iter().position(|(_, probability)| *probability >= goal) else {
@@ -122,12 +129,13 @@ pub fn search(
         Ok(libm::exp(meets))
     };
     let value = if met == 0 { grid[0].0 } else { crossing(goal, met)? };
-    // The threshold may lie a step of the grid farther out, the failing value still farther.
+    // The threshold may lie one grid step farther out, and the failing value farther still.
     let outward = |level: f64| grid[..=met].iter().rposition(|(_, probability)| *probability < level);
     let at_level = |level: f64| outward(level).map(|outer| crossing(level, outer + 1)).transpose();
     let threshold_value = at_level(required)?.unwrap_or(value);
     let failing_value = match below {
-        // The first value that is surely below: the crossing ends on the side that still reaches the level.
+        // The first value that is certainly below the level: the crossing is on the side that still reaches
+        // it.
         Some(level) => outward(level)
             .map(|outer| Ok::<f64, Failure>(step_out(&grid, outer, crossing(level, outer + 1)?)))
             .transpose()?,
@@ -137,19 +145,19 @@ pub fn search(
     Ok(Search::Found(FoundValue { value, goal, threshold_value, failing_value, is_monotone }))
 }
 
-/// A thousandth beyond a crossing, towards the value of the grid that fails.
+/// Returns a value a thousandth beyond a crossing, towards the grid value that fails.
 fn step_out(grid: &[(f64, f64)], outer: usize, crossing: f64) -> f64 {
     let fails = grid[outer].0;
     if fails < crossing { (crossing * 0.999).max(fails) } else { (crossing * 1.001).min(fails) }
 }
 
-/// The probability as a function of the parameter.
+/// Probability as a function of the parameter.
 struct Curve<'a> {
     requirements: &'a Requirements,
     demand: &'a Demand,
     parameter: Parameter,
     pointings: usize,
-    /// The one design of all exposures.
+    /// Common design of all exposures; `None` if the parameter is not the exposure.
     fixed: Option<Design<'a>>,
 }
 
@@ -167,8 +175,9 @@ impl Curve<'_> {
 mod tests {
     use super::*;
 
-    /// 300 frames, 0.9, 95 %: 279 and more have a lower bound above it, 260 and fewer an upper bound below; binomial distributions
-    /// of 0.9507 and 0.8371 have these with 95 % (scipy.stats.binom, brentq).
+    /// 300 frames, 0.9, 95 %: 279 or more have a lower bound above 0.9, 260 or fewer an upper bound below it;
+    /// these counts have a probability of 95 % in binomial distributions of 0.9507 and 0.8371
+    /// (scipy.stats.binom, brentq).
     #[test]
     fn what_frames_can_resolve_follows_the_binomial_distribution() {
         let (above, below) = resolvable(0.9, 300, 0.95);

@@ -1,4 +1,4 @@
-//! One camera design, and the probability with which it meets a demand, by the analytic detection model.
+//! One camera design, and the probability of meeting a demand according to the analytic detection model.
 
 pub(crate) mod binding;
 #[allow(
@@ -22,21 +22,22 @@ use crate::sky::Sky;
 use crate::sky::star_count::{Curves, StarCount, over_sky, star_trail_px};
 use crate::target::{Aspect, TargetModel, TargetObservation, longest_exposures_s, longest_with};
 
-/// Ranges that are looked at within an interval, both ends included.
+/// Number of ranges that are evaluated within an interval, both ends included.
 const RANGES: usize = 7;
-/// Stars of a smaller chance at the longest exposure are left out of the sky.
+/// Smallest detection probability at the longest exposure of a star that the sky includes.
 const LEAST_CHANCE: f64 = 1e-4;
-/// How much fainter than those, for backgrounds that lift a pixel towards a threshold in digital numbers.
+/// Factor that lowers the smallest flux of the stars in the sky, for backgrounds that raise a pixel towards a
+/// threshold in digital numbers.
 const FAINTER: f64 = 0.5;
 
-/// A camera, the way it is carried, and the sky as it sees it.
+/// A camera, its motion, and the sky that it observes.
 pub struct Design<'a> {
     requirements: &'a Requirements,
-    /// The camera.
+    /// Model of the camera.
     pub camera: CameraModel,
-    /// How it is carried.
+    /// Motion of the camera.
     pub motion: MotionTable,
-    /// When something counts as detected.
+    /// Rule for counting an object as detected.
     pub rule: DetectionRule,
     target: Option<TargetModel>,
     pointings: usize,
@@ -45,31 +46,32 @@ pub struct Design<'a> {
     background_e_per_s: OnceCell<f64>,
 }
 
-/// What a design reaches of a demand.
+/// Result of a design for a demand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesignPerformance {
-    /// Probability at the worst of what is demanded.
+    /// Probability under the worst conditions of the demand.
     pub probability: f64,
-    /// Exposure at which it is reached, s.
+    /// Exposure at which this probability is reached, s.
     pub exposure_s: f64,
-    /// Range at which it is least, km.
+    /// Range with the smallest probability, km.
     pub range_km: Option<f64>,
 }
 
-/// Aspects that are looked at together: their mean has to be the probability that is asked for.
+/// Aspects that are evaluated together: their mean probability must reach the required one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AspectGroup {
     /// Smallest and largest phase angle, degrees.
     pub phases_deg: [f64; 2],
-    /// All equally likely.
+    /// Aspects of the group, all equally likely.
     pub aspects: Vec<Aspect>,
 }
 
 impl<'a> Design<'a> {
-    /// A camera for these requirements, seen against `pointings` boresights, with exposures up to `longest_s`.
+    /// Creates a design for these requirements, evaluated at `pointings` boresights, with exposures up to
+    /// `longest_s`.
     ///
     /// # Errors
-    /// A [`Failure`] for a camera or a target that cannot be made.
+    /// A [`Failure`] for a camera or a target that cannot be created.
     pub fn new(
         requirements: &'a Requirements,
         camera: &CameraConfig,
@@ -96,40 +98,42 @@ impl<'a> Design<'a> {
         })
     }
 
-    /// The same, seen from about `count` of its boresights, evenly spread: every so many of a Fibonacci lattice are one themselves.
+    /// Returns the same design with about `count` of its boresights, evenly spread: every n-th point of a
+    /// Fibonacci lattice is itself evenly spread.
     ///
     /// # Errors
-    /// As [`Design::new`].
+    /// The errors of [`Design::new`].
     pub fn thinned(&self, count: usize) -> Result<Self, Failure> {
         let thin = Self::new(self.requirements, &self.camera.config, self.pointings, self.longest_s)?;
         let step = self.pointings.div_ceil(count.max(1));
         let fields = self.sky()?.fields.iter().step_by(step).cloned().collect();
-        // Nobody has looked at the new design's sky yet.
+        // The sky of the new design has not been computed yet.
         let _ = thin.sky.set(Sky { fields });
         Ok(thin)
     }
 
-    /// Whether an exposure is among those that its sky was made for.
+    /// Returns true if the design's sky was made for exposures as long as this one.
     pub fn covers(&self, exposure_s: f64) -> bool {
         exposure_s <= self.longest_s
     }
 
-    /// The same with nothing smeared: neither stars nor target move in the image of a camera on an endlessly wide orbit.
+    /// Returns the same design without smear: on an extremely wide orbit, neither stars nor target move in
+    /// the image.
     #[must_use]
     pub fn without_smear(mut self) -> Self {
         self.motion.semi_major_axis_km = 1e15;
-        // The sky keeps the orbit that it was seen from.
+        // The sky is still that of the original orbit.
         self
     }
 
-    /// The sky as the camera sees it.
+    /// Returns the sky that the camera observes, and computes it at the first call.
     ///
     /// # Errors
     /// [`SimError`] when the catalogue cannot be read.
     pub fn sky(&self) -> Result<&Sky, SimError> {
         if self.sky.get().is_none() {
             let file = &self.requirements.file;
-            // The longest exposure shows the faintest stars, unless it drowns them.
+            // The longest exposure detects the faintest stars, unless its background hides them.
             let faintest = |exposure_s: f64| {
                 let trail_px = star_trail_px(&self.camera, &self.motion, exposure_s);
                 let curve = DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, 0.0);
@@ -138,16 +142,16 @@ impl<'a> Design<'a> {
             let exposures = between(file.exposure.min_s, self.longest_s, 9);
             let least_e_per_s = FAINTER * exposures.map(faintest).fold(1e12, f64::min);
             let sky = Sky::new(&self.camera, &file.motion, &file.sky, self.pointings, least_e_per_s)?;
-            // Another thread cannot have set it: the design is not shared.
+            // No other thread can have set the sky: the design is not shared.
             let _ = self.sky.set(sky);
         }
         self.sky.get().ok_or_else(|| OutOfRange::new("sky", "none", "a sky").into())
     }
 
-    /// The median light of the background over the boresights that count, electrons a second and pixel.
+    /// Returns the median background over the boresights that count, electrons per second and pixel.
     ///
     /// # Errors
-    /// As [`Design::sky`].
+    /// The errors of [`Design::sky`].
     pub fn background_e_per_s(&self) -> Result<f64, SimError> {
         if let Some(known) = self.background_e_per_s.get() {
             return Ok(*known);
@@ -157,55 +161,57 @@ impl<'a> Design<'a> {
         Ok(*self.background_e_per_s.get_or_init(|| all.get(all.len() / 2).copied().unwrap_or(0.0)))
     }
 
-    /// What is detected of the stars at every boresight that counts.
+    /// Returns the detection statistics of the stars at every boresight that counts.
     ///
     /// # Errors
-    /// As [`Design::sky`].
+    /// The errors of [`Design::sky`].
     pub fn stars(&self, exposure_s: f64, n_min: u32) -> Result<Vec<StarCount>, SimError> {
         let sky = self.sky()?;
         let curves = Curves::from_sky(&self.camera, &self.rule, &self.motion, exposure_s, sky);
         Ok(curves.count_stars_over_sky(sky, n_min as usize))
     }
 
-    /// P(N ≥ n_min) over the sky.
+    /// Returns P(N ≥ n_min) over the sky.
     ///
     /// # Errors
-    /// As [`Design::sky`].
+    /// The errors of [`Design::sky`].
     pub fn stars_chance(&self, exposure_s: f64, n_min: u32, over: SkyStatistic) -> Result<f64, SimError> {
         Ok(over_sky(&self.stars(exposure_s, n_min)?, over))
     }
 
-    /// The curve of stars over the median background.
+    /// Returns the detection curve of stars over the median background.
     ///
     /// # Errors
-    /// As [`Design::sky`].
+    /// The errors of [`Design::sky`].
     pub fn curve(&self, exposure_s: f64) -> Result<DetectionCurve, SimError> {
         let trail_px = star_trail_px(&self.camera, &self.motion, exposure_s);
         let background_e_per_s = self.background_e_per_s()?;
         Ok(DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, background_e_per_s))
     }
 
-    /// V of a star of the mean colour, on the boresight, that is detected with a probability; `None` when none is.
+    /// Returns the V magnitude of a star of mean colour, on the boresight, that is detected with a given
+    /// probability; `None` when no star is.
     ///
     /// # Errors
-    /// As [`Design::sky`].
+    /// The errors of [`Design::sky`].
     pub fn limiting_magnitude(&self, exposure_s: f64, probability: f64) -> Result<Option<f64>, SimError> {
         Ok(self.limit_of(&self.curve(exposure_s)?, exposure_s, probability))
     }
 
-    /// [`Design::limiting_magnitude`] of a curve that is there already.
+    /// Returns [`Design::limiting_magnitude`] from an existing curve.
     pub fn limit_of(&self, curve: &DetectionCurve, exposure_s: f64, probability: f64) -> Option<f64> {
         let of_zero_e = self.camera.radiometry.star(0.0, None, None) * exposure_s;
         let electrons = curve.electrons_for(probability);
         electrons.map(|electrons| -2.5 * libm::log10(electrons / of_zero_e))
     }
 
-    /// The target, where there is one.
+    /// Returns the target, if there is one.
     pub fn target(&self) -> Option<&TargetModel> {
         self.target.as_ref()
     }
 
-    /// The aspects of the target up to a phase angle: one group a phase angle, or all moments of an orbit in one.
+    /// Returns the aspects of the target up to a phase angle, in one group per phase angle, or in a single
+    /// group for all instants of an orbit.
     pub fn groups(&self, phase_max_deg: Option<f64>) -> Vec<AspectGroup> {
         let aspects = self.target.as_ref().map_or_else(Vec::new, |target| target.aspects(phase_max_deg));
         let light = self.requirements.file.target.as_ref().map(|target| &target.light);
@@ -227,10 +233,11 @@ impl<'a> Design<'a> {
         groups
     }
 
-    /// The chance that the target is detected from a range, the least over the groups of aspects, and that group.
+    /// Returns the probability that the target is detected from a range, the smallest over the groups of
+    /// aspects, and the index of this group.
     ///
     /// # Errors
-    /// As [`Design::sky`].
+    /// The errors of [`Design::sky`].
     pub fn target_chance(
         &self,
         groups: &[AspectGroup],
@@ -249,8 +256,8 @@ impl<'a> Design<'a> {
         Ok(least.unwrap_or((0.0, 0)))
     }
 
-    /// The longest exposure that leaves the target not over-exposed with a probability at a range, s, whatever the group; not cut to
-    /// what the camera can command.
+    /// Returns the longest exposure that does not over-expose the target with a given probability at a range,
+    /// s, in every group; not limited to the exposures that the camera can command.
     pub fn longest_s(&self, groups: &[AspectGroup], range_km: f64, probability: f64) -> f64 {
         let Some(target) = &self.target else { return f64::INFINITY };
         let exposure = &self.requirements.file.exposure;
@@ -261,10 +268,11 @@ impl<'a> Design<'a> {
         longest.fold(f64::INFINITY, f64::min)
     }
 
-    /// With what probability a demand is met, at the worst of what it speaks of. `exposure_s` takes the place of its own exposure.
+    /// Returns the probability of meeting a demand under its worst conditions. `exposure_s` replaces the
+    /// exposure of the demand.
     ///
     /// # Errors
-    /// As [`Design::sky`].
+    /// The errors of [`Design::sky`].
     pub fn reached(&self, demand: &Demand, exposure_s: Option<f64>) -> Result<DesignPerformance, SimError> {
         let file = &self.requirements.file;
         let exposure_of = |own: &Option<f64>| exposure_s.or(*own).unwrap_or(file.exposure.nominal_s);
@@ -308,7 +316,8 @@ impl<'a> Design<'a> {
                         range_km: Some(range_km),
                     });
                 }
-                // Longer is better for stars, unless smear takes what it gives: half and a quarter of it may do as well.
+                // A longer exposure detects more stars unless smear outweighs the gain: a half or a quarter
+                // of it may be better.
                 let mut best = DesignPerformance {
                     probability: 0.0,
                     exposure_s: file.exposure.min_s,
@@ -332,7 +341,7 @@ impl<'a> Design<'a> {
 }
 
 impl Demand {
-    /// The probability that it asks for.
+    /// Returns the required probability; `of_file` if the demand states none.
     pub fn probability(&self, of_file: f64) -> f64 {
         let (Self::Stars { probability, .. }
         | Self::LimitingMagnitude { probability, .. }
@@ -342,10 +351,10 @@ impl Demand {
     }
 }
 
-/// A design for a value of a parameter, and the exposure where that is the parameter.
+/// Creates a design for a value of a parameter, and returns the exposure if it is the parameter.
 ///
 /// # Errors
-/// As [`Design::new`].
+/// The errors of [`Design::new`].
 pub(crate) fn design_with<'a>(
     requirements: &'a Requirements,
     parameter: Parameter,
@@ -357,12 +366,12 @@ pub(crate) fn design_with<'a>(
     Ok((Design::new(requirements, &camera, pointings, exposure_s.unwrap_or(0.0))?, exposure_s))
 }
 
-/// `count` numbers from one to another, both included, in equal ratios.
+/// Returns `count` numbers from one to another, both included, in equal ratios.
 pub fn between(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
     let ratio = to / from;
     let count = if ratio == 1.0 { 1 } else { count };
     let last = count.saturating_sub(1).max(1) as f64;
-    // The ends to the bit.
+    // The ends are exact.
     (0..count).map(move |i| match i {
         0 => from,
         i if i + 1 == count => to,

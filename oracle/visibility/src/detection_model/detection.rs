@@ -1,10 +1,11 @@
-//! How likely an image is detected: the chance that one of its pixels at least is above the threshold.
+//! Detection probability of an image: the probability that at least one of its pixels is above the threshold.
 //!
-//! Pixels are drawn independently of each other, so that P = 1 − Π P(DN_i ≤ T | μ_i), the product over the pixels of the image, with
-//! μ_i = B + E f_i of background B, electrons E and the share f_i of the point-spread function in that pixel, smeared by the motion.
-//! Where an image lies within a pixel is a matter of chance: P is the mean over a grid of places. The chance that the same pixels have without
-//! the image is taken off: a threshold within the noise, or a background above it, detects nothing. Nor is anything detected by itself
-//! where so many empty pixels are above I1 that clusters run together over the whole frame.
+//! Pixels are independent, hence P = 1 − Π P(DN_i ≤ T | μ_i), the product over the pixels of the image, with
+//! μ_i = B + E f_i for the background B, the electrons E and the fraction f_i of the point-spread function in
+//! the pixel, smeared by the motion. The position of an image within a pixel is random: P is the mean over a
+//! grid of positions. The probability that the same pixels have without the image is subtracted: a threshold
+//! within the noise, or a background above it, detects nothing. Nor is an image detected separately where so
+//! many empty pixels are above I1 that clusters merge over the whole frame.
 
 use contract::PixelPoint;
 use sim::optics::{ImagePoint, Stamp};
@@ -13,31 +14,32 @@ use super::pixel::{PixelThreshold, readout_e};
 use crate::camera::{CameraModel, moving_point};
 use crate::requirement::DetectionRule;
 
-/// Places within a pixel along each axis.
+/// Number of positions within a pixel along each axis.
 const PLACES: usize = 4;
-/// Pixels with a smaller part of the light of the brightest are left out: where that is at the threshold, they do not rise above the background's
-/// own chance.
+/// Smallest fraction of the brightest pixel's signal at which a pixel is included: when the brightest pixel
+/// is at the threshold, fainter pixels add nothing to the probability of the background.
 const LEAST_PART: f64 = 4e-3;
-/// Pixels with a smaller share of all light are not drawn at all.
+/// Smallest fraction of the total signal at which a pixel is computed at all.
 const LEAST_SHARE: f64 = 1e-6;
-/// Share of empty pixels above I1 from which on they hang together without end: the threshold of site percolation on a square lattice
-/// with eight neighbours (Malarz & Galam 2005, Phys. Rev. E 71, 016125).
+/// Fraction of empty pixels above I1 at which they form an unbounded cluster: the threshold of site
+/// percolation on a square lattice with eight neighbours (Malarz & Galam 2005, Phys. Rev. E 71, 016125).
 const PERCOLATION: f64 = 0.407;
-/// Nodes of the table of a curve for each factor of e in electrons.
+/// Number of table nodes of a curve for each factor of e in electrons.
 const NODES_PER_E: f64 = 24.0;
 
-/// The thresholds of a frame, DN.
+/// Thresholds of a frame, DN.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameThresholds {
-    /// I1.
+    /// I1, DN.
     pub low_dn: f64,
-    /// I2.
+    /// I2, DN.
     pub high_dn: f64,
 }
 
 impl DetectionRule {
-    /// The thresholds of a frame of a camera whose pixels expect `background_e` electrons, dark current included. Those in standard
-    /// deviations are the far-range method's automatic ones: b + k σ_DN, σ_DN² = (B + σ²)/g² + 1/12, whole numbers.
+    /// Returns the thresholds of a frame of a camera whose pixels expect `background_e` electrons, dark
+    /// current included. Thresholds in standard deviations are the far-range method's automatic ones: b + k
+    /// σ_DN, σ_DN² = (B + σ²)/g² + 1/12, rounded down to integers.
     pub fn thresholds(&self, camera: &CameraModel, background_e: f64) -> FrameThresholds {
         match *self {
             Self::Dn { low_dn, high_dn } => {
@@ -56,24 +58,24 @@ impl DetectionRule {
     }
 }
 
-/// Whether the empty pixels of a frame, which expect `background_e` electrons, run together above I1.
+/// Returns true if the empty pixels of a frame, which expect `background_e` electrons, merge above I1.
 pub fn is_flooded(camera: &CameraModel, rule: &DetectionRule, background_e: f64) -> bool {
     camera.threshold(rule.thresholds(camera, background_e).low_dn).above(background_e) >= PERCOLATION
 }
 
-/// The shares of the light of an image in its pixels, at several places within a pixel.
+/// Fractions of an image's signal in its pixels, at several positions within a pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImageShares {
     places: Vec<Vec<f64>>,
 }
 
 impl ImageShares {
-    /// A star's, moving by `trail_px` along x. Where the point-spread function grows over the field, a third of the places each have
-    /// the width of an equal part of the field's area.
+    /// Computes the fractions of a star that moves by `trail_px` along x. If the point-spread function grows
+    /// over the field, a third of the positions each have the width of one third of the field's area.
     pub fn from_star(camera: &CameraModel, trail_px: f64) -> Self {
         let (columns, rows) = camera.projection.detector();
         let growth = camera.config.optics.psf_growth;
-        // Of the distance to the corner: the middles of three rings of equal area.
+        // Fractions of the distance to the corner: the midpoints of three rings of equal area.
         let radii: &[f64] = if growth == 0.0 { &[0.0] } else { &[0.408, 0.707, 0.913] };
         let middle = PixelPoint::new((columns as f64 - 1.0) / 2.0, (rows as f64 - 1.0) / 2.0);
         let mut places = Vec::new();
@@ -85,7 +87,7 @@ impl ImageShares {
         Self { places }
     }
 
-    /// Those of an image made of `points`, moved over the places within a pixel.
+    /// Computes the fractions of an image composed of `points`, shifted over the positions within a pixel.
     pub fn from_points(camera: &CameraModel, points: &[ImagePoint]) -> Self {
         let mut psf = camera.psf.clone();
         let mut stamp = Stamp::new();
@@ -106,7 +108,8 @@ impl ImageShares {
         Self { places }
     }
 
-    /// The chance that an image of `electrons` over a background of `background_e` a pixel is detected.
+    /// Returns the probability that an image of `electrons` over a background of `background_e` per pixel is
+    /// detected.
     pub fn chance(&self, threshold: &PixelThreshold, electrons: f64, background_e: f64) -> f64 {
         let dark = threshold.ln_below(background_e);
         let gained: f64 = self
@@ -122,15 +125,16 @@ impl ImageShares {
     }
 }
 
-/// The chance that a star is detected as a function of its electrons, at one exposure and background.
+/// Detection probability of a star as a function of its electrons, at one exposure and background.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DetectionCurve {
-    /// At equal steps of the logarithm of electrons, from one electron on.
+    /// Probabilities at equal steps of the logarithm of electrons, from one electron on.
     chances: Vec<f64>,
 }
 
 impl DetectionCurve {
-    /// The curve of a camera with an exposure, over `background_e_per_s` of light besides the flat sky and the dark current.
+    /// Computes the curve of a camera with an exposure, over a background of `background_e_per_s` in addition
+    /// to the flat sky and the dark current.
     pub fn new(
         camera: &CameraModel,
         rule: &DetectionRule,
@@ -147,7 +151,7 @@ impl DetectionCurve {
     }
 
     fn from_shares(shares: &ImageShares, threshold: &PixelThreshold, background_e: f64) -> Self {
-        // From a star of an electron on; the table ends where brighter ones are seen no better.
+        // From a star of one electron on; the table ends where brighter stars have no higher probability.
         let surest = shares.chance(threshold, f64::MAX.sqrt(), background_e);
         let mut chances = Vec::new();
         loop {
@@ -160,7 +164,7 @@ impl DetectionCurve {
         }
     }
 
-    /// The chance that a star of exp(`ln_electrons`) electrons is detected.
+    /// Returns the probability that a star of exp(`ln_electrons`) electrons is detected.
     #[inline]
     pub fn probability_at_ln(&self, ln_electrons: f64) -> f64 {
         let at = ln_electrons * NODES_PER_E;
@@ -174,12 +178,13 @@ impl DetectionCurve {
         }
     }
 
-    /// The chance that a star of `electrons` is detected.
+    /// Returns the probability that a star of `electrons` is detected.
     pub fn probability(&self, electrons: f64) -> f64 {
         self.probability_at_ln(libm::log(electrons.max(1e-30)))
     }
 
-    /// The electrons from which on a star is detected with `probability`; `None` when none is.
+    /// Returns the smallest number of electrons at which a star is detected with `probability`; `None` when
+    /// no star is.
     pub fn electrons_for(&self, probability: f64) -> Option<f64> {
         let node = self.chances.iter().position(|chance| *chance >= probability)?;
         let Some(before) = node.checked_sub(1) else { return Some(1.0) };
@@ -188,7 +193,8 @@ impl DetectionCurve {
     }
 }
 
-/// Electrons of the background in a pixel: light, the flat sky of the detector's description, dark current.
+/// Returns the electrons of the background in a pixel: the given background flux, the flat sky of the
+/// detector's description, dark current.
 pub fn background_e(camera: &CameraModel, exposure_s: f64, background_e_per_s: f64) -> f64 {
     (background_e_per_s + camera.config.sensor.background_e_per_s + camera.dark_e_per_s) * exposure_s
 }

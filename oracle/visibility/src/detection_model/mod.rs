@@ -1,4 +1,4 @@
-//! The analytic detection model: of a pixel, of an image, of several.
+//! Analytic detection model: of a pixel, of an image, of several images.
 
 #[allow(
     clippy::indexing_slicing,

@@ -1,25 +1,27 @@
-//! The chance that a pixel rises above a threshold, as a function of the electrons it expects.
+//! Probability that a pixel rises above a threshold, as a function of its expected electrons.
 //!
-//! The digital number of a pixel is floor((e (1 − β e/w) + n)/g + b + ½), with e electrons of a Poisson distribution cut at the full well w,
-//! n of a normal distribution, the gain g and the bias b. It is above the threshold T when e (1 − β e/w) + n ≥ L = (T + ½ − b) g, so that
+//! The digital number of a pixel is floor((e (1 − β e/w) + n)/g + b + ½), with e electrons from a Poisson
+//! distribution cut at the full well w, n from a normal distribution, the gain g and the bias b. It is above
+//! the threshold T when e (1 − β e/w) + n ≥ L = (T + ½ − b) g. Therefore
 //!
 //! P(DN > T | μ) = Σ_k Pois(k; μ) Q((L − k (1 − β k/w))/σ),
 //!
-//! Q the upper tail of the normal distribution (a sum over k as in Janesick, *Photon Transfer*, 2007, chapter 3, without its normal approximation). The simulator *draws* from this law;
-//! here it is added up, because nothing in the simulator tells a probability.
+//! with Q the upper tail of the normal distribution (a sum over k as in Janesick, *Photon Transfer*, 2007,
+//! chapter 3, without its normal approximation). The simulator *draws* from this distribution; here it is
+//! summed, because the simulator computes no probabilities.
 
 use sim::sensor::{SensorConfig, Switch};
 
-/// Nodes of the table for each standard deviation of a pixel at the threshold.
+/// Number of table nodes per standard deviation of a pixel at the threshold.
 const NODES_PER_SIGMA: f64 = 32.0;
-/// How far above the threshold the table goes, in those standard deviations.
+/// Extent of the table above the threshold, in standard deviations of a pixel at the threshold.
 const SIGMAS_ABOVE: f64 = 12.0;
-/// Most nodes; the table is then coarser, or ends earlier.
+/// Largest number of nodes; beyond it the table is coarser, or ends earlier.
 const MAX_NODES: usize = 1 << 15;
-/// The logarithm of a probability that no draw will ever meet.
+/// Logarithm of a probability that is negligible for any number of draws.
 const NEVER: f64 = -700.0;
 
-/// The detection model of one pixel against one threshold, tabulated.
+/// Tabulated detection model of one pixel for one threshold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PixelThreshold {
     /// ln P(DN ≤ T) at equal steps of μ from 0.
@@ -28,7 +30,7 @@ pub struct PixelThreshold {
 }
 
 impl PixelThreshold {
-    /// The detection model of a pixel of `sensor` against the digital number `threshold_dn`.
+    /// Tabulates the detection model of a pixel of `sensor` for the threshold `threshold_dn`, DN.
     pub fn new(sensor: &SensorConfig, threshold_dn: f64) -> Self {
         let limit_e = (threshold_dn.floor() + 0.5 - sensor.bias_dn) * sensor.gain_e_per_dn;
         let model = PixelModel { sensor, limit_e, sigma_e: readout_e(sensor) };
@@ -43,25 +45,27 @@ impl PixelThreshold {
         Self { ln_below: (0..=nodes).map(|i| model.ln_below(i as f64 * step_e)).collect(), step_e }
     }
 
-    /// ln P(DN ≤ T) of a pixel that expects `electrons`.
+    /// Returns ln P(DN ≤ T) of a pixel that expects `electrons`.
     #[inline]
     pub fn ln_below(&self, electrons: f64) -> f64 {
         let at = electrons.max(0.0) / self.step_e;
         let node = at as usize;
         match self.ln_below.get(node..) {
             Some([low, high, ..]) => low + (at - node as f64) * (high - low),
-            // More light changes nothing there: a pixel is never below, or, where its well is too small, as often as a full one.
+            // The probability is constant beyond the table: the pixel is always above, or, if its full well
+            // is too small, as often as a full pixel.
             _ => self.ln_below.last().copied().unwrap_or(0.0),
         }
     }
 
-    /// P(DN > T) of a pixel that expects `electrons`.
+    /// Returns P(DN > T) of a pixel that expects `electrons`.
     pub fn above(&self, electrons: f64) -> f64 {
         -libm::expm1(self.ln_below(electrons))
     }
 }
 
-/// Standard deviation of what the readout adds, electrons; what rows and columns share counts as if each pixel had its own.
+/// Returns the standard deviation of the readout noise, electrons; noise shared by a row or column counts as
+/// if it were independent in each pixel.
 pub fn readout_e(sensor: &SensorConfig) -> f64 {
     let (pixel_e, lines) = (sensor.read_noise_e, sensor.line_noise);
     let variance_e2 = pixel_e * pixel_e + lines.row_e * lines.row_e + lines.column_e * lines.column_e;
@@ -75,19 +79,20 @@ struct PixelModel<'a> {
 }
 
 impl PixelModel<'_> {
-    /// Whether a full pixel can be above the threshold at all.
+    /// Returns true if a full pixel can be above the threshold.
     fn can_be_reached(&self, threshold_dn: f64) -> bool {
         let full_e = self.collected_e(self.sensor.full_well_e);
         threshold_dn < f64::from(self.sensor.full_scale_dn()) && full_e + 5.0 * self.sigma_e >= self.limit_e
     }
 
-    /// What the readout makes of so many electrons: cut at the full well, and bent.
+    /// Returns the signal that the readout receives for a number of electrons: limited by the full well, and
+    /// non-linear.
     fn collected_e(&self, electrons: f64) -> f64 {
         let held_e = electrons.min(self.sensor.full_well_e);
         held_e * (1.0 - self.sensor.non_linearity * held_e / self.sensor.full_well_e)
     }
 
-    /// P(above) of a pixel that holds exactly so many electrons.
+    /// Returns P(above) of a pixel that holds exactly this number of electrons.
     fn probability_above(&self, electrons: f64) -> f64 {
         let distance_e = self.limit_e - self.collected_e(electrons);
         if self.sigma_e == 0.0 {
@@ -102,7 +107,7 @@ impl PixelModel<'_> {
             above = self.probability_above(mean_e);
             below = 1.0 - above;
         } else {
-            // The terms of the Poisson distribution; of a wide one only every so many, for it is smooth.
+            // Terms of the Poisson distribution; a wide distribution is smooth and is sampled with a stride.
             let width_e = mean_e.sqrt();
             let stride = (width_e / 20.0).floor().max(1.0);
             let reach = ((9.0 * width_e + 20.0) / stride).ceil() as i64;
@@ -122,7 +127,7 @@ impl PixelModel<'_> {
             }
             (above, below) = (above / all, below / all);
         }
-        // The smaller of both has the digits.
+        // The smaller of the two probabilities is the more accurate.
         if above < 0.5 { libm::log1p(-above) } else { libm::log(below.max(1e-300)).max(NEVER) }
     }
 }
@@ -148,7 +153,8 @@ mod tests {
         let model = PixelThreshold::new(&sensor(), 67.0);
         for (mean_e, expected) in SCIPY {
             let got = model.above(mean_e);
-            // Linear between nodes, a thirty-second of a standard deviation apart: an eighth of (z/32)² of a tail at z of them.
+            // Error of linear interpolation between nodes a thirty-second of a standard deviation apart: a
+            // fraction (z/32)²/8 of a tail at z standard deviations.
             let tolerance = if expected < 1e-3 { 2e-2 } else { 2e-3 };
             assert!((got / expected - 1.0).abs() < tolerance, "{mean_e}: {got} {expected}");
         }
@@ -168,7 +174,8 @@ mod tests {
         sensor.noise.shot = Switch::Off;
         sensor.noise.read = Switch::Off;
         let model = PixelThreshold::new(&sensor, 67.0);
-        // floor(e/10 + 40.5) > 67 from 275 electrons on; a node is at most a thirty-second of 17 electrons wide.
+        // floor(e/10 + 40.5) > 67 from 275 electrons on; a node is at most a thirty-second of 17 electrons
+        // wide.
         assert_eq!((model.above(273.0), model.above(277.0)), (0.0, 1.0));
     }
 
@@ -177,7 +184,7 @@ mod tests {
         assert_eq!(PixelThreshold::new(&sensor(), 4095.0).above(1e9), 0.0);
         let shallow = SensorConfig { full_well_e: 150.0, ..sensor() };
         assert_eq!(PixelThreshold::new(&shallow, 67.0).above(1e9), 0.0);
-        // A full one of 200 electrons needs five standard deviations of its read noise: 2.9e-7.
+        // A full pixel of 200 electrons needs five standard deviations of its read noise: 2.9e-7.
         let hardly = SensorConfig { full_well_e: 200.0, ..sensor() };
         assert!(PixelThreshold::new(&hardly, 67.0).above(1e9) < 1e-6);
     }

@@ -1,7 +1,8 @@
-//! How many of several independent events come true, each with a probability of its own: the Poisson-binomial distribution.
+//! Number of successes among independent events with different probabilities: the Poisson-binomial
+//! distribution.
 
-/// P(N ≥ `n_min`), exact: the distribution of N, cut at `n_min`, event by event (Chen & Liu 1997, Statistica Sinica 7, 875, Sec. 2, the
-/// direct recursion). `distribution` is a buffer that can be used again.
+/// Returns P(N ≥ `n_min`), exact: the distribution of N, truncated at `n_min`, updated event by event (Chen &
+/// Liu 1997, Statistica Sinica 7, 875, Sec. 2, the direct recursion). `law` is a reusable buffer.
 pub fn at_least(
     n_min: usize,
     probabilities: impl IntoIterator<Item = f64>,
@@ -11,7 +12,7 @@ pub fn at_least(
     distribution.resize(n_min, 0.0);
     let Some(none) = distribution.first_mut() else { return 1.0 };
     *none = 1.0;
-    // No more events than so many have come true so far.
+    // Upper limit of the number of successes so far.
     let mut seen = 0;
     for p in probabilities {
         seen = (seen + 1).min(n_min - 1);
@@ -31,7 +32,8 @@ mod tests {
         at_least(n_min, probabilities.iter().copied(), &mut Vec::new())
     }
 
-    /// All alike: the binomial distribution. 1 − Σ_{k<n} C(20, k) 0.3^k 0.7^(20 − k), added up in rational numbers (Python's `fractions`).
+    /// Equal probabilities: the binomial distribution. 1 − Σ_{k<n} C(20, k) 0.3^k 0.7^(20 − k), summed in
+    /// rational numbers (Python's `fractions`).
     #[test]
     fn equal_probabilities_give_the_binomial_distribution() {
         for (n_min, expected) in
@@ -41,7 +43,7 @@ mod tests {
         }
     }
 
-    /// Two and three events, written out.
+    /// Closed forms for two and three events.
     #[test]
     fn few_events_are_as_written_out() {
         let (a, b, c) = (0.1, 0.6, 0.85);

@@ -1,4 +1,5 @@
-//! The curves of a report: probability against magnitude, limiting magnitude against exposure, the sky, the target by range and phase.
+//! Curves of a report: probability against magnitude, limiting magnitude against exposure, the sky, the
+//! target by range and phase.
 
 use sim::SimError;
 use statistics::{Interval, wilson};
@@ -14,21 +15,21 @@ use crate::requirement::definition::Requirements;
 use crate::requirement::{SkyStatistic, TargetLight};
 use crate::sky::star_count::star_trail_px;
 
-/// Points of the curves over exposures and ranges.
+/// Number of points of the curves over exposures and ranges.
 const POINTS: usize = 25;
-/// Worst pointings that are named.
+/// Number of worst pointings that are listed.
 const WORST: usize = 10;
-/// Half the width of the magnitudes of a simulated point.
+/// Half the width of the magnitude interval of a simulated point, mag.
 const HALF_WIDTH_MAG: f64 = 0.05;
-/// Ranges between which the greatest range is looked for, km.
+/// Limits of the search for the greatest range, km.
 const RANGES_KM: [f64; 2] = [0.01, 1e6];
 /// Width of the bins of phase angle along an orbit, degrees.
 const PHASE_BIN_DEG: f64 = 15.0;
 
-/// The camera in figures.
+/// Computes the figures of the camera.
 ///
 /// # Errors
-/// As [`Design::sky`].
+/// The errors of [`Design::sky`].
 pub(crate) fn camera_figures(
     requirements: &Requirements,
     design: &Design<'_>,
@@ -50,10 +51,11 @@ pub(crate) fn camera_figures(
     })
 }
 
-/// Detection probability against magnitude at the nominal exposure, from where it is above 0.999 to where it is below 0.001.
+/// Computes the detection probability against magnitude at the nominal exposure, in steps of 0.1 mag within 3
+/// mag of the magnitude of probability 0.5, where the probability is between 1e-4 and 0.9999.
 ///
 /// # Errors
-/// As [`Design::sky`].
+/// The errors of [`Design::sky`].
 pub(crate) fn detection(
     requirements: &Requirements,
     design: &Design<'_>,
@@ -70,7 +72,8 @@ pub(crate) fn detection(
     Ok(points.filter(|point| point.probability > 1e-4 && point.probability < 0.9999).collect())
 }
 
-/// What simulated frames say about the curve: stars by magnitude, where between 3 and 97 % of them should be detected.
+/// Returns the simulated counterpart of the curve: stars of the frames by magnitude, where the model predicts
+/// that between 3 and 97 % of them are detected.
 pub(crate) fn detection_simulated(frames: &[StarFrame], curve: &[DetectionPoint]) -> Vec<SimulatedPoint> {
     let marked = curve.iter().filter(|point| (0.03..=0.97).contains(&point.probability));
     let points = marked.filter_map(|point| {
@@ -88,10 +91,10 @@ pub(crate) fn detection_simulated(frames: &[StarFrame], curve: &[DetectionPoint]
     points.collect()
 }
 
-/// Limiting magnitude and stars against exposure.
+/// Computes limiting magnitude and number of stars against exposure.
 ///
 /// # Errors
-/// As [`Design::sky`].
+/// The errors of [`Design::sky`].
 pub(crate) fn limiting_magnitude(
     requirements: &Requirements,
     design: &Design<'_>,
@@ -113,10 +116,10 @@ pub(crate) fn limiting_magnitude(
     Ok(points)
 }
 
-/// The sky at the nominal exposure.
+/// Summarises the sky at the nominal exposure.
 ///
 /// # Errors
-/// As [`Design::sky`].
+/// The errors of [`Design::sky`].
 pub(crate) fn sky(requirements: &Requirements, design: &Design<'_>) -> Result<SkySummary, SimError> {
     let file = &requirements.file;
     let seen = design.stars(file.exposure.nominal_s, file.n_min)?;
@@ -143,7 +146,7 @@ pub(crate) fn sky(requirements: &Requirements, design: &Design<'_>) -> Result<Sk
         });
     }
     let mut worst: Vec<PointingStars> = map.iter().filter(|p| p.excluded.is_none()).cloned().collect();
-    // By probability; equal ones, as where both are 1, by number.
+    // Ordered by probability; equal probabilities, such as several of 1, by the number of stars.
     worst.sort_by(|a, b| a.probability.total_cmp(&b.probability).then(a.stars.total_cmp(&b.stars)));
     worst.truncate(WORST);
     let mut numbers: Vec<f64> = seen.iter().map(|seen| seen.expected).collect();
@@ -163,10 +166,10 @@ pub(crate) fn sky(requirements: &Requirements, design: &Design<'_>) -> Result<Sk
     })
 }
 
-/// The shortest exposure with enough stars over the sky, s; `None` when there is none.
+/// Returns the shortest exposure with enough stars over the sky, s; `None` if there is none.
 ///
 /// # Errors
-/// As [`Design::sky`].
+/// The errors of [`Design::sky`].
 pub(crate) fn shortest_for_stars(
     requirements: &Requirements,
     design: &Design<'_>,
@@ -191,10 +194,11 @@ pub(crate) fn shortest_for_stars(
     Ok(None)
 }
 
-/// Exposures against range, far to near, and where the stars are lost.
+/// Computes the usable exposures against range, from far to near, and the ranges at which too few stars
+/// remain.
 ///
 /// # Errors
-/// As [`Design::sky`].
+/// The errors of [`Design::sky`].
 pub(crate) fn exposure_window(
     requirements: &Requirements,
     design: &Design<'_>,
@@ -210,7 +214,7 @@ pub(crate) fn exposure_window(
     for range_km in between(far_km, near_km, POINTS) {
         let longest_s = design.longest_s(&groups, range_km, file.probability);
         let median_s = design.longest_s(&groups, range_km, 0.5).clamp(min_s, max_s);
-        // Far out the camera's longest exposure is that of many ranges.
+        // At far ranges the camera's longest exposure applies to many successive points.
         let (stars, probability) = match points.last().filter(|last| last.median_s == median_s) {
             Some(last) => (last.stars, last.probability),
             None => {
@@ -240,7 +244,8 @@ pub(crate) fn exposure_window(
     Ok((points, Some(lost)))
 }
 
-/// The range at which the longest exposure falls to what the stars need: it falls with the square of the range.
+/// Returns the range at which the longest exposure falls to the one that the stars need: it falls with the
+/// square of the range.
 fn closes(
     design: &Design<'_>,
     groups: &[AspectGroup],
@@ -261,10 +266,10 @@ fn closes(
     Some(libm::exp(open))
 }
 
-/// The greatest range at which the target is detected, by phase angle.
+/// Computes the greatest range at which the target is detected, by phase angle.
 ///
 /// # Errors
-/// As [`Design::sky`].
+/// The errors of [`Design::sky`].
 pub(crate) fn target_range(
     requirements: &Requirements,
     design: &Design<'_>,
@@ -289,7 +294,7 @@ pub(crate) fn target_range(
     Ok(rows)
 }
 
-/// The moments of an orbit in bins of phase angle.
+/// Groups the instants of an orbit into bins of phase angle.
 fn by_phase(groups: Vec<AspectGroup>) -> Vec<AspectGroup> {
     let mut aspects: Vec<_> = groups.into_iter().flat_map(|group| group.aspects).collect();
     aspects.sort_by(|a, b| a.phase_deg.total_cmp(&b.phase_deg));
@@ -302,11 +307,11 @@ fn by_phase(groups: Vec<AspectGroup>) -> Vec<AspectGroup> {
     pieces.map(group).collect()
 }
 
-/// The greatest range at which all groups of aspects show the target; it is sought where the chance falls, beyond the ranges at which
-/// the body is resolved.
+/// Returns the greatest range at which the target is detected in all groups of aspects; searched beyond the
+/// ranges at which the body is resolved, where the probability decreases.
 ///
 /// # Errors
-/// As [`Design::sky`].
+/// The errors of [`Design::sky`].
 pub(crate) fn greatest_range_km(
     design: &Design<'_>,
     groups: &[AspectGroup],
@@ -315,7 +320,7 @@ pub(crate) fn greatest_range_km(
 ) -> Result<Option<f64>, SimError> {
     let shows =
         |range_km| Ok::<bool, SimError>(design.target_chance(groups, range_km, exposure_s)?.0 >= probability);
-    // From far to near, so that a resolved body, whose light is spread, does not end the search.
+    // From far to near: a resolved body, whose signal is spread over pixels, then does not end the search.
     let ranges: Vec<f64> = between(RANGES_KM[1], RANGES_KM[0], 17).collect();
     let mut beyond = None;
     for range_km in ranges {

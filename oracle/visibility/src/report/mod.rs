@@ -1,4 +1,4 @@
-//! What is told of requirements: verdicts and curves, as `visibility.json` holds them.
+//! Verdicts and curves of requirements: the content of `visibility.json`.
 
 #[allow(
     clippy::indexing_slicing,
@@ -13,25 +13,25 @@ use files::table;
 use scenario::run_file::FileDigests;
 use serde::{Deserialize, Serialize};
 
-/// The answer to a file of requirements.
+/// Report on a file of requirements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VisibilityReport {
-    /// Name of the file.
+    /// Name of the requirements file.
     pub name: String,
-    /// What it is about.
+    /// Title of the requirements.
     pub title: String,
-    /// Version of Boresight that answered.
+    /// Version of Boresight that computed the report.
     pub version: String,
-    /// The files that the camera reads: SHA-256 by role, as in `run.toml`.
+    /// SHA-256 of each file that the camera reads, by role, as in `run.toml`.
     #[serde(default, skip_serializing_if = "FileDigests::is_empty")]
     pub files: FileDigests,
-    /// The camera, in figures.
+    /// Figures of the camera.
     pub camera: CameraFigures,
-    /// The verification table.
+    /// Verification table.
     pub requirements: Vec<Verdict>,
     /// Detection probability against magnitude at the nominal exposure.
     pub detection: Vec<DetectionPoint>,
-    /// The same, simulated.
+    /// Simulated detection rate against magnitude at the nominal exposure.
     pub detection_simulated: Vec<SimulatedPoint>,
     /// Limiting magnitude against exposure.
     pub limiting_magnitude: Vec<LimitPoint>,
@@ -39,59 +39,61 @@ pub struct VisibilityReport {
     pub sky: SkySummary,
     /// Exposures against range; empty without a target.
     pub exposure_window: Vec<WindowPoint>,
-    /// From which range on, approaching, enough stars no longer remain; `None` without a target.
+    /// Ranges below which too few stars remain during an approach; `None` without a target.
     pub stars_lost: Option<StarsLost>,
     /// Greatest range of the target by phase angle; empty without a target.
     pub target_range: Vec<RangeByPhase>,
 }
 
-/// The camera, in figures that are looked for in a data sheet.
+/// Figures of the camera, as in a data sheet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CameraFigures {
     /// Width and height of the field, degrees; absent where a corner has no direction.
     pub field_deg: Option<[f64; 2]>,
-    /// Photoelectrons a second of a star of V = 0 and mean colour.
+    /// Photoelectrons per second of a star of V = 0 and mean colour.
     pub zero_point_e_per_s: f64,
     /// Electrons at which a pixel saturates.
     pub saturation_e: f64,
     /// I2 over the median background at the nominal exposure, DN.
     pub threshold_dn: f64,
-    /// Median light of the background, electrons a second and pixel.
+    /// Median background, electrons per second and pixel.
     pub background_e_per_s: f64,
     /// Trail of the stars in the nominal exposure, px.
     pub star_trail_px: f64,
-    /// Stars that are needed.
+    /// Required number of stars.
     pub n_min: u32,
-    /// Probability that is asked for.
+    /// Required probability.
     pub probability: f64,
-    /// The nominal exposure, s.
+    /// Nominal exposure, s.
     pub nominal_s: f64,
 }
 
-/// Whether a requirement is met.
+/// Status of a requirement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// The analytic detection model says so, and the lower bound of the simulated rate too.
+    /// Met according to the analytic model and to the lower bound of the simulated rate.
     MetSimulated,
-    /// The analytic detection model says so alone: nothing was simulated, or too few frames to show it even if all of them met it.
+    /// Met according to the analytic model only: nothing was simulated, or too few frames to show it even if
+    /// all of them met it.
     #[serde(rename = "met_law")]
     MetModel,
-    /// The detection model or the upper bound of the simulated rate says that it is not.
+    /// Not met according to the model or to the upper bound of the simulated rate.
     NotMet,
-    /// The detection model says so, and the bounds of the simulated rate are on either side of what is asked for.
+    /// Met according to the model, but the required probability lies between the bounds of the simulated
+    /// rate.
     NotDecided,
-    /// No value that was to be looked at meets it.
+    /// The requirement is met at no value of the bracket.
     Impossible,
 }
 
 impl Status {
-    /// Whether it is met, by the detection model at least.
+    /// Returns true if the requirement is met, at least according to the model.
     pub fn is_met(self) -> bool {
         matches!(self, Self::MetSimulated | Self::MetModel)
     }
 
-    /// In words.
+    /// Returns the status in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::MetSimulated => "met (simulated)",
@@ -103,165 +105,167 @@ impl Status {
     }
 }
 
-/// One row of the verification table.
+/// Row of the verification table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// Name of the requirement.
     pub id: String,
-    /// What it says.
+    /// Text of the requirement.
     pub text: String,
-    /// Whether it is met.
+    /// Status of the requirement.
     pub status: Status,
-    /// Probability that is asked for.
+    /// Required probability.
     pub asked: f64,
-    /// Probability by the analytic detection model, at the worst of what is demanded.
+    /// Probability according to the analytic model, under the worst conditions of the demand.
     pub reached: f64,
-    /// Room, in the unit beside it; negative where it is not met.
+    /// Margin, in the unit `margin_unit`; negative if the requirement is not met.
     pub margin: Option<f64>,
     /// Unit of the margin.
     pub margin_unit: Cow<'static, str>,
-    /// In words: what was looked at, and what was simulated.
+    /// Description of the conditions evaluated and of the simulation.
     pub evidence: String,
-    /// What was simulated.
+    /// Simulated rate.
     pub simulated: Option<SimulatedRate>,
-    /// What was looked for, and found.
+    /// Result of the search for a parameter value, if the requirement states one.
     pub found: Option<SearchResult>,
-    /// What binds, where it is not met.
+    /// Binding constraint, if the requirement is not met.
     pub binds: Option<String>,
 }
 
-/// A simulated rate with the one-sided bounds of Clopper & Pearson.
+/// Simulated rate with the one-sided bounds of Clopper & Pearson.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedRate {
-    /// Frames of which it is true.
+    /// Number of frames that meet the requirement.
     pub count: u64,
-    /// Frames.
+    /// Number of frames.
     pub of: u64,
     /// Lower bound.
     pub low: f64,
     /// Upper bound.
     pub high: f64,
-    /// Confidence of either bound.
+    /// Confidence of each bound.
     pub confidence: f64,
 }
 
-/// A value that meets a requirement, and one that does not.
+/// A value that meets a requirement, and one that fails it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchResult {
     /// Name of the parameter.
     pub parameter: Cow<'static, str>,
-    /// Its unit.
+    /// Unit of the parameter.
     pub unit: Cow<'static, str>,
-    /// The value that meets the requirement, with room enough for the simulation to show it.
+    /// Value that meets the requirement with enough margin for the simulation to show it.
     pub value: f64,
-    /// Probability by the analytic detection model there.
+    /// Probability at this value according to the analytic model.
     pub probability: f64,
-    /// The probability that the search aimed at: what is asked for, or as much more as the simulated frames need to show that.
+    /// Target probability of the search: the required one, or the higher one that the simulated frames need
+    /// to show it.
     pub aimed: f64,
-    /// Where the analytic probability is just what is asked for.
+    /// Value at which the analytic probability equals the required one.
     pub threshold_value: f64,
-    /// What was simulated at the value.
+    /// Simulated rate at the found value.
     pub simulated: Option<SimulatedRate>,
-    /// The value a step beyond the threshold; `None` when all that was looked at meets the requirement.
+    /// Value a step beyond the threshold; `None` when all evaluated values meet the requirement.
     pub failing_value: Option<f64>,
-    /// Probability by the analytic detection model there.
+    /// Probability at the failing value according to the analytic model.
     pub failing_probability: Option<f64>,
-    /// What was simulated there.
+    /// Simulated rate at the failing value.
     pub failing_simulated: Option<SimulatedRate>,
-    /// Whether all values beyond the found one, to the other end, meet the requirement.
+    /// True if all values beyond the found one, to the other end, meet the requirement.
     pub is_monotone: bool,
 }
 
-/// A point of the detection curve.
+/// Point of the detection curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DetectionPoint {
-    /// Johnson V of a star of mean colour.
+    /// Johnson V magnitude of a star of mean colour.
     pub magnitude: f64,
-    /// Its electrons.
+    /// Electrons of the star.
     pub electrons: f64,
     /// Probability of detection.
     pub probability: f64,
 }
 
-/// Stars of simulated frames about a magnitude.
+/// Stars of simulated frames near a magnitude.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedPoint {
-    /// Middle of the magnitudes.
+    /// Centre of the magnitude interval.
     pub magnitude: f64,
-    /// Stars that the detector found.
+    /// Number of stars that the detector found.
     pub count: u64,
-    /// Stars in the frames.
+    /// Number of stars in the frames.
     pub of: u64,
     /// Lower limit of the rate, 95 % two-sided (Wilson).
     pub low: f64,
-    /// Upper limit.
+    /// Upper limit of the rate, 95 % two-sided (Wilson).
     pub high: f64,
-    /// Mean probability of the very same stars by the analytic detection model.
+    /// Mean probability of these stars according to the analytic model.
     pub analytic: f64,
 }
 
 table! {
-    /// A point of the limiting magnitude.
+    /// Point of the curve of limiting magnitude.
     #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
     pub struct LimitPoint: csv {
         /// exposure, s
         exposure_s: f64,
-        /// V of the stars of which half are detected; none when fewer are
+        /// V magnitude at which half of the stars are detected; none if fewer are at any magnitude
         half: Option<f64> = ["magnitude_half"],
-        /// V of the stars detected with the probability that is asked for
+        /// V magnitude at which stars are detected with the required probability; none if there is none
         asked: Option<f64> = ["magnitude_asked"],
-        /// stars detected at a boresight, mean over the sky
+        /// expected number of stars detected per boresight, mean over the sky
         stars: f64,
-        /// probability of enough of them, over the sky
+        /// probability that enough stars are detected, over the sky
         probability: f64,
     }
 }
 
-/// The sky in figures.
+/// Figures of the sky.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SkySummary {
-    /// Boresights.
+    /// Number of boresights.
     pub pointings: u64,
-    /// Those that count.
+    /// Number of boresights that count.
     pub counted: u64,
-    /// Excluded by the Sun, by the Moon, by the limb of the Earth: the first that applies.
+    /// Number of boresights excluded by the Sun, by the Moon, by the limb of the Earth; each is counted under
+    /// the first that applies.
     pub excluded: [u64; 3],
-    /// Stars detected, mean over the sky.
+    /// Number of stars detected, mean over the sky.
     pub stars: f64,
-    /// The 1, 10 and 50 % quantiles of that number over the sky.
+    /// 1, 10 and 50 % quantiles of the number of stars detected, over the sky.
     pub quantiles: [f64; 3],
     /// P(N ≥ n_min), mean over the sky.
     pub probability: f64,
-    /// Share of the pointings at which it is at least what is asked for.
+    /// Fraction of the pointings at which P(N ≥ n_min) is at least the required probability.
     pub share: f64,
-    /// The pointings with the fewest stars.
+    /// Pointings with the fewest stars.
     pub worst: Vec<PointingStars>,
-    /// All pointings, in the order of the lattice; in `sky.csv` alone.
+    /// All pointings, in the order of the lattice; only in `sky.csv`.
     #[serde(skip)]
     pub map: Vec<PointingStars>,
 }
 
 table! {
-    /// The stars at one pointing.
+    /// Stars at one pointing.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     pub struct PointingStars: csv {
         /// right ascension of the boresight, 0 to 360
         ra_deg: f64,
-        /// its declination, −90 to 90
+        /// declination of the boresight, −90 to 90
         dec_deg: f64,
-        /// roll, −180 to 180: the turn from the image with north up, as in a scenario's inertial guidance
+        /// roll, −180 to 180: the rotation from the image with north up, as in a scenario's inertial guidance
         roll_deg: f64,
         /// time, UTC
         time_utc: String,
-        /// what excludes the pointing: `sun`, `moon`, `earth`; none when it counts
+        /// object that excludes the pointing: `sun`, `moon`, `earth`; none if the pointing counts
         excluded: Option<Cow<'static, str>>,
         /// background, electrons per second and pixel
         background_e_per_s: f64,
-        /// stars in the field down to the limiting magnitude of the probability that is asked for
+        /// number of stars in the field down to the limiting magnitude of the required probability
         in_field: u64,
         /// expected number of stars detected
         stars: f64,
-        /// probability of enough of them
+        /// probability that enough stars are detected
         probability: f64,
     }
 }
@@ -272,30 +276,33 @@ table! {
     pub struct WindowPoint: csv {
         /// range of the target
         range_km: f64,
-        /// longest exposure that does not over-expose the target with the probability that is asked for, at most the camera's longest
+        /// longest exposure that does not over-expose the target, with the required probability; at most the
+        /// camera's longest exposure
         longest_s: f64,
-        /// the same for half of the aspects
+        /// longest exposure that does not over-expose the target in half of the aspects, within the camera's
+        /// exposures
         median_s: f64,
-        /// shortest exposure with enough stars at that probability; none where there is none
+        /// shortest exposure with enough stars, with the required probability; none if there is none
         shortest_s: Option<f64>,
-        /// whether an exposure does both
+        /// true if an exposure meets both conditions
         is_open: bool,
-        /// stars detected at the median exposure, mean over the sky
+        /// number of stars detected at the median exposure, mean over the sky
         stars: f64,
-        /// probability of enough of them at the median exposure
+        /// probability that enough stars are detected at the median exposure
         probability: f64,
     }
 }
 
-/// From where on, approaching, stars are too few.
+/// Ranges below which too few stars remain during an approach.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StarsLost {
-    /// Stars that are needed.
+    /// Required number of stars.
     pub n_min: u32,
-    /// Range at which the window of exposures closes, km: nearer, enough stars are no longer had with the probability that is
-    /// asked for. `None` when it is open, or closed, at all ranges.
+    /// Range at which the window of exposures closes, km: nearer than this, enough stars are not detected
+    /// with the required probability. `None` when the window is open, or closed, at all ranges.
     pub window_closes_km: Option<f64>,
-    /// Range within which fewer than `n_min` stars are detected in half of the frames at the median exposure, km.
+    /// Range within which fewer than `n_min` stars are detected in half of the frames at the median exposure,
+    /// km.
     pub half_of_frames_km: Option<f64>,
 }
 
@@ -305,10 +312,11 @@ table! {
     pub struct RangeByPhase: csv {
         /// smallest and largest phase angle
         phases_deg: [f64; 2] = ["phase_low_deg", "phase_high_deg"],
-        /// greatest range at which the target is detected with the probability that is asked for at the nominal exposure;
-        /// none where it is not detected at 10 m
+        /// greatest range at which the target is detected with the required probability at the nominal
+        /// exposure; none if it is not detected at 10 m
         nominal_km: Option<f64>,
-        /// the same at the longest exposure
+        /// greatest range at which the target is detected with the required probability at the longest
+        /// exposure; none if it is not detected at 10 m
         longest_km: Option<f64>,
     }
 }

@@ -1,4 +1,4 @@
-//! The files of a report: `visibility.json`, `visibility.md`, and a CSV a curve.
+//! Files of a report: `visibility.json`, `visibility.md`, and one CSV file per curve.
 use std::path::{Path, PathBuf};
 
 use files::{AtomicFile, CsvLine, Failure, FieldDeclaration, FileError, Table, read_csv, table, write_csv};
@@ -6,28 +6,28 @@ use files::{AtomicFile, CsvLine, Failure, FieldDeclaration, FileError, Table, re
 use crate::report::{DetectionPoint, LimitPoint, PointingStars, RangeByPhase, VisibilityReport, WindowPoint};
 
 table! {
-    /// A point of the detection curve, with what was simulated about its magnitude.
+    /// Point of the detection curve, with the simulated stars near its magnitude.
     struct DetectionRow: csv {
-        /// V of a star of mean colour
+        /// V magnitude of a star of mean colour
         magnitude: f64,
-        /// its electrons at the nominal exposure
+        /// electrons of the star at the nominal exposure
         electrons: f64,
-        /// probability of detection by the analytic detection model
+        /// probability of detection according to the analytic model
         probability: f64,
-        /// stars of simulated frames about the magnitude that the detector found
+        /// number of stars near the magnitude that the detector found in simulated frames
         simulated_count: Option<u64>,
-        /// stars of those frames
+        /// number of stars near the magnitude in these frames
         simulated_of: Option<u64>,
-        /// lower limit of their rate, 95 % two-sided (Wilson)
+        /// lower limit of the detection rate, 95 % two-sided (Wilson)
         simulated_low: Option<f64>,
-        /// upper limit
+        /// upper limit of the detection rate, 95 % two-sided (Wilson)
         simulated_high: Option<f64>,
-        /// mean probability of those stars by the analytic detection model
+        /// mean probability of these stars according to the analytic model
         simulated_analytic: Option<f64>,
     }
 }
 
-/// The tables of a report, by name: their columns.
+/// Returns the columns of each table of a report, by file name.
 pub fn tables() -> [(&'static str, Vec<FieldDeclaration>); 5] {
     [
         ("detection.csv", DetectionRow::declarations()),
@@ -38,8 +38,8 @@ pub fn tables() -> [(&'static str, Vec<FieldDeclaration>); 5] {
     ]
 }
 
-/// Writes a report into a new or empty directory, each file at once or not at all, `visibility.json` last: where it is, all is.
-/// `markdown` is the report for a person.
+/// Writes a report into a new or empty directory, each file atomically and `visibility.json` last: if it
+/// exists, the report is complete. `markdown` is the report for readers.
 ///
 /// # Errors
 /// A [`Failure`] when the directory is in use or a file cannot be written.
@@ -89,7 +89,7 @@ fn prepare(folder: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// The detection curve beside the simulated rates.
+/// Returns the detection curve with the simulated rates.
 fn detection(report: &VisibilityReport) -> Vec<DetectionRow> {
     let row = |point: &DetectionPoint| {
         let simulated = report.detection_simulated.iter().find(|s| s.magnitude == point.magnitude);
@@ -110,7 +110,7 @@ fn detection(report: &VisibilityReport) -> Vec<DetectionRow> {
 /// Reads `sky.csv`.
 ///
 /// # Errors
-/// [`FileError`] for a file that cannot be read, or a cell that is not as it should be, with line and column.
+/// [`FileError`] for a file that cannot be read, or an invalid cell, with line and column.
 pub fn read_sky(path: &Path) -> Result<Vec<PointingStars>, FileError> {
     read_csv(path)
 }

@@ -1,4 +1,4 @@
-//! Requirements that were read and checked, with the camera that they are about.
+//! Requirements that were read and checked, with their camera.
 use std::path::{Path, PathBuf};
 
 use contract::Camera;
@@ -23,19 +23,19 @@ pub const BUILT_IN_REQUIREMENTS: &[BuiltIn] = &[BuiltIn {
 /// Requirements that were read and checked.
 #[derive(Debug, Clone)]
 pub struct Requirements {
-    /// Name: that of the built-in file, or the file's without its extension.
+    /// Name of the requirements: that of the built-in file, or the file name without its extension.
     pub name: String,
-    /// What is demanded.
+    /// Content of the requirement file.
     pub file: RequirementFile,
-    /// The camera, all overrides applied.
+    /// Camera, with all overrides applied.
     pub camera: CameraConfig,
-    /// The scenario that the camera was taken from.
+    /// Scenario that the camera was taken from.
     pub scenario: Option<FarRangeScenario>,
-    /// The body that is watched.
+    /// Target body.
     pub target: Option<TargetConfig>,
 }
 
-/// The tables of a built-in camera.
+/// Tables of a built-in camera.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Preset {
@@ -43,7 +43,7 @@ struct Preset {
     sensor: SensorConfig,
 }
 
-/// The text of the requirements, for the places of mistakes.
+/// Text of the requirements, used to locate mistakes.
 struct Source<'a> {
     path: &'a Path,
     text: &'a str,
@@ -53,7 +53,7 @@ impl Requirements {
     /// Reads `word`: a built-in name, or the path of a TOML file.
     ///
     /// # Errors
-    /// A [`Failure`] when there is no such file, or with the place of the first mistake in it.
+    /// A [`Failure`] when there is no such file, or with the location of the first mistake in it.
     pub fn read(word: &str) -> Result<Self, Failure> {
         if let Some(built_in) = BUILT_IN_REQUIREMENTS.iter().find(|built_in| built_in.name == word) {
             let path = PathBuf::from(format!("scenarios/requirements/{word}.toml"));
@@ -75,10 +75,10 @@ impl Requirements {
         Self::parse(name, path.parent().unwrap_or(Path::new("")), path, &text)
     }
 
-    /// Reads the text of requirements that came from `path`; paths in it start from `folder`.
+    /// Reads requirements from `text`, which is the content of `path`; paths in it are relative to `folder`.
     ///
     /// # Errors
-    /// A [`Failure`] with the place of the first mistake.
+    /// A [`Failure`] with the location of the first mistake.
     pub fn parse(name: String, folder: &Path, path: &Path, text: &str) -> Result<Self, Failure> {
         let source = Source { path, text };
         let file: RequirementFile = toml_file::parse(path, text)?;
@@ -128,7 +128,7 @@ impl Source<'_> {
         toml_file::refuse(self.path, self.text, at, message).into()
     }
 
-    /// Gives a value that the simulator refuses its place in the file, or in the table that it replaces.
+    /// Locates a value that the simulator rejects in the file, or in the table that it replaces.
     fn explain(&self, error: SimError) -> Failure {
         let SimError::OutOfRange(error) = error else { return error.into() };
         let field = &error.path;

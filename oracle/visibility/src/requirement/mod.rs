@@ -1,4 +1,5 @@
-//! The file of requirements: a camera, what its frames are looked at with, what is demanded of it.
+//! Structure of a requirement file: a camera, its detection rule, exposures and motion, and the demands on
+//! it.
 
 pub(crate) mod definition;
 
@@ -10,83 +11,86 @@ use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::SensorConfig;
 
-/// A requirement file. Units are in the names; unknown keys are errors.
+/// A requirement file. Key names contain the units; unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RequirementFile {
-    /// What it is about, in one line.
+    /// Title of the requirements, in one line.
     pub title: String,
-    /// Seed of the simulations that confirm.
+    /// Seed of the confirming simulations.
     #[serde(default)]
     #[schemars(range(max = u64::MAX))]
     pub seed: u64,
-    /// The camera.
+    /// Camera under evaluation.
     pub camera: CameraTable,
-    /// When something counts as detected.
+    /// Rule for counting an object as detected.
     pub detection: DetectionRule,
-    /// The exposures that the camera can command.
+    /// Exposures that the camera can command.
     pub exposure: ExposureTable,
-    /// Stars that are needed in a frame, where a requirement says nothing else, 1 to 1000.
+    /// Required number of stars in a frame, unless a requirement states another, 1 to 1000.
     #[schemars(range(min = 1, max = 1000))]
     pub n_min: u32,
-    /// Probability that is asked for, where a requirement says nothing else, in (0, 1).
+    /// Required probability, unless a requirement states another, in (0, 1).
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub probability: f64,
-    /// How the camera is carried through the sky.
+    /// Motion of the camera.
     pub motion: MotionTable,
-    /// Where and when it looks.
+    /// Directions and times of the observations.
     #[serde(default)]
     pub sky: SkyTable,
-    /// The body that it watches; absent: stars alone.
+    /// Target body; absent: only stars are evaluated.
     pub target: Option<TargetTable>,
-    /// How results are confirmed by simulation.
+    /// Confirmation of results by simulation.
     #[serde(default)]
     pub confirm: ConfirmTable,
-    /// What is demanded.
+    /// Requirements on the camera.
     #[serde(default)]
     pub requirements: Vec<Requirement>,
 }
 
-/// Where the camera comes from, and what of it is different. A scenario gives all of it; a preset gives or replaces geometry and
-/// detector; the other keys replace one thing each.
+/// Source of the camera, and the values that differ from it. A scenario provides the entire camera; a preset
+/// provides or replaces geometry and detector; each other key replaces one item.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CameraTable {
-    /// A built-in far-range scenario, or the path of one, from the folder of this file.
+    /// A built-in far-range scenario, or the path of a scenario file, relative to the directory of this file.
     pub scenario: Option<String>,
-    /// A built-in camera (`boresight scenario camera`): geometry and detector. Without a scenario it needs `psf` and `radiometry`.
+    /// A built-in camera (`boresight scenario camera`): geometry and detector. Without a scenario, `psf` and
+    /// `radiometry` are also required.
     pub preset: Option<String>,
     /// Focal length, mm, 0.01 to 1e6.
     #[schemars(range(min = 0.01, max = 1e6))]
     pub focal_length_mm: Option<f64>,
-    /// Diameter of the aperture, mm, greater than 0, at most 10000; of a spectral radiometry alone.
+    /// Diameter of the aperture, mm, greater than 0, at most 10000; only for a spectral radiometry.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10000))]
     pub aperture_diameter_mm: Option<f64>,
-    /// Point-spread function, in pixels.
+    /// Point-spread function, px.
     pub psf: Option<PsfConfig>,
-    /// What of the optics changes over the field.
+    /// Optical effects that vary over the field.
     pub optics: Option<OpticsConfig>,
-    /// From magnitudes to photoelectrons.
+    /// Conversion of magnitudes to photoelectrons.
     pub radiometry: Option<RadiometryConfig>,
-    /// Light without a source in the field.
+    /// Background without a source in the field.
     pub background: Option<BackgroundConfig>,
-    /// The detector.
+    /// Detector of the camera.
     pub sensor: Option<SensorConfig>,
 }
 
-/// When something counts as detected: at least one of its pixels is above I2, as the far-range method has it (the pixels about it
-/// above I1 belong to the same cluster and move its centre, but do not decide).
+/// Rule for counting an object as detected: at least one of its pixels is above I2, as in the far-range
+/// method (adjacent pixels above I1 belong to the same cluster and move its centre, but do not affect
+/// detection).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum DetectionRule {
-    /// Thresholds in digital numbers, as of a camera that keeps regions about bright pixels.
+    /// Thresholds in digital numbers, as in a camera that transmits regions around bright pixels.
     Dn {
         /// I1, DN, 0 to `high_dn`.
         low_dn: u16,
         /// I2, DN, less than full scale.
         high_dn: u16,
     },
-    /// Thresholds above the background in standard deviations of its noise, a signal-to-noise ratio of the brightest pixel.
+    /// Thresholds above the background in standard deviations of its noise: a signal-to-noise ratio of the
+    /// brightest pixel.
     Sigmas {
         /// I1, standard deviations, 0 to `high`.
         #[schemars(range(min = 0, max = 1000))]
@@ -97,20 +101,21 @@ pub enum DetectionRule {
     },
 }
 
-/// The exposures of a camera.
+/// Exposures of a camera.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExposureTable {
-    /// Exposure for which curves and requirements hold that name none, s, `min_s` to `max_s`.
+    /// Exposure of curves, and of requirements that state none, s, `min_s` to `max_s`.
     #[schemars(range(min = 1e-6, max = 1000))]
     pub nominal_s: f64,
-    /// Shortest, s, 1e-6 to `max_s`.
+    /// Shortest exposure, s, 1e-6 to `max_s`.
     #[schemars(range(min = 1e-6, max = 1000))]
     pub min_s: f64,
-    /// Longest, s, at most 1000.
+    /// Longest exposure, s, at most 1000.
     #[schemars(range(min = 1e-6, max = 1000))]
     pub max_s: f64,
-    /// Level that the target's brightest pixel may expect, as a fraction of saturation, above 0, at most 1000: 1 is just not over-exposed.
+    /// Largest expected level of the target's brightest pixel, as a fraction of saturation, above 0, at most
+    /// 1000: at 1 the target is just not over-exposed.
     #[serde(default = "default_level")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub target_level: f64,
@@ -120,44 +125,44 @@ fn default_level() -> f64 {
     1.0
 }
 
-/// How the camera is carried through the sky on a circular orbit.
+/// Motion of the camera on a circular orbit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionTable {
-    /// What is at rest in the image.
+    /// Objects that are at rest in the image.
     pub guidance: MotionGuidance,
-    /// Semi-major axis of the orbit, km, 6500 to 100000; its mean motion smears what is not at rest.
+    /// Semi-major axis of the orbit, km, 6500 to 100000; the mean motion smears objects that are not at rest.
     #[schemars(range(min = 6500, max = 100000))]
     pub semi_major_axis_km: f64,
 }
 
-/// What is at rest in the image.
+/// Objects that are at rest in the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionGuidance {
-    /// The stars; a target along the orbit drifts by.
+    /// Stars are at rest; a target along the orbit drifts.
     Inertial,
-    /// The target ahead along the orbit; the stars drift along the rows.
+    /// A target ahead along the orbit is at rest; the stars drift along the rows.
     LocalOrbital,
 }
 
-/// Where and when the camera looks.
+/// Directions and times of the observations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SkyTable {
-    /// Boresights over the whole sky, each for an equal area, 100 to 1000000.
+    /// Number of boresights over the whole sky, each representing an equal area, 100 to 1000000.
     #[schemars(range(min = 100, max = 1000000))]
     pub pointings: u32,
-    /// When.
+    /// Times of the observations.
     pub when: SkyTime,
-    /// Pointings nearer than this to the Sun do not count, degrees, 0 to 180.
+    /// Smallest angle to the Sun at which a pointing counts, degrees, 0 to 180.
     #[schemars(range(min = 0, max = 180))]
     pub sun_exclusion_deg: f64,
-    /// Pointings nearer than this to the Moon do not count, degrees, 0 to 180.
+    /// Smallest angle to the Moon at which a pointing counts, degrees, 0 to 180.
     #[schemars(range(min = 0, max = 180))]
     pub moon_exclusion_deg: f64,
-    /// Pointings nearer than this to the limb of the Earth do not count, degrees, 0 to 180. With inertial guidance the camera waits
-    /// until the Earth is behind it.
+    /// Smallest angle to the limb of the Earth at which a pointing counts, degrees, 0 to 180. With inertial
+    /// guidance the camera waits until the Earth is behind it.
     #[schemars(range(min = 0, max = 180))]
     pub earth_exclusion_deg: f64,
 }
@@ -174,54 +179,55 @@ impl Default for SkyTable {
     }
 }
 
-/// When the camera looks.
+/// Times of the observations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum SkyTime {
-    /// At one moment.
+    /// A single epoch.
     Epoch {
-        /// UTC, as in 2012-04-26T12:00:00Z.
+        /// Epoch, UTC, as in 2012-04-26T12:00:00Z.
         utc: String,
     },
-    /// All through a year: each pointing at a moment of its own, evenly spread.
+    /// A whole year: each pointing has a different time, evenly spread.
     Year {
-        /// The year, 1980 to 2040.
+        /// Year, 1980 to 2040.
         #[schemars(range(min = 1980, max = 2040))]
         year: i32,
     },
 }
 
-/// The body that the camera watches.
+/// Target of the camera.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TargetTable {
-    /// The body; absent: that of the scenario.
+    /// Target body; absent: that of the scenario.
     pub body: Option<TargetConfig>,
-    /// How the Sun shines on it.
+    /// Illumination of the body by the Sun.
     pub light: TargetLight,
-    /// Nearest and farthest range of the curves, km, growing, 0.01 to 1e5.
+    /// Nearest and farthest range of the curves, km, in ascending order, 0.01 to 1e5.
     #[schemars(inner(range(min = 0.01, max = 1e5)))]
     pub ranges_km: [f64; 2],
 }
 
-/// How the Sun shines on the body, and how it is turned.
+/// Illumination of the body by the Sun, and its attitude.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum TargetLight {
-    /// At given phase angles, at 1 au, in no shadow; a body of plates in any attitude, all equally likely.
+    /// Given phase angles, at 1 au, outside any shadow; a body of plates in any attitude, all equally likely.
     Phases {
-        /// Angles Sun–target–camera, degrees, growing, 0 to 170.
+        /// Angles Sun–target–camera, degrees, in ascending order, 0 to 170.
         #[schemars(length(min = 1, max = 50), inner(range(min = 0, max = 170)))]
         phases_deg: Vec<f64>,
-        /// Attitudes of a body of plates, 1 to 1000.
+        /// Number of attitudes of a body of plates, 1 to 1000.
         #[serde(default = "attitudes")]
         #[schemars(range(min = 1, max = 1000))]
         attitudes: u32,
     },
-    /// As along the orbit of the scenario, at moments spread over its schedule, with the attitude that it gives the body; the camera
-    /// purely along the track, behind or ahead as in the scenario. Moments in the Earth's shadow do not count.
+    /// Illumination along the orbit of the scenario, at times spread over its schedule, with the attitude
+    /// that the scenario gives the body; the camera is purely along the track, behind or ahead as in the
+    /// scenario. Times in the Earth's shadow do not count.
     Orbit {
-        /// Moments, 1 to 1000.
+        /// Number of times, 1 to 1000.
         #[schemars(range(min = 1, max = 1000))]
         moments: u32,
     },
@@ -231,11 +237,11 @@ fn attitudes() -> u32 {
     64
 }
 
-/// How results are confirmed by simulation.
+/// Confirmation of results by simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConfirmTable {
-    /// Frames that are simulated for each result, 0 to 100000; 0: no simulation.
+    /// Number of frames simulated for each result, 0 to 100000; 0: no simulation.
     #[schemars(range(min = 0, max = 100000))]
     pub frames: u32,
     /// Confidence of the one-sided bounds of simulated rates, 0.5 to 0.9999.
@@ -249,27 +255,27 @@ impl Default for ConfirmTable {
     }
 }
 
-/// One requirement.
+/// A requirement on the camera.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Requirement {
-    /// Its name, each once, as in REQ-STAR-01.
+    /// Unique name of the requirement, as in REQ-STAR-01.
     pub id: String,
-    /// What it says, in words.
+    /// Text of the requirement.
     pub text: String,
-    /// What it demands.
+    /// Demand of the requirement.
     pub demand: Demand,
-    /// What is to be found so that it is met; absent: whether the camera as it is meets it.
+    /// Parameter to find that meets the requirement; absent: the given camera is verified.
     pub find: Option<FindTable>,
 }
 
-/// What is demanded.
+/// Demand on a camera.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Demand {
-    /// So many stars or more are detected, with a probability, wherever the camera looks.
+    /// At least a number of stars is detected, with a probability, over the sky or at every pointing.
     Stars {
-        /// Stars, 1 to 1000; absent: that of the file.
+        /// Number of stars, 1 to 1000; absent: that of the file.
         #[schemars(range(min = 1, max = 1000))]
         n_min: Option<u32>,
         /// Probability; absent: that of the file.
@@ -278,13 +284,13 @@ pub enum Demand {
         /// Exposure, s; absent: the nominal one.
         #[schemars(range(min = 1e-6, max = 1000))]
         exposure_s: Option<f64>,
-        /// Whether the probability is that of all the sky together, or of each pointing.
+        /// Meaning of the probability: over the whole sky together, or at each pointing.
         #[serde(default)]
         over: SkyStatistic,
     },
-    /// A star of a magnitude, of the mean colour of the catalogue, is detected with a probability.
+    /// A star of a given magnitude, with the mean colour of the catalogue, is detected with a probability.
     LimitingMagnitude {
-        /// Johnson V, −2 to 15.
+        /// Johnson V magnitude, −2 to 15.
         #[schemars(range(min = -2, max = 15))]
         magnitude: f64,
         /// Probability; absent: that of the file.
@@ -302,7 +308,7 @@ pub enum Demand {
         /// Farthest range, km.
         #[schemars(range(min = 0.01, max = 1e5))]
         to_km: f64,
-        /// Largest phase angle, degrees, 0 to 180; absent: any of those of the target's light.
+        /// Largest phase angle, degrees, 0 to 180; absent: all phase angles of the target's light.
         #[schemars(range(min = 0, max = 180))]
         phase_max_deg: Option<f64>,
         /// Probability; absent: that of the file.
@@ -312,8 +318,8 @@ pub enum Demand {
         #[schemars(range(min = 1e-6, max = 1000))]
         exposure_s: Option<f64>,
     },
-    /// At every range of an interval there is an exposure that leaves the target not over-exposed and enough stars, each with a
-    /// probability.
+    /// At every range of an interval there is an exposure that does not over-expose the target and that
+    /// detects enough stars, each with a probability.
     ExposureWindow {
         /// Nearest range, km.
         #[schemars(range(min = 0.01, max = 1e5))]
@@ -321,10 +327,10 @@ pub enum Demand {
         /// Farthest range, km.
         #[schemars(range(min = 0.01, max = 1e5))]
         to_km: f64,
-        /// Largest phase angle, degrees, 0 to 180; absent: any of those of the target's light.
+        /// Largest phase angle, degrees, 0 to 180; absent: all phase angles of the target's light.
         #[schemars(range(min = 0, max = 180))]
         phase_max_deg: Option<f64>,
-        /// Stars; absent: that of the file.
+        /// Number of stars; absent: that of the file.
         #[schemars(range(min = 1, max = 1000))]
         n_min: Option<u32>,
         /// Probability; absent: that of the file.
@@ -333,36 +339,36 @@ pub enum Demand {
     },
 }
 
-/// Of what a probability over the sky is meant.
+/// Meaning of a probability over the sky.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SkyStatistic {
-    /// Of a boresight that is equally likely anywhere.
+    /// Probability for a boresight that is uniformly distributed over the sky.
     #[default]
     Sky,
-    /// Of every boresight, the worst included.
+    /// Probability for every boresight, including the worst.
     EveryPointing,
 }
 
-/// What is to be found.
+/// Search for a parameter value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FindTable {
-    /// The parameter.
+    /// Parameter to find.
     pub parameter: Parameter,
-    /// Which of the values that meet the requirement; absent: the smallest exposure and aperture, and the shortest focal length
-    /// (the widest field).
+    /// Choice among the values that meet the requirement; absent: the smallest exposure and aperture, and the
+    /// shortest focal length (the widest field).
     #[serde(default)]
     pub want: Extreme,
-    /// Smallest value that is looked at, in the parameter's unit.
+    /// Smallest value of the search, in the parameter's unit.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub from: f64,
-    /// Largest value that is looked at.
+    /// Largest value of the search, in the parameter's unit.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub to: f64,
 }
 
-/// A parameter of a camera that can be looked for.
+/// Parameter of a camera that can be searched for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Parameter {
@@ -370,12 +376,12 @@ pub enum Parameter {
     ExposureS,
     /// Diameter of the aperture, mm.
     ApertureDiameterMm,
-    /// Focal length, mm; the point-spread function stays as it is in pixels.
+    /// Focal length, mm; the size of the point-spread function in pixels does not change.
     FocalLengthMm,
 }
 
 impl Parameter {
-    /// Name and unit.
+    /// Returns name and unit of the parameter.
     pub fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::ExposureS => ("exposure", "s"),
@@ -385,19 +391,19 @@ impl Parameter {
     }
 }
 
-/// Which end of the values that meet a requirement.
+/// Choice among the values that meet a requirement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Extreme {
-    /// The smallest.
+    /// The smallest value.
     #[default]
     Smallest,
-    /// The largest.
+    /// The largest value.
     Largest,
 }
 
 impl RequirementFile {
-    /// Checks every number, and what several of them must be together.
+    /// Checks every number, and the conditions between several numbers.
     ///
     /// # Errors
     /// The first value that is not allowed.

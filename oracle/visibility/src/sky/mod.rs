@@ -1,4 +1,4 @@
-//! Boresights over the whole sky, and the stars that the camera has in its field at each.
+//! Boresights over the whole sky, and the stars in the camera's field at each of them.
 
 #[allow(
     clippy::indexing_slicing,
@@ -19,26 +19,26 @@ use sim::truth::{Observer, clock, moon};
 use crate::camera::{CameraModel, mean_motion_rad_s};
 use crate::requirement::{MotionGuidance, MotionTable, SkyTable, SkyTime};
 
-/// The golden ratio less one: turns between neighbours of the lattice.
+/// Golden ratio minus 1: rotation between neighbours of the lattice, in turns.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
-/// Irrational numbers without a common multiple, nor one with the golden ratio: which moment and which roll a pointing gets must not
-/// go with its place.
+/// Irrational number without a common multiple with [`SQRT_3`] and the golden ratio, which decorrelates the
+/// time and roll of a pointing from its position.
 const SQRT_2: f64 = std::f64::consts::SQRT_2 - 1.0;
 const SQRT_3: f64 = 0.732_050_807_568_877_2;
 
-/// Why a pointing does not count.
+/// Reason for excluding a pointing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exclusion {
-    /// The Sun is too near.
+    /// The angle to the Sun is too small.
     Sun,
-    /// The Moon is too near.
+    /// The angle to the Moon is too small.
     Moon,
-    /// The limb of the Earth is too near.
+    /// The angle to the limb of the Earth is too small.
     Earth,
 }
 
 impl Exclusion {
-    /// The word used in files.
+    /// Returns the word used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Sun => "sun",
@@ -48,24 +48,25 @@ impl Exclusion {
     }
 }
 
-/// One boresight.
+/// A pointing of the camera at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pointing {
-    /// Where it looks.
+    /// Direction of the boresight.
     pub boresight: Direction<Icrs>,
-    /// The camera's attitude.
+    /// Attitude of the camera.
     pub camera_from_icrs: Rotation<CameraFrame, Icrs>,
-    /// When.
+    /// Time of the pointing.
     pub time: Epoch,
-    /// Where the camera is, from the centre of the Earth.
+    /// Position of the camera relative to the centre of the Earth, km.
     pub position_km: Vector3<f64>,
-    /// Why it does not count; `None` when it does.
+    /// Reason for excluding the pointing; `None` if it counts.
     pub excluded: Option<Exclusion>,
 }
 
 impl Pointing {
-    /// Number `index` of `count` boresights of a spherical Fibonacci lattice, each of which stands for an equal area (Swinbank &
-    /// Purser 2006, Q. J. R. Meteorol. Soc. 132, 1769): z = 1 − (2 i + 1)/n, right ascension i golden turns.
+    /// Returns boresight `index` of `count` on a spherical Fibonacci lattice, each of which represents an
+    /// equal area (Swinbank & Purser 2006, Q. J. R. Meteorol. Soc. 132, 1769): z = 1 − (2 i + 1)/n, right
+    /// ascension i golden turns.
     pub fn from_lattice(
         index: usize,
         count: usize,
@@ -79,14 +80,15 @@ impl Pointing {
         let boresight = Vector3::new(across * cos_ra, across * sin_ra, z);
         let east = Vector3::new(-sin_ra, cos_ra, 0.0);
         let (sin_roll, cos_roll) = libm::sincos(std::f64::consts::TAU * (i * SQRT_3).fract());
-        // Across the boresight, at any roll; columns of the image run along it.
+        // Perpendicular to the boresight, at any roll: the direction of the image's x axis.
         let x = east * cos_roll + boresight.cross(&east) * sin_roll;
         let time = observation_time(&sky.when, (i * SQRT_2).fract())?;
         Self::new(boresight, x, time, motion, sky)
     }
 
-    /// The camera looking along `boresight` with its columns along `x`, both unit vectors at right angles. On a local orbital
-    /// guidance x is away from the Earth and the boresight along the orbit; else the Earth is behind the camera.
+    /// Creates the pointing of a camera with the given `boresight` and the x axis of the image along `x`, two
+    /// perpendicular unit vectors. With local orbital guidance, x points away from the Earth and the
+    /// boresight along the orbit; otherwise the Earth is behind the camera.
     fn new(
         boresight: Vector3<f64>,
         x: Vector3<f64>,
@@ -110,17 +112,17 @@ impl Pointing {
         Ok(pointing)
     }
 
-    /// The turn from the image with north up.
+    /// Returns the rotation from the image with north up.
     pub fn roll(&self) -> Angle {
         let (sin_ra, cos_ra) = libm::sincos(self.boresight.ra().radians());
         let east = Vector3::new(-sin_ra, cos_ra, 0.0);
         let x = self.camera_from_icrs.inverse().rotate(&Vector3::x());
-        // At roll 0 columns run against the east; a roll turns them towards the rows.
+        // At roll 0, x points to the west; a roll turns it towards y, down the rows.
         let down = -self.boresight.vector().cross(&east);
         Angle::from_radians(libm::atan2(x.dot(&down), x.dot(&-east)))
     }
 
-    /// Whoever looks from there.
+    /// Returns the observer at the position of the camera.
     pub fn observer(&self, motion: &MotionTable) -> Result<Observer, OutOfRange> {
         let speed_km_s = mean_motion_rad_s(motion.semi_major_axis_km) * motion.semi_major_axis_km;
         let along = match motion.guidance {
@@ -146,7 +148,7 @@ impl Pointing {
         (degrees_from(&-self.position_km) - limb_deg < sky.earth_exclusion_deg).then_some(Exclusion::Earth)
     }
 
-    /// The mean of the background's light over the detector, electrons a second and pixel.
+    /// Returns the mean background over the detector, electrons per second and pixel.
     pub fn background_e_per_s(&self, camera: &CameraModel, observer: &Observer) -> f64 {
         camera.background.as_ref().map_or(0.0, |background| {
             let sun_km = observer.sun_km();
@@ -155,7 +157,7 @@ impl Pointing {
     }
 }
 
-/// A moment of the time that is looked at, `share` of the way through it.
+/// Returns the time at the fraction `share` of the observed time span.
 fn observation_time(when: &SkyTime, share: f64) -> Result<Epoch, OutOfRange> {
     match when {
         SkyTime::Epoch { utc } => clock::parse_utc(utc),
@@ -165,38 +167,39 @@ fn observation_time(when: &SkyTime, share: f64) -> Result<Epoch, OutOfRange> {
     }
 }
 
-/// A star on the detector.
+/// Star on the detector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SkyStar {
-    /// ln of the electrons a second, what the optics lose at its place taken off.
+    /// Natural logarithm of the electrons per second, after the losses of the optics at the star's position.
     pub ln_e_per_s: f64,
-    /// Johnson V.
+    /// Johnson V magnitude.
     pub magnitude: f64,
 }
 
-/// What the camera has in its field at one boresight.
+/// Content of the camera's field at one boresight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
-    /// The boresight.
+    /// Pointing of the camera.
     pub pointing: Pointing,
-    /// Light of the background, electrons a second and pixel, the mean over the detector.
+    /// Background, electrons per second and pixel, mean over the detector.
     pub background_e_per_s: f64,
-    /// The stars on the detector, brightest first.
+    /// Stars on the detector, brightest first.
     pub stars: Vec<SkyStar>,
 }
 
-/// The whole sky in a camera's field, boresight by boresight.
+/// The whole sky as the camera observes it, field by field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sky {
-    /// All boresights, those that do not count included (without stars).
+    /// Fields at all boresights, including excluded ones (without stars).
     pub fields: Vec<Field>,
 }
 
 impl Sky {
-    /// Looks at the sky from `count` boresights. Stars that give fewer than `least_e_per_s` are left out.
+    /// Computes the fields at `count` boresights. Stars with fewer electrons per second than `least_e_per_s`
+    /// are left out.
     ///
     /// # Errors
-    /// [`SimError`] when the catalogue cannot be read, or a moment is not covered by the ephemeris.
+    /// [`SimError`] when the catalogue cannot be read, or a time is not covered by the ephemeris.
     pub fn new(
         camera: &CameraModel,
         motion: &MotionTable,
@@ -234,16 +237,16 @@ impl Sky {
         Ok(Self { fields })
     }
 
-    /// The boresights that count.
+    /// Returns the fields at the boresights that count.
     pub fn usable_fields(&self) -> impl Iterator<Item = &Field> {
         self.fields.iter().filter(|field| field.pointing.excluded.is_none())
     }
 }
 
-/// The stars of the camera's catalogue that can give so many electrons a second, whatever their colour.
+/// Returns the stars of the camera's catalogue that can give at least `least_e_per_s`, for any colour.
 fn catalog_to(camera: &CameraModel, least_e_per_s: f64) -> Result<Catalog, SimError> {
     let config = &camera.config.catalog;
-    // The reddest stars are the brightest of a magnitude.
+    // At a given V magnitude, the reddest stars give the most electrons.
     let zero_e_per_s = camera
         .radiometry
         .zero_point_e_per_s(Some(2.0), Some(9.0))
@@ -254,7 +257,7 @@ fn catalog_to(camera: &CameraModel, least_e_per_s: f64) -> Result<Catalog, SimEr
         ..config.clone()
     };
     limited.check()?;
-    // Paths are absolute, or start at the current folder.
+    // Paths are absolute, or relative to the current directory.
     Ok(Catalog::load(&limited, std::path::Path::new(""))?)
 }
 
@@ -269,7 +272,7 @@ mod tests {
         (0..count).map(|i| Pointing::from_lattice(i, count, &MOTION, sky).unwrap()).collect()
     }
 
-    /// A cap of radius r holds (1 − cos r)/2 of an equal-area lattice, wherever it is.
+    /// A cap of radius r contains the fraction (1 − cos r)/2 of an equal-area lattice, at any position.
     #[test]
     fn the_lattice_has_equal_areas() {
         let pointings = lattice(10_000, &SkyTable::default());
@@ -281,12 +284,14 @@ mod tests {
             let inside =
                 pointings.iter().filter(|p| p.boresight.separation(&centre).degrees() < radius).count();
             let expected = 5_000.0 * (1.0 - libm::cos(f64::to_radians(radius)));
-            // A lattice errs at the rim alone: far less than the root of the number that a random one would have.
+            // The count of a lattice errs only at the rim of the cap: far less than the square root of the
+            // number, as a random lattice would.
             assert!((inside as f64 - expected).abs() < 0.25 * expected.sqrt() + 3.0, "{inside} {expected}");
         }
     }
 
-    /// The share of the sky within 40° of the Sun is (1 − cos 40°)/2 = 11.7 %, at one moment as through the year.
+    /// The fraction of the sky within 40° of the Sun is (1 − cos 40°)/2 = 11.7 %, at one epoch as well as
+    /// throughout the year.
     #[test]
     fn the_sun_takes_its_cap_of_the_sky() {
         let when = SkyTime::Epoch { utc: "2012-04-26T12:00:00Z".to_owned() };
@@ -297,7 +302,8 @@ mod tests {
         }
     }
 
-    /// Boresight along the orbit: the centre of the Earth is at 90° and its limb at 90° − asin(6378.1/7130) = 26.55°.
+    /// Boresight along the orbit: the centre of the Earth is at 90° and its limb at 90° − asin(6378.1/7130) =
+    /// 26.55°.
     #[test]
     fn the_earth_excludes_a_camera_along_the_orbit_by_its_limb() {
         let motion = MotionTable { guidance: MotionGuidance::LocalOrbital, ..MOTION };

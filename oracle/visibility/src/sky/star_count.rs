@@ -1,4 +1,4 @@
-//! How many stars are detected at one exposure, boresight by boresight.
+//! Number of stars detected at one exposure, boresight by boresight.
 
 use rayon::prelude::*;
 
@@ -9,12 +9,12 @@ use crate::detection_model::poisson_binomial::at_least;
 use crate::requirement::{DetectionRule, MotionGuidance, MotionTable, SkyStatistic};
 use crate::sky::{Field, Sky};
 
-/// Chances below this are left out of sums over stars.
+/// Smallest detection probability that is included in sums over stars.
 const LEAST_CHANCE: f64 = 1e-9;
-/// Step from one level of the background to the next, in standard deviations of an empty pixel: a chance that is normal in the
-/// background is then interpolated to 0.002.
+/// Step between two levels of the background, in standard deviations of an empty pixel: a detection
+/// probability that is a normal distribution function of the background is then interpolated to 0.002.
 const LEVEL_STEP: f64 = 0.25;
-/// Most levels; beyond, as near the Sun, they are farther apart.
+/// Largest number of levels; for a larger span of backgrounds, as near the Sun, the steps are wider.
 const MAX_LEVELS: usize = 24;
 
 /// Detection curves of one exposure at several levels of the background.
@@ -25,17 +25,17 @@ pub struct Curves {
     curves: Vec<DetectionCurve>,
 }
 
-/// What is detected at one boresight.
+/// Detection statistics of the stars at one boresight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StarCount {
-    /// Stars, expected number.
+    /// Expected number of stars detected.
     pub expected: f64,
     /// P(N ≥ n_min).
     pub chance: f64,
 }
 
 impl Curves {
-    /// The curves of stars for backgrounds from `low_e_per_s` to `high_e_per_s`.
+    /// Computes the detection curves of stars for backgrounds from `low_e_per_s` to `high_e_per_s`.
     pub fn new(
         camera: &CameraModel,
         rule: &DetectionRule,
@@ -61,7 +61,7 @@ impl Curves {
         Self { ln_exposure: libm::log(exposure_s), levels_e_per_s, curves }
     }
 
-    /// Those of a sky's boresights that count.
+    /// Computes the detection curves for the backgrounds at those boresights of a sky that count.
     pub fn from_sky(
         camera: &CameraModel,
         rule: &DetectionRule,
@@ -76,13 +76,14 @@ impl Curves {
         Self::new(camera, rule, motion, exposure_s, [low.min(high), high])
     }
 
-    /// The chance that a star of exp(`ln_e_per_s`) electrons a second is detected over a background.
+    /// Returns the probability that a star of exp(`ln_e_per_s`) electrons per second is detected over a
+    /// background.
     pub fn chance(&self, ln_e_per_s: f64, background_e_per_s: f64) -> f64 {
         let (below, part) = self.bracket(background_e_per_s);
         self.between(below, part, ln_e_per_s + self.ln_exposure)
     }
 
-    /// What is detected of the stars of a field.
+    /// Returns the detection statistics of the stars of a field.
     pub fn count_stars(&self, field: &Field, n_min: usize, distribution: &mut Vec<f64>) -> StarCount {
         let (below, part) = self.bracket(field.background_e_per_s);
         let mut expected = 0.0;
@@ -93,7 +94,7 @@ impl Curves {
         StarCount { expected, chance }
     }
 
-    /// What is detected at each boresight of the sky that counts, in their order.
+    /// Returns the detection statistics at each boresight of the sky that counts, in the order of the sky.
     pub fn count_stars_over_sky(&self, sky: &Sky, n_min: usize) -> Vec<StarCount> {
         let counted: Vec<&Field> = sky.usable_fields().collect();
         counted
@@ -123,7 +124,7 @@ impl Curves {
     }
 }
 
-/// How far stars are smeared in an exposure, px.
+/// Returns the length over which stars are smeared in an exposure, px.
 pub fn star_trail_px(camera: &CameraModel, motion: &MotionTable, exposure_s: f64) -> f64 {
     match motion.guidance {
         MotionGuidance::LocalOrbital => camera.trail_px(motion, exposure_s),
@@ -131,7 +132,7 @@ pub fn star_trail_px(camera: &CameraModel, motion: &MotionTable, exposure_s: f64
     }
 }
 
-/// The probability over a sky: the mean, or the smallest; 0 where no boresight counts.
+/// Returns the probability over a sky: the mean, or the smallest; 0 if no boresight counts.
 pub fn over_sky(seen: &[StarCount], over: SkyStatistic) -> f64 {
     if seen.is_empty() {
         return 0.0;

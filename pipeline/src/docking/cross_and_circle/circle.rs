@@ -1,27 +1,27 @@
-//! The circle through points, by geometric least squares (docking paper, section 3).
+//! Fit of a circle to points by geometric least squares (docking paper, section 3).
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// A circle, in the unit of its points.
+/// Fitted circle, in the unit of its points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CircleFit {
-    /// (Xo, Yo).
+    /// Centre (Xo, Yo).
     pub(crate) centre: Vector2<f64>,
-    /// R.
+    /// Radius R.
     pub(crate) radius: f64,
-    /// Root mean square of the distances from the circle.
+    /// Root mean square of the points' distances from the circle.
     pub(crate) rms: f64,
 }
 
 impl CircleFit {
-    /// How far outside the circle a point lies; negative inside.
+    /// Returns the distance of a point from the circle; negative inside.
     pub(crate) fn residual(&self, point: &Vector2<f64>) -> f64 {
         (point - self.centre).norm() - self.radius
     }
 }
 
-/// The first guess: the circle of the algebraic distance, linear in (2 Xo, 2 Yo, R² − Xo² − Yo²) (Kåsa 1976); `None`
-/// for fewer than three points and for points on a line.
+/// Computes the first guess: the circle of the smallest algebraic distance, linear in (2 Xo, 2 Yo, R² − Xo² −
+/// Yo²) (Kåsa 1976); `None` for fewer than three points and for points on a line.
 pub(crate) fn first_guess(points: &[Vector2<f64>]) -> Option<CircleFit> {
     if points.len() < 3 {
         return None;
@@ -32,7 +32,8 @@ pub(crate) fn first_guess(points: &[Vector2<f64>]) -> Option<CircleFit> {
     if !(spread > 0.0 && spread.is_finite()) {
         return None;
     }
-    // About their mean and scaled by their spread: the normal matrix is then as good as the points allow.
+    // Coordinates relative to the mean and scaled by the spread give the best-conditioned normal matrix for
+    // these points.
     let size = spread.sqrt();
     let mut normal = Matrix3::zeros();
     let mut right = Vector3::zeros();
@@ -42,7 +43,7 @@ pub(crate) fn first_guess(points: &[Vector2<f64>]) -> Option<CircleFit> {
         normal += row * row.transpose();
         right += row * p.norm_squared();
     }
-    // Points on a line: the smaller moment is nothing beside the larger one.
+    // Points on a line: the smaller moment is negligible compared with the larger one.
     let determinant = normal[(0, 0)] * normal[(1, 1)] - normal[(0, 1)] * normal[(1, 0)];
     if determinant < 1e-9 * n * n {
         return None;
@@ -67,7 +68,7 @@ pub(crate) fn refine(points: &[Vector2<f64>], guess: &CircleFit) -> Option<Circl
         for point in points {
             let away = point - centre;
             let distance = away.norm();
-            // A point at the centre has no direction, and says nothing about where the centre should go.
+            // A point at the centre has no direction and contributes nothing to the step of the centre.
             let unit = if distance > 0.0 { away / distance } else { Vector2::zeros() };
             let row = Vector3::new(-unit.x, -unit.y, -1.0);
             normal += row * row.transpose();
@@ -86,14 +87,14 @@ pub(crate) fn refine(points: &[Vector2<f64>], guess: &CircleFit) -> Option<Circl
     None
 }
 
-/// First guess and Gauss–Newton.
+/// Fits a circle: first guess and Gauss–Newton.
 pub(crate) fn fit(points: &[Vector2<f64>]) -> Option<CircleFit> {
     refine(points, &first_guess(points)?)
 }
 
-/// [`fit`] among points of which some do not belong to the circle: those farther away than three times the robust
-/// spread, and than `tolerance`, are left out, until the set stays. Returns the circle and which points were kept;
-/// `None` when fewer than half are.
+/// Fits a circle as [`fit`] does, but to points of which some may be outliers: points farther away than three
+/// times the robust standard deviation, and than `tolerance`, are left out, until the set no longer changes.
+/// Returns the circle and true for each point that was kept; `None` when fewer than half are kept.
 pub(crate) fn fit_robustly(points: &[Vector2<f64>], tolerance: f64) -> Option<(CircleFit, Vec<bool>)> {
     let mut kept = vec![true; points.len()];
     let mut circle = fit(points)?;
@@ -142,14 +143,14 @@ mod tests {
             x in -500.0..500.0f64, y in -500.0..500.0f64, r in 1.0..400.0f64, turn in 0.5..6.2f64,
         ) {
             let circle = fit(&arc((x, y), r, 0.1, 0.1 + turn, 9)).unwrap();
-            // A short arc magnifies rounding of the coordinates by (2π/turn)⁴.
+            // A short arc amplifies the rounding of the coordinates by (2π/turn)⁴.
             prop_assert!((circle.centre - Vector2::new(x, y)).norm() < 1e-6 && (circle.radius - r).abs() < 1e-6);
         }
     }
 
     #[test]
     fn the_residuals_are_orthogonal_to_their_derivatives() {
-        // The condition of a minimum of the geometric distance: Σ e = 0 and Σ e (direction) = 0.
+        // Conditions for a minimum of the geometric distance: Σ e = 0 and Σ e (direction) = 0.
         let mut points = arc((10.0, 20.0), 50.0, 0.0, 4.0, 11);
         for (i, point) in points.iter_mut().enumerate() {
             *point += Vector2::new(((i * 7) % 5) as f64 - 2.0, ((i * 3) % 7) as f64 - 3.0) * 0.4;
@@ -161,7 +162,7 @@ mod tests {
             gradient += Vector3::new(unit.x, unit.y, 1.0) * circle.residual(point);
         }
         assert!(gradient.norm() < 1e-8, "{gradient:?}");
-        // Four points at the corners of a rectangle lie on the circle about its middle.
+        // Four points at the corners of a rectangle lie on the circle about its centre.
         let corners = [(0.0, 0.0), (6.0, 0.0), (6.0, 8.0), (0.0, 8.0)].map(|(x, y)| Vector2::new(x, y));
         let circle = fit(&corners).unwrap();
         assert!((circle.centre - Vector2::new(3.0, 4.0)).norm() < 1e-12);

@@ -1,5 +1,5 @@
-//! The target's cross: pairs of points on the edges of its bars, and its centre by least squares (docking paper,
-//! section 3).
+//! Measurement of the target's cross: pairs of points on the edges of its bars, and the centre by least
+//! squares (docking paper, section 3).
 
 use contract::PixelPoint;
 use contract::docking::StandOffCross;
@@ -8,19 +8,20 @@ use nalgebra::Vector2;
 use super::profile::{Levels, bar_edges, falling_edge};
 use crate::docking::preprocessing::view::{Lens, View};
 
-/// Where a cross may be, in the ideal image.
+/// Approximate position, size and orientation of a cross in the ideal image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CrossSeed {
-    /// Its centre, px from the principal point.
+    /// Centre of the cross, px from the principal point.
     pub(crate) centre: Vector2<f64>,
-    /// From the centre to the end of a bar, px.
+    /// Distance from the centre to the end of a bar, px.
     pub(crate) half_length_px: f64,
-    /// a: slope of the horizontal bar.
+    /// Slope a of the horizontal bar.
     pub(crate) slope: f64,
 }
 
 impl CrossSeed {
-    /// A place on the cross: `along` the horizontal bar to the right and `down` the vertical one, px.
+    /// Returns a position on the cross: `along` the horizontal bar to the right and `down` the vertical one,
+    /// px.
     pub(crate) fn point_at(&self, along: f64, down: f64) -> Vector2<f64> {
         let cos = 1.0 / (1.0 + self.slope * self.slope).sqrt();
         let sin = self.slope * cos;
@@ -28,7 +29,7 @@ impl CrossSeed {
     }
 }
 
-/// a x − y = c1 and x + a y = c2: the centre lines of the two bars.
+/// Centre lines of the two bars: a x − y = c1 and x + a y = c2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BarLines {
     pub(crate) a: f64,
@@ -37,15 +38,16 @@ pub(crate) struct BarLines {
 }
 
 impl BarLines {
-    /// Least squares: minimises Σ (a X − Y − c1)² + Σ (U + a V − c2)² over points (X, Y) of the horizontal bar and
-    /// (U, V) of the vertical one. `None` when they do not fix the three numbers.
+    /// Fits the lines by least squares: minimises Σ (a X − Y − c1)² + Σ (U + a V − c2)² over points (X, Y) of
+    /// the horizontal bar and (U, V) of the vertical one. `None` when the points do not determine a, c1 and
+    /// c2.
     pub(crate) fn fit(horizontal: &[Vector2<f64>], vertical: &[Vector2<f64>]) -> Option<Self> {
         if horizontal.is_empty() || vertical.is_empty() {
             return None;
         }
         let mean = |points: &[Vector2<f64>]| points.iter().sum::<Vector2<f64>>() / points.len() as f64;
         let (h, v) = (mean(horizontal), mean(vertical));
-        // The normal equations with c1 and c2 eliminated: about the means only a is left.
+        // Normal equations with c1 and c2 eliminated: with coordinates relative to the means, only a remains.
         let (mut moment, mut square) = (0.0, 0.0);
         for point in horizontal {
             moment += (point.x - h.x) * (point.y - h.y);
@@ -59,7 +61,7 @@ impl BarLines {
         (square > 0.0 && a.is_finite()).then_some(Self { a, c1: a * h.x - h.y, c2: v.x + a * v.y })
     }
 
-    /// Where the lines cross: Xc = (a c1 + c2)/(1 + a²), Yc = (a c2 − c1)/(1 + a²).
+    /// Returns the intersection of the lines: Xc = (a c1 + c2)/(1 + a²), Yc = (a c2 − c1)/(1 + a²).
     pub(crate) fn centre(&self) -> Vector2<f64> {
         let scale = 1.0 + self.a * self.a;
         Vector2::new((self.a * self.c1 + self.c2) / scale, (self.a * self.c2 - self.c1) / scale)
@@ -74,27 +76,28 @@ impl BarLines {
     }
 }
 
-/// A cross that was measured.
+/// Measured cross.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CrossFit {
-    /// Centre, slope and half length after least squares, ideal image.
+    /// Centre, slope and half length after least squares, in the ideal image.
     pub(crate) seed: CrossSeed,
-    /// Centre by the medians of the pairs, before least squares, ideal image.
+    /// Centre from the medians of the pairs, before least squares, in the ideal image.
     pub(crate) raw_centre: Vector2<f64>,
-    /// N1 and N2.
+    /// Numbers of pairs on the horizontal and the vertical bar, N1 and N2.
     pub(crate) pairs: (usize, usize),
-    /// Levels of plate and cross.
+    /// Grey levels of plate and cross.
     pub(crate) levels: Levels,
 }
 
-/// Fewest pairs on a bar.
+/// Smallest number of pairs on a bar.
 const MIN_PAIRS: usize = 3;
 
-/// Largest slope of the horizontal bar: a roll of 40°. Beyond it the bars would change their names.
+/// Largest slope of the horizontal bar: a roll of 40°. Beyond it, the horizontal and the vertical bar would
+/// be confused.
 const MAX_SLOPE: f64 = 0.84;
 
-/// Measures the cross near `seed`; `None` when there is none of the model's proportions, at least `min_contrast`
-/// grey values brighter than what surrounds it.
+/// Measures the cross near `seed`; `None` when there is no cross with the model's proportions that is at
+/// least `min_contrast` grey values brighter than its surroundings.
 pub(crate) fn measure(
     view: &View<'_>,
     lens: &Lens,
@@ -105,7 +108,7 @@ pub(crate) fn measure(
     let ratio = model.width_m / model.half_length_m;
     let mut now = *seed;
     let mut fit = None;
-    // The first pass looks around widely, the next ones measure where it said.
+    // The first pass searches widely; the following passes measure near its result.
     for pass in 0..3 {
         let width = now.half_length_px * ratio;
         let levels = levels(view, lens, &now, width)?;
@@ -137,7 +140,8 @@ pub(crate) fn measure(
     fit
 }
 
-/// Levels of the cross (on its bars, the brighter half of it: a part may be in shadow) and of the plate around it.
+/// Returns the grey levels of the cross (from the brighter half of the samples on its bars, since a part may
+/// be in shadow) and of the plate around it.
 fn levels(view: &View<'_>, lens: &Lens, seed: &CrossSeed, width: f64) -> Option<Levels> {
     let at = |along: f64, down: f64| view.sample(lens.to_camera(seed.point_at(along, down))?);
     let half = seed.half_length_px;
@@ -154,7 +158,7 @@ fn levels(view: &View<'_>, lens: &Lens, seed: &CrossSeed, width: f64) -> Option<
             dark.extend(at(share * half * x, share * half * y));
         }
     }
-    // Half of the places at least must be in the image.
+    // At least half of the sampled positions must be in the image.
     if bright.len() < 10 || dark.len() < 6 {
         return None;
     }
@@ -163,7 +167,7 @@ fn levels(view: &View<'_>, lens: &Lens, seed: &CrossSeed, width: f64) -> Option<
     Some(Levels { dark: dark[dark.len() / 2], bright: bright[bright.len() * 6 / 10] })
 }
 
-/// What a search for pairs needs.
+/// Input of the search for pairs.
 struct Scan<'a> {
     view: &'a View<'a>,
     lens: &'a Lens,
@@ -173,17 +177,18 @@ struct Scan<'a> {
     levels: Levels,
 }
 
-/// Share of the half length in which pairs are taken: the ends are round in the image.
+/// Fraction of the half length in which pairs are taken: the ends of the bars are round in the image.
 const REACH: f64 = 0.9;
 
-/// About as many pairs are taken on each side of the centre.
+/// Approximate number of pairs on each side of the centre.
 const PAIRS_A_SIDE: f64 = 24.0;
 
 impl Scan<'_> {
-    /// Midpoints of the pairs on the top and bottom edges of the horizontal bar, column by column.
+    /// Returns the midpoints of the pairs on the top and bottom edges of the horizontal bar, column by
+    /// column.
     fn horizontal_pairs(&self) -> Vec<Vector2<f64>> {
         let (view, half) = (self.view, self.seed.half_length_px);
-        // The profile crosses the bar at an angle.
+        // The secant accounts for profiles that cross the bar at an angle.
         let secant = (1.0 + self.seed.slope * self.seed.slope).sqrt();
         let reach = secant * (self.width / 2.0 + self.margin);
         let stride = (half / PAIRS_A_SIDE).max(1.0);
@@ -205,7 +210,7 @@ impl Scan<'_> {
         found
     }
 
-    /// Midpoints of the pairs on the left and right edges of the vertical bar, row by row.
+    /// Returns the midpoints of the pairs on the left and right edges of the vertical bar, row by row.
     fn vertical_pairs(&self) -> Vec<Vector2<f64>> {
         let (view, half) = (self.view, self.seed.half_length_px);
         let secant = (1.0 + self.seed.slope * self.seed.slope).sqrt();
@@ -217,7 +222,7 @@ impl Scan<'_> {
             let near = self.lens.to_camera(self.seed.point_at(0.0, down))?;
             let row = pixel_index(view.image_row(near.y).round(), view.rows())?;
             let y = view.camera_row(row);
-            // Along the bar's own line to the row that is there.
+            // Moves along the centre line of the bar to the nearest existing row.
             let centre_x = near.x - self.seed.slope * (y - near.y);
             let first = pixel_index((centre_x - reach).ceil(), view.columns())?;
             let last = pixel_index((centre_x + reach).floor(), view.columns())?;
@@ -238,7 +243,7 @@ impl Scan<'_> {
         for side in [-1.0, 1.0] {
             let mut distance = from;
             while distance <= to {
-                // A place without a pair is left out.
+                // Positions without a pair are left out.
                 let _ = at(side * distance);
                 distance += stride;
             }
@@ -246,7 +251,7 @@ impl Scan<'_> {
     }
 }
 
-/// A whole number as an index below `n`.
+/// Rounds a value to an index below `n`.
 fn pixel_index(value: f64, n: usize) -> Option<usize> {
     let value = value.round();
     (value >= 0.0 && value < n as f64).then_some(value as usize)
@@ -257,14 +262,15 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// The centre with the slope as it was and the medians of the pairs' offsets.
+/// Returns the centre for a given slope and the medians of the pairs' offsets.
 fn raw_centre(horizontal: &[Vector2<f64>], vertical: &[Vector2<f64>], slope: f64) -> Vector2<f64> {
     let c1 = median(horizontal.iter().map(|p| slope * p.x - p.y).collect());
     let c2 = median(vertical.iter().map(|p| p.x + slope * p.y).collect());
     BarLines { a: slope, c1, c2 }.centre()
 }
 
-/// Least squares without the pairs that something else disturbed (a reticle, a shadow's edge, a jumped line).
+/// Fits the lines by least squares without outliers (pairs disturbed by a reticle, a shadow's edge, a jumped
+/// line).
 fn fit_lines(
     horizontal: &[Vector2<f64>],
     vertical: &[Vector2<f64>],
@@ -273,7 +279,7 @@ fn fit_lines(
 ) -> Option<(BarLines, (usize, usize))> {
     let a = seed.slope;
     let start = BarLines { a, c1: a * raw_centre.x - raw_centre.y, c2: raw_centre.x + a * raw_centre.y };
-    // An error of the slope moves the ends of the bars: the first round must let them pass.
+    // The first round must accept the displacement of the bars' ends that an error of the slope causes.
     let mut tolerance = 1.0 + 0.12 * seed.half_length_px;
     let mut lines = start;
     let mut kept = (Vec::new(), Vec::new());
@@ -293,7 +299,7 @@ fn fit_lines(
         lines = BarLines::fit(&kept.0, &kept.1)?;
         tolerance = 0.35;
     }
-    // Bars whose pairs do not lie on lines are none.
+    // Bars are rejected when their pairs do not lie on lines.
     let rms = |points: &[Vector2<f64>], residual: &dyn Fn(&Vector2<f64>) -> f64| {
         (points.iter().map(|p| residual(p) * residual(p)).sum::<f64>() / points.len() as f64).sqrt()
     };
@@ -303,7 +309,8 @@ fn fit_lines(
     straight.then_some((lines, (kept.0.len(), kept.1.len())))
 }
 
-/// From the centre to the ends of the bars: the mean of the middle two of those arms that end in the image.
+/// Returns the distance from the centre to the ends of the bars: the mean of the middle two arms, among those
+/// that end in the image.
 fn half_length(view: &View<'_>, lens: &Lens, seed: &CrossSeed, levels: &Levels) -> Option<f64> {
     let half = seed.half_length_px;
     let (from, to) = (0.55 * half, 1.45 * half);
@@ -322,7 +329,7 @@ fn half_length(view: &View<'_>, lens: &Lens, seed: &CrossSeed, levels: &Levels) 
     ends.sort_by(f64::total_cmp);
     match ends.as_slice() {
         [_, b, c, _] => Some((b + c) / 2.0),
-        // A shadow shortens an arm, nothing makes it longer.
+        // A shadow shortens an arm, and nothing lengthens it.
         [_, b, c] => Some((b + c) / 2.0),
         [a, b] if (a - b).abs() < 0.2 * half => Some((a + b) / 2.0),
         _ => None,
@@ -343,7 +350,7 @@ mod tests {
             let along: Vec<_> = [-40.0, -20.0, 15.0, 30.0].iter().map(|d| seed.point_at(*d, 0.0)).collect();
             let down: Vec<_> = [-44.0, 12.0, 31.0].iter().map(|d| seed.point_at(0.0, *d)).collect();
             let lines = BarLines::fit(&along, &down).unwrap();
-            // Rounding of coordinates of a few hundred pixels.
+            // Tolerance for the rounding of coordinates of a few hundred pixels.
             prop_assert!((lines.a - a).abs() < 1e-12);
             prop_assert!((lines.centre() - centre).norm() < 1e-9);
             prop_assert!((lines.c1 - (a * x - y)).abs() < 1e-9 && (lines.c2 - (x + a * y)).abs() < 1e-9);
@@ -388,7 +395,8 @@ mod tests {
             let model = synthetic::target().cross;
             let fit = measure(&View::new(&field), &lens, &model, &seed, 10.0).unwrap();
             let off = (fit.seed.centre - truth.centre).norm();
-            // The rows of a field sample a thin bar badly; the raw centre is the paper's 1.5 px.
+            // The rows of a field sample a thin bar coarsely; the tolerance of the raw centre is the paper's
+            // 1.5 px.
             assert!(off < 0.1, "{range_m} m: {off} px");
             assert!((fit.raw_centre - truth.centre).norm() < 1.5);
             assert!((fit.seed.slope - truth.slope).abs() < 0.15 / truth.half_length_px + 0.002);

@@ -1,4 +1,5 @@
-//! The target's marks: a ring-shaped region predicted from the cross, then mark by mark.
+//! Measurement of the target's marks: search in a ring-shaped region predicted from the cross, then mark by
+//! mark.
 
 use contract::PixelPoint;
 use contract::docking::{Mark, MarkUse, TargetModel};
@@ -7,26 +8,26 @@ use nalgebra::Vector2;
 use super::profile::Levels;
 use crate::docking::preprocessing::view::{Lens, View};
 
-/// The plane of the disk as the ideal image shows it, head on: a place (y1, y2) is seen at
-/// centre + scale (y1 h + y2 v), h = (cos, sin) and v = (sin, −cos) of the roll.
+/// Plane of the disk in the ideal image, viewed face-on: the point (y1, y2) of the plane is imaged at
+/// centre + scale (y1 h + y2 v), with h = (cos, sin) and v = (sin, −cos) of the roll.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Plane {
-    /// The disk's centre, px from the principal point.
+    /// Centre of the disk, px from the principal point.
     pub(crate) centre: Vector2<f64>,
-    /// Pixels a metre: f/d3.
+    /// Scale, px per metre: f/d3.
     pub(crate) scale_px_m: f64,
-    /// Turn of y1 from the columns' direction towards increasing rows, rad.
+    /// Rotation of y1 from the direction of increasing columns towards increasing rows, rad.
     pub(crate) roll_rad: f64,
 }
 
 impl Plane {
-    /// Where a place of the plane is seen.
+    /// Returns the image position of a point of the plane.
     pub(crate) fn project(&self, [y1, y2]: [f64; 2]) -> Vector2<f64> {
         let (sin, cos) = libm::sincos(self.roll_rad);
         self.centre + self.scale_px_m * Vector2::new(y1 * cos + y2 * sin, y1 * sin - y2 * cos)
     }
 
-    /// What place of the plane is seen there.
+    /// Returns the point of the plane at an image position.
     #[cfg(test)]
     pub(crate) fn locate(&self, ideal: Vector2<f64>) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.roll_rad);
@@ -34,12 +35,13 @@ impl Plane {
         [p.x * cos + p.y * sin, p.x * sin - p.y * cos]
     }
 
-    /// The plane that shows places where they were seen, by least squares; `None` for fewer than two places.
+    /// Fits the plane by least squares to pairs of a point of the plane and its image position; `None` for
+    /// fewer than two different points.
     pub(crate) fn fit(pairs: &[([f64; 2], Vector2<f64>)]) -> Option<Self> {
         let n = pairs.len() as f64;
         let mean_y = pairs.iter().map(|(y, _)| Vector2::new(y[0], y[1])).sum::<Vector2<f64>>() / n;
         let mean_p = pairs.iter().map(|(_, p)| *p).sum::<Vector2<f64>>() / n;
-        // x = ox + p y1 + q y2, y = oy + q y1 − p y2 with (p, q) = scale (cos, sin): linear.
+        // The model x = ox + p y1 + q y2, y = oy + q y1 − p y2 with (p, q) = scale (cos, sin) is linear.
         let (mut p, mut q, mut square) = (0.0, 0.0, 0.0);
         for (y, seen) in pairs {
             let (y1, y2) = (y[0] - mean_y.x, y[1] - mean_y.y);
@@ -58,25 +60,25 @@ impl Plane {
     }
 }
 
-/// A mark as a bar: where it is and how long and wide, target plane, m.
+/// Bar shape of a mark: position, length and width, in the target plane, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MarkShape {
-    /// Its centre (y1, y2).
+    /// Centre (y1, y2).
     pub(crate) centre_m: [f64; 2],
-    /// Unit vector along it.
+    /// Unit vector along the mark.
     along: [f64; 2],
     half_length_m: f64,
     half_width_m: f64,
 }
 
 impl MarkShape {
-    /// The bar of four corners.
+    /// Creates the shape from the four corners of a bar.
     pub(crate) fn new(corners: &[[f64; 2]; 4]) -> Self {
         let mean = |k: usize| corners.iter().map(|c| c[k]).sum::<f64>() / 4.0;
         let middle = |a: usize, b: usize| {
             [(corners[a][0] + corners[b][0]) / 2.0, (corners[a][1] + corners[b][1]) / 2.0]
         };
-        // The two lines that join the middles of opposite sides: the longer one is along the mark.
+        // The longer of the two lines that join the midpoints of opposite sides is along the mark.
         let across = |from: [f64; 2], to: [f64; 2]| (to[0] - from[0], to[1] - from[1]);
         let (first, second) = (across(middle(0, 3), middle(1, 2)), across(middle(0, 1), middle(3, 2)));
         let length = |v: (f64, f64)| libm::hypot(v.0, v.1);
@@ -90,55 +92,56 @@ impl MarkShape {
         }
     }
 
-    /// A place of the plane, `along` the mark and `across` it from its centre, m.
+    /// Returns a point of the plane, at `along` and `across` from the centre of the mark, m.
     fn point_on_plane(&self, along: f64, across: f64) -> [f64; 2] {
         let [u, v] = self.along;
         [self.centre_m[0] + along * u - across * v, self.centre_m[1] + along * v + across * u]
     }
 
-    /// Distance of the centre from the disk's centre, m.
+    /// Distance of the mark's centre from the disk's centre, m.
     pub(crate) fn radius_m(&self) -> f64 {
         libm::hypot(self.centre_m[0], self.centre_m[1])
     }
 
-    /// Whether the mark lies towards a diagonal of the cross: such a mark is never beside the end of a bar.
+    /// Returns true if the mark lies towards a diagonal of the cross. Such a mark is never beside the end of
+    /// a bar.
     fn is_diagonal(&self) -> bool {
         let (x, y) = (self.centre_m[0].abs(), self.centre_m[1].abs());
         x.min(y) > 0.4 * x.max(y)
     }
 }
 
-/// The marks of a target.
+/// Returns the shapes of a target's marks.
 pub(crate) fn shapes(model: &TargetModel) -> Vec<MarkShape> {
     model.marks.iter().map(MarkShape::new).collect()
 }
 
-/// A mark in a field.
+/// Mark measured in a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MarkObservation {
-    /// For the evidence.
+    /// Mark as reported in the features: index, pixel position, usage.
     pub(crate) mark: Mark,
-    /// Its centroid in the ideal image, or where it was predicted.
+    /// Centroid of the mark in the ideal image, or its predicted position.
     pub(crate) ideal: Vector2<f64>,
 }
 
-/// Cross-shaped regions of a field are many; this says which one has the marks around it.
+/// Marks found around a cross. They decide which of the many cross-shaped regions of a field is the target's.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MarksFit {
-    /// The plane through the used marks.
+    /// Plane fitted to the used marks.
     pub(crate) plane: Plane,
-    /// Every mark of the target.
+    /// All marks of the target.
     pub(crate) marks: Vec<MarkObservation>,
 }
 
 impl MarksFit {
-    /// How many marks came to this.
+    /// Returns the number of marks with the given usage.
     pub(crate) fn count(&self, usage: MarkUse) -> usize {
         self.marks.iter().filter(|m| m.mark.usage == usage).count()
     }
 }
 
-/// What looks for marks.
+/// Search for the marks in a field.
 pub(crate) struct MarkSearch<'a> {
     pub(crate) view: &'a View<'a>,
     pub(crate) lens: &'a Lens,
@@ -147,13 +150,14 @@ pub(crate) struct MarkSearch<'a> {
     pub(crate) levels: Levels,
 }
 
-/// How far the blur of lens and video widens things, px (standard deviation with that of the pixel's box).
+/// Blur by lens and video, px: standard deviation, including that of the pixel's box.
 const BLUR_PX: f64 = 0.85;
 
 impl MarkSearch<'_> {
-    /// The coarse circle: the marks towards the diagonals are fragments of it. Looks for the disk's centre up to
-    /// `reach_px` from where `start` has it, and for the scale up to `stretch` away, and returns the place where the
-    /// marks stand out best.
+    /// Finds the circle of the marks coarsely, from the marks towards the diagonals, which are fragments of
+    /// the circle. Searches for the disk's centre up to `reach_px` from that of `start`, and for the scale
+    /// within a fraction `stretch` of that of `start`. Returns the plane with the highest contrast of the
+    /// marks.
     pub(crate) fn coarse(&self, start: &Plane, reach_px: f64, stretch: f64) -> Plane {
         let diagonal: Vec<&MarkShape> = self.shapes.iter().filter(|shape| shape.is_diagonal()).collect();
         let shapes = if diagonal.len() >= 4 { diagonal } else { self.shapes.iter().collect() };
@@ -189,14 +193,14 @@ impl MarkSearch<'_> {
         best.0
     }
 
-    /// Mean height of the marks over what lies beside them, grey values; no single mark counts for more than the
-    /// cross's own height. Marks outside the image do not count; 0 when none is inside. What cannot come to more than `least` is
-    /// not measured to the end and is minus infinity.
+    /// Returns the mean height of the marks over their surroundings, grey values. The contribution of a mark
+    /// is limited to the height of the cross. Marks outside the image do not count; the result is 0 when no
+    /// mark is inside. Stops early and returns minus infinity when the mean cannot exceed `least`.
     fn contrast(&self, plane: &Plane, shapes: &[&MarkShape], least: f64) -> f64 {
         let top = self.levels.contrast();
         let (mut sum, mut count) = (0.0, 0u32);
         for (index, shape) in shapes.iter().enumerate() {
-            // As if all that are left were seen, and stood out as much as any can.
+            // Upper bound: all remaining marks are seen at the largest height that counts.
             let left = (shapes.len() - index) as f64;
             if sum + left * top < least * (f64::from(count) + left) {
                 return f64::NEG_INFINITY;
@@ -224,8 +228,8 @@ impl MarkSearch<'_> {
         if count == 0 { 0.0 } else { sum / f64::from(count) }
     }
 
-    /// Measures every mark about where `plane` has it, says which are good, and fits the plane to those; twice, the
-    /// second time about where the first one has them. `None` when fewer than three are good.
+    /// Measures every mark near its position by `plane`, classifies the marks, and fits the plane to the good
+    /// ones; then repeats this with the fitted plane. Returns `None` when fewer than three marks are good.
     pub(crate) fn measure(&self, plane: &Plane) -> Option<MarksFit> {
         let first = self.pass(plane)?;
         self.pass(&first.plane).or(Some(first))
@@ -276,12 +280,12 @@ impl MarkSearch<'_> {
         Some(MarksFit { plane, marks })
     }
 
-    /// Centroid of a mark's light over the plate, and the light as a share of what the cross's brightness would give;
-    /// `None` when there is next to nothing.
+    /// Returns the centroid of a mark's signal over the plate, and the signal as a share of the signal that a
+    /// mark as bright as the cross would have. Returns `None` when the share is at most 0.15.
     fn centroid(&self, plane: &Plane, shape: &MarkShape) -> Option<(PixelPoint, f64)> {
         let to_m = 1.0 / plane.scale_px_m;
-        // Wide enough for the blur and for an error of the prediction; along the mark, short of the plate's rim, whose
-        // bright surroundings would pull the centroid outwards.
+        // Wide enough for the blur and for an error of the prediction. Along the mark, the window ends before
+        // the plate's rim, whose bright surroundings would pull the centroid outwards.
         let pad_m = (3.0 * BLUR_PX * to_m).max(0.6 * shape.half_width_m);
         let to_rim_m = self.plate_radius_m - shape.radius_m() - shape.half_length_m;
         let pad_along_m = pad_m.min((0.5 * to_rim_m).max(1.2 * to_m));
@@ -295,7 +299,7 @@ impl MarkSearch<'_> {
             self.view.image_row(middle.y + reach_px),
             self.view.rows(),
         );
-        // Far larger marks than their place needs are sampled.
+        // Large marks have more pixels than their centroid needs: only every `stride`-th column is used.
         let stride = ((columns.len() * rows.len()) / 3000 + 1).min(4);
         let mut inside: Vec<(f64, f64, f64)> = Vec::with_capacity(256);
         let mut beside: Vec<f64> = Vec::with_capacity(256);
@@ -304,7 +308,7 @@ impl MarkSearch<'_> {
         for row in rows {
             let y = self.view.camera_row(row);
             for column in columns.clone().step_by(stride) {
-                // The offset from the mark's centre: over so short a way the image is not distorted.
+                // Offset from the mark's centre. Distortion is negligible over so short a distance.
                 let (dx, dy) = ((column as f64 - middle.x) * to_m, (y - middle.y) * to_m);
                 let (y1, y2) = (dx * cos + dy * sin, dx * sin - dy * cos);
                 let (along, across) = ((y1 * u + y2 * v).abs(), (y2 * u - y1 * v).abs());
@@ -336,7 +340,8 @@ impl MarkSearch<'_> {
         (height > 0.15).then(|| (PixelPoint::new(middle.x + sum_x / sum, middle.y + sum_y / sum), height))
     }
 
-    /// Leaves out marks that are not where the others say, worst first, and fits the plane to the rest.
+    /// Rejects marks whose position contradicts the other marks, worst first, and fits the plane to the
+    /// remaining ones.
     fn reject_by_place(&self, marks: &mut [MarkObservation]) -> Option<Plane> {
         loop {
             let pairs: Vec<_> = marks
@@ -352,7 +357,8 @@ impl MarkSearch<'_> {
             errors.sort_by(f64::total_cmp);
             let mark_radius_px =
                 plane.scale_px_m * self.shapes.iter().map(MarkShape::radius_m).fold(0.0, f64::max);
-            // A tilt of ten degrees moves marks by 0.8 % of the radius from where a plane seen head on has them.
+            // A tilt of ten degrees moves marks by 0.8 % of the radius from their positions in a plane seen
+            // head on.
             let limit = (0.5 + 0.012 * mark_radius_px).max(3.0 * errors[errors.len() / 2]);
             let error = |m: &MarkObservation| {
                 self.shapes
@@ -371,7 +377,8 @@ impl MarkSearch<'_> {
     }
 }
 
-/// A mark in shadow has less light than the others, one with a glint or cut by something bright has more.
+/// Rejects marks whose signal differs from that of the other marks: a mark in shadow has less, a mark with a
+/// glint or crossed by a bright object has more.
 fn reject_by_height(marks: &mut [MarkObservation], heights: &[f64]) {
     let mut seen: Vec<f64> = marks
         .iter()
@@ -380,7 +387,7 @@ fn reject_by_height(marks: &mut [MarkObservation], heights: &[f64]) {
         .map(|(_, height)| *height)
         .collect();
     seen.sort_by(f64::total_cmp);
-    // The marks in light are the brighter ones, but the brightest may be glints.
+    // Lit marks are the brighter ones, but the brightest may be glints.
     let Some(&typical) = seen.get(seen.len() * 6 / 10) else { return };
     for (mark, height) in marks.iter_mut().zip(heights) {
         if mark.mark.usage == MarkUse::Used && !(*height > 0.7 * typical && *height < 1.45 * typical) {
@@ -446,7 +453,7 @@ mod tests {
             let fit = measure(&scene, Lines::Even);
             assert!(fit.count(MarkUse::Used) >= 11, "{range_m} m: {:?}", fit.marks);
             let truth = scene.plane();
-            // Twelve marks, each to a few tenths of a pixel where rows undersample it.
+            // Twelve marks, each accurate to a few tenths of a pixel where rows undersample it.
             assert!((fit.plane.centre - truth.centre).norm() < 0.12, "{range_m} m: {:?}", fit.plane);
             assert!((fit.plane.scale_px_m / truth.scale_px_m - 1.0).abs() < 0.1 / (0.25 * truth.scale_px_m));
         }

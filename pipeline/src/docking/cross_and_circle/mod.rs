@@ -1,4 +1,4 @@
-//! Cross and circle of the target, measured by least squares (docking paper, section 3).
+//! Least-squares measurement of the target's cross and circle (docking paper, section 3).
 
 pub(super) mod circle;
 pub(super) mod cross;

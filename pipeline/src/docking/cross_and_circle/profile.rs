@@ -1,6 +1,6 @@
-//! Edges in a row of grey values across a bright bar.
+//! Edges in a profile of grey values across a bright bar.
 
-/// Grey levels of the plate and of what is bright on it.
+/// Grey levels of the plate and of its bright features.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Levels {
     pub(crate) dark: f64,
@@ -13,19 +13,19 @@ impl Levels {
     }
 }
 
-/// Least height of a bar in a profile over what surrounds it, as a share of the whole contrast. Below it the bar is
-/// in shadow, or something covers it.
+/// Smallest height of a bar over its surroundings in a profile, as a share of the full contrast. A lower bar
+/// is in shadow or covered.
 const MIN_HEIGHT: f64 = 0.4;
 
-/// A bar of fewer samples than this has no plateau that a level could be taken from.
+/// Smallest width of a bar, in samples, that has a plateau to take a level from.
 const MIN_PLATEAU_SAMPLES: f64 = 4.0;
 
-/// Places of the two edges of a bright bar of about the given width; `values` are grey values at `first`,
-/// `first + step`, …, and reach a little beyond the bar on both sides. `None` where no such bar is seen.
+/// Finds the two edges of a bright bar of about the given width. `values` are grey values at `first`,
+/// `first + step`, …, and extend a little beyond the bar on both sides. Returns `None` where there is no such bar.
 ///
-/// An edge lies where a step with the same sum of grey values has it. A sum over samples keeps its place to a few
-/// hundredths of a pixel although the rows of a field are undersampled; a crossing of the half level between two
-/// samples does not.
+/// An edge is defined as the position of a step with the same sum of grey values. This position is accurate
+/// to a few hundredths of a pixel although the rows of a field are undersampled; a crossing of the half level
+/// between two samples is not.
 pub(crate) fn bar_edges(
     values: &[f64],
     first: f64,
@@ -78,8 +78,9 @@ pub(crate) fn bar_edges(
     (seen > 0.5 * width && seen < 1.6 * width).then_some((low, high))
 }
 
-/// Distance at which a profile that begins bright falls below the middle of the levels for good: samples at `first`,
-/// `first + step`, …; linear between two samples. `None` when it does not begin bright, or does not fall.
+/// Returns the distance at which a profile that begins bright first falls below the mean of the two levels.
+/// Samples are at `first`, `first + step`, …, with linear interpolation between two samples. Returns `None`
+/// when the profile does not begin bright or does not fall.
 pub(crate) fn falling_edge(values: &[f64], first: f64, step: f64, levels: &Levels) -> Option<f64> {
     let half = (levels.dark + levels.bright) / 2.0;
     if *values.first()? < half {
@@ -96,7 +97,8 @@ mod tests {
 
     const LEVELS: Levels = Levels { dark: 20.0, bright: 180.0 };
 
-    /// A bar from `low` to `high`, blurred by a Gaussian of 0.85 px, at places `first`, `first + step`, ….
+    /// Returns the profile of a bar from `low` to `high`, blurred by a Gaussian of 0.85 px, at positions
+    /// `first`, `first + step`, ….
     fn bar(low: f64, high: f64, first: f64, step: f64, n: usize) -> Vec<f64> {
         let erf = |x: f64| libm::erf(x / (0.85 * std::f64::consts::SQRT_2));
         (0..n)
@@ -117,11 +119,11 @@ mod tests {
     fn edges_of_a_bar_are_found_at_any_phase_of_the_samples() {
         for i in 0..20 {
             let shift = 0.1 * f64::from(i);
-            // Columns: sampled well. The clipped tails of the blur cost a hundredth.
+            // Columns are well sampled. The clipped tails of the blur cost a hundredth.
             check(20.0 + shift, 32.0 + shift, 10.0, 1.0, 34, 0.01);
             // Rows of a field: the first alias of the blur, exp(−2 (π 0.85/2)²)/π rows of 2 px.
             check(20.0 + shift, 32.0 + shift, 10.0, 2.0, 17, 0.04);
-            // A thin bar of a target far away.
+            // A thin bar of a distant target.
             check(20.0 + shift, 23.0 + shift, 14.0, 1.0, 16, 0.01);
             check(20.0 + shift, 23.0 + shift, 10.0, 2.0, 13, 0.06);
         }
@@ -141,7 +143,7 @@ mod tests {
     #[test]
     fn the_end_of_an_arm_is_where_it_falls_to_the_middle() {
         let values = bar(-50.0, 12.3, 0.0, 1.0, 30);
-        // Linear between samples of an error function: a fiftieth of a pixel.
+        // Linear interpolation of an error function: a fiftieth of a pixel.
         assert!((falling_edge(&values, 0.0, 1.0, &LEVELS).unwrap() - 12.3).abs() < 0.02);
         assert_eq!(falling_edge(&[20.0; 9], 0.0, 1.0, &LEVELS), None);
         assert_eq!(falling_edge(&[180.0; 9], 0.0, 1.0, &LEVELS), None);

@@ -1,4 +1,4 @@
-//! Candidates for the cross: regions of the binary image, regions of its edges, and a scan by structure.
+//! Candidates for the cross: regions of the binary image, regions of its edges, and a structural scan.
 
 use std::ops::Range;
 
@@ -11,16 +11,16 @@ use crate::docking::preprocessing::binarise;
 use crate::docking::preprocessing::edges::EdgeConfig;
 use crate::docking::preprocessing::view::{Lens, Overview};
 
-/// A place where a cross may be.
+/// Possible cross.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Candidate {
     pub(crate) seed: CrossSeed,
-    /// How much it looks like a cross, larger is better; comparable within one way of finding.
+    /// Similarity to a cross, larger is better. Comparable only within one method of finding candidates.
     weight: f64,
 }
 
 impl Candidate {
-    /// Whether it is of the same thing as another one.
+    /// Returns true if both candidates are of the same object.
     fn repeats(&self, other: &Self) -> bool {
         let near: Vector2<f64> = other.seed.centre - self.seed.centre;
         let scale = self.seed.half_length_px / other.seed.half_length_px;
@@ -31,7 +31,7 @@ impl Candidate {
 /// Smallest half length of a cross, overview pixels.
 const MIN_HALF_PX: f64 = 2.5;
 
-/// Regions brighter than a threshold that have the shape of a cross.
+/// Finds regions brighter than a threshold that have the shape of a cross.
 pub(crate) fn by_regions(overview: &Overview, lens: &Lens) -> Vec<Candidate> {
     let mut found = Vec::new();
     for level in binarise::levels(&overview.grey) {
@@ -40,14 +40,14 @@ pub(crate) fn by_regions(overview: &Overview, lens: &Lens) -> Vec<Candidate> {
     best_first(found)
 }
 
-/// Closed edges that have the outline of a cross.
+/// Finds closed edges that have the outline of a cross.
 pub(crate) fn by_edges(overview: &Overview, lens: &Lens, config: &EdgeConfig) -> Vec<Candidate> {
     let mut found = Vec::new();
     cross_shaped(&config.find(&overview.grey), overview, lens, &mut found);
     best_first(found)
 }
 
-/// Adds the white regions that look like a cross or its outline.
+/// Adds the white regions that have the shape of a cross or of its outline.
 fn cross_shaped(binary: &GrayImage, overview: &Overview, lens: &Lens, found: &mut Vec<Candidate>) {
     let half = |component: &Component| {
         let (width, height) = component.extent();
@@ -67,14 +67,15 @@ fn cross_shaped(binary: &GrayImage, overview: &Overview, lens: &Lens, found: &mu
         }
         let (half, centroid) = (half(&component), component.centroid);
         let (sin, cos) = libm::sincos(component.angle_rad);
-        // The rectangle about a turned cross: half = L cos + w/2 sin, with w = 0.2 L for want of better.
+        // Bounding rectangle of a rotated cross: half = L cos + w/2 sin. The bar's width w is assumed to be
+        // 0.2 L.
         let half_length = half / (cos + 0.1 * sin.abs());
         let slope = sin / cos;
         found.extend(candidate(overview, lens, centroid, half_length, slope, component.fourfold));
     }
 }
 
-/// A candidate from its place in the overview.
+/// Returns the candidate at a position in the overview.
 fn candidate(
     overview: &Overview,
     lens: &Lens,
@@ -91,17 +92,19 @@ fn candidate(
 /// Smallest half length of a cross that the scan tries, overview pixels.
 const MIN_SCAN_HALF_PX: f64 = 3.2;
 
-/// Directions of the arms that the scan tries, rad. An arm's point at half length stays on the bar up to 0.2 rad.
+/// Directions of the arms that the scan tries, rad. The sample at half of an arm's length stays on the bar up
+/// to 0.2 rad.
 const SCAN_TURNS: [f64; 3] = [0.0, -0.22, 0.22];
 
-/// All scales of the scan.
+/// Half lengths of a scan without limits.
 pub(crate) const ALL_SCALES: Range<f64> = 0.0..f64::INFINITY;
 
-/// Places where the centre and points on the arms are brighter than the points between them and beyond the ends, at
-/// any scale. Slower than the regions, and does not need a whole region: an arm may be in shadow, bars may be thinner
-/// than a pixel.
+/// Finds positions where the centre and samples on the arms are brighter than samples between the arms and
+/// beyond their ends, at any scale. Slower than the search by regions, but works without a complete region:
+/// an arm may be in shadow, bars may be thinner than a pixel.
 ///
-/// A whole field is searched at all scales, a part of one for a target of about known size at those between `halves_px`.
+/// A whole field is searched at all scales; a part of a field, for a target of about known size, at the
+/// scales in `halves_px`.
 pub(crate) fn by_structure(
     overview: &Overview,
     lens: &Lens,
@@ -124,7 +127,7 @@ pub(crate) fn by_structure(
     best_first(found)
 }
 
-/// One scale and direction of the scan.
+/// Scans the image at one scale and direction.
 fn scan(
     grey: &GrayImage,
     half: f64,
@@ -158,7 +161,7 @@ fn scan(
                 continue;
             }
             let dark = f64::from(between.iter().map(|by| at(*by)).fold(0, u8::max));
-            // Seven of the eight points on the arms, and three of the four beyond them.
+            // Seven of the eight samples on the arms must be bright, and three of the four beyond them dark.
             let mut arms = [0; 8];
             arms.iter_mut().zip(inner.iter().chain(&outer)).for_each(|(arm, by)| *arm = at(*by));
             arms.sort_unstable();
@@ -175,9 +178,9 @@ fn scan(
     }
 }
 
-/// The best candidates first, without those that repeat a better one.
+/// Sorts candidates by weight, best first, and removes those that repeat a better one.
 fn best_first(mut found: Vec<Candidate>) -> Vec<Candidate> {
-    // Ties keep the order in which they were found, which is fixed.
+    // The sort is stable: candidates of equal weight keep their order of discovery, which is deterministic.
     found.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let mut kept: Vec<Candidate> = Vec::new();
     for candidate in found {
@@ -198,7 +201,7 @@ mod tests {
     use crate::docking::synthetic::{self, Scene};
     use contract::docking::Lines;
 
-    /// Whether one of the candidates is the scene's cross, well enough to be measured.
+    /// Returns true if one of the candidates is the scene's cross, accurate enough to be measured.
     fn has(found: &[Candidate], scene: &Scene) -> bool {
         let truth = scene.cross();
         found.iter().any(|candidate| {

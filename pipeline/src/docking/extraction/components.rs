@@ -1,8 +1,8 @@
-//! Connected regions of a binary image and what their shape says.
+//! Connected regions of a binary image, with measures of their shape.
 
 use imageproc::image::GrayImage;
 
-/// A connected region, in pixels of its image.
+/// Connected region, in pixels of its image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Component {
     /// Number of pixels.
@@ -13,8 +13,8 @@ pub(crate) struct Component {
     pub(crate) rows: (u32, u32),
     /// Mean column and row.
     pub(crate) centroid: (f64, f64),
-    /// How much the region is a cross, 0 to 1: |Σ r² exp(4 i θ)| / Σ r² about its centroid. A cross of thin bars has 1,
-    /// its outline too, a square or a disk about 0.
+    /// Similarity to a cross, 0 to 1: |Σ r² exp(4 i θ)| / Σ r² about the centroid. A cross of thin bars and
+    /// its outline have 1, a square or a disk about 0.
     pub(crate) fourfold: f64,
     /// Angle of the fourfold shape from the columns' direction, towards increasing rows, −45° to 45°, rad.
     pub(crate) angle_rad: f64,
@@ -30,28 +30,29 @@ impl Component {
         angle_rad: 0.0,
     };
 
-    /// Columns and rows that it spans.
+    /// Returns the numbers of columns and rows that the region spans.
     pub(crate) fn extent(&self) -> (f64, f64) {
         (f64::from(self.columns.1 - self.columns.0) + 1.0, f64::from(self.rows.1 - self.rows.0) + 1.0)
     }
 
-    /// The middle of the rectangle that it spans.
+    /// Returns the centre of the region's bounding rectangle.
     pub(crate) fn middle(&self) -> (f64, f64) {
         (f64::from(self.columns.0 + self.columns.1) / 2.0, f64::from(self.rows.0 + self.rows.1) / 2.0)
     }
 }
 
-/// A horizontal run of white pixels: row, first and last column, and the region that it belongs to.
+/// Horizontal run of white pixels: row, first and last column, and index of its region.
 struct Run {
     row: u32,
     columns: (u32, u32),
     region: usize,
 }
 
-/// The white regions of a binary image (8-connected) for which `is_wanted` holds; it is asked with everything but the fourfold
-/// shape, which costs most and is computed for those alone. Regions are in the order in which rows meet them.
+/// Finds the white regions of a binary image (8-connected) for which `is_wanted` returns true. `is_wanted` is
+/// called before the fourfold shape is computed, which is the most expensive part and is done only for the
+/// regions selected. Regions are in the order in which the rows meet them.
 ///
-/// Runs of the rows are joined (Rosenfeld and Pfaltz 1966): a field has far fewer of them than pixels.
+/// Joins the runs of the rows (Rosenfeld and Pfaltz 1966): a field has far fewer runs than pixels.
 pub(crate) fn find(binary: &GrayImage, is_wanted: impl Fn(&Component) -> bool) -> Vec<Component> {
     let mut runs = runs(binary);
     let count = join(&mut runs);
@@ -82,7 +83,7 @@ pub(crate) fn find(binary: &GrayImage, is_wanted: impl Fn(&Component) -> bool) -
             let dx2 = dx * dx;
             let r2 = dx2 + dy2;
             if r2 > 0.0 {
-                // r² cos 4θ and r² sin 4θ without an angle.
+                // r² cos 4θ and r² sin 4θ, without computing θ.
                 moments.0 += (dx2 * dx2 - 6.0 * dx2 * dy2 + dy2 * dy2) / r2;
                 moments.1 += 4.0 * dx * dy * (dx2 - dy2) / r2;
                 moments.2 += r2;
@@ -103,7 +104,7 @@ pub(crate) fn find(binary: &GrayImage, is_wanted: impl Fn(&Component) -> bool) -
         .collect()
 }
 
-/// The runs of white, row by row, each a region of its own.
+/// Returns the runs of white pixels, row by row, each as a separate region.
 fn runs(binary: &GrayImage) -> Vec<Run> {
     let width = binary.width() as usize;
     let mut runs = Vec::new();
@@ -127,10 +128,11 @@ fn runs(binary: &GrayImage) -> Vec<Run> {
     runs
 }
 
-/// Gives runs that touch, corners included, the same region; regions are numbered in the order of their first runs. How many there
-/// are.
+/// Assigns one region to runs that touch, corners included. Regions are numbered in the order of their first
+/// runs. Returns the number of regions.
 fn join(runs: &mut [Run]) -> usize {
-    // `region` is first the index of an earlier run of the same region, itself for the first one.
+    // `region` is at first the index of an earlier run of the same region; the first run of a region has its
+    // own index.
     fn root(runs: &mut [Run], mut i: usize) -> usize {
         while runs[i].region != i {
             let next = runs[i].region;
@@ -142,7 +144,8 @@ fn join(runs: &mut [Run]) -> usize {
     let mut above = 0;
     for here in 0..runs.len() {
         let (row, (first, last)) = (runs[here].row, runs[here].columns);
-        // Runs of earlier rows, or of the row above that end before this run begins, touch neither it nor those after it.
+        // Skips runs that touch neither this run nor later ones: runs of earlier rows, and runs of the row
+        // above that end before this run begins.
         while above < here
             && (runs[above].row + 1 < row
                 || (runs[above].row + 1 == row && runs[above].columns.1 + 1 < first))
@@ -158,7 +161,7 @@ fn join(runs: &mut [Run]) -> usize {
     }
     let mut count = 0;
     let mut numbers = vec![0; runs.len()];
-    // The first run of a region comes before all others of it, and has its number when they ask for it.
+    // The first run of a region precedes its other runs, so its number is set before they need it.
     for i in 0..runs.len() {
         let first = root(runs, i);
         if first == i {

@@ -1,5 +1,5 @@
-//! The station's outline: the circle of its end face among the edges of the field, and the range from it before the
-//! target is resolved.
+//! Outline of the station: the circle of its end face among the edges of the field, and the range from it
+//! before the target is resolved.
 
 use contract::docking::Outline;
 use nalgebra::Vector2;
@@ -12,59 +12,65 @@ use crate::docking::preprocessing::histogram::Histogram;
 use crate::docking::preprocessing::region::Rectangle;
 use crate::docking::preprocessing::view::{Lens, Overview, View};
 
-/// The station's outline in a field, ideal image.
+/// Outline of the station in a field, ideal image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StationOutline {
     pub(crate) circle: CircleFit,
-    /// How many points of its edge lie on it.
+    /// Number of edge points on the circle.
     pub(crate) points: u32,
-    /// Standard deviation of its radius, px: from field to field, and as it errs alike for long.
+    /// Part of the radius's standard deviation that is independent from field to field, px; `common_px` is
+    /// the part common to many fields.
     pub(crate) noise_px: f64,
     common_px: f64,
 }
 
 impl StationOutline {
-    /// Standard deviation of its radius, px.
+    /// Returns the standard deviation of the radius, px.
     pub(crate) fn sigma_px(&self) -> f64 {
         libm::hypot(self.noise_px, self.common_px)
     }
 
-    /// The range that it gives, with its standard deviation from field to field.
+    /// Returns the range by the outline, with its standard deviation from field to field.
     pub(crate) fn range(&self, outline: &Outline, focal_px: f64) -> Option<OutlineRange> {
         let (range_m, sigma_m) = range(outline, focal_px, self.circle.radius, self.noise_px)?;
         Some(OutlineRange { range_m, sigma_m })
     }
 }
 
-/// Circles of the search that are measured.
+/// Number of proposed circles that are measured.
 const MEASURED: usize = 16;
 
-/// Rays from a circle's centre along which its edge is looked for.
+/// Number of rays from a circle's centre along which its edge is searched for.
 const RAYS: usize = 72;
 
-/// Share of the rays that must meet the edge on the circle: less does not tell a circle from panels and shadows …
+/// Smallest share of the rays that must meet the edge on the circle. A smaller share does not distinguish a
+/// circle from panels and shadows.
 const MIN_SHARE: f64 = 0.6;
 
-/// … nor, below [`SMALL_RADIUS_PX`], from the end of a bar or a character of an overlay.
+/// Smallest share of the rays for circles below [`SMALL_RADIUS_PX`]. A smaller share does not distinguish a
+/// circle from the end of a bar or a character of an overlay.
 const MIN_SMALL_SHARE: f64 = 0.8;
 
-/// Largest root mean square of the edge's distances from the circle, as a part of the radius: characters of 8 to 11 px have 0.055
-/// to 0.13, a station of 12 px 0.05.
+/// Largest root mean square of the edge's distances from the circle, relative to the radius. Characters of 8
+/// to 11 px have 0.055 to 0.13, a station of 12 px has 0.05.
 const MAX_RMS: f64 = 0.054;
 
-/// Share of a predicted outline that must be in the image to say whether it is there.
+/// Share of a predicted outline that must be in the image to decide if it is present.
 const MIN_INSIDE: f64 = 0.45;
 
-/// A circle of fewer pixels fits many things.
+/// Radius, px, below which a circle fits many objects.
 const SMALL_RADIUS_PX: f64 = 30.0;
 
-/// Least height of an edge, grey values, and as a multiple of the median difference of neighbours, which is the noise.
+/// Smallest height of an edge: in grey values, and as a multiple of the noise, which is the median difference
+/// of neighbours.
 const MIN_STEP: (f64, f64) = (8.0, 3.0);
 
-/// The outline of a bright round face; `None` when there is none, or when too much of it is outside the image.
+/// Finds the outline of a bright round face. Returns `None` when there is none, or when too much of it is
+/// outside the image.
 ///
-/// The face stands before structure that is now darker, now as bright: no threshold cuts it out. The circles with most votes
-/// are measured on the field, ray by ray, and the largest one that is whole enough is the outline.
+/// The structure behind the face is in parts darker, in parts as bright, so no threshold separates them. The
+/// circles with most votes are measured on the field, ray by ray, and the largest sufficiently complete
+/// circle is the outline.
 pub(crate) fn find(view: &View<'_>, overview: &Overview, lens: &Lens) -> Option<StationOutline> {
     let min_step = least_step(view);
     let mut proposals = votes::propose(&overview.grey, min_step);
@@ -89,15 +95,15 @@ pub(crate) fn find(view: &View<'_>, overview: &Overview, lens: &Lens) -> Option<
         .filter(StationOutline::is_round)
         .collect();
     let largest = measured.iter().map(|outline| outline.circle.radius).fold(0.0, f64::max);
-    // Several proposals come to the same circle by other points. The largest of them would be too large: the one that its
-    // points fit best is taken.
+    // Several proposals lead to the same circle through different points. The largest of these circles would
+    // be too large, so the best fit is taken.
     measured
         .into_iter()
         .filter(|outline| outline.circle.radius > 0.93 * largest)
         .min_by(|a, b| a.circle.rms.total_cmp(&b.circle.rms))
 }
 
-/// The outline about where the field before has it; `None` when it is not there.
+/// Finds the outline near its position in the previous field. Returns `None` when it is not there.
 pub(crate) fn follow(view: &View<'_>, lens: &Lens, before: &CircleFit) -> Option<StationOutline> {
     let predicted = (before.centre, before.radius);
     let share = least_share(before.radius);
@@ -111,17 +117,18 @@ impl StationOutline {
     }
 }
 
-/// Share of the rays on which a circle of this radius must have its edge.
+/// Returns the share of the rays on which a circle of this radius must have its edge.
 fn least_share(radius_px: f64) -> f64 {
     if radius_px < SMALL_RADIUS_PX { MIN_SMALL_SHARE } else { MIN_SHARE }
 }
 
-/// Least height of an edge in this field, grey values.
+/// Returns the smallest height of an edge in this field, grey values.
 fn least_step(view: &View<'_>) -> f64 {
     MIN_STEP.0.max(MIN_STEP.1 * noise(view))
 }
 
-/// Median difference of horizontal neighbours, each the mean of two pixels, grey values; of every fourth row.
+/// Returns the median difference of horizontal neighbours, grey values. Each neighbour is the mean of two
+/// pixels; every fourth row is used.
 fn noise(view: &View<'_>) -> f64 {
     let mut counts = [0u32; 256];
     let mut total = 0;
@@ -142,18 +149,21 @@ fn noise(view: &View<'_>) -> f64 {
         .unwrap_or(0) as f64
 }
 
-/// Distances from a circle's centre at which sky is looked for, radii: beyond what stands behind the end face.
+/// Distances from a circle's centre at which sky is searched for, radii: beyond the structure behind the end
+/// face.
 const SKY_AT: [f64; 2] = [1.35, 1.6];
 
-/// Least share of the directions in which there is sky. Modules and panels leave 0.39 and more at 1.35 radii; about the docking unit is
-/// the end face, and the ring of the unit would be taken for a station three times as far away.
+/// Smallest share of the directions with sky. Modules and panels leave 0.39 and more at 1.35 radii. The
+/// docking unit is surrounded by the end face; without this limit its ring would be mistaken for a station
+/// three times as far away.
 const MIN_SKY: f64 = 0.33;
 
-/// Sky is not brighter than the darkest hundredths of the field by more than this part of the disk's brightness over them.
+/// Largest brightness of sky over the darkest hundredths of the field, as a share of the disk's brightness
+/// over them.
 const SKY_LEVEL: f64 = 0.25;
 
-/// Whether a circle is the outline of a body before the sky, and not a ring on its face. A circle about which too little is in the image is
-/// not.
+/// Returns true if a circle is the outline of a body against the sky, and not a ring on its face. Returns
+/// false if too little around the circle is in the image.
 pub(crate) fn stands_before_sky(view: &View<'_>, lens: &Lens, circle: &CircleFit) -> bool {
     let around = |radii: f64| -> Vec<f64> {
         (0..RAYS)
@@ -175,8 +185,8 @@ pub(crate) fn stands_before_sky(view: &View<'_>, lens: &Lens, circle: &CircleFit
     })
 }
 
-/// Whether the outline is seen where `centre` and `radius` predict it; `None` when too much of it is outside the image to
-/// say. A tenth of the radius is what tilt and parallax may move it by.
+/// Returns true if the outline is found where `centre` and `radius` predict it, or `None` when too much of it
+/// is outside the image to decide. Tilt and parallax may change the outline by a tenth of the radius.
 pub(crate) fn confirms(
     view: &View<'_>,
     lens: &Lens,
@@ -194,12 +204,12 @@ pub(crate) fn confirms(
     if inside < MIN_INSIDE {
         return None;
     }
-    // Shadows and what stands behind may hide half of it.
+    // Shadows and structure behind may hide half of it.
     let seen = measure(view, lens, (centre, radius), min_step, [0.25 * inside, 0.45 * inside]);
     Some(seen.is_some_and(|seen| (seen.circle.radius / radius - 1.0).abs() < 0.12))
 }
 
-/// The outline where it is predicted, when most of it is seen.
+/// Measures the outline at its predicted position. Returns `None` unless most of it is seen.
 pub(crate) fn measure_at(
     view: &View<'_>,
     lens: &Lens,
@@ -209,8 +219,8 @@ pub(crate) fn measure_at(
     measure(view, lens, predicted, min_step, [MIN_SHARE, MIN_SHARE]).filter(StationOutline::is_round)
 }
 
-/// The circle through the steepest falls of brightness on rays from a centre, twice, the second time about the first; on it
-/// must be the given shares of the rays.
+/// Fits a circle to the steepest falls of brightness on rays from a centre, then repeats this from the fitted
+/// circle. The edge must lie on the circle on the given shares of the rays, one share per pass.
 fn measure(
     view: &View<'_>,
     lens: &Lens,
@@ -234,8 +244,9 @@ fn fit(
 ) -> Option<StationOutline> {
     let step = (reach / 12.0).max(0.5);
     let count = (2.0 * reach / step).ceil() as usize + 1;
-    // An edge is the difference of the means of some samples on either side: tiles and seams are narrower. The longer the sides, the
-    // farther out a rim that is brighter than what is inside it moves the steepest fall.
+    // An edge is the difference of the means of some samples on either side, because tiles and seams are
+    // narrower. With longer sides, a rim that is brighter than the area inside moves the steepest fall
+    // farther out.
     let side = ((0.01 * radius).max(1.0) / step).round().max(1.0) as usize;
     let mut points = Vec::with_capacity(RAYS);
     let mut values = Vec::with_capacity(count);
@@ -260,7 +271,7 @@ fn fit(
             && i > 0
             && i + 2 < count
         {
-            // The vertex of the parabola through three falls.
+            // Vertex of the parabola through three falls.
             let (before, after) = (fall(i - 1), fall(i + 1));
             let bend = before - 2.0 * height + after;
             let shift = if bend < 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 };
@@ -282,15 +293,17 @@ fn fit(
         return None;
     }
     let circle = circle::refine(&on_it, &circle)?;
-    // Neighbouring rays of a small circle meet the same pixels. The rim's own shape, its shading and what shows behind it
-    // move the edge together on all rays: by a part of the width of the blur and of the rim.
+    // Neighbouring rays of a small circle meet the same pixels. The rim's shape, its shading and the
+    // structure behind it move the edge on all rays together, by a part of the width of the blur and of the
+    // rim.
     let independent = (on_it.len() as f64).min(3.0 * circle.radius);
     let common_px = 0.15 + 0.004 * circle.radius;
     let noise_px = circle.rms / (independent * share).sqrt();
     Some(StationOutline { circle, points: on_it.len() as u32, noise_px, common_px })
 }
 
-/// d3 and its standard deviation, m: Rs = f r_s/(d3 + h_s). `None` unless it is positive.
+/// Returns d3 and its standard deviation, m, from Rs = f r_s/(d3 + h_s). Returns `None` unless d3 is
+/// positive.
 pub(crate) fn range(outline: &Outline, focal_px: f64, radius_px: f64, sigma_px: f64) -> Option<(f64, f64)> {
     let range_m = range_from_outline(focal_px, outline.radius_m, outline.depth_m, radius_px)?;
     let sigma_m = (range_m + outline.depth_m) * sigma_px / radius_px;
@@ -353,7 +366,7 @@ mod tests {
         };
         let body = |x, y| if disk(x, y, centre, 80.0) { 140 } else { 8 };
         assert!(circle(&synthetic::drawn(Lines::Even, body)));
-        // The same ring on the face of a station three times as large, a corner of which is sky.
+        // Ring of the same size on the face of a station three times as large, with sky in one corner.
         let on_face = |x, y| match () {
             () if disk(x, y, centre, 80.0) => 140,
             () if disk(x, y, centre, 250.0) => 90,

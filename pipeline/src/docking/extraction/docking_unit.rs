@@ -1,4 +1,4 @@
-//! The docking unit's disk: its edge is looked for where cross and marks predict it.
+//! Disk of the docking unit: search for its edge at the position predicted by cross and marks.
 
 use contract::docking::{Outline, TargetModel};
 use nalgebra::Vector2;
@@ -7,16 +7,16 @@ use crate::docking::cross_and_circle::circle::{self, CircleFit};
 use crate::docking::cross_and_circle::marks::Plane;
 use crate::docking::preprocessing::view::{Lens, View};
 
-/// A side of the target, as the image shows it.
+/// Side of the target in the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
-    /// Where the model has the docking unit.
+    /// Side of the docking unit by the model.
     Nominal,
-    /// A quarter turn from there, clockwise in the image.
+    /// A quarter turn from nominal, clockwise in the image.
     Quarter,
-    /// Opposite.
+    /// Opposite to nominal.
     Opposite,
-    /// Three quarters of a turn.
+    /// Three quarters of a turn from nominal, clockwise in the image.
     ThreeQuarters,
 }
 
@@ -33,12 +33,12 @@ impl Side {
     }
 }
 
-/// Places around the circle where an edge is looked for.
+/// Number of rays around the circle on which an edge is searched for.
 const RAYS: usize = 48;
 
-/// Where the circle of an outline is seen, ideal image, from the plane and from the cross's parallax: a point at
-/// height h over the plane is seen at V + (O − V) d3/(d3 − h), V the place where the plane's normal points to; the
-/// cross's height gives V.
+/// Predicts the circle of an outline in the ideal image, from the plane and the cross's parallax. A point at
+/// height h over the plane is seen at V + (O − V) d3/(d3 − h), with V the vanishing point of the plane's
+/// normal; the cross's height gives V.
 pub(crate) fn predict(
     model: &TargetModel,
     outline: &Outline,
@@ -55,21 +55,23 @@ pub(crate) fn predict(
     (centre, outline.radius_m * plane.scale_px_m * shrink)
 }
 
-/// What was found of a predicted circle.
+/// Edge found near a predicted circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DiskEdge {
-    /// The circle through the edge's points; `None` when they are not on one.
+    /// Circle through the edge's points; `None` when they do not lie on a circle.
     pub(crate) circle: Option<CircleFit>,
-    /// How many points are on it.
+    /// Number of points on the circle or arc.
     pub(crate) points: u32,
-    /// Share of the directions in the image, 0 to 1, in which the strongest edge lies on the circle, or on an arc of it.
+    /// Share of the directions in the image, 0 to 1, in which the strongest edge lies on the circle or on an
+    /// arc of it.
     pub(crate) share: f64,
-    /// Share of the directions, 0 to 1, in which the edge would be in the image.
+    /// Share of all directions, 0 to 1, in which the edge would be in the image.
     pub(crate) in_field: f64,
 }
 
-/// Looks for a circular edge of at least `min_step` grey values within a seventh of the radius of its predicted place; where less
-/// than two thirds of it is in the image, for an arc within a fortieth.
+/// Searches for a circular edge of at least `min_step` grey values within a seventh of the radius of its
+/// predicted position. Where less than two thirds of it is in the image, searches for an arc within a
+/// fortieth of the radius.
 pub(crate) fn find(
     view: &View<'_>,
     lens: &Lens,
@@ -97,15 +99,16 @@ pub(crate) fn find(
     DiskEdge { circle: Some(fit), points: on_it as u32, share: on_it as f64 / in_field as f64, ..nothing }
 }
 
-/// The strongest edges along rays across a predicted circle.
+/// Strongest edges along rays across a predicted circle.
 struct Rays {
-    /// Direction of a ray from the centre, and how far outside the predicted circle its strongest edge is, px.
+    /// Direction of a ray from the centre, and distance of its strongest edge outside the predicted circle,
+    /// px.
     edges: Vec<(Vector2<f64>, f64)>,
-    /// Rays that are in the image.
+    /// Number of rays in the image.
     in_field: usize,
-    /// How far to either side of the circle an edge is looked for, px.
+    /// Distance to either side of the circle within which an edge is searched for, px.
     reach: f64,
-    /// From sample to sample, px.
+    /// Distance between samples, px.
     step: f64,
 }
 
@@ -116,7 +119,7 @@ fn rays(
     reach: f64,
     min_step: f64,
 ) -> Rays {
-    // An edge is a difference over two blurs; rows of a field are two pixels apart.
+    // An edge is a difference over two blurs, and rows of a field are two pixels apart.
     let step = (reach / 12.0).max(1.0);
     let count = (2.0 * reach / step).ceil() as usize + 1;
     let mut found = Rays { edges: Vec::with_capacity(RAYS), in_field: 0, reach, step };
@@ -144,7 +147,8 @@ fn rays(
     found
 }
 
-/// What is seen of an arc: too short for a circle of its own, it must lie about the predicted centre.
+/// Evaluates the visible arc. The arc is too short to fit a circle, so it must be concentric with the
+/// prediction.
 fn arc(rays: &Rays, radius: f64) -> DiskEdge {
     let nothing =
         DiskEdge { circle: None, points: 0, share: 0.0, in_field: rays.in_field as f64 / RAYS as f64 };
@@ -172,7 +176,7 @@ mod tests {
         };
         let field = scene.field(Lines::Even);
         let (view, lens, model) = (View::new(&field), synthetic::lens(), synthetic::target());
-        // The scene draws the unit in the plane of the disk.
+        // The synthetic scene has the unit in the plane of the disk.
         let unit = Outline { depth_m: 0.0, ..model.docking_unit };
         let look = |side| {
             let predicted =
@@ -191,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_place_behind_the_plane_moves_towards_the_vanishing_point() {
-        // The camera 1 m to the right of the target's axis at 10 m, without rotation: pinhole by hand.
+        // Camera 1 m to the right of the target's axis at 10 m, without rotation: pinhole projection by hand.
         let (f, d3, d1) = (1000.0, 10.0, 1.0);
         let model = synthetic::target();
         let plane = Plane { centre: Vector2::new(-f * d1 / d3, 0.0), scale_px_m: f / d3, roll_rad: 0.0 };

@@ -1,4 +1,4 @@
-//! What was recognised in a field, told in the camera's pixels.
+//! Features recognised in a field, in the camera's pixels.
 
 use contract::PixelPoint;
 use contract::docking::{Circle, Cross, Features, MarkUse, TargetModel};
@@ -11,13 +11,13 @@ use crate::docking::pose::model_fit::FitResult;
 use crate::docking::preprocessing::region::Rectangle;
 use crate::docking::preprocessing::view::{Lens, View};
 
-/// The square about the plate: what brightness and contrast are set by.
+/// Returns the square around the plate, in which brightness and contrast are judged.
 pub(crate) fn plate(lens: &Lens, plane: &Plane, target: &TargetModel) -> Rectangle {
     let half_side = target.plate_radius_m * plane.scale_px_m;
     lens.to_camera(plane.centre).map_or(Rectangle::ALL, |centre| Rectangle::square(centre, half_side))
 }
 
-/// Centre and mean radius, in the camera's pixels, of a circle of the ideal image.
+/// Returns the centre and mean radius, in the camera's pixels, of a circle of the ideal image.
 pub(crate) fn camera_circle(lens: &Lens, centre: Vector2<f64>, radius: f64) -> Option<(PixelPoint, f64)> {
     const POINTS: usize = 8;
     let rim: Vec<PixelPoint> = (0..POINTS)
@@ -32,7 +32,7 @@ pub(crate) fn camera_circle(lens: &Lens, centre: Vector2<f64>, radius: f64) -> O
     Some((middle, rim.iter().map(|p| p.distance(middle)).sum::<f64>() / n))
 }
 
-/// What was recognised, in the camera's pixels.
+/// Returns the recognised features, in the camera's pixels.
 pub(crate) fn evidence(lens: &Lens, target_features: &TargetFeatures, unit: &DiskEdge) -> Features {
     let seed = &target_features.cross.seed;
     let half = 0.5 * seed.half_length_px;
@@ -63,7 +63,7 @@ pub(crate) fn evidence(lens: &Lens, target_features: &TargetFeatures, unit: &Dis
     }
 }
 
-/// Takes over what the best estimator says of the features: centres with perspective, and marks that it rejected.
+/// Updates the features with the result of the best estimator: centres with perspective, and rejected marks.
 pub(crate) fn refine(features: &mut Features, fitted: &FitResult) {
     if let Some(cross) = &mut features.cross {
         cross.centre = fitted.cross_centre;
@@ -80,14 +80,14 @@ pub(crate) fn refine(features: &mut Features, fitted: &FitResult) {
     }
 }
 
-/// The circle of a disk's edge that is seen in at least `share` of its directions.
+/// Returns the circle of a disk whose edge is seen in at least `share` of its directions.
 fn disk(lens: &Lens, edge: &DiskEdge, share: f64) -> Option<Circle> {
     let fit = edge.circle.filter(|_| edge.share >= share)?;
     let (centre, radius_px) = camera_circle(lens, fit.centre, fit.radius)?;
     Some(Circle { centre, raw_centre: centre, radius_px, points: edge.points })
 }
 
-/// The station's outline, where cross and marks say that it is.
+/// Finds the station's outline at the position predicted by cross and marks.
 pub(crate) fn station(
     view: &View<'_>,
     lens: &Lens,

@@ -1,4 +1,5 @@
-//! What is found in the field, and whether it has the structure that the scene must have (docking paper, section 2, step 3).
+//! Features of a field, and checks that they have the structure of the scene (docking paper, section 2, step
+//! 3).
 
 pub(super) mod candidates;
 pub(super) mod components;

@@ -1,4 +1,5 @@
-//! Which way up the target is: cross and marks look the same after a quarter turn, the docking unit does not.
+//! Upright orientation of the target. Cross and marks are unchanged by a quarter turn, the docking unit is
+//! not.
 
 use contract::docking::TargetModel;
 
@@ -8,30 +9,32 @@ use crate::docking::cross_and_circle::cross::CrossFit;
 use crate::docking::cross_and_circle::marks::Plane;
 use crate::docking::preprocessing::view::{Lens, View};
 
-/// What a field says of it.
+/// Evidence of one field for the target's orientation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Uprightness {
-    /// The docking unit is where it should be.
+    /// The docking unit is on its nominal side.
     Upright,
-    /// It is plainly seen on another side, and not where it should be.
+    /// The docking unit is clearly seen on another side, and not on its nominal side.
     Turned,
-    /// It is not in the field, or not seen.
+    /// The docking unit is outside the field or not seen.
     Unknown,
 }
 
-/// Share of its directions in which the docking unit's edge is seen at its place.
+/// Smallest share of directions in which the docking unit's edge must be seen on its nominal side.
 const SEEN: f64 = 0.4;
 
-/// The same for a place where it should not be: what else stands on the station has edges too.
+/// Smallest share of directions in which the docking unit's edge must be seen on another side. Higher than
+/// [`SEEN`], because other structures on the station have edges too.
 const SEEN_ELSEWHERE: f64 = 0.7;
 
-/// The same for an arc, whose edge the unit's own shadow may cover.
+/// Smallest share of directions for an arc on another side, whose edge the unit's shadow may cover.
 const SEEN_ARC: f64 = 0.5;
 
-/// Least share of its circle that must be in the image elsewhere: half of the half that lies towards the target.
+/// Smallest share of the circle on another side that must be in the image: half of the half that faces the
+/// target.
 const MIN_ARC: f64 = 0.15;
 
-/// What a field shows, `nominal` being what was found where the docking unit should be.
+/// Judges the orientation in a field. `nominal` is the edge found on the docking unit's nominal side.
 pub(crate) fn assess(
     view: &View<'_>,
     lens: &Lens,
@@ -53,22 +56,22 @@ pub(crate) fn assess(
     if is_elsewhere { Uprightness::Turned } else { Uprightness::Unknown }
 }
 
-/// Fields that outweigh any number of others.
+/// Number of votes that outweighs any number of contrary fields.
 const ENOUGH: i32 = 10;
 
-/// Longest time for which what was seen holds without being seen again, s.
+/// Longest time for which an orientation remains valid without new evidence, s.
 const MEMORY_S: f64 = 10.0;
 
-/// What the fields so far said: near the target, the docking unit is outside the image.
+/// Orientation by the fields so far. Kept because the docking unit is outside the image near the target.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Orientation {
-    /// Upright fields less turned ones, −[`ENOUGH`] to [`ENOUGH`].
+    /// Number of upright fields minus number of turned fields, −[`ENOUGH`] to [`ENOUGH`].
     votes: i32,
     time_s: Option<f64>,
 }
 
 impl Orientation {
-    /// Takes what a field of the target says; whether the target is to be taken for turned.
+    /// Adds the evidence of a field. Returns true if the target is considered turned.
     pub(crate) fn is_turned(&mut self, time_s: f64, seen: Uprightness) -> bool {
         if self.time_s.is_some_and(|before| !(0.0..=MEMORY_S).contains(&(time_s - before))) {
             *self = Self::default();

@@ -1,4 +1,5 @@
-//! Before the target is resolved: the station's outline from field to field, and the range from it alone.
+//! Station's outline before the target is resolved: tracking from field to field, and the range from the
+//! outline only.
 
 use contract::docking::{Circle, DockingSolution, Features, NoPose, TargetModel};
 
@@ -9,27 +10,28 @@ use crate::docking::preprocessing::histogram::Histogram;
 use crate::docking::preprocessing::region::Rectangle;
 use crate::docking::preprocessing::view::{Lens, View};
 
-/// A field whose hundredths differ by less than this many grey values is empty.
+/// Largest range of grey values, between the quantiles 0.01 and 0.999, of an empty field.
 const EMPTY_RANGE: f64 = 12.0;
 
-/// The circle of the marks, px, from which on a target that is not found is missing.
+/// Radius of the circle of the marks, px, from which on a target that is not found counts as missing.
 pub(crate) const RESOLVED_CIRCLE_PX: f64 = 15.0;
 
-/// The circle of the marks, px, from which on a target is looked for within an outline: a bar of the cross is then 1.5 px wide,
-/// less than a line of a field, and in fewer pixels a pose is that of noise.
+/// Radius of the circle of the marks, px, from which on a target is searched for within an outline. A bar of
+/// the cross is then 1.5 px wide, less than a line of a field; in fewer pixels a pose would be that of noise.
 pub(crate) const SMALLEST_CIRCLE_PX: f64 = 12.0;
 
-/// An outline that is followed is looked for anew in the whole field after this time, s: what was taken for it must not be so for
-/// ever.
+/// Time after which a tracked outline is searched for again in the whole field, s. Limits how long another
+/// object can be mistaken for the outline.
 const RENEW_S: f64 = 1.0;
 
-/// Radius of the circle of the marks when the station has this outline, px.
+/// Returns the radius of the circle of the marks for a station with this outline, px.
 pub(crate) fn mark_circle_px(target: &TargetModel, lens: &Lens, outline: &CircleFit) -> Option<f64> {
     let (range_m, _) = contour::range(&target.station, lens.focal_px(), outline.radius, 0.0)?;
     Some(lens.focal_px() * target.mark_circle_radius_m / range_m)
 }
 
-/// The range that an outline gives, or the reason why it gives none; what was seen goes to `features` and `region`.
+/// Returns the range by an outline, or the reason why there is none. Writes the outline to `features` and
+/// `region`.
 pub(crate) fn range(
     lens: &Lens,
     target: &TargetModel,
@@ -43,8 +45,8 @@ pub(crate) fn range(
         features.station = Some(Circle { centre, raw_centre: centre, radius_px, points: outline.points });
         *region = Rectangle::square(centre, radius_px);
     }
-    // A station that is nearer than the target can be resolved is something else, or hides its target. Farther away, what
-    // made a candidate inconsistent was none.
+    // An outline this large belongs to a station so near that its target can be resolved: it is another
+    // object, or hides its target. Farther away, an inconsistent candidate was not a target.
     let radius_px = outline.circle.radius;
     let resolved = RESOLVED_CIRCLE_PX / target.mark_circle_radius_m * target.station.radius_m;
     match contour::range(&target.station, lens.focal_px(), radius_px, outline.sigma_px()) {
@@ -55,32 +57,33 @@ pub(crate) fn range(
     }
 }
 
-/// Why there is nothing in a field without an outline. The thousandths hold a small target before an empty sky; a field is empty
-/// when they hold nothing.
+/// Returns the reason for the absence of a target in a field without an outline. The brightest thousandth
+/// holds a small target against an empty sky; when it holds nothing, the field is empty.
 pub(crate) fn no_outline_reason(view: &View<'_>, reason: NoPose) -> NoPose {
     let whole = Histogram::from_region(view, &Rectangle::ALL);
     let range = whole.quantile(0.999) - whole.quantile(0.01);
     if reason == NoPose::NoTarget && range < EMPTY_RANGE { NoPose::EmptyField } else { reason }
 }
 
-/// An outline in a field.
+/// Outline in a field.
 #[derive(Debug, Clone, Copy)]
 struct OutlineObservation {
     time_s: f64,
     camera: usize,
     circle: CircleFit,
-    /// When it was found in a whole field.
+    /// Time at which the outline was found in a whole field, s.
     found_s: f64,
 }
 
-/// The outline of the field before: far away it moves by less than a pixel a field.
+/// Outline of the previous field. Far away, it moves by less than a pixel per field.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct OutlineTrack {
     last: Option<OutlineObservation>,
 }
 
 impl OutlineTrack {
-    /// The outline about where it was; `None` when it is not there, or when it is time to look at the whole field.
+    /// Finds the outline near its last position. Returns `None` when it is not there, or when a search of the
+    /// whole field is due.
     pub(crate) fn follow(
         &mut self,
         view: &View<'_>,
@@ -99,7 +102,7 @@ impl OutlineTrack {
         Some(outline)
     }
 
-    /// Takes an outline that was found in a whole field.
+    /// Stores an outline that was found in a whole field.
     pub(crate) fn restart(&mut self, (time_s, camera): (f64, usize), outline: &StationOutline) {
         self.last = Some(OutlineObservation { time_s, camera, circle: outline.circle, found_s: time_s });
     }

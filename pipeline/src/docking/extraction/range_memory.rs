@@ -1,20 +1,20 @@
-//! Whether a range can be reached from those told before: what is near and lost is not far.
+//! Check that a range can be reached from earlier ones: a target that was near and is lost cannot be far.
 
-/// No approach is faster than this, m/s.
+/// Upper limit of the speed of any approach, m/s.
 const MAX_SPEED_M_S: f64 = 10.0;
 
-/// Part of the range by which two measurements of the same range may differ.
+/// Largest relative difference of two measurements of the same range.
 const MAX_STEP: f64 = 0.2;
 
-/// So many measurements that agree with each other outweigh any memory.
+/// Number of measurements in agreement that outweighs any memory.
 const ENOUGH: u32 = 10;
 
-/// A range that measurements have agreed on.
+/// Range on which measurements agree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct RangeHypothesis {
     time_s: f64,
     range_m: f64,
-    /// Measurements that agreed, up to [`ENOUGH`].
+    /// Number of measurements in agreement, up to [`ENOUGH`].
     support: u32,
 }
 
@@ -33,10 +33,11 @@ impl RangeHypothesis {
     }
 }
 
-/// The range that is believed, and one that contradicts it.
+/// Accepted range, and a contrary range that may replace it.
 ///
-/// A measurement that contradicts is refused until as many have contradicted alike as had agreed before: one wrong answer gives way
-/// to the next right one, and a range seen for long is not given up for a few wrong ones.
+/// A contradicting measurement is refused until as many measurements agree on the contrary range as had
+/// agreed on the accepted one. Thus one wrong measurement gives way to the next correct one, and a range seen
+/// for long is not given up for a few wrong ones.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RangeMemory {
     believed: Option<RangeHypothesis>,
@@ -44,10 +45,10 @@ pub(crate) struct RangeMemory {
 }
 
 impl RangeMemory {
-    /// Takes a measurement; whether it may be told.
+    /// Adds a measurement. Returns true if the measurement may be reported.
     pub(crate) fn admit(&mut self, time_s: f64, range_m: f64) -> bool {
         let Some(believed) = self.believed.as_mut().filter(|hypothesis| time_s >= hypothesis.time_s) else {
-            // Nothing was seen, or a sequence begins anew.
+            // Nothing was seen before, or a new sequence begins.
             *self = Self { believed: Some(RangeHypothesis::new(time_s, range_m)), contrary: None };
             return true;
         };
@@ -76,7 +77,7 @@ impl RangeMemory {
 mod tests {
     use super::*;
 
-    /// What is said of ranges a fiftieth of a second apart.
+    /// Admission of ranges a fiftieth of a second apart.
     fn admitted(ranges_m: &[f64]) -> Vec<bool> {
         let mut memory = RangeMemory::default();
         ranges_m.iter().enumerate().map(|(i, range_m)| memory.admit(0.02 * i as f64, *range_m)).collect()
@@ -106,7 +107,7 @@ mod tests {
         let mut memory = RangeMemory::default();
         assert!(memory.admit(10.0, 5.0) && memory.admit(10.02, 5.0));
         assert!(memory.admit(0.0, 400.0));
-        // What a minute lets the camera travel is no contradiction.
+        // A change of range that the camera can travel in a minute is no contradiction.
         assert!(memory.admit(60.0, 20.0));
     }
 }

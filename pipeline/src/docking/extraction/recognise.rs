@@ -1,4 +1,4 @@
-//! Recognition of the target in a field: the short way from a prediction, the long way from nothing.
+//! Recognition of the target in a field: by tracking from a prediction, or by a search without one.
 
 use contract::docking::{MarkUse, NoPose, TargetModel};
 use nalgebra::Vector2;
@@ -12,7 +12,7 @@ use crate::docking::cross_and_circle::marks::{MarkSearch, MarkShape, MarksFit, P
 use crate::docking::preprocessing::region::Prediction;
 use crate::docking::preprocessing::view::{Lens, Overview, View};
 
-/// Cross and marks of one target.
+/// Cross, marks and mark circle of one target.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TargetFeatures {
     pub(crate) cross: CrossFit,
@@ -21,13 +21,13 @@ pub(crate) struct TargetFeatures {
 }
 
 impl TargetFeatures {
-    /// Whether it is of the same target as another one.
+    /// Returns true if both sights are of the same target.
     fn repeats(&self, other: &Self) -> bool {
         let (one, two) = (&self.cross.seed, &other.cross.seed);
         (one.centre - two.centre).norm() <= one.half_length_px.min(two.half_length_px)
     }
 
-    /// Whether its cross is the one that is expected.
+    /// Returns true if the cross agrees with the expected one.
     fn is_near(&self, expected: &CrossSeed) -> bool {
         let seed = &self.cross.seed;
         let scale = seed.half_length_px / expected.half_length_px;
@@ -35,7 +35,7 @@ impl TargetFeatures {
     }
 }
 
-/// The circle of the marks, ideal image.
+/// Circle of the marks, ideal image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MarkCircle {
     pub(crate) raw_centre: Vector2<f64>,
@@ -44,7 +44,7 @@ pub(crate) struct MarkCircle {
     pub(crate) points: u32,
 }
 
-/// What recognition needs to know of a field.
+/// Inputs to the recognition in one field.
 pub(crate) struct Recognition<'a> {
     pub(crate) view: &'a View<'a>,
     pub(crate) lens: &'a Lens,
@@ -53,22 +53,23 @@ pub(crate) struct Recognition<'a> {
     pub(crate) config: &'a DockingConfig,
 }
 
-/// How far the marks may be from where the field before predicts them, as a share of their circle.
+/// Largest distance of the marks from their positions predicted by the previous field, as a share of the
+/// radius of their circle.
 const TRACKING_REACH: f64 = 0.04;
 
-/// How far the disk's centre is looked for from the cross's in a field of which nothing is known, as a share of the
-/// marks' circle: a parallax of some 15° and errors of the cross.
+/// Search radius for the disk's centre about the cross in a field without prior knowledge, as a share of the
+/// radius of the marks' circle: a parallax of some 15° and errors of the cross.
 const SEARCH_REACH: f64 = 0.32;
 
 impl Recognition<'_> {
-    /// The target about where it is predicted.
+    /// Finds the target near its predicted position.
     ///
     /// # Errors
-    /// The reason why it is not there.
+    /// The reason why the target is not there.
     pub(crate) fn track(&self, seed: &CrossSeed, plane: &Plane) -> Result<TargetFeatures, NoPose> {
         let cross = self.cross(seed).ok_or(NoPose::NoTarget)?;
         let start = Plane {
-            // What the prediction was wrong by for the cross it was wrong by for the disk.
+            // The prediction is assumed to have the same error for the disk as for the cross.
             centre: plane.centre + (cross.seed.centre - seed.centre),
             roll_rad: libm::atan(cross.seed.slope),
             ..*plane
@@ -77,12 +78,12 @@ impl Recognition<'_> {
         self.complete(cross, &start, reach, 0.02)
     }
 
-    /// The one target in the field; of several the one that is predicted.
+    /// Finds the one target in the field. If there are several, takes the predicted one.
     ///
-    /// The ways of finding candidates are taken one after the other, the quick ones first, until one of them has found a target.
+    /// The methods of finding candidates are tried in turn, fastest first, until one of them finds a target.
     ///
     /// # Errors
-    /// The reason why there is none, or not one.
+    /// The reason why there is no target, or more than one.
     pub(crate) fn search(
         &self,
         overview: &Overview,
@@ -96,10 +97,10 @@ impl Recognition<'_> {
         self.first_success(&ways, predicted)
     }
 
-    /// The one target within a station's outline, which says how large it must be.
+    /// Finds the one target within a station's outline, which determines the target's size.
     ///
     /// # Errors
-    /// The reason why there is none, or not one.
+    /// The reason why there is no target, or more than one.
     pub(crate) fn search_within(
         &self,
         overview: &Overview,
@@ -130,7 +131,7 @@ impl Recognition<'_> {
         Err(reason)
     }
 
-    /// Chooses by structure: the candidate that has a cross's bars and marks around it.
+    /// Selects by structure: the candidate with a cross's bars and with marks around it.
     fn examine(
         &self,
         found: Vec<Candidate>,
@@ -175,7 +176,7 @@ impl Recognition<'_> {
         cross::measure(self.view, self.lens, &self.model.cross, seed, self.config.min_contrast)
     }
 
-    /// The target of a candidate.
+    /// Returns the target at a candidate.
     fn target_at(&self, seed: &CrossSeed) -> Result<TargetFeatures, NoPose> {
         let cross = self.cross(seed).ok_or(NoPose::NoTarget)?;
         let (model, focal_px) = (self.model, self.lens.focal_px());
@@ -200,21 +201,22 @@ impl Recognition<'_> {
                 Ok(target_features)
             }
             Ok(_) => Err(NoPose::NoTarget),
-            // Without its marks a cross is any cross, unless its marks have no place in the image.
+            // A cross without marks is not specific to the target, unless its marks are outside the image.
             Err(NoPose::TooFewFeatures) => Err(NoPose::NoTarget),
             Err(NoPose::OutOfField) if radius_px < 0.2 * self.view.columns() as f64 => Err(NoPose::NoTarget),
             Err(why) => Err(why),
         }
     }
 
-    /// Fewest marks that tell a target from chance: half of those in the field, five at least.
+    /// Returns the smallest number of marks that distinguishes a target from chance: a third of those in the
+    /// field, at least five.
     fn least_marks(&self, target_features: &TargetFeatures) -> usize {
         let in_field = target_features.marks.marks.len() - target_features.marks.count(MarkUse::OutOfField);
-        // A shadow takes some; chance does not bring a third of them.
+        // A shadow hides some marks; chance does not produce a third of them.
         in_field.div_ceil(3).max(self_check::MIN_MARKS_TO_FIND)
     }
 
-    /// Marks, circle and checks around a cross.
+    /// Adds marks, circle and checks to a cross.
     fn complete(
         &self,
         cross: CrossFit,
@@ -252,8 +254,8 @@ impl Recognition<'_> {
         Ok(TargetFeatures { cross, marks, circle })
     }
 
-    /// The circle through the marks' centroids; where those stand on less than half of it, the circle of the plane that
-    /// their whole arrangement fixes.
+    /// Returns the circle through the marks' centroids. Where the used marks cover less than half of it,
+    /// returns the circle of the plane fitted to all used marks.
     fn circle(&self, marks: &MarksFit) -> MarkCircle {
         let r = self.model.mark_circle_radius_m;
         let on_it: Vec<(Vector2<f64>, [f64; 2])> = marks
@@ -288,7 +290,7 @@ impl Recognition<'_> {
     }
 }
 
-/// The largest angle without a mark, rad.
+/// Returns the largest angle without a mark, rad.
 fn largest_gap(mut angles: Vec<f64>) -> f64 {
     angles.sort_by(f64::total_cmp);
     let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return std::f64::consts::TAU };

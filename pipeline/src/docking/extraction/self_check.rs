@@ -1,4 +1,4 @@
-//! Whether what was found has the structure that the scene must have.
+//! Checks that the recognised features have the structure of the scene.
 
 use contract::docking::{FailedCheck, MarkUse, NoPose, PoseEstimate, TargetModel};
 
@@ -12,21 +12,22 @@ use crate::docking::pose::model_fit::FitResult;
 use crate::docking::preprocessing::region::Prediction;
 use crate::docking::preprocessing::view::{Lens, View};
 
-/// Fewest good marks that tell a target from something else in a field of which nothing is known.
+/// Smallest number of good marks that distinguishes a target from another object in a field without prior
+/// knowledge.
 pub(crate) const MIN_MARKS_TO_FIND: usize = 5;
 
-/// Fewest good marks that fix the disk's place and size.
+/// Smallest number of good marks that determines the disk's position and size.
 pub(crate) const MIN_MARKS_TO_MEASURE: usize = 3;
 
-/// Largest distance between cross and disk's centre, as a share of the marks' circle: farther from the target's axis than
-/// some 20° the marks are hidden or foreshortened beyond recognition.
+/// Largest distance between cross and disk's centre, as a share of the radius of the marks' circle. More than
+/// some 20° from the target's axis, the marks are hidden or too foreshortened to be recognised.
 const MAX_PARALLAX: f64 = 0.5;
 
-/// Cross and marks against each other.
+/// Checks cross and marks against each other.
 ///
 /// # Errors
-/// [`NoPose::Inconsistent`] when sizes, places or angles contradict the target's model, [`NoPose::TooFewFeatures`] and
-/// [`NoPose::OutOfField`] when too few marks are left.
+/// [`NoPose::Inconsistent`] when sizes, positions or angles contradict the target's model,
+/// [`NoPose::TooFewFeatures`] and [`NoPose::OutOfField`] when too few marks are left.
 pub(crate) fn cross_and_marks(
     model: &TargetModel,
     focal_px: f64,
@@ -46,17 +47,17 @@ pub(crate) fn cross_and_marks(
     let radius_px = model.mark_circle_radius_m * plane.scale_px_m;
     // The cross is inside the circle of the marks.
     let inside = (cross.seed.centre - plane.centre).norm() < MAX_PARALLAX * radius_px * d3 / depth;
-    // The bars and the circle have the sizes of one target at one distance.
+    // The sizes of bars and circle are those of one target at one distance.
     let expected_px = focal_px * model.cross.half_length_m / depth;
     let error_px = (cross.seed.half_length_px - expected_px).abs();
     let sizes = depth > 0.0 && error_px < 0.08 * expected_px + 1.2;
-    // The marks stand at the angles that the bars say.
+    // The marks are at the angles that the direction of the bars predicts.
     let turn = (libm::atan(cross.seed.slope) - plane.roll_rad).abs();
     let angles = turn < 0.03 + 1.5 / radius_px;
     if inside && sizes && angles { Ok(()) } else { Err(NoPose::Inconsistent) }
 }
 
-/// Looks for the docking unit's disk where the target says that it is.
+/// Searches for the docking unit's disk on the given side of the target.
 pub(crate) fn docking_unit(
     view: &View<'_>,
     lens: &Lens,
@@ -70,11 +71,11 @@ pub(crate) fn docking_unit(
     docking_unit::find(view, lens, predicted, (0.12 * cross.levels.contrast()).max(8.0))
 }
 
-/// Largest standard deviation of the range as a part of it: three of them are 5 %.
+/// Largest standard deviation of the range relative to the range: 3 σ are 5 %.
 const MAX_RANGE_SIGMA: f64 = 1.0 / 60.0;
 
-/// Whether the station stands about a small target. In a few pixels a cross with marks is found in anything that has
-/// strokes: letters of an overlay, tiles of a thermal blanket.
+/// Checks that a small target is surrounded by the station. In a few pixels, a cross with marks can be found
+/// in anything made of strokes: letters of an overlay, tiles of a thermal blanket.
 ///
 /// # Errors
 /// [`NoPose::NoTarget`] when the station's outline is not there, or mostly outside the image.
@@ -97,7 +98,8 @@ pub(crate) fn on_station(
     }
 }
 
-/// The outline of the station about a small target, where most of it is in the image.
+/// Measures the station's outline around a small target. Returns `None` unless most of the outline is in the
+/// image.
 pub(crate) fn outline(
     view: &View<'_>,
     lens: &Lens,
@@ -114,12 +116,13 @@ pub(crate) fn outline(
     contour::measure_at(view, lens, predicted, MIN_OUTLINE_STEP)
 }
 
-/// Whether the range of a small target is known at all, and is the one that the station's outline has. A pose of few pixels may be that of
-/// noise about a cross.
+/// Checks that the range of a small target is determined and agrees with the range by the station's outline.
+/// A pose from few pixels may be that of noise around a cross.
 ///
 /// # Errors
-/// [`NoPose::TooFewFeatures`] when the range's standard deviation is larger than a sixtieth of it,
-/// [`NoPose::Inconsistent`] when the two ranges differ by more than three times their standard deviations.
+/// [`NoPose::TooFewFeatures`] when the range's standard deviation is larger than a sixtieth of the range,
+/// [`NoPose::Inconsistent`] when the two ranges differ by more than three times the standard deviation of
+/// their difference.
 pub(crate) fn range(
     lens: &Lens,
     model: &TargetModel,
@@ -142,15 +145,16 @@ pub(crate) fn range(
     if agrees { Ok(()) } else { Err(NoPose::Inconsistent) }
 }
 
-/// What is of two scenes: a difference of range as a part of it, and a parallax of the cross over the disk, px.
+/// Limits beyond which two results are of different scenes: relative difference of range, and difference of
+/// the cross's parallax over the disk, px.
 const OTHER_RANGE: f64 = 0.08;
 const OTHER_PARALLAX_PX: f64 = 2.5;
 
-/// A blur, px, at the end of what the best estimator knows.
+/// Blur near the upper limit of the best estimator, px.
 const MAX_BLUR_PX: f64 = 4.9;
 
-/// Whether the best estimator's pose is to be doubted: it needs a blur that it does not know, or is of another scene than cross and circle
-/// by themselves.
+/// Returns a doubt if the best estimator's pose needs a blur beyond its limit, or contradicts the pose from
+/// cross and circle only.
 pub(crate) fn fit(
     model: &TargetModel,
     focal_px: f64,
@@ -168,23 +172,24 @@ pub(crate) fn fit(
     (!(range && cross)).then_some(FailedCheck::Features)
 }
 
-/// Largest standard deviation of pitch and yaw, rad: two and a half of them are 5°, beyond which a pose is that of something else.
+/// Largest standard deviation of pitch and yaw, rad: 2.5 σ are 5°. A larger difference means a pose of
+/// another object.
 const MAX_TILT_SIGMA: f64 = 2.0 / 180.0 * std::f64::consts::PI;
 
-/// Whether a pose is to be doubted because by its own covariance it may as well be a wrong one.
+/// Returns a doubt if a pose may be wrong by its own covariance.
 pub(crate) fn tilt(best: &PoseEstimate) -> Option<FailedCheck> {
     let variance = best.covariance[(3, 3)].max(best.covariance[(4, 4)]);
     (variance > MAX_TILT_SIGMA * MAX_TILT_SIGMA).then_some(FailedCheck::Residuals)
 }
 
-/// Radius of the circle of the marks, px, up to which a target must have its station around it.
+/// Radius of the circle of the marks, px, up to which a target must be surrounded by its station.
 const SMALL_CIRCLE_PX: f64 = 18.0;
 
-/// Least height of the station's edge, grey values.
+/// Smallest height of the station's edge, grey values.
 const MIN_OUTLINE_STEP: f64 = 8.0;
 
-/// Whether so much of the predicted target lies outside the image that cross and circle cannot be measured: most of the marks,
-/// or an end of a bar.
+/// Returns true if too much of the predicted target is outside the image to measure cross and circle: most of
+/// the marks, or one end of a bar.
 pub(crate) fn leaves_field(
     view: &View<'_>,
     lens: &Lens,

@@ -1,28 +1,28 @@
-//! Where bright disks may be: each edge votes for the centres of the circles that it may belong to, bright inside (Kimme,
-//! Ballard and Sklansky 1975).
+//! Proposals of bright disks: each edge votes for the centres of the circles that it may belong to, bright
+//! inside (Kimme, Ballard and Sklansky 1975).
 
 use imageproc::image::GrayImage;
 use nalgebra::Vector2;
 
-/// Smallest radius that is looked for, overview pixels.
+/// Smallest radius of the search, overview pixels.
 const MIN_RADIUS_PX: f64 = 4.5;
 
-/// From one radius of the search to the next.
+/// Ratio of successive radii of the search.
 const RADIUS_STEP: f64 = 1.08;
 
-/// Least votes over a circle's circumference.
+/// Smallest number of votes, relative to the circle's circumference in pixels.
 const MIN_VOTES: f64 = 0.3;
 
-/// A circle that edges voted for, overview pixels.
+/// Circle proposed by votes of edges, overview pixels.
 pub(crate) struct Proposal {
     pub(crate) x: f64,
     pub(crate) y: f64,
     pub(crate) radius: f64,
-    /// Votes over the circle's circumference.
+    /// Number of votes divided by the circle's circumference in pixels.
     pub(crate) share: f64,
 }
 
-/// The best circles of each radius, bright inside, by the edges of at least `min_step` grey values.
+/// Returns the best circles of each radius, bright inside, by the edges of at least `min_step` grey values.
 pub(crate) fn propose(grey: &GrayImage, min_step: f64) -> Vec<Proposal> {
     let (width, height) = (grey.width() as usize, grey.height() as usize);
     if width < 16 || height < 16 {
@@ -33,7 +33,8 @@ pub(crate) fn propose(grey: &GrayImage, min_step: f64) -> Vec<Proposal> {
     let mut radius = MIN_RADIUS_PX;
     let mut votes: Vec<u16> = Vec::new();
     while radius < 0.5 * width.min(height) as f64 {
-        // The direction of an edge is known to a tenth or so: centres of large circles scatter.
+        // The direction of an edge is accurate to about a tenth, so the votes for centres of large circles
+        // scatter.
         let cells_px = 1.0 / (0.10 * radius).max(1.0);
         let (columns, rows) =
             ((width as f64 * cells_px) as usize + 1, (height as f64 * cells_px) as usize + 1);
@@ -49,7 +50,8 @@ pub(crate) fn propose(grey: &GrayImage, min_step: f64) -> Vec<Proposal> {
         }
         let circumference = std::f64::consts::TAU * radius;
         let few = (MIN_VOTES * circumference) as u16;
-        // Two by two cells, so that a centre on the border between cells is no worse than one within.
+        // Sums two by two cells, so a centre on the border between cells gets as many votes as a centre
+        // within a cell.
         let mut best: Vec<Proposal> = Vec::new();
         for (row, pair) in votes.windows(2 * columns).step_by(columns).enumerate() {
             let (above, below) = pair.split_at(columns);
@@ -73,7 +75,7 @@ pub(crate) fn propose(grey: &GrayImage, min_step: f64) -> Vec<Proposal> {
     found
 }
 
-/// A place on an edge, overview pixels.
+/// Edge pixel, overview pixels.
 struct Edge {
     x: f64,
     y: f64,
@@ -81,7 +83,7 @@ struct Edge {
     inwards: Vector2<f64>,
 }
 
-/// The places of steep gradient (Sobel).
+/// Returns the pixels of steep gradient (Sobel).
 fn edges(grey: &GrayImage, min_step: f64) -> Vec<Edge> {
     let (width, height) = (grey.width() as usize, grey.height() as usize);
     let pixels = grey.as_raw();
@@ -92,7 +94,7 @@ fn edges(grey: &GrayImage, min_step: f64) -> Vec<Edge> {
             let gx = at(2, 0) + 2 * at(2, 1) + at(2, 2) - at(0, 0) - 2 * at(0, 1) - at(0, 2);
             let gy = at(0, 2) + 2 * at(1, 2) + at(2, 2) - at(0, 0) - 2 * at(1, 0) - at(2, 0);
             let square = f64::from(gx * gx + gy * gy);
-            // A step of this height has four times its height in Sobel's sum.
+            // A step has four times its height in Sobel's sum.
             if square >= 16.0 * min_step * min_step {
                 let length = square.sqrt();
                 let inwards = Vector2::new(f64::from(gx), f64::from(gy)) / length;

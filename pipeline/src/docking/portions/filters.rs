@@ -1,10 +1,12 @@
-//! The motion by three filters of one state that differ in how hard the camera accelerates, and a probability of each.
+//! Motion by three filters of one state that differ in the camera's acceleration, with a probability for
+//! each.
 //!
-//! State: (d, φ), its rates and accelerations, and by which part of itself the station's outline is seen too large. An acceleration is a
-//! random function of time with a standard deviation σ and a memory τ (Singer 1970); the filters have σ, a fifth and a thirtieth
-//! of it, and exchange their estimates as the probabilities of a change between them say (interacting multiple models: Blom &
-//! Bar-Shalom 1988). A hold or a glide is followed with a small σ, a braking ship with a large one, and the covariance holds the doubt
-//! which of them it is.
+//! State: (d, φ), its rates and accelerations, and the relative scale error of the station's outline. An
+//! acceleration is a random function of time with a standard deviation σ and a memory τ (Singer 1970). The
+//! filters have σ, 0.2 σ and 0.03 σ, and exchange their estimates according to the probabilities of a change
+//! between them (interacting multiple models: Blom & Bar-Shalom 1988). A hold or a glide is followed with a
+//! small σ, a braking ship with a large one, and the covariance includes the uncertainty about which filter
+//! applies.
 
 use contract::docking::{Motion, PoseEstimate};
 use contract::{OutOfRange, bounds};
@@ -15,40 +17,42 @@ use serde::{Deserialize, Serialize};
 use crate::docking::pose::geometry::{to_pose, to_vector};
 
 const SIZE: usize = 19;
-/// Place of the outline's scale in the state.
+/// Index of the outline's scale error in the state.
 const SCALE: usize = 18;
 type State = SVector<f64, SIZE>;
 type Square = SMatrix<f64, SIZE, SIZE>;
 
-/// How the camera may move.
+/// Limits of the camera's motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MotionConfig {
-    /// Standard deviation of each component of acceleration while the ship manoeuvres, m/s², above 0 to 100: a change of speed by
-    /// 0.8 m/s within 3 s.
+    /// Standard deviation of each component of acceleration while the ship manoeuvres, m/s², above 0 to 100:
+    /// a change of speed by 0.8 m/s within 3 s.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub acceleration_m_s2: f64,
-    /// The same of rotation, degrees/s², above 0 to 100.
+    /// Standard deviation of each component of angular acceleration while the ship manoeuvres, degrees/s²,
+    /// above 0 to 100.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub angular_acceleration_deg_s2: f64,
-    /// Memory of an acceleration, s, 0.1 to 1000.
+    /// Correlation time of an acceleration, s, 0.1 to 1000.
     #[schemars(range(min = 0.1, max = 1000))]
     pub memory_s: f64,
-    /// Standard deviation of each component of velocity before anything is measured, m/s, above 0 to 100; no motion is reported
-    /// whose range rate is above three of it.
+    /// Standard deviation of each component of velocity before any measurement, m/s, above 0 to 100. A motion
+    /// whose speed exceeds three standard deviations is not reported.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub speed_m_s: f64,
-    /// The same of rotation, degrees/s, above 0 to 100.
+    /// Standard deviation of each component of angular velocity before any measurement, degrees/s, above 0 to
+    /// 100.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub rotation_deg_s: f64,
-    /// A field is left out when its pose is off the motion by more than this normalised square (chi-square of 6 degrees of
-    /// freedom), above 0 to 1e12.
+    /// Largest normalised square of the difference between a field's pose and the motion (chi-square of 6
+    /// degrees of freedom), above 0 to 1e12. Fields with a larger one are left out.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e12))]
     pub field_gate: f64,
 }
 
 impl Default for MotionConfig {
-    /// A cargo ship that docks; a gate that noise passes once in 10⁷ fields.
+    /// Returns the values for a docking cargo ship, with a gate that noise exceeds once in 10⁷ fields.
     fn default() -> Self {
         Self {
             acceleration_m_s2: 0.3,
@@ -65,45 +69,47 @@ impl MotionConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first number outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "motion")
     }
 }
 
-/// Accelerations of the filters, as parts of the configured one.
+/// Accelerations of the filters, relative to the configured one.
 const MODES: [f64; 3] = [1.0, 0.2, 0.03];
 
-/// Mean time after which one filter's motion gives way to another's, s.
+/// Mean time between changes from one filter's motion to another's, s.
 const CHANGE_S: f64 = 5.0;
 
-/// By which part of itself the radius of a station's outline may be off, one standard deviation, and by how much of that it changes within a
-/// second: a rim that is brighter than the face, a shadow on it, what shows behind it.
+/// Relative error of the radius of a station's outline, one standard deviation, and the change of this error
+/// within a second. Causes: a rim that is brighter than the face, a shadow on it, structure visible behind
+/// it.
 const OUTLINE_SCALE: f64 = 0.01;
 const OUTLINE_DRIFT: f64 = 2e-4;
 
-/// Standard deviations of the lateral offset, as a part of the range, and of the attitude, rad, before any pose is measured.
+/// Standard deviations of the lateral offset, relative to the range, and of the attitude, rad, before any
+/// pose is measured.
 const PRIOR_OFFSET_SHARE: f64 = 0.2;
 const PRIOR_ANGLE_RAD: f64 = 0.2;
 
-/// The range by a station's outline.
+/// Range by a station's outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::docking) struct OutlineRange {
     /// d3, m.
     pub(in crate::docking) range_m: f64,
-    /// Its standard deviation from field to field, m: without what errs alike for long.
+    /// Standard deviation of the range from field to field, m, without errors common to many fields.
     pub(in crate::docking) sigma_m: f64,
 }
 
-/// Longest step of a prediction, s: accelerations fade within some of them.
+/// Longest step of a prediction, s. Accelerations fade within some of these steps.
 const STEP_S: f64 = 0.5;
 
-/// The filters at a moment.
+/// State of the filters at one time.
 #[derive(Debug, Clone)]
 pub(super) struct Track {
     pub(super) time_s: f64,
     modes: [Mode; MODES.len()],
-    /// What errs alike in the fields of seconds: added to what the filters say.
+    /// Covariance of the errors common to the fields of several seconds, added to that of the filters.
     pub(super) common: Matrix6<f64>,
 }
 
@@ -149,7 +155,7 @@ impl Track {
         }
     }
 
-    /// From a station's outline alone: nothing is known but the range.
+    /// Begins from a station's outline only, which determines only the range.
     pub(super) fn begin_at_range(time_s: f64, range: &OutlineRange, config: &MotionConfig) -> Self {
         let (position, angle) = (PRIOR_OFFSET_SHARE * range.range_m, PRIOR_ANGLE_RAD);
         let sigma = Vector6::new(position, position, position, angle, angle, angle);
@@ -160,8 +166,8 @@ impl Track {
         track
     }
 
-    /// Each filter begins from all of them, weighted by how probably it follows on each. A change is a thruster that is switched on or off: the
-    /// acceleration begins anew.
+    /// Mixes the filters: each begins from all of them, weighted by the probability of a transition. A
+    /// transition is a thruster that is switched on or off, so the acceleration begins anew.
     fn mix(&mut self, step_s: f64, config: &MotionConfig) {
         let change = 1.0 - libm::exp(-step_s / CHANGE_S);
         let others = (MODES.len() - 1) as f64;
@@ -188,14 +194,16 @@ impl Track {
         }
     }
 
-    /// The smallest normalised square by which a pose is off any filter.
+    /// Returns the smallest normalised square, over the filters, of the difference between a pose and the
+    /// prediction.
     pub(super) fn least_square(&self, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> Option<f64> {
         let squares =
             self.modes.iter().map(|mode| Some(Innovation::from_pose(mode, measured, noise)?.square));
         squares.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::min)
     }
 
-    /// The same of the range from a station's outline.
+    /// Returns the smallest normalised square, over the filters, of the difference between the range by a
+    /// station's outline and the prediction.
     pub(super) fn least_square_of_range(&self, range: &OutlineRange) -> f64 {
         self.modes
             .iter()
@@ -203,7 +211,7 @@ impl Track {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether it could be done.
+    /// Updates the filters with a measured pose. Returns true on success.
     pub(super) fn update(&mut self, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> bool {
         let mut logs = [0.0; MODES.len()];
         for (mode, log) in self.modes.iter_mut().zip(&mut logs) {
@@ -214,7 +222,7 @@ impl Track {
         self.update_probabilities(logs)
     }
 
-    /// Whether it could be done.
+    /// Updates the filters with a range by a station's outline. Returns true on success.
     pub(super) fn update_range(&mut self, range: &OutlineRange) -> bool {
         let mut logs = [0.0; MODES.len()];
         for (mode, log) in self.modes.iter_mut().zip(&mut logs) {
@@ -225,7 +233,8 @@ impl Track {
         self.update_probabilities(logs)
     }
 
-    /// Makes the filters as probable as they predicted well; whether all of them are numbers.
+    /// Updates the filters' probabilities by the likelihoods of their predictions. Returns true if all states
+    /// are finite.
     fn update_probabilities(&mut self, logs: [f64; MODES.len()]) -> bool {
         let mut weights = logs;
         for (weight, mode) in weights.iter_mut().zip(&self.modes) {
@@ -243,7 +252,7 @@ impl Track {
         self.modes.iter().all(|mode| mode.state.iter().all(|v| v.is_finite()))
     }
 
-    /// Expected products of the rates of the pose.
+    /// Returns the expected products of the rates of the pose.
     pub(super) fn squares_of_rates(&self) -> Matrix6<f64> {
         let of_mode = |mode: &Mode| {
             let rate = mode.state.fixed_rows::<6>(6);
@@ -252,7 +261,8 @@ impl Track {
         self.modes.iter().map(of_mode).sum()
     }
 
-    /// The mean of the filters and the covariance about it, with what the fields of seconds have in common.
+    /// Returns the mean of the filters and its covariance, including the errors common to the fields of
+    /// several seconds.
     pub(super) fn motion(&self, fields: u32) -> Motion {
         let state: State = self.modes.iter().map(|mode| mode.state * mode.probability).sum();
         let mut covariance: Square = self
@@ -289,10 +299,11 @@ impl Track {
     }
 }
 
-/// Time over which what the fields have in common changes, s: an edge passes from pixel to pixel, a shadow over a mark.
+/// Time over which the common errors of fields change, s: an edge passes from pixel to pixel, a shadow over a
+/// mark.
 const COMMON_S: f64 = 3.0;
 
-/// Standard deviations of the rate and of the acceleration along an axis of the pose.
+/// Returns the standard deviations of the rate and of the acceleration along an axis of the pose.
 fn spread(config: &MotionConfig, axis: usize) -> (f64, f64) {
     match axis {
         0..3 => (config.speed_m_s, config.acceleration_m_s2),
@@ -300,14 +311,14 @@ fn spread(config: &MotionConfig, axis: usize) -> (f64, f64) {
     }
 }
 
-/// The same of [`Track::squares_of_rates`] where nothing is measured.
+/// Returns the expected products of the rates, as [`Track::squares_of_rates`], before any measurement.
 pub(super) fn unknown_rates(config: &MotionConfig) -> Matrix6<f64> {
     let rates = Vector6::from_fn(|axis, _| spread(config, axis).0);
     Matrix6::from_diagonal(&rates.component_mul(&rates))
 }
 
 impl Mode {
-    /// With accelerations of which nothing is known but their size.
+    /// Returns the filter with its accelerations reset to zero mean and their standard deviation.
     fn switched(&self, part: f64, config: &MotionConfig) -> Self {
         let mut switched = self.clone();
         for axis in 0..6 {
@@ -323,7 +334,7 @@ impl Mode {
 
     fn predict(&mut self, step_s: f64, part: f64, config: &MotionConfig) {
         let tau_s = config.memory_s;
-        // How an acceleration `s` earlier has moved place, rate and acceleration since.
+        // Effect of an acceleration `s` earlier on position, rate and acceleration now.
         let effect = |s: f64| {
             let x = s / tau_s;
             let faded = libm::exp(-x);
@@ -340,7 +351,7 @@ impl Mode {
         self.state = by * self.state;
         self.covariance = by * self.covariance * by.transpose();
         self.covariance[(SCALE, SCALE)] += OUTLINE_DRIFT * OUTLINE_DRIFT * step_s;
-        // ∫ effect effectᵀ ds by Gauss and Legendre's four points.
+        // ∫ effect effectᵀ ds by four-point Gauss–Legendre quadrature.
         const POINTS: [(f64, f64); 4] = [
             (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
             (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
@@ -368,7 +379,7 @@ impl Mode {
     }
 }
 
-/// A measured pose less a filter's.
+/// Difference between a measured pose and a filter's.
 struct Innovation {
     off: Vector6<f64>,
     noise: Matrix6<f64>,
@@ -381,7 +392,7 @@ impl Innovation {
     fn from_pose(mode: &Mode, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> Option<Self> {
         let off = measured - mode.state.fixed_rows::<6>(0);
         let covariance: Matrix6<f64> = mode.covariance.fixed_view::<6, 6>(0, 0) + noise;
-        // Metres beside radians: scaled to a unit diagonal first.
+        // Metres and radians differ in scale, so the matrix is first scaled to a unit diagonal.
         let scale = covariance.diagonal().map(|variance| 1.0 / variance.sqrt());
         let factor = Cholesky::new(Matrix6::from_fn(|i, j| covariance[(i, j)] * scale[i] * scale[j]))?;
         let diagonal = factor.l_dirty().diagonal();
@@ -403,7 +414,8 @@ impl Innovation {
     fn update(&self, mode: &mut Mode) {
         let gain: SMatrix<f64, SIZE, 6> = mode.covariance.fixed_columns::<6>(0) * self.inverse;
         mode.state += gain * self.off;
-        // Joseph's form: what is left stays a covariance, however much more is measured than was known.
+        // Joseph's form: the result remains a valid covariance even if the measurement is much more accurate
+        // than the prior.
         let mut kept = Square::identity();
         {
             let mut columns = kept.fixed_columns_mut::<6>(0);
@@ -414,10 +426,10 @@ impl Innovation {
     }
 }
 
-/// The range from a station's outline less a filter's.
+/// Difference between the range by a station's outline and a filter's.
 struct RangeInnovation {
     off_m: f64,
-    /// The range by the state.
+    /// Derivative of the range with respect to the state.
     by_state: State,
     variance: f64,
 }

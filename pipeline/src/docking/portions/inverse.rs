@@ -1,9 +1,10 @@
-//! Inverses of information.
+//! Inverses of information matrices.
 
 use nalgebra::{Cholesky, Const, DimMin, SMatrix};
 
-/// Inverse of a symmetric positive definite matrix whose rows have units of their own: scaled to a unit diagonal first, so
-/// that metres beside radians cost no digits. `None` when it is singular.
+/// Returns the inverse of a symmetric positive definite matrix whose rows have different units. The matrix is
+/// first scaled to a unit diagonal, so no digits are lost to metres and radians. Returns `None` when it is
+/// singular.
 pub(in crate::docking) fn inverse<const N: usize>(matrix: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,

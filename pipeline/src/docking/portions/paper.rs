@@ -14,19 +14,20 @@ use crate::docking::pose::paper_pose::{PaperMeasurement, PaperTarget};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PaperPortionConfig {
-    /// w1, w2, w3: weights of the squared differences of Xc − Xo, Yc − Yo and R, each above 0 to 1e12.
+    /// Weights w1, w2, w3 of the squared differences of Xc − Xo, Yc − Yo and R, each above 0 to 1e12.
     #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 1e12 }))]
     pub weights: [f64; 3],
-    /// q: what is left of the weight of a portion's position one portion later, 0 to 1.
+    /// Factor q by which the weight of a portion's position decreases per portion, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub forgetting_position: f64,
-    /// q': the same for the attitude, 0 to 1.
+    /// Factor q' by which the weight of a portion's attitude decreases per portion, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub forgetting_attitude: f64,
 }
 
 impl Default for PaperPortionConfig {
-    /// Equal weights; the figures of the forgetting are assumed (the paper gives none): five portions, about a second.
+    /// Returns equal weights. The forgetting factors are assumed, because the paper gives none: five
+    /// portions, about a second.
     fn default() -> Self {
         Self { weights: [1.0; 3], forgetting_position: 0.8, forgetting_attitude: 0.8 }
     }
@@ -36,45 +37,48 @@ impl PaperPortionConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first number outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "paper_portions")
     }
 }
 
-/// Fields below which a portion says nothing: two make a line and leave nothing to judge it by.
+/// Smallest number of fields in a portion that determines a motion: two define a line but leave no residuals
+/// to judge it by.
 const LEAST_FIELDS: usize = 3;
 
 const MAX_STEPS: usize = 30;
 
-/// Gauss–Newton has converged when a step is this small a part of the range.
+/// Step relative to the range below which Gauss–Newton has converged.
 const CONVERGED: f64 = 1e-12;
 
-/// The motion at the end of a portion, time counted from there, and the normal matrices that the next one inherits.
+/// Motion at the end of a portion, with time counted from there, and the normal matrices passed to the next
+/// portion.
 #[derive(Debug, Clone)]
 struct PortionState {
     time_s: f64,
     /// (d1, d2, d3, d1', d2', d3').
     z: Vector6<f64>,
     normal: Matrix6<f64>,
-    /// φi and φi'.
+    /// φi and φi' of each axis i.
     v: [Vector2<f64>; 3],
     normal_attitude: Matrix2<f64>,
 }
 
-/// Stage two: three regressions with one normal matrix.
+/// Result of stage two: three regressions with one normal matrix.
 struct Attitude {
     v: [Vector2<f64>; 3],
     normal: Matrix2<f64>,
-    /// Sum of squares of each.
+    /// Sum of squared residuals of each regression.
     squares: [f64; 3],
 }
 
-/// Portions by the paper's method, one after the other.
+/// Successive portions by the paper's method.
 ///
 /// σ_n is as printed: Ψ_n/(3 (K_n − K_{n−1}) − 6) also for n > 1, where Ψ_n has six terms of the prior and so
-/// 3 (K_n − K_{n−1}) degrees of freedom; for portions of 10 fields it is about 12 % high (√(30/24)). Likewise the
-/// attitude. B_n⁻¹ as the covariance also takes the down-weighted prior for an independent measurement of that weight.
+/// 3 (K_n − K_{n−1}) degrees of freedom; for portions of 10 fields it is about 12 % high (√(30/24)). This
+/// also applies to the attitude. B_n⁻¹ as the covariance also treats the down-weighted prior as an
+/// independent measurement of that weight.
 #[derive(Debug, Clone)]
 pub struct PaperPortions {
     config: PaperPortionConfig,
@@ -83,7 +87,7 @@ pub struct PaperPortions {
 }
 
 impl PaperPortions {
-    /// No portion yet.
+    /// Creates the method without any portion.
     ///
     /// # Errors
     /// Those of [`PaperPortionConfig::check`].
@@ -92,8 +96,8 @@ impl PaperPortions {
         Ok(Self { config, target, last: None })
     }
 
-    /// Ends a portion with the fields that were measured in it, in order: their times (s) and measurements. `None` when
-    /// they do not determine a motion; what was known before then stays the prior.
+    /// Ends a portion with its measured fields in order of time: times (s) and measurements. Returns `None`
+    /// when the fields do not determine a motion; the previous prior is then kept.
     pub fn end(&mut self, fields: &[(f64, PaperMeasurement)]) -> Option<Motion> {
         let time_s = fields.last()?.0;
         if fields.len() < LEAST_FIELDS {
@@ -131,7 +135,7 @@ impl PaperPortions {
         })
     }
 
-    /// Stage one: z, its normal matrix B and Ψ.
+    /// Stage one: returns z, its normal matrix B and Ψ.
     fn position(
         &self,
         fields: &[(f64, PaperMeasurement)],
@@ -157,7 +161,7 @@ impl PaperPortions {
         Some((z, normal, psi))
     }
 
-    /// B, the step's right-hand side and Ψ at z.
+    /// Returns B, the step's right-hand side and Ψ at z.
     fn normal_equations(
         &self,
         fields: &[(f64, PaperMeasurement)],
@@ -190,7 +194,7 @@ impl PaperPortions {
         Some((normal, gradient, psi))
     }
 
-    /// The three terms of A_k, their derivatives with respect to d, and their weights.
+    /// Returns the three terms of A_k, their derivatives with respect to d, and their weights.
     fn residuals(&self, m: &PaperMeasurement, d: &Vector3<f64>) -> [(f64, Vector3<f64>, f64); 3] {
         let (f, b, r) = (m.focal_px, self.target.height_m, self.target.radius_m);
         let [w1, w2, w3] = self.config.weights;
@@ -204,7 +208,7 @@ impl PaperPortions {
         ]
     }
 
-    /// Lines through the positions of the single fields.
+    /// Returns lines fitted to the positions of the single fields.
     fn first_guess(&self, fields: &[(f64, PaperMeasurement)], time_s: f64) -> Option<Vector6<f64>> {
         let (mut normal, mut sums) = (Matrix2::zeros(), [Vector2::zeros(); 3]);
         for (at_s, measured) in fields {
@@ -220,7 +224,7 @@ impl PaperPortions {
         Some(Vector6::new(x.x, y.x, z.x, x.y, y.y, z.y))
     }
 
-    /// Stage two.
+    /// Stage two: attitude by three regressions.
     fn attitude(
         &self,
         fields: &[(f64, PaperMeasurement)],
@@ -260,7 +264,7 @@ impl PaperPortions {
     }
 }
 
-/// The same motion and the same information, time counted from `time_s`: with z' = T z, B' = T⁻ᵀ B T⁻¹.
+/// Returns the same motion and information with time counted from `time_s`: with z' = T z, B' = T⁻ᵀ B T⁻¹.
 fn propagated(last: &PortionState, time_s: f64) -> PortionState {
     let t = time_s - last.time_s;
     let mut back = Matrix6::identity();
@@ -293,7 +297,7 @@ mod tests {
     const TARGET: PaperTarget = PaperTarget { radius_m: 0.25, height_m: 0.30 };
     const FOCAL_PX: f64 = 2917.0;
 
-    /// Fields first..last of an approach, by the paper's own geometry, with noise of `sigma_px`.
+    /// Returns the fields first..last of an approach, by the paper's geometry, with noise of `sigma_px`.
     fn fields(first: u32, last: u32, seed: u64, sigma_px: f64) -> Vec<(f64, PaperMeasurement)> {
         (first..last)
             .map(|k| {
@@ -336,12 +340,14 @@ mod tests {
         recursive.end(&fields(10, 20, 1, 0.05)).unwrap();
         let parts = recursive.end(&fields(20, 30, 1, 0.05)).unwrap();
         let batch = portions(1.0).end(&fields(0, 30, 1, 0.05)).unwrap();
-        // Each portion is linearised at its own solution: a noise of 0.05 px moves the second derivatives' terms by 1e-4 of a σ.
+        // Each portion is linearised at its own solution: a noise of 0.05 px changes the second-derivative
+        // terms by 1e-4 σ.
         for i in 0..3 {
             let sigma = batch.position_covariance[(i, i)].sqrt();
             assert!((parts.pose.position_m[i] - batch.pose.position_m[i]).abs() < 0.02 * sigma);
         }
-        // Pitch and yaw take the position of their own portion's stage one, in portions as in a batch; roll is linear.
+        // Pitch and yaw use the position from stage one of the same portion or batch, so they differ; roll is
+        // linear.
         assert!((parts.pose.phi_rad.z - batch.pose.phi_rad.z).abs() < 1e-12);
         let rate = parts.velocity_m_s.z - batch.velocity_m_s.z;
         assert!(rate.abs() < 0.02 * batch.position_covariance[(5, 5)].sqrt());
@@ -359,8 +365,8 @@ mod tests {
 
     #[test]
     fn the_first_portions_covariance_is_that_of_its_errors() {
-        // Errors of d3 over 300 draws against the covariance told; both stages' weights are those of the noise (Xc − Xo has
-        // twice the variance of R).
+        // Errors of d3 over 300 draws against the stated covariance. The weights of both stages match the
+        // noise (Xc − Xo has twice the variance of R).
         let config = PaperPortionConfig { weights: [0.5, 0.5, 1.0], ..Default::default() };
         let (mut sum, n) = (0.0, 300);
         for seed in 0..n {
@@ -369,7 +375,8 @@ mod tests {
             let error = motion.pose.position_m - approach(motion.time_s).position_m;
             sum += error.z * error.z / motion.position_covariance[(2, 2)];
         }
-        // σ² is estimated from 24 residuals, so the ratio is F(1, 24) with mean 24/22; standard error √2.5/√300 = 0.09.
+        // σ² is estimated from 24 residuals, so the ratio is F(1, 24) with mean 24/22 and standard error
+        // √2.5/√300 = 0.09.
         let mean = sum / n as f64;
         assert!((mean - 24.0 / 22.0).abs() < 0.3, "{mean}");
     }

@@ -1,4 +1,4 @@
-//! How much the poses of neighbouring fields scatter, over what their covariances say.
+//! Scatter of the poses of neighbouring fields, relative to their covariances.
 
 use std::collections::VecDeque;
 
@@ -8,20 +8,21 @@ use nalgebra::{Matrix6, Vector6};
 use super::inverse;
 use crate::docking::pose::geometry::to_vector;
 
-/// Weights of four fields in a row: what is left of a motion with constant acceleration is nothing.
+/// Weights of four successive fields that cancel a motion with constant acceleration.
 const THIRD_DIFFERENCE: [f64; 4] = [1.0, -3.0, 3.0, -1.0];
 
-/// Fields over which the scatter is averaged, and fields' worth of trust in the covariances as they are.
+/// Number of fields over which the scatter is averaged, and weight of the stated covariances, in fields.
 const MEMORY: f64 = 25.0;
 const TRUST: f64 = 5.0;
 
-/// What chance does to the average, 1 standard deviation: below this much over 1 the covariances are left as they are.
+/// Standard deviation of the average by chance. Covariances remain unchanged while the average exceeds 1 by
+/// less than this.
 const CHANCE: f64 = 0.35;
 
-/// Largest normalised square that counts: a wrong field is not scatter.
+/// Upper limit of a normalised square in the average: a wrong field is not scatter.
 const LARGEST: f64 = 1e4;
 
-/// The scatter of the last fields.
+/// Scatter of the last fields.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Scatter {
     last: VecDeque<(f64, Vector6<f64>, Matrix6<f64>)>,
@@ -30,7 +31,8 @@ pub(crate) struct Scatter {
 }
 
 impl Scatter {
-    /// Takes a field; the factor by which the covariances of this field and its neighbours are too small, 1 or more.
+    /// Adds a field. Returns the factor by which the covariances of this field and its neighbours are too
+    /// small, 1 or more.
     pub(crate) fn add(&mut self, time_s: f64, estimate: &PoseEstimate) -> f64 {
         self.last.push_back((time_s, to_vector(&estimate.pose), estimate.covariance));
         if self.last.len() > THIRD_DIFFERENCE.len() {
@@ -44,13 +46,14 @@ impl Scatter {
         self.factor()
     }
 
-    /// By how much the covariances are too small.
+    /// Returns the factor by which the covariances are too small, 1 or more.
     pub(crate) fn factor(&self) -> f64 {
         let mean = (self.sum + TRUST) / (self.weight + TRUST);
         if mean > 1.0 + CHANCE { mean } else { 1.0 }
     }
 
-    /// Normalised square of the third difference over its dimension; `None` unless the last four fields follow each other evenly.
+    /// Returns the normalised square of the third difference, divided by its dimension. Returns `None` unless
+    /// the last four fields are evenly spaced in time.
     fn square(&self) -> Option<f64> {
         if self.last.len() < THIRD_DIFFERENCE.len() {
             return None;
@@ -75,7 +78,7 @@ mod tests {
     use super::*;
     use crate::docking::pose::geometry::to_pose;
 
-    /// The factor after 200 fields whose errors are `times` as large as their covariances say.
+    /// Returns the factor after 200 fields whose errors are `times` as large as their covariances state.
     fn factor(times: f64, seed: u64) -> f64 {
         let mut scatter = Scatter::default();
         let sigma = Vector6::new(1e-3, 1e-3, 2e-3, 1e-4, 1e-4, 1e-4);
@@ -98,7 +101,8 @@ mod tests {
     #[test]
     fn covariances_that_are_too_small_are_found_so() {
         for seed in 0..10 {
-            // Errors of three standard deviations: nine, less what is trusted, known to a third.
+            // Errors of three standard deviations: the factor is nine, less the trust in the covariances,
+            // with an uncertainty of a third.
             let factor = factor(3.0, seed);
             assert!((4.5..13.0).contains(&factor), "{factor}");
         }

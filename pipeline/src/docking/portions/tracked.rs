@@ -1,4 +1,5 @@
-//! Motion from poses of fields, and from the station's outline where it shows: which fields are taken, and what is reported.
+//! Motion from the poses of fields, and from the station's outline where visible: selection of fields, and
+//! reports.
 
 use contract::docking::{Motion, PoseEstimate};
 use nalgebra::Matrix6;
@@ -8,19 +9,20 @@ use super::scatter::Scatter;
 use crate::PipelineError;
 use crate::docking::pose::geometry::to_vector;
 
-/// After a longer time without a pose nothing is known of the motion, s.
+/// Longest time without a pose after which the motion remains valid, s.
 const MAX_GAP_S: f64 = 5.0;
 
-/// Fields in a row that are off the motion, and near each other, begin it anew.
+/// Number of successive fields off the motion after which it begins anew.
 const CONTRARY: u32 = 5;
 
-/// An outline's range is left out when it is off the motion by more than this normalised square.
+/// Largest normalised square of the difference between an outline's range and the motion. Outlines with a
+/// larger one are left out.
 const OUTLINE_GATE: f64 = 25.0;
 
-/// Fields after which a motion confirms a pose that would not be told alone.
+/// Number of fields after which a motion can confirm a pose that would not be reported without confirmation.
 const ESTABLISHED: u32 = 4;
 
-/// Fields without which a motion is not reported.
+/// Smallest number of fields in a reported motion.
 const LEAST_FIELDS: u32 = 3;
 
 /// Motion of the camera, field by field.
@@ -29,26 +31,26 @@ pub struct MotionTracker {
     config: MotionConfig,
     track: Option<Track>,
     scatter: Scatter,
-    /// Fields in a row that were left out.
+    /// Number of successive fields that were left out.
     contrary: u32,
-    /// Outlines in a row that were.
+    /// Number of successive outlines that were left out.
     contrary_outlines: u32,
-    /// Poses taken since the last report, and since the motion began.
+    /// Number of poses used since the last report, and since the motion began.
     fields: u32,
     all_fields: u32,
 }
 
-/// Whether a pose is on the motion so far.
+/// Agreement of a pose with the motion so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Continuity {
-    /// It is, or nothing is known of the motion.
+    /// The pose agrees with the motion, or the motion is unknown.
     Continues,
-    /// It is off it by more than the gate.
+    /// The pose differs from the motion by more than the gate.
     Breaks,
 }
 
 impl MotionTracker {
-    /// Nothing measured yet.
+    /// Creates a tracker without any measurement.
     ///
     /// # Errors
     /// Those of [`MotionConfig::check`].
@@ -65,7 +67,7 @@ impl MotionTracker {
         })
     }
 
-    /// Whether a pose lies on a motion that is established, by as many fields as would begin one anew.
+    /// Returns true if a pose agrees with a motion that at least four fields have established.
     pub fn confirms(&self, time_s: f64, estimate: &PoseEstimate) -> bool {
         let Some(track) = self.track.as_ref().filter(|_| self.all_fields >= ESTABLISHED) else {
             return false;
@@ -80,16 +82,18 @@ impl MotionTracker {
         square.is_some_and(|square| square <= self.config.field_gate)
     }
 
-    /// What is added to the covariance of a pose whose moment is known to a standard deviation only, s: the motion within that time. Before there
-    /// is a motion it is as fast as a camera may be.
+    /// Returns the addition to the covariance of a pose whose time is uncertain by `sigma_s`, one standard
+    /// deviation, s: the motion within that time. Without a motion, the largest rates of a camera are
+    /// assumed.
     pub(in crate::docking) fn timing_covariance(&self, time_s: f64, sigma_s: f64) -> Matrix6<f64> {
         let kept = self.track.as_ref().filter(|track| (0.0..=MAX_GAP_S).contains(&(time_s - track.time_s)));
         let squares = kept.map_or_else(|| unknown_rates(&self.config), Track::squares_of_rates);
         squares * (sigma_s * sigma_s)
     }
 
-    /// Takes the pose of a field, and the part of its covariance that errs alike in the fields of seconds. Says whether it continues the
-    /// motion, and by which factor the fields scatter more than their covariances say.
+    /// Adds the pose of a field, with the part of its covariance that is common to the fields of several
+    /// seconds. Returns the agreement with the motion, and the factor by which the scatter of the fields
+    /// exceeds their covariances.
     pub fn add(&mut self, time_s: f64, estimate: &PoseEstimate, common: &Matrix6<f64>) -> (Continuity, f64) {
         if !time_s.is_finite() {
             return (Continuity::Continues, 1.0);
@@ -109,7 +113,7 @@ impl MotionTracker {
         (self.follow(time_s, &noise, common), factor)
     }
 
-    /// Takes the range by the station's outline, after the pose of the field where there is one.
+    /// Adds the range by the station's outline, after the field's pose if there is one.
     pub(in crate::docking) fn add_range(&mut self, time_s: f64, range: &OutlineRange) {
         if !time_s.is_finite() {
             return;
@@ -172,8 +176,8 @@ impl MotionTracker {
         self.track = Some(Track::begin(time_s, estimate, common, &self.config));
     }
 
-    /// The motion at the last field that was taken; `None` when fewer than three were since the last report, or when its range
-    /// rate is one that no approach has.
+    /// Returns the motion at the last field used. Returns `None` when fewer than three fields were used since
+    /// the last report, or when the speed is beyond that of any approach.
     pub fn report(&mut self) -> Option<Motion> {
         let fields = std::mem::take(&mut self.fields);
         if fields < LEAST_FIELDS || self.all_fields < LEAST_FIELDS {
@@ -193,7 +197,8 @@ mod tests {
     use contract::docking::Pose;
     use nalgebra::{Cholesky, Vector6};
 
-    /// Covariance of a field: metres beside radians, and lateral position with attitude as strongly correlated as they are.
+    /// Returns the covariance of a field: metres beside radians, with the strong correlation of lateral
+    /// position and attitude.
     fn field_covariance() -> Matrix6<f64> {
         let mut shape = Matrix6::identity();
         for (i, j, correlation) in [(0, 4, 0.98), (1, 3, -0.98)] {
@@ -204,7 +209,7 @@ mod tests {
         Matrix6::from_fn(|i, j| shape[(i, j)] * sigma[i] * sigma[j])
     }
 
-    /// The pose of field `k` of a motion, with noise of the covariance.
+    /// Returns the pose of field `k` of a motion, with noise of that covariance.
     fn measured(motion: impl Fn(f64) -> Pose, k: u32, seed: u64) -> (f64, PoseEstimate) {
         let covariance = field_covariance();
         let root = Cholesky::new(covariance).unwrap().l();
@@ -213,7 +218,8 @@ mod tests {
         (t, PoseEstimate { pose: to_pose(&(to_vector(&motion(t)) + root * draw)), covariance })
     }
 
-    /// Brakes from 0.3 m/s with 0.06 m/s² between 2 s and 7 s, and stands.
+    /// Returns the pose of a ship that brakes from 0.3 m/s with 0.06 m/s² between 2 s and 7 s, then stands
+    /// still.
     fn braking(t: f64) -> Pose {
         let mut pose = approach(t.min(2.0));
         let s = (t - 2.0).clamp(0.0, 5.0);
@@ -221,7 +227,8 @@ mod tests {
         pose
     }
 
-    /// Errors of (d, φ) at the reports of a motion over their covariance, and those of d3's rate over its standard deviation.
+    /// Returns the errors of (d, φ) at the reports of a motion relative to their covariance, and those of
+    /// d3's rate relative to its standard deviation.
     fn reports(motion: impl Fn(f64) -> Pose, seed: u64, seconds: u32) -> Vec<(f64, f64)> {
         let mut tracker = MotionTracker::new(MotionConfig::default()).unwrap();
         let mut reports_in_sigma = Vec::new();
@@ -252,7 +259,7 @@ mod tests {
 
     #[test]
     fn a_glide_and_a_braking_ship_are_within_what_is_told() {
-        // 10 sequences of 15 and 45 reports, 99.7 % of which are expected within 3 σ.
+        // 10 sequences of 15 and 45 reports; 99.7 % of the reports are expected within 3 σ.
         let (position, rate) = share_within_3_sigma(approach, 3);
         assert!(position >= 0.98 && rate >= 0.98, "{position} {rate}");
         let (position, rate) = share_within_3_sigma(braking, 9);
@@ -274,7 +281,7 @@ mod tests {
                 let (continuity, _) = tracker.add(t, &PoseEstimate { pose, covariance }, &Matrix6::zeros());
                 assert_eq!(continuity, Continuity::Continues, "field {k}");
             }
-            // The rim makes it 0.7 % too large.
+            // The rim makes the outline 0.7 % too large.
             let range_m = 0.993 * range(k) + 0.03 * normal(90_000 + u64::from(k));
             tracker.add_range(t, &OutlineRange { range_m, sigma_m: 0.03 });
             assert!(k >= 152 || tracker.clone().report().is_none());
@@ -296,7 +303,7 @@ mod tests {
                 sigmas.push(tracker.report().unwrap().position_covariance[(5, 5)].sqrt());
             }
         }
-        // A field's 2 mm over 0.2 s; and over seconds of constant velocity.
+        // First from a field's 2 mm over 0.2 s, then over seconds of constant velocity.
         assert!(sigmas[0] > 0.01 && sigmas[19] < 0.25 * sigmas[0], "{sigmas:?}");
     }
 

@@ -1,5 +1,5 @@
-//! The pipeline's own exact geometry: poses, projection, and their derivatives (docking paper, 3.1, without its small-angle
-//! approximation).
+//! Exact geometry of the pipeline: poses, projection, and their derivatives (docking paper, 3.1, without its
+//! small-angle approximation).
 
 use contract::PixelPoint;
 use contract::docking::Pose;
@@ -10,15 +10,15 @@ use crate::CameraModel;
 /// Derivatives of an image point with respect to (d1, d2, d3, φ1, φ2, φ3).
 pub(crate) type ByPose = SMatrix<f64, 2, 6>;
 
-/// Below this angle the series of exp stand in for sin and cos: the neglected terms are under 1e-16.
+/// Angle below which the series of exp replaces sin and cos, rad: the neglected terms are under 1e-16.
 const SMALL_RAD: f64 = 1e-4;
 
-/// \[v\]×, the matrix of the cross product: \[v\]× w = v × w.
+/// Returns \[v\]×, the matrix of the cross product: \[v\]× w = v × w.
 pub fn cross_matrix(v: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
 }
 
-/// exp(\[φ\]×): the rotation about φ by its length (Rodrigues).
+/// Returns exp(\[φ\]×), the rotation about φ by its length (Rodrigues).
 pub fn exponential(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     let angle = phi_rad.norm();
     let k = cross_matrix(phi_rad);
@@ -32,7 +32,7 @@ pub fn exponential(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + k * sine + k * k * cosine
 }
 
-/// The right Jacobian of exp: exp([φ + δ]×) = exp(\[φ\]×) exp([J δ]×) to first order in δ.
+/// Returns the right Jacobian of exp: exp([φ + δ]×) = exp(\[φ\]×) exp([J δ]×) to first order in δ.
 fn right_jacobian(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     let angle = phi_rad.norm();
     let k = cross_matrix(phi_rad);
@@ -45,12 +45,13 @@ fn right_jacobian(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() - k * first + k * k * second
 }
 
-/// A = diag(1, −1, −1) exp(\[φ\]×): camera axes in the target frame, y = d + A x. To first order the matrix of the paper.
+/// Returns A = diag(1, −1, −1) exp(\[φ\]×), the camera axes in the target frame: y = d + A x. Equal to the
+/// paper's matrix to first order.
 pub fn target_from_camera(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * exponential(phi_rad)
 }
 
-/// The rotation vector φ of a matrix A, the inverse of [`target_from_camera`]; for angles under 180°.
+/// Returns the rotation vector φ of a matrix A: the inverse of [`target_from_camera`], for angles under 180°.
 pub fn phi_from_rotation(target_from_camera: &Matrix3<f64>) -> Vector3<f64> {
     let r = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * target_from_camera;
     let twice_sine = Vector3::new(r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)]);
@@ -59,13 +60,13 @@ pub fn phi_from_rotation(target_from_camera: &Matrix3<f64>) -> Vector3<f64> {
     if angle < SMALL_RAD { twice_sine * 0.5 } else { twice_sine * (0.5 * angle / sine) }
 }
 
-/// Where a point of the target is seen by a camera at a pose, on the detector or beside it; `None` behind the camera or
-/// beyond the fold of the distortion. `point_m` in the target frame.
+/// Returns the pixel position of a point of the target, on the detector or beside it, for a camera at a pose.
+/// `point_m` is in the target frame. Returns `None` behind the camera or beyond the fold of the distortion.
 pub fn project(camera: &CameraModel, pose: &Pose, point_m: &Vector3<f64>) -> Option<PixelPoint> {
     camera.project_vector(&PoseProjection::new(camera, pose).to_camera(point_m))
 }
 
-/// A camera at a pose: everything that the projection of many points shares.
+/// Camera at a pose: the quantities shared by the projections of many points.
 #[derive(Debug, Clone)]
 pub(crate) struct PoseProjection {
     position_m: Vector3<f64>,
@@ -74,7 +75,7 @@ pub(crate) struct PoseProjection {
     focal_px: (f64, f64),
 }
 
-/// A point of the target in the image without distortion, from the principal point.
+/// Point of the target in the image without distortion, relative to the principal point.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ProjectedPoint {
     pub(crate) u: f64,
@@ -92,12 +93,12 @@ impl PoseProjection {
         }
     }
 
-    /// x = Aᵀ (y − d).
+    /// Returns x = Aᵀ (y − d), the point in the camera frame.
     pub(crate) fn to_camera(&self, point_m: &Vector3<f64>) -> Vector3<f64> {
         self.camera_from_target * (point_m - self.position_m)
     }
 
-    /// Image of a point of the target, with derivatives; `None` behind the camera.
+    /// Returns the image of a point of the target, with derivatives; `None` behind the camera.
     ///
     /// ∂x/∂d = −Aᵀ; with φ + δ, A becomes A exp([J δ]×), so ∂x/∂φ = [x]× J.
     pub(crate) fn project_with_derivatives(&self, point_m: &Vector3<f64>) -> Option<ProjectedPoint> {
@@ -121,7 +122,8 @@ impl PoseProjection {
         Some(ProjectedPoint { u, v, by_pose })
     }
 
-    /// Where the ray of an ideal image point meets the plane y3 = `height_m`: (y1, y2), m; `None` when it does not.
+    /// Returns the intersection (y1, y2), m, of the ray of an ideal image point with the plane y3 =
+    /// `height_m`; `None` when they do not meet.
     pub(crate) fn on_plane(&self, u: f64, v: f64, height_m: f64) -> Option<(f64, f64)> {
         let (fx, fy) = self.focal_px;
         let ray = self.camera_from_target.transpose() * Vector3::new(u / fx, v / fy, 1.0);
@@ -131,13 +133,13 @@ impl PoseProjection {
     }
 }
 
-/// (d1, d2, d3, φ1, φ2, φ3).
+/// Returns (d1, d2, d3, φ1, φ2, φ3).
 pub(crate) fn to_vector(pose: &Pose) -> Vector6<f64> {
     let (d, phi) = (&pose.position_m, &pose.phi_rad);
     Vector6::new(d.x, d.y, d.z, phi.x, phi.y, phi.z)
 }
 
-/// The inverse of [`to_vector`], from the first six components.
+/// Returns the pose of the first six components: the inverse of [`to_vector`].
 pub(crate) fn to_pose<const N: usize>(v: &SVector<f64, N>) -> Pose {
     Pose { position_m: Vector3::new(v[0], v[1], v[2]), phi_rad: Vector3::new(v[3], v[4], v[5]) }
 }
@@ -155,7 +157,7 @@ mod tests {
     fn to_first_order_a_is_the_papers_matrix() {
         let phi = Vector3::new(1e-3, -2e-3, 3e-3);
         let papers = Matrix3::new(1.0, -phi.z, phi.y, -phi.z, -1.0, phi.x, phi.y, -phi.x, -1.0);
-        // Second order: |φ|²/2 = 7e-6.
+        // The difference is of second order: |φ|²/2 = 7e-6.
         assert!((target_from_camera(&phi) - papers).abs().max() < 1e-5);
     }
 
@@ -171,7 +173,8 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_of_roll_moves_up_to_the_left() {
-        // With φ3 = +90° the camera has turned clockwise seen from behind it: what was up is now at its left.
+        // With φ3 = +90° the camera is turned clockwise seen from behind: the former up direction is now at
+        // its left.
         let pose = Pose {
             position_m: Vector3::new(0.0, 0.0, 5.0),
             phi_rad: Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2),
@@ -197,7 +200,7 @@ mod tests {
                 let numeric = [(plus.u - minus.u) / 2e-6, (plus.v - minus.v) / 2e-6];
                 for (row, n) in numeric.into_iter().enumerate() {
                     let analytic = seen(&at).by_pose[(row, i)];
-                    // Central differences: 1e-16 · 500 px/1e-6 of rounding, against slopes of 500 to 2500 px.
+                    // Central differences: rounding of 1e-16 · 500 px/1e-6, against slopes of 500 to 2500 px.
                     assert!((analytic - n).abs() < 1e-5 * (1.0 + n.abs()), "{i} {row}: {analytic} and {n}");
                 }
             }

@@ -1,4 +1,4 @@
-//! The pose of a field (docking paper, 3.1): by the paper's formulas, and the pipeline's own best.
+//! Pose of a field (docking paper, 3.1): by the paper's formulas, and by the pipeline's best estimator.
 
 pub mod geometry;
 pub mod model_fit;

@@ -1,52 +1,53 @@
-//! The pose of a field by the paper's formulas (3.1): small angles, the image of the circle taken for a circle.
+//! Pose of a field by the paper's formulas (3.1): small angles, the image of the circle assumed to be a
+//! circle.
 
 use contract::docking::{NoPose, Pose, TargetModel};
 use nalgebra::Vector3;
 
 use super::geometry::{exponential, phi_from_rotation, target_from_camera};
 
-/// What 3.1 works on: cross and circle in the image without distortion, from the principal point.
+/// Inputs of 3.1: cross and circle in the image without distortion, relative to the principal point.
 ///
-/// Coordinates are (f x1/x3, f x2/x3) with one f, the focal length along columns: pixels that are not square are
-/// stretched along rows.
+/// Coordinates are (f x1/x3, f x2/x3) with one f, the focal length along columns: pixels that are not square
+/// are stretched along rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PaperMeasurement {
-    /// f, px.
+    /// Focal length f, px.
     pub focal_px: f64,
-    /// (Xc, Yc), px.
+    /// Centre of the cross (Xc, Yc), px.
     pub cross: [f64; 2],
-    /// a: slope of the horizontal bar, rows over columns.
+    /// Slope a of the horizontal bar, rows over columns.
     pub slope: f64,
-    /// (Xo, Yo), px.
+    /// Centre of the circle (Xo, Yo), px.
     pub circle: [f64; 2],
-    /// R, px.
+    /// Radius R of the circle, px.
     pub radius_px: f64,
 }
 
-/// The two lengths of the target that 3.1 needs.
+/// Dimensions of the target for 3.1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PaperTarget {
-    /// r: radius of the circle, m.
+    /// Radius r of the circle, m.
     pub radius_m: f64,
-    /// b: height of the cross over the circle's plane, m.
+    /// Height b of the cross over the circle's plane, m.
     pub height_m: f64,
 }
 
 impl PaperTarget {
-    /// The circle is that of the marks.
+    /// Returns the dimensions of a target. The circle is that of the marks.
     pub fn from_model(target: &TargetModel) -> Self {
         Self { radius_m: target.mark_circle_radius_m, height_m: target.cross.height_m }
     }
 }
 
 impl PaperMeasurement {
-    /// Range, then position from the parallax of the cross, then attitude (3.1).
+    /// Computes range, then position from the parallax of the cross, then attitude (3.1).
     ///
-    /// d3 = f r/R; d1 = −(Xc − Xo) d3 (d3 − b)/(f b), d2 = (Yc − Yo) d3 (d3 − b)/(f b); φ1 = Yo/f − d2/d3,
-    /// φ2 = −Xo/f − d1/d3, φ3 = −a.
+    /// d3 = f r/R; d1 = −(Xc − Xo) d3 (d3 − b)/(f b), d2 = (Yc − Yo) d3 (d3 − b)/(f b); φ1 = Yo/f − d2/d3, φ2
+    /// = −Xo/f − d1/d3, φ3 = −a.
     ///
     /// # Errors
-    /// [`NoPose::Inconsistent`] when the numbers put the camera at or behind the cross, or are not numbers.
+    /// [`NoPose::Inconsistent`] when the numbers put the camera at or behind the cross, or are not finite.
     pub fn pose(&self, target: &PaperTarget) -> Result<Pose, NoPose> {
         let (f, b) = (self.focal_px, target.height_m);
         let d3 = f * target.radius_m / self.radius_px;
@@ -63,10 +64,12 @@ impl PaperMeasurement {
         if is_sound { Ok(pose) } else { Err(NoPose::Inconsistent) }
     }
 
-    /// The pose of 3.1, turned so that by exact geometry the cross is where it is seen.
+    /// Computes the pose of 3.1, then rotates it until the exact projection of the cross coincides with the
+    /// measured cross.
     ///
-    /// The formulas take angles for small: at 3° of roll and of tilt cross and circle are both 4 px of a narrow lens off (φ is a
-    /// rotation vector; φ3 × φ1/2 turns the line of sight), which is farther than a fit finds back from.
+    /// The formulas assume small angles. At 3° of roll and of tilt, both cross and circle are 4 px off with a
+    /// narrow lens (φ is a rotation vector; φ3 × φ1/2 turns the line of sight), which is too far for a fit to
+    /// converge.
     ///
     /// # Errors
     /// Those of [`PaperMeasurement::pose`].
@@ -76,7 +79,7 @@ impl PaperMeasurement {
         let cross = Vector3::new(0.0, 0.0, target.height_m);
         let expected = (attitude.transpose() * (cross - pose.position_m)).normalize();
         let seen = Vector3::new(self.cross[0], self.cross[1], self.focal_px).normalize();
-        // The small turn that brings what is seen to what is expected.
+        // Small rotation from the measured to the expected direction.
         let turn = exponential(&seen.cross(&expected));
         let aimed = Pose { phi_rad: phi_from_rotation(&(attitude * turn)), ..pose };
         if aimed.phi_rad.iter().all(|value| value.is_finite()) {
@@ -86,7 +89,8 @@ impl PaperMeasurement {
         }
     }
 
-    /// What 3.1 expects at a pose: its simplified forms, not the exact projection.
+    /// Returns the measurement expected from 3.1 at a pose: by its simplified forms, not the exact
+    /// projection.
     pub fn expected(pose: &Pose, target: &PaperTarget, focal_px: f64) -> Self {
         let (d, phi, f, b) = (&pose.position_m, &pose.phi_rad, focal_px, target.height_m);
         let at = |depth: f64| [-f * d.x / depth - f * phi.y, f * d.y / depth + f * phi.x];
@@ -100,11 +104,11 @@ impl PaperMeasurement {
     }
 }
 
-/// d3 from the outline of the station, when the target is not resolved yet: Rs = f r_s/(d3 + h_s), so
-/// d3 = f r_s/Rs − h_s. `None` unless that is a range in front of the target.
+/// Returns d3 from the outline of the station, used when the target is not resolved yet: Rs = f r_s/(d3 +
+/// h_s), so d3 = f r_s/Rs − h_s. Returns `None` unless this is a range in front of the target.
 ///
-/// h_s, how far the outline lies behind the target's plane, is an assumption: the paper only says that these data "are used
-/// in another way".
+/// h_s, the distance of the outline behind the target's plane, is an assumption: the paper only states that
+/// these data "are used in another way".
 pub fn range_from_outline(
     focal_px: f64,
     outline_radius_m: f64,
@@ -143,7 +147,7 @@ mod tests {
         Pose { position_m: d.into(), phi_rad: Vector3::from(phi_deg) * (std::f64::consts::PI / 180.0) }
     }
 
-    /// Exact image of a point of the target, its distortion undone, from the principal point.
+    /// Returns the exact image of a point of the target without distortion, relative to the principal point.
     fn exact(camera: &Camera, pose: &Pose, point_m: [f64; 3]) -> PixelPoint {
         let lens = Lens::new(camera).unwrap();
         let seen = geometry::project(lens.model(), pose, &point_m.into()).unwrap();
@@ -166,7 +170,7 @@ mod tests {
             radius_px,
         };
         let off = |pose: &Pose| exact(&camera, pose, [0.0, 0.0, TARGET.height_m]).distance(cross);
-        // What the sine of the turn leaves of it is third order.
+        // The residual from using the sine of the rotation angle is of third order.
         let (before, after) = (off(&seen.pose(&TARGET).unwrap()), off(&seen.aimed_pose(&TARGET).unwrap()));
         assert!(before > 3.0 && after < 1e-3, "{before} {after}");
     }
@@ -196,7 +200,7 @@ mod tests {
         (centre, radius)
     }
 
-    /// What 3.1 gets at a pose, the bar's slope being −φ3.
+    /// Returns the inputs of 3.1 at a pose, with a slope of −φ3.
     fn measured(camera: &Camera, pose: &Pose) -> PaperMeasurement {
         let (circle, radius_px) = exact_circle(camera, pose);
         let cross = exact(camera, pose, [0.0, 0.0, TARGET.height_m]);
@@ -235,14 +239,15 @@ mod tests {
         assert!((m.slope - slope).abs() < 2e-5, "{} and {slope}", m.slope);
     }
 
-    /// The image of a tilted circle is an ellipse whose centre is not the image of the circle's centre: in the direction of the
-    /// tilt, by f tan(tilt) (r/d3)² to leading order. The figures are those of `docs/docking-method.md`.
+    /// The image of a tilted circle is an ellipse whose centre is not the image of the circle's centre: in
+    /// the direction of the tilt, by f tan(tilt) (r/d3)² to leading order. The figures are those of
+    /// `docs/docking-method.md`.
     #[test]
     fn a_tilt_biases_the_circles_centre_as_documented() {
         let model = camera([0.0; 3], 10.0);
         for (tilt_deg, documented_px) in [(1.0, 0.13), (5.0, 0.63)] {
             let tilt = f64::to_radians(tilt_deg);
-            // The camera looks at the disk's centre from the side: d1 = d3 tan(tilt).
+            // The camera sees the disk's centre from the side: d1 = d3 tan(tilt).
             let (s, c) = libm::sincos(tilt);
             let truth = pose([5.0 * s, 0.0, 5.0 * c], [0.0, -tilt_deg, 0.0]);
             let (centre, _) = exact_circle(&model, &truth);
@@ -254,7 +259,7 @@ mod tests {
         }
     }
 
-    /// The whole of 3.1 on exact images, narrow lens, 5 m: what the approximations cost. The figures are those of
+    /// Errors of the approximations: all of 3.1 on exact images, narrow lens, 5 m. The figures are those of
     /// `docs/docking-method.md`.
     #[test]
     fn the_approximations_cost_what_is_documented() {
@@ -275,13 +280,13 @@ mod tests {
         }
     }
 
-    /// The points that the circle is fitted to and the cross have their distortion undone one by one, in square pixels: what
-    /// 3.1 then gets is that of a camera without distortion.
+    /// The cross and the points of the circle are undistorted individually, in square pixels. The inputs to
+    /// 3.1 are then those of a camera without distortion.
     #[test]
     fn distortion_and_pixels_that_are_not_square_are_undone() {
         let truth = pose([0.1, -0.2, 5.0], [0.3, 0.2, 1.0]);
         let ideal = measured(&camera([0.0; 3], 10.0), &truth);
-        // The distortion alone moves the rim by 0.1 px.
+        // The distortion moves the rim by only 0.1 px.
         let met = measured(&camera([2.6e-8, 0.0, 0.0], 9.0), &truth);
         let off = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]);
         // The inverse of the distortion is iterated to 1e-9 px.

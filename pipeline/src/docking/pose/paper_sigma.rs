@@ -1,5 +1,5 @@
-//! How well the paper's pose of a single field is known: what stands in for the best estimator's covariance where that has
-//! no answer.
+//! Uncertainty of the paper's pose of a single field. Replaces the best estimator's covariance where that
+//! estimator fails.
 
 use contract::docking::{NoPose, PoseEstimate};
 use nalgebra::{Matrix6, Vector6};
@@ -7,16 +7,18 @@ use nalgebra::{Matrix6, Vector6};
 use super::geometry::to_vector;
 use super::paper_pose::{PaperMeasurement, PaperTarget};
 
-/// Standard deviation of cross, circle and radius, px: of a field on which the best estimator failed, so that some of its
-/// marks or lines are disturbed.
+/// Standard deviation of cross, circle and radius, px, in a field on which the best estimator failed because
+/// some of its marks or lines are disturbed.
 const FEATURE_SIGMA_PX: f64 = 0.4;
 
-/// The paper's pose (3.1), aimed at the cross, with a covariance: noise of the features by the formulas' own derivatives, and the size of what
-/// the formulas neglect, taken for a standard deviation.
+/// Returns the paper's pose (3.1), aimed at the cross, with a covariance. The covariance includes noise of
+/// the features, propagated by the formulas' derivatives, and the size of the effects that the formulas
+/// neglect, treated as a standard deviation.
 ///
-/// Neglected are the circle's centre under tilt, f tan(tilt) (r/d3)²; the roll that turns the parallax of cross and circle; and
-/// products of lateral angle and attitude in the range. What the formulas neglect of cross and circle alike, 4 px of a narrow lens
-/// at 3° of roll and tilt, is no part of it: the pose is turned so that the cross lies where it is seen.
+/// Neglected are the circle's centre under tilt, f tan(tilt) (r/d3)²; the roll that turns the parallax of
+/// cross and circle; and products of lateral angle and attitude in the range. The neglected displacement
+/// common to cross and circle, 4 px of a narrow lens at 3° of roll and tilt, is not included, because the
+/// pose is rotated until the cross is at its measured position.
 ///
 /// # Errors
 /// Those of [`PaperMeasurement::pose`].
@@ -55,7 +57,7 @@ pub(crate) fn estimate(
     Ok(PoseEstimate { pose, covariance: spread * spread.transpose() })
 }
 
-/// The measurement with one of Xc, Yc, a, Xo, Yo, R changed.
+/// Returns the measurement with one of Xc, Yc, a, Xo, Yo, R changed.
 fn perturbed(measurement: &PaperMeasurement, i: usize, by: f64) -> PaperMeasurement {
     let mut moved = *measurement;
     match i {
@@ -86,8 +88,8 @@ mod tests {
     fn on_the_axis_the_covariance_is_that_of_the_formulas() {
         let estimate = at([0.0, 0.0, 5.0]);
         let sigma = estimate.covariance.diagonal().map(f64::sqrt);
-        // d3 = f r/R: σ = d3 σ_R/R; d1 = (Xo − Xc) d3 (d3 − b)/(f b): σ = √2 σ_px times that factor. The formulas are
-        // not linear in R: 0.8 % steps.
+        // d3 = f r/R: σ = d3 σ_R/R; d1 = (Xo − Xc) d3 (d3 − b)/(f b): σ = √2 σ_px times that factor. The
+        // formulas are not linear in R: 0.8 % steps.
         assert!((sigma[2] / (5.0 * 0.4 / 50.0) - 1.0).abs() < 1e-3, "{sigma}");
         let lateral = std::f64::consts::SQRT_2 * 0.4 * 5.0 * 4.7 / (1000.0 * 0.3);
         assert!((sigma[0] / lateral - 1.0).abs() < 1e-3, "{sigma}");
@@ -131,7 +133,7 @@ mod tests {
             let error = to_vector(&estimated.pose) - to_vector(&truth);
             worst = worst.max(error.dot(&(estimated.covariance.try_inverse().unwrap() * error)) / 6.0);
         }
-        // Of what the formulas neglect alone, without an error of the features: less than its standard deviation.
+        // Error of the formulas only, without errors of the features: less than the standard deviation.
         assert!(worst < 1.0, "{worst}");
     }
 

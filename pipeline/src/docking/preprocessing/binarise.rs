@@ -1,20 +1,21 @@
-//! From grey values to a binary image.
+//! Conversion of grey values to a binary image.
 
 use imageproc::contrast::{ThresholdType, otsu_level, threshold};
 use imageproc::image::GrayImage;
 
-/// Threshold between the two modes of a histogram (Otsu 1979).
+/// Returns the threshold between the two modes of a histogram (Otsu 1979).
 pub(crate) fn level(grey: &GrayImage) -> u8 {
     otsu_level(grey)
 }
 
-/// Thresholds to look for bright regions with, ascending, without repetitions: Otsu's, the one that divides what lies
-/// above it (a bright cross beside a grey station) and the one that divides what lies below (a cross in shadow).
+/// Returns the thresholds for the search for bright regions, ascending and distinct: Otsu's threshold, that
+/// of the values above it (a bright cross beside a grey station), and that of the values below it (a cross in
+/// shadow).
 pub(crate) fn levels(grey: &GrayImage) -> Vec<u8> {
     let middle = level(grey);
     let part = |keep: &dyn Fn(u8) -> bool| -> Option<u8> {
         let pixels: Vec<u8> = grey.pixels().map(|p| p.0[0]).filter(|&v| keep(v)).collect();
-        // A single row: Otsu's method reads no places.
+        // A single row suffices, because Otsu's method does not use positions.
         let width = u32::try_from(pixels.len()).ok().filter(|&n| n > 1)?;
         GrayImage::from_raw(width, 1, pixels).map(|image| level(&image))
     };
@@ -26,7 +27,7 @@ pub(crate) fn levels(grey: &GrayImage) -> Vec<u8> {
     found
 }
 
-/// White (255) where the grey value is above the threshold, else black.
+/// Returns an image that is white (255) where the grey value is above the threshold, else black.
 pub(crate) fn above(grey: &GrayImage, level: u8) -> GrayImage {
     threshold(grey, level, ThresholdType::Binary)
 }
@@ -38,7 +39,7 @@ mod tests {
 
     #[test]
     fn the_threshold_lies_between_two_modes() {
-        // 70 % about 40 and 30 % about 180, each ± 10.
+        // 70 % near 40 and 30 % near 180, each ± 10.
         let grey = GrayImage::from_fn(100, 100, |x, y| {
             let spread = ((x * 7 + y * 13) % 21) as u8;
             Luma([if x < 70 { 30 + spread } else { 170 + spread }])

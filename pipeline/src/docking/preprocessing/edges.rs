@@ -1,4 +1,4 @@
-//! Edges by Canny's method: what backs up the regions where no threshold divides target and plate.
+//! Edges by Canny's method: an alternative to the regions where no threshold separates target and plate.
 
 use contract::OutOfRange;
 use contract::bounds::require;
@@ -7,14 +7,14 @@ use imageproc::image::GrayImage;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Thresholds of Canny's hysteresis: lengths of the Sobel gradient of the 8-bit image, 0 to 1140.
+/// Thresholds of Canny's hysteresis: magnitudes of the Sobel gradient of the 8-bit image, 0 to 1140.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct EdgeConfig {
-    /// Gradient at which an edge goes on, 1 to 1140.
+    /// Gradient above which an edge continues, 1 to 1140.
     #[schemars(range(min = 1, max = 1140))]
     pub low: f64,
-    /// Gradient at which an edge begins, `low` to 1140.
+    /// Gradient above which an edge begins, `low` to 1140.
     #[schemars(range(min = 1, max = 1140))]
     pub high: f64,
 }
@@ -30,7 +30,8 @@ impl EdgeConfig {
         require("edges.high", self.high, "edges.low to 1140", |v| v >= self.low)
     }
 
-    /// White (255) on edges, else black. Edges only say where to look: places are measured on grey values.
+    /// Returns an image that is white (255) on edges, else black. Edges only select candidates; positions are
+    /// measured on grey values.
     pub(crate) fn find(&self, grey: &GrayImage) -> GrayImage {
         // Canny's filters need a neighbourhood.
         if grey.width() < 8 || grey.height() < 8 {

@@ -1,4 +1,4 @@
-//! The brightness histogram of a region, and the setting of the digitiser that follows from it.
+//! Brightness histogram of a region, and the digitiser setting derived from it.
 
 use contract::docking::Digitiser;
 use schemars::JsonSchema;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::region::Rectangle;
 use super::view::View;
 
-/// Grey values of a region, counted by 256 levels.
+/// Histogram of the grey values of a region, with 256 levels.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Histogram {
     counts: [u32; 256],
@@ -15,7 +15,7 @@ pub(crate) struct Histogram {
 }
 
 impl Histogram {
-    /// Of the pixels inside `region`, at most about 50 000 of them.
+    /// Counts the pixels inside `region`, at most about 50 000 of them.
     pub(crate) fn from_region(view: &View<'_>, region: &Rectangle) -> Self {
         let clamp = |v: f64, n: usize| v.clamp(0.0, n as f64) as usize;
         let columns = clamp(region.first_column.ceil(), view.columns())
@@ -25,7 +25,7 @@ impl Histogram {
         let stride = (columns.len() * rows.len() / 50_000).max(1);
         let mut histogram = Self { counts: [0; 256], total: 0 };
         for row in rows {
-            // A start that moves with the row, so that a stride does not become a pattern of columns.
+            // The start changes with the row, so the stride does not select a fixed set of columns.
             let first = columns.start + row % stride;
             for level in view.line(row, first..columns.end, stride) {
                 histogram.counts[usize::from(level as u8)] += 1;
@@ -35,7 +35,7 @@ impl Histogram {
         histogram
     }
 
-    /// The grey level that a share of the pixels does not exceed; 0 of an empty region.
+    /// Returns the grey level that a share of the pixels does not exceed; 0 for an empty region.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
         let wanted = share * f64::from(self.total);
         let mut below = 0.0;
@@ -48,12 +48,12 @@ impl Histogram {
         0.0
     }
 
-    /// Share of the pixels at full scale.
+    /// Returns the share of the pixels at full scale.
     pub(crate) fn saturated_share(&self) -> f64 {
         f64::from(self.counts[255]) / f64::from(self.total.max(1))
     }
 
-    /// Share of the pixels at zero.
+    /// Returns the share of the pixels at zero.
     pub(crate) fn clipped_share(&self) -> f64 {
         f64::from(self.counts[0]) / f64::from(self.total.max(1))
     }
@@ -63,30 +63,30 @@ impl Histogram {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AutoContrastConfig {
-    /// Whether the digitiser is adjusted: `adjust`, or `leave` as it is.
+    /// Mode: `adjust` the digitiser, or `leave` it unchanged.
     pub mode: AutoContrastMode,
-    /// Where the darkest hundredth of the region shall come to, share of full scale, 0 to 0.4.
+    /// Desired level of the region's darkest hundredth, share of full scale, 0 to 0.4.
     #[schemars(range(min = 0, max = 0.4))]
     pub dark_level: f64,
-    /// Where the brightest fiftieth of the region shall come to, share of full scale, 0.5 to 0.95.
+    /// Desired level of the region's brightest fiftieth, share of full scale, 0.5 to 0.95.
     #[schemars(range(min = 0.5, max = 0.95))]
     pub bright_level: f64,
-    /// Deviation from the two levels that is left alone, share of full scale, 0.01 to 0.3.
+    /// Tolerated deviation from the two levels, share of full scale, 0.01 to 0.3.
     #[schemars(range(min = 0.01, max = 0.3))]
     pub tolerance: f64,
-    /// Largest contrast that is asked for, 0.1 to 20: noise grows with it.
+    /// Largest requested contrast, 0.1 to 20. Noise increases with contrast.
     #[schemars(range(min = 0.1, max = 20))]
     pub max_contrast: f64,
 }
 
-/// Whether the digitiser is adjusted.
+/// Mode of the automatic contrast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AutoContrastMode {
-    /// Levels are brought to where they are wanted.
+    /// The levels are adjusted to their desired values.
     #[default]
     Adjust,
-    /// The digitiser stays as it is.
+    /// The digitiser remains unchanged.
     Leave,
 }
 
@@ -103,16 +103,16 @@ impl Default for AutoContrastConfig {
 }
 
 impl AutoContrastConfig {
-    /// The setting that brings the region's levels to where they are wanted; `None` when the setting is good, or when
-    /// there is nothing to see. Each wish goes half of the way, so that the loop stays stable with a lag of a field or
-    /// two.
+    /// Returns the setting that brings the region's levels to their desired values. Returns `None` when the
+    /// setting is good, or when the region has no contrast. Each request makes half of the change, so the
+    /// loop remains stable with a lag of a field or two.
     pub(crate) fn recommend(&self, histogram: &Histogram, now: &Digitiser) -> Option<Digitiser> {
         if self.mode == AutoContrastMode::Leave || now.check().is_err() {
             return None;
         }
         let dark = histogram.quantile(0.01) / View::WHITE;
         let bright = histogram.quantile(0.98) / View::WHITE;
-        // Clipped levels say only which way to go.
+        // Clipped levels only determine the direction of the change.
         let (clipped_low, clipped_high) =
             (histogram.clipped_share() > 0.02, histogram.saturated_share() > 0.02);
         let good = |level: f64, wanted: f64| (level - wanted).abs() <= self.tolerance;
@@ -128,7 +128,7 @@ impl AutoContrastConfig {
         }
         let contrast = ((self.bright_level - self.dark_level) / (high - low)).clamp(0.1, self.max_contrast);
         let contrast = now.contrast + 0.5 * (contrast - now.contrast);
-        // The middle of the two levels goes to its place, at the contrast that is asked for.
+        // Brings the mean of the two levels to its desired value at the requested contrast.
         let wanted = (self.dark_level + self.bright_level) / 2.0 - contrast * (low + high) / 2.0;
         let brightness = (now.brightness + 0.5 * (wanted - now.brightness)).clamp(-10.0, 10.0);
         let moved =
@@ -144,7 +144,7 @@ mod tests {
     use contract::Frame;
     use contract::docking::{Field, Lines};
 
-    /// A picture whose signal is a ramp from `low` to `high`, digitised.
+    /// Returns a digitised image whose signal is a ramp from `low` to `high`.
     fn ramp(low: f64, high: f64, digitiser: &Digitiser) -> Field {
         let (columns, rows) = (200, 100);
         let dn = (0..columns * rows)

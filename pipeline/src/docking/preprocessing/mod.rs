@@ -1,4 +1,5 @@
-//! The region of interest and what is done to it before anything is looked for (docking paper, section 2, steps 1 and 2).
+//! Region of interest, and processing before the search for the target (docking paper, section 2, steps 1 and
+//! 2).
 
 pub(super) mod binarise;
 pub(super) mod edges;

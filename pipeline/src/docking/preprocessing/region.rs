@@ -1,4 +1,4 @@
-//! The region of interest: given from outside, or predicted from the previous fields.
+//! Region of interest: given by the user, or predicted from previous fields.
 
 use contract::bounds::require;
 use contract::{OutOfRange, PixelPoint};
@@ -13,7 +13,7 @@ use crate::docking::cross_and_circle::cross::CrossSeed;
 use crate::docking::cross_and_circle::marks::Plane;
 use crate::docking::pose::geometry::project;
 
-/// A rectangle of the camera's pixels, borders included.
+/// Rectangle of the camera's pixels, borders included.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rectangle {
@@ -32,7 +32,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// Everything.
+    /// Rectangle that contains every pixel.
     pub(crate) const ALL: Self = Self {
         first_column: f64::NEG_INFINITY,
         first_row: f64::NEG_INFINITY,
@@ -40,7 +40,7 @@ impl Rectangle {
         last_row: f64::INFINITY,
     };
 
-    /// The square about a point.
+    /// Returns the square around a point.
     pub(crate) fn square(centre: PixelPoint, half_side: f64) -> Self {
         Self {
             first_column: centre.x - half_side,
@@ -56,13 +56,13 @@ impl Rectangle {
     }
 }
 
-/// Where the target is looked for.
+/// Region in which the target is searched for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RegionConfig {
-    /// Window given from outside that the centre of the cross lies in, camera pixels; none: the whole field.
+    /// Window that must contain the centre of the cross, camera pixels; without one, the whole field.
     pub window: Option<Rectangle>,
-    /// Longest time between two fields over which the target's place is predicted, s, above 0 to 60.
+    /// Longest time between two fields over which the target's position is predicted, s, above 0 to 60.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 60))]
     pub max_gap_s: f64,
 }
@@ -84,7 +84,7 @@ impl RegionConfig {
     }
 }
 
-/// Where cross and marks were in a field, ideal image.
+/// Cross and marks in a field, ideal image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FeaturePositions {
     pub(crate) time_s: f64,
@@ -96,7 +96,8 @@ pub(crate) struct FeaturePositions {
 }
 
 impl FeaturePositions {
-    /// Where a pose has cross and marks; `None` for a pose from which they cannot be seen.
+    /// Returns the cross and marks predicted from a pose, or `None` if the pose does not project them into
+    /// the image.
     pub(crate) fn from_pose(
         time_s: f64,
         camera: usize,
@@ -108,7 +109,7 @@ impl FeaturePositions {
             (target.cross.height_m, target.cross.half_length_m, target.mark_circle_radius_m);
         let see =
             |x: f64, y: f64, z: f64| lens.to_ideal(project(lens.model(), &pose, &Vector3::new(x, y, z))?);
-        // Differences over the bar, so that perspective along it does not count.
+        // Symmetric differences, in which perspective along the bar cancels.
         let bar = see(0.3 * half, 0.0, height)? - see(-0.3 * half, 0.0, height)?;
         let disk = see(0.3 * r, 0.0, 0.0)? - see(-0.3 * r, 0.0, 0.0)?;
         let upwards = see(0.0, 0.3 * r, 0.0)? - see(0.0, -0.3 * r, 0.0)?;
@@ -131,7 +132,7 @@ impl FeaturePositions {
     }
 }
 
-/// What the fields before say of the next one.
+/// Prediction of the next field from previous fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prediction {
     pub(crate) cross: CrossSeed,
@@ -139,7 +140,7 @@ pub(crate) struct Prediction {
     pub(crate) pose: Pose,
 }
 
-/// What is remembered of the target from field to field.
+/// Recent sightings of the target.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Track {
     last: Option<FeaturePositions>,
@@ -147,25 +148,25 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    /// Forgets everything.
+    /// Removes all sightings.
     pub(crate) fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// The last sighting.
+    /// Returns the last sighting.
     pub(crate) fn last(&self) -> Option<&FeaturePositions> {
         self.last.as_ref()
     }
 
-    /// Takes a new sighting.
+    /// Adds a new sighting.
     pub(crate) fn push(&mut self, sighting: FeaturePositions) {
         let same_lens = self.last.is_some_and(|last| last.camera == sighting.camera);
         self.before = self.last.filter(|last| same_lens && last.time_s < sighting.time_s);
         self.last = Some(sighting);
     }
 
-    /// Cross, plane and pose at a moment, by constant velocity from the last two sightings, or as in the last one. Another
-    /// lens on the same axis shows the same ideal image at another scale.
+    /// Predicts cross, plane and pose at a given time, by constant velocity from the last two sightings, or
+    /// constant from the last one. Another lens on the same axis has the same ideal image at another scale.
     pub(crate) fn predict(
         &self,
         time_s: f64,
@@ -183,7 +184,7 @@ impl Track {
             Some(before) if last.time_s - before.time_s <= max_gap_s => ahead / (last.time_s - before.time_s),
             _ => 0.0,
         };
-        // A step of a hundred fields is not a prediction.
+        // Extrapolation over a hundred fields would not be a prediction.
         let share = if share <= 8.0 { share } else { 0.0 };
         let before = self.before.as_ref().unwrap_or(last);
         let number = |a: f64, b: f64| a + share * (a - b);

@@ -1,4 +1,4 @@
-//! A field as the steps read it: grey values at places of the camera.
+//! Field as used by the processing steps: grey values at camera positions.
 
 use std::ops::Range;
 
@@ -9,9 +9,10 @@ use nalgebra::Vector2;
 
 use crate::CameraModel;
 
-/// Grey values of a field, 0 to [`View::WHITE`], by places in the camera's pixels.
+/// Grey values of a field, 0 to [`View::WHITE`], addressed by camera pixels.
 ///
-/// A field holds every second row of the camera, so its image is squeezed: all steps count in camera pixels.
+/// A field contains every second row of the camera, so its image is compressed vertically: all steps use
+/// camera pixels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View<'a> {
     field: &'a Field,
@@ -41,35 +42,36 @@ impl<'a> View<'a> {
         self.field.image().rows()
     }
 
-    /// Rows of the camera from one row of the image to the next.
+    /// Returns the number of camera rows from one row of the image to the next.
     pub(crate) fn step(&self) -> f64 {
         self.step
     }
 
-    /// Camera row of the image's row `row`.
+    /// Returns the camera row of the image's row `row`.
     pub(crate) fn camera_row(&self, row: usize) -> f64 {
         self.first_row + self.step * row as f64
     }
 
-    /// Row of the image, with its fraction, at the camera's row `y`.
+    /// Returns the fractional row of the image at the camera's row `y`.
     pub(crate) fn image_row(&self, y: f64) -> f64 {
         (y - self.first_row) / self.step
     }
 
-    /// Grey values of every `stride`-th of a row's pixels of the image from the first of these columns on; none for columns that are
-    /// not in it.
+    /// Returns the grey values of every `stride`-th pixel of an image row, within the given columns. Empty
+    /// for columns outside the image.
     pub(crate) fn line(&self, row: usize, columns: Range<usize>, stride: usize) -> impl Iterator<Item = f64> {
         let start = row * self.columns();
         let line = self.field.image().dn().get(start + columns.start..start + columns.end);
         line.unwrap_or_default().iter().step_by(stride).map(|dn| f64::from(*dn) * self.scale)
     }
 
-    /// Grey value of a pixel of the image.
+    /// Returns the grey value of a pixel of the image.
     pub(crate) fn grey_at(&self, column: usize, row: usize) -> f64 {
         f64::from(self.field.image().dn_at(column, row)) * self.scale
     }
 
-    /// Grey value at a place, bilinear between pixels; `None` beyond the centres of the outer pixels.
+    /// Returns the grey value at a position, bilinear between pixels; `None` beyond the centres of the outer
+    /// pixels.
     pub(crate) fn sample(&self, point: PixelPoint) -> Option<f64> {
         let (x, row) = (point.x, self.image_row(point.y));
         let (last_x, last_row) = (self.columns() as f64 - 1.0, self.rows() as f64 - 1.0);
@@ -84,7 +86,7 @@ impl<'a> View<'a> {
         Some(upper * (1.0 - fy) + lower * fy)
     }
 
-    /// Whether a place is in the image, `margin` camera pixels away from its border.
+    /// Returns true if a position is in the image, at least `margin` camera pixels from its border.
     pub(crate) fn contains(&self, point: PixelPoint, margin: f64) -> bool {
         let bottom = self.camera_row(self.rows().saturating_sub(1));
         point.x >= margin
@@ -93,7 +95,8 @@ impl<'a> View<'a> {
             && point.y <= bottom - margin
     }
 
-    /// The field with square pixels of 2 × 2 camera pixels: what regions and edges are looked for in.
+    /// Returns the field with square pixels of 2 × 2 camera pixels, in which regions and edges are searched
+    /// for.
     pub(crate) fn overview(&self) -> Overview {
         let rows_each = if self.step > 1.5 { 1 } else { 2 };
         let (width, height) = (self.columns() / 2, self.rows() / rows_each);
@@ -118,7 +121,7 @@ impl<'a> View<'a> {
     }
 }
 
-/// A field with square pixels, each [`Overview::PIXEL`] camera pixels wide and high.
+/// Field with square pixels, each [`Overview::PIXEL`] camera pixels wide and high.
 #[derive(Debug, Clone)]
 pub(crate) struct Overview {
     /// Grey values.
@@ -128,10 +131,10 @@ pub(crate) struct Overview {
 }
 
 impl Overview {
-    /// Camera pixels along a side of a pixel.
+    /// Side of an overview pixel, camera pixels.
     pub(crate) const PIXEL: f64 = 2.0;
 
-    /// The part within `half_side` camera pixels of a place along columns and rows.
+    /// Returns the part within `half_side` camera pixels of a position, along columns and rows.
     pub(crate) fn around(&self, centre: PixelPoint, half_side: f64) -> Self {
         let span = |middle: f64, first: f64, n: u32| {
             let at = |v: f64| ((v - first) / Self::PIXEL).clamp(0.0, f64::from(n)) as u32;
@@ -146,19 +149,19 @@ impl Overview {
         Self { grey, first_x: corner.x, first_y: corner.y }
     }
 
-    /// The place in the camera of a place in the overview (centre of its first pixel: (0, 0)).
+    /// Converts a position in the overview (centre of its first pixel: (0, 0)) to camera pixels.
     pub(crate) fn to_camera(&self, x: f64, y: f64) -> PixelPoint {
         PixelPoint::new(self.first_x + Self::PIXEL * x, self.first_y + Self::PIXEL * y)
     }
 }
 
-/// The way between the camera's pixels and the ideal image of the paper's formulas: (f x1/x3, f x2/x3), px, from the
-/// principal point, f along columns.
+/// Conversion between the camera's pixels and the ideal image of the paper's formulas: (f x1/x3, f x2/x3),
+/// px, relative to the principal point, with f along columns.
 #[derive(Debug, Clone)]
 pub(crate) struct Lens {
     model: CameraModel,
     focal_px: f64,
-    /// Columns a row's height is: 1 where pixels are square.
+    /// Height of a row in columns: 1 where pixels are square.
     row_px: f64,
 }
 
@@ -168,23 +171,25 @@ impl Lens {
         Ok(Self { model: CameraModel::new(camera)?, focal_px, row_px: focal_px / focal_y_px })
     }
 
-    /// The camera's model.
+    /// Returns the camera's model.
     pub(crate) fn model(&self) -> &CameraModel {
         &self.model
     }
 
-    /// f, px.
+    /// Returns the focal length f, px.
     pub(crate) fn focal_px(&self) -> f64 {
         self.focal_px
     }
 
-    /// Without distortion; `None` where the lens model has no inverse.
+    /// Converts a camera position to the ideal image, without distortion; `None` where the lens model has no
+    /// inverse.
     pub(crate) fn to_ideal(&self, point: PixelPoint) -> Option<Vector2<f64>> {
         let (u, v) = self.model.to_ideal(point)?;
         Some(Vector2::new(u, v * self.row_px))
     }
 
-    /// As the camera sees it; `None` beyond the fold of the distortion.
+    /// Converts an ideal position to camera pixels, with distortion; `None` beyond the fold of the
+    /// distortion.
     pub(crate) fn to_camera(&self, ideal: Vector2<f64>) -> Option<PixelPoint> {
         self.model.pixel_from_ideal(ideal.x, ideal.y / self.row_px)
     }

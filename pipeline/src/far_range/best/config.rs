@@ -3,43 +3,46 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Parameters of the best mode; every one has a default.
+/// Parameters of the best mode; all have defaults.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BestConfig {
-    /// Whether the frames are a sequence, in their order: mounting, point-spread function, hot pixels and the motion of the target are then
-    /// estimated over frames. `false` for single, unrelated frames.
+    /// True if the frames are a sequence in order of time: mounting, point-spread function, hot pixels and
+    /// the motion of the target are then estimated over frames. `false` for single, unrelated frames.
     pub sequence: bool,
-    /// Where the attitude of a frame starts: `telemetry`, or `none`: from the stars of the frame alone, whatever the telemetry says of the attitude.
+    /// Initial attitude of a frame: `telemetry`, or `none` for an attitude from the stars of the frame only,
+    /// independent of the attitude in the telemetry.
     pub prior: AttitudePrior,
-    /// Error of the position of a star beyond its centroid's (list, distortion, trail), px, 0 to 10.
+    /// Position error of a star in addition to that of its centroid (list, distortion, trail), px, 0 to 10.
     #[schemars(range(min = 0, max = 10))]
     pub star_floor_px: f64,
-    /// Error of the centroid of the target beyond that of its fit (response within pixels, structure of the body), px, 0 to 10.
+    /// Centroid error of the target in addition to that of its fit (response within pixels, structure of the
+    /// body), px, 0 to 10.
     #[schemars(range(min = 0, max = 10))]
     pub target_floor_px: f64,
     /// Relative error of the calibrated width of the point-spread function, 0.001 to 2.
     #[schemars(range(min = 0.001, max = 2))]
     pub psf_width_error: f64,
-    /// Most stars that are fitted for the attitude, the brightest, 1 to 1000.
+    /// Largest number of stars fitted for the attitude, brightest first, 1 to 1000.
     #[schemars(range(min = 1, max = 1000))]
     pub max_stars: u32,
-    /// Greatest speed of the target in the image, px/s, 1e-6 to 1e6.
+    /// Largest speed of the target in the image, px/s, 1e-6 to 1e6.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub max_speed_px_per_s: f64,
-    /// Least natural logarithm of the odds that the reported cluster is the target, −100 to 100.
+    /// Smallest natural logarithm of the odds that the reported cluster is the target, −100 to 100.
     #[schemars(range(min = -100, max = 100))]
     pub min_log_odds: f64,
 }
 
-/// Start of the attitude of a frame.
+/// Initial attitude of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AttitudePrior {
-    /// The attitude in the telemetry and the mounting, with the errors of the calibration.
+    /// Attitude from the telemetry and the mounting, with the errors of the calibration.
     #[default]
     Telemetry,
-    /// No attitude: the patterns of the stars give it, in each frame anew (lost in space). A frame without four stars that fit has no attitude.
+    /// No initial attitude: determined from star patterns, independently for each frame (lost in space). A
+    /// frame without four matching stars has no attitude.
     None,
 }
 

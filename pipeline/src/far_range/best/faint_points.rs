@@ -5,38 +5,40 @@ use contract::{PixelPoint, Window};
 use super::image_fit::PointImage;
 use super::photometry::PhotometryContext;
 
-/// A point below the threshold of clusters.
+/// Point below the threshold of clusters.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FaintPoint {
     pub(super) position: PixelPoint,
     /// Variance of the position along an axis, px².
     pub(super) variance_px2: f64,
-    /// Electrons.
+    /// Flux, electrons.
     pub(super) flux_e: f64,
 }
 
-/// Finds [`FaintPoint`]s; owns its buffers.
+/// Search for [`FaintPoint`]s, with reusable buffers.
 #[derive(Debug, Default)]
 pub(super) struct FaintPoints {
-    /// Electrons above the background, hot pixels and clusters taken out.
+    /// Electrons above the background, 0 at hot pixels and clusters.
     context: Vec<f32>,
     along_rows: Vec<f32>,
     filtered: Vec<f32>,
     points: Vec<(f32, FaintPoint)>,
 }
 
-/// Signal-to-noise ratio of the flux from which on a maximum is a point: noise alone has about ten in half a million pixels.
+/// Smallest signal-to-noise ratio of a point's flux: noise alone exceeds it about ten times in half a million
+/// pixels.
 const LEAST_SNR: f64 = 4.0;
 
-/// Most points of a frame, the brightest.
+/// Largest number of points of a frame, brightest first.
 const MAX_POINTS: usize = 24;
 
-/// Distance from a cluster or a listed star within which a maximum is its light, px, beyond the reach of the filter.
+/// Distance from a cluster or a listed star within which a maximum is part of it, px, in addition to the
+/// reach of the filter.
 const APART_PX: f64 = 2.0;
 
 impl FaintPoints {
-    /// The points of a frame, the brightest first, that are apart from clusters and from the positions of `stars`. The noise of the background is that of
-    /// every pixel.
+    /// Finds the points of a frame that are apart from clusters and from the positions of `stars`, brightest
+    /// first. The noise of the background is assumed for every pixel.
     pub(super) fn find(
         &mut self,
         context: PhotometryContext<'_>,
@@ -68,7 +70,8 @@ impl FaintPoints {
         }
         self.load(context, window);
         self.convolve(columns, rows, kernel);
-        // The filter's output is the flux where its weights are k/Σk², with the noise σ/√Σk² of the pixels' σ.
+        // The filter's output is the flux if its weights are k/Σk²; its noise is then σ/√Σk², with the
+        // pixels' σ.
         let power: f32 = kernel.iter().map(|k| k * k).sum();
         let power = f64::from(power * power);
         let limit = LEAST_SNR * context.model.pixel_sigma_e * power.sqrt();
@@ -86,7 +89,7 @@ impl FaintPoints {
                 if !is_taken {
                     let flux_e = f64::from(value) / power;
                     let snr = f64::from(value) / (context.model.pixel_sigma_e * power.sqrt());
-                    // That of a Gaussian in uniform noise: 2 σ²/snr².
+                    // Position variance of a Gaussian in uniform noise: 2 σ²/snr².
                     let point = FaintPoint { position, variance_px2: 2.0 * sigma2 / (snr * snr), flux_e };
                     self.points.push((value, point));
                 }
@@ -94,7 +97,7 @@ impl FaintPoints {
         }
     }
 
-    /// Takes in the pixels of a window.
+    /// Loads the pixels of a window.
     fn load(&mut self, context: PhotometryContext<'_>, window: &Window) {
         let (gain, base_dn) = context.model.scale();
         self.context.clear();
@@ -111,7 +114,7 @@ impl FaintPoints {
         }
     }
 
-    /// Convolves along the rows, then along the columns; the margin of half a kernel stays 0.
+    /// Convolves along the rows, then along the columns. A margin of half a kernel remains 0.
     fn convolve(&mut self, columns: usize, rows: usize, kernel: &[f32]) {
         let reach = kernel.len() / 2;
         self.along_rows.clear();
@@ -136,7 +139,7 @@ impl FaintPoints {
         }
     }
 
-    /// Whether no neighbour of the pixel is brighter; of equal ones the first counts.
+    /// Returns true if no neighbour of the pixel is brighter; of equal neighbours the first counts.
     fn is_maximum(&self, x: usize, y: usize, columns: usize) -> bool {
         let at = y * columns + x;
         let value = self.filtered[at];
@@ -146,7 +149,8 @@ impl FaintPoints {
         before.into_iter().all(|v| *v < value) && after.into_iter().all(|v| *v <= value)
     }
 
-    /// The maximum of the parabolas through a pixel and its neighbours along columns and rows, in the frame.
+    /// Returns the maximum, in frame coordinates, of the parabolas through a pixel and its neighbours along
+    /// columns and rows.
     fn vertex(&self, x: usize, y: usize, columns: usize, window: &Window) -> PixelPoint {
         let at = y * columns + x;
         let offset = |step: usize| {
@@ -158,7 +162,7 @@ impl FaintPoints {
     }
 }
 
-/// Samples of a Gaussian on pixels, out to 2.5 widths.
+/// Returns a Gaussian integrated over pixels, out to 2.5 widths.
 fn kernel(sigma_px: f64) -> Vec<f32> {
     let sigma_px = sigma_px.clamp(0.4, 4.0);
     let reach = (2.5 * sigma_px).ceil() as i32;

@@ -1,4 +1,4 @@
-//! The attitude of a frame, from the prior and its stars, and which clusters are stars.
+//! Attitude of a frame from the prior and the frame's stars, and identification of clusters as stars.
 
 use contract::{AttitudeSource, CameraFrame, Icrs, PixelPoint, Rotation, Telemetry};
 
@@ -15,29 +15,30 @@ use crate::far_range::aberration::apparent_direction;
 use crate::far_range::config::AberrationConfig;
 use crate::far_range::overrides::{Identity, Overrides};
 
-/// The attitude of a frame and the stars that gave it.
+/// Attitude of a frame, with the stars that determined it.
 pub(super) struct FrameAttitude {
-    /// `None` when neither telemetry nor stars give one.
+    /// Attitude; `None` when neither telemetry nor stars determine it.
     pub(super) camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
     pub(super) error: AttitudeError,
     pub(super) source: AttitudeSource,
-    /// For each cluster the star that it is.
+    /// Catalogue number of the star for each cluster that is a star.
     pub(super) star_of: Vec<Option<u32>>,
     pub(super) n_stars: u32,
     pub(super) expected: Vec<ExpectedStar>,
-    /// Fitted positions of stars, by their clusters.
+    /// Fitted positions of stars, with the indices of their clusters.
     pub(super) fitted: Vec<(usize, PixelPoint)>,
 }
 
-/// Clusters looked at in the search for stars, the brightest.
+/// Largest number of clusters considered in the search for stars, brightest first.
 const MAX_STAR_CANDIDATES: usize = 60;
 
-/// Distance of another listed star within which an image is that of both, px, and the part of the flux from which on it disturbs.
+/// Distance of another listed star below which images blend, px, and its smallest relative flux that
+/// disturbs.
 const BLEND_PX: f64 = 5.0;
 const BLEND_FRACTION: f64 = 0.02;
 
 impl FrameAttitude {
-    /// Of a frame that neither telemetry nor stars give an attitude.
+    /// Returns the result for a frame whose attitude neither telemetry nor stars determine.
     pub(super) fn unknown(sources: &[Source]) -> Self {
         let source = match sources.iter().filter(|source| source.spike.is_none()).count() {
             0 => AttitudeSource::NoStars,
@@ -58,7 +59,8 @@ impl FrameAttitude {
 }
 
 impl BestPipeline {
-    /// Length of the trail of a star during the exposure along columns and rows, px, by the turn of the camera since the last frame.
+    /// Returns the length of a star's trail during the exposure along columns and rows, px, by the rotation
+    /// of the camera since the last frame.
     pub(super) fn trail_px(
         &self,
         telemetry: &Telemetry,
@@ -70,11 +72,12 @@ impl BestPipeline {
         let turn = (start.attitude(start.prior.mean) * last.inverse()).quaternion().scaled_axis();
         let (fx, fy) = self.model.focal_px();
         let part = telemetry.exposure_s / elapsed_s;
-        // Of the boresight; the noise of the attitude is far below a star's image here.
+        // Trail at the boresight; the noise of the attitude is far below the size of a star's image here.
         [(fx * turn.y * part).abs().min(20.0), (fy * turn.x * part).abs().min(20.0)]
     }
 
-    /// The attitude that the frame starts from; `None` without a prior when its stars give none.
+    /// Returns the initial attitude of the frame. Returns `None` when there is no prior and the stars do not
+    /// determine an attitude.
     pub(super) fn start(
         &self,
         sources: &[Source],
@@ -98,7 +101,7 @@ impl BestPipeline {
         }
     }
 
-    /// The attitude of the frame, and which clusters are stars.
+    /// Determines the attitude of the frame and the clusters that are stars.
     pub(super) fn attitude(
         &mut self,
         context: PhotometryContext<'_>,
@@ -137,7 +140,8 @@ impl BestPipeline {
         let mut fits: Vec<Option<Option<FittedSource>>> = vec![None; candidates.len()];
         let mut error = prior;
         let (mut measured, mut of_match) = (Vec::new(), Vec::new());
-        // Once with the stars of the common offset, once with all that are where they then must be.
+        // First pass with the stars that share a common offset; second pass with all stars at the positions
+        // that follow.
         for _ in 0..2 {
             measured.clear();
             of_match.clear();
@@ -179,7 +183,8 @@ impl BestPipeline {
             }
             matched = matches_at_positions(&candidates, &expected, |_| gate_px);
         }
-        // Its own fits decide at last which clusters are stars: within four standard deviations of where the attitude has them.
+        // The fits finally decide which clusters are stars: those within four standard deviations of the
+        // position predicted by the attitude.
         let mut star_of = vec![None; sources.len()];
         let mut n_stars = 0;
         for &(c, s) in &matched {
@@ -198,7 +203,8 @@ impl BestPipeline {
         let is_star: Vec<bool> =
             of_match.iter().map(|&(c, s)| star_of[order[c]] == Some(expected[s].star.id)).collect();
         if is_star.contains(&false) {
-            // A star that is not where its own attitude has it gave no attitude.
+            // If a star used for the attitude is not at its predicted position, the attitude is solved again
+            // without it.
             let measured = retained(measured, &is_star);
             error = solve_attitude(&measured, &prior, of, &self.model).map_or(prior, |solved| solved.error);
             camera_from_icrs = of(error.mean);
@@ -232,7 +238,7 @@ impl BestPipeline {
         FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected, fitted }
     }
 
-    /// The attitude with the identities of clusters given from outside.
+    /// Determines the attitude with given identities of the clusters.
     #[allow(clippy::too_many_arguments, reason = "the state of one frame, half way")]
     fn given_attitude(
         &mut self,
@@ -276,7 +282,7 @@ impl BestPipeline {
         FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected, fitted: Vec::new() }
     }
 
-    /// Listed stars where they are expected, by an attitude of the camera.
+    /// Returns the listed stars at their expected positions for a camera attitude.
     fn expected_stars(
         &self,
         camera_from_icrs: &Rotation<CameraFrame, Icrs>,
@@ -324,7 +330,7 @@ impl BestPipeline {
         })
     }
 
-    /// Takes the widths and the brightness of the stars into their estimates.
+    /// Updates the estimates of width and brightness scale with the stars.
     fn update_estimates(
         &mut self,
         matched: &[(usize, usize)],
@@ -346,7 +352,7 @@ impl BestPipeline {
             if fit.image.flux_e > 0.0 {
                 let star = &expected[s];
                 let unscaled = self.unscaled_flux_e(star.star.magnitude, exposure_s);
-                // An exposure of 0 s gives no scale.
+                // An exposure of 0 s does not determine the scale.
                 let log_ratio = libm::log(fit.image.flux_e / unscaled);
                 log_ratios.extend(Some(log_ratio).filter(|ratio| ratio.is_finite()));
             }
@@ -365,12 +371,12 @@ impl BestPipeline {
     }
 }
 
-/// The entries whose flag is set.
+/// Returns the entries whose flag is set.
 fn retained<T>(entries: Vec<T>, flags: &[bool]) -> Vec<T> {
     entries.into_iter().zip(flags).filter(|(_, flag)| **flag).map(|(entry, _)| entry).collect()
 }
 
-/// Whether another listed star shines into the image of star `s`.
+/// Returns true if another listed star contributes to the image of star `s`.
 fn is_blended(stars: &[ExpectedStar], s: usize) -> bool {
     let flux = |star: &ExpectedStar| libm::pow(10.0, -0.4 * star.star.magnitude);
     stars.iter().enumerate().any(|(other, star)| {

@@ -1,18 +1,18 @@
-//! Hot pixels: pixels that are bright alone in several frames.
+//! Hot pixels: pixels that are isolated and bright in several frames.
 
 use std::collections::HashMap;
 
-/// Frames in which a pixel must be bright alone to count as hot.
+/// Number of frames in which a pixel must be isolated and bright to count as hot.
 const FRAMES: u32 = 3;
 
-/// Pixels that were bright alone, by their index in the image, with the number of frames.
+/// Number of frames in which each pixel was isolated and bright, by the pixel's index in the image.
 #[derive(Debug, Clone, Default)]
 pub(super) struct HotPixels {
     frames: HashMap<usize, u32>,
 }
 
 impl HotPixels {
-    /// Counts a frame in which the pixel was bright alone.
+    /// Counts a frame in which the pixel was isolated and bright.
     pub(super) fn count(&mut self, index: usize) {
         *self.frames.entry(index).or_default() += 1;
     }
@@ -22,7 +22,7 @@ impl HotPixels {
         self.frames.get(&index).is_some_and(|&frames| frames >= FRAMES)
     }
 
-    /// Indices of the hot pixels, in no order.
+    /// Returns the indices of the hot pixels, unordered.
     pub(super) fn indices(&self) -> impl Iterator<Item = usize> {
         self.frames.iter().filter(|(_, frames)| **frames >= FRAMES).map(|(index, _)| *index)
     }

@@ -1,17 +1,20 @@
-//! Image of a point, and of known neighbours, fitted to pixels with priors: maximum a posteriori by Fisher scoring.
+//! Image of a point, and of known neighbours, fitted to pixels with priors: maximum a posteriori by Fisher
+//! scoring.
 //!
-//! Expected electrons of a pixel: m = b + F [(1 − h) G(σ) + h G(σ_h)] + Σ F_k G_k, with G the share of a circular Gaussian that falls on
-//! the pixel (a product of two differences of error functions; the core may be wider along rows than along columns by a factor) and the sum over neighbours at known positions. Variance of a pixel:
-//! v = m + r² + (ρ m)², of photons, readout and rounding, and the response of single pixels. The fit solves the score equations
-//! Σ ∂m (n − m)/v = 0 of the quasi-likelihood (McCullagh & Nelder 1989, Generalized Linear Models, Sec. 9.2) by Fisher scoring with weights 1/v that
-//! follow the model; the information is Σ ∂m ∂mᵀ/v. Priors are normal.
+//! Expected electrons of a pixel: m = b + F [(1 − h) G(σ) + h G(σ_h)] + Σ F_k G_k, with G the share of a
+//! circular Gaussian on the pixel (a product of two differences of error functions; the core may be wider
+//! along rows than along columns by a factor) and the sum over neighbours at known positions. Variance of a
+//! pixel: v = m + r² + (ρ m)², of photons, of readout and rounding, and of the response of single pixels. The
+//! fit solves the score equations Σ ∂m (n − m)/v = 0 of the quasi-likelihood (McCullagh & Nelder 1989,
+//! Generalized Linear Models, Sec. 9.2) by Fisher scoring with weights 1/v that follow the model; the
+//! information is Σ ∂m ∂mᵀ/v. Priors are normal.
 //!
-//! Pixels that were not transmitted, that are saturated or that hold spilt charge are not among the pixels of the fit: a cut image is fitted
-//! by what arrived of it.
+//! The fit excludes pixels that were not transmitted, that are saturated or that contain spilt charge: a
+//! truncated image is fitted to its transmitted part.
 
 use super::normal_equations::{MAX_PARAMETERS, NormalEquations, Vector};
 
-/// One pixel of a fit, counted from the first of its window.
+/// Pixel of a fit, counted from the first pixel of its window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pixel {
     pub(super) column: usize,
@@ -30,14 +33,14 @@ pub(super) struct PixelNoise {
 }
 
 impl PixelNoise {
-    /// Variance of a pixel of mean `mean_e`, e²; never below a twentieth of the readout's.
+    /// Returns the variance of a pixel of mean `mean_e`, e²; at least a twentieth of that of the readout.
     #[inline(always)]
     fn variance(&self, mean_e: f64) -> f64 {
         (mean_e + self.readout_e2 + self.response * mean_e * mean_e).max(0.05 * self.readout_e2).max(1e-9)
     }
 }
 
-/// Normal prior of a parameter; an infinite variance leaves it free, a variance of 0 fixes it.
+/// Normal prior of a parameter. An infinite variance means a free parameter, a variance of 0 a fixed one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Prior {
     pub(super) mean: f64,
@@ -45,37 +48,38 @@ pub(super) struct Prior {
 }
 
 impl Prior {
-    /// A free parameter that starts at `start`.
+    /// Creates a free parameter with initial value `start`.
     pub(super) fn free(start: f64) -> Self {
         Self { mean: start, variance: f64::INFINITY }
     }
 
-    /// A known parameter.
+    /// Creates a fixed parameter.
     pub(super) fn fixed(value: f64) -> Self {
         Self { mean: value, variance: 0.0 }
     }
 
-    /// A parameter known with a standard deviation.
+    /// Creates a parameter with a mean and a standard deviation.
     pub(super) fn normal(mean: f64, sigma: f64) -> Self {
         Self { mean, variance: sigma * sigma }
     }
 }
 
-/// Image of a point: widths of core and halo, and how far it is smeared along columns and rows.
+/// Image of a point: widths of core and halo, and trail lengths along columns and rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PointImage {
     /// Standard deviation of the core, px.
     pub(super) sigma_px: f64,
     /// Standard deviation of the halo, px.
     pub(super) halo_sigma_px: f64,
-    /// Part of the flux in the halo.
+    /// Share of the flux in the halo.
     pub(super) halo_fraction: f64,
     /// Length of the trail during the exposure along columns and rows, px.
     pub(super) trail_px: [f64; 2],
 }
 
 impl PointImage {
-    /// Share of the flux on the pixel whose centre is at the offset (dx, dy) from that of the image.
+    /// Returns the share of the flux on the pixel whose centre is at the offset (dx, dy) from the image's
+    /// centre.
     pub(super) fn share(&self, dx: f64, dy: f64) -> f64 {
         let of = |sigma: f64| {
             let along = |offset: f64, trail: f64| Share::from_offset(offset, smeared(sigma, trail)).value;
@@ -84,13 +88,13 @@ impl PointImage {
         (1.0 - self.halo_fraction) * of(self.sigma_px) + self.halo_fraction * of(self.halo_sigma_px)
     }
 
-    /// Share of the flux on the central pixel of an image in its middle.
+    /// Returns the share of the flux on the central pixel of an image centred on it.
     pub(super) fn central_share(&self) -> f64 {
         self.share(0.0, 0.0)
     }
 }
 
-/// A source at a known position in the window of the fitted one.
+/// Source at a known position in the window of the fitted source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Neighbour {
     /// Position, counted from the first pixel of the window, px.
@@ -101,7 +105,7 @@ pub(super) struct Neighbour {
     pub(super) image: PointImage,
 }
 
-/// What is fitted: priors of the parameters and known neighbours.
+/// Model of a fit: priors of the parameters, and known neighbours.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImageModel<'a> {
     /// Position, counted from the first pixel of the window, px.
@@ -111,21 +115,22 @@ pub(super) struct ImageModel<'a> {
     pub(super) flux_e: Prior,
     /// Background of a pixel, electrons.
     pub(super) background_e: Prior,
-    /// Natural logarithm of the width of the core over that of `image`.
+    /// Natural logarithm of the ratio of the core's width to that of `image`.
     pub(super) log_width: Prior,
-    /// Natural logarithm of the width of the core along rows over that along columns: a body is no circle.
+    /// Natural logarithm of the ratio of the core's widths along rows and along columns. Accounts for bodies
+    /// that are not circular.
     pub(super) log_elongation: Prior,
-    /// Part of the flux in the halo.
+    /// Share of the flux in the halo.
     pub(super) halo_fraction: Prior,
     pub(super) image: PointImage,
-    /// At most [`MAX_NEIGHBOURS`].
+    /// Known neighbours, at most [`MAX_NEIGHBOURS`].
     pub(super) neighbours: &'a [Neighbour],
 }
 
-/// Most neighbours of a fit.
+/// Largest number of neighbours of a fit.
 pub(super) const MAX_NEIGHBOURS: usize = MAX_PARAMETERS - OWN_PARAMETERS;
 
-/// Parameters of the fitted source: position, flux, background, width, halo, elongation.
+/// Number of parameters of the fitted source: position, flux, background, width, halo, elongation.
 const OWN_PARAMETERS: usize = 7;
 const X: usize = 0;
 const Y: usize = 1;
@@ -141,65 +146,69 @@ pub(super) struct FittedImage {
     /// Position, counted from the first pixel of the window, px.
     pub(super) x_px: f64,
     pub(super) y_px: f64,
-    /// Covariance of the position, (xx, xy, yy), px²: the inverse of the Fisher information, priors included.
+    /// Covariance of the position, (xx, xy, yy), px²: the inverse of the Fisher information, including
+    /// priors.
     pub(super) covariance_px2: [f64; 3],
     /// Flux, electrons, and its standard deviation.
     pub(super) flux_e: f64,
     pub(super) flux_sigma_e: f64,
     pub(super) background_e: f64,
-    /// Width of the core over the calibrated one.
+    /// Width of the core relative to the calibrated one.
     pub(super) width: f64,
-    /// Part of the flux in the halo.
+    /// Share of the flux in the halo.
     pub(super) halo_fraction: f64,
     /// Σ (n − m)²/v over the pixels.
     pub(super) chi_squared: f64,
-    /// Pixels less free parameters.
+    /// Number of pixels minus number of free parameters.
     pub(super) freedom: usize,
 }
 
 impl FittedImage {
-    /// χ² per degree of freedom: near 1 where the model is that of the image.
+    /// Returns χ² per degree of freedom: near 1 if the model agrees with the image.
     pub(super) fn misfit(&self) -> f64 {
         self.chi_squared / self.freedom.max(1) as f64
     }
 }
 
-/// Steps at most, accepted or not.
+/// Largest number of steps, accepted or not.
 const MAX_STEPS: usize = 60;
 
-/// Decrement gᵀF⁻¹g below which the maximum counts as found: the position is then within 0.03 of its standard deviation.
+/// Decrement gᵀF⁻¹g below which the fit has converged: the position is then within 0.03 of its standard
+/// deviation.
 const DECREMENT: f64 = 1e-3;
 
-/// Damping (Levenberg's λ, relative to the diagonal): at first, and the largest before the fit gives up.
+/// Initial damping (Levenberg's λ, relative to the diagonal), and the damping at which the fit gives up.
 const FIRST_DAMPING: f64 = 1e-3;
 const LARGEST_DAMPING: f64 = 1e6;
 
-/// Damping up to which a small decrement is that of Fisher scoring itself.
+/// Largest damping at which a small decrement counts as that of undamped Fisher scoring.
 const UNDAMPED: f64 = 1e-2;
 
-/// Longest step of the position, px, and of the logarithm of the width.
+/// Largest steps of the position, px, and of the logarithm of the width.
 const LONGEST_STEP_PX: f64 = 0.7;
 const LARGEST_LOG_STEP: f64 = 0.2;
 
-/// Farthest that the centre of a cut image may lie outside the window, px.
+/// Largest distance of the centre of a truncated image outside the window, px.
 const BEYOND_PX: f64 = 8.0;
 
-/// Range of the width over the calibrated one.
+/// Range of the width relative to the calibrated one.
 const WIDTHS: (f64, f64) = (0.3, 12.0);
 
-/// Shares of Gaussians that fall on the columns or rows of a window, with their derivatives; owns its buffers.
+/// Fitter of images. Buffers the shares of Gaussians on the columns and rows of a window, with their
+/// derivatives.
 #[derive(Debug, Default)]
 pub(super) struct ImageFitter {
     core: [Vec<Share>; 2],
     halo: [Vec<Share>; 2],
-    /// Electrons of each neighbour of unit flux on each pixel of the fit, neighbour after neighbour.
+    /// Electrons on each pixel of the fit from each neighbour with unit flux, neighbour after neighbour.
     neighbours: Vec<f64>,
-    /// Weights 1/v of the pixels at the parameters at hand, and at those of the last evaluation.
+    /// Weights 1/v of the pixels at the current parameters, and at those of the last evaluation.
     weights: Vec<f64>,
     next_weights: Vec<f64>,
 }
 
-/// Share of a Gaussian on a column or row, and its derivatives with respect to the centre and to the logarithm of the width.
+/// Share of a Gaussian on a column or row, and its derivatives with respect to the centre and to the
+/// logarithm of the width.
 #[derive(Debug, Clone, Copy, Default)]
 struct Share {
     value: f64,
@@ -208,17 +217,17 @@ struct Share {
 }
 
 struct Evaluation {
-    /// Σ (n − m)²/v and the priors' part, with the weights of the parameters at hand.
+    /// Σ (n − m)²/v plus the priors' part, with the weights of the current parameters.
     objective: f64,
     prior_part: f64,
-    /// Σ (n − m)²/v with the weights of these parameters.
+    /// Σ (n − m)²/v with the weights of the evaluated parameters.
     chi_squared: f64,
     equations: NormalEquations,
 }
 
 impl ImageFitter {
-    /// Fits `model` to the pixels of a window of `columns` × `rows`; `None` with too few pixels, or where no maximum is found within
-    /// eight pixels of the window.
+    /// Fits `model` to the pixels of a window of `columns` × `rows`. Returns `None` with too few pixels, or
+    /// if no maximum is found within eight pixels of the window.
     pub(super) fn fit(
         &mut self,
         pixels: &[Pixel],
@@ -227,7 +236,7 @@ impl ImageFitter {
         model: &ImageModel<'_>,
     ) -> Option<FittedImage> {
         let priors = model.priors();
-        // Fixed parameters are the last ones.
+        // Fixed parameters come last.
         let parameters = OWN_PARAMETERS + model.neighbours.len();
         let n = priors.iter().take(parameters).position(|prior| prior.variance <= 0.0).unwrap_or(parameters);
         if pixels.len() < n.min(4) {
@@ -394,7 +403,7 @@ impl ImageModel<'_> {
     }
 }
 
-/// The first `n` parameters one step farther, no farther than a step may go.
+/// Returns the first `n` parameters after one step, shortened to the largest allowed step.
 fn moved(at: &Vector, step: &Vector, n: usize) -> Vector {
     let longest_of = |parameter: usize| match parameter {
         X | Y => LONGEST_STEP_PX,
@@ -412,12 +421,13 @@ fn moved(at: &Vector, step: &Vector, n: usize) -> Vector {
     next
 }
 
-/// Width of a Gaussian smeared over a trail: the variance of a uniform distribution is added.
+/// Returns the width of a Gaussian smeared over a trail, by adding the variance of a uniform distribution.
 fn smeared(sigma_px: f64, trail_px: f64) -> f64 {
     (sigma_px * sigma_px + trail_px * trail_px / 12.0).sqrt()
 }
 
-/// Shares of a Gaussian of width `sigma` about `centre` on all pixels of an axis: one error function per edge.
+/// Computes the shares of a Gaussian of width `sigma` about `centre` on all pixels of an axis, with one error
+/// function per edge.
 fn fill(shares: &mut [Share], centre: f64, sigma: f64) {
     let mut left = Edge::from_offset(-0.5 - centre, sigma);
     for (i, share) in shares.iter_mut().enumerate() {
@@ -427,10 +437,10 @@ fn fill(shares: &mut [Share], centre: f64, sigma: f64) {
     }
 }
 
-/// Distance in widths beyond which a Gaussian has nothing left, to 1e-9 of it.
+/// Distance in widths beyond which a Gaussian is negligible, to 1e-9 of its total.
 const FARTHEST: f64 = 6.0;
 
-/// Distance of an edge in widths, cumulative distribution and density there.
+/// Distance of an edge in widths, and cumulative distribution and density there.
 struct Edge {
     t: f64,
     cumulative: f64,

@@ -1,11 +1,13 @@
 //! Attitude of a frame without a prior: lost in space.
 //!
-//! Triangles of bright sources are looked up in a list of star pairs by their separations, in the order of the Pyramid algorithm, and mirrored
-//! triangles are refused (Mortari, Samaan, Bruccoleri & Junkins 2004, The Pyramid Star Identification Technique, Navigation 51, 171). Each
-//! triangle found is an attitude with a covariance. In the place of Pyramid's fourth star all other sources decide: the odds that they are the
-//! stars predicted by that attitude, against sources anywhere in the image (Lang, Hogg, Mierle, Blanton & Roweis 2010, AJ 139, 1782, section 2.3).
+//! Triangles of bright sources are looked up in a list of star pairs by their separations, in the order of
+//! the Pyramid algorithm, and mirrored triangles are refused (Mortari, Samaan, Bruccoleri & Junkins 2004, The
+//! Pyramid Star Identification Technique, Navigation 51, 171). Each triangle found gives an attitude with a
+//! covariance. Instead of Pyramid's fourth star, all other sources decide: by the odds that they are the
+//! stars predicted by that attitude, against sources anywhere in the image (Lang, Hogg, Mierle, Blanton &
+//! Roweis 2010, AJ 139, 1782, section 2.3).
 //!
-//! Brightness orders sources and stars and is not compared otherwise: neither zero point nor exposure is needed.
+//! Brightness is used only to order sources and stars: neither zero point nor exposure is needed.
 
 mod hypothesis;
 mod selection;
@@ -26,54 +28,59 @@ use separations::StarPairs;
 use source::ImageSource;
 use triangles::{TriangleSearch, pyramid_order};
 
-/// A solver for the frames of one camera with one star list. It holds nothing of a frame.
+/// Solver for the frames of one camera with one star list. Has no state from frames.
 #[derive(Debug)]
 pub(super) struct LostInSpace {
     model: CameraModel,
-    /// The brightest stars of each field.
+    /// Brightest stars of each field.
     stars: Vec<ListedStar>,
     list: StarList,
     pairs: StarPairs,
 }
 
-/// An attitude found without a prior.
+/// Attitude found without a prior.
 #[derive(Debug, Clone)]
 pub(super) struct FoundAttitude {
     pub(super) camera_from_icrs: Rotation<CameraFrame, Icrs>,
-    /// Covariance of its error, a small turn about the camera's axes, rad²: of sources with 0.4 px along an axis. The turn about the boresight is
-    /// known worst.
+    /// Covariance of the attitude's error, a small rotation about the camera's axes, rad², for sources with
+    /// an error of 0.4 px along an axis. The rotation about the boresight is the least accurate.
     pub(super) covariance: Matrix3<f64>,
-    /// Sources, by their index in the argument, and the stars that they are: at least four, each source and each star once.
+    /// Sources, by their index in the argument, with their stars: at least four, each source and each star
+    /// once.
     #[cfg_attr(not(test), expect(dead_code, reason = "tests hold the matches against the truth"))]
     pub(super) matched: Vec<(usize, ListedStar)>,
 }
 
-/// Sources compared with predicted stars, the brightest.
+/// Largest number of sources compared with predicted stars, brightest first.
 const MAX_SOURCES: usize = 40;
 
-/// Sources that triangles are made of, the brightest.
+/// Largest number of sources used for triangles, brightest first.
 const MAX_TRIANGLE_SOURCES: usize = 25;
 
-/// Star pairs visited in a frame before the search ends without an attitude: bounds its time.
+/// Number of star pairs visited in a frame after which the search ends without an attitude. Bounds the search
+/// time.
 const MAX_VISITED_PAIRS: usize = 3_000_000;
 
-/// Attitudes tested in a frame before the search ends without an attitude.
+/// Number of attitudes tested in a frame after which the search ends without an attitude.
 const MAX_TESTED: usize = 1000;
 
-/// Natural logarithm of the least odds of an attitude, without a prior: 10⁹, as Lang et al. take.
+/// Natural logarithm of the smallest odds of an attitude, without a prior: 10⁹, as in Lang et al.
 ///
-/// Odds are a ratio of likelihoods, so sources scattered at random reach 10⁹ with a probability of at most 10⁻⁹ in a test of an attitude. Of a frame
-/// [`MAX_TESTED`] attitudes are tested, none on its own triangle: a false attitude has a probability of at most 10⁻⁶ in a frame without stars.
+/// Odds are a ratio of likelihoods, so randomly scattered sources reach 10⁹ with a probability of at most
+/// 10⁻⁹ in a test of one attitude. [`MAX_TESTED`] attitudes are tested per frame, and none on the triangle
+/// that produced it: a false attitude has a probability of at most 10⁻⁶ in a frame without stars.
 const MIN_LOG_ODDS: f64 = 20.7;
 
-/// Rounds of solving and matching in which the matches of an accepted attitude must settle; four are usual.
+/// Largest number of rounds of solving and matching until the matches of an accepted attitude are stable;
+/// four are usual.
 const MAX_REFINEMENTS: usize = 20;
 
-/// Stars that an attitude must have in the end, of them three of the triangle.
+/// Smallest number of stars of a final attitude, including the three of the triangle.
 pub(super) const LEAST_MATCHED: usize = 4;
 
 impl LostInSpace {
-    /// A solver with the stars of `stars` up to the V magnitude `max_magnitude`, of them the brightest of each field of the camera.
+    /// Creates a solver with the stars of `stars` up to the V magnitude `max_magnitude`, limited to the
+    /// brightest of each field of the camera.
     pub(super) fn new(stars: &[ListedStar], model: &CameraModel, max_magnitude: f64) -> Self {
         let stars = brightest_of_each_field(stars, model, max_magnitude);
         Self {
@@ -84,8 +91,9 @@ impl LostInSpace {
         }
     }
 
-    /// The attitude by the sources of a frame, each a position in px and a flux in any unit; `None` when no attitude reaches odds of 10⁹. A
-    /// source that is not finite, or that the camera cannot see, is passed over.
+    /// Returns the attitude determined by the sources of a frame, each a position in px and a flux in any
+    /// unit. Returns `None` when no attitude reaches odds of 10⁹. Sources that are not finite or that the
+    /// camera cannot see are ignored.
     pub(super) fn solve(&self, sources: &[(PixelPoint, f64)]) -> Option<FoundAttitude> {
         let sources = self.brightest(sources);
         let mut search = TriangleSearch::new(&self.stars, &self.pairs, &self.model);
@@ -110,7 +118,7 @@ impl LostInSpace {
         None
     }
 
-    /// The sources that have a direction, in order of flux.
+    /// Returns the brightest sources that have a direction, in order of flux.
     fn brightest(&self, sources: &[(PixelPoint, f64)]) -> Vec<ImageSource> {
         let mut order: Vec<usize> = (0..sources.len())
             .filter(|&i| {
@@ -130,7 +138,8 @@ impl LostInSpace {
             .collect()
     }
 
-    /// The attitude of a triangle, refined with all its stars, if the other sources give it the least odds.
+    /// Returns the attitude of a triangle, refined with all its stars, if the other sources support it with
+    /// the smallest odds or more.
     fn test(&self, sources: &[ImageSource], triangle: &[Match]) -> Option<FoundAttitude> {
         let mut hypothesis = Hypothesis::new(triangle, &self.model)?;
         let support = hypothesis.support(sources, triangle, &self.list, &self.model);

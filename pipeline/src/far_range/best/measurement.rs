@@ -1,4 +1,4 @@
-//! The measurement of the target with its covariances.
+//! Measurement of the target with its covariances.
 
 use contract::{Covariance2, Measurement, PixelPoint};
 use nalgebra::Matrix2;
@@ -9,35 +9,40 @@ use super::state::BestPipeline;
 use super::target::{CandidateImage, TargetContext};
 use crate::far_range::overrides::Overrides;
 
-/// Standard deviation of the logarithm of the width of the target's image without a calibration of its size, and the least with one.
+/// Standard deviation of the logarithm of the width of the target's image without a calibration of the
+/// target's size, and its lower limit with one.
 const UNKNOWN_BODY_LOG_WIDTH: f64 = 0.03;
 const LEAST_BODY_LOG_WIDTH: f64 = 0.001;
 
-/// Distance of the centre of brightness of a sunlit body from its centre, along an axis, over half its size: standard deviation. That of a Lambert
-/// sphere is up to 0.6 at a phase of 90°, that of a plate with the Sun behind the camera 0.
+/// Standard deviation of the distance between the centre of brightness of a sunlit body and its centre, along
+/// an axis, relative to half its size. The distance is up to 0.6 for a Lambert sphere at a phase of 90°, and
+/// 0 for a plate with the Sun behind the camera.
 const BRIGHTNESS_OFFSET: f64 = 0.35;
 
 impl BestPipeline {
-    /// Half the angular size of the target by its flux, rad; `None` without a calibration of it.
+    /// Returns half the angular size of the target, derived from its flux, rad; `None` without a calibration
+    /// of the target.
     fn angular_radius(&self, flux_e: f64, exposure_s: f64) -> Option<f64> {
         let target = self.calibration.target?;
         let range_m = 1000.0 * (target.e_per_s_at_1_km * exposure_s / flux_e.max(1e-9)).sqrt();
         Some(target.radius_m / range_m)
     }
 
-    /// Error of the centroid by the structure of the body, px: a body of half the size a with a skewness of 1 shifts what pixels at three widths from the
-    /// centre give by (3² − 3) μ₃/(6 σ²), with its third moment μ₃ = (a/√3)³ (Gram–Charlier series of the image).
+    /// Returns the centroid error due to the structure of the body, px. A body of half size a with a skewness
+    /// of 1 shifts the position given by pixels at three widths from the centre by (3² − 3) μ₃/(6 σ²), with
+    /// the third moment μ₃ = (a/√3)³ (Gram–Charlier series of the image).
     fn structure_px(&self, flux_e: f64, exposure_s: f64) -> f64 {
         let Some(radius) = self.angular_radius(flux_e, exposure_s) else { return 0.0 };
         let (fx, fy) = self.model.focal_px();
         let deviation_px = radius * fx.max(fy) / 3.0_f64.sqrt();
         let sigma_px = self.psf.image([0.0; 2]).sigma_px;
-        // A body larger than the image of a point is resolved: its structure is no skewness of a point any more.
+        // A body larger than the image of a point is resolved, so its structure no longer acts as a skewness
+        // of a point.
         (deviation_px * deviation_px * deviation_px / (sigma_px * sigma_px)).min(deviation_px)
     }
 
-    /// Standard deviation of the logarithm of the width of the target's image: a uniform body of half the size a widens a Gaussian of width σ by
-    /// a²/(6 σ²).
+    /// Returns the standard deviation of the logarithm of the width of the target's image. A uniform body of
+    /// half size a widens a Gaussian of width σ by a²/(6 σ²).
     pub(super) fn body_log_width(&self, flux_e: f64, exposure_s: f64) -> f64 {
         let Some(radius) = self.angular_radius(flux_e, exposure_s) else { return UNKNOWN_BODY_LOG_WIDTH };
         let (fx, fy) = self.model.focal_px();
@@ -45,7 +50,7 @@ impl BestPipeline {
         (size_px * size_px / 6.0).clamp(LEAST_BODY_LOG_WIDTH, 0.5)
     }
 
-    /// The answer: position and line of sight of the target with their covariances.
+    /// Returns the measurement: position and line of sight of the target with their covariances.
     pub(super) fn measurement(
         &self,
         image: &CandidateImage,
@@ -58,7 +63,7 @@ impl BestPipeline {
         let given = overrides.centroid.and_then(|centroid| centroid(candidate.position));
         let (columns, rows) = (frame.columns() as f64, frame.rows() as f64);
         let fitted = given.unwrap_or(candidate.position);
-        // The centre of a cut image may lie a fraction of a pixel off the detector.
+        // The centre of a truncated image may be a fraction of a pixel off the detector.
         let position = PixelPoint::new(fitted.x.clamp(-0.5, columns - 0.5), fitted.y.clamp(-0.5, rows - 0.5));
         let line_of_sight = self.direction(position, attitude);
         let centroid = match (given, fit) {
@@ -88,8 +93,9 @@ impl BestPipeline {
         }
     }
 
-    /// Covariance of the angles atan2(X, Z) and atan2(Y, Z) of the line of sight, rad², from those of the centroid, px², and of the attitude, and from the
-    /// standard deviation of the distance between centre of brightness and body, rad.
+    /// Returns the covariance of the angles atan2(X, Z) and atan2(Y, Z) of the line of sight, rad². It
+    /// includes the covariances of the centroid, px², and of the attitude, and the standard deviation of the
+    /// distance between the centre of brightness and the body, rad.
     fn line_of_sight_covariance(
         &self,
         position: PixelPoint,

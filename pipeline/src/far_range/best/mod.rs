@@ -1,5 +1,5 @@
-//! The best mode: the attitude from the prior of telemetry and the stars, hypotheses about which cluster is the target, and its image fitted with
-//! all that is known of the camera (docs/best-mode.md).
+//! Best mode: attitude from the prior of telemetry and the stars, hypotheses for the target's cluster, and a
+//! fit of the target's image with all knowledge of the camera (docs/best-mode.md).
 
 mod config;
 mod faint_points;

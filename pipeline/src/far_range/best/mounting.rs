@@ -1,8 +1,9 @@
 //! Error of the telemetry's attitude and of the mounting: prior of each frame, and a filter over frames.
 //!
-//! The camera's attitude is R = M exp([e]×) T, with the nominal mounting M, the telemetry's attitude T and the error e in axes of the body.
-//! e = c + s + w: a constant, a Gauss–Markov process of first order (Gelb 1974, Applied Optimal Estimation, Eq. 3.8-14) and white noise. A
-//! Kalman filter estimates c and s from the attitudes that stars give.
+//! The camera's attitude is R = M exp([e]×) T, with the nominal mounting M, the telemetry's attitude T and
+//! the error e in axes of the body. e = c + s + w: a constant, a Gauss–Markov process of first order (Gelb
+//! 1974, Applied Optimal Estimation, Eq. 3.8-14) and white noise. A Kalman filter estimates c and s from the
+//! attitudes that stars give.
 
 use contract::{AttitudeKnowledge, Body, CameraFrame, Icrs, Rotation};
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
@@ -14,7 +15,8 @@ pub(super) struct AttitudeError {
     pub(super) covariance: Matrix3<f64>,
 }
 
-/// Knowledge without a calibration: a star tracker's white noise, a slow error of half an arc minute, a mounting known to a tenth of a degree.
+/// Prior knowledge without a calibration: a star tracker's white noise, a slow error of half an arc minute, a
+/// mounting known to a tenth of a degree.
 const UNKNOWN: AttitudeKnowledge = AttitudeKnowledge {
     white_arcsec: [60.0; 3],
     slow_arcsec: [30.0; 3],
@@ -22,7 +24,7 @@ const UNKNOWN: AttitudeKnowledge = AttitudeKnowledge {
     constant_arcsec: [360.0; 3],
 };
 
-/// Smallest standard deviation of any part, arcsec: keeps covariances invertible.
+/// Smallest standard deviation of any part, arcsec. Keeps covariances invertible.
 const LEAST_ARCSEC: f64 = 0.1;
 
 /// Filter of the constant and the slow error.
@@ -31,7 +33,7 @@ pub(super) struct MountingFilter {
     nominal: Rotation<CameraFrame, Body>,
     white: Matrix3<f64>,
     slow_variance: Vector3<f64>,
-    /// Time in which the slow error forgets, s.
+    /// Correlation time of the slow error, s.
     memory_s: f64,
     state: Vector6<f64>,
     covariance: Matrix6<f64>,
@@ -61,13 +63,13 @@ impl MountingFilter {
         }
     }
 
-    /// Forgets all frames.
+    /// Resets the filter to its state before all frames.
     pub(super) fn restart(&mut self) {
         self.state = Vector6::zeros();
         self.covariance = self.start;
     }
 
-    /// Lets `elapsed_s` pass.
+    /// Advances the filter by `elapsed_s`.
     pub(super) fn advance(&mut self, elapsed_s: f64) {
         let kept = libm::exp(-elapsed_s.max(0.0) / self.memory_s);
         for i in 3..6 {
@@ -80,7 +82,7 @@ impl MountingFilter {
         }
     }
 
-    /// Prior error of a frame's attitude.
+    /// Returns the prior error of a frame's attitude.
     pub(super) fn prior(&self) -> AttitudeError {
         let mounting = self.nominal.matrix();
         let (mean, covariance) = self.systematic();
@@ -90,12 +92,13 @@ impl MountingFilter {
         }
     }
 
-    /// The camera's attitude for an error of zero.
+    /// Returns the camera's attitude for an error of zero.
     pub(super) fn reference(&self, body_from_icrs: Rotation<Body, Icrs>) -> Rotation<CameraFrame, Icrs> {
         self.nominal * body_from_icrs
     }
 
-    /// Takes in what the stars of a frame made of its error: `prior`, as this filter gave it, became `posterior`.
+    /// Updates the filter with a frame whose stars changed the error from `prior`, as returned by this
+    /// filter, to `posterior`.
     pub(super) fn update(&mut self, prior: &AttitudeError, posterior: &AttitudeError) {
         let mounting = self.nominal.matrix();
         let in_body = |covariance: &Matrix3<f64>| mounting.transpose() * covariance * mounting;
@@ -107,7 +110,7 @@ impl MountingFilter {
         self.covariance = 0.5 * (self.covariance + self.covariance.transpose());
     }
 
-    /// Mean and covariance of c + s, in axes of the body.
+    /// Returns mean and covariance of c + s, in axes of the body.
     fn systematic(&self) -> (Vector3<f64>, Matrix3<f64>) {
         let part = |row: usize, column: usize| self.covariance.fixed_view::<3, 3>(row, column).into_owned();
         let mean = self.state.fixed_rows::<3>(0) + self.state.fixed_rows::<3>(3);
@@ -153,7 +156,7 @@ mod tests {
         }
         let prior = filter.prior();
         assert!((prior.mean - truth).norm() < 15.0 * ARCSEC, "{}", (prior.mean - truth).norm() / ARCSEC);
-        // The white noise is new in every frame.
+        // The white noise is independent in every frame.
         assert!(
             prior.covariance[(0, 0)].sqrt() > 50.0 * ARCSEC
                 && prior.covariance[(0, 0)].sqrt() < 55.0 * ARCSEC

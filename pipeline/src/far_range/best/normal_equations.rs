@@ -1,16 +1,16 @@
 //! Small systems of normal equations.
 
-/// Most parameters of a fit.
+/// Largest number of parameters of a fit.
 pub(super) const MAX_PARAMETERS: usize = 12;
 
-/// Parameters of most fits.
+/// Number of parameters sufficient for most fits.
 const FEW: usize = 8;
 
 pub(super) type Vector = [f64; MAX_PARAMETERS];
 pub(super) type Matrix = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
 
-/// Added to the unit diagonal of a scaled matrix: parameters that the pixels do not separate share their information in place of making the
-/// matrix singular.
+/// Value added to the unit diagonal of a scaled matrix. With it, parameters that the pixels do not separate
+/// share their information instead of making the matrix singular.
 const RIDGE: f64 = 1e-10;
 
 /// Fisher information and score of a fit with `n` parameters.
@@ -26,10 +26,12 @@ impl NormalEquations {
         Self { information: [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS], score: [0.0; MAX_PARAMETERS], n }
     }
 
-    /// Adds one datum: its residual, its derivatives by the parameters and its weight, the inverse of its variance.
+    /// Adds one datum: its residual, its derivatives with respect to the parameters and its weight, the
+    /// inverse of its variance.
     #[inline(always)]
     pub(super) fn add(&mut self, residual: f64, by: &Vector, weight: f64) {
-        // Whole rows of a fixed length, the half above the diagonal included: the compiler keeps them in registers.
+        // Full rows of a fixed length, including the half above the diagonal: the compiler keeps them in
+        // registers.
         if self.n <= FEW {
             self.add_first::<FEW>(residual, by, weight);
         } else {
@@ -48,18 +50,21 @@ impl NormalEquations {
         }
     }
 
-    /// Adds a normal prior of parameter `i`: its distance `residual` from the value at hand and its variance.
+    /// Adds a normal prior of parameter `i`: its distance `residual` from the current value, and its
+    /// variance.
     pub(super) fn add_prior(&mut self, i: usize, residual: f64, variance: f64) {
         self.score[i] += residual / variance;
         self.information[i][i] += 1.0 / variance;
     }
 
-    /// The step that solves (F + λ diag F) s = g by Cholesky's method, F scaled to a unit diagonal; `None` unless F is positive definite.
+    /// Returns the step that solves (F + λ diag F) s = g by Cholesky's method, with F scaled to a unit
+    /// diagonal; `None` unless F is positive definite.
     pub(super) fn step(&self, damping: f64) -> Option<Vector> {
         Some(self.factored(damping)?.solve(&self.score))
     }
 
-    /// Columns `first` and `second` of the inverse of F: variances and covariance of two parameters, as (aa, ab, bb).
+    /// Returns variances and covariance of two parameters, as (aa, ab, bb), from columns `first` and `second`
+    /// of the inverse of F.
     pub(super) fn covariance(&self, first: usize, second: usize) -> Option<[f64; 3]> {
         let factor = self.factored(0.0)?;
         let column = |i: usize| {

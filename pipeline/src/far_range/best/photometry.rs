@@ -1,4 +1,4 @@
-//! Clusters as sources of light, and the fits of their images.
+//! Photometry of clusters, and fits of their images.
 
 use contract::{Frame, PixelPoint, Readout, Window};
 
@@ -9,54 +9,55 @@ use super::image_fit::{
 use super::point_image::PointImageEstimate;
 use crate::far_range::detect::{Blob, Detector};
 
-/// What the light of a frame is measured against.
+/// Parameters for the photometry of a frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PhotometryModel {
     pub(super) readout: Readout,
     /// Variance of the response of single pixels, relative.
     pub(super) response: f64,
-    /// Electrons of a full well; infinite when it is not known.
+    /// Full well, electrons; infinite if unknown.
     pub(super) full_well_e: f64,
-    /// Whether charge above the full well may spill along the columns.
+    /// True if charge above the full well may spill along the columns.
     pub(super) may_spill: bool,
-    /// Background of the frame, electrons per pixel, with the standard deviation of a pixel.
+    /// Background of the frame, electrons per pixel, and standard deviation of a pixel.
     pub(super) background_e: f64,
     pub(super) pixel_sigma_e: f64,
 }
 
-/// A cluster with its light.
+/// Cluster with its photometry.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source {
     pub(super) blob: Blob,
-    /// Brightness centre above the background, px.
+    /// Centre of brightness above the background, px.
     pub(super) centre: PixelPoint,
-    /// Electrons above the background.
+    /// Flux above the background, electrons.
     pub(super) flux_e: f64,
     /// Number of saturated pixels.
     pub(super) saturated: usize,
-    /// Whether pixels beside it were not transmitted.
+    /// True if adjacent pixels were not transmitted.
     pub(super) is_cut: bool,
-    /// Index of the pixel that is bright alone: no optics makes such an image.
+    /// Index of an isolated bright pixel, narrower than any optical image; `None` for other clusters.
     pub(super) spike: Option<usize>,
 }
 
-/// A fitted source in the frame.
+/// Fitted source in the frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FittedSource {
     pub(super) position: PixelPoint,
     pub(super) image: FittedImage,
 }
 
-/// Pixels of a window beyond the pixels of a bright cluster, px.
+/// Margin of a window beyond the pixels of a bright cluster, px.
 const MARGIN_PX: usize = 5;
 
-/// Largest side of a window, px: bounds the time of a fit.
+/// Largest side of a window, px. Bounds the time of a fit.
 const MAX_SIDE_PX: usize = 48;
 
-/// Part of the full well by which its calibration may be wrong.
+/// Relative error of the calibrated full well.
 const WELL_ERROR: f64 = 0.25;
 
-/// Rejected residual of a pixel, in standard deviations: a hot pixel or a cosmic-ray hit in the window.
+/// Residual of a pixel from which on it is rejected, in standard deviations: a hot pixel or a cosmic-ray hit
+/// in the window.
 const REJECTED_SIGMAS: f64 = 6.0;
 
 impl PhotometryModel {
@@ -64,7 +65,7 @@ impl PhotometryModel {
         (f64::from(dn) - self.readout.bias_dn) * self.readout.gain_e_per_dn
     }
 
-    /// Electrons per digital number, and the digital number of the background.
+    /// Returns the electrons per digital number, and the digital number of the background.
     pub(super) fn scale(&self) -> (f32, f32) {
         let gain = self.readout.gain_e_per_dn;
         (gain as f32, (self.readout.bias_dn + self.background_e / gain) as f32)
@@ -74,7 +75,7 @@ impl PhotometryModel {
         dn >= self.readout.saturation_dn.min(frame.full_scale_dn())
     }
 
-    /// Noise of a pixel, with the response known to `response` relative.
+    /// Returns the noise of a pixel. `response` is the relative standard deviation of the pixels' response.
     fn noise(&self, response: f64) -> PixelNoise {
         let Readout { gain_e_per_dn, read_noise_e, .. } = self.readout;
         PixelNoise {
@@ -83,12 +84,13 @@ impl PhotometryModel {
         }
     }
 
-    /// Prior of the background under a source.
+    /// Returns the prior of the background under a source.
     fn background_prior(&self) -> Prior {
         Prior::normal(self.background_e, 0.5 * self.pixel_sigma_e)
     }
 
-    /// The light of a cluster with the pixels `members`; `psf` tells a bright pixel from a point.
+    /// Returns the photometry of a cluster with the pixels `members`. `psf` distinguishes a bright pixel from
+    /// a point.
     pub(super) fn source(&self, frame: &Frame, blob: &Blob, members: &[u32], psf: &PointImage) -> Source {
         let columns = frame.columns();
         let (mut flux_e, mut sum_x, mut sum_y) = (0.0, 0.0, 0.0);
@@ -117,7 +119,8 @@ impl PhotometryModel {
         Source { blob: *blob, centre, flux_e, saturated, is_cut, spike }
     }
 
-    /// Whether the pixel holds more of the light about it than half way between a point's image and all of it.
+    /// Returns true if the pixel's share of the surrounding flux significantly exceeds the mean of the
+    /// central share of a point's image and 1.
     fn is_spike(&self, frame: &Frame, index: usize, psf: &PointImage) -> bool {
         let (x, y) = (index % frame.columns(), index / frame.columns());
         let above = |x: usize, y: usize| self.electrons(frame.dn_at(x, y)) - self.background_e;
@@ -138,7 +141,7 @@ impl PhotometryModel {
     }
 }
 
-/// Fits the images of sources; owns its buffers.
+/// Fitter of source images, with reusable buffers.
 #[derive(Debug, Default)]
 pub(super) struct SourceFitter {
     fitter: ImageFitter,
@@ -147,7 +150,7 @@ pub(super) struct SourceFitter {
     saturated: Vec<(usize, usize)>,
 }
 
-/// A known source near the fitted one.
+/// Known source near the fitted one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct KnownSource {
     pub(super) position: PixelPoint,
@@ -157,7 +160,7 @@ pub(super) struct KnownSource {
     pub(super) image: PointImage,
 }
 
-/// A frame with its clusters, and what is known of the camera.
+/// Frame with its clusters and the parameters of the camera.
 #[derive(Clone, Copy)]
 pub(super) struct PhotometryContext<'a> {
     pub(super) frame: &'a Frame,
@@ -169,7 +172,7 @@ pub(super) struct PhotometryContext<'a> {
 }
 
 impl PhotometryContext<'_> {
-    /// Whether all pixels within a distance of a position, along columns and rows, were transmitted.
+    /// Returns true if all pixels within a distance of a position, along columns and rows, were transmitted.
     pub(super) fn is_well_inside(&self, position: PixelPoint, distance_px: f64) -> bool {
         let [x, y] = [position.x, position.y];
         let corners = [-distance_px, distance_px].map(|d| ((x + d).round(), (y + d).round()));
@@ -183,7 +186,7 @@ impl PhotometryContext<'_> {
             }
     }
 
-    /// Whether a pixel of a cluster lies within a distance of a position, along columns and rows.
+    /// Returns true if a pixel of a cluster is within a distance of a position, along columns and rows.
     pub(super) fn is_near_cluster(&self, position: PixelPoint, distance_px: f64) -> bool {
         let range = |at: f64, size: usize| {
             let first = (at - distance_px).ceil().max(0.0) as usize;
@@ -195,7 +198,7 @@ impl PhotometryContext<'_> {
     }
 }
 
-/// A rectangle of pixels, clipped to the frame.
+/// Rectangle of pixels, clipped to the frame.
 #[derive(Debug, Clone, Copy)]
 struct FitWindow {
     x: usize,
@@ -205,8 +208,8 @@ struct FitWindow {
 }
 
 impl SourceFitter {
-    /// Fits a star, or a candidate as if it were a point; `None` where there is no maximum. The
-    /// halo, a few percent of the flux, counts as background.
+    /// Fits a star, or a candidate treated as a point. Returns `None` when there is no maximum. The halo, a
+    /// few percent of the flux, counts as background.
     pub(super) fn point(
         &mut self,
         context: PhotometryContext<'_>,
@@ -241,8 +244,9 @@ impl SourceFitter {
         Some(window.in_frame(fitted))
     }
 
-    /// Fits the image of the target: a point or a small body at `start`, with its known neighbours. `position_sigma_px` is the standard deviation of the start
-    /// where it is a prediction, infinite where it is a cluster's.
+    /// Fits the image of the target, a point or a small body at `start`, with its known neighbours. The
+    /// start's `position_sigma_px` is the standard deviation of a predicted position, or infinite for a
+    /// cluster's position.
     pub(super) fn target(
         &mut self,
         context: PhotometryContext<'_>,
@@ -279,14 +283,15 @@ impl SourceFitter {
             && !self.saturated.is_empty()
             && !self.spills(&fitted, context.model, &image)
         {
-            // No well overflows: the pixels beside saturated ones hold their own charge alone.
+            // No well overflows, so the pixels beside saturated ones contain only their own charge.
             fitted =
                 self.fit_from_all_starts(context, window, start, psf, &neighbours, false).unwrap_or(fitted);
         }
         Some(window.in_frame(fitted))
     }
 
-    /// The fit with the smallest χ² from the start, and, of an image that was cut in its bright part, from positions beyond the cut.
+    /// Returns the fit with the smallest χ² among those from the given start and, for an image truncated in
+    /// its bright part, from positions beyond the cut.
     fn fit_from_all_starts(
         &mut self,
         context: PhotometryContext<'_>,
@@ -324,7 +329,7 @@ impl SourceFitter {
             }
         }
         if best.is_none_or(|best| best.misfit() > EXTENDED_MISFIT) {
-            // A body of several pixels.
+            // Assumes a body of several pixels.
             model.y_px = position_prior(best.map_or(y, |best| best.y_px));
             model.log_width = Prior::normal(0.5, 1.0);
             model.log_elongation = Prior::normal(0.0, 0.3);
@@ -334,7 +339,8 @@ impl SourceFitter {
         self.without_outliers(&fitted, window, noise, &model).or(best)
     }
 
-    /// The fit without pixels whose residuals no noise makes; `None` where there is none, or too many for that.
+    /// Repeats the fit without pixels whose residuals cannot be noise. Returns `None` if there are no such
+    /// pixels, or too many.
     fn without_outliers(
         &mut self,
         fitted: &FittedImage,
@@ -362,7 +368,7 @@ impl SourceFitter {
                         n.flux_e.mean * n.image.share(pixel.column as f64 - n.x_px, pixel.row as f64 - n.y_px)
                     })
                     .sum::<f64>();
-            // An error of 5 % of the model is no outlier.
+            // A model error of 5 % does not make an outlier.
             let sigma = (noise.readout_e2 + mean.max(0.0) + (0.05 * mean) * (0.05 * mean)).sqrt();
             pixel.electrons - mean < REJECTED_SIGMAS * sigma
         }));
@@ -379,7 +385,8 @@ impl SourceFitter {
         self.fitter.fit(&self.kept, window.size(), noise, &model)
     }
 
-    /// Whether the fitted image fills a well so far that charge spills, the full well wrong by [`WELL_ERROR`].
+    /// Returns true if the fitted image fills a well until charge spills, if the full well is too high by
+    /// [`WELL_ERROR`].
     fn spills(&self, fitted: &FittedImage, model: &PhotometryModel, image: &PointImage) -> bool {
         let image = PointImage { sigma_px: image.sigma_px * fitted.width, ..*image };
         // The brightest pixel of a column decides, transmitted or not.
@@ -390,8 +397,8 @@ impl SourceFitter {
         })
     }
 
-    /// Collects the pixels of a window that hold the light of their own alone: transmitted, not saturated, not hot, without spilt charge, and in
-    /// no other cluster but those of known sources.
+    /// Collects the pixels of a window that are free of foreign signal: transmitted, not saturated, not hot,
+    /// without spilt charge, and in no other clusters than those of known sources.
     fn gather(
         &mut self,
         context: PhotometryContext<'_>,
@@ -445,22 +452,23 @@ impl SourceFitter {
     }
 }
 
-/// Misfit of the image of a cut cluster from which on other positions are tried.
+/// Misfit of the image of a truncated cluster above which other positions are tried.
 const CUT_MISFIT: f64 = 1.4;
 
-/// Misfit from which on a wider image is tried.
+/// Misfit above which a wider image is tried.
 const EXTENDED_MISFIT: f64 = 4.0;
 
-/// Where the fit of the target's image starts.
+/// Start of a fit of the target's image.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TargetStart<'a> {
     pub(super) position: PixelPoint,
-    /// Standard deviation of the position along an axis where it is a prior, infinite where it is not, px.
+    /// Standard deviation of the position along an axis, px, if the position is a prior; otherwise infinite.
     pub(super) position_sigma_px: f64,
     pub(super) flux_e: f64,
-    /// Standard deviation of the logarithm of the width of its image over that of a point, by the size of the body.
+    /// Standard deviation of the logarithm of the image's width relative to that of a point, due to the size
+    /// of the body.
     pub(super) body_log_width: f64,
-    /// Pixels of its cluster; none where there is no cluster.
+    /// Pixels of the start's cluster; empty without a cluster.
     pub(super) members: &'a [u32],
     pub(super) is_saturated: bool,
     pub(super) is_cut: bool,
@@ -496,7 +504,7 @@ impl Extent {
         (self.x.1 + 1).saturating_sub(self.x.0).max((self.y.1 + 1).saturating_sub(self.y.0))
     }
 
-    /// The pixel of a position, inside.
+    /// Returns the pixel of a position, clamped to the extent.
     fn rounded(&self, position: PixelPoint) -> (usize, usize) {
         let within = |v: f64, (first, last): (usize, usize)| {
             (v.round().max(0.0) as usize).clamp(first, last.max(first))
@@ -505,7 +513,7 @@ impl Extent {
     }
 }
 
-/// The pixel of a position; `None` beside the detector.
+/// Returns the pixel of a position; `None` outside the detector.
 fn rounded(frame: &Frame, position: PixelPoint) -> Option<(usize, usize)> {
     position
         .is_on_detector(frame.columns(), frame.rows())
@@ -517,7 +525,8 @@ impl FitWindow {
         Self::around(frame, Extent { x: (x, x), y: (y, y) }, reach)
     }
 
-    /// The pixels of an extent and `margin` beyond, clipped to the frame; `None` where that is too large.
+    /// Returns the window of the pixels of an extent with `margin` around them, clipped to the frame; `None`
+    /// if the window is too large.
     fn around(frame: &Frame, extent: Extent, margin: usize) -> Option<Self> {
         let clip = |(first, last): (usize, usize), n: usize| {
             let first = first.min(n - 1).saturating_sub(margin);
@@ -538,7 +547,7 @@ impl FitWindow {
             && self.y < window.y + window.rows
     }
 
-    /// Distance of a position from the window, 0 inside, px.
+    /// Returns the distance of a position from the window, 0 inside, px.
     fn distance_px(&self, position: PixelPoint) -> f64 {
         let beyond =
             |v: f64, first: usize, n: usize| (first as f64 - v).max(v - (first + n - 1) as f64).max(0.0);
@@ -557,7 +566,7 @@ fn is_transmitted(frame: &Frame, x: usize, y: usize) -> bool {
     frame.windows().is_none_or(|windows| windows.iter().any(|window| window.contains(x, y)))
 }
 
-/// Whether a neighbour of a pixel is on the detector and was not transmitted.
+/// Returns true if a neighbour of a pixel is on the detector but was not transmitted.
 fn touches_the_outside(windows: &[Window], frame: &Frame, x: usize, y: usize) -> bool {
     let sent = |x: usize, y: usize| windows.iter().any(|window| window.contains(x, y));
     (x > 0 && !sent(x - 1, y))

@@ -1,4 +1,4 @@
-//! The steps of the best mode in their order.
+//! Sequence of steps of the best mode.
 
 use contract::{
     Cluster, Direction, Frame, Icrs, Label, NoSolution, Outcome, PixelPoint, Readout, Solution, Telemetry,
@@ -16,11 +16,11 @@ use crate::far_range::detect::{Blob, transmitted_pixels};
 use crate::far_range::overrides::Overrides;
 use crate::far_range::usable::unusable;
 
-/// Relative standard deviation of the flux of a star with the brightness scale known: colours and variability.
+/// Relative standard deviation of a star's flux for a known brightness scale: colours and variability.
 const STAR_FLUX_SIGMA: f64 = 0.4;
 
 impl BestPipeline {
-    /// [`contract::Pipeline::process`] with results of single steps given from outside.
+    /// Performs [`contract::Pipeline::process`] with given results of single steps.
     pub(in crate::far_range) fn process_with(
         &mut self,
         frame: &Frame,
@@ -67,7 +67,8 @@ impl BestPipeline {
         outcome
     }
 
-    /// Lets the time since the last frame pass, s; `None` where no frame of the sequence came before.
+    /// Advances the state to this frame. Returns the time since the last frame, s, or `None` if no linked
+    /// frame of the sequence precedes.
     fn advance(&mut self, telemetry: &Telemetry) -> Option<f64> {
         let elapsed_s = self.last.map(|last| (telemetry.time - last.time).to_seconds());
         if !self.config.best.sequence {
@@ -87,7 +88,8 @@ impl BestPipeline {
     }
 
     fn photometry(&self, frame: &Frame, background: Background) -> PhotometryModel {
-        // Without a readout the noise of the background stands for it, and the digital numbers for electrons.
+        // Without a readout, the noise of the background replaces the read noise, and digital numbers replace
+        // electrons.
         let readout = self.readout.unwrap_or(Readout {
             gain_e_per_dn: 1.0,
             bias_dn: background.median_dn,
@@ -105,7 +107,7 @@ impl BestPipeline {
         }
     }
 
-    /// Flux of a point whose central pixel is at the threshold, electrons.
+    /// Returns the flux of a point whose central pixel is at the threshold, electrons.
     fn threshold_flux_e(&self, above_background_dn: f64, photometry: &PhotometryModel) -> f64 {
         let image = self.psf.image([0.0; 2]);
         (above_background_dn.max(1.0) * photometry.readout.gain_e_per_dn / image.central_share()).max(1.0)
@@ -181,7 +183,7 @@ impl BestPipeline {
         }
     }
 
-    /// Expected stars of known flux as known sources under the image of a target.
+    /// Returns the expected stars of known flux as known sources for the fit of a target's image.
     fn known_sources(&self, attitude: &FrameAttitude, trail_px: [f64; 2]) -> Vec<KnownSource> {
         let image = self.psf.image(trail_px);
         let known = |star: &ExpectedStar| {

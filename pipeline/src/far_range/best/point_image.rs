@@ -1,34 +1,36 @@
-//! Estimate of the image of a point: the calibrated one, corrected by the stars.
+//! Estimate of the image of a point: the calibrated image, corrected by the stars.
 
 use contract::{Calibration, PsfCalibration};
 
 use super::image_fit::{FittedImage, PointImage};
 
-/// Image of a point without a calibration: a sharp star tracker lens.
+/// Default image of a point without a calibration: a sharp star tracker lens.
 const UNKNOWN: PsfCalibration = PsfCalibration { sigma_px: 0.9, halo_sigma_px: 4.0, halo_fraction: 0.02 };
 
 /// Standard deviation of the logarithm of a width without a calibration.
 const UNKNOWN_LOG_WIDTH: f64 = 0.5;
 
-/// Scatter of the widths of stars over the field and with colour: the estimate becomes no better.
+/// Scatter of the logarithm of the stars' widths over the field and with colour: lower limit of the
+/// estimate's standard deviation.
 const LEAST_LOG_WIDTH: f64 = 0.01;
 
-/// Signal-to-noise ratio of a star from which on its width counts, and misfit up to which it does.
+/// Smallest signal-to-noise ratio, and largest misfit, of a star whose width is used.
 const LEAST_SNR: f64 = 30.0;
 const LARGEST_MISFIT: f64 = 2.0;
 
-/// Core and halo of the image of a point, with the logarithm of the width over the calibrated one as a normal variable.
+/// Core and halo of the image of a point. The logarithm of the width relative to the calibrated one is a
+/// normal variable.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointImageEstimate {
     image: PointImage,
     log_width: f64,
     variance: f64,
-    /// Standard deviation of the part of the flux in the halo.
+    /// Standard deviation of the share of the flux in the halo.
     pub(super) halo_sigma: f64,
 }
 
 impl PointImageEstimate {
-    /// The estimate before any star; `width_error` is the relative error of the calibrated width.
+    /// Creates the estimate before any star; `width_error` is the relative error of the calibrated width.
     pub(super) fn new(calibration: &Calibration, width_error: f64) -> Self {
         let PsfCalibration { sigma_px, halo_sigma_px, halo_fraction } = calibration.psf.unwrap_or(UNKNOWN);
         let sigma = if calibration.psf.is_some() { width_error } else { UNKNOWN_LOG_WIDTH };
@@ -40,26 +42,28 @@ impl PointImageEstimate {
         }
     }
 
-    /// The image of a point, smeared by `trail_px` along columns and rows.
+    /// Returns the image of a point, smeared by `trail_px` along columns and rows.
     pub(super) fn image(&self, trail_px: [f64; 2]) -> PointImage {
         PointImage { sigma_px: self.image.sigma_px * libm::exp(self.log_width), trail_px, ..self.image }
     }
 
-    /// Standard deviation of the logarithm of the width.
+    /// Returns the standard deviation of the logarithm of the width.
     pub(super) fn log_width_sigma(&self) -> f64 {
         self.variance.sqrt().max(LEAST_LOG_WIDTH)
     }
 
-    /// Takes in the width of a star that was fitted with this image, whose width was free with this estimate's standard deviation as its prior.
+    /// Updates the estimate with the width of a star that was fitted with this image and with a width prior
+    /// of this estimate's standard deviation.
     pub(super) fn update_from_star(&mut self, star: &FittedImage) {
         let snr = star.flux_e / star.flux_sigma_e;
         if snr < LEAST_SNR || star.misfit() > LARGEST_MISFIT {
             return;
         }
-        // A Gaussian's width is known to about 1/snr; pixels of half a width and the background double that.
+        // The width of a Gaussian is accurate to about 1/snr; pixels of half a width and the background
+        // double this.
         let measured = (2.0 / snr).max(3.0 * LEAST_LOG_WIDTH);
         let gain = self.variance / (self.variance + measured * measured);
-        // The fit was pulled to the prior; its change is a part of the gain already.
+        // The prior already reduced the fitted change, so it includes a part of the gain.
         self.log_width += gain * libm::log(star.width);
         self.variance = (self.variance * (1.0 - gain)).max(LEAST_LOG_WIDTH * LEAST_LOG_WIDTH);
     }

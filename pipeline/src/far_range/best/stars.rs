@@ -1,4 +1,4 @@
-//! Stars: where they are expected, which clusters they are, and the attitude that they give.
+//! Stars: expected positions, matching with clusters, and the attitude from the matches.
 
 use contract::{CameraFrame, Icrs, ListedStar, PixelPoint, Rotation};
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
@@ -6,28 +6,28 @@ use nalgebra::{Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
 use super::mounting::AttitudeError;
 use crate::CameraModel;
 
-/// A listed star where it is expected.
+/// Listed star at its expected position.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ExpectedStar {
     pub(super) star: ListedStar,
-    /// Apparent direction along the axes of ICRS: aberration applied.
+    /// Apparent direction along the axes of ICRS, with aberration applied.
     pub(super) apparent: Vector3<f64>,
     /// Position in the image, px.
     pub(super) position: PixelPoint,
-    /// Expected flux, electrons; `None` while the brightness scale is not known.
+    /// Expected flux, electrons; `None` while the brightness scale is unknown.
     pub(super) flux_e: Option<f64>,
 }
 
-/// A cluster that may be a star.
+/// Cluster that may be a star.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StarCandidate {
     pub(super) position: PixelPoint,
     pub(super) flux_e: f64,
-    /// Whether the flux is a lower bound.
+    /// True if the flux is a lower bound.
     pub(super) is_saturated: bool,
 }
 
-/// The image of a star, as measured, with the direction that it is expected in.
+/// Measured image of a star, with its expected direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StarMeasurement {
     pub(super) position: PixelPoint,
@@ -36,32 +36,36 @@ pub(super) struct StarMeasurement {
     pub(super) apparent: Vector3<f64>,
 }
 
-/// Range of the natural logarithm of measured over expected flux: colours that V does not show make stars up to ten times as bright for silicon,
-/// and variable ones a fifth as bright.
+/// Range of the natural logarithm of the ratio of measured to expected flux. Colours not represented by V
+/// make stars up to ten times as bright for silicon; variable stars may be a fifth as bright.
 const LOG_FLUX_RATIO: (f64, f64) = (-1.6, 2.4);
 
-/// Standard deviation of a brightness centre in the search for the common offset, px.
+/// Standard deviation of a centre of brightness in the search for the common offset, px.
 const CENTRE_PX: f64 = 0.35;
 
-/// Gain of a matched star in the search, in units of half a χ²: a chance match within the tolerance is rarer by e⁻⁶.
+/// Gain of a matched star in the search, in units of half a χ²: a chance match within the tolerance is rarer
+/// by e⁻⁶.
 const MATCH_GAIN: f64 = 6.0;
 
-/// Standard deviations of the prior within which the offset is looked for.
+/// Search range of the offset, in standard deviations of the prior.
 const SEARCH_SIGMAS: f64 = 3.5;
 
-/// By how much brighter than matched stars a star must be to be missed, mag: colours shift the order of brightness.
+/// Brightness difference above which a star brighter than the matched stars counts as missing, mag. Smaller
+/// differences do not count, because colours change the order of brightness.
 const BRIGHTER_MAG: f64 = 0.5;
 
-/// Whether the brightness of a candidate allows it to be the star.
+/// Returns true if the brightness of a candidate is compatible with the star's.
 fn is_as_bright(candidate: &StarCandidate, star: &ExpectedStar) -> bool {
     let Some(flux_e) = star.flux_e else { return true };
     let ratio = libm::log(candidate.flux_e.max(1e-9) / flux_e.max(1e-9));
     ratio <= LOG_FLUX_RATIO.1 && (ratio >= LOG_FLUX_RATIO.0 || candidate.is_saturated)
 }
 
-/// Matches candidates with expected stars through the common offset of the image that explains most of them: pairs (candidate, star).
+/// Matches candidates with expected stars through the common offset of the image that explains most of them.
+/// Returns pairs (candidate, star).
 ///
-/// `sigma_px` is the standard deviation of the offset along each axis, `sigma_roll` that of the turn about the boresight, rad.
+/// `sigma_px` is the standard deviation of the offset along each axis, `sigma_roll` that of the rotation
+/// about the boresight, rad.
 pub(super) fn matches_by_offset(
     candidates: &[StarCandidate],
     stars: &[ExpectedStar],
@@ -71,7 +75,7 @@ pub(super) fn matches_by_offset(
     let mut pairs = Vec::new();
     let radius_px =
         stars.iter().map(|star| star.position.x.abs().max(star.position.y.abs())).fold(0.0, f64::max);
-    // The centre of the turn is somewhere in the image.
+    // The centre of the rotation is somewhere in the image.
     let tolerance_px = 3.0 * libm::hypot(CENTRE_PX, 0.25 * sigma_roll * radius_px);
     let reach = sigma_px.map(|sigma| SEARCH_SIGMAS * sigma + tolerance_px);
     for (c, candidate) in candidates.iter().enumerate() {
@@ -107,7 +111,8 @@ pub(super) fn matches_by_offset(
     best.1
 }
 
-/// Matches candidates with stars at their expected positions, the nearest first, each within `gate_px` of its star: pairs (candidate, star).
+/// Matches candidates with stars at their expected positions, nearest first, each within `gate_px` of its
+/// star. Returns pairs (candidate, star).
 pub(super) fn matches_at_positions(
     candidates: &[StarCandidate],
     stars: &[ExpectedStar],
@@ -135,11 +140,13 @@ pub(super) fn matches_at_positions(
     matched
 }
 
-/// Whether matched stars are more than a coincidence: of the listed stars that must have an image no more may lack one than are matched. A variable star or a
-/// stain on a lens leaves out one, a wrong offset nearly all. `is_in_image` tells whether the position of a star was transmitted.
+/// Returns true if matched stars are unlikely to be a coincidence: among the listed stars that must have an
+/// image, at most as many lack one as are matched. A variable star or a stain on a lens causes one missing
+/// star, a wrong offset nearly all. `is_in_image` returns true if the position of a star was transmitted.
 ///
-/// A star must have an image within `gate_px` where its expected flux, less the largest error of V as a measure of it, is above the threshold; as long as the
-/// brightness scale is not known, where the star is half a magnitude brighter than the median of the matched ones.
+/// A star must have an image within `gate_px` if its expected flux, reduced by the largest error of its
+/// prediction from V, is above the threshold. While the brightness scale is unknown, it must have one if it
+/// is half a magnitude brighter than the median of the matched stars.
 pub(super) fn are_confirmed(
     matched: &[(usize, usize)],
     candidates: &[StarCandidate],
@@ -163,7 +170,8 @@ pub(super) fn are_confirmed(
     stars.iter().filter(is_missing).count() <= matched.len()
 }
 
-/// Residual of a star, px, and its derivative by a small turn of the camera about its axes, for an attitude; `None` where it has no image.
+/// Returns the residual of a star, px, and its derivative with respect to a small rotation of the camera
+/// about its axes, for an attitude; `None` if the star has no image.
 fn residual(
     star: &StarMeasurement,
     camera_from_icrs: &Rotation<CameraFrame, Icrs>,
@@ -179,28 +187,31 @@ fn residual(
     Some((Vector2::new(u - fx * x, v - fy * y), turn_derivative(x, y, fx, fy)))
 }
 
-/// Derivative of (fx X/Z, fy Y/Z) by a small turn θ of the camera axes, for which a direction moves by θ × r.
+/// Returns the derivative of (fx X/Z, fy Y/Z) with respect to a small rotation θ of the camera axes, which
+/// moves a direction by θ × r.
 pub(super) fn turn_derivative(x: f64, y: f64, fx: f64, fy: f64) -> Matrix2x3<f64> {
     Matrix2x3::new(-fx * x * y, fx * (1.0 + x * x), -fx * y, -fy * (1.0 + y * y), fy * x * y, fy * x)
 }
 
-/// An attitude from a prior and stars.
+/// Attitude from a prior and stars.
 #[derive(Debug, Clone)]
 pub(super) struct StarAttitude {
-    /// Error of the telemetry's attitude, in axes of the camera: the posterior.
+    /// Posterior of the error of the telemetry's attitude, in axes of the camera.
     pub(super) error: AttitudeError,
-    /// Which of the stars were used: outliers are dropped.
+    /// True for each star that was used, false for outliers.
     pub(super) used: Vec<bool>,
 }
 
-/// Normalised residual, squared, above which a star is an outlier: χ² with two degrees of freedom exceeds it once in 3000.
+/// Squared normalised residual above which a star is an outlier: χ² with two degrees of freedom exceeds it
+/// once in 3000.
 const OUTLIER: f64 = 16.0;
 
-/// Linearisations of the attitude; a turn of a degree needs three.
+/// Number of linearisations of the attitude; a rotation of one degree needs three.
 const ITERATIONS: usize = 4;
 
-/// Posterior error of the attitude from the prior and the stars, by least squares; the star with the largest residual is dropped as long as it is an
-/// outlier. `attitude` is the camera's attitude for an error in camera axes.
+/// Returns the posterior error of the attitude from the prior and the stars, by least squares. While the star
+/// with the largest residual is an outlier, it is dropped. `attitude` returns the camera's attitude for an
+/// error in camera axes.
 pub(super) fn solve_attitude(
     stars: &[StarMeasurement],
     prior: &AttitudeError,
@@ -236,7 +247,7 @@ pub(super) fn solve_attitude(
             .filter(|(i, _)| used.get(*i) == Some(&true))
             .filter_map(|(i, star)| {
                 let (residual, by) = residual(star, &camera_from_icrs, model)?;
-                // The residual of a fitted star has the variance of its position less that of the fit.
+                // The residual of a fitted star has the variance of its position minus that of the fit.
                 let [vx, vy] = star.variance_px2;
                 let expected = Matrix2::new(vx, 0.0, 0.0, vy) - by * covariance * by.transpose();
                 let least = 0.1 * vx.min(vy);
@@ -257,7 +268,8 @@ fn weight(star: &StarMeasurement) -> Matrix2<f64> {
     Matrix2::new(1.0 / vx, 0.0, 0.0, 1.0 / vy)
 }
 
-/// Covariance in the image, px², of a direction at the ideal coordinates (x, y) = (X/Z, Y/Z) by the attitude's covariance.
+/// Returns the covariance in the image, px², of a direction at the ideal coordinates (x, y) = (X/Z, Y/Z) due
+/// to the attitude's covariance.
 pub(super) fn image_covariance(
     covariance: &Matrix3<f64>,
     x: f64,

@@ -1,4 +1,4 @@
-//! The attitude that a frame starts from: by telemetry, or by its stars alone.
+//! Initial attitude of a frame: from telemetry, or from the frame's stars only.
 
 use contract::{CameraFrame, Icrs, Rotation};
 use nalgebra::{Matrix3, Vector3};
@@ -6,27 +6,28 @@ use nalgebra::{Matrix3, Vector3};
 use super::lost_in_space::FoundAttitude;
 use super::mounting::AttitudeError;
 
-/// A prior attitude of the camera: a reference, and the distribution of its error.
+/// Prior attitude of the camera: a reference, and the distribution of its error.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AttitudeStart {
     pub(super) reference: Rotation<CameraFrame, Icrs>,
     pub(super) prior: AttitudeError,
 }
 
-/// Standard deviation of an attitude found without a prior beyond that by its sources, about each axis: an arc minute. Aberration bends the
-/// directions of its stars by 20″ to 26″.
+/// Standard deviation of an attitude found without a prior, in addition to that from its sources, about each
+/// axis, rad: one arc minute. Aberration shifts the directions of its stars by 20″ to 26″.
 const FOUND_SIGMA_RAD: f64 = 2.908_882_086_657_216e-4;
 
-/// Widening of the covariance of an attitude found without a prior: the same stars measure it again, and must not count twice.
+/// Factor on the covariance of an attitude found without a prior. The same stars are used again for the final
+/// attitude and must not count twice.
 const WIDENING: f64 = 16.0;
 
 impl AttitudeStart {
-    /// The camera's attitude for an error `e`, a small turn about its axes.
+    /// Returns the camera's attitude for an error `e`, a small rotation about its axes.
     pub(super) fn attitude(&self, e: Vector3<f64>) -> Rotation<CameraFrame, Icrs> {
         Rotation::<CameraFrame, CameraFrame>::from_rotation_vector(e) * self.reference
     }
 
-    /// The start from an attitude that the stars gave without a prior.
+    /// Creates the start from an attitude found by the stars without a prior.
     pub(super) fn from_found(found: &FoundAttitude) -> Self {
         let covariance =
             found.covariance * WIDENING + Matrix3::identity() * (FOUND_SIGMA_RAD * FOUND_SIGMA_RAD);

@@ -1,4 +1,4 @@
-//! What the best mode keeps from frame to frame.
+//! State of the best mode, kept from frame to frame.
 
 use contract::{CameraFrame, Icrs, Readout, Rotation, Setup, TargetCalibration};
 use hifitime::Epoch;
@@ -17,7 +17,7 @@ use crate::far_range::detect::Detector;
 use crate::far_range::identify::StarList;
 use crate::{CameraModel, PipelineError};
 
-/// The best mode on one sequence of frames.
+/// Best mode for one sequence of frames.
 #[derive(Debug)]
 pub(in crate::far_range) struct BestPipeline {
     pub(super) config: FarRangeConfig,
@@ -26,10 +26,10 @@ pub(in crate::far_range) struct BestPipeline {
     pub(super) readout: Option<Readout>,
     pub(super) calibration: PhotometryCalibration,
     pub(super) mounting: MountingFilter,
-    /// With no prior attitude.
+    /// Solver for frames without a prior attitude.
     pub(super) lost_in_space: Option<LostInSpace>,
     pub(super) psf: PointImageEstimate,
-    /// Natural logarithm of measured over expected flux of stars.
+    /// Brightness scale of the stars.
     pub(super) brightness: Brightness,
     pub(super) hot_pixels: HotPixels,
     pub(super) tracks: Tracks,
@@ -40,7 +40,7 @@ pub(in crate::far_range) struct BestPipeline {
     pub(super) last: Option<LastFrame>,
 }
 
-/// Numbers of the calibration that photometry needs.
+/// Calibration parameters for photometry.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PhotometryCalibration {
     pub(super) response: f64,
@@ -53,12 +53,13 @@ pub(super) struct PhotometryCalibration {
 /// Scale of the brightness of stars, estimated over frames.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Brightness {
-    /// Natural logarithm of measured flux over that of the calibration, or of [`UNKNOWN_ZERO_MAGNITUDE`].
+    /// Natural logarithm of the ratio of measured flux to that by the calibration, or by
+    /// [`UNKNOWN_ZERO_MAGNITUDE`].
     pub(super) log_ratio: f64,
     pub(super) knowledge: ScaleKnowledge,
 }
 
-/// Where a brightness scale comes from.
+/// Source of a brightness scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ScaleKnowledge {
     Nowhere,
@@ -66,21 +67,22 @@ pub(super) enum ScaleKnowledge {
     Stars,
 }
 
-/// The frame before.
+/// Time and attitude of the previous frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LastFrame {
     pub(super) time: Epoch,
     pub(super) camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
 }
 
-/// Response of single pixels without a calibration, relative standard deviation.
+/// Default response of single pixels without a calibration, relative standard deviation.
 const UNKNOWN_RESPONSE: f64 = 0.01;
 
-/// Photoelectrons per second from a star of V = 0 without a calibration: an aperture of a square centimetre before silicon.
+/// Default photoelectrons per second from a star of V = 0 without a calibration: an aperture of one square
+/// centimetre in front of silicon.
 const UNKNOWN_ZERO_MAGNITUDE: f64 = 1.5e6;
 
 impl BestPipeline {
-    /// A pipeline before its first frame.
+    /// Creates a pipeline before its first frame.
     ///
     /// # Errors
     /// Those of the checks of configuration, camera, calibration and readout.
@@ -127,7 +129,7 @@ impl BestPipeline {
         })
     }
 
-    /// Flux of a star by the calibration alone, electrons.
+    /// Returns the flux of a star by the calibration only, electrons.
     pub(super) fn unscaled_flux_e(&self, magnitude: f64, exposure_s: f64) -> f64 {
         let scale = self.calibration.zero_magnitude_e_per_s.unwrap_or(UNKNOWN_ZERO_MAGNITUDE);
         scale * exposure_s * libm::pow(10.0, -0.4 * magnitude)

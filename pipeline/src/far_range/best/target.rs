@@ -1,4 +1,4 @@
-//! The candidates for the target in a frame, and their images.
+//! Candidates for the target in a frame, and their images.
 
 use contract::{Direction, Icrs, PixelPoint};
 
@@ -9,7 +9,7 @@ use super::state::BestPipeline;
 use super::tracks::TargetCandidate;
 use crate::far_range::overrides::{Identity, Overrides};
 
-/// What is known of a frame before its target is looked for.
+/// Inputs to the search for the target in a frame.
 #[derive(Clone, Copy)]
 pub(super) struct TargetContext<'a> {
     pub(super) context: PhotometryContext<'a>,
@@ -20,41 +20,44 @@ pub(super) struct TargetContext<'a> {
     pub(super) exposure_s: f64,
 }
 
-/// A candidate with what it was found by.
+/// Candidate with its fit and cluster.
 pub(super) struct CandidateImage {
     pub(super) candidate: TargetCandidate,
-    /// `None` as long as its image is not fitted.
+    /// Fitted image; `None` if not fitted.
     pub(super) fit: Option<FittedSource>,
-    /// Index of its cluster; `None` for a candidate without one.
+    /// Index of the candidate's cluster; `None` without one.
     pub(super) cluster: Option<usize>,
 }
 
-/// Candidates whose images are fitted as long as no track is settled, the brightest; those where the best track is expected always are.
+/// Number of brightest candidates whose images are fitted while no track is settled. Candidates near the
+/// prediction of the best track are always fitted.
 const MAX_FITTED: usize = 2;
 
-/// Exponent of the numbers of clutter by flux: N(> F) ∝ F^−1.2, that of the stars (Allen 1973, Astrophysical Quantities, §117).
+/// Exponent of the cumulative number of clutter by flux: N(> F) ∝ F^−1.2, that of the stars (Allen 1973,
+/// Astrophysical Quantities, §117).
 const CLUTTER_EXPONENT: f64 = 1.2;
 
-/// Odds of a cluster at the threshold of detection, and of a point below it, natural logarithm.
+/// Natural logarithm of the odds of a cluster at the detection threshold, and of a point below it.
 const THRESHOLD_LOG_ODDS: f64 = -2.0;
 const FAINT_LOG_ODDS: f64 = -6.0;
 
-/// Misfit from which on an unsaturated cluster is hardly a point or a small body, and the odds that it loses then.
+/// Misfit above which an unsaturated cluster is unlikely to be a point or a small body, and the resulting
+/// reduction of the logarithm of the odds.
 const CLUTTER_MISFIT: f64 = 4.0;
 const MISFIT_LOG_ODDS: f64 = 5.0;
 
-/// Expected stars within this distance of a cluster are fitted with it, px.
+/// Distance from a cluster within which expected stars are fitted with it, px.
 const KNOWN_REACH_PX: f64 = 24.0;
 
-/// Odds of a track from which on its target is looked for where no cluster is, the largest standard deviation of the prediction, px, and the least
-/// signal-to-noise ratio.
+/// Limits for the search for a track's target without a cluster: smallest logarithm of the track's odds,
+/// largest standard deviation of the prediction, px, and smallest signal-to-noise ratio.
 const PREDICTED_LOG_ODDS: f64 = 4.0;
 const PREDICTED_REACH_PX: f64 = 4.0;
 const PREDICTED_SNR: f64 = 2.0;
 
 impl BestPipeline {
-    /// The candidates of a frame: clusters, the brightest first, points below the threshold of clusters as long as no track is settled, and what is
-    /// where the best track predicts it.
+    /// Returns the candidates of a frame: clusters, brightest first; points below the threshold of clusters
+    /// while no track is settled; and the target at the position predicted by the best track.
     pub(super) fn candidates(
         &mut self,
         of: TargetContext<'_>,
@@ -77,7 +80,7 @@ impl BestPipeline {
         images
     }
 
-    /// Points below the threshold of clusters, at no listed star.
+    /// Returns the points below the threshold of clusters that are not at listed stars.
     fn faint_candidates(&mut self, of: TargetContext<'_>) -> Vec<CandidateImage> {
         let image = self.psf.image([0.0; 2]);
         let stars: Vec<PixelPoint> = of.attitude.expected.iter().map(|star| star.position).collect();
@@ -97,7 +100,7 @@ impl BestPipeline {
             .collect()
     }
 
-    /// Fits the image of a candidate that has not been fitted yet, if it can be.
+    /// Fits the image of a candidate that has not been fitted yet, if possible.
     pub(super) fn fit_candidate(&mut self, of: TargetContext<'_>, image: &mut CandidateImage) {
         if image.fit.is_some() {
             return;
@@ -129,7 +132,7 @@ impl BestPipeline {
         self.fit_target(of, &start)
     }
 
-    /// Fits the image of the target at a position where no cluster is.
+    /// Fits the image of the target at a position without a cluster.
     fn fit_point(
         &mut self,
         of: TargetContext<'_>,
@@ -189,8 +192,10 @@ impl BestPipeline {
         Some(attitude.camera_from_icrs?.inverse() * self.model.back_project(position)?)
     }
 
-    /// The target where the best track predicts it, when no candidate is there: too faint for a cluster, or merged with a star. The evidence of its flux
-    /// adds to the odds of the track, so that frames in which the target is too faint to be detected are added up along the predicted motion.
+    /// Returns the target at the position predicted by the best track, if no candidate is there: it is too
+    /// faint for a cluster, or merged with a star. The evidence of its flux is added to the odds of the
+    /// track. Frames in which the target is too faint for detection are thus accumulated along the predicted
+    /// motion.
     fn predicted_candidate(
         &mut self,
         of: TargetContext<'_>,
@@ -232,14 +237,15 @@ impl BestPipeline {
     }
 }
 
-/// Natural logarithm of the likelihood of a measured flux where one is expected, over that where there is none.
+/// Returns the natural logarithm of the ratio of the likelihoods of a measured flux with and without an
+/// expected flux.
 fn evidence(flux: f64, sigma: f64, expected: f64, expected_sigma: f64) -> f64 {
     let variance = sigma * sigma + expected_sigma * expected_sigma;
     let (with, without) = (flux - expected, flux / sigma);
     0.5 * (without * without - with * with / variance + libm::log(sigma * sigma / variance))
 }
 
-/// Clusters that may be the target, the brightest first.
+/// Returns the clusters that may be the target, brightest first.
 fn target_clusters(of: TargetContext<'_>, overrides: &Overrides<'_>) -> Vec<usize> {
     let is_hot = |source: &Source| {
         source.spike.is_some() || {
@@ -260,7 +266,7 @@ fn target_clusters(of: TargetContext<'_>, overrides: &Overrides<'_>) -> Vec<usiz
     clusters
 }
 
-/// Natural logarithm of the odds that a cluster is the target, by its brightness and shape alone.
+/// Returns the natural logarithm of the odds that a cluster is the target, by its brightness and shape only.
 fn log_odds(source: &Source, fit: Option<&FittedSource>, threshold_e: f64) -> f64 {
     let mut log_odds =
         THRESHOLD_LOG_ODDS + CLUTTER_EXPONENT * libm::log((source.flux_e / threshold_e).max(1e-3));

@@ -1,32 +1,36 @@
-//! Hypotheses about which cluster is the target: each is a track in the image with the odds that it is the target's.
+//! Hypotheses for the target's cluster. Each hypothesis is a track in the image with the odds that it is the
+//! target's.
 //!
-//! A track moves with constant velocity, disturbed by white acceleration, in the image of the camera. Its odds grow by the likelihood of its
-//! clusters, in position and flux, against that of clutter (Bar-Shalom & Li 1995, Multitarget-Multisensor Tracking, Sec. 7.3), and fall
-//! when it is not seen and when its cluster moves as the stars do.
+//! A track moves with constant velocity, disturbed by white acceleration, in the image of the camera. Its
+//! odds increase by the ratio of the likelihoods of its clusters, in position and flux, to that of clutter
+//! (Bar-Shalom & Li 1995, Multitarget-Multisensor Tracking, Sec. 7.3). They decrease when the track has no
+//! cluster and when its cluster moves with the stars.
 
 use std::collections::VecDeque;
 
 use contract::{Direction, Icrs, PixelPoint};
 
-/// A cluster that may be the target.
+/// Cluster that may be the target.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TargetCandidate {
     pub(super) position: PixelPoint,
     /// Variance of the position along an axis, px².
     pub(super) variance_px2: f64,
-    /// Photoelectrons per second.
+    /// Flux, photoelectrons per second.
     pub(super) flux_e_per_s: f64,
-    /// Whether the flux is a lower bound, or only a part of the image was transmitted.
+    /// True if the flux is a lower bound, or only a part of the image was transmitted.
     pub(super) is_flux_bounded: bool,
-    /// Natural logarithm of the odds that a cluster of this brightness and shape is the target, from this frame alone.
+    /// Natural logarithm of the odds that a cluster of this brightness and shape is the target, from this
+    /// frame only.
     pub(super) log_odds: f64,
-    /// Natural logarithm of the likelihood with over that without the target, of a candidate that was looked for where the best track predicts it.
+    /// Natural logarithm of the ratio of the likelihoods with and without the target, for a candidate
+    /// searched for at the prediction of the best track.
     pub(super) evidence: Option<f64>,
     /// Direction along the axes of ICRS, by the attitude of this frame.
     pub(super) direction: Option<Direction<Icrs>>,
 }
 
-/// A hypothesis.
+/// Hypothesis for the target.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Track {
     pub(super) position: PixelPoint,
@@ -36,70 +40,74 @@ pub(super) struct Track {
     log_flux: f64,
     log_flux_variance: f64,
     pub(super) log_odds: f64,
-    /// Frames in which it was seen.
+    /// Number of frames with a cluster of this track.
     pub(super) hits: u32,
     misses: u32,
-    /// Where its last cluster was, in the image and among the stars.
+    /// Position of the last cluster in the image, and its direction among the stars.
     last: (PixelPoint, Option<Direction<Icrs>>),
-    /// Candidate of the last frame that continues it.
+    /// Index of the candidate in the last frame that continues the track.
     pub(super) candidate: Option<usize>,
 }
 
-/// How tracks move and what clutter there is.
+/// Parameters of the tracks' motion and of clutter.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TrackModel {
-    /// Greatest speed, px/s.
+    /// Largest speed, px/s.
     pub(super) max_speed_px_per_s: f64,
-    /// Clutter per px², with any flux.
+    /// Density of clutter of any flux, px⁻².
     pub(super) clutter_per_px2: f64,
     /// Flux of a point at the threshold of clusters, photoelectrons per second.
     pub(super) threshold_e_per_s: f64,
 }
 
-/// Disturbance of the position that does not grow with time (jitter of the pointing), px.
+/// Position disturbance that does not grow with time (pointing jitter), px.
 const JITTER_PX: f64 = 0.4;
 
 /// Spectral density of the acceleration, px²/s³: half a pixel after 15 s of slow control errors.
 const ACCELERATION: f64 = 2e-4;
 
-/// Relative change of the flux from frame to frame, and its growth per root second: a body that turns.
+/// Relative change of the flux from frame to frame, and its growth per root second: a rotating body.
 const LOG_FLUX_STEP: f64 = 0.25;
 const LOG_FLUX_PER_ROOT_S: f64 = 0.03;
 
-/// Natural logarithm of the flux over that of the visible part of an image.
+/// Natural logarithm of the largest ratio of the total flux to that of the visible part of an image.
 const LARGEST_HIDDEN: f64 = 1.2;
 
-/// Part of the target's images that are detected, and of those that are not twice as bright as the threshold.
+/// Detection probability of the target's image, and that of an image less than twice as bright as the
+/// threshold.
 const DETECTED: f64 = 0.95;
 const DETECTED_FAINT: f64 = 0.6;
 
-/// Largest likelihood ratio of one frame, natural logarithm: its model of errors holds no further.
+/// Largest likelihood ratio of one frame, natural logarithm: the error model is not valid beyond it.
 const MOST_EVIDENCE: f64 = 8.0;
 
-/// Odds beyond these say nothing more: a track must be able to lose.
+/// Limits of the logarithm of the odds. Odds beyond the limits carry no further information, and a track must
+/// remain able to lose.
 const LOG_ODDS: (f64, f64) = (-20.0, 25.0);
 
-/// Loss of odds for a cluster that moved as the stars do, and gain for one that moved as neither stars nor detector do.
+/// Reduction of the logarithm of the odds for a cluster that moved with the stars, and gain for one that
+/// moved neither with the stars nor with the detector.
 const STAR_MOTION: f64 = 6.0;
 const OWN_MOTION: f64 = 1.5;
 
-/// Distance from where the stars went within which a cluster moved with them, and beyond which it did not, px.
+/// Distance from the position that moved with the stars, px: below the first limit a cluster moved with them,
+/// above the second it did not.
 const WITH_STARS_PX: f64 = 0.8;
 const APART_PX: f64 = 2.0;
 
-/// Frames whose candidates are remembered, to tell stars that no list has from the target.
+/// Number of previous frames whose candidates are kept, to distinguish unlisted stars from the target.
 const RECENT_FRAMES: usize = 3;
 
-/// Normalised distance, squared, within which a candidate continues a track.
+/// Largest squared normalised distance of a candidate that continues a track.
 const GATE: f64 = 20.0;
 
-/// Odds, natural logarithm, from which on a track counts as settled.
+/// Natural logarithm of the odds above which a track counts as settled.
 const SETTLED: f64 = 12.0;
 
-/// Farthest that a cluster counts as expected by a track, px.
+/// Largest distance at which a track expects a cluster, px.
 const LARGEST_REACH_PX: f64 = 10.0;
 
-/// Most tracks, and frames without a cluster after which one ends.
+/// Largest number of tracks, and number of frames without a cluster after which a track ends.
 const MAX_TRACKS: usize = 64;
 const MAX_MISSES: u32 = 20;
 
@@ -120,7 +128,7 @@ impl Track {
         }
     }
 
-    /// Moves the track to the next frame.
+    /// Advances the track to the next frame.
     fn advance(&mut self, elapsed_s: f64) {
         let dt = elapsed_s;
         self.position =
@@ -136,24 +144,24 @@ impl Track {
         self.candidate = None;
     }
 
-    /// Variance of the predicted position along an axis, px², jitter included.
+    /// Returns the variance of the predicted position along an axis, including jitter, px².
     pub(super) fn variance_px2(&self) -> f64 {
         self.covariance[0] + JITTER_PX * JITTER_PX
     }
 
-    /// Predicted photoelectrons per second, and their relative standard deviation.
+    /// Returns the predicted photoelectrons per second, and their relative standard deviation.
     pub(super) fn flux_e_per_s(&self) -> (f64, f64) {
         (libm::exp(self.log_flux), self.log_flux_variance.sqrt())
     }
 
-    /// Logarithm of the likelihood ratio of a candidate, against clutter; `None` outside the gate.
+    /// Returns the logarithm of the likelihood ratio of a candidate against clutter; `None` outside the gate.
     fn likelihood(&self, c: &TargetCandidate, model: &TrackModel) -> Option<f64> {
         let variance = self.variance_px2() + c.variance_px2;
         let (dx, dy) = (c.position.x - self.position.x, c.position.y - self.position.y);
         let distance = (dx * dx + dy * dy) / variance;
         let log_flux = libm::log(c.flux_e_per_s.max(1e-9)) - self.log_flux;
         let flux_variance = self.log_flux_variance + LOG_FLUX_STEP * LOG_FLUX_STEP;
-        // What a region cuts off and saturation hides is at most some two thirds of the flux.
+        // Truncation by a region and saturation hide at most some two thirds of the flux.
         let log_flux = if c.is_flux_bounded { (log_flux + LARGEST_HIDDEN).min(0.0) } else { log_flux };
         let flux_distance = log_flux * log_flux / flux_variance;
         if distance + flux_distance > GATE {
@@ -161,13 +169,14 @@ impl Track {
         }
         let by_position =
             -0.5 * distance - libm::log(std::f64::consts::TAU * variance * model.clutter_per_px2);
-        // Clutter has fluxes over some four units of the natural logarithm.
+        // The fluxes of clutter cover some four units of the natural logarithm.
         let by_flux =
             -0.5 * flux_distance - 0.5 * libm::log(std::f64::consts::TAU * flux_variance) + libm::log(4.0);
         Some(libm::log(DETECTED) + by_position.min(MOST_EVIDENCE) + by_flux)
     }
 
-    /// Odds by the motion since the last cluster: `position_of` gives where a direction among the stars is in the image now.
+    /// Returns the change of the logarithm of the odds by the motion since the last cluster. `position_of`
+    /// returns the current image position of a direction among the stars.
     fn motion_odds(
         &self,
         c: &TargetCandidate,
@@ -213,11 +222,12 @@ impl Track {
     }
 }
 
-/// The hypotheses of a sequence.
+/// Hypotheses of a sequence.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tracks {
     tracks: Vec<Track>,
-    /// Candidates of the last frames, the latest frame first: where they were in the image and among the stars.
+    /// Candidates of the last frames, latest frame first: position in the image and direction among the
+    /// stars.
     recent: VecDeque<Vec<(PixelPoint, Direction<Icrs>)>>,
 }
 
@@ -228,14 +238,14 @@ impl Tracks {
         self.recent.clear();
     }
 
-    /// Moves all tracks to the next frame.
+    /// Advances all tracks to the next frame.
     pub(super) fn advance(&mut self, elapsed_s: f64) {
         for track in &mut self.tracks {
             track.advance(elapsed_s);
         }
     }
 
-    /// Returns true if one track has such odds that its target was found.
+    /// Returns true if the odds of the best track suffice to regard its target as found.
     pub(super) fn is_settled(&self) -> bool {
         self.tracks.first().is_some_and(|track| track.log_odds > SETTLED && track.misses < 2)
     }
@@ -248,13 +258,13 @@ impl Tracks {
         })
     }
 
-    /// The tracks with the best odds, the best first.
+    /// Returns the tracks in order of their odds, best first.
     pub(super) fn by_odds(&self) -> impl Iterator<Item = &Track> {
         self.tracks.iter()
     }
 
-    /// Continues tracks with the candidates of a frame, begins new ones and ends those that are lost. A candidate continues the track of the
-    /// best odds alone.
+    /// Continues tracks with the candidates of a frame, begins new tracks and ends lost ones. A candidate
+    /// continues only the track with the best odds.
     pub(super) fn update(
         &mut self,
         candidates: &[TargetCandidate],
@@ -304,7 +314,8 @@ impl Tracks {
         self.tracks.truncate(MAX_TRACKS);
     }
 
-    /// Where the candidates of the last frames are in the image now if they are stars, as far as the stars have moved since.
+    /// Returns the current image positions of the last frames' candidates, assuming that they are stars,
+    /// where the stars have moved far enough since.
     fn moved_with_the_stars(
         &self,
         position_of: &dyn Fn(&Direction<Icrs>) -> Option<PixelPoint>,

@@ -1,13 +1,16 @@
-//! The Cramér–Rao bound of a frame's pose.
+//! Cramér–Rao bound of the pose of one frame.
 //!
-//! The Fisher information is J = Σ ∂I/∂p ∂I/∂pᵀ/σ² over all pixels, with the noise-free image I in DN behind blur and pixel,
-//! σ² = (video noise)² + 1/12 for the rounding, and p what is not known; the bound is the block of J⁻¹ for the six parameters of
-//! the pose. What moves with the pose are the plate, its marks, the cross with its sides and its post; the station behind stands
-//! still. Cast shadows are left out. Three bounds, each with less that is known:
-//! 1. plate, marks and cross, their brightness and the blur known: too low for any estimator, which must find these as well;
-//! 2. the same without a rim (the plate goes on for ever): marks and cross are all that moves;
-//! 3. as posed, the yardstick: marks and cross, and free besides the pose are the brightness of each mark, of the cross's
-//!    face and of its side faces by their direction, the plate's brightness with a slope along columns and rows, and the blur.
+//! The Fisher information is J = Σ ∂I/∂p ∂I/∂pᵀ/σ² over all pixels, with the noise-free image I in DN behind
+//! blur and pixel, σ² = (video noise)² + 1/12 for the rounding, and the unknown parameters p. The bound is
+//! the block of J⁻¹ for the six parameters of the pose. The plate, its marks, the cross with its sides and
+//! its post move with the pose; the station behind is stationary. Cast shadows are left out. There are three
+//! bounds, each with fewer known quantities:
+//! 1. plate, marks and cross, with known brightness and blur: too low for any estimator, which must estimate
+//!    these as well;
+//! 2. like 1, without a rim (the plate is infinite): only marks and cross move;
+//! 3. as posed, the reference: marks and cross; besides the pose, the free parameters are the brightness of
+//!    each mark, of the cross's face and of its side faces by their direction, the plate's brightness with a
+//!    slope along columns and rows, and the blur.
 
 use contract::Camera;
 use contract::docking::{Lines, Pose};
@@ -20,27 +23,28 @@ use sim::vector::{Drawer, RadianceImage};
 
 use boresight_research::docking_random::still::{BLUR_PX, NOISE_DN};
 
-/// How far a step moves the image, px: small against the blur, large against the rounding of the image's numbers.
+/// Image displacement of a derivative step, px: small against the blur, large against the rounding of the
+/// image's numbers.
 const STEP_PX: f64 = 0.02;
 
-/// Variances that no unbiased estimator is below.
+/// Lower bounds of the variances of unbiased estimators.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bound {
-    /// Of the range, as parts of it, squared.
+    /// Relative variance of the range: variance over the squared range.
     pub(crate) range: f64,
-    /// Mean of those of d1 and d2, m².
+    /// Mean of the variances of d1 and d2, m².
     pub(crate) lateral_m2: f64,
-    /// Mean of those of φ1 and φ2, rad².
+    /// Mean of the variances of φ1 and φ2, rad².
     pub(crate) angle_rad2: f64,
 }
 
-/// How many times larger the plate is made to have no rim in the image.
+/// Enlargement factor of the plate that removes its rim from the image.
 const ENDLESS: f64 = 1000.0;
 
-/// A step of the blur for its derivative, px.
+/// Step of the blur for its derivative, px.
 const BLUR_STEP_PX: f64 = 0.01;
 
-/// The three bounds of a pose in a scene under a light, from the least to the greatest.
+/// Returns the three bounds of a pose in a scene under given lighting, in ascending order.
 pub(crate) fn bounds_of_pose(
     camera: &Camera,
     scene: &DockingScene,
@@ -78,10 +82,11 @@ impl Bound {
     }
 }
 
-/// The pose's block of the inverse information of derivatives of the image, the first six by the pose.
+/// Computes the pose's block of the inverse information from derivatives of the image, the first six with
+/// respect to the pose.
 fn covariance(pose: &Pose, derivatives: &[Vec<f64>]) -> Result<Matrix6<f64>, SimError> {
     let variance = NOISE_DN * NOISE_DN + 1.0 / 12.0;
-    // What no pixel shows (a side face that is turned away) is no parameter.
+    // A quantity without effect on any pixel (a side face that is turned away) is not a parameter.
     let shown: Vec<&Vec<f64>> = derivatives.iter().filter(|d| d.iter().any(|v| v.abs() > 1e-6)).collect();
     let mut information = DMatrix::zeros(shown.len(), shown.len());
     for i in 0..shown.len() {
@@ -91,7 +96,7 @@ fn covariance(pose: &Pose, derivatives: &[Vec<f64>]) -> Result<Matrix6<f64>, Sim
             information[(j, i)] = sum;
         }
     }
-    // In units of their own σ: metres, radians and DN are far apart.
+    // Parameters are scaled to units of their σ: metres, radians and DN differ widely in magnitude.
     let scale: Vec<f64> = (0..shown.len()).map(|i| 1.0 / information[(i, i)].sqrt()).collect();
     let scaled = DMatrix::from_fn(shown.len(), shown.len(), |i, j| information[(i, j)] * scale[i] * scale[j]);
     let inverse = scaled.try_inverse().filter(|_| shown.len() >= 6).ok_or(contract::OutOfRange::new(
@@ -102,8 +107,8 @@ fn covariance(pose: &Pose, derivatives: &[Vec<f64>]) -> Result<Matrix6<f64>, Sim
     Ok(Matrix6::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 
-/// A scene whose facets shine as the light makes them: ρ (fill + E cos θ/π) in the place of their reflectance, without cast
-/// shadows. Moved, they keep their brightness.
+/// Returns a scene with reflectances replaced by the radiance under the lighting: ρ (fill + E cos θ/π),
+/// without cast shadows. Facets keep this brightness when they move.
 fn lit(scene: &DockingScene, lighting: &Lighting) -> DockingScene {
     let mut scene = scene.clone();
     for facet in scene.parts.iter_mut().flat_map(|part| &mut part.facets) {
@@ -115,7 +120,8 @@ fn lit(scene: &DockingScene, lighting: &Lighting) -> DockingScene {
     scene
 }
 
-/// The target alone, with the plate's black face made endless. It is the facet with the marks as holes.
+/// Returns the target without the station, with the plate's black face made infinite. This face is the facet
+/// that has the marks as holes.
 fn without_rim(mut scene: DockingScene) -> DockingScene {
     scene.parts.drain(..first_of_target(&scene));
     for facet in scene.parts.iter_mut().filter(|part| part.name == "plate").flat_map(|part| &mut part.facets)
@@ -127,12 +133,12 @@ fn without_rim(mut scene: DockingScene) -> DockingScene {
     scene
 }
 
-/// The plate and what stands on it are the scene's last parts.
+/// Index of the first part of the target: the plate and the parts on it are the last parts of the scene.
 fn first_of_target(scene: &DockingScene) -> usize {
     scene.parts.iter().position(|part| part.name == "plate").unwrap_or(0)
 }
 
-/// The part of the image that the target may touch: columns and rows, ends excluded.
+/// Part of the image that the target may affect: columns and rows, ends excluded.
 #[derive(Debug, Clone, Copy)]
 struct Window {
     left: usize,
@@ -142,7 +148,7 @@ struct Window {
 }
 
 impl Window {
-    /// About everything of the target, with room for the blur.
+    /// Window around the whole target, with a margin for the blur.
     fn around(camera: &Camera, scene: &DockingScene, pose: &Pose) -> Result<Self, SimError> {
         let (fx, fy) = camera.focal_length_px();
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -177,7 +183,7 @@ struct Drawing {
 }
 
 impl Drawing {
-    /// Derivatives of the image by the six parameters of the pose.
+    /// Derivatives of the image with respect to the six parameters of the pose.
     fn by_pose(&mut self, scene: &DockingScene, camera: &Camera) -> Vec<Vec<f64>> {
         let (focal_px, _) = camera.focal_length_px();
         let d3 = self.pose.position_m.z;
@@ -199,8 +205,8 @@ impl Drawing {
         derivatives
     }
 
-    /// Derivatives by the brightness of each mark, of the cross's face, of its sides by their direction, of the post, and by
-    /// the plate's brightness and its slopes.
+    /// Derivatives with respect to the brightness of each mark, of the cross's face, of its sides by their
+    /// direction, of the post, and to the plate's brightness and its slopes.
     fn by_levels(&mut self, scene: &DockingScene) -> Vec<Vec<f64>> {
         let mut groups: Vec<(String, Vec<i64>)> = Vec::new();
         let group_of = |part: &str, index: usize, facet: &Facet| {
@@ -250,13 +256,15 @@ impl Drawing {
         slope(&before, &after, 2.0 * BLUR_STEP_PX)
     }
 
-    /// The scene when the target looks as from a pose that is `step` away, and all else as from the pose itself.
+    /// Scene in which the target appears as from a pose that is `step` away, and everything else as from the
+    /// current pose.
     fn seen_from(&self, scene: &DockingScene, step: &Vector6<f64>) -> DockingScene {
         let there = Pose {
             position_m: self.pose.position_m + step.fixed_rows::<3>(0),
             phi_rad: self.pose.phi_rad + step.fixed_rows::<3>(3),
         };
-        // The same camera coordinates from here as the point has from there: y = d + A A'ᵀ (y' − d').
+        // The point receives the camera coordinates, seen from here, that it had from there: y = d + A A'ᵀ
+        // (y' − d').
         let turn = target_from_camera(&self.pose) * target_from_camera(&there).transpose();
         let mut scene = scene.clone();
         let first = first_of_target(&scene);
@@ -269,7 +277,7 @@ impl Drawing {
         scene
     }
 
-    /// The expected image in the window.
+    /// Expected image in the window.
     fn expected_dn(&mut self, scene: &DockingScene, blur_px: f64) -> Vec<f32> {
         self.drawer.draw(scene, &self.light, &self.pose, &mut self.image);
         let Window { left, right, top, bottom } = self.window;

@@ -1,4 +1,4 @@
-//! Random poses and suns, and their frames.
+//! Random poses and Sun directions, and their frames.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -18,15 +18,15 @@ use boresight_research::docking_random::in_field::{are_inside, corners};
 use boresight_research::docking_random::still::{Row, TARGET};
 use boresight_research::docking_random::{camera, random_sun};
 
-/// Lateral offset at most, as a part of d3, and angles at most, degrees.
+/// Maximum lateral offset, as a fraction of d3, and maximum angles, degrees.
 const OFFSET: f64 = 0.03;
 const ANGLE_DEG: f64 = 3.0;
-/// How far the outermost corners of marks and cross stay from the border, px.
+/// Distance of the outermost corners of marks and cross from the image border, at least, px.
 const MARGIN_PX: f64 = 1.0;
-/// Error of the prior that OpenCV is given, as a part of the range, a direction at random.
+/// Error of the prior that OpenCV receives, as a fraction of the range, in a random direction.
 const PRIOR: f64 = 0.01;
 
-/// The table.
+/// Rows of the table.
 pub(crate) const ROWS: [Row; 5] = [
     Row::wide("wide-20m", 20.0),
     Row::wide("wide-5m", 5.0),
@@ -35,7 +35,7 @@ pub(crate) const ROWS: [Row; 5] = [
     Row::narrow("narrow-5m", 5.0),
 ];
 
-/// One frame: a pose, a Sun, noise of its own.
+/// One frame: a pose, a Sun direction, and independent noise.
 #[derive(Debug, Clone)]
 pub(crate) struct Case {
     number: u64,
@@ -46,8 +46,9 @@ pub(crate) struct Case {
 }
 
 impl Case {
-    /// The pose of this number: d3 is the row's, lateral offsets and angles uniform within their limits, drawn again until
-    /// every mark and the cross are in the field; the Sun uniform over the cap about the face's normal.
+    /// Draws the pose with this number: d3 is the row's; lateral offsets and angles are uniform within their
+    /// limits, drawn again until every mark and the cross are in the field; the Sun is uniform over the cap
+    /// about the face's normal.
     pub(crate) fn random(row: &Row, seed: u64, number: u64, noise_dn: f64) -> Result<Self, SimError> {
         let mut stream = row.seed(seed).stream(number, Effect::AttitudeControl, 0);
         let camera = camera(row.focal_px);
@@ -74,7 +75,7 @@ impl Case {
         &self.pose
     }
 
-    /// The pose that OpenCV is given to begin with.
+    /// Initial pose that OpenCV receives.
     pub(crate) fn prior(&self) -> &Pose {
         &self.prior
     }
@@ -83,19 +84,19 @@ impl Case {
         self.simulator.setup()
     }
 
-    /// The frame, progressive, as the frame grabber gives it.
+    /// Frame, progressive, as output by the frame grabber.
     pub(crate) fn field(&self) -> Result<Field, SimError> {
         let mut workspace = self.simulator.workspace()?;
         Ok(self.simulator.expose(&mut workspace, 0)?.video.digitise(&Digitiser::default()))
     }
 
-    /// The Cramér–Rao bounds of its pose.
+    /// Cramér–Rao bounds of the pose.
     pub(crate) fn bounds(&self) -> Result<[Bound; 3], SimError> {
         let lighting = self.simulator.field_state(0)?.lighting;
         bound::bounds_of_pose(&self.camera, self.simulator.scene(), &lighting, &self.pose)
     }
 
-    /// The image's file in its folder.
+    /// File name of the image in its directory.
     pub(crate) fn file(number: u64) -> String {
         format!("{number:04}.png")
     }

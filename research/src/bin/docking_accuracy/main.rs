@@ -1,10 +1,12 @@
-//! How exactly is the pose measured? The built-in pipeline's best estimator and the paper's formulas, OpenCV's `solvePnP` on
-//! the same frames, and the Cramér–Rao bound of these frames, over random poses and suns.
+//! Measures the accuracy of the pose: the built-in pipeline's best estimator and the paper's formulas,
+//! OpenCV's `solvePnP` on identical frames, and the Cramér–Rao bound of these frames, over random poses and
+//! Sun directions.
 //!
 //!     cargo run --release -p boresight-research --bin docking_accuracy -- OUT [--poses 200] [--seed 1] [--python PYTHON] [--rows wide-5m,narrow-5m] [--noise 2]
 //!
-//! Frames and truth are written below OUT, one folder a row of the table. With `--python` (an interpreter with the packages
-//! of tests/python/docking_requirements.txt) `tests/python/docking_pnp.py` measures the same frames with OpenCV.
+//! Frames and truth are written below OUT, one directory per row of the table. With `--python` (an
+//! interpreter with the packages of tests/python/docking_requirements.txt) `tests/python/docking_pnp.py`
+//! measures these frames with OpenCV.
 
 mod bound;
 mod frames;
@@ -56,13 +58,13 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
     Ok(arguments)
 }
 
-/// What the estimators and the bounds say of one frame.
+/// Estimates and bounds of one frame.
 struct FrameResult {
     truth: Pose,
-    /// The pipeline from the frame alone: its best estimator, and the paper's formulas.
+    /// Pipeline on the frame without a prior: its best estimator, and the paper's formulas.
     best: Option<PoseEstimate>,
     paper: Option<Pose>,
-    /// The best estimator from the place where OpenCV begins too.
+    /// Best estimator, started from the initial pose of OpenCV.
     near: Option<PoseEstimate>,
     bounds: [Bound; 3],
 }
@@ -78,7 +80,7 @@ fn measure(
     let field = case.field().map_err(|e| text(&e))?;
     boresight::files::write_field(&folder.join(Case::file(number)), &field).map_err(|e| text(&e))?;
     let setup = case.setup();
-    // A pipeline that has seen nothing: every frame is the first one.
+    // A new pipeline: every frame is its first one.
     let factory = DockingFactory::new(DockingConfig::default()).map_err(|e| text(&e))?;
     let mut pipeline = factory.build(&setup).map_err(|e| text(&e))?;
     let telemetry = FieldTelemetry { time_s: 0.0, camera: 0, digitiser: Default::default() };
@@ -149,7 +151,7 @@ fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>
     Ok(lines)
 }
 
-/// The yardstick of every frame.
+/// Reference bound of every frame.
 fn measured_bounds(measured: &[FrameResult]) -> Vec<Bound> {
     measured.iter().map(|m| m.bounds[2]).collect()
 }

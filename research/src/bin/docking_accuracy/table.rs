@@ -1,4 +1,4 @@
-//! Errors of poses, and how they are shown.
+//! Errors of poses, and their table.
 
 use std::error::Error;
 use std::fmt;
@@ -18,7 +18,7 @@ bound: Cramér–Rao, 1 plate, marks and cross, 2 without the plate's rim, level
 blur unknown, the yardstick; best/3: times the yardstick. NEES: mean over the answers, divided by 6.
 row         method  answered       rms: range %  lateral mm  φ1,2 °       p68: range %  lateral mm  φ1,2 °    NEES/6";
 
-/// The truth of a frame, and what a method says.
+/// Truth of a frame, and the answer of a method.
 pub(crate) struct Answer {
     pub(crate) truth: Pose,
     pub(crate) pose: Option<Pose>,
@@ -39,14 +39,15 @@ impl Answer {
         Some((self.pose?.position_m.norm() - range_m) / range_m)
     }
 
-    /// Normalised estimation error squared, of six.
+    /// Normalised estimation error squared of the six parameters, not divided by 6.
     fn nees(&self) -> Option<f64> {
         let error = self.error()?;
         Some(error.dot(&(self.covariance?.try_inverse()? * error)))
     }
 }
 
-/// Writes the errors frame by frame: range and NEES, and the errors in units of the bound, to find outliers by.
+/// Writes the errors frame by frame: range and NEES, and the errors in units of the bound, to help find
+/// outliers.
 pub(crate) fn write_errors(
     path: &Path,
     methods: &[(&str, &[Answer])],
@@ -80,10 +81,10 @@ pub(crate) fn write_errors(
     Ok(())
 }
 
-/// Range %, lateral mm, φ1,2 degrees.
+/// Range, %; lateral, mm; φ1,2, degrees.
 type Figures = [f64; 3];
 
-/// A line of the table.
+/// Line of the table.
 pub(crate) struct Line {
     row: &'static str,
     method: &'static str,
@@ -123,7 +124,7 @@ impl Line {
         Self { row, method, answered: None, rms, p68: None, nees: None }
     }
 
-    /// How many times a bound's figures a method's are.
+    /// Ratio of a method's figures to those of a bound.
     pub(crate) fn over(&self, bound: &Line) -> Self {
         let rms = std::array::from_fn(|i| self.rms[i] / bound.rms[i]);
         Self { row: self.row, method: "best/3", answered: None, rms, p68: None, nees: None }
@@ -158,7 +159,7 @@ impl fmt::Display for Line {
     }
 }
 
-/// Reads the poses of a script: `frame` and six columns, empty where it has no answer.
+/// Reads the poses that a script wrote: `frame` and six columns, empty if the script has no answer.
 pub(crate) fn read_poses(path: &Path, count: usize) -> Result<Vec<Option<Pose>>, Box<dyn Error>> {
     let mut poses = vec![None; count];
     for record in csv::Reader::from_path(path)?.records() {

@@ -1,11 +1,12 @@
-//! Are the errors of the docking pipeline as large as its standard deviations say?
+//! Compares the errors of the docking pipeline with its standard deviations.
 //!
 //!     cargo run --release -p boresight-research --bin docking_consistency -- [--approaches 200] [--portions 6] [--seed 1] [--only steady]
 //!
-//! Seeded approaches are drawn and measured field by field by the built-in pipeline: constant velocity with noise alone, the
-//! same with every artefact, and swinging ones. Of the portions from the second on it prints the share of errors within 3σ by
-//! parameter, the mean normalised estimation error squared (NEES) over its dimension, σ against range (Fig. 6 of the docking
-//! paper), what doubled noise does to σ, and the time between reports.
+//! Seeded approaches are drawn and measured field by field by the built-in pipeline: constant velocity with
+//! noise only, constant velocity with every artefact, and swinging approaches. For the portions from the
+//! second on, the program prints the share of errors within 3σ by parameter, the mean normalised estimation
+//! error squared (NEES) over its dimension, σ against range (Fig. 6 of the docking paper), the effect of
+//! doubled noise on σ, and the time between reports.
 
 use std::error::Error;
 
@@ -17,11 +18,11 @@ use boresight_research::docking_consistency::approaches::{
 };
 use boresight_research::docking_consistency::tally::{self, GROUPS, Mean, NAMES, Tally};
 
-/// Noise of the television, DN.
+/// Video noise, DN.
 const NOISE_DN: f64 = 2.0;
-/// Approaches that are flown again with twice the noise.
+/// Number of approaches repeated with twice the noise.
 const DOUBLED: u64 = 40;
-/// Ranges of the table of σ, m.
+/// Limits of the range bins in the table of σ, m.
 const RANGES_M: [f64; 8] = [0.0, 1.5, 2.5, 4.0, 6.0, 10.0, 16.0, 30.0];
 
 struct Arguments {
@@ -78,7 +79,7 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     Ok(())
 }
 
-/// Shares within 3σ and NEES of both estimators.
+/// Prints the shares within 3σ and the NEES of both estimators.
 fn consistency(title: &str, approaches: &[MeasuredApproach]) {
     let fields: usize = approaches.iter().map(|approaches| approaches.fields.len()).sum();
     println!("{title}: {} approaches, {fields} fields measured", approaches.len());
@@ -116,7 +117,7 @@ fn cell(mean: Option<Mean>, scale: f64) -> String {
     mean.map_or_else(|| "-".to_owned(), |m| format!("{:.2} ± {:.2}", scale * m.value, scale * m.error))
 }
 
-/// Medians of σ of ρ, u, α, β in bins of range.
+/// Prints the medians of σ of ρ, u, α, β in bins of range.
 fn sigma_by_range(approaches: &[MeasuredApproach]) {
     println!("σ by range, medians, exact geometry (paper)");
     println!(
@@ -171,7 +172,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// σ of the same approaches with twice the noise, over σ.
+/// Prints the ratio of σ with twice the noise to σ, for identical approaches.
 fn doubled_noise(arguments: &Arguments) -> Result<(), Box<dyn Error + Send + Sync>> {
     let simulate = |noise_dn: f64| {
         simulate_approaches(&Plan::noise_only(arguments.seed, 2, noise_dn), arguments.approaches.min(DOUBLED))

@@ -1,4 +1,4 @@
-//! Random poses and suns of a range and a lens.
+//! Random poses and Sun directions for a range and a lens.
 
 use contract::Camera;
 use contract::docking::Pose;
@@ -11,14 +11,14 @@ use sim::truth::approach::target_from_camera;
 use boresight_research::docking_random::still::{NOISE_DN, Row};
 use boresight_research::docking_random::{camera, random_sun};
 
-/// Lateral offset at most, as a part of d3, and angles at most, degrees.
+/// Maximum lateral offset, as a fraction of d3, and maximum angles, degrees.
 const OFFSET: f64 = 0.02;
 const ANGLE_DEG: f64 = 2.0;
-/// Half the side of the square about the disk's centre that Mitsuba renders, m: the disk's radius is 0.3 m, and the cross, which
-/// stands off by as much, is seen before it.
+/// Half the side of the square about the disk's centre that Mitsuba renders, m: the disk's radius is 0.3 m,
+/// and the cross, which stands off by 0.3 m, is seen in front of the disk.
 const HALF_SIDE_M: f64 = 0.36;
 
-/// The table.
+/// Rows of the table.
 pub(crate) const ROWS: [Row; 5] = [
     Row::narrow("narrow-20m", 20.0),
     Row::narrow("narrow-10m", 10.0),
@@ -27,7 +27,7 @@ pub(crate) const ROWS: [Row; 5] = [
     Row::wide("wide-2m", 2.0),
 ];
 
-/// One frame: a pose, a Sun, noise of its own.
+/// One frame: a pose, a Sun direction, and independent noise.
 pub(crate) struct Case {
     pub(crate) camera: Camera,
     pub(crate) pose: Pose,
@@ -36,8 +36,8 @@ pub(crate) struct Case {
 }
 
 impl Case {
-    /// The pose of this number: lateral offsets and angles uniform within their limits, the Sun uniform over the cap about
-    /// the face's normal.
+    /// Draws the pose with this number: lateral offsets and angles are uniform within their limits, the Sun
+    /// is uniform over the cap about the face's normal.
     pub(crate) fn random(row: &Row, seed: u64, number: u64) -> Result<Self, SimError> {
         let mut stream = row.seed(seed).stream(number, Effect::AttitudeControl, 0);
         let pose = row.random_pose(OFFSET, ANGLE_DEG, &mut stream);
@@ -47,7 +47,7 @@ impl Case {
         Ok(Self { camera, pose, simulator, focal_px: row.focal_px })
     }
 
-    /// The square about the disk, as much of it as is in the image.
+    /// Square about the disk, clipped to the image.
     pub(crate) fn target_window(&self) -> Crop {
         let centre = target_from_camera(&self.pose).transpose() * -self.pose.position_m;
         let half_px = self.focal_px * HALF_SIDE_M / centre.z;

@@ -1,11 +1,12 @@
-//! Does the pipeline measure Mitsuba's images as it measures ours? Random poses and suns, each drawn by the fast renderer
-//! and rendered by Mitsuba, through the same television chain with the same draws and the same pipeline; both scores side
-//! by side, and how far the two answers are apart field by field.
+//! Compares the pipeline's measurements of Mitsuba's images and of ours. Random poses and Sun directions are
+//! each drawn by the fast renderer and rendered by Mitsuba, then passed through identical television chains
+//! with identical random draws to the pipeline. The program prints both scores side by side, and the
+//! difference of the two answers field by field.
 //!
 //!     cargo run --release -p boresight-research --bin docking_judge -- [--poses 4] [--samples 64] [--seed 1] [--rows wide-5m,narrow-5m]
 //!
-//! Mitsuba renders the square about the target's disk; around it both images are the fast one. What it rendered is in its
-//! cache (docs/mitsuba.md) and is not rendered again.
+//! Mitsuba renders the square about the target's disk; outside it both images come from the fast renderer.
+//! Rendered images are kept in Mitsuba's cache (docs/mitsuba.md) and are not rendered again.
 
 mod cases;
 
@@ -42,7 +43,8 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
     Ok(arguments)
 }
 
-/// Errors of an answer, or differences of two: range, % of it; d1 and d2, mm; φ1 and φ2, degrees.
+/// Errors of an answer, or differences of two answers: range, % of the range; d1 and d2, mm; φ1 and φ2,
+/// degrees.
 fn errors(answer: &Pose, truth: &Pose) -> [Vec<f64>; 3] {
     let (d, phi) = (answer.position_m - truth.position_m, answer.phi_rad - truth.phi_rad);
     let range_m = truth.position_m.norm();
@@ -57,7 +59,7 @@ fn rms(errors: &[f64]) -> f64 {
     (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
-/// A line of the table: pairs of an answer and what it is held against.
+/// Prints a line of the table from pairs of an answer and its reference.
 fn print_line(row: &str, name: &str, of: usize, pairs: &[(Pose, Pose)]) {
     let mut all: [Vec<f64>; 3] = Default::default();
     for (answer, truth) in pairs {
@@ -75,7 +77,7 @@ fn print_line(row: &str, name: &str, of: usize, pairs: &[(Pose, Pose)]) {
     println!("{row:<11} {name:<10} {answered:>8} {figures}");
 }
 
-/// The best estimate of a pipeline that has seen nothing before.
+/// Best estimate of a new pipeline.
 fn measure(case: &Case, image: &RadianceImage) -> Result<Option<Pose>, Box<dyn Error>> {
     let mut workspace = case.simulator.workspace()?;
     let video = case.simulator.expose_image(&mut workspace, 0, image)?.video;
@@ -87,7 +89,7 @@ fn measure(case: &Case, image: &RadianceImage) -> Result<Option<Pose>, Box<dyn E
     })
 }
 
-/// The image by the fast renderer, and the same with Mitsuba's in the square about the target.
+/// Returns the image of the fast renderer, and this image with Mitsuba's in the square about the target.
 fn images(case: &Case, samples: u32) -> Result<[RadianceImage; 2], Box<dyn Error>> {
     let (scene, moment) = (case.simulator.scene(), case.simulator.field_state(0)?);
     let mut fast = RadianceImage::default();

@@ -1,4 +1,4 @@
-//! Fields with what was recognised drawn over them.
+//! Pictures of fields with the recognised features drawn over them.
 
 use std::error::Error;
 use std::path::Path;
@@ -7,7 +7,7 @@ use contract::PixelPoint;
 use contract::docking::{Circle, DockingOutcome, Field, MarkUse};
 use image::{Rgb, RgbImage};
 
-/// Writes a field as a picture of the whole camera, every line as often as it stands for rows.
+/// Writes a field as a picture of the whole camera; every line is repeated for the rows that it represents.
 pub(crate) fn write(path: &Path, field: &Field, outcome: &DockingOutcome) -> Result<(), Box<dyn Error>> {
     let (columns, rows, step) = (field.image().columns(), field.camera_rows(), field.lines().step());
     let mut picture = RgbImage::from_fn(columns as u32, rows as u32, |x, y| {

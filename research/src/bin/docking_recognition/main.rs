@@ -1,12 +1,14 @@
-//! How often is the target recognised? The built-in pipeline on blocks of fields over the approach of the docking scenario,
-//! every artefact as the scenario has it, or on clean random poses at one distance.
+//! Measures the rate at which the target is recognised: the built-in pipeline on blocks of fields over the
+//! approach of the docking scenario, with every artefact of the scenario, or on clean random poses at one
+//! distance.
 //!
 //!     cargo run --release -p boresight-research --bin docking_recognition -- [--every 400] [--block 8] [--from 0] [--to 25169]
 //!         [--lens wide] [--poses 100 --range 20] [--out DIR]
 //!
-//! Each block begins with a pipeline that has seen nothing. Per bin of range and lens: fields with the target wholly in the
-//! image, how many were measured, how many are wrong, the reasons of the others, and the time a field takes. With `--out`
-//! the fields that were not measured, or wrongly, are written there with what was recognised drawn over them.
+//! Each block begins with a new pipeline. Printed per bin of range and per lens: the number of fields with
+//! the target wholly in the image, the numbers of measured and of wrong fields, the reasons for the
+//! unmeasured fields, and the time per field. With `--out` the fields that were not measured, or measured
+//! wrongly, are written to DIR with the recognised features drawn over them.
 
 mod drawing;
 mod tally;
@@ -71,7 +73,7 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
     Ok(arguments)
 }
 
-/// The built-in scenario; `wide`: seen by its wide lens alone.
+/// Built-in scenario; with `wide`, seen by its wide lens only.
 fn simulation(wide: bool) -> Result<DockingSimulation, Box<dyn Error>> {
     let mut table: toml::Table = boresight::scenario::DOCKING.parse()?;
     for key in ["world", "title", "docking"] {
@@ -84,7 +86,7 @@ fn simulation(wide: bool) -> Result<DockingSimulation, Box<dyn Error>> {
     Ok(simulation)
 }
 
-/// A sharp, progressive, quiet field of a random pose.
+/// Sharp, progressive field of a random pose, with little noise.
 fn clean(simulation: &DockingSimulation, range_m: f64, number: u64) -> DockingSimulation {
     let mut stream = Seed { seed: 1, case: 0 }.stream(number, Effect::AttitudeControl, 0);
     let mut symmetric = |size: f64| size * (2.0 * uniform(&mut stream) - 1.0);

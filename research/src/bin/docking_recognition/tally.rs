@@ -1,4 +1,4 @@
-//! What became of the fields, by range and lens.
+//! Results of the fields, counted by range and lens.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -6,10 +6,10 @@ use std::fmt;
 use contract::docking::{DockingOutcome, DockingSetup, DockingSolution};
 use sim::docking::FieldTruth;
 
-/// Upper limits of the bins of range, m.
+/// Upper limits of the range bins, m.
 const LIMITS_M: [f64; 13] = [1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0, 200.0, 350.0, 501.0];
 
-/// One field.
+/// Result of one field.
 pub(crate) struct Entry {
     range_m: f64,
     focal_px: f64,
@@ -17,11 +17,11 @@ pub(crate) struct Entry {
     answer: String,
     is_measured: bool,
     is_wrong: bool,
-    /// Errors over their σ, largest; of a range alone too.
+    /// Largest error in units of its σ; also for a solution with the range only.
     sigmas: f64,
     seconds: f64,
     is_first: bool,
-    /// Shadowed marks that were used.
+    /// Number of shadowed marks that were used.
     shadowed_used: u32,
 }
 
@@ -46,7 +46,8 @@ impl Entry {
                     .zip(sigma.iter())
                     .map(|(e, s)| e.abs() / s)
                     .fold(0.0, f64::max);
-                // What the oracle calls gross: range by 5 %, roll by 5°, tilt by 5° or by a pixel of the cross.
+                // Limits of a gross error in the oracle: range by 5 %, roll by 5°, tilt by 5° or by a pixel
+                // of the cross, the larger of the two.
                 let tilt_limit =
                     (range_m / (setup.cameras[truth.camera].focal_length_px().0 * 0.3)).max(0.087);
                 let is_wrong = (best.position_m.norm() / range_m - 1.0).abs() > 0.05
@@ -113,7 +114,7 @@ impl fmt::Display for Entry {
     }
 }
 
-/// The fields, counted.
+/// Counts of the fields.
 #[derive(Default)]
 pub(crate) struct Tally {
     entries: Vec<Entry>,

@@ -1,14 +1,17 @@
-//! What frames and their detection cost, by request: the side of Boresight in `docs/speed/compare.py`, which asks for a little of each in
-//! turn with the other simulators. Linux only.
+//! Measures the cost of frames and their detection, on request: Boresight's side of `docs/speed/compare.py`,
+//! which requests small amounts of work from each simulator in turn. Linux only.
 //!
 //!     cargo run --release -p boresight-research --bin frame_speed
 //!
-//! The first line on stdout is the plain frame that all simulators make (camera, detector, stars), as JSON, with the names of
-//! what can be timed. Then each line on stdin is a request, and each answer a line of JSON:
+//! The first line on stdout is the plain frame that all simulators make (camera, detector, stars), as JSON,
+//! with the names of the tasks that can be timed. Then each line on stdin is a request, and each answer is a
+//! line of JSON:
 //!
-//! - `time WORK COUNT`: does the work so often; answers with the processor's time of each, ms, the mean over all.
+//! - `time WORK COUNT`: repeats the task COUNT times; answers with the processor time per repetition, ms, the
+//!   mean over all.
 //! - `write COUNT FILE`: writes plain frames, row after row of 16-bit numbers, lowest byte first.
-//! - `clusters WORK`: does the work once; answers with the places of the clusters that the pipeline found, px.
+//! - `clusters WORK`: runs the task once; answers with the positions of the clusters that the pipeline found,
+//!   px.
 
 mod plain;
 mod works;
@@ -20,16 +23,16 @@ use plain::PlainScene;
 use serde_json::{Value, json};
 use works::{Work, works};
 
-/// What this thread has had of a processor, ms.
+/// Processor time of this thread, ms.
 fn processor_ms() -> Result<f64, Box<dyn Error>> {
-    // The count is brought up to date when the scheduler looks.
+    // The kernel updates the counter when the scheduler runs.
     std::thread::yield_now();
     let text = std::fs::read_to_string("/proc/thread-self/schedstat")?;
     let nanoseconds = text.split_whitespace().next().ok_or("/proc/thread-self/schedstat is empty")?;
     Ok(nanoseconds.parse::<f64>()? / 1e6)
 }
 
-/// The mean time of a work, ms.
+/// Mean time of a task, ms.
 fn time(work: &mut Work, count: u64) -> Result<f64, Box<dyn Error>> {
     let start = processor_ms()?;
     for _ in 0..count {
@@ -38,12 +41,12 @@ fn time(work: &mut Work, count: u64) -> Result<f64, Box<dyn Error>> {
     Ok((processor_ms()? - start) / count as f64)
 }
 
-/// The work of a name.
+/// Returns the task with the given name.
 fn named<'a>(works: &'a mut [Work], name: &str) -> Result<&'a mut Work, String> {
     works.iter_mut().find(|work| work.name() == name).ok_or_else(|| format!("there is no work {name:?}"))
 }
 
-/// The answer to a request.
+/// Returns the answer to a request.
 fn answer(request: &str, scene: &PlainScene, works: &mut [Work]) -> Result<Value, Box<dyn Error>> {
     let words: Vec<&str> = request.split_whitespace().collect();
     match words[..] {

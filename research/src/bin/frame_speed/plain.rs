@@ -1,4 +1,5 @@
-//! The plain frame that every simulator of the comparison can make: 160 stars on a flat background, shot, dark and read noise, 12 bit.
+//! Plain frame that every simulator of the comparison can make: 160 stars on a flat background, shot, dark
+//! and read noise, 12 bit.
 
 use std::error::Error;
 
@@ -16,14 +17,14 @@ const SIGMA_PX: f64 = 0.8;
 const EXPOSURE_S: f64 = 0.25;
 const SEED: Seed = Seed { seed: 5, case: 0 };
 
-/// A star of the plain frame.
+/// Star of the plain frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Star {
     pub(crate) centre: PixelPoint,
     pub(crate) electrons: f64,
 }
 
-/// The plain frame in numbers.
+/// Parameters of the plain frame.
 #[derive(Debug, Clone)]
 pub(crate) struct PlainScene {
     pub(crate) stars: Vec<Star>,
@@ -31,8 +32,9 @@ pub(crate) struct PlainScene {
 }
 
 impl PlainScene {
-    /// The detector of the scenario `argon` without its defects, dark current and sky 10 e⁻ each, and stars as the sky has them:
-    /// ten times as many for two magnitudes, from 600 e⁻ (V = 7 in the scenario `argon`) to what fits the converter.
+    /// Returns the detector of the scenario `argon` without its defects, with dark current and sky of 10 e⁻
+    /// each, and stars distributed as on the sky: ten times as many per two magnitudes, from 600 e⁻ (V = 7 in
+    /// the scenario `argon`) up to the range of the converter.
     pub(crate) fn new() -> Self {
         let mut stream = SEED.stream(0, Effect::HotPixels, 0);
         let stars = (0..STARS)
@@ -57,7 +59,7 @@ impl PlainScene {
         Self { stars, sensor }
     }
 
-    /// The same on a detector whose every pixel has a response and a dark current of its own.
+    /// Returns this scene on a detector whose pixels differ in response and dark current.
     pub(crate) fn uneven(&self) -> Self {
         let fixed_pattern = FixedPatternConfig {
             seed: 7,
@@ -68,7 +70,7 @@ impl PlainScene {
         Self { sensor: SensorConfig { fixed_pattern, ..self.sensor.clone() }, ..self.clone() }
     }
 
-    /// What other simulators need to know of it.
+    /// Returns the parameters of the scene that other simulators need.
     pub(crate) fn to_json(&self) -> Value {
         let stars: Vec<[f64; 3]> =
             self.stars.iter().map(|star| [star.centre.x, star.centre.y, star.electrons]).collect();
@@ -82,7 +84,7 @@ impl PlainScene {
         })
     }
 
-    /// What makes frames of it.
+    /// Creates a painter for frames of this scene.
     pub(crate) fn painter(&self) -> Result<PlainPainter, Box<dyn Error>> {
         let sensor = Sensor::new(&self.sensor, COLUMNS, ROWS)?;
         Ok(PlainPainter {
@@ -97,7 +99,7 @@ impl PlainScene {
     }
 }
 
-/// Makes plain frames; its buffers are used again by the next.
+/// Painter of plain frames; its buffers are reused for the next frame.
 pub(crate) struct PlainPainter {
     stars: Vec<Star>,
     sensor: Sensor,
@@ -109,8 +111,8 @@ pub(crate) struct PlainPainter {
 }
 
 impl PlainPainter {
-    /// The digital numbers of a frame. Its stars are drawn anew: nothing is kept from the frame before but buffers and tables of
-    /// the noise.
+    /// Returns the digital numbers of a frame. The stars are drawn again for each frame: only buffers and
+    /// tables of the noise are kept from the previous frame.
     pub(crate) fn frame(&mut self, number: u64) -> Result<&[u16], Box<dyn Error>> {
         self.image.clear(self.sensor.sky_electrons(EXPOSURE_S));
         for star in &self.stars {

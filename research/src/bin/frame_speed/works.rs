@@ -1,4 +1,4 @@
-//! What can be timed.
+//! Tasks that can be timed.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -16,47 +16,47 @@ use sim::sensor::{SensorConfig, Switch};
 
 use crate::plain::{COLUMNS, PlainScene, ROWS};
 
-/// A frame of each day of ARGON, with what follows it.
+/// First timed frame of each day of ARGON, and the name of the day.
 const DAYS: [(u64, &str); 5] =
     [(300, "day 1"), (1800, "day 2"), (5000, "day 3"), (9000, "day 4"), (14_000, "day 5")];
-/// Frames of a day that are made in turn, and how far they are apart: frames differ by a factor of two and more, and every turn of a
-/// comparison is to make the same ones.
+/// Number of frames of a day that are made in turn, and their spacing in frames. Frames differ in cost by a
+/// factor of two and more, so every turn of a comparison must make the same frames.
 const FRAMES_OF_A_DAY: u64 = 10;
 const STEP: u64 = 20;
-/// Frames that are kept for detection.
+/// Number of frames kept for detection.
 const KEPT: u64 = 8;
 
-/// The same of ARGON: after the last the pipeline begins anew.
+/// Number of ARGON frames kept for detection: after the last frame the pipeline starts anew.
 const KEPT_OF_ARGON: u64 = 64;
 
 type Step = Box<dyn FnMut() -> Result<Option<Outcome>, Box<dyn Error>>>;
 
-/// Something to be done again and again.
+/// Task that can be repeated.
 pub(crate) struct Work {
     name: String,
     step: Step,
 }
 
 impl Work {
-    /// Its name: one word.
+    /// Name of the task, one word.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    /// Does it once, on the next frame.
+    /// Runs the task once, on the next frame.
     pub(crate) fn next(&mut self) -> Result<(), Box<dyn Error>> {
         black_box((self.step)()?);
         Ok(())
     }
 
-    /// Does it once; tells where the pipeline found clusters, px.
+    /// Runs the task once and returns the positions of the clusters that the pipeline found, px.
     pub(crate) fn clusters(&mut self) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
         let outcome = (self.step)()?.ok_or_else(|| format!("{} detects nothing", self.name))?;
         Ok(outcome.clusters.iter().map(|cluster| [cluster.position.x, cluster.position.y]).collect())
     }
 }
 
-/// All that can be timed.
+/// Returns all tasks that can be timed.
 pub(crate) fn works(scene: &PlainScene) -> Result<Vec<Work>, Box<dyn Error>> {
     let mut works = vec![plain("plain", scene)?, plain("plain-uneven", &scene.uneven())?];
     let source = ScenarioSource::read("argon")?;
@@ -85,7 +85,7 @@ pub(crate) fn works(scene: &PlainScene) -> Result<Vec<Work>, Box<dyn Error>> {
     Ok(works)
 }
 
-/// A simulator that lives as long as the program: its cameras borrow it.
+/// Creates a simulator that lives as long as the program, because its cameras borrow it.
 fn simulator(
     source: &ScenarioSource,
     scenario: &FarRangeScenario,
@@ -93,7 +93,8 @@ fn simulator(
     Ok(Box::leak(Box::new(boresight::run::far_range::simulator(source, scenario)?)))
 }
 
-/// Stars to V = 7 and the target with the camera of `argon`, on a detector that is uneven and nothing more.
+/// Scenario with stars to V = 7 and the target with the camera of `argon`, on an uneven detector without
+/// other defects.
 fn star_field(argon: &FarRangeScenario) -> FarRangeScenario {
     let mut field = argon.clone();
     field.catalog.magnitude_limit = Some(7.0);
@@ -110,7 +111,7 @@ fn star_field(argon: &FarRangeScenario) -> FarRangeScenario {
     field
 }
 
-/// Plain frames from a list of stars.
+/// Task: plain frames from a list of stars.
 fn plain(name: &str, scene: &PlainScene) -> Result<Work, Box<dyn Error>> {
     let mut painter = scene.painter()?;
     let mut number = 0;
@@ -122,7 +123,7 @@ fn plain(name: &str, scene: &PlainScene) -> Result<Work, Box<dyn Error>> {
     Ok(Work { name: name.to_owned(), step: Box::new(step) })
 }
 
-/// Frames of a scenario with their truth and telemetry.
+/// Task: frames of a scenario with their truth and telemetry.
 fn frames(name: String, simulator: &'static Simulator, first: u64) -> Result<Work, Box<dyn Error>> {
     let mut camera = simulator.camera()?;
     let mut number = 0;
@@ -134,7 +135,7 @@ fn frames(name: String, simulator: &'static Simulator, first: u64) -> Result<Wor
     Ok(Work { name, step: Box::new(step) })
 }
 
-/// The pipeline on kept frames, one after the other.
+/// Task: the pipeline on kept frames, one after the other.
 fn detecting(name: &str, mut pipeline: FarRangePipeline, kept: Vec<(Frame, Telemetry)>) -> Work {
     let mut next = 0;
     let step = move || {
@@ -145,8 +146,8 @@ fn detecting(name: &str, mut pipeline: FarRangePipeline, kept: Vec<(Frame, Telem
     Work { name: name.to_owned(), step: Box::new(step) }
 }
 
-/// The pipeline on whole plain frames: with no list of stars it finds clusters and their centres, and links them to those of the
-/// frame before.
+/// Task: the pipeline on whole plain frames. Without a star list it finds clusters and their centres, and
+/// links them to those of the previous frame.
 fn detection_plain(scene: &PlainScene, setup: &Setup) -> Result<Work, Box<dyn Error>> {
     let mut painter = scene.painter()?;
     let start = Epoch::from_gregorian_utc_at_midnight(2012, 4, 23);
@@ -166,7 +167,7 @@ fn detection_plain(scene: &PlainScene, setup: &Setup) -> Result<Work, Box<dyn Er
     Ok(detecting("process-plain", FarRangePipeline::new(FarRangeConfig::default(), &setup)?, kept))
 }
 
-/// The pipeline on frames of ARGON, with its list of stars.
+/// Task: the pipeline on frames of ARGON, with its star list.
 fn detection(
     name: &str,
     simulator: &'static Simulator,

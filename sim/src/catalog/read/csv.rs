@@ -1,14 +1,14 @@
-//! CSV with named columns.
+//! CSV catalogue with named columns.
 //!
-//! The first line names the columns, in any order, each name with its unit. Fields are plain numbers: there
-//! is no quoting, and a blank field is allowed only where its column is optional.
+//! The first line names the columns, in any order; each name includes its unit. Fields are plain numbers:
+//! there is no quoting, and a blank field is allowed only in an optional column.
 
 use std::path::Path;
 
 use super::super::{CatalogError, CatalogStar, photometry};
 use super::field::Field;
 
-/// A column that a file may have.
+/// Column that a file may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Column {
     Id,
@@ -47,12 +47,12 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<Vec<(usize, CatalogStar)>
         .collect()
 }
 
-/// The columns in the order of the file.
+/// Parses the header: the columns in the order of the file.
 fn header(path: &Path, line: &str) -> Result<Vec<(Column, &'static str)>, CatalogError> {
     let mut header: Vec<(Column, &'static str)> = Vec::new();
     for name in line.split(',').map(str::trim) {
         let Some(column) = COLUMNS.iter().find(|(_, known)| *known == name) else {
-            // Jaro-Winkler favours a common beginning: `pm_ra` is a shortened `pm_ra_mas_per_yr`.
+            // Jaro-Winkler favours a common prefix: `pm_ra` is a shortened `pm_ra_mas_per_yr`.
             let likeness = |known: &str| strsim::jaro_winkler(known, name);
             let nearest = COLUMNS
                 .iter()
@@ -86,7 +86,7 @@ fn problem(path: &Path, line: usize, problem: String) -> CatalogError {
     CatalogError::Line { path: path.to_path_buf(), line, problem }
 }
 
-/// A line, split into its fields.
+/// Line, split into its fields.
 struct Row<'a> {
     fields: Vec<(Column, Field<'a>)>,
 }
@@ -112,7 +112,7 @@ impl<'a> Row<'a> {
         Ok(Self { fields: fields.collect() })
     }
 
-    /// What `read` makes of the field of a column, if the file has that column.
+    /// Applies `read` to the field of a column, if the file has that column.
     fn get<T>(
         &self,
         column: Column,
@@ -121,7 +121,7 @@ impl<'a> Row<'a> {
         self.fields.iter().find(|(known, _)| *known == column).map(|(_, field)| read(field)).transpose()
     }
 
-    /// The value of a column that the header makes sure of: the default never shows.
+    /// Returns the value of a column that the header check guarantees: the default is never used.
     fn required<T: Default>(
         &self,
         column: Column,
@@ -130,7 +130,7 @@ impl<'a> Row<'a> {
         self.get(column, read).map(Option::unwrap_or_default)
     }
 
-    /// The value of a column that may be missing or blank.
+    /// Returns the value of a column that may be missing or blank.
     fn optional(
         &self,
         column: Column,

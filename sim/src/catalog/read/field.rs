@@ -1,15 +1,15 @@
-//! A field of a line of a catalogue.
+//! Field of a line of a catalogue.
 
 use std::path::Path;
 
 use super::super::CatalogError;
 
-/// A field of a line, and where it stands.
+/// Text of a field, with its file, line and column.
 #[derive(Clone, Copy)]
 pub(super) struct Field<'a> {
     pub(super) path: &'a Path,
     pub(super) line: usize,
-    /// First character in the line, counted from 1.
+    /// Position of the first character in the line, counted from 1.
     pub(super) column: usize,
     pub(super) name: &'static str,
     pub(super) text: &'a str,
@@ -36,10 +36,10 @@ impl Field<'_> {
         self.text.trim().parse().map_err(|_| self.error("a whole number from 0 to 4294967295"))
     }
 
-    /// A finite number from `low` to `high`.
+    /// Parses a finite number from `low` to `high`.
     pub(super) fn number(&self, low: f64, high: f64, expected: &'static str) -> Result<f64, CatalogError> {
         match self.text.trim().parse::<f64>() {
-            // No NaN and no infinity lies between finite ends.
+            // NaN and infinity never lie between finite limits.
             Ok(value) if (low..=high).contains(&value) => Ok(value),
             _ => Err(self.error(expected)),
         }

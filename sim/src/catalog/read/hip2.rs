@@ -7,10 +7,10 @@ use std::path::Path;
 use super::super::{CatalogError, CatalogStar, radial_velocity};
 use super::field::Field;
 
-/// Bytes of a line up to the last column used; the whole line has 276.
+/// Length of a line up to the last column used, bytes; the whole line has 276.
 const LENGTH: usize = 171;
 
-/// Whether a line has the shape of this format.
+/// Returns true if a line has the structure of this format.
 pub(super) fn is_line(line: &str) -> bool {
     line.len() >= LENGTH && line.is_ascii() && !line.contains(['|', ','])
 }
@@ -27,7 +27,7 @@ fn star(path: &Path, line: usize, content: &str) -> Result<CatalogStar, CatalogE
         let problem = format!("not a line of hip2.dat: expected at least {LENGTH} plain characters");
         return Err(CatalogError::Line { path: path.to_path_buf(), line, problem });
     }
-    // An ASCII line of this length has every column.
+    // An ASCII line of this length contains every column.
     let field = |name, bytes: Range<usize>| Field {
         path,
         line,
@@ -63,8 +63,7 @@ mod tests {
     use super::super::tests::message;
     use super::*;
 
-    /// Lines of hip2.dat: HIP 1, 2, 45 (which has no colours) and 87937 (Barnard's star, which has a
-    /// velocity).
+    /// Lines of hip2.dat: HIP 1, 2, 45 (without colours) and 87937 (Barnard's star, with a velocity).
     const LINES: &str = "     1   5 0 1  0.0000159148  0.0190068680    4.55    -4.55    -1.19   1.29   0.66   1.33   1.25   0.75  90  0.91  0    0.0    0  9.2043 0.0020 0.017 0  0.482 0.025  0.550
      2  75 4 1  0.0000662767 -0.3403189126   20.85   182.88    -1.31   0.95   0.53   1.13   1.22   0.66 121  0.06  0    0.0    0  9.4017 0.0017 0.015 0  0.999 0.002  1.040
     45  15 3 2  0.0023423103 -1.2601750270   16.05   -38.52    -1.77   0.88   0.84   1.06   1.03   0.87 136 -1.25  1    0.0    0  9.7391 0.0025 0.028 0  0.000 0.000  0.000

@@ -7,7 +7,7 @@ use super::super::contents::{CatalogContents, Exclusion};
 use super::super::{CatalogError, CatalogStar, radial_velocity};
 use super::field::Field;
 
-/// H0 to H77.
+/// Number of fields, H0 to H77.
 const FIELDS: usize = 78;
 
 pub(super) fn parse(path: &Path, text: &str) -> Result<CatalogContents, CatalogError> {
@@ -43,7 +43,7 @@ fn star(id: u32, fields: &Fields<'_>) -> Result<CatalogStar, CatalogError> {
     })
 }
 
-/// A line, split at its bars.
+/// Line, split at its bars.
 struct Fields<'a> {
     path: &'a Path,
     line: usize,
@@ -61,7 +61,7 @@ impl<'a> Fields<'a> {
         Err(CatalogError::Line { path: path.to_path_buf(), line, problem })
     }
 
-    /// Field H`number`, below [`FIELDS`].
+    /// Returns field H`number`, below [`FIELDS`].
     fn get(&self, number: usize, name: &'static str) -> Field<'a> {
         let before: usize = self.texts.iter().take(number).map(|text| text.chars().count() + 1).sum();
         let text = self.texts.get(number).copied().unwrap_or("");
@@ -75,10 +75,10 @@ mod tests {
     use super::super::tests::message;
     use super::*;
 
-    /// The line of HIP 1 as published.
+    /// Line of HIP 1 as published.
     const HIP_1: &str = "H|           1| |00 00 00.22|+01 05 20.4| 9.10| |H|000.00091185|+01.08901332| |   3.54|   -5.20|   -1.88|  1.32|  0.74|  1.39|  1.36|  0.81| 0.32|-0.07|-0.11|-0.24| 0.09|-0.01| 0.10|-0.01| 0.01| 0.34|  0| 0.74|     1| 9.643|0.020| 9.130|0.019| | 0.482|0.025|T|0.55|0.03|L| | 9.2043|0.0020|0.017| 87| | 9.17| 9.24|       | | | |          | |  | 1| | | |  |   |       |     |     |    |S| | |224700|B+00 5077 |          |          |0.66|F5          |S \n";
 
-    /// The line of HIP 1 with another text in one field.
+    /// Line of HIP 1 with one field replaced by another text.
     fn line_with_field(number: usize, text: &str) -> String {
         let mut texts: Vec<&str> = HIP_1.split('|').collect();
         texts[number] = text;
@@ -90,7 +90,7 @@ mod tests {
         let (stars, exclusions) = parse(Path::new("hip_main.dat"), HIP_1).unwrap();
         assert!(exclusions.is_empty());
         let (first, second) = (stars[0].1, *Catalog::hipparcos2().star(1).unwrap());
-        // The reductions differ by their errors, about a milliarcsecond here.
+        // The two reductions differ by their errors, about a milliarcsecond here.
         assert!(first.direction().separation(&second.direction()).arcsec() < 0.003);
         assert_eq!((first.hp_mag, first.b_v, first.v_i), (second.hp_mag, second.b_v, second.v_i));
         assert_eq!(

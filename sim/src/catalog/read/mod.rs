@@ -1,4 +1,4 @@
-//! Reading a user's catalogue.
+//! Reader of catalogue files of the user.
 
 mod csv;
 mod field;
@@ -10,7 +10,7 @@ use std::path::Path;
 use super::CatalogError;
 use super::contents::CatalogContents;
 
-/// Parses a file of any known format; `path` tells the format and is named in errors.
+/// Parses a file of any known format; `path` helps to determine the format and appears in errors.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<CatalogContents, CatalogError> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = 1 + bytes.iter().take(error.valid_up_to()).filter(|byte| **byte == b'\n').count();
@@ -33,7 +33,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<CatalogContents, Catalo
 mod tests {
     use super::*;
 
-    /// The message of the error that a file of this name and content gives.
+    /// Error message for a file with this name and content.
     pub(super) fn message(name: &str, content: &[u8]) -> String {
         parse(Path::new(name), content).unwrap_err().to_string()
     }
@@ -63,7 +63,7 @@ mod tests {
             ..proptest::prelude::ProptestConfig::with_cases(256)
         })]
 
-        /// Arbitrary text behind each format's mark is read or refused, never a panic.
+        /// Arbitrary text after the marker of each format is read or refused, and never causes a panic.
         #[test]
         fn no_text_makes_the_reader_panic(text in "(?s).{0,400}", lines in "[-0-9.,|é\n ]{0,400}") {
             for (name, start) in [("a.csv", "id,ra_deg,dec_deg,v_mag\n"), ("a.dat", "H|"), ("b.dat", HIP2_LINE)] {
@@ -74,6 +74,6 @@ mod tests {
         }
     }
 
-    /// A line of hip2.dat up to its last column used.
+    /// Line of hip2.dat up to the last column used.
     const HIP2_LINE: &str = "     1   5 0 1  0.0000159148  0.0190068680    4.55    -4.55    -1.19   1.29   0.66   1.33   1.25   0.75  90  0.91  0    0.0    0  9.2043 0.0020 0.017 0  0.482 0.025  0.550\n";
 }

@@ -102,7 +102,7 @@ fn each_field_holds_its_rows_at_its_own_moment() {
             assert_eq!(signal, &frame.video.signal()[y * 384..(y + 1) * 384]);
         }
     }
-    // 20 ms at (0.05, 0.1, −0.5) m/s.
+    // 20 ms at a velocity of (0.05, 0.1, −0.5) m/s.
     let moved =
         exposed(&interlaced, 21).truth.pose.position_m - exposed(&interlaced, 20).truth.pose.position_m;
     assert!((moved - Vector3::new(0.001, 0.002, -0.01)).norm() < 1e-12);
@@ -131,7 +131,7 @@ fn projected_centres_are_those_of_the_geometry() {
     assert!(truth.disk_centre.unwrap().distance(disk) < 1e-9);
     assert!(truth.cross_centre.unwrap().distance(cross) < 1e-9);
     assert!((truth.circle_radius_px.unwrap() - FOCAL_PX * 0.25 / d3).abs() < 1e-9);
-    // A pitch about x1 brings the axis up: by exactly f tan φ1 in the image of what is on the axis.
+    // A pitch about x1 raises the axis: points on the axis move by exactly f tan φ1 in the image.
     let pitched = DockingSimulation { approach: at_rest([0.0, 0.0, d3], [2.0, 0.0, 0.0]), ..simulation() };
     let centre = exposed(&pitched, 0).truth.disk_centre.unwrap();
     let shift = FOCAL_PX * libm::tan(2.0_f64.to_radians());
@@ -149,7 +149,7 @@ fn the_image_shows_the_target_where_the_truth_says() {
     simulation.television.noise = VideoNoiseConfig { sigma_dn8: 0.0 };
     let exposure = exposed(&simulation, 0);
     let centre = exposure.truth.cross_centre.unwrap();
-    // The cross's bars, white (0.80) on the plate (0.04), are about the centre: 15 mm at 3.2 m are 4.7 px.
+    // The cross's bars, white (0.80) on the plate (0.04), pass through the centre: 15 mm at 3.2 m are 4.7 px.
     let signal = |dx: f64, dy: f64| {
         let (x, y) = ((centre.x + dx).round() as usize, (centre.y + dy).round() as usize);
         exposure.video.signal()[y * 384 + x] - 0.05
@@ -164,8 +164,8 @@ fn the_image_shows_the_target_where_the_truth_says() {
     assert_eq!(exposure.truth.marks_in_field, 0xfff);
 }
 
-/// The bars' shadows are shifted by −b (s1, s2)/s3; with 0.2 m along y1 the horizontal bar's falls on the mark at 0° and the
-/// vertical bar's on those at ±30°, and on no other.
+/// The bars' shadows are shifted by −b (s1, s2)/s3. With a shift of 0.2 m along y1, the horizontal bar's
+/// shadow falls on the mark at 0° and the vertical bar's shadow on the marks at ±30°, and on no other.
 #[test]
 fn marks_in_the_shadow_of_the_cross_are_told() {
     let azimuth = libm::atan(-0.2 / 0.30).to_degrees();
@@ -213,7 +213,7 @@ fn at_night_the_lamp_lights_the_target() {
     let mean = |exposure: &FieldExposure| {
         exposure.video.signal().iter().sum::<f32>() / exposure.video.signal().len() as f32
     };
-    // The pedestal alone; noise of 2 DN in 55 000 pixels.
+    // Only the pedestal; the noise is 2 DN in 55 000 pixels.
     assert!((mean(&dark) - 0.05).abs() < 2e-4, "{}", mean(&dark));
     assert!(mean(&lit) > 0.1, "{}", mean(&lit));
     assert_eq!((dark.truth.sun, dark.truth.plate_lit, dark.truth.floodlight), (None, 0.0, false));
@@ -231,7 +231,8 @@ fn the_sun_in_the_field_is_told_and_the_station_hides_it() {
         simulation.television.sun_glare = Some(crate::television::SunGlareConfig::default());
         exposed(&simulation, 0)
     };
-    // Behind the station, 7° aside and 5° above the axis; from 1500 m the station reaches 2° to each side.
+    // The Sun is behind the station, 7° to the side and 5° above the axis; from 1500 m the station extends 2°
+    // to each side.
     let free = with(173.0, 5.0, 1500.0);
     let image = free.truth.sun_image.unwrap();
     let shift = FOCAL_PX * libm::tan(7.0_f64.to_radians());
@@ -266,7 +267,8 @@ fn a_glint_is_seen_where_the_truth_says_and_blooms() {
     };
     let (plain, shining) = (with(vec![], None), with(vec![glint], None));
     let image = shining.truth.glint.unwrap();
-    // 0.1 m at 3.5 m: 28.6 px to the right of the disk's centre and above it; the light of π 1e-4 m² × (1000 px/3.5 m)², less 3 % for 1.2°.
+    // 0.1 m at 3.5 m is 28.6 px to the right of the disk's centre and 28.6 px above it; the signal is π 1e-4
+    // m² × (1000 px/3.5 m)², less 3 % for 1.2°.
     assert!(image.centre.distance(PixelPoint::new(191.5 + 1e2 / 3.5, 143.5 - 1e2 / 3.5)) < 1e-9);
     assert!(image.light > 20.0 && image.light < 26.0, "{}", image.light);
     let at = |exposure: &FieldExposure, dx: usize| exposure.video.signal()[115 * 384 + 220 + dx];
@@ -326,7 +328,7 @@ fn bad_values_are_refused_with_their_path() {
     refused("approach.position_m", &|s| s.approach = at_rest([0.0, 0.0, -1.0], [0.0; 3]));
 }
 
-/// The scenario that is built in, but for what the oracle reads of it.
+/// Built-in scenario without the keys that only the oracle reads.
 fn built_in() -> DockingSimulation {
     let mut table: toml::Table = toml::from_str(include_str!("../../../../scenarios/docking.toml")).unwrap();
     for key in ["world", "title", "docking"] {
@@ -335,7 +337,7 @@ fn built_in() -> DockingSimulation {
     table.try_into().unwrap()
 }
 
-/// A lamp far from the axis casts the cross's shadow as the Sun does; without either all marks are dark.
+/// With the lamp no mark is dark; without Sun and lamp all marks are dark.
 #[test]
 fn at_night_the_lamp_says_which_marks_are_dark() {
     let truth = |floodlight| {
@@ -349,7 +351,7 @@ fn at_night_the_lamp_says_which_marks_are_dark() {
     assert!(lit.plate_lit > 0.8, "{}", lit.plate_lit);
 }
 
-/// At d3 the camera sees the bars, at b = 0.30 m, cover the circle of the marks, r = 0.25 m, out to 0.15 d3/(d3 − b):
+/// Seen from d3, the bars at b = 0.30 m cover the circle of the marks, r = 0.25 m, out to 0.15 d3/(d3 − b):
 /// beyond r − 0.02 m for d3 < 0.86 m.
 #[test]
 fn near_the_target_the_cross_hides_four_marks() {
@@ -383,7 +385,7 @@ fn the_marks_stay_in_the_field_of_the_built_in_approach_down_to_3_m_and_1_15_m()
     for k in (0..simulator.field_count()).step_by(25) {
         let field_state = simulator.field_state(k).unwrap();
         let pose: &Pose = &field_state.state.pose;
-        // The narrow lens loses marks from here on, and the wide one.
+        // Range below which the narrow and the wide lens lose marks.
         let least_m = [3.0, 1.15][field_state.camera];
         if pose.position_m.z > least_m {
             let eye = &simulator.eyes[field_state.camera];

@@ -1,24 +1,25 @@
-//! The diffraction image of a circular aperture with a central obscuration.
+//! Diffraction image of a circular aperture with a central obscuration.
 //!
-//! I(r) = π (1 − ε²)/(4 λ²N²) [(2 J₁(v)/v − ε² 2 J₁(εv)/(εv))/(1 − ε²)]², v = πr/λN, of unit flux over the whole plane (Born &
-//! Wolf 1999, Sec. 8.5.2; with the obscuration ε, Rivolta 1986, Appl. Opt. 25, 2404). Its rings fall as r⁻³: 2/π²·λN/r of
-//! the light is beyond r.
+//! I(r) = π (1 − ε²)/(4 λ²N²) [(2 J₁(v)/v − ε² 2 J₁(εv)/(εv))/(1 − ε²)]², v = πr/λN, of unit flux over the
+//! whole plane (Born & Wolf 1999, Sec. 8.5.2; with the obscuration ε, Rivolta 1986, Appl. Opt. 25, 2404). Its
+//! rings fall as r⁻³: 2/π²·λN/r of the flux is beyond r.
 
 use std::f64::consts::PI;
 
 use super::tabulated::Tabulated;
 
-/// How far the rings are followed: this many pixels, but …
+/// Radius to which the rings are tabulated, px, limited by `REACH_LAMBDA_N`.
 const REACH_PX: f64 = 32.0;
-/// … at least and at most so many λN, so that wide images are whole and tables small.
+/// Minimum and maximum of the tabulated radius, λN, so that wide images are complete and tables small.
 const REACH_LAMBDA_N: (f64, f64) = (12.0, 50.0);
-/// Nodes of the table a λN. The image has no spatial frequency above 1/λN: ten nodes a period of the finest.
+/// Number of table nodes per λN. The image has no spatial frequency above 1/λN: ten nodes per period of the
+/// highest frequency.
 const NODES: f64 = 10.0;
 
-/// The shape for λN over the pixel's width and height, px.
+/// Creates the shape for λN over the pixel's width and height, px.
 pub(super) fn airy(lambda_n_px: [f64; 2], obscuration: f64) -> Tabulated {
     let open = 1.0 - obscuration * obscuration;
-    // 2 J₁(v)/v, by its series where it would be 0/0.
+    // 2 J₁(v)/v, replaced by its series where it would be 0/0.
     let jinc = |v: f64| if v < 1e-4 { 1.0 - v * v / 8.0 } else { 2.0 * libm::j1(v) / v };
     let density = |radius: f64| {
         let v = PI * radius;

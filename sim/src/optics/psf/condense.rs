@@ -1,17 +1,20 @@
-//! Few points in the place of many that lie close together.
+//! Replacement of many points that lie close together by few points.
 
 use contract::PixelPoint;
 
 use crate::optics::ImagePoint;
 
-/// How far points may lie apart along an axis, in widths σ of the Gaussian that each of them spreads into. The images of the
-/// points and of those that stand for them then differ from the third moments on: by less than 2e-5 of the peak.
+/// Maximum extent of the points along an axis, in units of the σ of the Gaussian that each point spreads
+/// into. The images of the points and of their replacements then differ from the third moments on: by less
+/// than 2e-5 of the peak.
 const CLOSE_SIGMAS: f64 = 0.25;
-/// A spread across of less than this share of σ is none: it would widen the image by 1e-6 of its variance.
+/// Transverse extent, as a fraction of σ, below which it is neglected: it would widen the image by 1e-6 of
+/// its variance.
 const NARROW_SIGMAS: f64 = 1e-3;
 
-/// Two points, or four where the points do not lie on a line, that have the light of `points`, their mean and their covariance;
-/// `None` where there is nothing to gain, or the points are too far apart for a Gaussian of `sigma_px`.
+/// Returns two points, or four if the points do not lie on a line, with the flux of `points`, their mean and
+/// their covariance; `None` if nothing would be saved, or if the points are too far apart for a Gaussian of
+/// `sigma_px`.
 pub(super) fn condensed(points: &[ImagePoint], sigma_px: f64) -> Option<([ImagePoint; 4], usize)> {
     if points.len() <= 2 {
         return None;
@@ -26,7 +29,7 @@ pub(super) fn condensed(points: &[ImagePoint], sigma_px: f64) -> Option<([ImageP
         }
     }
     let reach = CLOSE_SIGMAS * sigma_px;
-    // Written so that no number is far apart.
+    // The condition is written so that NaN counts as far apart.
     let is_finite = (sums[0] + sums[1]).is_finite();
     if !(is_finite && shares > 0.0 && high[0] - low[0] <= reach && high[1] - low[1] <= reach) {
         return None;
@@ -38,7 +41,8 @@ pub(super) fn condensed(points: &[ImagePoint], sigma_px: f64) -> Option<([ImageP
         (xx, xy, yy) = (xx + share * dx * dx, xy + share * dx * dy, yy + share * dy * dy);
     }
     let (xx, xy, yy) = (xx / shares, xy / shares, yy / shares);
-    // The covariance as a aᵀ + b bᵀ: a column of its square root (Cholesky) along the wider axis, and the rest across.
+    // Covariance as a aᵀ + b bᵀ: a is a column of its square root (Cholesky) along the wider axis, and b the
+    // remainder across it.
     let across = |wide: f64, narrow: f64| (narrow - xy * xy / wide).max(0.0).sqrt();
     let (a, b) = match (xx >= yy, xx.max(yy) > 0.0) {
         (_, false) => ([0.0; 2], [0.0; 2]),
@@ -46,7 +50,8 @@ pub(super) fn condensed(points: &[ImagePoint], sigma_px: f64) -> Option<([ImageP
         (false, _) => ([xy / yy.sqrt(), yy.sqrt()], [across(yy, xx), 0.0]),
     };
     let on_a_line = b[0].max(b[1]) <= NARROW_SIGMAS * sigma_px;
-    // Four points share what two have, and stand farther out by the root of that.
+    // Four points divide the flux that otherwise two points have, so they stand farther out by the square
+    // root of this factor.
     let (count, stretch) = if on_a_line { (2, 1.0) } else { (4, std::f64::consts::SQRT_2) };
     let point = |offset: [f64; 2], side: f64| ImagePoint {
         position: PixelPoint::new(mean[0] + side * stretch * offset[0], mean[1] + side * stretch * offset[1]),
@@ -60,7 +65,7 @@ mod tests {
     use super::*;
     use crate::optics::{Psf, PsfConfig, Stamp, trail};
 
-    /// Light, mean and covariance.
+    /// Flux, mean and covariance.
     fn moments(points: &[ImagePoint]) -> [f64; 6] {
         let mut moments = [0.0; 6];
         for ImagePoint { position: PixelPoint { x, y }, share } in points {
@@ -104,7 +109,7 @@ mod tests {
         assert!(condensed(&[image_point(f64::NAN, 0.0, 0.5); 3], 4.0).is_none());
     }
 
-    /// A trail through a wide Gaussian, against the same trail point by point.
+    /// Compares a trail through a wide Gaussian with the same trail drawn point by point.
     #[test]
     fn the_image_stays_the_same() {
         let mut points = Vec::new();

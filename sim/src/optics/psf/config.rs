@@ -1,23 +1,24 @@
-//! What a scenario says about its point-spread function.
+//! Point-spread function of a scenario.
 
 use contract::OutOfRange;
 use contract::bounds::{self, require};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Shape of the image of a point, before the pixels integrate it.
+/// Shape of the image of a point, before it is integrated over pixels.
 ///
-/// Sizes are in pixels and the same along columns and rows, but for `airy`, which has one for each.
+/// Sizes are in pixels and equal along columns and rows, except for `airy`, which has one size for each
+/// direction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum PsfConfig {
-    /// A circular Gaussian.
+    /// Circular Gaussian.
     Gaussian {
         /// Standard deviation, px, 0.05 to 100.
         #[schemars(range(min = 0.05, max = 100))]
         sigma_px: f64,
     },
-    /// A circular Gaussian core in a broad Gaussian halo of scattered light.
+    /// Circular Gaussian core in a broad Gaussian halo of scattered light.
     GaussianHalo {
         /// Standard deviation of the core, px, 0.05 to 100.
         #[schemars(range(min = 0.05, max = 100))]
@@ -25,23 +26,23 @@ pub enum PsfConfig {
         /// Standard deviation of the halo, px, 0.05 to 100, not below that of the core.
         #[schemars(range(min = 0.05, max = 100))]
         halo_sigma_px: f64,
-        /// Fraction of the light that is in the halo, 0 to 1.
+        /// Fraction of the flux that is in the halo, 0 to 1.
         #[schemars(range(min = 0, max = 1))]
         halo_fraction: f64,
     },
-    /// A Moffat profile: a core with wings that fall as the power −2β of the radius.
+    /// Moffat profile: a core with wings that fall as the power −2β of the radius.
     Moffat {
         /// Full width at half maximum, px, 0.1 to 100.
         #[schemars(range(min = 0.1, max = 100))]
         fwhm_px: f64,
-        /// The exponent β, 1.2 to 20: 2.5 to 5 is usual, the smaller the more light in the wings.
+        /// Exponent β, 1.2 to 20: 2.5 to 5 is usual, and a smaller β puts more flux into the wings.
         #[schemars(range(min = 1.2, max = 20))]
         beta: f64,
     },
-    /// The diffraction image of a circular aperture, in one colour.
+    /// Monochromatic diffraction image of a circular aperture.
     Airy {
-        /// Wavelength times focal ratio over the pixel's width and over its height, px, 0.1 to 20 each: the first dark
-        /// ring of an unobscured aperture is at 1.22 of it.
+        /// Wavelength times focal ratio over the pixel's width and over its height, px, 0.1 to 20 each: the
+        /// first dark ring of an unobscured aperture is at 1.22 times this value.
         #[schemars(inner(range(min = 0.1, max = 20)))]
         lambda_n_px: [f64; 2],
         /// Diameter of the central obscuration over that of the aperture, 0 to 0.9.
@@ -49,7 +50,7 @@ pub enum PsfConfig {
         #[schemars(range(min = 0, max = 0.9))]
         obscuration: f64,
     },
-    /// A lens out of focus: a uniform disk, its edge softened by a Gaussian.
+    /// Lens out of focus: a uniform disk with an edge softened by a Gaussian.
     Defocus {
         /// Radius of the disk, px, 0.1 to 50.
         #[schemars(range(min = 0.1, max = 50))]
@@ -58,20 +59,20 @@ pub enum PsfConfig {
         #[schemars(range(min = 0.05, max = 10))]
         sigma_px: f64,
     },
-    /// A table of the user's: measured, or from a program of optical design.
+    /// Table of the user: measured, or from an optical design program.
     Sampled {
-        /// A CSV file without a header: the relative light that falls on each cell of a fine grid, 0 or more, a line a
-        /// row, from the top; at least 3 × 3 cells, at most 2048 × 2048. It is normalised, and its centroid put where
-        /// the point is. A relative path starts at the scenario.
+        /// CSV file without a header: the relative flux in each cell of a fine grid, 0 or more, one line per
+        /// row, from the top; at least 3 × 3 cells, at most 2048 × 2048. The table is normalised, and its
+        /// centroid is placed at the point's position. A relative path starts at the scenario.
         path: String,
-        /// Cells per pixel, along columns and along rows, 1 to 100.
+        /// Number of cells per pixel, along columns and along rows, 1 to 100.
         #[schemars(range(min = 1, max = 100))]
         oversampling: f64,
     },
 }
 
 impl PsfConfig {
-    /// Checks every number.
+    /// Checks the ranges of all values.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.

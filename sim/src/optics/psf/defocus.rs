@@ -1,22 +1,23 @@
-//! A lens out of focus: a uniform disk convolved with a Gaussian.
+//! Lens out of focus: a uniform disk convolved with a Gaussian.
 //!
-//! Geometrical optics makes a disk of a point (Born & Wolf 1999, Sec. 8.8 tells where it holds: several waves out of
-//! focus); what is left of diffraction and aberrations softens its edge. Along a line through the centre,
-//! I(r) = 1/(πR²) ∫ n((r − R sin φ)/σ)/σ · erf(R cos φ/(σ√2)) R cos φ dφ over ±π/2, n the normal density: chords across the
-//! line are integrated in closed form, along it by the trapezoidal rule, whose integrand ends flat to first order.
+//! In geometrical optics a point becomes a disk (Born & Wolf 1999, Sec. 8.8 states the range of validity:
+//! several waves out of focus); the remaining diffraction and aberrations soften its edge. Along a line
+//! through the centre, I(r) = 1/(πR²) ∫ n((r − R sin φ)/σ)/σ · erf(R cos φ/(σ√2)) R cos φ dφ over ±π/2, n the
+//! normal density. Chords across the line are integrated in closed form, and along the line by the
+//! trapezoidal rule, whose integrand is flat to first order at both ends.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use super::tabulated::Tabulated;
 
-/// Standard deviations of the Gaussian that are followed beyond the edge.
+/// Extent of the table beyond the edge, in standard deviations of the Gaussian.
 const REACH_SIGMAS: f64 = 7.0;
-/// Nodes of the table a standard deviation.
+/// Number of table nodes per standard deviation.
 const NODES: f64 = 4.0;
 
-/// The shape for a disk of `radius_px` and a Gaussian of `sigma_px`.
+/// Creates the shape for a disk of `radius_px` and a Gaussian of `sigma_px`.
 pub(super) fn defocus(radius_px: f64, sigma_px: f64) -> Tabulated {
-    // A sixth of a standard deviation along the line, and 32 points however small the disk.
+    // A sixth of a standard deviation along the line, and at least 32 points for small disks.
     let points = (6.0 * PI * radius_px / sigma_px).ceil().max(32.0) as usize;
     let step = PI / points as f64;
     let nodes: Vec<(f64, f64)> = (1..points)

@@ -1,25 +1,26 @@
-//! The error function from a table, for images that take it hundreds of times each.
+//! Error function from a table, for images that evaluate it hundreds of times each.
 
 use std::sync::LazyLock;
 
-/// erf by Taylor's polynomial of degree 5 about the nearest node of a grid, with an absolute error below 1e-13.
+/// Error function by Taylor's polynomial of degree 5 about the nearest node of a grid, with an absolute error
+/// below 1e-13.
 #[derive(Debug)]
 pub(super) struct ErrorFunction {
-    /// Coefficients of 1, d, d² … about each node; those after the end are not used.
+    /// Coefficients of 1, d, d² … about each node; nodes after the end are unused.
     nodes: Box<[[f64; 6]; NODES]>,
 }
 
-/// Nodes in a unit: the next term is at most (1/128)⁶ · max|erf⁽⁶⁾|/6! = 2.3e-13 · 0.4.
+/// Number of nodes per unit: the next term is at most (1/128)⁶ · max|erf⁽⁶⁾|/6! = 2.3e-13 · 0.4.
 const NODES_PER_UNIT: f64 = 64.0;
-/// From here on erf is 1, to 2e-17.
+/// Argument from which erf is 1, to 2e-17.
 const END: f64 = 6.0;
-/// A power of two, so that no index is beyond them.
+/// Number of nodes, a power of two; indices modulo this number never exceed the table.
 const NODES: usize = 512;
-/// In a sum with it the last bit of a float counts ones.
+/// In a sum with this number the last bit of a float has the value one.
 const TWO_TO_52: f64 = 4_503_599_627_370_496.0;
 
 impl ErrorFunction {
-    /// The table; made once.
+    /// Returns the table, which is computed once.
     pub(super) fn shared() -> &'static Self {
         static TABLE: LazyLock<ErrorFunction> = LazyLock::new(ErrorFunction::new);
         &TABLE
@@ -29,7 +30,8 @@ impl ErrorFunction {
         let node = |k: usize| {
             let z = k as f64 / NODES_PER_UNIT;
             let z2 = z * z;
-            // The derivatives of erf are those of its density 2/√π exp(−z²), Hermite polynomials times it.
+            // The derivatives of erf are those of its density 2/√π exp(−z²): Hermite polynomials times the
+            // density.
             let density = std::f64::consts::FRAC_2_SQRT_PI * libm::exp(-z2);
             [
                 libm::erf(z),

@@ -1,8 +1,9 @@
 //! Sums of circular Gaussians, each integrated exactly over every pixel.
 //!
-//! A Gaussian over a rectangle is the product of two differences of error functions, one a column and one a row,
-//! so that an image costs as many error functions as it has columns and rows. Most come from a table of the width
-//! ([`ShareTable`]); where the width grows over the field, every image has its own.
+//! A Gaussian over a rectangle is the product of two differences of error functions, one per column and one
+//! per row, so an image costs as many error functions as it has columns and rows. Most values come from a
+//! table for the width ([`ShareTable`]); if the width grows over the field, each image computes its error
+//! functions.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -16,19 +17,19 @@ use super::share_table::ShareTable;
 use crate::optics::{ImagePoint, Stamp};
 use crate::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
 
-/// Points whose images are added at a time.
+/// Number of points whose images are added together.
 const TOGETHER: usize = 4;
 
-/// A sum of circular Gaussians about one centre.
+/// Sum of circular Gaussians about one centre.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Gaussians {
-    /// In order of growing width.
+    /// Components in order of increasing width.
     components: Vec<Component>,
-    /// The part of the floor below which a single component is not followed.
+    /// Fraction of the floor below which a single component is not drawn.
     floor_share: f64,
 }
 
-/// Shares of flux a column and a row of some points, reused from stamp to stamp.
+/// Fractions of the flux by column and by row for some points, reused from stamp to stamp.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Profiles {
     x: [Vec<f64>; TOGETHER],
@@ -39,12 +40,13 @@ pub(super) struct Profiles {
 pub(super) struct Component {
     weight: f64,
     sigma_px: f64,
-    /// Share of its light in the column, or the row, of pixels about its centre, when that is in their middle.
+    /// Fraction of the flux in the column, or the row, of pixels around the centre, if the centre is in the
+    /// middle of a pixel.
     central_share: f64,
-    /// Natural logarithm of a bound on the share of the light in a pixel: weight · n(0) · the share above, with the normal
-    /// density n.
+    /// Natural logarithm of an upper bound of the flux fraction in a pixel: weight · n(0) · `central_share`,
+    /// with the normal density n.
     log_bound: f64,
-    /// Shares of other pixels; `None`: by error functions.
+    /// Flux fractions of other pixels; `None`: computed from error functions.
     table: Option<Arc<ShareTable>>,
 }
 
@@ -53,21 +55,20 @@ impl Gaussians {
         Self { components: vec![Component::new(1.0, sigma_px)], floor_share: 1.0 }
     }
 
-    /// A core and a wider halo that holds `halo_fraction` of the light.
+    /// Creates a core and a wider halo that holds `halo_fraction` of the flux.
     pub(super) fn halo(sigma_px: f64, halo_sigma_px: f64, halo_fraction: f64) -> Self {
         let core = Component::new(1.0 - halo_fraction, sigma_px);
         let halo = Component::new(halo_fraction, halo_sigma_px);
         Self { components: vec![core, halo], floor_share: 1.0 }
     }
 
-    /// Many components that stand for one smooth profile: what is left out of all of them together stays below the
-    /// floor.
+    /// Creates a smooth profile from many components; the sum of all omitted parts stays below the floor.
     pub(super) fn mixture(components: Vec<Component>) -> Self {
         let floor_share = 1.0 / components.len() as f64;
         Self { components, floor_share }
     }
 
-    /// Distance from the centre beyond which no component is followed, px; 0 when there is nothing to draw.
+    /// Distance from the centre beyond which no component is drawn, px; 0 if no pixel is drawn.
     pub(super) fn reach_px(&self, electrons: f64, floor_e: f64, scale: f64) -> f64 {
         let log_floor = libm::log(electrons / (floor_e * self.floor_share));
         self.components
@@ -98,7 +99,7 @@ impl Gaussians {
         }
     }
 
-    /// The share of the light in the pixel under the centre.
+    /// Fraction of the flux in the pixel under the centre.
     pub(super) fn peak_share(&self) -> f64 {
         self.components
             .iter()
@@ -107,7 +108,7 @@ impl Gaussians {
     }
 }
 
-/// The images of points, added to a stamp: each of its share of the electrons, followed to `own_px`.
+/// Adds the images of points to a stamp, each with its fraction of the electrons, drawn out to `own_px`.
 struct Images<'a> {
     component: &'a Component,
     points: &'a [ImagePoint],
@@ -129,7 +130,7 @@ impl SimdKernel for Images<'_> {
                     .iter()
                     .map(of)
                     .fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), at| (from.min(at), to.max(at)));
-                // Not a number is nowhere, as an infinite place is.
+                // NaN lies outside the image, like an infinite position.
                 if points.iter().map(of).all(f64::is_finite) { from_to } else { (f64::NAN, f64::NAN) }
             };
             let own_x = pixels_within(span(|point| point.position.x), own_px, stamp.x + stamp.columns);
@@ -138,7 +139,7 @@ impl SimdKernel for Images<'_> {
             if own_x.0 >= own_x.1 || own_y.0 >= own_y.1 {
                 continue;
             }
-            // Columns by whole lanes of the stamp; what lies after its last column stays 0.
+            // Columns in whole lanes of the stamp; values after its last column stay 0.
             let first = (own_x.0 - stamp.x) / LANES * LANES;
             let width = (own_x.1 - stamp.x - first).next_multiple_of(LANES);
             let padding = (first + width).saturating_sub(stamp.columns);
@@ -163,7 +164,7 @@ impl SimdKernel for Images<'_> {
     }
 }
 
-/// Adds to each pixel the light of `N` points: their flux by the share of its row by that of its column.
+/// Adds the electrons of `N` points to each pixel: flux times row fraction times column fraction.
 #[inline(always)]
 fn add_products<'a, S: Simd, const N: usize>(
     simd: S,
@@ -190,7 +191,7 @@ impl Component {
         Self { table, ..Self::from_width(weight, sigma_px) }
     }
 
-    /// One without a table.
+    /// Creates a component without a table.
     fn from_width(weight: f64, sigma_px: f64) -> Self {
         let central_share = libm::erf(0.5 / (sigma_px * std::f64::consts::SQRT_2));
         let density = 1.0 / (sigma_px * (2.0 * std::f64::consts::PI).sqrt());
@@ -211,15 +212,16 @@ impl Component {
         }
     }
 
-    /// Distance from the centre beyond which, along a column or a row, no pixel holds a floor, px; 0 when no pixel at all does.
-    /// `log_floor` is the natural logarithm of the light over the floor. A pixel whose nearer edge is d away holds at most
-    /// flux · n(d) · share(±0.5).
+    /// Distance from the centre beyond which, along a column or a row, no pixel reaches the floor, px; 0 if
+    /// no pixel does. `log_floor` is the natural logarithm of flux over floor. A pixel whose nearer edge is
+    /// at distance d holds at most flux · n(d) · share(±0.5).
     fn reach_px(&self, log_floor: f64) -> f64 {
         let above = log_floor + self.log_bound;
         if above > 0.0 { 0.5 + self.sigma_px * (2.0 * above).sqrt() } else { 0.0 }
     }
 
-    /// Shares of the flux in `count` pixels from `first` on along one axis, of a Gaussian about `centre`.
+    /// Computes the flux fractions of `count` pixels from `first` on along one axis, for a Gaussian about
+    /// `centre`.
     #[inline(always)]
     fn shares<S: Simd>(&self, simd: S, centre: f64, first: usize, count: usize, shares: &mut Vec<f64>) {
         shares.clear();
@@ -230,7 +232,7 @@ impl Component {
         let scale = 1.0 / (self.sigma_px * std::f64::consts::SQRT_2);
         let erf = ErrorFunction::shared();
         let edge = |i: usize| erf.value_at((i as f64 - 0.5 - centre) * scale);
-        // First the error function at every edge, each by itself, then their differences in place.
+        // First computes the error function at every edge independently, then the differences in place.
         shares.resize(count + 1, 0.0);
         for (share, i) in shares.iter_mut().zip(first..) {
             *share = edge(i);

@@ -1,4 +1,4 @@
-//! The point-spread function, integrated over pixels.
+//! Point-spread function, integrated over pixels.
 
 mod airy;
 mod condense;
@@ -29,8 +29,8 @@ use gaussians::{Gaussians, Profiles};
 use pixels_within::pixels_within;
 use tabulated::{Edges, Tabulated};
 
-/// A point-spread function, ready to draw: how the light of a point spreads over pixels, each of which integrates what
-/// falls on it. The light over the whole plane is 1.
+/// Point-spread function, prepared for drawing: distributes the flux of a point over pixels, each of which
+/// integrates the incident light. The flux over the whole plane is 1.
 ///
 /// ```
 /// use boresight_sim::optics::{Psf, PsfConfig, Stamp};
@@ -56,7 +56,7 @@ enum Shape {
     Tabulated(Tabulated),
 }
 
-/// How the width grows over the field: by 1 + aρ².
+/// Growth of the width over the field: by the factor 1 + aρ².
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Growth {
     a: f64,
@@ -64,11 +64,12 @@ struct Growth {
 }
 
 impl Psf {
-    /// Below this many electrons a pixel of a stamp is left out, unless a caller asks for more: a thousandth of the
-    /// noise of any detector that tracks stars.
+    /// Electrons below which a pixel of a stamp is omitted, unless a caller requests a lower floor: a
+    /// thousandth of the noise of any detector that tracks stars.
     pub const FLOOR_E: f64 = 0.01;
 
-    /// The point-spread function of a configuration; a relative path in it starts at the current folder.
+    /// Creates the point-spread function of a configuration; a relative path in it starts at the current
+    /// directory.
     ///
     /// # Errors
     /// Those of [`Psf::load`].
@@ -76,10 +77,11 @@ impl Psf {
         Self::load(config, Path::new(""))
     }
 
-    /// The point-spread function of a configuration; a relative path in it starts at `folder`.
+    /// Creates the point-spread function of a configuration; a relative path in it starts at `folder`.
     ///
     /// # Errors
-    /// Those of [`PsfConfig::check`]; [`SimError::PsfFile`] when the file of [`PsfConfig::Sampled`] cannot be used.
+    /// Those of [`PsfConfig::check`]; [`SimError::PsfFile`] if the file of [`PsfConfig::Sampled`] cannot be
+    /// used.
     pub fn load(config: &PsfConfig, folder: &Path) -> Result<Self, SimError> {
         config.check()?;
         let shape = match config {
@@ -101,14 +103,15 @@ impl Psf {
         Ok(Self { shape, growth: None, profiles: Profiles::default(), edges: Edges::default() })
     }
 
-    /// The same, but 1 + `growth` ρ² times as wide at a distance ρ from the principal point of `camera`, in units of
-    /// that of its farthest corner ([`super::OpticsConfig::psf_growth`]). An image has the width of its centre.
+    /// Returns this function with a width 1 + `growth` ρ² times as large at a distance ρ from the principal
+    /// point of `camera`, in units of the distance of its farthest corner
+    /// ([`super::OpticsConfig::psf_growth`]). An image has the width of its centre throughout.
     pub fn with_growth(mut self, growth: f64, camera: &Camera) -> Self {
         self.growth = (growth != 0.0).then(|| Growth { a: growth, radius: FieldRadius::new(camera) });
         self
     }
 
-    /// The image of a point of `electrons` at `centre`: [`Psf::stamp_extended`] of that one point.
+    /// Draws the image of a point of `electrons` at `centre`: [`Psf::stamp_extended`] with a single point.
     pub fn stamp(
         &mut self,
         centre: PixelPoint,
@@ -126,12 +129,13 @@ impl Psf {
         );
     }
 
-    /// The image of an object of `electrons` whose undisturbed image is made of `points` (a trail, a resolved body), on a
-    /// detector of `detector` = (columns, rows). The centre of the stamp is the mean of the points by their shares.
+    /// Draws the image of an object of `electrons` whose geometric image consists of `points` (a trail, a
+    /// resolved body), on a detector of `detector` = (columns, rows). The centre of the stamp is the mean of
+    /// the points, weighted by their shares.
     ///
-    /// Pixels with fewer than `floor_e` electrons (greater than 0) are left at zero, and so is what lies beyond the reach
-    /// of the shape: a Gaussian of width σ thereby loses at most about 2πσ² `floor_e` electrons, a shape with wings more.
-    /// The truth is taken from the stamp, so that truth and image stay the same.
+    /// Pixels with fewer than `floor_e` electrons (greater than 0) and pixels beyond the reach of the shape
+    /// are left at zero: a Gaussian of width σ thereby loses at most about 2πσ² `floor_e` electrons, a shape
+    /// with wings more. The truth is derived from the stamp, so truth and image agree.
     pub fn stamp_extended(
         &mut self,
         points: &[ImagePoint],
@@ -160,13 +164,14 @@ impl Psf {
         run_widest(FloorClip { pixels: &mut stamp.electrons, below: floor_e });
     }
 
-    /// How far off the detector an object of `electrons` may be and still leave `floor_e` electrons in a pixel of it, px;
-    /// 0 when it leaves them nowhere. Beyond 200 px the wings of a Moffat profile are not followed, beyond some tens of
-    /// pixels the rings of an Airy pattern.
+    /// Largest distance from the detector at which an object of `electrons` still leaves `floor_e` electrons
+    /// in a pixel of it, px; 0 if the object reaches the floor in no pixel. The wings of a Moffat profile are
+    /// cut at 200 px, the rings of an Airy pattern at some tens of pixels.
     pub fn reach_px(&self, electrons: f64, floor_e: f64) -> f64 {
         match self.growth {
             None => self.shape.reach_px(electrons, floor_e, 1.0),
-            // Off the detector the width is that of the corner, or not yet, over the shorter sides.
+            // Off the detector the width is that of the corner, or has not yet reached it beyond the shorter
+            // sides.
             Some(growth) => {
                 let steps =
                     (0..=Growth::STEPS).map(|i| 1.0 + growth.a * f64::from(i) / f64::from(Growth::STEPS));
@@ -175,8 +180,8 @@ impl Psf {
         }
     }
 
-    /// The share of the light that falls in the pixel under the centre of the image, at best: at the principal point, when
-    /// the image is centred on the pixel. The shutter control takes it for the brightest pixel.
+    /// Maximum fraction of the flux in the pixel under the centre of the image: at the principal point, when
+    /// the image is centred on the pixel. The shutter control uses it for the brightest pixel.
     pub fn peak_share(&self) -> f64 {
         match &self.shape {
             Shape::Gaussians(shape) => shape.peak_share(),
@@ -186,7 +191,8 @@ impl Psf {
 }
 
 impl Shape {
-    /// Distance from a point beyond which, along a column or a row, no pixel holds `floor_e`, px; 0 when none does.
+    /// Distance from a point beyond which, along a column or a row, no pixel holds `floor_e`, px; 0 if no
+    /// pixel does.
     fn reach_px(&self, electrons: f64, floor_e: f64, scale: f64) -> f64 {
         match self {
             Self::Gaussians(shape) => shape.reach_px(electrons, floor_e, scale),
@@ -196,7 +202,7 @@ impl Shape {
 }
 
 impl Growth {
-    /// Widths that are tried for the largest reach, between those of the principal point and of the corner.
+    /// Number of widths tried for the largest reach, between those of the principal point and of the corner.
     const STEPS: u32 = 8;
 
     fn scale(&self, at: PixelPoint) -> f64 {
@@ -204,7 +210,7 @@ impl Growth {
     }
 }
 
-/// The rectangle that the points of an image span, and their mean.
+/// Rectangle that the points of an image span, and their mean.
 struct Extent {
     x: (f64, f64),
     y: (f64, f64),
@@ -230,7 +236,7 @@ impl Extent {
     }
 }
 
-/// Pixels with less light than a floor, made 0: those of a stamp.
+/// Sets the pixels of a stamp that are below a floor to 0.
 struct FloorClip<'a> {
     pixels: &'a mut [f64],
     below: f64,
@@ -286,13 +292,13 @@ mod tests {
             for floor_e in [0.01, 1e-4] {
                 let lost = 1e5 - sum(&stamp_of(&config, PixelPoint::new(90.3, 101.8), 1e5, floor_e));
                 let bound = 2.0 * std::f64::consts::PI * width * width * floor_e;
-                // Twice: the bound is of a density, pixels straddle the ring.
+                // Twice the bound, because it holds for a density and pixels straddle the ring.
                 assert!(lost > 0.0 && lost < 2.0 * bound, "{lost} e⁻ lost, bound {bound}");
             }
         }
     }
 
-    /// The centroid of pixel-integrated samples is not the centre: by Poisson's summation formula it is
+    /// The centroid of pixel-integrated samples differs from the centre: by Poisson's summation formula it is
     /// c + Σ (−1)^m/(πm) exp(−2π²σ²m²) sin(2πmc), the S-curve. At σ = 0.8 px its amplitude is 1.0e-6 px.
     #[test]
     fn the_centroid_follows_the_s_curve_at_every_phase() {
@@ -316,7 +322,7 @@ mod tests {
                     })
                     .sum();
                 let error = moment / sum(&stamp) - c - s_curve;
-                // Left out below the floor: some hundred pixels of 1e-15 at some ten px.
+                // Omitted below the floor: some hundred pixels of 1e-15 at some ten px.
                 assert!(error.abs() < 1e-11, "σ {sigma_px}, phase {c}: {error}");
                 if sigma_px >= 0.8 {
                     assert!((moment / sum(&stamp) - c).abs() < 1.1e-6);
@@ -342,7 +348,7 @@ mod tests {
                     } else {
                         0.0
                     };
-                    // Two components left out in the same pixel may together reach twice the floor.
+                    // Two components omitted in one pixel may together reach twice the floor.
                     assert!((got - value).abs() < 0.02, "at ({}, {y}): {got}, expected {value}", x + i);
                 }
             }

@@ -1,8 +1,8 @@
-//! A point-spread function from a file of the user's.
+//! Point-spread function from a file of the user.
 //!
-//! The file holds the light on each cell of a grid finer than the pixels, without the pixels' own integration: what a
-//! program of optical design prints, or a measured image after deconvolution. A cell's centre is `1/oversampling` px
-//! from the next.
+//! The file holds the flux in each cell of a grid finer than the pixels, before integration over pixels: the
+//! output of an optical design program, or a measured image after deconvolution. Cell centres are
+//! `1/oversampling` px apart.
 
 #![cfg_attr(
     not(test),
@@ -20,15 +20,15 @@ use std::path::Path;
 use super::tabulated::Tabulated;
 use crate::{SimError, regular_file};
 
-/// Largest file that is read, bytes: 2048 × 2048 cells of sixteen characters.
+/// Maximum size of a file that is read, bytes: 2048 × 2048 cells of sixteen characters.
 const MAX_BYTES: u64 = 1 << 26;
-/// Cells along a side.
+/// Allowed number of cells along a side.
 const CELLS: std::ops::RangeInclusive<usize> = 3..=2048;
 
-/// The shape that a file holds, normalised to unit flux, its centroid at the centre.
+/// Reads a shape from a file, normalised to unit flux, with its centroid at the centre.
 ///
 /// # Errors
-/// [`SimError::PsfFile`] when the file cannot be read or does not hold a matrix of numbers that are 0 or more.
+/// [`SimError::PsfFile`] if the file cannot be read or does not hold a matrix of numbers that are 0 or more.
 pub(super) fn sampled(path: &Path, oversampling: f64) -> Result<Tabulated, SimError> {
     let fail = |problem: String| SimError::PsfFile { path: path.to_path_buf(), problem };
     let text = regular_file::read_text(path, MAX_BYTES).map_err(|error| fail(error.to_string()))?;
@@ -56,7 +56,7 @@ pub(super) fn sampled(path: &Path, oversampling: f64) -> Result<Tabulated, SimEr
     ))
 }
 
-/// The numbers row by row, and how many stand in a row.
+/// Parses the numbers row by row, and returns them with the number of columns.
 fn matrix(text: &str) -> Result<(Vec<f64>, usize), String> {
     let (mut light, mut columns, mut rows) = (Vec::new(), 0, 0);
     let lines = (1..).zip(text.strip_prefix('\u{feff}').unwrap_or(text).lines());

@@ -1,39 +1,42 @@
-//! A Gaussian's shares of light in pixels, from a table over the place of its centre within a pixel.
+//! Flux fractions of a Gaussian in pixels, from a table over the position of its centre within a pixel.
 //!
-//! Over one axis the share of a pixel is the difference of two error functions. Stars take hundreds of them each, at places that differ
-//! by whole pixels but for one number, the phase of the centre: so a table of a few phases, with the derivatives there, gives the
-//! shares of a whole row of pixels by one polynomial in the phase, pixel beside pixel.
+//! Along one axis the fraction in a pixel is the difference of two error functions. Stars evaluate hundreds
+//! of them each, at positions that differ by integer pixels except for one number, the phase of the centre. A
+//! table of a few phases, with the derivatives there, gives the fractions of a whole row of pixels by one
+//! polynomial in the phase, for neighbouring pixels in parallel.
 
 use pulp::Simd;
 
 use crate::simd_kernel::{F64x8, LANES};
 
-/// Coefficients of a polynomial: degree 5.
+/// Number of coefficients of a polynomial of degree 5.
 const TERMS: usize = 6;
-/// Phases in a width σ: the next term is at most (1/50)⁶ · 5/6! = 4e-13, with 5 for twice the largest value of |He₅(u) φ(u)|.
+/// Number of phases per width σ: the next term is at most (1/50)⁶ · 5/6! = 4e-13, with 5 for twice the
+/// largest value of |He₅(u) φ(u)|.
 const PHASES_PER_SIGMA: f64 = 25.0;
-/// A narrower Gaussian would need more phases than are worth a table.
+/// Smallest width with a table, px: narrower Gaussians need too many phases.
 const NARROWEST_PX: f64 = 0.1;
-/// A wider one more pixels.
+/// Largest width with a table, px: wider Gaussians need too many pixels.
 const WIDEST_PX: f64 = 100.0;
-/// Half widths σ that the table covers; beyond them a share is below 2e-17.
+/// Half width of the table, in units of σ; beyond it a fraction is below 2e-17.
 const REACH_SIGMAS: f64 = 8.5;
 
-/// Shares of light along an axis, for one width.
+/// Flux fractions along an axis, for one width.
 #[derive(Debug, PartialEq)]
 pub(super) struct ShareTable {
-    /// `TERMS` rows of `width` pixels a phase.
+    /// `TERMS` rows of `width` pixels per phase.
     coefficients: Vec<f64>,
-    /// Intervals between phases in a pixel.
+    /// Number of intervals between phases in a pixel.
     intervals: f64,
-    /// Pixels of a row: twice `reach` and one, and room for the padding of a stamp.
+    /// Number of pixels in a row: twice `reach` plus one, and room for the padding of a stamp.
     width: usize,
-    /// Pixels on either side of the one that holds the centre.
+    /// Number of pixels on either side of the pixel that holds the centre.
     reach: usize,
 }
 
 impl ShareTable {
-    /// The table of a Gaussian of width `sigma_px`; `None` for one that is too narrow or too wide for a table.
+    /// Creates the table of a Gaussian of width `sigma_px`; `None` if the width is too small or too large for
+    /// a table.
     pub(super) fn new(sigma_px: f64) -> Option<Self> {
         if !(NARROWEST_PX..=WIDEST_PX).contains(&sigma_px) {
             return None;
@@ -52,15 +55,15 @@ impl ShareTable {
         Some(Self { coefficients, intervals, width, reach })
     }
 
-    /// The shares of pixels from `first` on, a whole number of [`LANES`], along an axis on which the centre is at `centre`. Zeros where
-    /// there are none.
+    /// Computes the fractions of pixels from `first` on, a multiple of [`LANES`] pixels, along an axis with
+    /// the centre at `centre`. Zero outside the table.
     #[inline(always)]
     pub(super) fn fill<S: Simd>(&self, simd: S, centre: f64, first: usize, shares: &mut [f64]) {
         let nearest = centre.round();
         let phase = centre - nearest;
         let node = ((phase + 0.5) * self.intervals).round();
         let d = phase - (node / self.intervals - 0.5);
-        // A centre far away has no shares here.
+        // A distant centre contributes nothing here.
         let from = (first as f64 - nearest + self.reach as f64).clamp(-1e9, 1e9) as isize;
         let rows = &self.coefficients[node as usize * TERMS * self.width..][..TERMS * self.width];
         let Some(from) = usize::try_from(from).ok().filter(|from| from + shares.len() <= self.width) else {
@@ -78,7 +81,7 @@ impl ShareTable {
         }
     }
 
-    /// [`ShareTable::fill`] of pixels that are not all in the table.
+    /// Performs [`ShareTable::fill`] for pixels that are partly outside the table.
     #[cold]
     fn fill_clipped(&self, rows: &[f64], d: f64, from: isize, shares: &mut [f64]) {
         for (share, at) in shares.iter_mut().zip(from..) {
@@ -92,8 +95,8 @@ impl ShareTable {
     }
 }
 
-/// Half the error function of t/(σ√2), and its coefficients in a polynomial in φ where t is less by φ. Its derivatives are those of
-/// the normal density, Hermite polynomials of t/σ times it.
+/// Half the error function of t/(σ√2), and the coefficients of its polynomial in φ for t reduced by φ. Its
+/// derivatives are those of the normal density: Hermite polynomials of t/σ times the density.
 fn cumulative(t: f64, sigma_px: f64) -> [f64; TERMS] {
     let u = t / sigma_px;
     let density = libm::exp(-0.5 * u * u) / (sigma_px * (2.0 * std::f64::consts::PI).sqrt());

@@ -1,64 +1,65 @@
-//! Shapes without a closed integral over a pixel: a table of the cumulative light, C(x, y) = ∫^x ∫^y I.
+//! Shapes without a closed integral over a pixel: a table of the cumulative flux, C(x, y) = ∫^x ∫^y I.
 //!
-//! A pixel holds C at two of its corners less C at the other two, whatever its size in the table's units: pixel
-//! integration needs no oversampling, all pixels together hold what the table holds, and an image that is wider in one
-//! place of the field needs no table of its own. Between its nodes C is Lagrange's polynomial through 6 × 6 of them.
+//! The flux of a pixel is C at two of its corners minus C at the other two, for any pixel size in the table's
+//! units. Pixel integration therefore needs no oversampling, all pixels together hold the flux of the table,
+//! and an image that is wider at one position of the field needs no further table. Between its nodes C is
+//! Lagrange's polynomial through 6 × 6 of them.
 
 use std::sync::Arc;
 
 use super::pixels_within::pixels_within;
 use crate::optics::{ImagePoint, Stamp};
 
-/// A tabulated shape, centred on the origin.
+/// Tabulated shape, centred on the origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tabulated {
     table: Arc<Table>,
-    /// Pixels a unit of the table, along columns and along rows.
+    /// Pixels per unit of the table, along columns and along rows.
     unit_px: [f64; 2],
 }
 
 #[derive(Debug, PartialEq)]
 struct Table {
-    /// C row by row, [`GUARD`] nodes on every side more than what is drawn.
+    /// Values of C row by row, with [`GUARD`] additional nodes on every side of the drawn area.
     nodes: Vec<f64>,
     stride: usize,
     columns: Axis,
     rows: Axis,
-    /// Of a grid of radii: the largest density at this radius or farther out.
+    /// Largest density at or beyond each radius of a grid.
     envelope: Vec<f64>,
     envelope_step: f64,
 }
 
-/// The nodes along an axis.
+/// Nodes along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Axis {
-    /// Where the first node is that is not a guard.
+    /// Coordinate of the first node that is not a guard.
     origin: f64,
     step: f64,
     cells: usize,
     parity: Parity,
 }
 
-/// What is known of C on the other side of the origin.
+/// Symmetry of C about the origin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Parity {
-    /// C(−x) = −C(x): only the positive side is kept.
+    /// C(−x) = −C(x): only the positive side is stored.
     Odd,
-    /// Nothing: both sides are kept.
+    /// No symmetry: both sides are stored.
     None,
 }
 
-/// Nodes beyond the outermost cells that the interpolation there needs.
+/// Number of nodes beyond the outermost cells that the interpolation there needs.
 const GUARD: usize = 2;
 
-/// Where to read along an axis: six nodes from `first` on, with their weights.
+/// Interpolation along an axis: six nodes from `first` on, with their weights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stencil {
     first: usize,
     weights: [f64; 6],
 }
 
-/// Edges of columns and a row of C at them, reused from stamp to stamp.
+/// Column edges, and values of C at them along a row, reused from stamp to stamp.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Edges {
     columns: Vec<Stencil>,
@@ -67,8 +68,9 @@ pub(super) struct Edges {
 }
 
 impl Tabulated {
-    /// A shape of circular symmetry in the table's units, of which `density` is the light a unit of area at a radius;
-    /// followed to `radius` along each axis. `step` is a tenth of the finest structure or less.
+    /// Creates a circularly symmetric shape in the table's units. `density` is the flux per unit of area at a
+    /// radius; the table extends to `radius` along each axis. `step` is a tenth of the finest structure or
+    /// less.
     pub(super) fn radial(density: impl Fn(f64) -> f64, step: f64, radius: f64, unit_px: [f64; 2]) -> Self {
         let cells = (radius / step).ceil().max(1.0) as usize;
         let profile = RadialProfile::new(density, 0.5 * step, 3 * (cells + GUARD));
@@ -76,7 +78,7 @@ impl Tabulated {
         let size = cells + GUARD;
         let mut nodes = vec![0.0; nodes_a_row * nodes_a_row];
         let at = |i: usize, j: usize| (j + GUARD) * nodes_a_row + i + GUARD;
-        // Gauss's rule of three points along each side of a cell.
+        // Gauss's three-point rule along each side of a cell.
         let gauss = [(-0.6_f64.sqrt(), 5.0 / 18.0), (0.0, 4.0 / 9.0), (0.6_f64.sqrt(), 5.0 / 18.0)];
         let cell = |i: usize, j: usize| {
             let mut sum = 0.0;
@@ -89,7 +91,7 @@ impl Tabulated {
             }
             sum * step * step
         };
-        // The light of the cells on one side of the diagonal is that on the other.
+        // The cells on the two sides of the diagonal hold equal flux.
         for j in 0..size {
             for i in 0..=j {
                 let light = cell(i, j);
@@ -126,8 +128,9 @@ impl Tabulated {
         Self { table: Arc::new(table), unit_px }
     }
 
-    /// A shape given by the light that falls on each cell of a grid, row by row, adding up to 1. The cells are `step_px`
-    /// wide; the middle of the first one is at `first_px` from the centre of the image, along columns and along rows.
+    /// Creates a shape from the flux in each cell of a grid, row by row, with a sum of 1. The cells are
+    /// `step_px` wide; the middle of the first cell is at `first_px` from the centre of the image, along
+    /// columns and along rows.
     pub(super) fn cells(light: &[f64], columns: usize, step_px: f64, first_px: [f64; 2]) -> Self {
         let rows = light.len() / columns.max(1);
         let stride = columns + 1 + 2 * GUARD;
@@ -140,13 +143,13 @@ impl Tabulated {
                 let node = (j + 1 + GUARD) * stride + i + 1 + GUARD;
                 nodes[node] = nodes[node - stride] + sum;
                 let (x, y) = (first_px[0] + i as f64 * step_px, first_px[1] + j as f64 * step_px);
-                // Its farthest corner.
+                // The farthest corner of the cell.
                 let ring = (libm::hypot(x, y) / step_px + 0.75).ceil() as usize;
                 densities.resize(densities.len().max(ring + 1), 0.0);
                 densities[ring] = densities[ring].max(cell / (step_px * step_px));
             }
         }
-        // Beyond the grid there is no light: C stays what it is.
+        // Beyond the grid there is no flux: C is constant.
         for row in nodes.chunks_exact_mut(stride) {
             let last = row[stride - 1 - GUARD];
             row[stride - GUARD..].fill(last);
@@ -172,7 +175,7 @@ impl Tabulated {
         Self { table: Arc::new(table), unit_px: [1.0, 1.0] }
     }
 
-    /// Distance from the centre beyond which no pixel holds `floor_e`, px; 0 when no pixel at all does.
+    /// Distance from the centre beyond which no pixel holds `floor_e`, px; 0 if no pixel does.
     pub(super) fn reach_px(&self, electrons: f64, floor_e: f64, scale: f64) -> f64 {
         let [unit_x, unit_y] = self.unit_px.map(|unit| unit * scale);
         let density = floor_e / electrons * unit_x * unit_y;
@@ -224,7 +227,7 @@ impl Tabulated {
         }
     }
 
-    /// The share of the light in the pixel under the centre.
+    /// Fraction of the flux in the pixel under the centre.
     pub(super) fn peak_share(&self) -> f64 {
         let [half_x, half_y] = self.unit_px.map(|unit| 0.5 / unit);
         let columns = [-half_x, half_x].map(|x| self.table.columns.stencil(x));
@@ -238,7 +241,7 @@ impl Tabulated {
 }
 
 impl Table {
-    /// C at the edges of columns and one edge of rows.
+    /// Computes C at the column edges and one row edge.
     fn interpolate_row(&self, columns: &[Stencil], row: &Stencil, values: &mut Vec<f64>) {
         let start = row.first * self.stride;
         let lines: [&[f64]; 6] =
@@ -257,7 +260,7 @@ impl Table {
 }
 
 impl Axis {
-    /// The farthest point from the origin.
+    /// Largest distance of the axis from the origin.
     fn farthest(&self) -> f64 {
         (self.origin + self.cells as f64 * self.step).abs().max(self.origin.abs())
     }
@@ -287,14 +290,15 @@ fn lagrange(t: f64) -> [f64; 6] {
     ]
 }
 
-/// A radial function at equal steps, with guards on the other side of the centre.
+/// Radial function at equal steps, with guards on the other side of the centre.
 struct RadialProfile {
     values: Vec<f64>,
     step: f64,
 }
 
 impl RadialProfile {
-    /// Of `count` steps: √2 times as many as a side of the table has half cells, its corner included.
+    /// Samples `count` steps: √2 times the number of half cells along a side of the table, which includes its
+    /// corner.
     fn new(density: impl Fn(f64) -> f64, step: f64, count: usize) -> Self {
         let mut values: Vec<f64> = (0..=count + 3).map(|i| density(i as f64 * step)).collect();
         let mirrored = [values[2], values[1]];
@@ -310,7 +314,7 @@ impl RadialProfile {
     }
 }
 
-/// For each place, the largest value there or later.
+/// Returns for each index the largest absolute value there or later.
 fn running_maximum(mut values: Vec<f64>) -> Vec<f64> {
     let mut largest = 0.0_f64;
     for value in values.iter_mut().rev() {

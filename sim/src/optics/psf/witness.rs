@@ -1,4 +1,4 @@
-//! Every shape at 100 sub-pixel phases against witnesses that share nothing with it but its formula.
+//! Tests of every shape at 100 sub-pixel phases against independent computations that share only its formula.
 
 use std::f64::consts::PI;
 
@@ -7,11 +7,11 @@ use contract::{Camera, PixelPoint};
 use super::{Psf, PsfConfig};
 use crate::optics::{ImagePoint, Stamp};
 
-/// Pixels a side; the image is about the middle one.
+/// Number of pixels per side; the image is centred on the middle pixel.
 const SIDE: usize = 41;
 const MIDDLE: f64 = 20.0;
 
-/// Five points of Gauss's rule on [−1, 1].
+/// Gauss's five-point rule on [−1, 1].
 const GAUSS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189),
     (-0.538_469_310_105_683, 0.478_628_670_499_366),
@@ -41,7 +41,8 @@ fn image(psf: &mut Psf, centre: PixelPoint) -> Vec<f64> {
     pixels(&stamp)
 }
 
-/// The light in each pixel by Gauss's rule: on 2 × 2 parts of those near the centre, on the others as a whole.
+/// Integrates the flux in each pixel by Gauss's rule: on 2 × 2 parts of pixels near the centre, on other
+/// pixels as a whole.
 fn integrated(density: impl Fn(f64, f64) -> f64, centre: PixelPoint) -> Vec<f64> {
     let whole = GAUSS.map(|(u, w)| (0.5 * u, 0.5 * w));
     let halves = GAUSS.map(|(u, w)| (0.25 * (u - 1.0), 0.25 * w)).into_iter();
@@ -65,7 +66,8 @@ fn flux_and_centroid(pixels: &[f64]) -> (f64, PixelPoint) {
     (flux, PixelPoint::new(x / flux, y / flux))
 }
 
-/// 1e-4 of the flux and 1e-3 px are what is asked for; every shape does better by `margin`.
+/// Checks a shape. The required accuracy is 1e-4 of the flux and 1e-3 px; every shape is better by the factor
+/// `margin`.
 fn check(config: &PsfConfig, margin: f64, witness: impl Fn(PixelPoint) -> Vec<f64>) {
     let mut psf = Psf::new(config).unwrap();
     let [mut flux, mut centroid, mut pixel] = [0.0_f64; 3];
@@ -98,7 +100,7 @@ fn a_moffat_image_is_the_integral_of_its_profile_over_each_pixel() {
     }
 }
 
-/// The wings of a bright object are what makes its image large: they must be right relative to themselves.
+/// The wings of a bright object make its image large: their relative error must be small.
 #[test]
 fn the_wings_of_a_moffat_profile_are_right_to_a_part_in_ten_thousand_out_to_150_px() {
     for (fwhm_px, beta) in [(1.2, 1.5), (1.8, 3.0), (2.5, 4.765)] {
@@ -109,7 +111,8 @@ fn the_wings_of_a_moffat_profile_are_right_to_a_part_in_ten_thousand_out_to_150_
         let (first, _, row) = stamp.rows().next().unwrap();
         assert!(first == 0 && row.len() > 150, "it begins at {first} and ends after {} px", row.len());
         for (i, value) in row.iter().enumerate().take(151).skip(5) {
-            // A pixel differs from its middle by the second derivative over 24, (2β r⁻²)(2β + 1)/24 along a row: integrate.
+            // The mean over a pixel differs from the value at its middle by the second derivative over 24,
+            // (2β r⁻²)(2β + 1)/24 along a row, so the truth is integrated.
             let nodes = || GAUSS.iter().map(|(u, w)| (0.5 * u, 0.5 * w));
             let truth: f64 = nodes()
                 .map(|(v, wv)| {
@@ -121,8 +124,8 @@ fn the_wings_of_a_moffat_profile_are_right_to_a_part_in_ten_thousand_out_to_150_
     }
 }
 
-/// With the transform F(k) of the profile the centroid of pixel-integrated samples is c + Σ (−1)^m/(πm) F(m) sin(2πmc)
-/// (Poisson's summation formula). For β = 2.5, F(k) = (1 + x) e^−x with x = 2πkα.
+/// With the transform F(k) of the profile the centroid of pixel-integrated samples is c + Σ (−1)^m/(πm) F(m)
+/// sin(2πmc) (Poisson's summation formula). For β = 2.5, F(k) = (1 + x) e^−x with x = 2πkα.
 #[test]
 fn the_centroid_of_a_moffat_image_follows_its_s_curve() {
     let alpha_px = 0.45;
@@ -149,7 +152,7 @@ fn the_centroid_of_a_moffat_image_follows_its_s_curve() {
             })
             .sum();
         largest = largest.max(s_curve.abs());
-        // The border of the detector, 200 px away, cuts off 1e-8 of the light.
+        // The border of the detector, 200 px away, cuts off 1e-8 of the flux.
         assert!((moment / flux - c - s_curve).abs() < 2e-5, "phase {c}: {} off", moment / flux - c - s_curve);
     }
     assert!(largest > 0.05, "there is a curve to follow: {largest}");
@@ -173,8 +176,8 @@ fn an_airy_image_is_the_integral_of_its_pattern_over_each_pixel() {
     }
 }
 
-/// The light within r is 1 − J₀²(v) − J₁²(v) (Lord Rayleigh 1881; Born & Wolf 1999, Eq. 8.5.18): 83.8 % within the first
-/// dark ring, where pixels that the circle cuts do not matter.
+/// The flux within r is 1 − J₀²(v) − J₁²(v) (Lord Rayleigh 1881; Born & Wolf 1999, Eq. 8.5.18): 83.8 % within
+/// the first dark ring, where pixels cut by the circle do not matter.
 #[test]
 fn the_light_within_the_dark_rings_of_an_airy_image_is_rayleighs() {
     let mut psf = Psf::new(&PsfConfig::Airy { lambda_n_px: [8.0, 8.0], obscuration: 0.0 }).unwrap();
@@ -191,8 +194,8 @@ fn the_light_within_the_dark_rings_of_an_airy_image_is_rayleighs() {
     }
 }
 
-/// The disk as 64 × 24 points, each a Gaussian with its own closed integral over the pixels: Gauss's rule along the
-/// radius, equal angles around.
+/// The disk as 64 × 25 points, each a Gaussian with its closed integral over the pixels: Gauss's rule along
+/// the radius, equal angles around.
 #[test]
 fn a_defocused_image_is_a_disk_of_gaussians() {
     for (radius_px, sigma_px) in [(2.0, 0.5), (4.3, 0.7), (0.8, 0.6)] {
@@ -222,7 +225,8 @@ fn a_defocused_image_is_a_disk_of_gaussians() {
     }
 }
 
-/// Light of a Gaussian of 0.9 px on cells of a quarter of a pixel, its centre off that of the file.
+/// Writes the flux of a Gaussian of 0.9 px in cells of a quarter of a pixel, centred away from the middle of
+/// the file.
 fn gaussian_file(folder: &tempfile::TempDir, oversampling: f64) -> PsfConfig {
     let edge =
         |i: usize, at: f64| libm::erf((i as f64 / oversampling - at) / (0.9 * std::f64::consts::SQRT_2));
@@ -240,7 +244,7 @@ fn a_sampled_gaussian_is_the_gaussian_wherever_it_stands_in_its_file() {
     let folder = tempfile::tempdir().unwrap();
     let mut gaussian = Psf::new(&PsfConfig::Gaussian { sigma_px: 0.9 }).unwrap();
     let witness = std::cell::RefCell::new(&mut gaussian);
-    // 3.6 cells a standard deviation: Lagrange's polynomial leaves 4e-5 of the peak.
+    // 3.6 cells per standard deviation: Lagrange's polynomial leaves an error of 4e-5 of the peak.
     check(&gaussian_file(&folder, 4.0), 2.0, |centre| image(&mut witness.borrow_mut(), centre));
 }
 
@@ -265,7 +269,7 @@ fn a_file_that_is_no_matrix_of_light_is_refused_with_its_place() {
     assert!(Psf::load(&config, folder.path()).unwrap_err().to_string().contains("nowhere.csv"));
 }
 
-/// 41 × 41 pixels, the principal point in the middle: ρ = 1 in every corner.
+/// Camera of 41 × 41 pixels with the principal point in the middle: ρ = 1 in every corner.
 fn camera() -> Camera {
     Camera {
         columns: SIDE,
@@ -280,7 +284,7 @@ fn camera() -> Camera {
     }
 }
 
-/// Wider in its own coordinates, and integrated over the same pixels: as if its sizes had been larger.
+/// A shape widened in its coordinates and integrated over unchanged pixels equals a shape of larger sizes.
 #[test]
 fn an_image_away_from_the_centre_is_that_of_a_wider_shape_with_the_same_light() {
     let folder = tempfile::tempdir().unwrap();
@@ -312,7 +316,7 @@ fn an_image_away_from_the_centre_is_that_of_a_wider_shape_with_the_same_light() 
             let ours = image(&mut Psf::new(&narrow).unwrap().with_growth(growth, &camera()), at);
             let expected = image(&mut Psf::new(&wide).unwrap(), at);
             for (a, b) in ours.iter().zip(&expected) {
-                // Where a mixture or a table ends is not scaled with it.
+                // The limits of a mixture or a table do not scale with the image.
                 assert!((a - b).abs() < 1e-5, "{narrow:?} at scale {scale}: {a:e}, expected {b:e}");
             }
         }

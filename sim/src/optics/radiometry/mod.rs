@@ -1,8 +1,9 @@
-//! From magnitudes to photo-electrons.
+//! Conversion of magnitudes to photoelectrons.
 //!
-//! Either one zero point for light of every colour, or an integral over the spectrum: n = A τ ∫ E(λ) λ/(hc) η(λ) dλ, with the
-//! area A of the aperture, the transmission τ of the optics, the irradiance E of the star or of the Sun, and the quantum
-//! efficiency η of the detector (Bessell & Murphy 2012, PASP 124, 140, Eq. 1, for a detector that counts photons).
+//! The conversion uses either one zero point for light of every colour, or an integral over the spectrum: n =
+//! A τ ∫ E(λ) λ/(hc) η(λ) dλ, with the area A of the aperture, the transmission τ of the optics, the
+//! irradiance E of the star or of the Sun, and the quantum efficiency η of the detector (Bessell & Murphy
+//! 2012, PASP 124, 140, Eq. 1, for a detector that counts photons).
 
 mod quantum_efficiency;
 mod spectra;
@@ -21,40 +22,43 @@ use crate::memo::Memo;
 /// V magnitude of the Sun at 1 au (Willmer 2018, ApJS 236, 47: −26.76, Vega system, Johnson V).
 pub const SUN_V_MAG_AT_1_AU: f64 = -26.76;
 
-/// Planck's constant times the speed of light, J nm (SI, exact): 6.62607015e-34 J s · 299792458 m/s · 1e9 nm/m.
+/// Planck's constant times the speed of light, J nm (SI, exact): 6.62607015e-34 J s · 299792458 m/s · 1e9
+/// nm/m.
 const HC_J_NM: f64 = 6.626_070_15e-34 * 299_792_458.0 * 1e9;
 
-/// How many photo-electrons a star gives.
+/// Photoelectron yield of a star.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum RadiometryConfig {
-    /// Aperture, transmission, passband and quantum efficiency in one number, the same for every colour.
+    /// Aperture, transmission, passband and quantum efficiency in one number, equal for every colour.
     ZeroPoint {
-        /// Photo-electrons a second from a star of magnitude V = 0, over its whole image, greater than 0, at most 1e15.
+        /// Photoelectrons per second from a star of magnitude V = 0, over its whole image, greater than 0, at
+        /// most 1e15.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e15))]
         zero_point_e_per_s: f64,
     },
-    /// By the spectrum: stars by their colour, whatever the Sun shines on by the spectrum of the Sun.
+    /// From spectra: stars by their colour, sunlit bodies by the spectrum of the Sun.
     Spectral {
         /// Diameter of the circular, unobstructed aperture, mm, greater than 0, at most 10 000.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10000))]
         aperture_diameter_mm: f64,
-        /// Share of the light that the optics let through, greater than 0, at most 1; it also holds a central obstruction.
+        /// Transmission of the optics, greater than 0, at most 1; it includes a central obstruction.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
         transmission: f64,
-        /// Photo-electrons a photon: "silicon_ccd", or a table of [wavelength in nm, efficiency].
+        /// Photoelectrons per photon: "silicon_ccd", or a table of [wavelength in nm, efficiency].
         quantum_efficiency: QuantumEfficiency,
-        /// Shortest and longest wavelength that a filter lets through, nm, growing, within 300 to 1100; absent: no filter.
+        /// Shortest and longest wavelength that a filter transmits, nm, increasing, within 300 to 1100;
+        /// absent: no filter.
         #[schemars(inner(range(min = 300, max = 1100)))]
         band_nm: Option<[f64; 2]>,
     },
 }
 
 impl RadiometryConfig {
-    /// Checks every number.
+    /// Checks the ranges of all values.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first value outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "radiometry")?;
         if let Self::Spectral { quantum_efficiency, band_nm, .. } = self {
@@ -67,7 +71,7 @@ impl RadiometryConfig {
     }
 }
 
-/// From magnitudes to photo-electrons a second, prepared.
+/// Conversion of magnitudes to photoelectrons per second.
 ///
 /// ```
 /// use boresight_sim::optics::{KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig};
@@ -86,22 +90,24 @@ impl RadiometryConfig {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Radiometry {
-    /// Electrons a second of every star of the colour sequence at V = 0.
+    /// Electrons per second of every star of the colour sequence at V = 0.
     stars: [f64; spectra::STARS],
-    /// Electrons a second of sunlight of V = 0.
+    /// Electrons per second of sunlight of V = 0.
     sunlight: f64,
-    /// Area of the aperture times transmission, m²; `None` when only a zero point is known.
+    /// Area of the aperture times transmission, m²; `None` if only a zero point is given.
     collecting_area_m2: Option<f64>,
 }
 
-/// The latest that were prepared: the integrals over all spectra are those of a few cameras.
+/// Cache of the latest conversions: only a few cameras occur, and each requires the integrals over all
+/// spectra.
 static PREPARED: Memo<RadiometryConfig, Radiometry> = Memo::new();
 
 impl Radiometry {
     /// Prepares the conversion.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a number outside its range, or when the detector sees nothing of the light.
+    /// [`OutOfRange`] for a number outside its range, or if the detector does not respond to any of the
+    /// light.
     pub fn new(config: &RadiometryConfig) -> Result<Self, OutOfRange> {
         Ok((*PREPARED.get(config.clone(), Self::compute)?).clone())
     }
@@ -152,33 +158,34 @@ impl Radiometry {
         Ok(prepared)
     }
 
-    /// Photo-electrons a second from a star of V = 0 with these colours, B−V and V−I (Cousins), mag.
+    /// Photoelectrons per second from a star of V = 0 with these colours, B−V and V−I (Cousins), mag.
     ///
-    /// V−I decides when it is known, otherwise B−V, which cannot tell M stars apart; a star without colours is taken for one of
-    /// B−V = 0.70, the mean of Hipparcos. Colours beyond O5 and M7 are those of the ends.
+    /// V−I is used if it is known, otherwise B−V, which cannot distinguish M stars. A star without colours is
+    /// treated as B−V = 0.70, the mean of Hipparcos. Colours beyond O5 and M7 use the ends of the sequence.
     pub fn zero_point_e_per_s(&self, b_v: Option<f64>, v_i: Option<f64>) -> f64 {
         let (before, part) = spectra::sequence_position(b_v, v_i);
         let (low, high) = (self.stars[before], self.stars[before + 1]);
         low + part * (high - low)
     }
 
-    /// Photo-electrons a second from a body in sunlight of V = 0, grey: its light has the spectrum of the Sun.
+    /// Photoelectrons per second from a grey body in sunlight of V = 0: its light has the spectrum of the
+    /// Sun.
     pub fn solar_zero_point_e_per_s(&self) -> f64 {
         self.sunlight
     }
 
-    /// Photo-electrons a second and square metre of a detector on which sunlight of V = 0 falls without optics; `None` when
-    /// the aperture is unknown, because only a zero point was given.
+    /// Photoelectrons per second and square metre of a detector under sunlight of V = 0 without optics;
+    /// `None` if the aperture is unknown, because only a zero point was given.
     pub fn bare_sunlight_e_per_s_m2(&self) -> Option<f64> {
         self.collecting_area_m2.map(|area_m2| self.sunlight / area_m2)
     }
 
-    /// Photo-electrons a second from a star: zero point of its colour times 10^(−0.4 V) (Pogson 1856).
+    /// Photoelectrons per second from a star: zero point of its colour times 10^(−0.4 V) (Pogson 1856).
     pub fn star(&self, v_mag: f64, b_v: Option<f64>, v_i: Option<f64>) -> f64 {
         self.zero_point_e_per_s(b_v, v_i) * libm::pow(10.0, -0.4 * v_mag)
     }
 
-    /// Photo-electrons a second from a grey body in sunlight.
+    /// Photoelectrons per second from a grey body in sunlight.
     pub fn sunlit(&self, v_mag: f64) -> f64 {
         self.sunlight * libm::pow(10.0, -0.4 * v_mag)
     }
@@ -188,7 +195,7 @@ impl Radiometry {
 mod tests {
     use super::*;
 
-    /// 1 cm², no losses, every photon counted.
+    /// Aperture of 1 cm² without losses, with every photon counted.
     fn perfect(band_nm: Option<[f64; 2]>) -> RadiometryConfig {
         RadiometryConfig::Spectral {
             aperture_diameter_mm: 20.0 / libm::sqrt(std::f64::consts::PI),
@@ -213,22 +220,23 @@ mod tests {
         let one = Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 2e6 }).unwrap();
         assert_eq!(one.star(0.0, Some(1.5), Some(2.7)), 2e6);
         assert_eq!(one.star(0.0, None, None), one.sunlit(0.0));
-        // A few units in the last place of pow.
+        // Tolerance: a few units in the last digit of pow.
         assert!((one.star(5.0, None, None) - 2e4).abs() < 1e-8);
         assert!((one.sunlit(-5.0) - 2e8).abs() < 1e-4);
     }
 
-    /// Vega-like light of V = 0 has about 1000 photons a second, cm² and ångström at 550 nm: 3.63e-9 erg/(s cm² Å) (Bessell,
-    /// Castelli & Plez 1998, Table A2) over the energy of a photon, 3.61e-12 erg, is 1005.
+    /// Vega-like light of V = 0 has about 1000 photons per second, cm² and ångström at 550 nm: 3.63e-9 erg/(s
+    /// cm² Å) (Bessell, Castelli & Plez 1998, Table A2) over the energy of a photon, 3.61e-12 erg, is 1005.
     #[test]
     fn a_star_of_v_zero_gives_a_thousand_photons_an_angstrom() {
         let green = Radiometry::new(&perfect(Some([545.0, 555.0]))).unwrap();
         let photons = green.zero_point_e_per_s(Some(0.0), None) / 100.0;
-        // The slope of the spectrum over V moves the irradiance at 550 nm by 2 %.
+        // The slope of the spectrum over V changes the irradiance at 550 nm by 2 %.
         assert!((photons - 1005.0).abs() < 30.0, "{photons}");
     }
 
-    /// Between 400 and 700 nm lie 39 % of the solar constant, 1361 W m⁻², of 4.57 µmol a joule (McCree 1972): 2.4 mmol m⁻² s⁻¹.
+    /// Between 400 and 700 nm the Sun emits 39 % of the solar constant, 1361 W m⁻², at 4.57 µmol per joule
+    /// (McCree 1972): 2.4 mmol m⁻² s⁻¹.
     #[test]
     fn sunlight_has_its_published_number_of_photons() {
         let visible = Radiometry::new(&perfect(Some([400.0, 700.0]))).unwrap();

@@ -1,4 +1,4 @@
-//! How many photo-electrons a photon gives.
+//! Quantum efficiency: photoelectrons per photon.
 
 use contract::OutOfRange;
 use contract::bounds::require;
@@ -9,9 +9,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "expected \"silicon_ccd\" or a table of [wavelength in nm, efficiency]")]
 pub enum QuantumEfficiency {
-    /// A detector that is known by name.
+    /// Detector with a built-in quantum efficiency.
     Known(KnownDetector),
-    /// Wavelength (nm, growing, 200 to 1200) and electrons a photon (0 to 1), 2 to 1000 pairs; straight lines between, 0 outside.
+    /// Wavelength (nm, increasing, 200 to 1200) and electrons per photon (0 to 1), 2 to 1000 pairs; linear
+    /// between them, 0 outside.
     Table(
         #[schemars(length(min = 2, max = 1000), extend("items" = { "type": "array", "minItems": 2, "maxItems": 2, "prefixItems": [
             { "type": "number", "minimum": 200, "maximum": 1200 },
@@ -25,16 +26,17 @@ pub enum QuantumEfficiency {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum KnownDetector {
-    /// A front-illuminated silicon CCD without coating: the absorption of silicon behind gates of polysilicon. Its peak is 0.53 near
-    /// 600 nm. No particular device; a table of the maker is better where there is one.
+    /// Front-illuminated silicon CCD without coating: the absorption of silicon behind gates of polysilicon.
+    /// Its peak is 0.53 near 600 nm. It models no particular device; a table of the manufacturer is better if
+    /// available.
     SiliconCcd,
 }
 
 impl QuantumEfficiency {
-    /// Checks that the wavelengths of a table grow; its numbers are checked with the radiometry.
+    /// Checks that the wavelengths of a table increase; the radiometry checks its numbers.
     ///
     /// # Errors
-    /// [`OutOfRange`] when they do not.
+    /// [`OutOfRange`] if they do not increase.
     pub(super) fn check(&self) -> Result<(), OutOfRange> {
         let Self::Table(table) = self else { return Ok(()) };
         for pair in table.windows(2) {
@@ -44,7 +46,7 @@ impl QuantumEfficiency {
         Ok(())
     }
 
-    /// Electrons a photon at a wavelength, 0 to 1.
+    /// Electrons per photon at a wavelength, 0 to 1.
     pub fn efficiency_at(&self, wavelength_nm: f64) -> f64 {
         match self {
             Self::Known(KnownDetector::SiliconCcd) => silicon_ccd(wavelength_nm),
@@ -53,7 +55,7 @@ impl QuantumEfficiency {
     }
 }
 
-/// The value of a table of growing abscissae by straight lines; `None` outside.
+/// Interpolates linearly in a table of increasing abscissae; `None` outside.
 fn linear(table: &[[f64; 2]], x: f64) -> Option<f64> {
     table.windows(2).find_map(|pair| match pair {
         [[x0, y0], [x1, y1]] if (*x0..=*x1).contains(&x) => Some(y0 + (x - x0) / (x1 - x0) * (y1 - y0)),
@@ -61,8 +63,8 @@ fn linear(table: &[[f64; 2]], x: f64) -> Option<f64> {
     })
 }
 
-/// Absorption coefficient of silicon at 300 K: wavelength, nm, and natural logarithm of the coefficient in cm⁻¹, from Green
-/// (2008, Sol. Energy Mater. Sol. Cells 92, 1305, Table 1).
+/// Absorption coefficient of silicon at 300 K: wavelength, nm, and natural logarithm of the coefficient in
+/// cm⁻¹, from Green (2008, Sol. Energy Mater. Sol. Cells 92, 1305, Table 1).
 const SILICON: [[f64; 2]; 17] = [
     [300.0, 14.364],
     [350.0, 13.855],
@@ -82,15 +84,16 @@ const SILICON: [[f64; 2]; 17] = [
     [1050.0, 2.791],
     [1100.0, 1.253],
 ];
-/// Light that gets through the surface: one minus reflection, losses of the gates' oxide and shaded parts of the pixel.
+/// Fraction of light that passes the surface: one minus reflection, losses of the gates' oxide and shaded
+/// parts of the pixel.
 const ENTERING: f64 = 0.60;
 /// Thickness of polysilicon in which electrons are lost, µm.
 const GATES_UM: f64 = 0.25;
-/// Depth from which electrons are collected, µm.
+/// Thickness from which electrons are collected, µm.
 const COLLECTING_UM: f64 = 10.0;
 
-/// Entering light, less what the gates absorb, times what the collecting depth absorbs (Janesick 2001, Scientific
-/// Charge-Coupled Devices, Sec. 3.2).
+/// Quantum efficiency of a silicon CCD: entering light, less absorption in the gates, times absorption in the
+/// collecting depth (Janesick 2001, Scientific Charge-Coupled Devices, Sec. 3.2).
 fn silicon_ccd(wavelength_nm: f64) -> f64 {
     let Some(ln_per_cm) = linear(&SILICON, wavelength_nm) else { return 0.0 };
     let per_um = libm::exp(ln_per_cm) * 1e-4;
@@ -111,8 +114,9 @@ mod tests {
         assert_eq!((table.efficiency_at(399.9), table.efficiency_at(900.1)), (0.0, 0.0));
     }
 
-    /// Front-illuminated CCDs without coating: blind in the near ultraviolet, between 0.4 and 0.6 at their peak from 600 to 700 nm, some
-    /// 0.2 at 900 nm and a few hundredths at 1000 nm, as in the data sheets of such devices.
+    /// Front-illuminated CCDs without coating are blind in the near ultraviolet, have between 0.4 and 0.6 at
+    /// their peak from 600 to 700 nm, some 0.2 at 900 nm and a few hundredths at 1000 nm, as in the data
+    /// sheets of such devices.
     #[test]
     fn a_front_illuminated_ccd_is_blind_in_the_ultraviolet_and_fades_in_the_infrared() {
         assert!(CCD.efficiency_at(350.0) < 0.01);

@@ -1,19 +1,19 @@
-//! The light of stars by their colour, and of the Sun, as means over bins of wavelength.
+//! Spectra of stars by their colour, and of the Sun, as means over wavelength bins.
 //!
-//! Stars: flux-calibrated spectra of Pickles (1998, PASP 110, 863), dwarfs from O5 to G8 and giants from G5 to M7,
-//! scaled so that each has V = 0. The Sun: ASTM G173-03 (Gueymard 2004), extraterrestrial. `sim/data/make_spectra.py` makes the
-//! table and says how V is defined.
+//! Stars: flux-calibrated spectra of Pickles (1998, PASP 110, 863), dwarfs from O5 to G8 and giants from G5
+//! to M7, scaled to V = 0. The Sun: ASTM G173-03 (Gueymard 2004), extraterrestrial.
+//! `sim/data/make_spectra.py` generates the table and defines V.
 
 /// First wavelength of the table, nm.
 pub(super) const START_NM: f64 = 300.0;
 /// Width of a bin, nm.
 pub(super) const BIN_NM: f64 = 5.0;
-/// Bins of a spectrum: up to 1100 nm, where silicon stops absorbing.
+/// Number of bins in a spectrum: up to 1100 nm, where silicon stops absorbing.
 pub(super) const BINS: usize = 160;
-/// Stars of the colour sequence.
+/// Number of stars in the colour sequence.
 pub(super) const STARS: usize = 36;
-/// How many of them, from the first, have a B−V that grows from star to star: O5V to K4III. Beyond, the molecular bands of
-/// M giants turn B−V back, and only V−I tells them apart.
+/// Number of stars, counted from the first, whose B−V increases from star to star: O5V to K4III. Beyond, the
+/// molecular bands of M giants reverse B−V, and only V−I distinguishes the stars.
 const BLUE: usize = 27;
 
 /// B−V of a star whose colour is unknown, mag: the mean of the embedded catalogue.
@@ -22,10 +22,10 @@ const MEAN_B_V: f64 = 0.70;
 const WORD: usize = size_of::<f64>();
 const STAR_RECORD: usize = BINS + 2;
 
-/// A table of another size does not compile.
+/// Table of spectra. A table of another size does not compile.
 static TABLE: &[u8; (STARS * STAR_RECORD + BINS) * WORD] = include_bytes!("../../../data/spectra.bin");
 
-/// Means over the bins of a spectral irradiance, W m⁻² nm⁻¹.
+/// Spectral irradiance, means over the bins, W m⁻² nm⁻¹.
 pub(super) type Spectrum = [f64; BINS];
 
 /// Middle of a bin, nm.
@@ -58,11 +58,11 @@ pub(super) fn v_i(number: usize) -> f64 {
     table_value(number * STAR_RECORD + 1)
 }
 
-/// The place on the sequence of a star with these colours: the number of the star before it, and how far it is on the way to
-/// the next, 0 to 1.
+/// Position on the sequence of a star with these colours: the number of the preceding star, and the fraction
+/// of the interval to the next, 0 to 1.
 ///
-/// V−I decides when it is known, because it lies where silicon is sensitive: dwarfs and giants, reddened or not, agree better by
-/// it. Otherwise B−V. Colours beyond the ends of the sequence are those of the ends.
+/// V−I is used if it is known, because it lies where silicon is sensitive: dwarfs and giants, reddened or
+/// not, agree better in it. Otherwise B−V is used. Colours beyond the ends of the sequence use its ends.
 pub(super) fn sequence_position(b_v_mag: Option<f64>, v_i_mag: Option<f64>) -> (usize, f64) {
     match (v_i_mag, b_v_mag) {
         (Some(colour), _) => between(colour, STARS, v_i),
@@ -70,7 +70,7 @@ pub(super) fn sequence_position(b_v_mag: Option<f64>, v_i_mag: Option<f64>) -> (
     }
 }
 
-/// The place of a colour among the first `count` stars, whose colours grow.
+/// Position of a colour among the first `count` stars, whose colours increase.
 fn between(colour: f64, count: usize, colour_of: fn(usize) -> f64) -> (usize, f64) {
     let before = (1..count - 1).take_while(|&number| colour_of(number) <= colour).last().unwrap_or(0);
     let (low, high) = (colour_of(before), colour_of(before + 1));
@@ -87,13 +87,13 @@ mod tests {
         0.0, 0.030, 0.163, 0.458, 0.780, 0.967, 1.0, 0.973, 0.898, 0.792, 0.684, 0.574, 0.461, 0.359, 0.270,
         0.197, 0.135, 0.081, 0.045, 0.025, 0.017, 0.013, 0.009, 0.0,
     ];
-    /// B of the same, every 10 nm from 360 nm.
+    /// B of Bessell (1990), Table 2, every 10 nm from 360 nm.
     const B: [f64; 21] = [
         0.0, 0.030, 0.134, 0.567, 0.920, 0.978, 1.0, 0.978, 0.935, 0.853, 0.740, 0.640, 0.536, 0.424, 0.325,
         0.235, 0.150, 0.095, 0.043, 0.009, 0.0,
     ];
 
-    /// Mean irradiance in a passband of nodes every 10 nm, energy weights.
+    /// Mean irradiance in a passband with nodes every 10 nm, energy weights.
     fn in_band(spectrum: &Spectrum, first_nm: f64, response: &[f64]) -> f64 {
         let (mut sum, mut weights) = (0.0, 0.0);
         for (bin, irradiance) in spectrum.iter().enumerate() {
@@ -108,7 +108,7 @@ mod tests {
         sum / weights
     }
 
-    /// Magnitude against the irradiance of magnitude 0 of Bessell, Castelli & Plez (1998), Table A2.
+    /// Magnitude relative to the irradiance of magnitude 0 of Bessell, Castelli & Plez (1998), Table A2.
     fn magnitude(irradiance: f64, zero_e11_erg_cm2_s_aa: f64) -> f64 {
         -2.5 * libm::log10(irradiance / (zero_e11_erg_cm2_s_aa * 1e-13))
     }
@@ -119,7 +119,7 @@ mod tests {
             let spectrum = star(number);
             let v = magnitude(in_band(&spectrum, 470.0, &V), 363.1);
             let b = magnitude(in_band(&spectrum, 360.0, &B), 632.0);
-            // Bins of 5 nm against 0.25 nm: 0.003 mag where lines and molecular bands crowd.
+            // Bins of 5 nm compared with 0.25 nm: 0.003 mag where lines and molecular bands are dense.
             assert!(v.abs() < 0.003, "star {number}: V {v}");
             assert!((b - v - b_v(number)).abs() < 0.01, "star {number}: B−V {} for {}", b - v, b_v(number));
         }
@@ -135,7 +135,8 @@ mod tests {
         assert!((b - v - 0.65).abs() < 0.02, "{}", b - v);
     }
 
-    /// The table ends at 1100 nm; the solar constant (1361 W m⁻²) has about 75 % of its energy between 300 and 1100 nm.
+    /// The table ends at 1100 nm; the solar constant (1361 W m⁻²) has about 75 % of its energy between 300
+    /// and 1100 nm.
     #[test]
     fn the_sun_has_the_energy_of_the_solar_constant() {
         let energy: f64 = sun().iter().sum::<f64>() * BIN_NM;

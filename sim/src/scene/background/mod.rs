@@ -1,6 +1,8 @@
-//! Light without a source in the field: zodiacal light, faint stars, and what the optics scatter of Sun, Earth and Moon.
+//! Background light from outside the field's sources: zodiacal light, faint stars, and light of Sun, Earth
+//! and Moon scattered in the optics.
 //!
-//! All of it is smooth: it is evaluated at the nodes of a grid over the detector and interpolated between them.
+//! All of it is smooth: it is evaluated at the nodes of a grid over the detector and interpolated between
+//! them.
 
 mod stray;
 mod transmittance_table;
@@ -26,38 +28,41 @@ use crate::truth::{clock, moon, shadow};
 use stray::Ray;
 use transmittance_table::TransmittanceTable;
 
-/// Square degrees in a steradian.
+/// Square degrees per steradian.
 const SQUARE_DEGREES_PER_SR: f64 = (180.0 / std::f64::consts::PI) * (180.0 / std::f64::consts::PI);
 
-/// Which parts of the background are simulated; all are off where they are not named.
+/// Simulated parts of the background; each is off unless it is named.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BackgroundConfig {
-    /// Zodiacal light, `on` or `off`, by ecliptic latitude and longitude from the Sun.
+    /// Zodiacal light, `on` or `off`, as a function of ecliptic latitude and longitude from the Sun.
     pub zodiacal: Switch,
-    /// Stars that are too faint to be drawn, the same everywhere: S10 (stars like the Sun of V = 10 to a square degree), 0 to 1000.
+    /// Stars too faint to be drawn, uniform over the sky: S10 (Sun-like stars of V = 10 per square degree), 0
+    /// to 1000.
     #[schemars(range(min = 0, max = 1000))]
     pub faint_stars_s10: f64,
-    /// Scattered light of the Sun; needs radiometry of kind "spectral".
+    /// Scattered light of the Sun; requires radiometry of kind "spectral".
     pub sun: Option<StrayLightConfig>,
-    /// The Earth: scattered light of its sunlit part, and it hides what is behind it; needs radiometry of kind "spectral".
+    /// Earth: scattered light of its sunlit part, and occultation of objects behind it; requires radiometry
+    /// of kind "spectral".
     pub earth: Option<EarthLightConfig>,
-    /// Scattered light of the Moon; needs radiometry of kind "spectral".
+    /// Scattered light of the Moon; requires radiometry of kind "spectral".
     pub moon: Option<StrayLightConfig>,
 }
 
-/// The Earth as a source of scattered light: a diffuse sphere, sunlit, each part of its disk by its own angle.
+/// Earth as a source of scattered light: a diffuse sunlit sphere, with each part of its disk at a separate
+/// angle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EarthLightConfig {
-    /// Diffuse reflectance (Lambert albedo), clouds included, 0 to 1; 0.3 on the average.
+    /// Diffuse reflectance (Lambert albedo), clouds included, 0 to 1; 0.3 on average.
     #[schemars(range(min = 0, max = 1))]
     pub albedo: f64,
-    /// How its light is scattered.
+    /// Scattering of the Earth's light.
     pub scatter: StrayLightConfig,
 }
 
-/// All of it is off.
+/// All parts are off.
 impl Default for BackgroundConfig {
     fn default() -> Self {
         Self { zodiacal: Switch::Off, faint_stars_s10: 0.0, sun: None, earth: None, moon: None }
@@ -65,15 +70,15 @@ impl Default for BackgroundConfig {
 }
 
 impl BackgroundConfig {
-    /// Checks every number.
+    /// Checks the ranges of all values.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first value outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "background")
     }
 
-    /// Whether every part is off.
+    /// Returns true if every part is off.
     fn is_off(&self) -> bool {
         self.zodiacal == Switch::Off
             && self.faint_stars_s10 == 0.0
@@ -83,40 +88,42 @@ impl BackgroundConfig {
     }
 }
 
-/// The background of a camera, prepared.
+/// Prepared background of a camera.
 #[derive(Debug, Clone)]
 pub struct Background {
     config: BackgroundConfig,
     grid: Arc<NodeGrid>,
-    /// Of the grid, row by row.
+    /// Nodes of the grid, row by row.
     nodes: Vec<Node>,
-    /// Of the Earth's light, which comes in many rays.
+    /// Transmittance for the Earth's light, which consists of many rays.
     earth_transmittance: Option<Arc<TransmittanceTable>>,
-    /// Electrons a second and pixel of 1 S10, by a steradian of the pixel.
+    /// Electrons per second and pixel of 1 S10, per steradian of the pixel.
     s10_e_per_s_sr: f64,
-    /// Electrons a second and pixel when sunlight as at 1 au falls on the bare detector; `None` when the aperture is unknown.
+    /// Electrons per second and pixel of the bare detector under sunlight as at 1 au; `None` if the aperture
+    /// is unknown.
     bare_sun_e_per_s: Option<f64>,
 }
 
-/// A place on the detector and what it sees.
+/// Position on the detector, with its direction and solid angle.
 #[derive(Debug, Clone, Copy)]
 struct Node {
     /// Unit vector in the camera frame.
     direction: Vector3<f64>,
-    /// Solid angle of the pixel, sr, times the transmission there.
+    /// Solid angle of the pixel, sr, times its transmission.
     pixel_sr: f64,
 }
 
 impl Background {
-    /// Whether the Earth is part of the scene: it shines, and stands before what is behind it.
+    /// Returns true if the Earth is part of the scene: it shines, and hides objects behind it.
     pub(crate) fn has_earth(&self) -> bool {
         self.config.earth.is_some()
     }
 
-    /// Prepares the background of a camera; `None` when all of it is off.
+    /// Prepares the background of a camera; `None` if every part is off.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for a number outside its range, and for stray light where the aperture is unknown.
+    /// [`SimError::OutOfRange`] for a number outside its range, and for stray light if the aperture is
+    /// unknown.
     pub fn new(
         config: &BackgroundConfig,
         camera: &Camera,
@@ -167,8 +174,8 @@ impl Background {
         }))
     }
 
-    /// The same behind optics that vignette: light of the sky is lost as a star's is. Stray light is not, it comes in by
-    /// other ways.
+    /// Returns this background behind optics with vignetting: light of the sky is reduced like that of a
+    /// star. Stray light is not reduced, because it enters by other paths.
     pub fn vignetted(mut self, vignetting: &Vignetting) -> Self {
         for (i, node) in self.nodes.iter_mut().enumerate() {
             let (x, y) = self.grid.node_position(i);
@@ -177,10 +184,10 @@ impl Background {
         self
     }
 
-    /// The background at `time` for an observer at `position_km` from the centre of the Earth, with the Sun at `sun_km` from it,
-    /// ICRS axes.
+    /// Computes the background at `time` for an observer at `position_km` from the centre of the Earth, with
+    /// the Sun at `sun_km` from the observer, ICRS axes.
     ///
-    /// Directions are geometric: aberration (0.006°) is nothing to a smooth field.
+    /// Directions are geometric: aberration (0.006°) is negligible in a smooth field.
     pub fn field(
         &self,
         time: Epoch,
@@ -217,7 +224,7 @@ impl Background {
         BackgroundField { e_per_s: SmoothField::new(Arc::clone(&self.grid), e_per_s) }
     }
 
-    /// The light that reaches the aperture from Sun, Earth and Moon; none of those that are off.
+    /// Light that reaches the aperture from Sun, Earth and Moon; no rays from sources that are off.
     fn rays(
         &self,
         time: Epoch,
@@ -257,7 +264,7 @@ impl Background {
 }
 
 impl Node {
-    /// What the pixel at (x, y) sees; `None` where no direction falls.
+    /// Direction and solid angle of the pixel at (x, y); `None` if the pixel has no direction.
     fn new(projection: &Projection, x: f64, y: f64) -> Option<Self> {
         let at = |dx: f64, dy: f64| {
             projection.unproject(PixelPoint::new(x + dx, y + dy)).map(|direction| *direction.vector())
@@ -268,24 +275,24 @@ impl Node {
     }
 }
 
-/// The background of one frame: electrons a second in each pixel, bilinear between the nodes of a grid.
+/// Background of one frame: electrons per second in each pixel, bilinear between the nodes of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BackgroundField {
     e_per_s: SmoothField,
 }
 
 impl BackgroundField {
-    /// Photo-electrons a second and pixel, the mean over the detector.
+    /// Photoelectrons per second and pixel, averaged over the detector.
     pub fn mean_e_per_s(&self) -> f64 {
         self.e_per_s.mean()
     }
 
-    /// Photo-electrons a second as a field over the detector.
+    /// Photoelectrons per second as a field over the detector.
     pub(crate) fn smooth(&self) -> &SmoothField {
         &self.e_per_s
     }
 
-    /// Photo-electrons a second of every pixel, row by row; what `out` held is replaced.
+    /// Computes the photoelectrons per second of every pixel, row by row; replaces the contents of `out`.
     pub fn electrons_per_s(&self, out: &mut Vec<f64>) {
         let (columns, rows) = self.e_per_s.size();
         out.clear();

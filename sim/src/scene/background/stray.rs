@@ -1,4 +1,4 @@
-//! Light of bodies outside the field that the optics scatter onto the detector.
+//! Stray light: light of bodies outside the field that the optics scatter onto the detector.
 
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -6,36 +6,39 @@ use serde::{Deserialize, Serialize};
 
 use crate::truth::shadow::EARTH_RADIUS_KM;
 
-/// How baffle and optics scatter light from outside the field: the point source transmittance (irradiance of the detector over that
-/// of the aperture facing the source) as a power law of the angle between the source and the direction of the pixel, with a bend at
-/// the exclusion angle of the baffle. Within 1° of the source it is that at 1°.
+/// Scattering of light from outside the field by baffle and optics: the point source transmittance
+/// (irradiance of the detector over that of the aperture facing the source) as a power law of the angle
+/// between the source and the direction of the pixel, with a bend at the exclusion angle of the baffle.
+/// Within 1° of the source it has its value at 1°.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrayLightConfig {
-    /// Angle from which on the baffle keeps the source's light off the first lens, degrees, 1 to 180.
+    /// Angle from which on the baffle blocks the source's light from the first lens, degrees, 1 to 180.
     #[schemars(range(min = 1, max = 180))]
     pub exclusion_deg: f64,
     /// Point source transmittance at the exclusion angle, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub transmittance: f64,
-    /// Exponent with which it falls beyond the exclusion angle, 0 to 20.
+    /// Exponent of its decrease beyond the exclusion angle, 0 to 20.
     #[schemars(range(min = 0, max = 20))]
     pub power: f64,
-    /// Exponent with which it grows inside the exclusion angle, 0 to 20.
+    /// Exponent of its increase inside the exclusion angle, 0 to 20.
     #[schemars(range(min = 0, max = 20))]
     pub power_inside: f64,
 }
 
 impl StrayLightConfig {
-    /// Angle below which the law is not followed, rad: 1°.
+    /// Angle below which the transmittance is constant, rad: 1°.
     const NEAREST_RAD: f64 = std::f64::consts::PI / 180.0;
 
-    /// Point source transmittance for light from the unit vector `source` in the direction `pixel`; at most 1.
+    /// Point source transmittance for light from the unit vector `source` in the direction `pixel`; at most
+    /// 1.
     pub(super) fn transmittance(&self, pixel: &Vector3<f64>, source: &Vector3<f64>) -> f64 {
         self.transmittance_at_angle(libm::atan2(pixel.cross(source).norm(), pixel.dot(source)))
     }
 
-    /// Point source transmittance at an angle, rad, between the light and the direction of the pixel; at most 1.
+    /// Point source transmittance at an angle, rad, between the light and the direction of the pixel; at most
+    /// 1.
     pub(super) fn transmittance_at_angle(&self, angle: f64) -> f64 {
         let ratio = self.exclusion_deg.to_radians() / angle.max(Self::NEAREST_RAD);
         let power = if ratio < 1.0 { self.power } else { self.power_inside };
@@ -43,21 +46,23 @@ impl StrayLightConfig {
     }
 }
 
-/// A bundle of light that reaches the aperture.
+/// Bundle of light that reaches the aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ray {
-    /// Unit vector to where it comes from, ICRS axes.
+    /// Unit vector towards the source of the light, ICRS axes.
     pub(super) direction: Vector3<f64>,
-    /// Irradiance facing it, in units of that of the Sun at 1 au.
+    /// Irradiance of a surface facing the source, in units of that of the Sun at 1 au.
     pub(super) suns: f64,
 }
 
-/// Rings, and patches of a ring, into which the Earth's disk is divided: equal solid angles.
+/// Number of rings, and of patches in a ring, into which the Earth's disk is divided, all of equal solid
+/// angle.
 const RINGS: usize = 10;
 const SECTORS: usize = 20;
 
-/// The lit part of the Earth's disk as seen from `position_km` (from its centre, ICRS axes): a Lambert sphere of albedo `albedo`
-/// in sunlight from `sun` (unit vector) of `suns`. Appended to `rays`; nothing from inside the Earth.
+/// Appends to `rays` the lit part of the Earth's disk as seen from `position_km` (from the Earth's centre,
+/// ICRS axes): a Lambert sphere of albedo `albedo` in sunlight from `sun` (unit vector) of `suns`. Appends
+/// nothing from inside the Earth.
 pub(super) fn earth_rays(
     position_km: &Vector3<f64>,
     sun: &Vector3<f64>,
@@ -70,7 +75,7 @@ pub(super) fn earth_rays(
         return;
     }
     let nadir = -position_km / distance;
-    // Any two directions across: the coordinate axis that the nadir is farthest from makes the first.
+    // Two transverse directions: the first is derived from a coordinate axis well away from the nadir.
     let axis = if nadir.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
     let across = nadir.cross(&axis).normalize();
     let other = nadir.cross(&across);
@@ -126,20 +131,21 @@ mod tests {
         rays.iter().map(|ray| ray.suns).sum()
     }
 
-    /// From afar: 2/3 A Φ(α) (R/d)², Φ(0) = 1 and Φ(90°) = 1/π (Russell 1916).
+    /// From a large distance: 2/3 A Φ(α) (R/d)², Φ(0) = 1 and Φ(90°) = 1/π (Russell 1916).
     #[test]
     fn the_earth_from_afar_is_a_lambert_sphere() {
         let full = Vector3::new(1.0, 2.0, -2.0).normalize();
         let half = Vector3::new(2.0, -1.0, 0.0).normalize();
         let sphere = 2.0 / 3.0 * 0.3 * 1e-6;
-        // Patches of 1/200 of the disk: 1 % at full phase; where the terminator runs through patches, 3 %.
+        // Patches of 1/200 of the disk: an error of 1 % at full phase, and of 3 % where the terminator
+        // crosses patches.
         assert!((irradiance(1000.0, full) / sphere - 1.0).abs() < 0.01);
         assert!((irradiance(1000.0, half) / sphere * std::f64::consts::PI - 1.0).abs() < 0.03);
         assert_eq!(irradiance(1000.0, -full), 0.0);
     }
 
-    /// Just above the subsolar point the disk fills half of the sky with ground lit from above: π sr of radiance A S/π, seen without
-    /// a cosine: 2π A/π = 2 A.
+    /// Just above the subsolar point the disk fills half of the sky, 2π sr, with ground lit from above, of
+    /// radiance A S/π. Without a cosine this gives 2π A/π = 2 A.
     #[test]
     fn a_low_orbit_sees_half_a_sky_of_lit_ground() {
         let zenith = Vector3::new(1.0, 2.0, -2.0).normalize();

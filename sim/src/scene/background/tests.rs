@@ -35,7 +35,7 @@ fn background(config: &BackgroundConfig, radiometry: &Radiometry) -> Background 
     Background::new(config, &camera(), &projection, radiometry).unwrap().unwrap()
 }
 
-/// A camera that looks along a direction of the ecliptic axes.
+/// Attitude of a camera that points along a direction in ecliptic axes.
 fn looking_at(ecliptic: Vector3<f64>) -> Rotation<CameraFrame, Icrs> {
     let z = ecliptic::to_icrs(ecliptic).normalize();
     let x = z.cross(&Vector3::new(0.3, 0.9, 0.1)).normalize();
@@ -46,7 +46,7 @@ fn time() -> Epoch {
     clock::parse_utc("2012-04-25T12:00:00Z").unwrap()
 }
 
-/// The Sun in the direction of ecliptic longitude 0, at 1 au; the observer above the day side.
+/// Position of the Sun at ecliptic longitude 0, at 1 au; the observer is above the day side.
 fn sun_km() -> Vector3<f64> {
     ecliptic::to_icrs(Vector3::x()) * AU_KM
 }
@@ -84,8 +84,8 @@ fn what_is_off_costs_nothing_and_stray_light_asks_for_an_aperture() {
     assert!(new(&wrong).unwrap_err().to_string().contains("faint_stars_s10"));
 }
 
-/// 1 S10 is one star of V = 10 on a square degree: zero point · 10⁻⁴ · the pixel's solid angle, which falls as cos³ of the angle
-/// to the boresight in a pinhole camera.
+/// 1 S10 is one star of V = 10 per square degree: zero point · 10⁻⁴ · the pixel's solid angle, which
+/// decreases as cos³ of the angle to the boresight in a pinhole camera.
 #[test]
 fn faint_stars_give_the_light_of_their_number() {
     let config = BackgroundConfig { faint_stars_s10: 100.0, ..BackgroundConfig::default() };
@@ -98,12 +98,13 @@ fn faint_stars_give_the_light_of_their_number() {
     };
     for (x, y) in [(0, 0), (149, 99), (299, 199), (10, 150), (201, 3)] {
         let ratio = pixels[y * 300 + x] / at(x, y);
-        // Straight lines between nodes 19 pixels apart.
+        // Linear interpolation between nodes 19 pixels apart.
         assert!((ratio - 1.0).abs() < 1e-4, "({x}, {y}): {ratio}");
     }
 }
 
-/// Leinert et al. (1998): 60 S10 at the pole of the ecliptic, 23.3 mag to a square arc second; 22.1 near the antisolar point.
+/// Leinert et al. (1998): 60 S10 at the pole of the ecliptic, 23.3 mag per square arc second; 22.1 near the
+/// antisolar point.
 #[test]
 fn zodiacal_light_has_its_published_surface_brightness() {
     let config = BackgroundConfig { zodiacal: Switch::On, ..BackgroundConfig::default() };
@@ -133,7 +134,8 @@ fn the_mean_is_that_of_the_pixels_and_neighbours_are_alike() {
     }
 }
 
-/// The Sun on a square metre of bare detector, times the transmittance at its angle, times the area of a pixel.
+/// Expected value: the Sun on a square metre of bare detector, times the transmittance at its angle, times
+/// the area of a pixel.
 #[test]
 fn stray_light_of_the_sun_is_its_irradiance_times_the_transmittance() {
     let config = BackgroundConfig { sun: Some(LAW), ..BackgroundConfig::default() };
@@ -143,7 +145,8 @@ fn stray_light_of_the_sun_is_its_irradiance_times_the_transmittance() {
     let bare = radiometry.bare_sunlight_e_per_s_m2().unwrap() * libm::pow(10.0, 0.4 * 26.76) * 80e-12;
     let expected = bare * 1e-7 * (40.0 / 90.0) * (40.0 / 90.0);
     assert!((pixels[100 * 300 + 150] / expected - 1.0).abs() < 2e-3);
-    // A photon of 600 nm has 3.3e-19 J, and a third of 1361 W/m² becomes electrons: some 1e21 electrons a second and m².
+    // A photon of 600 nm has 3.3e-19 J, and a third of 1361 W/m² becomes electrons: some 1e21 electrons per
+    // second and m².
     assert!((5e20..2e21).contains(&(bare / 80e-12)), "{bare}");
 }
 
@@ -155,7 +158,8 @@ fn in_the_shadow_of_the_earth_the_sun_scatters_nothing() {
     assert_eq!(dark.mean_e_per_s(), 0.0);
 }
 
-/// The full Moon is 400 000 times fainter than the Sun (14 mag); scattered by the same law it is so too.
+/// The full Moon is 400 000 times fainter than the Sun (14 mag), and with equal scattering so is its stray
+/// light.
 #[test]
 fn the_moon_scatters_as_much_less_as_it_is_fainter() {
     let config = BackgroundConfig {
@@ -163,7 +167,7 @@ fn the_moon_scatters_as_much_less_as_it_is_fainter() {
         ..BackgroundConfig::default()
     };
     let moon = background(&config, &spectral());
-    // Half a year has full moons and new ones; the Sun is put opposite to the Moon.
+    // Full and new moons both occur within half a year; here the Sun is placed opposite to the Moon.
     let to_moon = moon::moon_position_km(clock::tdb_j2000_s(time()));
     let observer = to_moon.normalize() * 7000.0;
     let mean =
@@ -176,7 +180,8 @@ fn the_moon_scatters_as_much_less_as_it_is_fainter() {
     assert!(mean(to_moon.normalize() * AU_KM) < 0.01 * full);
 }
 
-/// The law of a uniform sky: cos³ of the pixels' solid angles times the cosine of the foreshortened aperture.
+/// cos⁴ law of a uniform sky: cos³ of the pixels' solid angles times the cosine of the foreshortened
+/// aperture.
 #[test]
 fn an_even_sky_falls_off_by_the_fourth_power_of_the_cosine() {
     let even = BackgroundConfig { faint_stars_s10: 100.0, ..BackgroundConfig::default() };
@@ -189,6 +194,6 @@ fn an_even_sky_falls_off_by_the_fourth_power_of_the_cosine() {
     let projection = Projection::new(&camera()).unwrap();
     let cos = projection.unproject(PixelPoint::new(0.0, 0.0)).unwrap().vector().z;
     let ratio = pixels[0] / pixels[100 * 300 + 150];
-    // Between the nodes the field is linear: 1e-5.
+    // The field is linear between the nodes: an error of 1e-5.
     assert!((ratio - cos * cos * cos * cos).abs() < 2e-5, "{ratio}, {}", cos * cos * cos * cos);
 }

@@ -1,10 +1,10 @@
-//! Zodiacal light by the place in the sky, as seen from the Earth.
+//! Zodiacal light by position in the sky, as seen from the Earth.
 
 use nalgebra::Vector3;
 
 use crate::truth::ecliptic;
 
-/// Differences of ecliptic longitude to the Sun of the rows, degrees.
+/// Ecliptic longitudes of the rows, relative to the Sun, degrees.
 const LONGITUDES_DEG: [f64; 19] = [
     0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 60.0, 75.0, 90.0, 105.0, 120.0, 135.0, 150.0,
     165.0, 180.0,
@@ -12,8 +12,9 @@ const LONGITUDES_DEG: [f64; 19] = [
 /// Ecliptic latitudes of the columns, degrees.
 const LATITUDES_DEG: [f64; 11] = [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 45.0, 60.0, 75.0, 90.0];
 
-/// Brightness at 500 nm, 1e-8 W m⁻² sr⁻¹ µm⁻¹ (Leinert et al. 1998, A&AS 127, 1, Table 17). The table has no values within 10° of
-/// the Sun; there the largest one stands, that of 15°: the real light goes on to grow, and a camera so near the Sun is blind.
+/// Brightness at 500 nm, 1e-8 W m⁻² sr⁻¹ µm⁻¹ (Leinert et al. 1998, A&AS 127, 1, Table 17). The table has no
+/// values within 10° of the Sun; the largest value, that of 15°, is used there. The real brightness increases
+/// further, and a camera so near the Sun is blinded.
 #[rustfmt::skip]
 const TABLE: [[f64; 11]; 19] = [
     [11500.0, 11500.0, 11500.0, 3140.0, 1610.0, 985.0, 640.0, 275.0, 150.0, 100.0, 77.0],
@@ -40,12 +41,13 @@ const TABLE: [[f64; 11]; 19] = [
 /// One S10⊙ at 500 nm in the unit of the table (Leinert et al. 1998, Table 2): 60 S10⊙ are 77 at the pole.
 const TABLE_UNITS_PER_S10: f64 = 1.28;
 
-/// Surface brightness in S10⊙ (stars like the Sun of V = 10, to a square degree) in the direction `direction`, with the Sun in the
-/// direction `sun`; unit vectors, ICRS axes. Bilinear in longitude from the Sun and latitude, alike to the north and the south.
+/// Surface brightness in S10⊙ (Sun-like stars of V = 10 per square degree) in the direction `direction`, with
+/// the Sun in the direction `sun`; unit vectors, ICRS axes. Bilinear in longitude from the Sun and latitude,
+/// symmetric between north and south.
 pub(super) fn zodiacal_s10(direction: &Vector3<f64>, sun: &Vector3<f64>) -> f64 {
     let (direction, sun) = (ecliptic::from_icrs(*direction), ecliptic::from_icrs(*sun));
     let latitude_deg = libm::atan2(direction.z.abs(), libm::hypot(direction.x, direction.y)).to_degrees();
-    // The angle between the projections on the ecliptic; at the pole it is 0, and no matter.
+    // Angle between the projections on the ecliptic; 0 at the pole, where it is irrelevant.
     let longitude_deg = libm::atan2(
         (sun.x * direction.y - sun.y * direction.x).abs(),
         sun.x * direction.x + sun.y * direction.y,
@@ -57,7 +59,8 @@ pub(super) fn zodiacal_s10(direction: &Vector3<f64>, sun: &Vector3<f64>) -> f64 
     (along(row) + down * (along(row + 1) - along(row))) / TABLE_UNITS_PER_S10
 }
 
-/// The interval of growing `nodes` in which `x` lies, and how far it is through it, 0 to 1.
+/// Returns the interval of increasing `nodes` that contains `x`, and the relative position in the interval, 0
+/// to 1.
 fn interval(nodes: &[f64], x: f64) -> (usize, f64) {
     let first = nodes.partition_point(|node| *node <= x).clamp(1, nodes.len() - 1) - 1;
     (first, ((x - nodes[first]) / (nodes[first + 1] - nodes[first])).clamp(0.0, 1.0))
@@ -77,7 +80,8 @@ mod tests {
         zodiacal_s10(&sky(40.0 + from_sun_deg, latitude_deg), &sky(40.0, 0.0))
     }
 
-    /// The same paper's Table 16, in S10⊙: two tables of one source, so that a wrong digit or unit shows.
+    /// Compares with Table 16 of the same paper, in S10⊙: two tables of one source reveal a wrong digit or
+    /// unit.
     #[test]
     fn the_values_are_those_of_the_table_in_s10() {
         for (from_sun, latitude, published) in [
@@ -113,7 +117,7 @@ mod tests {
             let longitude = f64::from(i) * 0.1;
             for latitude in [-80.0, -20.0, 0.5, 33.0, 89.9] {
                 let (here, next) = (s10(longitude, latitude), s10(longitude + 0.001, latitude));
-                // The steepest slope of the table is 1000 units a degree.
+                // The steepest slope of the table is 1000 units per degree.
                 assert!((next - here).abs() < 1.5, "{longitude}, {latitude}: {here}, {next}");
             }
         }

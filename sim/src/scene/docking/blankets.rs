@@ -1,4 +1,4 @@
-//! Thermal blankets on the station's end: irregular tiles in rings, with dark gaps between them.
+//! Thermal blankets on the station's end: rings of irregular tiles with dark gaps between them.
 
 use std::f64::consts::PI;
 
@@ -13,46 +13,47 @@ use super::docking_unit::DockingUnitTable;
 use super::shapes::{Circle, flat};
 use crate::randomness::{Effect, Seed, Stream, uniform};
 
-/// Tiles, at most: each is drawn in every image.
+/// Maximum number of tiles; each tile is drawn in every image.
 const MAX_TILES: f64 = 1000.0;
-/// How far the seam between two tiles of a ring may turn out of its place, as a share of a tile's width.
+/// Maximum angular shift of the seam between two tiles of a ring, as a share of a tile's width.
 const SEAM_SHIFT: f64 = 0.12;
 
-/// `[station.blankets]`: tiles in rings about the face's centre, from the rim inwards. Where the docking unit stands
-/// there are none.
+/// `[station.blankets]`: rings of tiles about the centre of the station's face, from the rim inwards. The
+/// area of the docking unit has no tiles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlanketsTable {
-    /// Where the figures are from, or `assumed: why`.
+    /// Source of the values, or `assumed: why`.
     pub source: String,
-    /// Seed of the layout: places of seams, width of gaps, reflectances.
+    /// Seed of the layout: positions of seams, widths of gaps, reflectances.
     #[schemars(range(max = u64::MAX))]
     pub seed: u64,
-    /// Rings of tiles, 1 to 20.
+    /// Number of rings, 1 to 20.
     #[schemars(range(min = 1, max = 20))]
     pub rings: usize,
-    /// Width of a ring, m, positive; all of them fit inside the rim.
+    /// Width of a ring, m, positive; all rings fit inside the rim.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub ring_width_m: f64,
-    /// Width of a tile along its ring, m, about which they vary; positive.
+    /// Mean width of a tile along its ring, m, positive.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub tile_width_m: f64,
-    /// Mean gap about a tile, m, 0 or more, less than a quarter of a tile.
+    /// Mean gap around a tile, m, 0 or more, less than a quarter of a tile.
     #[schemars(range(min = 0, max = 100))]
     pub gap_m: f64,
-    /// Share of tiles that are missing, 0 to 1.
+    /// Share of missing tiles, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub missing_fraction: f64,
-    /// How far the tiles lie in front of the face, m, positive, less than the docking unit stands out.
+    /// Distance of the tiles in front of the station's face, m, positive, less than the height of the docking
+    /// unit above the face.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub thickness_m: f64,
-    /// Least and greatest Lambertian reflectance, 0 to 1.
+    /// Smallest and largest Lambertian reflectance, 0 to 1.
     #[schemars(inner(range(min = 0, max = 1)))]
     pub reflectance: [f64; 2],
 }
 
 impl BlanketsTable {
-    /// Checks every number; `face` is what lies inside the rim, `depth_m` behind the disk's plane.
+    /// Checks every number. `face` is the circle inside the rim, `depth_m` behind the disk's plane.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.
@@ -89,14 +90,14 @@ impl BlanketsTable {
         require("station.blankets.reflectance", least, "0 to 1, the least first", |rho| rho <= greatest)
     }
 
-    /// The tiles on `face`, which lies `depth_m` behind the disk's plane.
+    /// Returns the tiles on `face`, which lies `depth_m` behind the disk's plane.
     pub(super) fn facets(&self, face: &Circle, depth_m: f64, unit: &DockingUnitTable) -> Vec<Facet> {
         let y3_m = self.thickness_m - depth_m;
         let mut facets = Vec::new();
         for ring in 0..self.rings {
             let outer_m = face.radius_m - self.ring_width_m * ring as f64;
             let inner_m = outer_m - self.ring_width_m;
-            // Three at least, so that a tile spans less than half a turn.
+            // At least three tiles per ring, so each spans less than half a turn.
             let count = (PI * (inner_m + outer_m) / self.tile_width_m).round().max(3.0) as usize;
             for i in 0..count {
                 let Some((tile, reflectance)) = self.tile([inner_m, outer_m], ring, i, count) else {
@@ -111,8 +112,9 @@ impl BlanketsTable {
         facets
     }
 
-    /// A tile about the face's centre, counter-clockwise, and its reflectance; nothing where it is missing. All of it
-    /// lies between the radii, and between its seams.
+    /// Returns the corners of a tile, counter-clockwise and relative to the face's centre, and its
+    /// reflectance; `None` if the tile is missing. The whole tile lies between the two radii and between its
+    /// seams.
     fn tile(
         &self,
         [inner_m, outer_m]: [f64; 2],
@@ -122,7 +124,7 @@ impl BlanketsTable {
     ) -> Option<([[f64; 2]; 6], f64)> {
         let streams = Seed { seed: self.seed, case: 0 }.streams(0, Effect::Blankets);
         let index = |i: usize| (ring as u64) << 32 | i as u64;
-        // A stream is of a tile and of the seam at its begin.
+        // One random stream per tile, shared with the seam at the tile's start.
         let seam = |stream: &mut Stream, i: usize| {
             let mut shift = || SEAM_SHIFT * (2.0 * uniform(stream) - 1.0);
             let pitch = 2.0 * PI / count as f64;
@@ -138,12 +140,14 @@ impl BlanketsTable {
         let present = uniform(&mut stream) >= self.missing_fraction;
         let [least, greatest] = self.reflectance;
         let reflectance = least + (greatest - least) * uniform(&mut stream);
-        // Each side gives way by a quarter to three quarters of a gap: two sides together by one gap on average.
+        // Each side recedes by a quarter to three quarters of a gap, so two adjacent sides recede by one gap
+        // on average.
         let mut side_m = || self.gap_m * (0.25 + 0.5 * uniform(&mut stream));
         let (inner_m, outer_m) = (inner_m + side_m(), outer_m - side_m());
         let (first_m, last_m) = (side_m(), side_m());
         let half_span = |radius: usize| (end[radius] - begin[radius]) / 4.0;
-        // The inner side is two chords that touch the inner circle, the outer one two whose ends are on the outer circle.
+        // The inner side is two chords tangent to the inner circle; the outer side is two chords with their
+        // ends on the outer circle.
         let inner_m = inner_m / libm::cos(half_span(0));
         let corner = |radius_m: f64, angle: f64| {
             let (sin, cos) = libm::sincos(angle);
@@ -159,7 +163,7 @@ impl BlanketsTable {
     }
 }
 
-/// Distance of a point from a polygon that does not contain it, m.
+/// Distance from a polygon to a point outside it, m.
 fn distance(polygon: &[[f64; 2]], point: [f64; 2]) -> f64 {
     let edges = polygon.iter().zip(polygon.iter().cycle().skip(1));
     let distances = edges.map(|(a, b)| {

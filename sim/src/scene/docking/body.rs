@@ -1,4 +1,5 @@
-//! Bodies of simple shape: rails and antennas on the station's end, modules, trusses and solar panels behind it.
+//! Bodies of simple shape: rails and antennas on the station's end, modules, trusses and solar panels behind
+//! it.
 
 use contract::OutOfRange;
 use contract::bounds::require;
@@ -10,44 +11,44 @@ use super::checks::{check_source, vector};
 use super::shapes::{block, cylinder, facet};
 use super::{Facet, Part};
 
-/// Cells of one panel, at most.
+/// Maximum number of cells of a panel.
 const MAX_CELLS: usize = 64;
 
-/// Bodies with one source: `[fittings]` on the station's end, `[structure]` behind it.
+/// Group of bodies with a common source: `[fittings]` on the station's end, or `[structure]` behind it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bodies {
-    /// Where the figures are from, or `assumed: why`.
+    /// Source of the values, or `assumed: why`.
     pub source: String,
-    /// The bodies, in any order, 100 at most. Those whose extents along y3 overlap stand apart across it, so that
-    /// none hides another from where a camera may be.
+    /// Bodies, in any order, 100 at most. Bodies whose extents along y3 overlap are separated across y3, so
+    /// that none hides another from any possible camera position.
     #[schemars(length(max = 100))]
     pub body: Vec<Body>,
 }
 
-/// An opaque body; coordinates in the target frame.
+/// Opaque body; coordinates in the target frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Body {
-    /// A cylinder in any direction: a rail, a mast, a dish, a module.
+    /// Cylinder of any orientation: a rail, a mast, a dish, a module.
     Cylinder {
         /// Centre of one end, m.
         #[schemars(inner(range(min = -1000, max = 1000)))]
         from_m: [f64; 3],
-        /// Centre of the other end, m, elsewhere.
+        /// Centre of the other end, m, different from `from_m`.
         #[schemars(inner(range(min = -1000, max = 1000)))]
         to_m: [f64; 3],
         /// Radius, m, positive.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
         radius_m: f64,
-        /// Sides of the prism that stands for it, 3 to 128.
+        /// Number of sides of the prism that approximates the cylinder, 3 to 128.
         #[schemars(range(min = 3, max = 128))]
         sides: usize,
         /// Lambertian reflectance, 0 to 1.
         #[schemars(range(min = 0, max = 1))]
         reflectance: f64,
     },
-    /// A box, its third side along y3.
+    /// Box with its third side along y3.
     Box {
         /// Centre, m.
         #[schemars(inner(range(min = -1000, max = 1000)))]
@@ -55,7 +56,7 @@ pub enum Body {
         /// Sides, m, positive.
         #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 1000 }))]
         size_m: [f64; 3],
-        /// Turn about y3, degrees from +y1 towards +y2, −180 to 180.
+        /// Rotation about y3, degrees from +y1 towards +y2, −180 to 180.
         #[serde(default)]
         #[schemars(range(min = -180, max = 180))]
         turn_deg: f64,
@@ -63,7 +64,7 @@ pub enum Body {
         #[schemars(range(min = 0, max = 1))]
         reflectance: f64,
     },
-    /// A thin panel of cells with gaps between them that one looks through.
+    /// Thin panel of cells with transparent gaps between them.
     Panel {
         /// Centre, m.
         #[schemars(inner(range(min = -1000, max = 1000)))]
@@ -71,15 +72,15 @@ pub enum Body {
         /// Width and height, m, positive.
         #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 1000 }))]
         size_m: [f64; 2],
-        /// Turn of the width about y3, degrees from +y1 towards +y2, −180 to 180.
+        /// Rotation of the width axis about y3, degrees from +y1 towards +y2, −180 to 180.
         #[serde(default)]
         #[schemars(range(min = -180, max = 180))]
         turn_deg: f64,
-        /// Tilt about the width, degrees, −80 to 80; positive brings the upper edge forwards.
+        /// Tilt about the width axis, degrees, −80 to 80; a positive tilt brings the upper edge forwards.
         #[serde(default)]
         #[schemars(range(min = -80, max = 80))]
         tilt_deg: f64,
-        /// Cells along width and height, 64 in all at most.
+        /// Number of cells along width and height, 64 in total at most.
         #[schemars(inner(range(min = 1, max = 64)))]
         cells: [usize; 2],
         /// Gap between cells, m, 0 or more, less than a cell.
@@ -92,8 +93,8 @@ pub enum Body {
 }
 
 impl Bodies {
-    /// Checks every body; all of each lies between the heights `back_m` and `front_m` over the disk's plane, as `expected`
-    /// says.
+    /// Checks every body. Each body must lie entirely between the heights `back_m` and `front_m` above the
+    /// disk's plane; `expected` describes this range in the error.
     pub(super) fn check(
         &self,
         table: &str,
@@ -112,7 +113,8 @@ impl Bodies {
         Ok(())
     }
 
-    /// A part each, back to front by the middle of their extents along y3; of equals in their order in the file.
+    /// Returns one part per body, sorted back to front by the middle of the body's extent along y3. Bodies
+    /// with equal middles keep their order in the file.
     pub(super) fn parts(&self, name: &str, casts_shadow: bool) -> Vec<Part> {
         let mut parts: Vec<(f64, Part)> = self
             .body
@@ -151,7 +153,8 @@ impl Body {
         match *self {
             Self::Cylinder { from_m, to_m, radius_m, sides, reflectance } => {
                 let mut facets = cylinder(vector(from_m), vector(to_m), radius_m, sides, reflectance);
-                // What faces the station is never seen, and its shadow is that of the rest.
+                // A facet that faces the station is never visible, and its shadow equals that of the
+                // remaining facets.
                 facets.retain(|facet| facet.normal.z > -1.0);
                 facets
             }
@@ -186,7 +189,7 @@ impl Body {
     }
 }
 
-/// Lowest and highest y3 of facets, m.
+/// Smallest and largest y3 of facets, m.
 fn extent(facets: &[Facet]) -> [f64; 2] {
     let heights = facets.iter().flat_map(|facet| facet.outer.iter().map(|corner| corner.z));
     heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y3| [low.min(y3), high.max(y3)])

@@ -1,9 +1,9 @@
-//! What every table of a target file is checked for.
+//! Checks common to all tables of a target file.
 
 use contract::OutOfRange;
 use nalgebra::Vector3;
 
-/// Refuses an empty source: a figure without one is not to be told from a measured one.
+/// Rejects an empty source: without a source, an assumed value cannot be distinguished from a measured one.
 pub(super) fn check_source(path: &str, source: &str) -> Result<(), OutOfRange> {
     if source.trim().is_empty() {
         return Err(OutOfRange::new(path, "empty", "a citation, or \"assumed: why\""));

@@ -1,4 +1,4 @@
-//! The cross that stands off in front of the disk, on its post.
+//! Stand-off cross in front of the disk, on its post.
 
 use contract::OutOfRange;
 use contract::bounds::require;
@@ -11,19 +11,20 @@ use super::Part;
 use super::checks::check_source;
 use super::shapes::{cylinder, flat, wall};
 
-/// Sides of the post.
+/// Number of sides of the post.
 const POST_SIDES: usize = 16;
 
-/// `[cross]`: two perpendicular bars of one size along y1 and y2, on a post that stands on the disk's centre.
+/// `[cross]`: two perpendicular bars of equal size along y1 and y2, on a post that stands on the disk's
+/// centre.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CrossTable {
-    /// Where the figures are from, or `assumed: why`.
+    /// Source of the values, or `assumed: why`.
     pub source: String,
-    /// b: height of the front face over the disk's plane, m, more than the thickness, at most 10.
+    /// Height b of the front face above the disk's plane, m, more than the thickness, at most 10.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10))]
     pub height_m: f64,
-    /// From the centre to the end of a bar, m, more than the width, at most 10.
+    /// Distance from the centre to the end of a bar, m, more than the width, at most 10.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10))]
     pub half_length_m: f64,
     /// Width of a bar, m, positive.
@@ -53,8 +54,8 @@ impl CrossTable {
         require("cross.post_radius_m", post_radius_m, expected, |r| r <= width_m / 2.0)
     }
 
-    /// Post, edges of the bars, their common front face: back to front. The edges are a part of their own because the
-    /// face hides the edge of one bar behind the other from the side.
+    /// Returns post, edges of the bars, and their common front face, back to front. The edges are a separate
+    /// part because, seen from the side, the front face hides the edge of one bar behind the other bar.
     pub(super) fn parts(&self) -> [Part; 3] {
         let back_m = self.height_m - self.thickness_m;
         let outline = self.outline();
@@ -65,7 +66,7 @@ impl CrossTable {
             POST_SIDES,
             self.post_reflectance,
         );
-        // Its ends are on the plate and on the bars.
+        // The ends of the post are hidden by the plate and the bars.
         let post = post.into_iter().take(POST_SIDES).collect();
         let part =
             |name: &str, facets| Part { name: name.to_owned(), facets, casts_shadow: true, visible: true };
@@ -86,7 +87,7 @@ impl CrossTable {
         }
     }
 
-    /// The twelve corners of both bars together, counter-clockwise from the end of the bar along +y1.
+    /// Twelve corners of the union of the two bars, counter-clockwise from the end of the bar along +y1.
     fn outline(&self) -> [[f64; 2]; 12] {
         let (l, w) = (self.half_length_m, self.width_m / 2.0);
         [

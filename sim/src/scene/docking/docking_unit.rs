@@ -1,4 +1,4 @@
-//! The docking unit: a ring that stands on the station's end, with the receiving cone inside and blocks on it.
+//! Docking unit: a ring on the station's end, with the receiving cone inside it and blocks on it.
 
 use std::f64::consts::PI;
 
@@ -12,36 +12,37 @@ use super::Part;
 use super::checks::check_source;
 use super::shapes::{COARSE_SAGITTA_M, Circle, FINE_SAGITTA_M, block, flat, hollow, wall};
 
-/// Sides of walls and cone: 64 leave a circle of 0.66 m by 0.5 mm, seen from the side only.
+/// Number of sides of walls and cone: a polygon of 64 sides deviates from a circle of radius 0.66 m by 0.5
+/// mm, visible only from the side.
 const SIDES: usize = 64;
-/// The floor of the cone, as a share of its opening.
+/// Radius of the cone's floor, as a share of the radius of its opening.
 const FLOOR_SHARE: f64 = 0.15;
 
 /// `[docking_unit]`: ring, recessed flange and receiving cone about an axis parallel to y3.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DockingUnitTable {
-    /// Where the figures are from, or `assumed: why`.
+    /// Source of the values, or `assumed: why`.
     pub source: String,
-    /// Where the axis meets the disk's plane (y1, y2), m.
+    /// Point (y1, y2) where the axis meets the disk's plane, m.
     #[schemars(inner(range(min = -1000, max = 1000)))]
     pub axis_m: [f64; 2],
-    /// How far the front of the ring lies behind the disk's plane, m, 0 or more.
+    /// Distance of the ring's front behind the disk's plane, m, 0 or more.
     #[schemars(range(min = 0, max = 1000))]
     pub depth_m: f64,
-    /// Outer radius of the ring, m, more than the inner one.
+    /// Outer radius of the ring, m, larger than the inner radius.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub outer_radius_m: f64,
-    /// Inner radius of the ring, m, more than that of the cone.
+    /// Inner radius of the ring, m, larger than the radius of the cone.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub inner_radius_m: f64,
-    /// How far the flange between ring and cone lies behind the front of the ring, m, positive.
+    /// Distance of the flange between ring and cone behind the ring's front, m, positive.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub recess_m: f64,
     /// Radius of the cone's opening, m, positive.
     #[schemars(range(min = 0.01, max = 100))]
     pub cone_radius_m: f64,
-    /// How far the floor of the cone lies behind the front of the ring, m, more than the recess.
+    /// Distance of the cone's floor behind the ring's front, m, more than the recess.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub cone_depth_m: f64,
     /// Lambertian reflectance of the ring, 0 to 1.
@@ -50,22 +51,23 @@ pub struct DockingUnitTable {
     /// Lambertian reflectance of flange and cone, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub cone_reflectance: f64,
-    /// Blocks on the ring (latches, sensors); none where it is not given.
+    /// Blocks on the ring (latches, sensors); none if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blocks: Option<BlockRing>,
 }
 
-/// `[docking_unit.blocks]`: equal blocks on the middle of the ring.
+/// `[docking_unit.blocks]`: equal blocks along the middle of the ring.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlockRing {
-    /// How many, 1 to 32.
+    /// Number of blocks, 1 to 32.
     #[schemars(range(min = 1, max = 32))]
     pub count: usize,
-    /// Angle of the first, degrees from +y1 towards +y2, −360 to 360.
+    /// Angle of the first block, degrees from +y1 towards +y2, −360 to 360.
     #[schemars(range(min = -360, max = 360))]
     pub first_angle_deg: f64,
-    /// Size along the radius, across it and along y3, m, positive; along the radius less than the ring is wide.
+    /// Size along the radius, across the radius and along y3, m, positive; the size along the radius is less
+    /// than the width of the ring.
     #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 100 }))]
     pub size_m: [f64; 3],
     /// Lambertian reflectance, 0 to 1.
@@ -86,8 +88,8 @@ impl DockingUnitTable {
         self.blocks.map_or(Ok(()), |blocks| blocks.check(outer_radius_m - inner_radius_m))
     }
 
-    /// The parts from back to front. `base_m` is how far the station's face, on which the ring stands, lies behind the
-    /// disk's plane.
+    /// Returns the parts from back to front. `base_m` is the distance behind the disk's plane of the
+    /// station's face, on which the ring stands.
     pub(super) fn parts(&self, base_m: f64) -> Vec<Part> {
         let circle = |radius_m| Circle { centre_m: self.axis_m, radius_m };
         let (front_m, flange_m) = (-self.depth_m, -self.depth_m - self.recess_m);
@@ -119,9 +121,10 @@ impl DockingUnitTable {
             visible: true,
         };
         let mut parts = vec![
-            // It stops the light that comes in through the flange, which would else go on to the station behind.
+            // The cone blocks sunlight that enters through the flange and would otherwise reach the station
+            // behind.
             part("docking cone", cone, true),
-            // The flange shades the cone, and the ring both.
+            // The flange casts shadows on the cone, and the ring on both.
             part("docking flange", flange, true),
             part("docking wall", wall(&outer.polygon(SIDES), -base_m, front_m, self.ring_reflectance), true),
             part("docking ring", vec![ring], true),

@@ -1,41 +1,43 @@
-//! The light on the scene at a moment.
+//! Illumination of the scene at one instant.
 
 use nalgebra::Vector3;
 
-/// The Sun: parallel light.
+/// The Sun, a source of parallel light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sun {
     /// Unit vector from the target towards the Sun, target frame.
     pub towards: Vector3<f64>,
-    /// Irradiance of a surface that faces it, in units in which a white Lambertian surface has radiance E/π.
+    /// Irradiance of a surface that faces the Sun, in units in which a white Lambertian surface has radiance
+    /// E/π.
     pub irradiance: f64,
 }
 
-/// A lamp on the spacecraft: a point with a cone of light.
+/// Lamp on the spacecraft: a point source with a cone of light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Floodlight {
-    /// Where it is, m, target frame.
+    /// Position, m, target frame.
     pub position_m: Vector3<f64>,
-    /// Unit vector along its axis, target frame.
+    /// Unit vector along the axis of the cone, target frame.
     pub axis: Vector3<f64>,
     /// Radiant intensity on the axis: irradiance × m².
     pub intensity: f64,
-    /// Half angle inside which the intensity is that of the axis, rad.
+    /// Half angle of the inner cone, within which the intensity equals that on the axis, rad.
     pub inner_half_angle_rad: f64,
-    /// Half angle at which it has fallen to zero, linearly in the angle between (Mitsuba's `spot`), rad.
+    /// Half angle at which the intensity reaches zero, rad. Between the two half angles it falls linearly
+    /// with angle (Mitsuba's `spot`).
     pub outer_half_angle_rad: f64,
 }
 
-/// All light at a moment.
+/// All light sources at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lighting {
     /// The Sun; `None` on the night side.
     pub sun: Option<Sun>,
     /// The lamp; `None` when it is off.
     pub floodlight: Option<Floodlight>,
-    /// Radiance from everywhere alike (light of the Earth and of the station's own surfaces), same units as E/π. A
-    /// surface of reflectance ρ gets radiance ρ × this; nothing shades it.
+    /// Uniform radiance from all directions (from the Earth and the station's surfaces), in the units of E/π.
+    /// It gives a surface of reflectance ρ the radiance ρ × `fill_radiance`; nothing shades it.
     pub fill_radiance: f64,
-    /// Radiance of the sky between the parts.
+    /// Radiance of the sky visible between the parts.
     pub sky_radiance: f64,
 }

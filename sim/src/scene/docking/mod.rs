@@ -1,7 +1,7 @@
-//! The docking scene: a station's end with its docking unit and target, as flat facets, and the light on it.
+//! Docking scene: a station's end with its docking unit and target, as flat facets, and its illumination.
 //!
-//! Everything is in the target frame (origin at the disk's centre, y3 along its normal away from the station, m). Both
-//! renderers, [`crate::vector`] and Mitsuba, draw the same facets.
+//! All coordinates are in the target frame (origin at the disk's centre, y3 along its normal away from the
+//! station, m). The two renderers, [`crate::vector`] and Mitsuba, draw the same facets.
 
 mod blankets;
 mod body;

@@ -1,16 +1,16 @@
-//! The order of the parts against the depth of what is drawn, by rays.
+//! Ray tests that the order of the parts agrees with the depth of the facets.
 
 use nalgebra::Vector3;
 
 use super::{DockingScene, Facet, TargetFile};
 use crate::randomness::{Effect, Seed, Stream, uniform};
 
-/// Distances of the camera, m, and of places aside as a share of them: 0.3 is 17°.
+/// Camera distances, m, and maximum lateral offset as a share of the distance: 0.3 is 17°.
 const DISTANCES_M: [f64; 5] = [1.0, 3.0, 10.0, 60.0, 400.0];
 const ASIDE: f64 = 0.3;
 const RAYS: usize = 10_000;
 
-/// Where a ray from `eye` along `ray` meets a facet that faces it: the multiple of `ray`.
+/// Returns the multiple of `ray` at which a ray from `eye` meets a facet that faces `eye`.
 fn hit(facet: &Facet, eye: Vector3<f64>, ray: Vector3<f64>) -> Option<f64> {
     let slope = facet.normal.dot(&ray);
     let along = facet.normal.dot(&(facet.outer[0] - eye)) / slope;
@@ -18,7 +18,8 @@ fn hit(facet: &Facet, eye: Vector3<f64>, ray: Vector3<f64>) -> Option<f64> {
         return None;
     }
     let point = eye + ray * along;
-    // Seen along the axis that the normal is most aligned with; crossings of a half line by the even-odd rule.
+    // Point and facet are projected along the axis closest to the normal; the even-odd rule counts the
+    // crossings of a half line.
     let size = facet.normal.abs();
     let (u, v) = if size.z >= size.x && size.z >= size.y {
         (0, 1)
@@ -40,7 +41,7 @@ fn hit(facet: &Facet, eye: Vector3<f64>, ray: Vector3<f64>) -> Option<f64> {
     (count % 2 == 1).then_some(along)
 }
 
-/// A camera, and a ray from it to a place near a facet of the scene.
+/// Returns a camera position and a ray from it towards a point near a facet of the scene.
 fn ray(scene: &DockingScene, stream: &mut Stream) -> (Vector3<f64>, Vector3<f64>) {
     let mut draw = |scale: f64| scale * (2.0 * uniform(stream) - 1.0);
     let facets: Vec<&Facet> = scene.parts.iter().flat_map(|part| &part.facets).collect();
@@ -54,7 +55,8 @@ fn ray(scene: &DockingScene, stream: &mut Stream) -> (Vector3<f64>, Vector3<f64>
     (eye, aim - eye)
 }
 
-/// Painted back to front, the nearest facet is on top, and no facet of a part covers another of it.
+/// Painted back to front, the nearest facet is on top, and no facet of a part covers another facet of that
+/// part.
 #[test]
 fn what_is_painted_last_is_nearest() {
     for name in TargetFile::built_in_names() {

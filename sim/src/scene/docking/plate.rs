@@ -11,15 +11,15 @@ use super::Part;
 use super::checks::check_source;
 use super::shapes::{COARSE_SAGITTA_M, Circle, FINE_SAGITTA_M, flat};
 
-/// Marks on a plate, at most: each is a hole in it, is held against each, and has
-/// a bit in the truth of a field.
+/// Maximum number of marks on a plate: each mark is a hole in the plate, is compared with every other mark,
+/// and has a bit in the truth of a field.
 const MAX_MARKS: usize = 64;
 
-/// `[plate]`: the dark disk, centred on the target frame's origin, in the plane y3 = 0.
+/// `[plate]`: dark disk in the plane y3 = 0, centred on the origin of the target frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlateTable {
-    /// Where the figures are from, or `assumed: why`.
+    /// Source of the values, or `assumed: why`.
     pub source: String,
     /// Radius, m, 0.01 to 10.
     #[schemars(range(min = 0.01, max = 10))]
@@ -29,12 +29,12 @@ pub struct PlateTable {
     pub reflectance: f64,
 }
 
-/// `[marks]`: bright marks in the plane of the plate, a ring of equal ones, single ones, or both. They are numbered from
-/// 0, first those of the ring, then the single ones.
+/// `[marks]`: bright marks in the plane of the plate: a ring of equal marks, single marks, or both. They are
+/// numbered from 0, those of the ring first, then the single marks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MarksTable {
-    /// Where the figures are from, or `assumed: why`.
+    /// Source of the values, or `assumed: why`.
     pub source: String,
     /// Lambertian reflectance, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
@@ -47,14 +47,14 @@ pub struct MarksTable {
     pub quad: Vec<MarkQuad>,
 }
 
-/// `[marks.ring]`: rectangles along a circle, their length along its radius.
+/// `[marks.ring]`: equal rectangles along a circle, each with its length along the radius.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MarkRing {
     /// Radius of the circle through the marks' centres, m, positive.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub circle_radius_m: f64,
-    /// How many, 1 to 64.
+    /// Number of marks, 1 to 64.
     #[schemars(range(min = 1, max = 64))]
     pub count: usize,
     /// Length of a mark along the radius, m, positive.
@@ -63,12 +63,13 @@ pub struct MarkRing {
     /// Width of a mark across the radius, m, positive.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub width_m: f64,
-    /// Angle of the first mark, degrees from +y1 towards +y2, −360 to 360; the others follow in that sense.
+    /// Angle of the first mark, degrees from +y1 towards +y2, −360 to 360; the other marks follow in that
+    /// direction.
     #[schemars(range(min = -360, max = 360))]
     pub first_angle_deg: f64,
 }
 
-/// `[[marks.quad]]`: one mark of any convex shape of four corners.
+/// `[[marks.quad]]`: one mark, any convex quadrangle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MarkQuad {
@@ -82,7 +83,7 @@ impl PlateTable {
         check_source("plate.source", &self.source)
     }
 
-    /// The plate, with the marks as holes and as facets of their own.
+    /// Returns the plate, with each mark as a hole and as a separate facet.
     pub(super) fn part(&self, marks: Option<&MarksTable>) -> Part {
         let outline = Circle { centre_m: [0.0, 0.0], radius_m: self.radius_m }.polygon_within(FINE_SAGITTA_M);
         let quads = marks.map(MarksTable::quads).unwrap_or_default();
@@ -127,13 +128,14 @@ impl MarksTable {
         Ok(())
     }
 
-    /// The corners of all marks, counter-clockwise.
+    /// Returns the corners of all marks, counter-clockwise.
     pub(super) fn quads(&self) -> Vec<[[f64; 2]; 4]> {
         let ring = self.ring.iter().flat_map(MarkRing::quads);
         ring.chain(self.quad.iter().map(|quad| quad.corners_m)).collect()
     }
 
-    /// Radius of the circle through the centres of the marks: of the ring, or the mean of the single ones.
+    /// Radius of the circle through the centres of the marks, m: that of the ring, or the mean over the
+    /// single marks without a ring.
     pub(super) fn circle_radius_m(&self) -> f64 {
         if let Some(ring) = &self.ring {
             return ring.circle_radius_m;
@@ -157,7 +159,7 @@ impl MarkRing {
             "a radius that leaves the marks 0.1 mm inside the plate's edge at least",
             |_| inside_plate([outer_m, self.width_m / 2.0], plate),
         )?;
-        // Neighbours come nearest at their inner corners.
+        // Neighbouring marks are closest at their inner corners.
         let angle = 2.0 * libm::atan2(self.width_m / 2.0, inner_m);
         require(
             "marks.ring.count",
@@ -180,12 +182,12 @@ impl MarkRing {
     }
 }
 
-/// Whether a point of a mark lies inside the polygon that stands for the plate's edge.
+/// Returns true if a point of a mark lies inside the polygon that approximates the plate's edge.
 fn inside_plate(point: [f64; 2], plate: &PlateTable) -> bool {
     libm::hypot(point[0], point[1]) <= plate.radius_m - COARSE_SAGITTA_M
 }
 
-/// Twice the signed area of the triangle a, b, c: positive when they are counter-clockwise.
+/// Twice the signed area of the triangle a, b, c: positive if the corners are counter-clockwise.
 fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -194,7 +196,7 @@ fn is_convex_counter_clockwise(quad: &[[f64; 2]; 4]) -> bool {
     (0..4).all(|i| turn(quad[i], quad[(i + 1) % 4], quad[(i + 2) % 4]) > 0.0)
 }
 
-/// Whether two convex quadrangles share area or touch: no side of either separates them.
+/// Returns true if two convex quadrangles touch or overlap: no side of either separates them.
 fn overlap(a: &[[f64; 2]; 4], b: &[[f64; 2]; 4]) -> bool {
     let separates = |quad: &[[f64; 2]; 4], other: &[[f64; 2]; 4]| {
         (0..4).any(|i| other.iter().all(|p| turn(quad[i], quad[(i + 1) % 4], *p) < 0.0))

@@ -6,12 +6,12 @@ use nalgebra::Vector3;
 
 use super::Facet;
 
-/// How far the polygon of a measured circle may lie from it at most, m.
+/// Maximum deviation of the polygon from a circle that is measured in images, m.
 pub(super) const FINE_SAGITTA_M: f64 = 1e-5;
-/// The same for a circle that is measured from afar only, m.
+/// Maximum deviation of the polygon from a circle that is measured only from afar, m.
 pub(super) const COARSE_SAGITTA_M: f64 = 1e-4;
 
-/// A circle in a plane parallel to the disk.
+/// Circle in a plane parallel to the disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Circle {
     /// Centre (y1, y2), m.
@@ -21,7 +21,8 @@ pub(super) struct Circle {
 }
 
 impl Circle {
-    /// A regular polygon of the circle's area, counter-clockwise seen from the front, its first corner towards +y1.
+    /// Returns a regular polygon with the circle's area, counter-clockwise seen from the front, its first
+    /// corner towards +y1.
     pub(super) fn polygon(&self, sides: usize) -> Vec<[f64; 2]> {
         let corner_radius_m = corner_radius(self.radius_m, sides);
         (0..sides)
@@ -32,29 +33,29 @@ impl Circle {
             .collect()
     }
 
-    /// The polygon whose sides leave the circle by no more than `sagitta_m`.
+    /// Returns a polygon whose sides deviate from the circle by `sagitta_m` at most.
     pub(super) fn polygon_within(&self, sagitta_m: f64) -> Vec<[f64; 2]> {
         self.polygon(sides_within(self.radius_m, sagitta_m))
     }
 }
 
-/// Distance of the corners of a regular polygon of n sides from its centre, when it has the area of a circle of radius r:
-/// n/2 R² sin(2π/n) = π r².
+/// Distance of the corners from the centre of a regular polygon of n sides with the area of a circle of
+/// radius r: n/2 R² sin(2π/n) = π r².
 fn corner_radius(radius_m: f64, sides: usize) -> f64 {
     let angle = 2.0 * PI / sides as f64;
     radius_m * (angle / libm::sin(angle)).sqrt()
 }
 
-/// The least multiple of four for which the sagitta of a side, r (1 − cos(π/n)), is at most `sagitta_m`.
+/// Smallest multiple of four for which the sagitta of a side, r (1 − cos(π/n)), is at most `sagitta_m`.
 fn sides_within(radius_m: f64, sagitta_m: f64) -> usize {
     let half_angle = libm::acos((1.0 - sagitta_m / radius_m).clamp(0.0, 1.0));
-    // Four sides at least, and no more than are needed for a circle of kilometres.
+    // At least eight sides, and at most as many as a circle of kilometres needs.
     let quarter = (PI / half_angle / 4.0).ceil().clamp(2.0, 16_384.0);
     4 * quarter as usize
 }
 
-/// A facet parallel to the disk that faces away from the station, at height `y3_m`. Outline and holes counter-clockwise
-/// seen from the front.
+/// Returns a facet parallel to the disk at height `y3_m`, facing away from the station. Outline and holes are
+/// counter-clockwise seen from the front.
 pub(super) fn flat(outer: &[[f64; 2]], holes: &[&[[f64; 2]]], y3_m: f64, reflectance: f64) -> Facet {
     let lift = |p: &[f64; 2]| Vector3::new(p[0], p[1], y3_m);
     Facet {
@@ -65,9 +66,10 @@ pub(super) fn flat(outer: &[[f64; 2]], holes: &[&[[f64; 2]]], y3_m: f64, reflect
     }
 }
 
-/// A facet without holes; its normal by Newell's sum over the corners.
+/// Returns a facet without holes; its normal is Newell's sum over the corners.
 pub(super) fn facet(outer: Vec<Vector3<f64>>, reflectance: f64) -> Facet {
-    // Differences to the first corner: far from the origin products of coordinates would lose digits.
+    // Differences to the first corner are used because products of coordinates far from the origin would lose
+    // digits.
     let first = outer.first().copied().unwrap_or_default();
     let mut area = Vector3::zeros();
     for (a, b) in outer.iter().zip(outer.iter().cycle().skip(1)) {
@@ -76,8 +78,8 @@ pub(super) fn facet(outer: Vec<Vector3<f64>>, reflectance: f64) -> Facet {
     Facet { outer, holes: Vec::new(), normal: area.normalize(), reflectance }
 }
 
-/// The wall of a prism along y3, from `back_m` to `front_m`: one rectangle an edge of the outline (counter-clockwise seen
-/// from the front), facing outwards.
+/// Returns the wall of a prism along y3, from `back_m` to `front_m`, facing outwards: one rectangle per edge
+/// of the outline, which is counter-clockwise seen from the front.
 pub(super) fn wall(outline: &[[f64; 2]], back_m: f64, front_m: f64, reflectance: f64) -> Vec<Facet> {
     let edges = outline.iter().zip(outline.iter().cycle().skip(1));
     edges
@@ -89,8 +91,8 @@ pub(super) fn wall(outline: &[[f64; 2]], back_m: f64, front_m: f64, reflectance:
         .collect()
 }
 
-/// The inside of a hollow that narrows from the front circle to the back one: trapezia that face the axis. Both circles
-/// have one centre and the same number of sides.
+/// Returns the inner surface of a hollow that narrows from the front circle to the back circle: trapezia that
+/// face the axis. The circles have a common centre and are divided into equally many sides.
 pub(super) fn hollow(
     front: (Circle, f64),
     back: (Circle, f64),
@@ -109,7 +111,8 @@ pub(super) fn hollow(
         .collect()
 }
 
-/// A closed cylinder from one point to another: its sides, then its two ends. `from_m` and `to_m` differ.
+/// Returns a closed cylinder from one point to another: its sides, then its two ends. `from_m` and `to_m`
+/// must differ.
 pub(super) fn cylinder(
     from_m: Vector3<f64>,
     to_m: Vector3<f64>,
@@ -141,7 +144,7 @@ pub(super) fn cylinder(
     facets
 }
 
-/// A box turned about y3: front and four sides. Its back faces the station and is never seen.
+/// Returns a box rotated about y3: its front and four sides. The back faces the station and is never visible.
 pub(super) fn block(centre_m: [f64; 3], size_m: [f64; 3], turn_rad: f64, reflectance: f64) -> Vec<Facet> {
     let (sin, cos) = libm::sincos(turn_rad);
     let corner = |along: f64, across: f64| {
@@ -155,7 +158,7 @@ pub(super) fn block(centre_m: [f64; 3], size_m: [f64; 3], turn_rad: f64, reflect
     facets
 }
 
-/// The unit vector of the axis that a direction is least aligned with; of equals the first.
+/// Returns the unit vector of the axis least aligned with a direction; the first such axis on a tie.
 fn least_aligned(direction: &Vector3<f64>) -> Vector3<f64> {
     let size = direction.abs();
     if size.x <= size.y && size.x <= size.z {

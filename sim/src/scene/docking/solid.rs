@@ -15,21 +15,21 @@ pub struct Facet {
     pub reflectance: f64,
 }
 
-/// A body or a surface: facets that do not cover each other, whoever looks at them from the front.
+/// Body or surface: facets that do not cover each other, from any viewpoint in front of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     /// Name, for messages and for Mitsuba's shapes.
     pub name: String,
-    /// The facets. Those that face away from a camera are not seen.
+    /// The facets; those that face away from a camera are invisible to it.
     pub facets: Vec<Facet>,
-    /// Whether it casts shadows on parts behind it (all of it, facing away or not).
+    /// True if the part casts shadows on parts behind it; every facet does so, also those that face away.
     pub casts_shadow: bool,
-    /// Whether a camera sees it; an unseen part may still cast a shadow.
+    /// True if cameras see the part; an invisible part may still cast a shadow.
     pub visible: bool,
 }
 
-/// The scene: parts from back to front as seen by any camera in front of the target (y3 > 0). A part never lies in front
-/// of one that comes after it.
+/// Scene: parts from back to front as seen by any camera in front of the target (y3 > 0). A part never lies
+/// in front of a later part.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DockingScene {
     /// The parts, back to front.

@@ -1,4 +1,4 @@
-//! The station's end: a disk with a rim, covered with blankets, and the wall of the module behind it.
+//! The station's end: a disk with a rim, covered with blankets, and the wall of the module behind the disk.
 
 use contract::OutOfRange;
 use contract::bounds::require;
@@ -12,25 +12,25 @@ use super::checks::check_source;
 use super::docking_unit::DockingUnitTable;
 use super::shapes::{COARSE_SAGITTA_M, Circle, flat, wall};
 
-/// Sides of the wall.
+/// Number of sides of the wall.
 const WALL_SIDES: usize = 48;
 
-/// `[station]`: the end face on which docking unit and target stand, a disk parallel to the target's.
+/// `[station]`: end face on which docking unit and target stand, a disk parallel to the target's disk.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StationTable {
-    /// Where the figures are from, or `assumed: why`.
+    /// Source of the values, or `assumed: why`.
     pub source: String,
     /// Centre (y1, y2), m.
     #[schemars(inner(range(min = -1000, max = 1000)))]
     pub centre_m: [f64; 2],
-    /// Radius of the outline, m, at most 100; the docking unit is inside.
+    /// Radius of the outline, m, at most 100; the docking unit lies inside it.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub radius_m: f64,
-    /// How far the face lies behind the disk's plane, m, more than the docking unit's front does.
+    /// Distance of the face behind the disk's plane, m, more than that of the docking unit's front.
     #[schemars(range(min = -100, max = 100))]
     pub depth_m: f64,
-    /// How far the module's wall goes on behind the face, m, positive.
+    /// Length of the module's wall behind the face, m, positive.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub length_m: f64,
     /// Width of the bare rim of the face, m, positive.
@@ -39,10 +39,10 @@ pub struct StationTable {
     /// Lambertian reflectance of rim and wall, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub rim_reflectance: f64,
-    /// Lambertian reflectance of the face inside the rim, seen where no blanket is, 0 to 1.
+    /// Lambertian reflectance of the face inside the rim, visible between the blankets, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub face_reflectance: f64,
-    /// Blankets on the face; bare where they are not given.
+    /// Blankets on the face; bare face if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blankets: Option<BlanketsTable>,
 }
@@ -62,10 +62,10 @@ impl StationTable {
         self.blankets.as_ref().map_or(Ok(()), |blankets| blankets.check(&face, self.depth_m, unit))
     }
 
-    /// Wall, face and blankets, back to front. The face is open where the docking unit stands on it.
+    /// Returns wall, face and blankets, back to front. The face has an opening under the docking unit.
     pub(super) fn parts(&self, unit: &DockingUnitTable) -> Vec<Part> {
         let outline = Circle { centre_m: self.centre_m, radius_m: self.radius_m };
-        // Smaller than the docking unit's wall, which covers the edge.
+        // The opening is smaller than the docking unit's wall, which covers its edge.
         let opening = Circle { centre_m: unit.axis_m, radius_m: unit.inner_radius_m };
         let inside = self.face().polygon_within(COARSE_SAGITTA_M);
         let face = vec![
@@ -79,7 +79,8 @@ impl StationTable {
             casts_shadow,
             visible: true,
         };
-        // Wall and face are one closed body to the Sun, and cast its shadow together; the blankets lie on the face.
+        // For sunlight, wall and face are one closed body and cast its shadow together; the blankets lie on
+        // the face.
         let mut parts = vec![part("station wall", wall, true), part("station face", face, true)];
         if let Some(blankets) = &self.blankets {
             parts.push(part("blankets", blankets.facets(&self.face(), self.depth_m, unit), false));
@@ -87,12 +88,12 @@ impl StationTable {
         parts
     }
 
-    /// The face inside the rim.
+    /// The part of the face inside the rim.
     fn face(&self) -> Circle {
         Circle { centre_m: self.centre_m, radius_m: self.radius_m - self.rim_m }
     }
 
-    /// How far the end of the module's wall lies behind the disk's plane, m.
+    /// Distance of the rear end of the module's wall behind the disk's plane, m.
     pub(super) fn back_m(&self) -> f64 {
         self.depth_m + self.length_m
     }

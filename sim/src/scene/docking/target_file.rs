@@ -1,4 +1,5 @@
-//! A docking target as data: the tables of a target file, what they mean as a scene and to a pipeline.
+//! Docking target as data: the tables of a target file, and their conversion to a scene and to a pipeline's
+//! model.
 
 #![cfg_attr(
     not(test),
@@ -25,21 +26,21 @@ use super::docking_unit::DockingUnitTable;
 use super::plate::{MarksTable, PlateTable};
 use super::station::StationTable;
 
-/// A target file: dimensions in metres in the target frame (origin at the disk's centre, y3 along its normal away from
-/// the station, y2 up). Every group of them says where it is from.
+/// Target file: dimensions in metres in the target frame (origin at the disk's centre, y3 along its normal
+/// away from the station, y2 up). Every table states the source of its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TargetFile {
     /// Name of the target, not empty.
     pub name: String,
-    /// The moment of contact.
+    /// Geometry at contact.
     pub contact: ContactTable,
     /// The dark disk.
     pub plate: PlateTable,
-    /// Bright marks on the disk; none where they are not given.
+    /// Bright marks on the disk; none if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub marks: Option<MarksTable>,
-    /// The cross that stands off.
+    /// The stand-off cross.
     pub cross: CrossTable,
     /// The docking unit.
     pub docking_unit: DockingUnitTable,
@@ -53,13 +54,14 @@ pub struct TargetFile {
     pub structure: Option<Bodies>,
 }
 
-/// `[contact]`: where the camera is when the docking units touch.
+/// `[contact]`: position of the camera when the docking units touch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactTable {
-    /// Where the figure is from, or `assumed: why`.
+    /// Source of the value, or `assumed: why`.
     pub source: String,
-    /// Distance of the camera from the disk's plane at contact, m, more than the cross is high, at most 100.
+    /// Distance of the camera from the disk's plane at contact, m, more than the height of the cross, at most
+    /// 100.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub camera_to_disk_m: f64,
 }
@@ -68,7 +70,7 @@ impl TargetFile {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range, with its path.
+    /// [`OutOfRange`] for the first number outside its range, with its path.
     pub fn check(&self) -> Result<(), OutOfRange> {
         if self.name.trim().is_empty() {
             return Err(OutOfRange::new("name", "empty", "a name"));
@@ -99,8 +101,9 @@ impl TargetFile {
         Ok(())
     }
 
-    /// The scene of a file that has been checked. Parts come back to front for cameras in front of the target and up to
-    /// 17° aside, as far as bodies whose extents along y3 overlap stand apart (see [`Bodies`]).
+    /// Returns the scene of a checked file. The back-to-front order of the parts holds for cameras in front
+    /// of the target and up to 17° off its axis, provided that bodies whose extents along y3 overlap are
+    /// separated (see [`Bodies`]).
     pub fn scene(&self) -> DockingScene {
         let mut parts = Vec::new();
         if let Some(structure) = &self.structure {
@@ -116,12 +119,12 @@ impl TargetFile {
         DockingScene { parts }
     }
 
-    /// What a pipeline is told of the target.
+    /// Returns the model of the target that a pipeline receives.
     pub fn model(&self) -> TargetModel {
         TargetModel {
             name: self.name.clone(),
             plate_radius_m: self.plate.radius_m,
-            // Without marks the one circle on the disk is its edge.
+            // Without marks, the only circle on the disk is its edge.
             mark_circle_radius_m: self
                 .marks
                 .as_ref()

@@ -1,4 +1,5 @@
-//! Target files: what they build, what they tell a pipeline, what they refuse.
+//! Tests of target files: the scenes that they produce, the models that pipelines receive, and the values
+//! that are rejected.
 
 use std::f64::consts::PI;
 
@@ -18,13 +19,13 @@ fn part<'a>(scene: &'a DockingScene, name: &str) -> &'a Part {
     scene.parts.iter().find(|part| part.name == name).unwrap()
 }
 
-/// Area of a closed polygon as a vector along its normal: half of Newell's sum.
+/// Vector area of a closed polygon, along its normal: half of Newell's sum.
 fn area_vector(ring: &[Vector3<f64>]) -> Vector3<f64> {
     let edges = ring.iter().zip(ring.iter().cycle().skip(1));
     edges.map(|(a, b)| (a - ring[0]).cross(&(b - ring[0]))).sum::<Vector3<f64>>() / 2.0
 }
 
-/// Area of a facet without its holes, which go round the other way.
+/// Area of a facet less its holes, which have the opposite orientation.
 fn area(facet: &Facet) -> f64 {
     let rings = std::iter::once(&facet.outer).chain(&facet.holes);
     rings.map(|ring| area_vector(ring).dot(&facet.normal)).sum()
@@ -68,7 +69,7 @@ fn facets_are_flat_and_turn_about_their_outward_normals() {
                 assert!((hole.normalize() + facet.normal).norm() < 1e-9, "{name}: hole");
                 assert!(hole.norm() < outer.norm(), "{name}: hole larger than the facet");
             }
-            // 1e-9 m over tens of metres is some thousand roundings.
+            // 1e-9 m over tens of metres is about a thousand rounding errors.
             for corner in facet.outer.iter().chain(facet.holes.iter().flatten()) {
                 assert!(facet.normal.dot(&(corner - facet.outer[0])).abs() < 1e-9, "{name}");
             }
@@ -127,21 +128,22 @@ fn areas_are_those_of_the_shapes() {
     let scene = target.scene();
     let total = |name: &str| part(&scene, name).facets.iter().map(area).sum::<f64>();
     let circle = |radius: f64| PI * radius * radius;
-    // Two bars of 0.30 by 0.03 less the square that they share; four ends and eight flanks of 0.01 m.
+    // Two bars of 0.30 by 0.03 minus their common square; four ends and eight flanks of thickness 0.01 m.
     assert_near(total("cross"), 2.0 * 0.30 * 0.03 - 0.03 * 0.03, 1e-12);
     assert_near(total("cross edges"), 0.01 * (4.0 * 0.03 + 8.0 * (0.15 - 0.015)), 1e-12);
     assert_near(total("docking ring"), circle(0.66) - circle(0.52), 1e-9);
     assert_near(total("station face"), circle(2.05) - circle(0.52), 1e-9);
     // Eight blocks without their backs.
     assert_near(total("docking blocks"), 8.0 * (0.06 * 0.06 + 4.0 * 0.06 * 0.05), 1e-12);
-    // Walls of n sides: the circumference of the polygon of the circle's area is greater by π²/(6 n²), at 16 sides 0.7 %.
+    // Walls of n sides: the circumference of the polygon with the circle's area is larger by π²/(6 n²), which
+    // is 0.7 % for 16 sides.
     assert_near(total("post"), 2.0 * PI * 0.010 * 0.29, 0.007);
     assert_near(total("docking wall"), 2.0 * PI * 0.66 * 0.35, 0.0005);
     let slant = libm::hypot(0.40 - 0.06, 0.55 - 0.06);
     assert_near(total("docking cone"), PI * (0.40 + 0.06) * slant + circle(0.06), 0.001);
 }
 
-/// What is closed has no net area; of a body that is open towards the station only, the rest faces the front.
+/// A closed body has no net vector area; that of a body open only towards the station faces the front.
 #[test]
 fn bodies_are_closed_but_for_their_backs() {
     let net = |part: &Part| part.facets.iter().map(|facet| facet.normal * area(facet)).sum::<Vector3<f64>>();
@@ -177,7 +179,7 @@ fn blankets_are_apart_from_each_other_and_clear_of_the_docking_unit() {
     let centre = |f: &Facet| f.outer.iter().sum::<Vector3<f64>>() / f.outer.len() as f64;
     for (i, a) in tiles.iter().enumerate() {
         for b in &tiles[i + 1..] {
-            // Neither contains the other: they are of like size, and their centres are apart.
+            // No tile contains another: the tiles are of similar size, and their centres are apart.
             assert!(!crosses(a, b) && (centre(a) - centre(b)).norm() > 0.1);
         }
         let axis = Vector3::new(0.0, -1.25, a.outer[0].z);
@@ -195,7 +197,7 @@ fn the_layout_of_the_blankets_is_its_seeds() {
     let mut target = progress();
     let first = tiles(&target);
     assert_eq!(first, tiles(&target));
-    // Another plate or another cross leaves them; another seed does not.
+    // A change of the plate or the cross leaves the tiles unchanged; a change of the seed does not.
     target.plate.radius_m = 0.4;
     target.cross.height_m = 0.35;
     assert_eq!(first, tiles(&target));
@@ -225,7 +227,7 @@ fn a_pipeline_is_told_what_the_file_says() {
     assert_eq!(outline(model.station), ([0.0, -1.25], 2.05, 0.45));
 }
 
-/// The marks that a pipeline is told are those that are drawn, in the same order.
+/// The marks of a pipeline's model are the drawn marks, in the same order.
 #[test]
 fn marks_are_drawn_where_the_model_has_them() {
     for target in every_target() {
@@ -237,7 +239,7 @@ fn marks_are_drawn_where_the_model_has_them() {
     }
 }
 
-/// LM-10 Through LM-14 Vehicle Familiarization Manual: base diameter 17.68 in, cross 15 in above it.
+/// LM-10 Through LM-14 Vehicle Familiarization Manual: base diameter 17.68 in, cross 15 in above the base.
 #[test]
 fn the_lunar_modules_target_has_the_manuals_figures() {
     let model = TargetFile::built_in("apollo").unwrap().model();
@@ -245,7 +247,8 @@ fn the_lunar_modules_target_has_the_manuals_figures() {
     assert!((model.cross.height_m - 15.0 * 0.0254).abs() < 1e-9);
 }
 
-/// The circle of single marks is through their centres: bars 0.12 m out, squares at 0.085 m along both axes.
+/// The mean circle of single marks passes through their centres: bars 0.12 m out, squares at 0.085 m along
+/// both axes.
 #[test]
 fn single_marks_have_a_mean_circle() {
     let radius = TargetFile::built_in("idss").unwrap().model().mark_circle_radius_m;
@@ -313,7 +316,7 @@ fn bad_values_are_refused_with_their_path() {
         quad(t, [[0.0, 0.1], [0.01, 0.1], [0.01, 0.11], [0.0, f64::NAN]])
     });
     refused("marks.quad[0].corners_m", |t| quad(t, [[0.0, 0.1], [0.0, 0.31], [-0.01, 0.31], [-0.01, 0.1]]));
-    // Clockwise; then across the first mark of the ring.
+    // Clockwise corners; then a mark that overlaps the first mark of the ring.
     refused("marks.quad[0].corners_m", |t| quad(t, [[0.0, 0.1], [0.0, 0.11], [0.01, 0.11], [0.01, 0.1]]));
     refused("marks.quad[0].corners_m", |t| quad(t, [[0.25, 0.0], [0.26, 0.0], [0.26, 0.02], [0.25, 0.02]]));
     refused("cross.width_m", |t| t.cross.width_m = 0.0);
@@ -344,7 +347,7 @@ fn bad_values_are_refused_with_their_path() {
         t.station.blankets.as_mut().unwrap().reflectance = [0.5, 0.4];
     });
     refused("fittings.source", |t| t.fittings.as_mut().unwrap().source.clear());
-    // Before the disk's plane; through the station's wall.
+    // In front of the disk's plane; then a negative radius.
     refused("fittings.body[1]", |t| fitting(t, [0.0, 1.0, 0.1], 0.1));
     refused("fittings.body[1].radius_m", |t| fitting(t, [0.0, 1.0, -0.2], -0.1));
     refused("fittings.body[1].to_m[2]", |t| fitting(t, [0.0, 1.0, f64::NAN], 0.1));

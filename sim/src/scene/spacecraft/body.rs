@@ -1,8 +1,9 @@
-//! Which parts of a body of plates are lit by the Sun and seen by the camera, and how bright they are.
+//! Sunlit and visible parts of a body of plates, and their brightness.
 //!
-//! Shadows and occlusions are exact: the shadow that a plate casts on another, and the part of it that it hides, are convex
-//! polygons, and are subtracted as such. Neglected: the width of the Sun (a shadow cast over 1 m has a fringe of 9 mm; a
-//! glint is no narrower than `roughness`), and light that goes from plate to plate.
+//! Shadows and occlusions are exact: the shadow that a plate casts on another plate, and the part of it that
+//! the plate hides, are convex polygons and are subtracted as polygons. Neglected: the angular width of the
+//! Sun (a shadow cast over 1 m has a fringe of 9 mm; a glint is no narrower than `roughness`) and reflections
+//! between plates.
 
 use std::f64::consts::PI;
 
@@ -13,34 +14,36 @@ use super::polygon::{Polygon, clip, four_points, signed_area, spread, subtract};
 use crate::optics::ImagePoint;
 use contract::PixelPoint;
 
-/// Sine of the angle above a plate below which Sun and camera are taken to be in its plane.
+/// Sine of the elevation above a plate below which Sun or camera count as lying in the plate's plane.
 const GRAZING: f64 = 1e-6;
-/// A point of another plate is above a plate from this height on, m: what touches casts no shadow.
+/// Minimum height above a plate, m, from which a point of another plate counts as above it: a touching plate
+/// casts no shadow.
 const TOUCHING_M: f64 = 1e-9;
-/// Slivers below this share of a plate's area are dropped.
+/// Share of a plate's area below which a sliver is dropped.
 const SLIVER: f64 = 1e-12;
-/// A cell of the sum for the brightness is seen under an angle of at most this share of the angular scale of the
-/// reflectance: the sum is then good to 1e-6.
+/// Maximum angle subtended by a cell of the brightness sum, as a share of the angular scale of the
+/// reflectance. The sum is then accurate to 1e-6.
 const CELL_ANGLE: f64 = 0.25;
-/// Cells along a side of a plate, at most.
+/// Maximum number of cells along a side of a plate.
 const CELLS: f64 = 512.0;
-/// Sides of a cell in the image, px; four points stand for it.
+/// Side of a cell in the image, px; each cell is represented by four points.
 const CELL_PX: f64 = 0.4;
-/// An image that spans less is drawn as four points with its mean and its second moments: its skewness changes no pixel of
-/// a Gaussian of 0.5 px or wider by 1e-3 of the peak.
+/// Span below which an image is drawn as four points with its mean and its second moments, px: the neglected
+/// skewness changes each pixel by less than 1e-3 of the peak for a Gaussian of 0.5 px or wider.
 const FOUR_POINTS_PX: f64 = 0.2;
-/// One that spans less is drawn as one point: that takes up to 1e-4 px² from the variance of its image.
+/// Span below which an image is drawn as one point, px: this reduces the variance of the image by up to 1e-4
+/// px².
 const ONE_POINT_PX: f64 = 0.02;
 
-/// A convex part of a plate that is lit and seen.
+/// Convex, sunlit and visible part of a plate.
 #[derive(Debug, Clone, PartialEq)]
 struct Facet {
-    /// With its front towards the camera.
+    /// The plate, its front towards the camera.
     plate: Plate,
     outline: Polygon,
 }
 
-/// The body in the light of one moment, in the target's body frame.
+/// The illuminated body at one instant, in the target's body frame.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LitBody {
     facets: Vec<Facet>,
@@ -49,7 +52,8 @@ pub(super) struct LitBody {
 }
 
 impl LitBody {
-    /// The parts of `plates` that are lit from the direction `sun` (a unit vector) and seen from `eye_m`.
+    /// Returns the parts of `plates` that are lit from the direction `sun` (a unit vector) and visible from
+    /// `eye_m`.
     pub(super) fn new(plates: &[Plate], eye_m: Vector3<f64>, sun: Vector3<f64>) -> Self {
         let mut facets = Vec::new();
         for (i, plate) in plates.iter().enumerate() {
@@ -68,9 +72,10 @@ impl LitBody {
         self.facets.iter().map(|facet| self.facet_flux(facet)).sum()
     }
 
-    /// The undisturbed image: points whose shares add up to 1, `count_limit` or so at most (cells grow beyond
-    /// 0.4 px when they would be more; every facet has four). `project` gives the place of a point of the body frame.
-    /// Nothing when no light comes from it.
+    /// Appends the points of the undistorted image. Their shares add up to 1. There are about `count_limit`
+    /// points at most: cells larger than 0.4 px are used if more would be needed, and every facet has at
+    /// least four points. `project` maps a point of the body frame to the image. Appends nothing if no flux
+    /// reaches the camera.
     pub(super) fn image(
         &self,
         project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>,
@@ -91,7 +96,7 @@ impl LitBody {
         gather(points, first);
     }
 
-    /// The sum of the light of the cells that [`LitBody::image`] draws.
+    /// Sum of the flux of all cells that [`LitBody::image`] draws.
     #[cfg(test)]
     pub(super) fn cells_flux(&self, project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>) -> f64 {
         let mut total = 0.0;
@@ -99,7 +104,7 @@ impl LitBody {
         total
     }
 
-    /// Calls `visit` with the points that stand for the cells of the image, and the light of each.
+    /// Calls `visit` with each point that represents a cell of the image, and its flux.
     fn for_each_cell(
         &self,
         project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>,
@@ -117,9 +122,9 @@ impl LitBody {
         }
     }
 
-    /// An estimate of the share of the light that falls in the brightest pixel, when `psf_share` of a point's does: each facet
-    /// adds what it sends into a pixel, not more than its area allows, to its neighbours as a Gaussian of that peak
-    /// would.
+    /// Estimates the share of the flux in the brightest pixel, where a point source has the share `psf_share`
+    /// in its brightest pixel. Each facet contributes its flux per pixel, limited by its area, and adds to
+    /// its neighbours a Gaussian of that peak.
     pub(super) fn peak_share(
         &self,
         project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>,
@@ -164,7 +169,8 @@ impl LitBody {
         sum
     }
 
-    /// Irradiance at the camera from an area of a plate at a point, over the Sun's at the body.
+    /// Irradiance at the camera from an area of a plate at a point, divided by the Sun's irradiance at the
+    /// body.
     fn flux(&self, plate: &Plate, point: &Vector3<f64>, area: f64) -> f64 {
         let to_eye = self.eye_m - point;
         let distance2 = to_eye.norm_squared();
@@ -174,7 +180,7 @@ impl LitBody {
     }
 }
 
-/// The plate with its front towards the camera; `None` when that side is dark, or black.
+/// Returns the plate with its front towards the camera; `None` if that side is unlit or black.
 fn facing(plate: &Plate, eye_m: &Vector3<f64>, sun: &Vector3<f64>) -> Option<Plate> {
     let eye = (eye_m - plate.centre).normalize().dot(&plate.normal);
     let sun = sun.dot(&plate.normal);
@@ -183,7 +189,7 @@ fn facing(plate: &Plate, eye_m: &Vector3<f64>, sun: &Vector3<f64>) -> Option<Pla
     (lit && plate.front.diffuse + plate.front.specular > 0.0).then_some(plate)
 }
 
-/// Takes from the `pieces` of a plate what `other` shades and what it hides.
+/// Removes from the `pieces` of a plate the parts that `other` shades or hides.
 fn subtract_shadow_and_occlusion(
     plate: &Plate,
     other: &Plate,
@@ -202,7 +208,7 @@ fn subtract_shadow_and_occlusion(
     let mut shadow: Polygon =
         above.iter().map(|corner| corner.xy() - ray.xy() * (corner.z / ray.z)).collect();
     subtract(pieces, &mut shadow, least_area);
-    // What is as high as the camera hides nothing.
+    // Points at the camera's height above the plate hide nothing.
     let eye = plate.local(eye_m);
     let below = clip(&above, |corner| 0.999 * eye.z - corner.z);
     let mut hidden: Polygon = below
@@ -212,8 +218,8 @@ fn subtract_shadow_and_occlusion(
     subtract(pieces, &mut hidden, least_area);
 }
 
-/// Calls `visit` with the points that stand for the cells of a facet, and the area that each stands for. The cells
-/// are those of a grid over the plate, so many across and along, as far as the facet covers them.
+/// Calls `visit` with each point that represents a cell of a facet, and the area of that point. The cells
+/// form a grid over the plate, with `cells` cells across and along, clipped to the facet.
 fn for_each_point(facet: &Facet, cells: (usize, usize), mut visit: impl FnMut(Vector3<f64>, f64)) {
     let plate = &facet.plate;
     let edge = |half: f64, i: usize, n: usize| half * (2.0 * i as f64 / n as f64 - 1.0);
@@ -233,7 +239,7 @@ fn for_each_point(facet: &Facet, cells: (usize, usize), mut visit: impl FnMut(Ve
     }
 }
 
-/// Cells that a plate needs across and along for cells of 0.4 px.
+/// Number of cells of 0.4 px that a plate needs across and along.
 fn cells_px(plate: &Plate, project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>) -> (f64, f64) {
     let side = |from: Vector2<f64>, to: Vector2<f64>| {
         project(&plate.point_in_body_frame(&from))
@@ -251,7 +257,7 @@ fn cell_count(cells: f64) -> usize {
     cells.ceil().clamp(1.0, CELLS) as usize
 }
 
-/// Replaces the points from `first` on by fewer when they span little.
+/// Replaces the points from `first` on by one or four points if they span little.
 pub(super) fn gather(points: &mut Vec<ImagePoint>, first: usize) {
     let Some(origin) = points.get(first).map(|point| point.position) else { return };
     let from_origin =

@@ -1,4 +1,4 @@
-//! A body of plates against closed forms: its light, its centre of brightness, its shadows.
+//! Tests of a body of plates against closed forms: its flux, its centre of brightness, its shadows.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use super::*;
 const WHITE: SurfaceConfig = SurfaceConfig { diffuse: 1.0, specular: 0.0, roughness: 0.1 };
 const GREY: SurfaceConfig = SurfaceConfig { diffuse: 0.4, specular: 0.0, roughness: 0.1 };
 
-/// A plate in the plane z = `z`, facing +z.
+/// Returns a plate in the plane at height `z`, facing +z.
 fn plate(
     centre: [f64; 2],
     z: f64,
@@ -37,19 +37,20 @@ fn unit(x: f64, y: f64, z: f64) -> Vector3<f64> {
     Vector3::new(x, y, z).normalize()
 }
 
-/// At an angle from z towards x.
+/// Unit vector at an angle from z towards x.
 fn tilted(degrees: f64) -> Vector3<f64> {
     let (sin, cos) = libm::sincos(degrees.to_radians());
     Vector3::new(sin, 0.0, cos)
 }
 
-/// f_r cos θᵢ cos θₒ A in m²: the flux ratio times the square of a distance so large that all rays are parallel.
+/// f_r cos θᵢ cos θₒ A in m²: the flux ratio times the square of a distance so large that all rays are
+/// parallel.
 fn far_light(plates: &[Plate], eye: Vector3<f64>, sun: Vector3<f64>) -> f64 {
     let far_m = 1e7;
     LitBody::new(plates, eye * far_m, sun).flux_ratio() * far_m * far_m
 }
 
-/// A pinhole at `eye_m` that looks at the origin, `px` pixels a radian.
+/// Returns a pinhole camera at `eye_m` that points at the origin, with `px` pixels per radian.
 fn pinhole(eye_m: Vector3<f64>, px: f64) -> impl Fn(&Vector3<f64>) -> Option<PixelPoint> {
     let z = -eye_m.normalize();
     let x = z.cross(&Vector3::new(0.3, 1.0, 0.1)).normalize();
@@ -60,7 +61,7 @@ fn pinhole(eye_m: Vector3<f64>, px: f64) -> impl Fn(&Vector3<f64>) -> Option<Pix
     }
 }
 
-/// A box with a panel in front of one face and one that stands out: TANGO-like.
+/// Box with one panel in front of a face and one that protrudes, similar to TANGO.
 fn tango() -> Vec<Plate> {
     let foil = SurfaceConfig { diffuse: 0.25, specular: 0.2, roughness: 0.15 };
     let cells = SurfaceConfig { diffuse: 0.05, specular: 0.3, roughness: 0.05 };
@@ -79,7 +80,7 @@ fn a_diffuse_plate_has_its_closed_form() {
     for (sun_deg, eye_deg) in [(0.0, 0.0), (30.0, -50.0), (80.0, 10.0)] {
         let cosines = libm::cos(f64::to_radians(sun_deg)) * libm::cos(f64::to_radians(eye_deg));
         let expected = 0.4 / PI * 3.0 * cosines;
-        // 1e-7 and less by the finite distance.
+        // The finite distance contributes 1e-7 or less.
         assert!((far_light(&plates, tilted(eye_deg), tilted(sun_deg)) / expected - 1.0).abs() < 1e-6);
     }
 }
@@ -103,7 +104,7 @@ fn a_box_seen_face_on_is_that_face() {
     assert!((far_light(&faces, eye, sun) / far_light(&face, eye, sun) - 1.0).abs() < 1e-9);
 }
 
-/// A convex body hides and shades nothing but its own far side: the sum over faces is the whole truth.
+/// A convex body hides and shades only its own far side, so its flux is the sum over its faces.
 #[test]
 fn a_box_is_the_sum_of_its_lit_and_visible_faces() {
     let size = [0.8, 0.75, 0.32];
@@ -113,8 +114,8 @@ fn a_box_is_the_sum_of_its_lit_and_visible_faces() {
     assert!((far_light(&faces, eye, sun) / expected - 1.0).abs() < 1e-6);
 }
 
-/// A sphere of 64 × 32 plates in place of the Lambert sphere: the plates tangent at their middles cover 2 sin(Δ/2)/Δ and so
-/// on of it, some 1e-3.
+/// A sphere of 64 × 32 plates replaces the Lambert sphere. The plates are tangent at their centres, so their
+/// areas differ from the sphere's by factors such as 2 sin(Δ/2)/Δ, by about 1e-3.
 #[test]
 fn many_plates_on_a_sphere_follow_lamberts_phase_law() {
     let (rings, sectors) = (32, 64);
@@ -143,7 +144,8 @@ fn many_plates_on_a_sphere_follow_lamberts_phase_law() {
         }
     }
     for phase_deg in [0.0_f64, 30.0, 60.0, 90.0, 120.0] {
-        // Each plate alone: neighbours that touch at an angle shade slivers of each other.
+        // Each plate is computed separately: neighbours that touch at an angle would shade slivers of each
+        // other.
         let (eye, sun) = (unit(0.3, 0.2, 0.4), {
             let across = unit(0.3, 0.2, 0.4).cross(&Vector3::y()).normalize();
             unit(0.3, 0.2, 0.4) * libm::cos(phase_deg.to_radians())
@@ -151,7 +153,7 @@ fn many_plates_on_a_sphere_follow_lamberts_phase_law() {
         });
         let light: f64 = plates.iter().map(|plate| far_light(&[*plate], eye, sun)).sum();
         let expected = 2.0 / 3.0 * lambert_phase(phase_deg.to_radians());
-        // 4e-3 of full light: the terminator falls between plates.
+        // 4e-3 of the flux at full phase, because the terminator falls between plates.
         assert!((light - expected).abs() < 4e-3 * 2.0 / 3.0, "{light} for {expected} at {phase_deg}°");
     }
 }
@@ -166,28 +168,30 @@ fn a_panel_flashes_at_the_angle_of_a_mirror() {
     assert!(flash > 50.0 * before && flash > 50.0 * after, "{before} {flash} {after}");
     let brightest =
         (0..900).map(|i| f64::from(i) / 10.0).max_by(|a, b| light(*a).total_cmp(&light(*b))).unwrap();
-    // The lobe is a little steeper towards the plane: within a tenth of its width of 3.4°.
+    // The lobe is slightly steeper towards the plane, so its maximum is within a tenth of its width of 3.4°.
     assert!((brightest - 40.0).abs() < 0.4, "{brightest}");
 }
 
 #[test]
 fn a_shadow_takes_its_own_area() {
-    // A screen of 1 m by 1 m, black, 1 m above a plate of 4 m: the Sun at 45° towards x throws its shadow 1 m aside.
+    // A black screen of 1 m by 1 m stands 1 m above a plate of 4 m: the Sun at 45° towards x casts its shadow
+    // 1 m to the side.
     let black = SurfaceConfig { diffuse: 0.0, specular: 0.0, roughness: 0.1 };
     let ground = plate([0.0, 0.0], 0.0, [4.0, 4.0], GREY, None);
     let screen = plate([0.0, 0.0], 1.0, [1.0, 1.0], black, Some(black));
     let light = |plates: &[Plate], eye: Vector3<f64>| far_light(plates, eye, tilted(45.0));
-    // Seen along the light, the screen hides its own shadow: one square metre of 16 is lost; from above, two.
+    // Seen along the sunlight, the screen hides its own shadow: one square metre of 16 is lost; from above,
+    // two.
     for (eye, lost) in
         [(tilted(45.0), 1.0), (Vector3::z(), 2.0), (tilted(-45.0), 2.0), (tilted(20.0), 1.63603)]
     {
         let share = light(&[ground, screen], eye) / light(&[ground], eye);
-        // At 20° the screen hides a square 0.36397 m aside of the shadow's: 2 − 0.36397 is left of both.
+        // At 20° the hidden square is 0.36397 m away from the shadow, so the union of the two is 2 − 0.36397.
         assert!((share - (1.0 - lost / 16.0)).abs() < 1e-5, "{share} for {lost}");
     }
 }
 
-/// The exact areas against rays: points of each plate, sent to the Sun and to the camera.
+/// The exact areas agree with rays from points of each plate to the Sun and to the camera.
 #[test]
 fn shadows_and_occlusions_are_those_of_rays() {
     let plates: Vec<Plate> =
@@ -227,7 +231,8 @@ fn shadows_and_occlusions_are_those_of_rays() {
             }
         }
         let light = LitBody::new(&plates, eye_m, sun).flux_ratio();
-        // Points on the edge of a shadow count whole or not at all: some 1/200 of its length.
+        // Points at the edge of a shadow are counted fully or not at all: an error of about 1/200 of its
+        // length.
         assert!(expected > 0.0 && (light / expected - 1.0).abs() < 5e-3, "{light} {expected}");
     }
 }
@@ -254,7 +259,8 @@ fn the_shares_of_an_image_add_up_to_one_and_its_cells_to_the_flux() {
     }
 }
 
-/// The image's peak after a Gaussian of 0.8 px, its mean and its light, as the body comes from afar: none of them jumps.
+/// The peak of the image after a Gaussian of 0.8 px, the mean and the flux all change continuously as the
+/// body approaches from afar.
 #[test]
 fn nothing_jumps_as_the_body_comes_nearer() {
     let plates = tango();
@@ -276,11 +282,11 @@ fn nothing_jumps_as_the_body_comes_nearer() {
             })
             .sum();
         let light = lit.flux_ratio() * range_m * range_m;
-        // In metres at the body: the place of the centre of brightness, which perspective shifts by size²/range.
+        // Centre of brightness in metres at the body; perspective shifts it by size²/range.
         let place = centre * range_m / 2300.0;
         if let Some((was_light, was_peak, was_place)) = last {
             assert!((light / was_light - 1.0).abs() < 1e-3, "light at {range_m} m");
-            // In a step of 0.5 % the width of the image changes by as much, its peak by less than 0.5 %.
+            // In a step of 0.5 % the width of the image changes by 0.5 %, and its peak by less.
             assert!(
                 (peak - was_peak).abs() < 1e-3 + 0.01 * (1.0 - peak),
                 "{was_peak} to {peak} at {range_m} m"
@@ -296,13 +302,13 @@ fn nothing_jumps_as_the_body_comes_nearer() {
     assert!(kinds.contains(&1) && kinds.contains(&4) && kinds.len() > 4, "{kinds:?}");
 }
 
-/// The light of a resolved body and of a point of light: the same body, the same law, however finely it is cut.
+/// A resolved body and a point source of the same body have equal flux for every size of cell.
 #[test]
 fn the_sum_over_the_cells_of_the_image_is_the_flux_of_the_point() {
     let plates = tango();
     for range_m in [5.0, 20.0, 1000.0] {
         let eye_m = unit(0.4, -0.3, 0.8) * range_m;
-        // Near the mirror's direction of the panels, where the light changes most over the body.
+        // Near the specular direction of the panels, where radiance varies most over the body.
         let lit = LitBody::new(&plates, eye_m, unit(-0.38, 0.33, 0.8));
         let [coarse, fine] = [300.0, 30_000.0].map(|px| lit.cells_flux(&pinhole(eye_m, px)));
         assert!((fine / lit.flux_ratio() - 1.0).abs() < 1e-6, "{} at {range_m} m", fine / lit.flux_ratio());
@@ -323,7 +329,7 @@ fn the_centre_of_brightness_is_on_the_sunlit_side() {
     for sun in [unit(1.0, 0.0, 0.2), unit(0.2, 0.0, 1.0), unit(1.0, 0.0, -0.5)] {
         assert!(sunward(sun) > 0.0, "{sun}");
     }
-    // Only the face x = 0.5 is lit: its centre is √½ · ½ m aside, 3.54 px.
+    // Only the face x = 0.5 is lit: its centre is √½ · ½ m from the middle, 3.54 px.
     assert!((place(unit(1.0, 0.0, -0.5)).norm() - 5.0 * std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-3);
 }
 
@@ -335,9 +341,9 @@ fn a_large_image_has_a_lower_peak_than_a_point_and_a_small_one_the_same() {
         let lit = LitBody::new(&cube, eye_m, unit(0.3, 0.2, 1.0));
         lit.peak_share(&pinhole(eye_m, 1000.0), 0.2).unwrap()
     };
-    // A square metre seen from a distance of 99.5 m: 10.05 × 10.05 px.
+    // One square metre at a distance of 99.5 m: 10.05 × 10.05 px.
     assert!((share(100.0, Vector3::z()) - 0.0099).abs() < 1e-4);
-    // Three faces, and 0.05 px between their middles.
+    // Three faces, with 0.05 px between their centres.
     assert!((share(10_000.0, unit(1.0, 1.0, 1.0)) - 0.2).abs() < 1e-3);
 }
 

@@ -28,21 +28,22 @@ use outline::Solid;
 use plate::{Brick, Plate};
 use sphere::{LitSphere, lambert_phase};
 
-/// Plates that a body may have, those of boxes included: each is held against each.
+/// Maximum number of plates of a body, including those of boxes: every plate is compared with every other
+/// plate.
 const MAX_PLATES: usize = 200;
 
-/// The target as the sensor sees it.
+/// The target as modelled for the sensor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum TargetConfig {
-    /// A point of constant brightness, whatever the phase angle and the shadow: a beacon.
+    /// Beacon: a point source of constant brightness, independent of phase angle and shadow.
     Beacon {
-        /// Visual magnitude at a distance of 1 km; it fades with the square of the distance.
+        /// Visual magnitude at a distance of 1 km; the flux falls with the square of the distance.
         #[schemars(range(min = -30, max = 30))]
         magnitude_at_1_km: f64,
     },
-    /// A diffusely reflecting sphere in sunlight (Lambert's phase law), drawn resolved: its centre of brightness moves
-    /// towards the Sun with the phase angle.
+    /// Diffusely reflecting sphere in sunlight (phase function of a Lambert sphere), drawn resolved: its
+    /// centre of brightness moves towards the Sun as the phase angle grows.
     LambertSphere {
         /// Radius, m, positive.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
@@ -51,16 +52,16 @@ pub enum TargetConfig {
         #[schemars(range(min = 0, max = 1))]
         albedo: f64,
     },
-    /// A body of flat plates in sunlight, with an attitude of its own: its brightness and its centre of brightness move
-    /// with the phase angle, and it is drawn resolved. One plate at least, 200 at most, a box counting six.
+    /// Body of flat plates in sunlight, with an attitude, drawn resolved: its brightness and its centre of
+    /// brightness depend on the phase angle. At least one plate, at most 200; a box counts as six.
     Plates {
-        /// How its body frame is turned; without it along R, T, N of its orbit.
+        /// Attitude of the body frame; if absent, along R, T, N of the target's orbit.
         #[serde(default)]
         attitude: TargetAttitudeConfig,
-        /// Boxes along the axes of the body frame.
+        /// Boxes with edges along the axes of the body frame.
         #[serde(default)]
         boxes: Vec<BoxConfig>,
-        /// Single plates, solar panels for instance.
+        /// Single plates, for example solar panels.
         #[serde(default)]
         plates: Vec<PlateConfig>,
     },
@@ -70,38 +71,38 @@ impl TargetConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first number outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         Spacecraft::new(self).map(|_| ())
     }
 }
 
-/// Where target, chaser and Sun are, and how much of the Sun's disk shines on the target.
+/// Relative positions of target, chaser and Sun, and the visible fraction of the Sun's disk at the target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lighting {
-    /// From the target to the chaser, km, ICRS axes.
+    /// Position of the chaser relative to the target, km, ICRS axes.
     pub chaser_km: Vector3<f64>,
-    /// From the target to the Sun, km, ICRS axes.
+    /// Position of the Sun relative to the target, km, ICRS axes.
     pub sun_km: Vector3<f64>,
-    /// Fraction of the Sun's disk seen from the target, 0 to 1.
+    /// Fraction of the Sun's disk visible from the target, 0 to 1.
     pub sunlit_fraction: f64,
 }
 
 impl Lighting {
-    /// Angle Sun–target–chaser, rad.
+    /// Phase angle Sun–target–chaser, rad.
     pub fn phase_rad(&self) -> f64 {
         libm::atan2(self.sun_km.cross(&self.chaser_km).norm(), self.sun_km.dot(&self.chaser_km))
     }
 
-    /// V magnitude of a body that sends the chaser this share of the irradiance that the Sun would give it unshaded.
-    /// Infinite when no light comes from it.
+    /// V magnitude of a body from which the chaser receives the share `flux_ratio` of the irradiance of the
+    /// unshaded Sun. Infinite if no flux reaches the chaser.
     fn magnitude(&self, flux_ratio: f64) -> f64 {
         let sun_au = self.sun_km.norm() / AU_KM;
         SUN_V_MAG_AT_1_AU - 2.5 * libm::log10(flux_ratio * self.sunlit_fraction / (sun_au * sun_au))
     }
 }
 
-/// A target, checked and prepared.
+/// Target after checks and preparation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spacecraft {
     model: Model,
@@ -146,7 +147,7 @@ impl Spacecraft {
         Ok(Self { model })
     }
 
-    /// The attitude of its body frame; `None` for a target that looks the same from all sides.
+    /// Attitude of the target's body frame; `None` for a target without orientation (beacon or sphere).
     pub fn attitude(&self, states: &States) -> Option<Rotation<Target, Icrs>> {
         match &self.model {
             Model::Beacon { .. } | Model::Sphere { .. } => None,
@@ -154,7 +155,8 @@ impl Spacecraft {
         }
     }
 
-    /// Its outline from `chaser_km` from it (ICRS axes), turned by `target_from_icrs`; `None` of a point of light.
+    /// Returns the target's outline seen from `chaser_km` (relative to the target, ICRS axes), with the
+    /// attitude `target_from_icrs`; `None` for a point source.
     pub(crate) fn outline(
         &self,
         chaser_km: &Vector3<f64>,
@@ -168,7 +170,7 @@ impl Spacecraft {
         Some(Outline::new(solid, chaser_km, target_from_icrs.unwrap_or_else(Rotation::identity)))
     }
 
-    /// Refuses a camera that is as good as at the target, or inside of it, in a frame.
+    /// Rejects a camera that, in this frame, is practically at the target's centre or inside the target.
     pub(crate) fn check_separation(&self, states: &States, frame: u64) -> Result<(), OutOfRange> {
         let (line_of_sight_km, range_m) = (states.line_of_sight_km(), states.range_km() * 1000.0);
         require("orbit.relative", range_m, "a separation of 1 m or more", |m| m >= 1.0)?;
@@ -182,7 +184,7 @@ impl Spacecraft {
         }
     }
 
-    /// How it looks, turned by `target_from_icrs` (which points of light do not heed).
+    /// Returns the target's appearance with the attitude `target_from_icrs`, which point sources ignore.
     pub fn appearance(
         &self,
         lighting: &Lighting,
@@ -211,30 +213,30 @@ impl Spacecraft {
     }
 }
 
-/// How the target looks at one moment.
+/// Appearance of the target at one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Appearance {
     magnitude: f64,
     lit: LitShape,
 }
 
-/// Where its light comes from.
+/// Origin of the target's light.
 #[derive(Debug, Clone, PartialEq)]
 enum LitShape {
-    /// The origin of the body frame.
+    /// Point source at the origin of the body frame.
     Point,
     Sphere(LitSphere),
     Body(LitBody),
 }
 
 impl Appearance {
-    /// V magnitude; `None` when no light comes from it.
+    /// V magnitude; `None` if no flux reaches the camera.
     pub fn magnitude(&self) -> Option<f64> {
         self.magnitude.is_finite().then_some(self.magnitude)
     }
 
-    /// Appends the points of its undisturbed image, some `count_limit` at most, their shares adding up to 1 as far as
-    /// `project` (from the body frame, m, to the image) has a place for them.
+    /// Appends the points of the undistorted image, about `count_limit` at most. `project` maps the body
+    /// frame, m, to the image. The shares add up to 1, except for the share of points without an image.
     pub fn image(
         &self,
         project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>,
@@ -250,7 +252,8 @@ impl Appearance {
         }
     }
 
-    /// An estimate of the share of its light that falls in its brightest pixel, when `psf_share` of a point's does.
+    /// Estimates the share of the flux in the brightest pixel, where a point source has the share `psf_share`
+    /// in its brightest pixel.
     pub fn peak_share(&self, project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>, psf_share: f64) -> f64 {
         let share = match &self.lit {
             LitShape::Body(body) => body.peak_share(project, psf_share),
@@ -267,7 +270,7 @@ mod tests {
 
     const SPHERE: TargetConfig = TargetConfig::LambertSphere { radius_m: 1.0, albedo: 0.9 };
 
-    /// The magnitude of a target without an attitude.
+    /// Magnitude of a target without an attitude.
     fn magnitude(
         config: &TargetConfig,
         range_km: f64,
@@ -291,8 +294,8 @@ mod tests {
         assert!(lambert_phase(std::f64::consts::PI) < 1e-15);
     }
 
-    /// All light that a Lambert sphere takes up and reflects: the integral of the phase law over all directions
-    /// times the geometric albedo 2/3 must give the Bond albedo 1: 2 ∫ Φ sin α dα = 3/2.
+    /// A white Lambert sphere reflects all incident light: the integral of the phase function over all
+    /// directions times the geometric albedo 2/3 must equal the Bond albedo 1, so 2 ∫ Φ sin α dα = 3/2.
     #[test]
     fn a_white_sphere_reflects_all_that_it_receives() {
         let n = 10_000;
@@ -333,12 +336,13 @@ mod tests {
         assert_eq!(magnitude(&beacon, 10.0, AU_KM, 3.0, 0.0), 7.0);
     }
 
-    /// A white sphere of 1 m at 1 km, full phase, at 1 au: −26.76 − 2.5 log10(2/3 · 1e-6) = −11.32.
+    /// White sphere of 1 m at a distance of 1 km, full phase, at 1 au: −26.76 − 2.5 log10(2/3 · 1e-6) =
+    /// −11.32.
     #[test]
     fn a_sphere_has_the_magnitude_of_its_closed_form() {
         let white = TargetConfig::LambertSphere { radius_m: 1.0, albedo: 1.0 };
         assert!((magnitude(&white, 1.0, AU_KM, 0.0, 1.0) + 11.3198).abs() < 1e-4);
-        // Twice as far from the Sun it is a quarter as bright.
+        // At twice the distance from the Sun the sphere has a quarter of the flux.
         let far = magnitude(&white, 1.0, 2.0 * AU_KM, 0.0, 1.0) - magnitude(&white, 1.0, AU_KM, 0.0, 1.0);
         assert!((far - 5.0 * libm::log10(2.0)).abs() < 1e-12);
     }
@@ -347,7 +351,7 @@ mod tests {
     fn a_black_sphere_and_a_new_one_give_no_light() {
         let black = TargetConfig::LambertSphere { radius_m: 1.0, albedo: 0.0 };
         assert_eq!(magnitude(&black, 1.0, AU_KM, 0.0, 1.0), f64::INFINITY);
-        // Φ(π) is 4e-17, not 0: fainter than anything all the same.
+        // Φ(π) evaluates to 4e-17 instead of 0, which is still too faint to matter.
         assert!(magnitude(&SPHERE, 1.0, AU_KM, std::f64::consts::PI, 1.0) > 25.0);
     }
 

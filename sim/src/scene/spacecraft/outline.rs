@@ -1,4 +1,4 @@
-//! The target as something that stands in the way: of the stars behind it, and of the camera.
+//! The target as an obstacle: it occults the stars behind it and must not contain the camera.
 
 use contract::{Direction, Icrs, Rotation, Target};
 use nalgebra::Vector3;
@@ -6,28 +6,31 @@ use nalgebra::Vector3;
 use super::plate::{Brick, Plate};
 use crate::scene::aberration::ABERRATION_MARGIN_RAD;
 
-/// What of a target is opaque.
+/// Opaque solid of a target.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Solid<'a> {
-    /// A sphere about the origin of the body frame, its radius in m.
+    /// Sphere about the origin of the body frame; its radius, m.
     Sphere(f64),
-    /// All its plates, and the boxes that some of them are the faces of.
+    /// All plates, and the boxes whose faces are among the plates.
     Plates(&'a [Plate], &'a [Brick]),
 }
 
-/// The target as seen from one place, lit or not. It moves with the chaser, so that it is seen where it is.
+/// The target as seen from one position, lit or unlit. It moves with the chaser, so its direction has no
+/// aberration.
 pub(crate) struct Outline<'a> {
     solid: Solid<'a>,
     target_from_icrs: Rotation<Target, Icrs>,
-    /// The camera in the target's body frame, m.
+    /// Position of the camera in the target's body frame, m.
     eye_m: Vector3<f64>,
     line_of_sight: Vector3<f64>,
-    /// Of the angle within which all of it is, and [`ABERRATION_MARGIN_RAD`]; −1 from within the sphere about it.
+    /// Cosine of the sum of the angular radius that contains the whole target and [`ABERRATION_MARGIN_RAD`];
+    /// −1 if the camera is inside the enclosing sphere.
     cos_near: f64,
 }
 
 impl<'a> Outline<'a> {
-    /// Its outline from `chaser_km` from it (ICRS axes), turned by `target_from_icrs`.
+    /// Returns the outline seen from `chaser_km` (relative to the target, ICRS axes), with the attitude
+    /// `target_from_icrs`.
     pub(super) fn new(
         solid: Solid<'a>,
         chaser_km: &Vector3<f64>,
@@ -43,12 +46,14 @@ impl<'a> Outline<'a> {
         Self { solid, target_from_icrs, eye_m, line_of_sight: -chaser_km.normalize(), cos_near }
     }
 
-    /// Whether it may stand before a far source with this astrometric direction: far quicker to tell than where it appears.
+    /// Returns true if the target may hide a distant source with this astrometric direction. This test is
+    /// much faster than the computation of the apparent direction.
     pub(crate) fn is_near(&self, astrometric: &Direction<Icrs>) -> bool {
         self.line_of_sight.dot(astrometric.vector()) >= self.cos_near
     }
 
-    /// Whether it stands before a far source that an ideal camera sees in the direction `apparent`.
+    /// Returns true if the target hides a distant source that an ideal camera sees in the direction
+    /// `apparent`.
     pub(crate) fn hides(&self, apparent: &Direction<Icrs>) -> bool {
         let ray = self.target_from_icrs.rotate(apparent.vector());
         match self.solid {
@@ -60,7 +65,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Whether the camera is inside of it.
+    /// Returns true if the camera is inside the target.
     pub(super) fn holds_camera(&self) -> bool {
         match self.solid {
             Solid::Sphere(radius_m) => self.eye_m.norm() <= radius_m,

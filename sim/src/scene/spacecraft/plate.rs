@@ -8,18 +8,18 @@ use serde::{Deserialize, Serialize};
 use super::polygon::Polygon;
 use super::surface::SurfaceConfig;
 
-/// A rectangular plate without thickness. It is opaque from both sides.
+/// Rectangular plate without thickness, opaque from either side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlateConfig {
-    /// Its centre in the target's body frame, m, each −200 to 200.
+    /// Centre in the target's body frame, m, each −200 to 200.
     #[schemars(inner(range(min = -200, max = 200)))]
     pub centre_m: [f64; 3],
-    /// Direction out of its front, body frame, of any length but 0.
+    /// Outward direction of the front, body frame, of any length except 0.
     #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub normal: [f64; 3],
-    /// Direction of its height, body frame, of any length but 0, not along the normal; its part along the normal is taken
-    /// away.
+    /// Direction of the height, body frame, of any length except 0, not along the normal; its component along
+    /// the normal is removed.
     #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub up: [f64; 3],
     /// Extent across `up`, m, above 0, at most 200.
@@ -28,29 +28,29 @@ pub struct PlateConfig {
     /// Extent along `up`, m, above 0, at most 200.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 200))]
     pub height_m: f64,
-    /// Reflectance of its front.
+    /// Reflectance of the front.
     pub front: SurfaceConfig,
-    /// Reflectance of its back; absent: black.
+    /// Reflectance of the back; black if absent.
     #[serde(default)]
     pub back: Option<SurfaceConfig>,
 }
 
-/// A box with its edges along the axes of the body frame.
+/// Box with edges along the axes of the body frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxConfig {
-    /// Its centre in the target's body frame, m, each −200 to 200.
+    /// Centre in the target's body frame, m, each −200 to 200.
     #[serde(default)]
     #[schemars(inner(range(min = -200, max = 200)))]
     pub centre_m: [f64; 3],
     /// Extent along x, y and z, m, each above 0, at most 200.
     #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 200 }))]
     pub size_m: [f64; 3],
-    /// Reflectance of its six faces, outside.
+    /// Outer reflectance of the six faces.
     pub surface: SurfaceConfig,
 }
 
-/// A plate, checked: `right`, `up` and `normal` are orthonormal and right-handed.
+/// Checked plate: `right`, `up` and `normal` are orthonormal and right-handed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Plate {
     pub centre: Vector3<f64>,
@@ -64,7 +64,7 @@ pub(super) struct Plate {
 }
 
 impl PlateConfig {
-    /// The plate.
+    /// Returns the checked plate.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first number outside its range.
@@ -92,7 +92,7 @@ impl PlateConfig {
     }
 }
 
-/// The room that a box takes, along the axes of the body frame, m.
+/// Volume of a box with edges along the axes of the body frame, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Brick {
     centre: Vector3<f64>,
@@ -100,19 +100,19 @@ pub(super) struct Brick {
 }
 
 impl Brick {
-    /// Whether a point of the body frame, m, is in it or on it.
+    /// Returns true if a point of the body frame, m, is inside the box or on its surface.
     pub(super) fn contains(&self, point: &Vector3<f64>) -> bool {
         (self.half_size - (point - self.centre).abs()).min() >= 0.0
     }
 }
 
 impl BoxConfig {
-    /// The room that it takes.
+    /// Returns the volume of the box.
     pub(super) fn brick(&self) -> Brick {
         Brick { centre: self.centre_m.into(), half_size: 0.5 * Vector3::from(self.size_m) }
     }
 
-    /// Its six faces.
+    /// Returns the six faces.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first number outside its range.
@@ -137,40 +137,40 @@ impl BoxConfig {
 }
 
 impl Plate {
-    /// Whether the ray from `eye` along `ray` meets it, from whichever side.
+    /// Returns true if the ray from `eye` along `ray` meets the plate from either side.
     pub(super) fn is_hit_by(&self, eye: &Vector3<f64>, ray: &Vector3<f64>) -> bool {
         let (towards, along) = (self.centre - eye, ray.dot(&self.normal));
         let reach = towards.dot(&self.normal) / along;
         let off = ray * reach - towards;
-        // A ray in its plane makes no number of it, and meets nothing.
+        // A ray in the plate's plane gives NaN and meets nothing.
         reach > 0.0
             && off.dot(&self.right).abs() <= self.half_width
             && off.dot(&self.up).abs() <= self.half_height
     }
 
-    /// Distance of its farthest corner from the origin of the body frame, m.
+    /// Upper bound of the distance of the plate's corners from the origin of the body frame, m.
     pub(super) fn reach(&self) -> f64 {
         self.centre.norm() + libm::hypot(self.half_width, self.half_height)
     }
 
-    /// Its other side: the front surface is the back's.
+    /// Returns the reversed plate: `front` becomes its front, and its former front becomes its back.
     pub(super) fn turned(&self, front: SurfaceConfig) -> Self {
         Self { right: -self.right, normal: -self.normal, front, back: Some(self.front), ..*self }
     }
 
-    /// Its outline in its own plane, right and up from the centre.
+    /// Outline in the plate's plane: coordinates right and up from the centre.
     pub(super) fn outline(&self) -> Polygon {
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
             .map(|(i, j)| Vector2::new(i * self.half_width, j * self.half_height))
             .to_vec()
     }
 
-    /// A point of its plane in the body frame.
+    /// Converts a point of the plate's plane to the body frame.
     pub(super) fn point_in_body_frame(&self, point: &Vector2<f64>) -> Vector3<f64> {
         self.centre + self.right * point.x + self.up * point.y
     }
 
-    /// A point of the body frame along its axes: right, up and height above its front.
+    /// Converts a point of the body frame to the plate's axes: right, up and height above the front.
     pub(super) fn local(&self, point: &Vector3<f64>) -> Vector3<f64> {
         let offset = point - self.centre;
         Vector3::new(offset.dot(&self.right), offset.dot(&self.up), offset.dot(&self.normal))

@@ -1,12 +1,13 @@
-//! Convex polygons: clipping, subtraction, moments. What shadows and occlusions leave of a plate is a set of them.
+//! Convex polygons: clipping, subtraction, moments. The parts of a plate that remain after shadows and
+//! occlusions are a set of convex polygons.
 
 use nalgebra::{SVector, Vector2};
 
-/// A convex polygon in a plane, its corners in order; m.
+/// Convex polygon in a plane, its corners in order; m.
 pub(super) type Polygon = Vec<Vector2<f64>>;
 
-/// The part of a convex polygon in which `height`, a linear function of the place, is not negative (Sutherland &
-/// Hodgman 1974, Commun. ACM 17, 32). Empty when there is none.
+/// Returns the part of a convex polygon in which `height`, a linear function of position, is not negative
+/// (Sutherland & Hodgman 1974, Commun. ACM 17, 32). Empty if there is no such part.
 pub(super) fn clip<const D: usize>(
     corners: &[SVector<f64, D>],
     height: impl Fn(&SVector<f64, D>) -> f64,
@@ -27,14 +28,14 @@ pub(super) fn clip<const D: usize>(
     kept
 }
 
-/// Area, positive when the corners run counter-clockwise.
+/// Area, positive if the corners run counter-clockwise.
 pub(super) fn signed_area(corners: &[Vector2<f64>]) -> f64 {
     let Some(first) = corners.first() else { return 0.0 };
     corners.windows(2).map(|pair| 0.5 * (pair[0] - first).perp(&(pair[1] - first))).sum()
 }
 
-/// What `hole`, a convex polygon of either sense, leaves of each of `pieces`: convex polygons again. Slivers smaller
-/// than `least_area` are dropped.
+/// Subtracts `hole`, a convex polygon of either orientation, from each of `pieces`; the result consists of
+/// convex polygons. Slivers smaller than `least_area` are dropped.
 pub(super) fn subtract(pieces: &mut Vec<Polygon>, hole: &mut Polygon, least_area: f64) {
     if signed_area(hole) < 0.0 {
         hole.reverse();
@@ -52,7 +53,7 @@ pub(super) fn subtract(pieces: &mut Vec<Polygon>, hole: &mut Polygon, least_area
             left.push(piece);
             continue;
         }
-        // Edge by edge: what is outside of it stays, what is inside meets the next one.
+        // For each edge, the part outside is kept, and the part inside is passed to the next edge.
         let mut rest = piece;
         for (a, b) in edges() {
             let height = inside(*a, *b);
@@ -66,8 +67,9 @@ pub(super) fn subtract(pieces: &mut Vec<Polygon>, hole: &mut Polygon, least_area
     *pieces = left;
 }
 
-/// Area of a polygon and four points that stand for it: equal in weight, with its centroid and its second moments. For a
-/// rectangle they are the points of Gauss's two-point rule along both sides, so that the error is of fourth order.
+/// Area of a polygon, and four points that represent it: equal weights, with the polygon's centroid and
+/// second moments. For a rectangle they are the points of Gauss's two-point rule along each side, so the
+/// error is of fourth order.
 pub(super) fn four_points(corners: &[Vector2<f64>]) -> Option<(f64, [Vector2<f64>; 4])> {
     let first = corners.first()?;
     let triangles = || {
@@ -98,10 +100,10 @@ pub(super) fn four_points(corners: &[Vector2<f64>]) -> Option<(f64, [Vector2<f64
     Some((area.abs(), spread(centroid, [xx, xy, yy])))
 }
 
-/// Four points about a mean that have the second moments [xx, xy, yy] about it: its own at (±1, ±1) times the triangular
-/// root of the covariance.
+/// Returns four points about a mean with the second moments [xx, xy, yy] about it: the points (±1, ±1)
+/// multiplied by the triangular root of the covariance.
 pub(super) fn spread(mean: Vector2<f64>, [xx, xy, yy]: [f64; 3]) -> [Vector2<f64>; 4] {
-    // A sliver's moments may round below zero.
+    // The moments of a sliver may round below zero.
     let x = xx.max(0.0).sqrt();
     let along = if x > 0.0 { xy / x } else { 0.0 };
     let y = (yy - along * along).max(0.0).sqrt();
@@ -131,7 +133,7 @@ mod tests {
             }
             subtract(&mut pieces, &mut hole, 1e-12);
             assert!((area(&pieces) - 8.0).abs() < 1e-12);
-            // A second hole that overlaps the first one takes only what is left of it.
+            // A second hole that overlaps the first removes only the remaining part.
             subtract(&mut pieces, &mut rectangle((0.0, 2.0), (1.5, 4.0)), 1e-12);
             assert!((area(&pieces) - (8.0 - 3.0 + 0.5)).abs() < 1e-12);
         }
@@ -162,7 +164,7 @@ mod tests {
         let (area, points) = four_points(&corners).unwrap();
         let mean = |f: &dyn Fn(&Vector2<f64>) -> f64| points.iter().map(f).sum::<f64>() / 4.0;
         assert!((area - 0.5).abs() < 1e-15);
-        // Uniform over the triangle: ⟨x⟩ = 1/3, ⟨x²⟩ = 1/6, ⟨xy⟩ = 1/12.
+        // Uniform distribution over the triangle: ⟨x⟩ = 1/3, ⟨x²⟩ = 1/6, ⟨xy⟩ = 1/12.
         assert!((mean(&|p| p.x) - 1.0 / 3.0).abs() < 1e-15 && (mean(&|p| p.y) - 1.0 / 3.0).abs() < 1e-15);
         assert!((mean(&|p| p.x * p.x) - 1.0 / 6.0).abs() < 1e-15);
         assert!((mean(&|p| p.x * p.y) - 1.0 / 12.0).abs() < 1e-15);

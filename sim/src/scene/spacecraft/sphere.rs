@@ -1,4 +1,4 @@
-//! A diffusely reflecting sphere in sunlight: where on its disk the light is.
+//! Diffusely reflecting sphere in sunlight: the distribution of radiance over its disk.
 
 use std::f64::consts::PI;
 
@@ -9,35 +9,36 @@ use super::body::gather;
 use crate::optics::ImagePoint;
 use crate::scene::disk::Disk;
 
-/// A disk of a smaller radius is drawn as one point at its centre of brightness, px: that takes 2.5e-5 px² from the variance of
-/// its image.
+/// Radius of the disk below which it is drawn as one point at its centre of brightness, px: this reduces the
+/// variance of the image by 2.5e-5 px².
 const ONE_POINT_RADIUS_PX: f64 = 0.01;
-/// Places along its diameter that are looked at, at least: its centre of brightness is then good to 2e-3 of its radius, however
-/// its limb lies to the grid.
+/// Minimum number of samples along the diameter: the centre of brightness is then accurate to 2e-3 of the
+/// radius for every position of the limb on the grid.
 const SAMPLES_ACROSS: f64 = 128.0;
 
-/// The sphere in the light of one moment, in the axes of the target's body frame, its centre at the origin.
+/// The illuminated sphere at one instant, in the axes of the target's body frame, its centre at the origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LitSphere {
     radius_m: f64,
     distance_m: f64,
-    /// Unit vectors: to the camera, and two across that make a plane.
+    /// Unit vectors: towards the camera, and two perpendicular to it that span a plane.
     towards_eye: Vector3<f64>,
     across: [Vector3<f64>; 2],
-    /// Unit vector to the Sun.
+    /// Unit vector towards the Sun.
     sun: Vector3<f64>,
     phase_rad: f64,
 }
 
 impl LitSphere {
-    /// A sphere seen from `eye_m`, lit from the direction `sun` (a unit vector); `None` from inside of it.
+    /// Returns a sphere seen from `eye_m` and lit from the direction `sun` (a unit vector); `None` from
+    /// inside the sphere.
     pub(super) fn new(radius_m: f64, eye_m: Vector3<f64>, sun: Vector3<f64>) -> Option<Self> {
         let distance_m = eye_m.norm();
         if distance_m <= radius_m {
             return None;
         }
         let towards_eye = eye_m / distance_m;
-        // The coordinate axis that the line of sight is farthest from makes the first direction across.
+        // The first perpendicular vector is derived from a coordinate axis well away from the line of sight.
         let axis = if towards_eye.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
         let first = towards_eye.cross(&axis).normalize();
         let phase_rad = libm::atan2(towards_eye.cross(&sun).norm(), towards_eye.dot(&sun));
@@ -45,8 +46,8 @@ impl LitSphere {
         Some(Self { radius_m, distance_m, towards_eye, across, sun, phase_rad })
     }
 
-    /// Appends the points of its undisturbed image, `count_limit` or so at most, their shares adding up to 1 as far as
-    /// `project` (from the body frame, m, to the image) has a place for them.
+    /// Appends the points of the undistorted image, about `count_limit` at most. `project` maps the body
+    /// frame, m, to the image. The shares add up to 1, except for the share of points without an image.
     pub(super) fn image(
         &self,
         project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>,
@@ -66,22 +67,24 @@ impl LitSphere {
         }
     }
 
-    /// An estimate of the share of its light that falls in its brightest pixel, when `psf_share` of a point's does: that of
-    /// its brightest place, not more than a point's.
+    /// Estimates the share of the flux in the brightest pixel, where a point source has the share `psf_share`
+    /// in its brightest pixel: the share of one pixel at the brightest point of the disk, at most
+    /// `psf_share`.
     pub(super) fn peak_share(
         &self,
         project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>,
         psf_share: f64,
     ) -> Option<f64> {
         let radius_px = self.disk(project).radius_px()?;
-        // Beyond 90° the subsolar point is behind the limb, and the limb towards the Sun is the brightest.
+        // Beyond 90° the subsolar point is behind the limb, and the limb towards the Sun is brightest.
         let brightest = if self.phase_rad < 0.5 * PI { 1.0 } else { libm::sin(self.phase_rad) };
         let all = 2.0 / 3.0 * PI * lambert_phase(self.phase_rad) * radius_px * radius_px;
-        // `min` drops a NaN.
+        // `min` ignores a NaN.
         Some((brightest / all).min(psf_share))
     }
 
-    /// Its disk on the plane through its centre, m. The rays that graze the sphere meet the plane outside of it.
+    /// Returns the disk on the plane through the sphere's centre, m. Rays tangent to the sphere meet the
+    /// plane outside the sphere.
     fn disk(
         &self,
         project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>,
@@ -95,14 +98,15 @@ impl LitSphere {
         }
     }
 
-    /// Light that a place of the plane sends to the camera, from equal areas: the cosine of incidence of the surface that is
-    /// seen there (Lambert), times the solid angle of the area over that at the centre.
+    /// Flux towards the camera per unit area of the plane: the cosine of incidence at the surface point
+    /// visible there (Lambert), times the solid angle of the area relative to that at the centre.
     fn radiance_at(&self, at: &Vector2<f64>) -> f64 {
         let on_plane = self.across[0] * at.x + self.across[1] * at.y;
         let ray = on_plane - self.towards_eye * self.distance_m;
         let length = ray.norm();
-        // The place of the ray that is next to the sphere's centre; from the camera's side of the plane, lest the difference of
-        // two squares of the distance drown the radius.
+        // Point of the ray nearest to the sphere's centre. It is computed from the ray's intersection with
+        // the plane, because the difference of two squared distances from the camera would lose the radius to
+        // rounding.
         let nearest = on_plane - ray * (at.norm_squared() / (length * length));
         let depth2 = self.radius_m * self.radius_m - nearest.norm_squared();
         if depth2 < 0.0 {
@@ -113,12 +117,14 @@ impl LitSphere {
         (point.dot(&self.sun) / self.radius_m).max(0.0) * (cos * cos * cos)
     }
 
-    /// Where its light has its mean, seen from afar: off its centre towards the Sun by R · 3π/16 · sin α (1 + cos α)/(sin α +
-    /// (π − α) cos α), the integrals of (n·x)(n·s)(n·o) and (n·s)(n·o) over what is lit and seen.
+    /// Centre of brightness as seen from afar. Its offset from the sphere's centre towards the Sun is R ·
+    /// 3π/16 · sin α (1 + cos α)/(sin α + (π − α) cos α), from the integrals of (n·x)(n·s)(n·o) and
+    /// (n·s)(n·o) over the sunlit visible part.
     fn centre_of_brightness_m(&self) -> Vector3<f64> {
         let (sin, cos) = libm::sincos(self.phase_rad);
         let light = sin + (PI - self.phase_rad) * cos;
-        // Towards π both vanish with the third power of what is left; their ratio goes to 3/2.
+        // Towards π, numerator and denominator vanish with the third power of π − α; their ratio tends to
+        // 3/2.
         let ratio = if light > 1e-10 { sin * (1.0 + cos) / light } else { 1.5 };
         let towards_sun = self.sun - self.towards_eye * self.sun.dot(&self.towards_eye);
         let direction = towards_sun.try_normalize(1e-12).unwrap_or_else(Vector3::zeros);
@@ -126,7 +132,8 @@ impl LitSphere {
     }
 }
 
-/// Phase law of a Lambert sphere, 1 at full phase, 0 at π: (sin α + (π − α) cos α)/π (Russell 1916, ApJ 43, 173).
+/// Phase function of a Lambert sphere, 1 at full phase, 0 at π: (sin α + (π − α) cos α)/π (Russell 1916, ApJ
+/// 43, 173).
 pub(super) fn lambert_phase(phase_rad: f64) -> f64 {
     let (sin, cos) = libm::sincos(phase_rad);
     ((sin + (PI - phase_rad) * cos) / PI).max(0.0)
@@ -138,7 +145,8 @@ mod tests {
 
     const RADIUS_M: f64 = 0.5;
 
-    /// The sphere at a phase, from so many radii, the Sun towards x; and a camera in which its radius has so many pixels.
+    /// Returns the sphere at a phase angle, seen from a distance of `radii` radii with the Sun towards x, and
+    /// the projection of a camera in which its radius is `radius_px` pixels.
     fn seen(
         phase_deg: f64,
         radii: f64,
@@ -163,7 +171,7 @@ mod tests {
         points
     }
 
-    /// Mean over the light from the disk's centre, radii.
+    /// Flux-weighted mean position relative to the disk's centre, in radii.
     fn mean(points: &[ImagePoint], radius_px: f64) -> (f64, f64) {
         let sum = |value: &dyn Fn(&ImagePoint) -> f64| points.iter().map(value).sum::<f64>();
         let all = sum(&|p| p.share);
@@ -177,7 +185,7 @@ mod tests {
     fn at_half_phase_the_centre_of_brightness_is_off_by_three_sixteenths_of_pi() {
         for radius_px in [0.005, 0.05, 0.3, 1.0, 7.3, 40.0] {
             let (x, y) = mean(&points(90.0, 1e4, radius_px), radius_px);
-            // The limb of a disk of 128 samples across is good to 2e-3 of its radius.
+            // With 128 samples across, the limb of the disk is accurate to 2e-3 of its radius.
             assert!((x - 3.0 * PI / 16.0).abs() < 2e-3 && y.abs() < 2e-3, "{radius_px} px: {x}, {y}");
         }
     }
@@ -190,7 +198,7 @@ mod tests {
             let (x, _) = mean(&points(phase_deg, 1e4, 20.0), 20.0);
             assert!((x - expected).abs() < 2e-3, "{phase_deg}°: {x}, expected {expected}");
         }
-        // The crescent's limit, from either side of the switch to it.
+        // The limit for a thin crescent, on both sides of the switch to it.
         for phase_deg in [179.9, 179.99, 180.0 - 1e-6] {
             let (sphere, _) = seen(phase_deg, 1e4, 1.0);
             let x = sphere.centre_of_brightness_m().x / RADIUS_M;
@@ -198,7 +206,8 @@ mod tests {
         }
     }
 
-    /// The light of the disk over that of a sphere in full phase, (2/3) π R² from afar, against Russell's phase law.
+    /// The flux of the disk relative to a sphere at full phase, (2/3) π R² from afar, equals Russell's phase
+    /// function.
     #[test]
     fn the_light_of_the_disk_is_that_of_the_phase_law() {
         for phase_deg in [0.0, 45.0, 90.0, 135.0] {
@@ -223,7 +232,7 @@ mod tests {
                 let sum: f64 = points.iter().map(|point| point.share).sum();
                 assert!((sum - 1.0).abs() < 1e-9, "{phase_deg}°, {radius_px} px: {sum}");
                 let at = |p: &ImagePoint| libm::hypot(p.position.x - 50.3, p.position.y - 40.1);
-                // Four points with the moments of a small disk may stand a little outside of it.
+                // Four points with the moments of a small disk may lie slightly outside the disk.
                 let limit = if radius_px < 0.1 { 1.5 } else { 1.001 };
                 assert!(points.iter().all(|point| at(point) < limit * radius_px + 1e-9));
             }
@@ -242,7 +251,8 @@ mod tests {
         let mut radius_px = 0.004;
         while radius_px < 4.0 {
             let (near, far) = (moments(radius_px * 1.0001), moments(radius_px));
-            // One point takes 2.5e-5 px² of the variance; the limb in steps of a sample moves the mean by 1e-3 of a radius.
+            // A single point reduces the variance by 2.5e-5 px²; sampling of the limb moves the mean by 1e-3
+            // of a radius.
             let shift_px = libm::hypot(near.0 - far.0, near.1 - far.1);
             assert!(shift_px < 2e-3 * radius_px + 1e-6, "{radius_px} px: moved by {shift_px} px");
             let widened = (near.2 - far.2).abs();
@@ -256,12 +266,13 @@ mod tests {
 
     #[test]
     fn a_near_sphere_is_seen_no_farther_than_its_horizon() {
-        // From two radii its limb is 60° from the point below the camera; its disk has 1/cos 30° of its radius.
+        // From a distance of two radii the limb is 60° from the point below the camera; the disk's radius is
+        // 1/cos 30° times the sphere's.
         let (sphere, project) = seen(0.0, 2.0, 30.0);
         let disk_px = sphere.disk(&project).radius_px().unwrap();
         assert!((disk_px - 30.0 / libm::cos(PI / 6.0)).abs() < 1e-2, "{disk_px}");
         assert!((sphere.radiance_at(&Vector2::zeros()) - 1.0).abs() < 1e-12);
-        // At the horizon the Sun stands 60° from the zenith, and the area is 30° off the axis.
+        // At the horizon the Sun is 60° from the zenith, and the area is 30° off the axis.
         let limb = sphere.radiance_at(&Vector2::new(0.999999 * RADIUS_M / libm::cos(PI / 6.0), 0.0));
         let cos = libm::cos(PI / 6.0);
         assert!((limb - 0.5 * cos * cos * cos).abs() < 2e-3, "{limb}");

@@ -1,4 +1,4 @@
-//! The approach to a docking target: pose of the camera and its rates, as functions of time.
+//! Approach to a docking target: pose of the camera and its rates as functions of time.
 
 mod oscillation;
 mod segment;
@@ -15,28 +15,28 @@ pub use oscillation::OscillationConfig;
 pub use segment::SegmentConfig;
 use segment::{AxialMotion, D3_M};
 
-/// How the camera moves with respect to the target. The frames are those of [`Pose`].
+/// Motion of the camera relative to the target. The frames are those of [`Pose`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum ApproachConfig {
-    /// d = d0 + v t, φ = φ0 + ω t, exactly.
+    /// Motion at constant rates: d = d0 + v t, φ = φ0 + ω t, exactly.
     ConstantVelocity(ConstantVelocityConfig),
     /// Segments flown in sequence.
     Segments(SegmentedConfig),
 }
 
-/// d = d0 + v t, φ = φ0 + ω t.
+/// Motion at constant rates: d = d0 + v t, φ = φ0 + ω t.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConstantVelocityConfig {
-    /// d at the beginning, m, each from −20000 to 20000; d3 from 0.05 on, also at the end.
+    /// d at the start, m, each from −20000 to 20000; d3 must be at least 0.05, also at the end.
     #[schemars(inner(range(min = -20000, max = 20000)))]
     pub position_m: [f64; 3],
     /// Velocity, m/s, each from −100 to 100.
     #[serde(default)]
     #[schemars(inner(range(min = -100, max = 100)))]
     pub velocity_m_s: [f64; 3],
-    /// φ at the beginning, degrees, each from −60 to 60, also at the end.
+    /// φ at the start, degrees, each from −60 to 60, also at the end.
     #[serde(default)]
     #[schemars(inner(range(min = -60, max = 60)))]
     pub phi_deg: [f64; 3],
@@ -53,11 +53,11 @@ pub struct ConstantVelocityConfig {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SegmentedConfig {
-    /// d3 at the beginning, m, 0.05 to 20000 and greater than the target's contact distance.
+    /// d3 at the start, m, 0.05 to 20000 and greater than the target's contact distance.
     #[schemars(range(min = 0.05, max = 20000))]
     pub start_d3_m: f64,
-    /// d1 and d2 at the beginning, m, −1000 to 1000. They go with d3, linearly, to those at contact: guidance holds a line
-    /// of sight, so that what is aside shrinks with the distance.
+    /// d1 and d2 at the start, m, −1000 to 1000. They change linearly with d3 to their values at contact:
+    /// guidance holds a line of sight, so lateral offsets shrink with the distance.
     #[serde(default)]
     #[schemars(inner(range(min = -1000, max = 1000)))]
     pub lateral_at_start_m: [f64; 2],
@@ -69,14 +69,14 @@ pub struct SegmentedConfig {
     #[serde(default)]
     #[schemars(inner(range(min = -30, max = 30)))]
     pub phi_deg: [f64; 3],
-    /// Duration of a change of speed from one segment to the next, s, 0.01 to 1000.
+    /// Duration of the change of speed from one segment to the next, s, 0.01 to 1000.
     #[serde(default = "default_ramp_s")]
     #[schemars(range(min = 0.01, max = 1000))]
     pub ramp_s: f64,
-    /// The limit cycle of the control system, over the whole approach.
+    /// Limit cycle of the control system, over the whole approach.
     #[serde(default)]
     pub limit_cycle: OscillationConfig,
-    /// The segments, at least one; the first begins at its own speed.
+    /// Segments, at least one; the first segment begins at its own speed.
     #[schemars(length(min = 1, max = 1000))]
     pub segments: Vec<SegmentConfig>,
 }
@@ -108,10 +108,10 @@ impl SegmentedConfig {
     }
 }
 
-/// Where the camera is and how it moves at a moment; the derivatives are exact.
+/// Pose of the camera and its rates at one time; the derivatives are exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ApproachState {
-    /// d and φ.
+    /// Position d and angles φ.
     pub pose: Pose,
     /// dd/dt, m/s.
     pub velocity_m_s: Vector3<f64>,
@@ -120,35 +120,36 @@ pub struct ApproachState {
 }
 
 impl ApproachState {
-    /// ρ = |d|, m (docking paper, 3.2).
+    /// Range ρ = |d|, m (docking paper, 3.2).
     pub fn range_m(&self) -> f64 {
         self.pose.position_m.norm()
     }
 
-    /// u = dρ/dt, m/s: negative when closing.
+    /// Range rate u = dρ/dt, m/s: negative when closing.
     pub fn range_rate_m_s(&self) -> f64 {
         self.pose.position_m.dot(&self.velocity_m_s) / self.range_m()
     }
 
-    /// α = atan2(d2, √(d1² + d3²)), rad.
+    /// Passive pitch α = atan2(d2, √(d1² + d3²)), rad.
     pub fn passive_pitch_rad(&self) -> f64 {
         let d = self.pose.position_m;
         libm::atan2(d.y, libm::hypot(d.x, d.z))
     }
 
-    /// β = atan2(d1, d3), rad.
+    /// Passive yaw β = atan2(d1, d3), rad.
     pub fn passive_yaw_rad(&self) -> f64 {
         libm::atan2(self.pose.position_m.x, self.pose.position_m.z)
     }
 }
 
-/// A = diag(1, −1, −1) exp(\[φ\]×): y = d + A x takes a point of the camera frame into the target frame.
+/// Rotation matrix A = diag(1, −1, −1) exp(\[φ\]×): y = d + A x transforms a point from the camera frame to
+/// the target frame.
 pub fn target_from_camera(pose: &Pose) -> Matrix3<f64> {
     let turned = Rotation3::from_scaled_axis(pose.phi_rad);
     Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * turned.matrix()
 }
 
-/// An approach that was checked.
+/// Checked approach.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Approach {
     course: Course,
@@ -161,7 +162,7 @@ enum Course {
 }
 
 impl Approach {
-    /// Checks an approach to a target whose contact is at d3 = `contact_distance_m`.
+    /// Checks an approach to a target with contact at d3 = `contact_distance_m`.
     ///
     /// # Errors
     /// [`SimError::OutOfRange`] for the first value that is not allowed.
@@ -194,7 +195,7 @@ impl Approach {
         }
     }
 
-    /// The state `time_s` after the beginning.
+    /// State of the camera `time_s` after the start.
     pub fn state_at(&self, time_s: f64) -> ApproachState {
         match &self.course {
             Course::Constant(config) => constant_velocity(config, time_s),

@@ -1,4 +1,4 @@
-//! Sinusoids about a course: the limit cycle of a control system, or a manoeuvre of its own.
+//! Sinusoids about a trajectory: the limit cycle of a control system, or a separate manoeuvre.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use nalgebra::{Vector2, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A sinusoid on each axis: amplitude × sin(2π t/period + phase). All zero unless set.
+/// Sinusoid on each axis: amplitude × sin(2π t/period + phase). All zero by default.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OscillationConfig {
@@ -16,7 +16,7 @@ pub struct OscillationConfig {
     /// Periods of d1 and d2, s, 0.1 to 1e5.
     #[schemars(inner(range(min = 0.1, max = 1e5)))]
     pub lateral_period_s: [f64; 2],
-    /// Phases of d1 and d2 at the beginning, degrees.
+    /// Phases of d1 and d2 at the start, degrees.
     #[schemars(inner(range(min = -3600, max = 3600)))]
     pub lateral_phase_deg: [f64; 2],
     /// Amplitudes of φ1, φ2, φ3, degrees, 0 to 30.
@@ -25,7 +25,7 @@ pub struct OscillationConfig {
     /// Periods of φ1, φ2, φ3, s, 0.1 to 1e5.
     #[schemars(inner(range(min = 0.1, max = 1e5)))]
     pub angular_period_s: [f64; 3],
-    /// Phases of φ1, φ2, φ3 at the beginning, degrees.
+    /// Phases of φ1, φ2, φ3 at the start, degrees.
     #[schemars(inner(range(min = -3600, max = 3600)))]
     pub angular_phase_deg: [f64; 3],
 }
@@ -44,7 +44,7 @@ impl Default for OscillationConfig {
 }
 
 impl OscillationConfig {
-    /// Displacement and its rate, `time_s` after the beginning.
+    /// Displacement and its rate `time_s` after the start.
     pub(super) fn displacement_at(&self, time_s: f64) -> Displacement {
         let lateral = [0, 1].map(|i| {
             sinusoid(self.lateral_amplitude_m[i], self.lateral_period_s[i], self.lateral_phase_deg[i], time_s)
@@ -68,7 +68,7 @@ fn sinusoid(amplitude: f64, period_s: f64, phase_deg: f64, time_s: f64) -> (f64,
     (amplitude * sin, amplitude * frequency * cos)
 }
 
-/// What an oscillation adds to the course.
+/// Displacement from the trajectory by an oscillation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Displacement {
     pub(super) lateral_m: Vector2<f64>,
@@ -78,7 +78,8 @@ pub(super) struct Displacement {
 }
 
 impl Displacement {
-    /// Multiplied by a window that has the value `window` and changes by `rate` per second.
+    /// Returns the displacement multiplied by a window with the value `window`, which changes by `rate` per
+    /// second.
     pub(super) fn windowed(&self, window: f64, rate: f64) -> Self {
         Self {
             lateral_m: self.lateral_m * window,
@@ -89,8 +90,8 @@ impl Displacement {
     }
 }
 
-/// Rises from 0 at the beginning to 1 and falls back to 0 at the end, with continuous rate: 3 s² − 2 s³ over `ramp_s` at
-/// each end. Value and rate.
+/// Window that rises from 0 at the start to 1 and falls back to 0 at the end, with continuous rate: 3 s² − 2
+/// s³ over `ramp_s` at each end. Returns value and rate.
 pub(super) fn window(time_s: f64, duration_s: f64, ramp_s: f64) -> (f64, f64) {
     let ramp_s = ramp_s.min(0.5 * duration_s);
     let (s, sign) = if time_s <= 0.5 * duration_s {

@@ -1,4 +1,5 @@
-//! Parts of an approach, and the motion along the docking axis that they make: constant accelerations end to end.
+//! Segments of an approach, and the resulting motion along the docking axis: a sequence of constant
+//! accelerations.
 
 use contract::OutOfRange;
 use contract::bounds::require;
@@ -7,55 +8,58 @@ use serde::{Deserialize, Serialize};
 
 use super::oscillation::OscillationConfig;
 
-/// Nearest and farthest d3 of an approach, m.
+/// Smallest and largest d3 of an approach, m.
 pub(super) const D3_M: std::ops::RangeInclusive<f64> = 0.05..=20_000.0;
-/// Longest segment and longest approach, s.
+/// Maximum duration of a segment and of an approach, s.
 const MAX_DURATION_S: f64 = 1e5;
 
-/// One part of an approach. It begins where the one before ended; the speed changes to its own at constant acceleration
-/// over the approach's `ramp_s`.
+/// One segment of an approach. It begins at the end of the preceding segment; the speed changes to its own at
+/// constant acceleration over the approach's `ramp_s`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum SegmentConfig {
-    /// Towards the target.
+    /// Motion towards the target.
     Glide {
-        /// d3 where it ends, m, 0.05 to 20000; the target's contact distance where not given.
+        /// d3 at the end, m, 0.05 to 20000; by default the target's contact distance.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.05, max = 20000))]
         to_d3_m: Option<f64>,
-        /// Closing speed at its beginning, m/s, 0 to 100.
+        /// Closing speed at the start, m/s, 0 to 100.
         #[schemars(range(min = 0, max = 100))]
         speed_m_s: f64,
-        /// Closing speed at its end, m/s, 0 to 100, reached at constant acceleration; as at the beginning where not given.
+        /// Closing speed at the end, m/s, 0 to 100, reached at constant acceleration; by default the speed at
+        /// the start.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = 100))]
         end_speed_m_s: Option<f64>,
     },
-    /// Away from the target.
+    /// Motion away from the target.
     Retreat {
-        /// d3 where it ends, m, 0.05 to 20000.
+        /// d3 at the end, m, 0.05 to 20000.
         #[schemars(range(min = 0.05, max = 20000))]
         to_d3_m: f64,
-        /// Speed at its beginning, m/s, 0 to 100.
+        /// Speed at the start, m/s, 0 to 100.
         #[schemars(range(min = 0, max = 100))]
         speed_m_s: f64,
-        /// Speed at its end, m/s, 0 to 100, reached at constant acceleration; as at the beginning where not given.
+        /// Speed at the end, m/s, 0 to 100, reached at constant acceleration; by default the speed at the
+        /// start.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = 100))]
         end_speed_m_s: Option<f64>,
     },
-    /// At rest along the docking axis.
+    /// Rest along the docking axis.
     Hold {
-        /// Duration with the braking before it, s, 0.1 to 1e5 and not shorter than the ramp.
+        /// Duration including the initial braking, s, 0.1 to 1e5 and not shorter than the ramp.
         #[schemars(range(min = 0.1, max = 1e5))]
         duration_s: f64,
     },
-    /// At rest along the docking axis, and swinging.
+    /// Rest along the docking axis, with an oscillation.
     Oscillation {
-        /// Duration with the braking before it, s, 0.1 to 1e5 and not shorter than the ramp.
+        /// Duration including the initial braking, s, 0.1 to 1e5 and not shorter than the ramp.
         #[schemars(range(min = 0.1, max = 1e5))]
         duration_s: f64,
-        /// The swing, its phases counted from the segment's beginning; it swells and dies over the ramp.
+        /// Oscillation with phases counted from the start of the segment; its amplitude rises and falls over
+        /// the ramp.
         swing: OscillationConfig,
     },
 }
@@ -64,12 +68,12 @@ fn check_d3(d3_m: f64) -> Result<(), OutOfRange> {
     require("approach.segments[].to_d3_m", d3_m, "0.05 to 20000", |d| D3_M.contains(&d))
 }
 
-/// A stretch of constant acceleration along the docking axis.
+/// Interval of constant acceleration along the docking axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stretch {
     begin_s: f64,
     d3_m: f64,
-    /// d(d3)/dt at its beginning: negative when closing.
+    /// d(d3)/dt at the start: negative when closing.
     rate_m_s: f64,
     acceleration_m_s2: f64,
 }
@@ -85,10 +89,10 @@ pub(super) struct AxialMotion {
 }
 
 impl AxialMotion {
-    /// From segments that were checked, beginning at `start_d3_m` with the first segment's own speed.
+    /// Creates the motion from checked segments, starting at `start_d3_m` with the first segment's own speed.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a segment that cannot be flown from where the one before ends.
+    /// [`OutOfRange`] for a segment that cannot be flown from the end of the preceding segment.
     pub(super) fn new(
         segments: &[SegmentConfig],
         start_d3_m: f64,
@@ -103,7 +107,7 @@ impl AxialMotion {
             end_rate_m_s: 0.0,
         };
         for (index, segment) in segments.iter().enumerate() {
-            // The first segment begins at its own speed: only so is a constant velocity exactly constant.
+            // The first segment begins at its own speed: only then is a constant velocity exactly constant.
             let ramp_s = if index == 0 { 0.0 } else { ramp_s };
             motion
                 .append(segment, contact_distance_m, ramp_s)
@@ -139,7 +143,8 @@ impl AxialMotion {
         }
     }
 
-    /// To `to_d3_m`, at a rate that changes evenly from the first to the second of `rates_m_s` after the ramp.
+    /// Moves to `to_d3_m`; after the ramp the rate changes linearly from the first to the second of
+    /// `rates_m_s`.
     fn travel(&mut self, to_d3_m: f64, rates_m_s: [f64; 2], ramp_s: f64) -> Result<(), OutOfRange> {
         self.ramp_to(rates_m_s[0], ramp_s);
         let mean = 0.5 * (rates_m_s[0] + rates_m_s[1]);
@@ -152,13 +157,14 @@ impl AxialMotion {
         )?;
         self.end_rate_m_s = rates_m_s[0];
         self.stretch(duration_s, (rates_m_s[1] - rates_m_s[0]) / duration_s);
-        // Free of the rounding of the products, so that the next segment begins where and as fast as was asked.
+        // Set directly, without the rounding of the products, so that the next segment begins at the
+        // requested position and speed.
         self.end_d3_m = to_d3_m;
         self.end_rate_m_s = rates_m_s[1];
         Ok(())
     }
 
-    /// Checks that no change of speed takes the camera nearer than `least_d3_m`, or farther than d3 may be.
+    /// Checks that no change of speed brings the camera nearer than `least_d3_m` or beyond the maximum d3.
     fn check_nearest(&self, least_d3_m: f64) -> Result<(), OutOfRange> {
         let ends = self.stretches.iter().skip(1).map(|next| next.begin_s).chain([self.end_s]);
         self.stretches.iter().zip(ends).try_for_each(|(stretch, end_s)| {
@@ -194,7 +200,7 @@ impl AxialMotion {
         self.stretches.push(stretch);
     }
 
-    /// d3 in m and its rate in m/s.
+    /// Returns d3, m, and its rate, m/s.
     pub(super) fn range_and_rate_at(&self, time_s: f64) -> (f64, f64) {
         let index = self.stretches.partition_point(|stretch| stretch.begin_s <= time_s);
         self.stretches
@@ -202,12 +208,12 @@ impl AxialMotion {
             .map_or((self.end_d3_m, 0.0), |stretch| stretch.range_and_rate_at(time_s))
     }
 
-    /// Where the last segment ends, s.
+    /// End time of the last segment, s.
     pub(super) fn end_s(&self) -> f64 {
         self.end_s
     }
 
-    /// Where each segment begins, s.
+    /// Start time of each segment, s.
     pub(super) fn begin_s(&self) -> &[f64] {
         &self.begin_s
     }

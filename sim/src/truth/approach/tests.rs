@@ -41,7 +41,8 @@ fn rates_are_the_derivatives_of_the_pose() {
         let (before, now, after) = (approach.state_at(t - h), approach.state_at(t), approach.state_at(t + h));
         let velocity = (after.pose.position_m - before.pose.position_m) / (2.0 * h);
         let rate = (after.pose.phi_rad - before.pose.phi_rad) / (2.0 * h);
-        // Rounding 60 m × 1e-16 / 1e-4 s, curvature 1 m/s³ × h²; across a change of acceleration ≤ 2 m/s² × h.
+        // Rounding 60 m × 1e-16 / 1e-4 s, curvature 1 m/s³ × h²; at most 2 m/s² × h across a change of
+        // acceleration.
         assert!((velocity - now.velocity_m_s).norm() < 2.5e-4, "at {t} s: {velocity} {}", now.velocity_m_s);
         assert!((rate - now.phi_rate_rad_s).norm() < 1e-6, "at {t} s");
         let range_rate = (after.range_m() - before.range_m()) / (2.0 * h);
@@ -58,7 +59,7 @@ fn neither_position_nor_velocity_jumps() {
     for i in 1..=steps {
         let now = approach.state_at(f64::from(i) * step_s);
         let jump_m = (now.pose.position_m - before.pose.position_m).norm();
-        // At most 2.3 m/s and 1.6 m/s² in this approach.
+        // This approach has at most 2.3 m/s and 1.6 m/s².
         assert!(jump_m < 2.5e-3, "at step {i}: {jump_m} m");
         assert!((now.velocity_m_s - before.velocity_m_s).norm() < 2e-3, "at step {i}");
         assert!((now.phi_rate_rad_s - before.phi_rate_rad_s).norm() < 1e-4, "at step {i}");
@@ -95,12 +96,12 @@ fn a_constant_velocity_is_constant_to_the_last_bit() {
     for k in 0..64 {
         let t = 0.5 * f64::from(k);
         let state = approach.state_at(t);
-        // Powers of two: no rounding.
+        // Powers of two avoid rounding.
         assert_eq!(state.pose.position_m, Vector3::new(0.5 - t / 8.0, -0.25 + t / 16.0, 20.0 - t / 2.0));
         assert_eq!(state.velocity_m_s, Vector3::new(-0.125, 0.0625, -0.5));
         assert_eq!(state.phi_rate_rad_s, Vector3::new(0.1_f64, -0.1, 0.05).map(f64::to_radians));
     }
-    // The same as one glide.
+    // Equivalent motion as a single glide.
     let glide = SegmentedConfig {
         start_d3_m: 20.0,
         lateral_at_start_m: [0.0; 2],
@@ -119,7 +120,7 @@ fn a_constant_velocity_is_constant_to_the_last_bit() {
 fn the_camera_of_an_ideal_docking_looks_at_the_target_upright() {
     let pose = Pose { position_m: Vector3::new(0.0, 0.0, 5.0), phi_rad: Vector3::zeros() };
     assert_eq!(target_from_camera(&pose), Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)));
-    // To first order, the matrix of the paper.
+    // Equals the matrix of the paper to first order.
     let phi = Vector3::new(1e-4, -2e-4, 3e-4);
     let a = target_from_camera(&Pose { phi_rad: phi, ..pose });
     let paper = Matrix3::new(1.0, -phi.z, phi.y, -phi.z, -1.0, phi.x, phi.y, -phi.x, -1.0);
@@ -162,7 +163,7 @@ fn bad_values_are_refused_with_their_path() {
     refused(&|c| c.segments[4] = away.clone(), "approach.segments[4].to_d3_m");
     let still = SegmentConfig::Glide { to_d3_m: None, speed_m_s: 0.0, end_speed_m_s: None };
     refused(&|c| c.segments[4] = still.clone(), "approach.segments[4].to_d3_m");
-    // From 1 m at 10 m/s it would turn after 1.5 s, 6.5 m behind the target.
+    // From 1 m at 10 m/s the motion would turn after 1.5 s, 6.5 m behind the target.
     let rush = [
         SegmentConfig::Glide { to_d3_m: Some(1.0), speed_m_s: 10.0, end_speed_m_s: None },
         SegmentConfig::Retreat { to_d3_m: 40.0, speed_m_s: 10.0, end_speed_m_s: None },

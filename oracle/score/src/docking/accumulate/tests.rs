@@ -37,7 +37,7 @@ fn value(score: &DockingScore, name: &str) -> f64 {
     score.figures[name].value.unwrap_or_else(|| panic!("{name}"))
 }
 
-/// Ten fields from 10.0 m: one of each kind of answer.
+/// Ten fields from 10.0 m with different kinds of outcome.
 fn mixed() -> Vec<(TrueField, Option<DockingOutcome>)> {
     let none = |reason| Some(DockingOutcome::none(reason));
     let answers = [
@@ -106,7 +106,7 @@ fn rates_and_causes_are_those_of_a_count_by_hand() {
         |counts: &IndexMap<String, u64>| counts.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>();
     assert_eq!(counts(&score.misses), ["not_reported 1", "pipeline_failed 1", "no_target 1"]);
     assert_eq!(counts(&score.wrong), ["range 1", "roll 1", "outline 1"]);
-    // The first field is clear and the second the first success.
+    // The first field is clear, and the second is the first success.
     assert_eq!(value(&score, names::LATENCY_FIELDS), 1.0);
 }
 
@@ -131,11 +131,11 @@ fn errors_of_the_right_fields_have_their_closed_forms() {
         assert!((value(&score, name) - expected).abs() < 1e-9, "{name}: {}", value(&score, name));
         assert!(score.figures[name].count > 0);
     }
-    // The paper's pose is the same here, so its figures are.
+    // The paper's pose is the same here, and therefore its figures.
     assert_eq!(value(&score, "paper_range_rms_m"), value(&score, names::RANGE_RMS_M));
 }
 
-/// 18 parameters; the 0.04 m alone is beyond 0.03 m.
+/// Out of 18 parameters only the error of 0.04 m exceeds 0.03 m.
 #[test]
 fn shares_within_three_sigma_are_counted_by_parameter() {
     let mut fields = mixed();
@@ -180,8 +180,8 @@ fn report(time_s: f64, range_m: f64) -> MotionReport {
     MotionReport { best: Some(best.clone()), paper: Some(best) }
 }
 
-/// Fields 0.1 s apart, all measured, a report at 0.9 s and then none: from 1.1 s on it is asked for, until 1.9 s it is a
-/// second old at most.
+/// Fields 0.1 s apart, all measured, with one report at 0.9 s: a report is required from 1.1 s on, and until
+/// 1.9 s the report is at most a second old.
 #[test]
 fn silence_after_a_report_is_reported() {
     let mut fields: Vec<_> = (0..40)
@@ -195,7 +195,7 @@ fn silence_after_a_report_is_reported() {
     assert_eq!((figure.count, figure.of), (9, 29));
 }
 
-/// Ranges and their rates are in metres, angles in degrees.
+/// Range errors are in metres, range rate errors in metres per second, angles in degrees.
 #[test]
 fn a_motion_to_the_side_is_reported_in_degrees() {
     let mut outcome = measured_at([0.0, 0.0, 10.0], [0.0; 3]);
@@ -210,7 +210,7 @@ fn a_motion_to_the_side_is_reported_in_degrees() {
     );
 }
 
-/// A field between the measured ones is part of the portion that they make.
+/// A missed field between measured ones is part of their portion.
 #[test]
 fn a_portion_counts_the_fields_that_were_missed_in_it() {
     let mut fields: Vec<_> =
@@ -233,7 +233,7 @@ fn the_latency_is_from_the_first_clear_field_to_the_first_success() {
     assert_eq!(of(&[missed(0), missed(1)]), None);
 }
 
-/// A bar of 3 cm is resolved at 10 m, and not at 300 m.
+/// A bar of 3 cm is resolved at 10 m, but not at 300 m.
 #[test]
 fn a_field_is_clear_when_the_target_is_whole_and_resolved() {
     let fields = [
@@ -264,7 +264,8 @@ fn units_are_the_fields_with_their_verdicts_and_causes() {
     assert!(figures.iter().eq(score(&mixed()).figures.keys()));
 }
 
-/// Two misses, then portions of ten fields at 50 fields a second, the tenth of each with a report.
+/// Two misses, then portions of ten fields at 50 fields per second; the tenth field of each portion has a
+/// report.
 #[test]
 fn portions_are_timed_from_their_first_measured_field() {
     let mut fields: Vec<_> =
@@ -282,7 +283,7 @@ fn portions_are_timed_from_their_first_measured_field() {
     let rms = ((0.05_f64 * 0.05 + 0.01_f64 * 0.01 + 0.03_f64 * 0.03) / 3.0).sqrt();
     assert!((value(&score, "motion_range_rms_m") - rms).abs() < 1e-12);
     assert_eq!(value(&score, "paper_motion_range_rms_m"), value(&score, "motion_range_rms_m"));
-    // From the second portion on: errors of 1 and 3 standard deviations in one parameter of six.
+    // Counted from the second portion on: errors of 1 and 3 standard deviations in one parameter of six.
     assert!((value(&score, "motion_nees_mean") - (1.0 + 9.0) / 2.0 / 6.0).abs() < 1e-9);
     assert_eq!(score.figures["motion_within_3_sigma"].of, 14);
 }
@@ -321,8 +322,8 @@ fn a_field_met_twice_is_refused() {
     assert_eq!(scorer.add(&field(3, 10.0), None), Err(ScoreError::Order { previous: 3, frame: 3 }));
 }
 
-/// Of three reports the first is the paper's alone: it is counted as the paper's, and the best estimator's first motion is
-/// the second report's.
+/// The first of three reports has only the paper's motion, which is counted; the best estimator's first
+/// motion is in the second report.
 #[test]
 fn a_report_of_the_papers_motion_alone_counts_as_the_papers() {
     let fields: Vec<_> = (0..30)
@@ -341,11 +342,11 @@ fn a_report_of_the_papers_motion_alone_counts_as_the_papers() {
     let of = |name: &str| score.figures[name].of;
     assert_eq!(score.portions, 3);
     assert_eq!((of("motion_wrong_rate"), of("paper_motion_wrong_rate")), (2, 3));
-    // From the second of each on.
+    // Counted from the second motion of each estimator on.
     assert_eq!((of("motion_range_within_3_sigma"), of("paper_motion_range_within_3_sigma")), (1, 2));
 }
 
-/// A saboteur among pipelines: the same errors, and a covariance that claims ten times as little.
+/// A saboteur pipeline: the same errors, with stated standard deviations that are ten times too small.
 #[test]
 fn a_pipeline_that_claims_too_much_is_refused_by_its_consistency() {
     let fields: Vec<_> = (0..50)

@@ -1,27 +1,27 @@
-//! How an image is blurred.
+//! Blur of an image.
 
-/// Variance of the lens and of the video along columns and rows, px²: the pixel's own box is not in it.
+/// Variance of the blur by lens and video along columns and rows, px², without the pixel's box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Blur {
     pub(super) x: f64,
     pub(super) y: f64,
-    /// Share of the blur that acts on pixels instead of on light.
+    /// Share of the blur that acts on pixel values rather than on the optical image.
     pub(super) grid: f64,
     /// Weights of a sampled Gaussian at 0, 1 … px along columns and rows.
     pub(super) taps: [[f64; TAPS]; 2],
 }
 
-/// Weights of the sampled Gaussian on one side, with that of the centre.
+/// Number of weights of the sampled Gaussian on one side, including the centre.
 pub(super) const TAPS: usize = 6;
 
 impl Blur {
-    /// A continuous blur.
+    /// Returns a continuous blur.
     pub(super) fn new(x: f64, y: f64) -> Self {
         Self { x, y, grid: 0.0, taps: [[0.0; TAPS]; 2] }
     }
 
-    /// A blur of which a share acts on pixels: a sampled Gaussian on what the pixels have integrated already, as a digital
-    /// filter has it.
+    /// Returns a blur of which a share acts on pixel values: a sampled Gaussian applied to values already
+    /// integrated by the pixels, as in a digital filter.
     pub(super) fn on_grid(x: f64, y: f64, share: f64) -> Self {
         let taps = [x, y].map(|variance| {
             let mut taps = [0.0; TAPS];
@@ -35,5 +35,5 @@ impl Blur {
     }
 }
 
-/// Variance of a pixel's box along a side, px².
+/// Variance of a pixel's box along one side, px².
 pub(super) const BOX_VARIANCE: f64 = 1.0 / 12.0;

@@ -1,11 +1,12 @@
-//! Pixels in chunks: each operation on all pixels of a chunk before the next, many at a time on wide registers. The operations of a
-//! pixel and the order of all sums are the same on every machine, whatever its registers.
+//! Processing of pixels in chunks: each operation is done on all pixels of a chunk before the next, many at a
+//! time in wide registers. The operations per pixel and the order of all sums are the same on every machine,
+//! independent of its registers.
 
 use pulp::Simd;
 
 use super::unknowns::{GLOBALS, LOCALS};
 
-/// Pixels of a chunk.
+/// Number of pixels in a chunk.
 pub(super) const CHUNK: usize = 32;
 
 /// Ideal image coordinates of N pixels, px.
@@ -15,18 +16,18 @@ pub(super) struct IdealPositions<const N: usize> {
     pub(super) v: [f64; N],
 }
 
-/// The blurred step of an edge at N pixels.
+/// Blurred step of an edge at N pixels.
 #[derive(Debug, Clone)]
 pub(super) struct Steps<const N: usize> {
     /// Distance across the edge in units of its blur.
     pub(super) z: [f64; N],
     /// F: 0 far outside, 1 far inside.
     pub(super) inside: [f64; N],
-    /// dF/dz; not told where the edge is far.
+    /// dF/dz; not set where the edge is far.
     pub(super) density: [f64; N],
-    /// dF/d(share of the blur on pixels); not told where the edge is far.
+    /// dF/d(share of the blur on pixels); not set where the edge is far.
     pub(super) by_grid: [f64; N],
-    /// Whether any pixel is within the edge's blur.
+    /// True if any pixel is within the edge's blur.
     pub(super) is_near: bool,
 }
 
@@ -40,7 +41,7 @@ impl<const N: usize> Steps<N> {
 pub(super) struct Coverages<const N: usize> {
     pub(super) value: [f64; N],
     pub(super) by: [[f64; N]; GLOBALS],
-    /// Whether side faces are seen: without them the derivatives by their brightness are zero.
+    /// True if side faces are visible. Otherwise the derivatives with respect to their brightness are zero.
     pub(super) has_sides: bool,
 }
 
@@ -48,18 +49,18 @@ impl<const N: usize> Coverages<N> {
     pub(super) const NONE: Self = Self { value: [0.0; N], by: [[0.0; N]; GLOBALS], has_sides: false };
 }
 
-/// Columns of the equations: DN, plate, two slopes, beyond the rim, coverage; then derivatives of the coverage, and a zero that
-/// makes them a multiple of [`ACROSS`].
+/// Number of columns of the equations: DN, plate, two slopes, beyond the rim, coverage; then derivatives of
+/// the coverage, and a zero column that makes the number a multiple of [`ACROSS`].
 pub(super) const COLUMNS: usize = 20;
 pub(super) const FIRST_GLOBAL: usize = 1 + LOCALS;
 
-/// The equations of a chunk, column by column: those of the side faces last.
+/// Equations of a chunk, column by column, with the columns of the side faces last.
 pub(super) type Equations = [[f64; CHUNK]; COLUMNS];
 
-/// Partial sums of a product: pixels k, k + 8, k + 16 … of each chunk.
+/// Number of partial sums of a product: pixels k, k + 8, k + 16 … of each chunk.
 const PARTS: usize = 8;
 
-/// Columns that are multiplied with two others at a time: so many sums stay in registers.
+/// Number of columns multiplied with two other columns at a time. Their sums fit in registers.
 const ACROSS: usize = 4;
 
 /// Sums of products of the equations' columns.
@@ -71,8 +72,8 @@ pub(super) struct Gram {
 impl Gram {
     pub(super) const ZERO: Self = Self { parts: [[[0.0; PARTS]; COLUMNS]; COLUMNS] };
 
-    /// Adds the products of the first `columns` columns, a multiple of four, or begins anew with those of all: the upper triangle and
-    /// a little of the lower.
+    /// Adds the products of the first `columns` columns, a multiple of four. If `is_first`, starts anew with
+    /// the products of all columns. Computes the upper triangle and a little of the lower.
     #[inline(always)]
     pub(super) fn add<S: Simd>(&mut self, simd: S, equations: &Equations, columns: usize, is_first: bool) {
         let columns = if is_first { COLUMNS } else { columns.min(COLUMNS) };
@@ -80,7 +81,7 @@ impl Gram {
             let (first, second) = (S::as_simd_f64s(&equations[i]).0, S::as_simd_f64s(&equations[i + 1]).0);
             for j in ((i - i % ACROSS)..columns).step_by(ACROSS) {
                 let others = [0, 1, 2, 3].map(|k: usize| S::as_simd_f64s(&equations[j + k]).0);
-                // As many registers as a row of partial sums fills.
+                // Number of registers in a row of partial sums.
                 let registers = PARTS / S::F64_LANES;
                 for part in 0..registers {
                     let mut sums = [[simd.splat_f64s(0.0); ACROSS]; 2];
@@ -102,7 +103,7 @@ impl Gram {
         }
     }
 
-    /// The sum of the products of two columns, the second not before the first.
+    /// Returns the sum of the products of columns `i` and `j`, with `j` not before `i`.
     pub(super) fn column_product(&self, i: usize, j: usize) -> f64 {
         let [a, b, c, d, e, f, g, h] = self.parts[i][j];
         ((a + e) + (c + g)) + ((b + f) + (d + h))

@@ -1,8 +1,9 @@
 //! Blurred coverage of marks and cross, in closed form.
 //!
-//! Between two opposite edges the blurred coverage is F1 + F2 − 1; that of a quadrilateral is the product across its two pairs,
-//! exact for a rectangle whose edges' blurs do not correlate. Where they do (oblique corners, oblique edges under unequal
-//! blur) each corner gets the first term of the bivariate normal's series in the correlation ρ: + ρ φ φ.
+//! Between two opposite edges the blurred coverage is F1 + F2 − 1. For a quadrilateral it is the product over
+//! its two pairs of edges, which is exact for a rectangle whose edges' blurs do not correlate. Where they do
+//! (oblique corners, oblique edges under unequal blur), each corner adds the first term of the bivariate
+//! normal's series in the correlation ρ: + ρ φ φ.
 
 use contract::docking::{StandOffCross, TargetModel};
 use nalgebra::Vector3;
@@ -15,10 +16,10 @@ use super::sampled::Tables;
 use super::unknowns::{ByGlobals, GLOBALS, SIDES};
 use crate::docking::pose::geometry::{PoseProjection, ProjectedPoint};
 
-/// Edges of a feature: of the cross, front and back.
+/// Number of edges of a feature. The largest is that of the cross, front and back.
 pub(super) const EDGES: usize = 16;
 
-/// Blurred coverage between two opposite edges.
+/// Returns the blurred coverage between two opposite edges.
 #[inline(always)]
 fn slab<const N: usize>(one: &Steps<N>, other: &Steps<N>) -> [f64; N] {
     let mut between = [0.0; N];
@@ -28,16 +29,16 @@ fn slab<const N: usize>(one: &Steps<N>, other: &Steps<N>) -> [f64; N] {
     between
 }
 
-/// The image of a mark at a pose.
+/// Image of a mark at a pose.
 #[derive(Debug, Clone)]
 pub(super) struct MarkImage {
     edges: [Edge; 4],
-    /// Of the edges k and k + 1.
+    /// Correlations of the blurs of edges k and k + 1.
     correlations: [f64; 4],
 }
 
 impl MarkImage {
-    /// `None` when a corner is behind the camera.
+    /// Computes the image of a mark. Returns `None` when a corner is behind the camera.
     pub(super) fn new(
         corners: &[[f64; 2]; 4],
         view: &PoseProjection,
@@ -53,7 +54,7 @@ impl MarkImage {
         Some(Self { edges, correlations })
     }
 
-    /// Coverage with its derivatives.
+    /// Computes the coverage with its derivatives.
     #[inline(always)]
     pub(super) fn cover<const N: usize>(
         &self,
@@ -73,7 +74,7 @@ impl MarkImage {
         }
     }
 
-    /// The steps of the edges, and the coverage between opposite ones.
+    /// Computes the steps of the edges. Returns the coverage between opposite edges.
     #[inline(always)]
     fn step<const N: usize>(
         &self,
@@ -102,7 +103,7 @@ impl MarkImage {
         }
     }
 
-    /// The coverage alone.
+    /// Returns the coverage without derivatives.
     #[inline(always)]
     pub(super) fn values<const N: usize>(&self, tables: &Tables, at: &IdealPositions<N>) -> [f64; N] {
         let mut steps = [const { Steps::FAR }; 4];
@@ -112,13 +113,13 @@ impl MarkImage {
         value
     }
 
-    /// The coverage alone, of one pixel.
+    /// Returns the coverage of one pixel without derivatives.
     pub(super) fn value_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
         let [value] = self.values(tables, &IdealPositions { u: [u], v: [v] });
         value
     }
 
-    /// Of the edges.
+    /// Returns the normals of the edges.
     pub(super) fn normals(&self) -> impl Iterator<Item = (f64, f64)> {
         self.edges.iter().map(Edge::normal)
     }
@@ -128,7 +129,8 @@ impl MarkImage {
     }
 }
 
-// The edges of the cross: of the vertical bar (V) and of the horizontal one (H), left (−y1), right, bottom (−y2), top.
+// Edges of the cross, for the vertical bar (V) and the horizontal bar (H): left (−y1), right, bottom (−y2),
+// top.
 const VL: usize = 0;
 const VR: usize = 1;
 const VB: usize = 2;
@@ -138,13 +140,13 @@ const HR: usize = 5;
 const HB: usize = 6;
 const HT: usize = 7;
 
-/// The side face of each edge: +y1, −y1, +y2, −y2.
+/// Index of the side face of each edge: +y1, −y1, +y2, −y2.
 const SIDE_OF: [usize; 8] = [1, 0, 3, 2, 1, 0, 3, 2];
 
-/// Whether an edge is at the end of its bar.
+/// True for the edges at the end of their bar.
 const IS_END: [bool; 8] = [false, false, true, true, true, true, false, false];
 
-/// Pairs of edges that meet at a corner, and the sign of their product in the coverage.
+/// Pairs of edges that meet at a corner, with the sign of their product in the coverage.
 const CORNERS: [(usize, usize, f64); 12] = [
     (VL, VB, 1.0),
     (VL, VT, 1.0),
@@ -160,22 +162,23 @@ const CORNERS: [(usize, usize, f64); 12] = [
     (VR, HT, -1.0),
 ];
 
-/// The image of the cross at a pose: the union of two bars, and the side faces that are seen from off the axis.
+/// Image of the cross at a pose: the union of two bars, and the side faces visible from off the axis.
 ///
-/// A side face reaches from an edge of the front face to the same edge of the back face. What the two bars' side faces hide of
-/// each other, and the slanted ends of side faces, are neglected: both are of second order in the faces' widths.
+/// A side face extends from an edge of the front face to the same edge of the back face. Mutual occlusion of
+/// the two bars' side faces and the slanted ends of side faces are neglected: both are of second order in the
+/// faces' widths.
 #[derive(Debug, Clone)]
 pub(super) struct CrossImage {
     front: [Edge; 8],
-    /// Edges of the back face, where the side face is seen.
+    /// Edges of the back face, where the side face is visible.
     back: [Option<Edge>; 8],
     correlations: [f64; 12],
     sides: [f64; 4],
 }
 
 impl CrossImage {
-    /// `sides`: brightness of the side faces over the plate, in units of the front face's. `None` when a corner is behind the
-    /// camera.
+    /// Computes the image of the cross. `sides` is the brightness of the side faces over the plate, in units
+    /// of the front face's. Returns `None` when a corner is behind the camera.
     pub(super) fn new(
         target: &TargetModel,
         view: &PoseProjection,
@@ -208,7 +211,7 @@ impl CrossImage {
         Some(Self { front, back, correlations, sides })
     }
 
-    /// Coverage with its derivatives.
+    /// Computes the coverage with its derivatives.
     #[inline(always)]
     pub(super) fn cover<const N: usize>(
         &self,
@@ -223,9 +226,9 @@ impl CrossImage {
         }
         let (v_across, v_along) = (slab(&front[VL], &front[VR]), slab(&front[VB], &front[VT]));
         let (h_across, h_along) = (slab(&front[HB], &front[HT]), slab(&front[HL], &front[HR]));
-        // Share of a side face beside each edge, before what bounds it along the edge.
+        // Share of a side face beside each edge, not yet limited along the edge.
         let mut strips = [[0.0; N]; 8];
-        // Bars, then ends, of V and of H: strips in units of the front face's brightness.
+        // Brightness of the strips of V and H beside bars and at bar ends, in units of the front face's.
         let (mut sides, mut ends) = ([[0.0; N]; 2], [[0.0; N]; 2]);
         coverage.has_sides = false;
         for (k, edge) in self.back.iter().enumerate() {
@@ -239,7 +242,7 @@ impl CrossImage {
                 bright[l] += level * strip[l];
             }
         }
-        // A bar's side faces are interrupted by the other bar.
+        // The side faces of one bar are interrupted by the other bar.
         let (mut v_open, mut h_open) = ([0.0; N], [0.0; N]);
         let mut by_slab = [[0.0; N]; 4];
         for l in 0..N {
@@ -287,7 +290,7 @@ impl CrossImage {
         }
     }
 
-    /// The coverage alone, at one point.
+    /// Returns the coverage at one point without derivatives.
     pub(super) fn value_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
         let mut steps = [const { Steps::FAR }; EDGES];
         let mut coverages = Coverages::NONE;
@@ -295,7 +298,7 @@ impl CrossImage {
         coverages.value[0]
     }
 
-    /// Of the front face's edges.
+    /// Returns the normals of the front face's edges.
     pub(super) fn normals(&self) -> impl Iterator<Item = (f64, f64)> {
         self.front.iter().map(Edge::normal)
     }
@@ -305,7 +308,7 @@ impl CrossImage {
     }
 }
 
-/// The eight edges of the two bars in the plane y3 = `height_m`.
+/// Returns the eight edges of the two bars in the plane y3 = `height_m`.
 fn bars(
     cross: &StandOffCross,
     view: &PoseProjection,
@@ -328,8 +331,8 @@ fn bars(
     Some([a, b, c, d, e, f, g, h])
 }
 
-/// How far from an edge its blur is felt, px.
+/// Returns the distance from an edge up to which its blur is significant, px.
 pub(super) fn reach_px(blur: Blur) -> f64 {
-    // LIMIT is where nothing at all is left; three σ and a little leave 1e-3.
+    // At LIMIT the blur has vanished; slightly above three σ, 1e-3 of it remains.
     (0.6 * LIMIT) * (blur.x.max(blur.y) + super::blur::BOX_VARIANCE).sqrt() + 0.5
 }

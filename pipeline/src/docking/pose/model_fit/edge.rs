@@ -1,4 +1,4 @@
-//! A straight edge of a feature in the image, blurred.
+//! Blurred straight edge of a feature in the image.
 
 use super::blur::{BOX_VARIANCE, Blur};
 use super::chunk::{IdealPositions, Steps};
@@ -7,24 +7,25 @@ use super::sampled::{SampledProfiles, Tables};
 use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, POSE};
 use crate::docking::pose::geometry::ProjectedPoint;
 
-/// A straight line through the images of two points, its inside, and how it is blurred.
+/// Straight line through the images of two points, with its inner side and its blur.
 ///
-/// Blurring by a Gaussian of variances (x, y) and a pixel's box turns the step across the line into F(z), z the distance over
-/// σ, σ² = n_x² (x + 1/12) + n_y² (y + 1/12). F is Φ with the next term of its Edgeworth series, for the box, whose fourth
-/// cumulant along the normal is −(n_x⁴ + n_y⁴)/120.
+/// Blurring by a Gaussian of variances (x, y) and a pixel's box turns the step across the line into F(z),
+/// with z the distance over σ and σ² = n_x² (x + 1/12) + n_y² (y + 1/12). F is Φ with the next term of its
+/// Edgeworth series, for the box, whose fourth cumulant along the normal is −(n_x⁴ + n_y⁴)/120.
 ///
-/// Where the blur acts on pixels instead of on light the profile is another (`sampled.rs`); how much of it does is one of the
-/// globals.
+/// A blur that acts on pixel values rather than on the optical image has a different profile (`sampled.rs`).
+/// The share of such blur is one of the globals.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Edge {
     normal: (f64, f64),
     offset: f64,
     along: (f64, f64),
     along_offset: f64,
-    /// Derivative of the distance with respect to the pose, where the line passes the first and the second point.
+    /// Derivatives of the distance with respect to the pose, at the first and at the second point of the
+    /// line.
     by_pose: [[f64; POSE]; 2],
     per_sigma: f64,
-    /// dz/d(variance) over z.
+    /// dz/d(variance), divided by z.
     by_blur: (f64, f64),
     kurtosis: f64,
     sigma: f64,
@@ -34,7 +35,7 @@ pub(super) struct Edge {
 }
 
 impl Edge {
-    /// The line through a and b; `inside` is any point on its inner side.
+    /// Returns the line through a and b; `inside` is any point on its inner side.
     pub(super) fn from_points(
         a: &ProjectedPoint,
         b: &ProjectedPoint,
@@ -71,7 +72,7 @@ impl Edge {
         }
     }
 
-    /// The step at pixels.
+    /// Computes the step at pixels.
     #[inline(always)]
     pub(super) fn steps<const N: usize>(
         &self,
@@ -152,7 +153,7 @@ impl Edge {
         }
     }
 
-    /// Correlation of two edges' blurs: n·Σ·m/(σ_n σ_m), with normals inwards.
+    /// Returns the correlation of two edges' blurs: n·Σ·m/(σ_n σ_m), with normals inwards.
     pub(super) fn correlation(&self, other: &Self, blur: Blur) -> f64 {
         (self.normal.0 * other.normal.0 * (blur.x + BOX_VARIANCE)
             + self.normal.1 * other.normal.1 * (blur.y + BOX_VARIANCE))
@@ -164,7 +165,7 @@ impl Edge {
         self.normal
     }
 
-    /// How far a change of the pose moves the line at its two points, px, the larger.
+    /// Returns the larger displacement of the line's two points under a change of the pose, px.
     pub(super) fn shift(&self, by: &ByGlobals) -> f64 {
         self.by_pose
             .iter()

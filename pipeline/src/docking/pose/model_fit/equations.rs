@@ -8,29 +8,29 @@ use super::sampled::Tables;
 use super::samples::{Patch, Sample};
 use super::unknowns::{GRID, LOCALS, SIDES};
 
-/// Coordinates within a patch are counted in these, px: levels and slopes are then alike in size.
+/// Unit of coordinates within a patch, px. Gives levels and slopes a similar size.
 const PATCH_UNIT_PX: f64 = 10.0;
 
-/// Columns without the derivatives by the side faces, which many chunks do not show.
+/// Number of columns without the derivatives by the side faces, which are invisible in many chunks.
 const WITHOUT_SIDES: usize = FIRST_GLOBAL + SIDES + 1;
 
-/// The image of a feature at a pose, and what its profiles are read from.
+/// Image of a feature at a pose, with the tables of its profiles.
 #[derive(Clone, Copy)]
 pub(super) struct FeatureModel<'a> {
     pub(super) image: Image<'a>,
     pub(super) tables: &'a Tables,
-    /// Share of the blur that acts on pixels.
+    /// Share of the blur that acts on pixel values.
     pub(super) share: f64,
 }
 
-/// The image of a feature.
+/// Image of a feature.
 #[derive(Clone, Copy)]
 pub(super) enum Image<'a> {
     Mark(&'a MarkImage),
     Cross(&'a CrossImage),
 }
 
-/// A chunk of pixels; a buffer.
+/// Buffer for a chunk of pixels.
 pub(super) struct ChunkBuffers {
     positions: IdealPositions<CHUNK>,
     corner: [f64; CHUNK],
@@ -69,7 +69,8 @@ impl ChunkBuffers {
     }
 }
 
-/// The coverage of a chunk of pixels with its derivatives; beyond the last pixel it is that of the last.
+/// Computation of the coverage of a chunk of pixels with its derivatives. A chunk that is not full is padded
+/// with its last pixel.
 pub(super) struct CoverageKernel<'a> {
     pub(super) feature_model: FeatureModel<'a>,
     pub(super) pixels: &'a [Sample],
@@ -79,7 +80,7 @@ pub(super) struct CoverageKernel<'a> {
 impl<'a> WithSimd for CoverageKernel<'a> {
     type Output = &'a Coverages<CHUNK>;
 
-    // Inline, all of it: only so is it compiled for the registers of the machine.
+    // Only fully inlined code is compiled for the registers of the machine.
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
         let Self { feature_model, pixels, work } = self;
@@ -92,27 +93,29 @@ impl<'a> WithSimd for CoverageKernel<'a> {
     }
 }
 
-/// The normal equations of a patch's used pixels, of which every `stride`-th is looked at; the coverages of those are renewed.
+/// Normal equations of a patch's used pixels, evaluated for every `stride`-th pixel. Updates the coverages of
+/// these pixels.
 pub(super) struct NormalEquations<'a> {
     pub(super) feature_model: FeatureModel<'a>,
-    /// The patch's centre, and its level of the feature as known so far.
+    /// Centre of the patch, and the current level of the feature in it.
     pub(super) centre: (f64, f64),
     pub(super) level: f64,
     pub(super) pixels: &'a mut [Sample],
-    /// What DN are counted from.
+    /// Offset subtracted from DN.
     pub(super) origin: f64,
     pub(super) stride: usize,
     pub(super) work: &'a mut ChunkBuffers,
 }
 
 impl<'a> WithSimd for NormalEquations<'a> {
-    /// Products of the equations, and how many pixels are used.
+    /// Products of the equations, and the number of pixels used.
     type Output = (&'a Gram, usize);
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let Self { feature_model, centre, level, pixels, origin, stride, work } = self;
-        // The feature stands over a plate that a shadow darkens by so much more, in units of its level over the light one.
+        // In a shadow, the feature stands out more because the plate is darker; this excess is expressed in
+        // units of the feature's level over the lit plate.
         let per_level = if level > 0.0 { 1.0 / level } else { 0.0 };
         let mut used = 0;
         for (index, pixels) in pixels.chunks_mut(CHUNK * stride).enumerate() {
@@ -133,7 +136,7 @@ impl<'a> WithSimd for NormalEquations<'a> {
             let ChunkBuffers { positions, coverage, equations, gram, .. } = &mut *work;
             for l in 0..CHUNK {
                 let weight = equations[1][l];
-                // A shadow darkens the plate where the feature does not hide it.
+                // A shadow darkens the plate where it is not covered by the feature.
                 equations[0][l] = weight * (dn[l] + shadow_dn[l] * (1.0 - coverage.value[l]) - origin);
                 equations[2][l] = weight * ((positions.u[l] - centre.0) / PATCH_UNIT_PX);
                 equations[3][l] = weight * ((positions.v[l] - centre.1) / PATCH_UNIT_PX);
@@ -154,7 +157,7 @@ impl<'a> WithSimd for NormalEquations<'a> {
     }
 }
 
-/// The regressors of a pixel's levels.
+/// Returns the regressors of a pixel's levels.
 pub(super) fn regressors(patch: &Patch, pixel: &Sample, coverage: f64) -> [f64; LOCALS] {
     let across = (pixel.u - patch.centre.0) / PATCH_UNIT_PX;
     let down = (pixel.v - patch.centre.1) / PATCH_UNIT_PX;

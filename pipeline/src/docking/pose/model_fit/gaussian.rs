@@ -1,18 +1,18 @@
-//! The normal distribution from a table: the profile of a blurred edge.
+//! Tabulated normal distribution: the profile of a blurred edge.
 
-/// Beyond this the integral is 0 or 1 to 4e-8.
+/// Limit of |z| beyond which the integral is 0 or 1 to 4e-8.
 pub(super) const LIMIT: f64 = 5.4;
 
-/// Nodes a unit. The series about the nearest node is then good to 2e-9.
+/// Number of nodes per unit. The series about the nearest node is then accurate to 2e-9.
 const NODES: f64 = 32.0;
 
-/// A power of two, so that a place in the table needs no check; 347 are used.
+/// Size of the table: a power of two, so an index needs no bounds check. 347 entries are used.
 const TABLE: usize = 512;
 
-/// Added to a number below 2^51 it leaves the nearest whole number in the last bits.
+/// Number whose addition to a number below 2^51 leaves the nearest integer in the last bits.
 pub(super) const WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// Φ and φ, tabulated.
+/// Tabulated Φ and φ.
 #[derive(Debug, Clone)]
 pub(super) struct Gaussian {
     nodes: Box<[(f64, f64); TABLE]>,
@@ -29,12 +29,12 @@ impl Gaussian {
         Self { nodes }
     }
 
-    /// (Φ(z), φ(z)).
+    /// Returns (Φ(z), φ(z)).
     pub(super) fn cdf_and_pdf(&self, z: f64) -> (f64, f64) {
         if z >= LIMIT {
             return (1.0, 0.0);
         }
-        // Also what is not a number.
+        // NaN also gives zero.
         if z.is_nan() || z <= -LIMIT {
             return (0.0, 0.0);
         }
@@ -42,7 +42,8 @@ impl Gaussian {
         (below, density)
     }
 
-    /// (Φ, φ) of numbers within the limits; of others, those of the nearest limit or of none.
+    /// Returns (Φ, φ) of numbers within the limits. Numbers outside are clamped to the nearest limit, NaN to
+    /// the lower one.
     #[inline(always)]
     pub(super) fn cdfs_and_pdfs<const N: usize>(&self, z: [f64; N]) -> ([f64; N], [f64; N]) {
         let (mut from_node, mut at, mut node_index) = ([0.0; N], [0.0; N], [0; N]);

@@ -1,9 +1,11 @@
-//! Errors that pixels have in common: a shift and a level of each line, a shift along and across lines of each patch.
+//! Errors common to groups of pixels: a shift and a level of each line, a shift along and across lines of
+//! each patch.
 //!
-//! The fit takes pixels as independent. A line that comes a little early or late moves all its edges at once, and one that is a
-//! little brighter is so in all its pixels. Noise that a filter has spread over neighbours, the blocks of a codec, or a blur of
-//! another shape than the model's shift each mark and each piece of the cross by itself. How much lines and patches scatter beyond what
-//! noise explains is measured from the residuals, and goes into the covariance.
+//! The fit treats pixels as independent. However, a line that comes a little early or late shifts all its
+//! edges at once, and a line that is a little brighter is so in all its pixels. Noise spread over neighbours
+//! by a filter, the blocks of a codec, or a blur with another shape than the model's shift each mark and each
+//! piece of the cross separately. The scatter of lines and patches beyond that of noise is measured from the
+//! residuals and added to the covariance.
 
 use nalgebra::SVector;
 
@@ -11,24 +13,25 @@ use super::samples::Patch;
 use super::swelling::Swelling;
 use super::unknowns::{GlobalMatrix, Globals, LOCALS, POSE};
 
-/// Of a line shift and level, of a patch the two shifts.
+/// Number of effects per group: shift and level for a line, two shifts for a patch.
 pub(super) const EFFECTS: usize = 2;
 
-/// A scatter of groups is believed when chance makes it so large once in 40 fields: standard deviations of the sum of squares.
+/// Significance of a scatter of groups, in standard deviations of the sum of squares: chance exceeds it once
+/// in 40 fields.
 const SEEN: f64 = 2.0;
 
-/// Sums over the pixels of a group: a line, or a patch.
+/// Sums over the pixels of a group, which is a line or a patch.
 #[derive(Debug, Clone, Copy)]
 struct Group {
-    /// Σ e r by effect: e is what a unit of the effect adds to a pixel, r the residual.
+    /// Σ e r per effect: e is the change of a pixel by a unit of the effect, r the residual.
     seen: [f64; EFFECTS],
-    /// Σ e², less what the patches' levels take of it.
+    /// Σ e², minus the part absorbed by the patches' levels.
     squares: [f64; EFFECTS],
-    /// Σ J e: the gradient by a unit of the effect.
+    /// Σ J e: change of the gradient by a unit of the effect.
     scores: [Globals; EFFECTS],
 }
 
-/// Sums over a group's pixels in one patch, of which the patch's levels take a part.
+/// Sums over a group's pixels in one patch. The patch's levels absorb a part of them.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     group: usize,
@@ -44,7 +47,7 @@ impl Piece {
     }
 }
 
-/// Sums group by group; owns its buffers.
+/// Sums for all groups, with reusable buffers.
 #[derive(Debug, Default)]
 pub(super) struct Groups {
     groups: Vec<Group>,
@@ -52,16 +55,16 @@ pub(super) struct Groups {
     pixels: f64,
 }
 
-/// A pixel as the sums need it.
+/// Pixel with the quantities that the sums need.
 pub(super) struct GroupedPixel {
-    /// Its line, or its patch.
+    /// Index of the pixel's line or patch.
     pub(super) group: usize,
     pub(super) residual: f64,
-    /// What a unit of each effect adds to it, DN.
+    /// Change of the pixel by a unit of each effect, DN.
     pub(super) effects: [f64; EFFECTS],
-    /// Derivatives of its coverage by the globals.
+    /// Derivatives of the pixel's coverage with respect to the globals.
     pub(super) slopes: Globals,
-    /// Its regressors of the levels.
+    /// Regressors of the levels at the pixel.
     pub(super) levels: SVector<f64, LOCALS>,
 }
 
@@ -71,7 +74,7 @@ impl Groups {
         self.pixels = 0.0;
     }
 
-    /// Adds a pixel of the patch that is open.
+    /// Adds a pixel of the current patch.
     pub(super) fn add(&mut self, pixel: &GroupedPixel) {
         let GroupedPixel { group, residual, effects, slopes, levels } = pixel;
         if self.groups.len() <= *group {
@@ -79,7 +82,7 @@ impl Groups {
             self.groups
                 .resize(group + 1, Group { seen: [0.0; EFFECTS], squares: [0.0; EFFECTS], scores: zero });
         }
-        // A patch's pixels come line by line: the piece is nearly always the last.
+        // A patch's pixels come line by line, so the piece is nearly always the last.
         let index = self.pieces.iter().rposition(|piece| piece.group == *group).unwrap_or_else(|| {
             self.pieces.push(Piece::from_group(*group));
             self.pieces.len() - 1
@@ -94,7 +97,7 @@ impl Groups {
         self.pixels += 1.0;
     }
 
-    /// Closes a patch: its levels take their part of every sum.
+    /// Closes a patch: subtracts the part of every sum that the patch's levels absorb.
     pub(super) fn close(&mut self, patch: &Patch) {
         let level = patch.levels[LOCALS - 1];
         let by_levels = patch.levels_by_globals.transpose();
@@ -109,13 +112,13 @@ impl Groups {
         self.pieces.clear();
     }
 
-    /// Covariance of the gradient from effects of variance 1 in one group.
+    /// Returns the covariance of the gradient from effects of variance 1 in one group.
     pub(super) fn group_covariance(&self, group: usize) -> GlobalMatrix {
         let scores = self.groups.get(group).into_iter().flat_map(|sums| &sums.scores);
         scores.map(|scores| scores * scores.transpose()).sum()
     }
 
-    /// The same from effects that are one in several groups.
+    /// Returns the covariance of the gradient from effects of variance 1 that are shared by several groups.
     pub(super) fn common_covariance(&self, groups: impl Iterator<Item = usize> + Clone) -> GlobalMatrix {
         let sum = |k: usize| -> Globals {
             groups.clone().filter_map(|group| Some(self.groups.get(group)?.scores[k])).sum()
@@ -123,8 +126,9 @@ impl Groups {
         (0..EFFECTS).map(sum).map(|scores| scores * scores.transpose()).sum()
     }
 
-    /// The swelling as an unknown of the fit, its effect that of the first group: what it changes in the globals, their covariance from it, and
-    /// what is known of it now. `inverse` is that of the information, `variance` a pixel's.
+    /// Treats the swelling as an unknown of the fit; its effect is that of the first group. Returns the
+    /// change of the globals, their covariance due to the swelling, and the updated knowledge of the
+    /// swelling. `inverse` is the inverse of the information, `variance` the variance of a pixel.
     pub(super) fn estimate_swelling(
         &self,
         inverse: &GlobalMatrix,
@@ -140,10 +144,11 @@ impl Groups {
         (change.iter().chain(&covariance).all(|v| v.is_finite())).then_some((change, covariance, now))
     }
 
-    /// Covariance of the gradient from what the pixels of a group have in common, DN², and what it takes off the variance of a pixel.
+    /// Returns the covariance of the gradient from the errors common to the pixels of a group, DN², and the
+    /// part of a pixel's variance that they explain.
     ///
-    /// With q = Σ e² of a group, its sum Σ e r has the variance σ² q + τ² q², and all pixels together have N σ² + τ² Σ q. Of both,
-    /// τ² is found, the variance of the effect.
+    /// With q = Σ e² of a group, its sum Σ e r has the variance σ² q + τ² q², and all pixels together have N
+    /// σ² + τ² Σ q. Solving both gives τ², the variance of the effect.
     pub(super) fn scatter(&self, variance: f64) -> (GlobalMatrix, f64) {
         let (mut covariance, mut explained) = (GlobalMatrix::zeros(), 0.0);
         for k in 0..EFFECTS {
@@ -154,7 +159,8 @@ impl Groups {
             if weight <= 0.0 || above <= SEEN * variance * (2.0 * twice).sqrt() {
                 continue;
             }
-            // The pose has taken its part of what the groups do: so many groups of the same weight are there, less its freedom.
+            // The pose has absorbed a part of the groups' scatter: the equivalent number of groups of equal
+            // weight is reduced by the pose's degrees of freedom.
             let groups = once * once / twice;
             let of_effect = above / weight * groups / (groups - POSE as f64).max(1.0);
             explained += of_effect * once / self.pixels;
@@ -166,8 +172,8 @@ impl Groups {
     }
 }
 
-/// The turns of the camera that shift the image by a pixel along the lines, and across them, from how the pose moves an image point;
-/// `None` when no turn does.
+/// Returns the rotations of the camera that shift the image by one pixel along the lines and across them,
+/// from the derivatives of an image point with respect to the pose. Returns `None` when no rotation does.
 pub(super) fn turns(by_pose: &nalgebra::SMatrix<f64, 2, POSE>) -> Option<[SVector<f64, POSE>; 2]> {
     let (a, b, c, d) = (by_pose[(0, 3)], by_pose[(0, 4)], by_pose[(1, 3)], by_pose[(1, 4)]);
     let determinant = a * d - b * c;
@@ -184,7 +190,8 @@ mod tests {
     use super::super::samples::Feature;
     use super::*;
 
-    /// Normal to a few percent: twelve uniform numbers of a multiplicative congruential sequence (Park and Miller 1988).
+    /// Returns a random number that is normal to a few percent: the sum of twelve uniform numbers of a
+    /// multiplicative congruential sequence (Park and Miller 1988).
     fn normal(state: &mut u64) -> f64 {
         let mut uniform = || {
             *state = *state * 48_271 % 2_147_483_647;
@@ -193,7 +200,8 @@ mod tests {
         (0..12).map(|_| uniform()).sum::<f64>() - 6.0
     }
 
-    /// 200 lines of 20 pixels with noise of 1 DN, shifted by so much, px, and brighter by so much, DN.
+    /// Returns 200 lines of 20 pixels with noise of 1 DN, shifted by `shift_px` and brighter by `level_dn`,
+    /// each times a normal number per line.
     fn lines(shift_px: f64, level_dn: f64) -> Groups {
         let (mut lines, mut state) = (Groups::default(), 12_345);
         lines.clear();
@@ -228,11 +236,11 @@ mod tests {
     #[test]
     fn shifts_of_lines_are_found_in_their_size() {
         let shift_px = 0.1;
-        // Squares of 50 and 40 in equal parts.
+        // Mean of the squares of 50 and 40.
         let square = 2050.0;
         let variance = 1.0 + shift_px * shift_px * square;
         let (covariance, explained) = lines(shift_px, 0.0).scatter(variance);
-        // 200 lines tell a variance to √(2/200) = 10 %; three of it.
+        // 200 lines determine a variance to √(2/200) = 10 %; the tolerance is three times that.
         assert!((explained / (shift_px * shift_px * square) - 1.0).abs() < 0.3, "{explained}");
         let of_line = 20.0 * square * shift_px;
         let expected = 200.0 * of_line * of_line;

@@ -1,9 +1,11 @@
-//! The pipeline's best estimator: the pose that makes the known features look as they do, by maximum likelihood on the pixels.
+//! Best estimator of the pipeline: the pose that reproduces the image of the known features, by maximum
+//! likelihood on the pixels.
 //!
-//! Expected DN of a pixel = plate + what lies beyond the rim × its share + feature × blurred coverage at the pose. Known are
-//! the marks (y3 = 0), the cross's front face (y3 = b) and its side faces; pose, blur and brightness of the side faces are
-//! common to the field, the levels belong to patches (a mark, a piece of an arm), so that a shadow or a slope of brightness
-//! biases nothing. A pixel or a patch that does not look like the model is rejected and told.
+//! Expected DN of a pixel = plate + level beyond the rim × its share + feature × blurred coverage at the
+//! pose. The known features are the marks (y3 = 0), the cross's front face (y3 = b) and its side faces. Pose,
+//! blur and brightness of the side faces are common to the field. The levels belong to patches (a mark, a
+//! piece of an arm), so a shadow or a gradient of brightness causes no bias. Pixels and patches that
+//! contradict the model are rejected and reported.
 
 #![allow(
     clippy::needless_range_loop,
@@ -47,89 +49,94 @@ use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
 use crate::CameraModel;
 use crate::docking::pose::geometry::{PoseProjection, project, to_pose, to_vector};
 
-/// Variance of the blur that the first field is begun with, px².
+/// Initial variance of the blur for the first field, px².
 const FIRST_BLUR_PX2: f64 = 0.5;
 
-/// The first guess may be this far off, px: pixels are looked at so much farther from the edges.
+/// Tolerated error of the first guess, px: pixels are collected up to this distance beyond the edges' blur.
 const SLACK_PX: f64 = 1.5;
 
-/// Coarse stages: variances added to the blur, px², and how many of the globals are held. A lateral position that is free too
-/// early tilts the plate to make up for a shift.
+/// Coarse stages: variance added to the blur, px², and number of globals held. If the lateral position is
+/// free too early, the plate tilts to compensate a shift.
 const COARSE: [(f64, usize); 4] = [(4.0, 2), (1.0, 2), (1.0, 0), (0.0, 0)];
 
-/// The same from a rough place, whose range shows the marks up to 3 px off, and how far the arrangement is searched for as a
-/// part of the focal length.
+/// Tolerated error and coarse stages for a rough initial pose, whose range error displaces the marks by up to
+/// 3 px, and search radius for the arrangement as a share of the focal length.
 const NEAR_SLACK_PX: f64 = 3.0;
 const NEAR_COARSE: [(f64, usize); 5] = [(9.0, 0), (4.0, 2), (1.0, 2), (1.0, 0), (0.0, 0)];
 const NEAR_REACH: f64 = 0.013;
 
-/// Pixels that are collected at most, roughly, for the coarse stages and for the answer; more are thinned evenly.
+/// Approximate maximum number of pixels collected, for the coarse stages and for the result. More pixels are
+/// thinned evenly.
 const COLLECTED_COARSE: f64 = 6_000.0;
 const COLLECTED: f64 = 30_000.0;
 
-/// Pixels are thinned to about this many in the coarse stages …
+/// Approximate number of pixels in the coarse stages, after thinning.
 const COARSE_SAMPLES: usize = 1500;
-/// … and to this many while blur and brightness of the side faces are first looked for.
+/// Approximate number of pixels, after thinning, in the first fit of blur and brightness of the side faces.
 const MIDDLE_SAMPLES: usize = 4000;
 
-/// A residual beyond this many σ is not noise.
+/// Largest residual that counts as noise, in σ.
 const PIXEL_GATE: f64 = 4.5;
 
-/// A patch is rejected when its variance is above the others' by this many standard deviations of a variance …
+/// Excess of a patch's variance over that of the other patches above which the patch is rejected, in standard
+/// deviations of a variance.
 const PATCH_GATE: f64 = 5.0;
 
-/// … or when more than this part of its pixels is.
+/// Share of rejected pixels above which a patch is rejected.
 const MOST_REJECTED: f64 = 0.15;
 
-/// Error of the model that is no reason for a rejection, as a part of the feature's level.
+/// Model error that is tolerated before rejection, relative to the feature's level.
 const MODEL_ERROR: f64 = 0.005;
 
-/// The same of a cross of a few pixels, which is one patch: its side faces, its post and its shadow are less than a line of a field.
+/// Tolerated model error of a cross of a few pixels, which is a single patch: its side faces, its post and
+/// its shadow are smaller than a line of a field.
 const SMALL_CROSS_ERROR: f64 = 0.015;
 
-/// A mark fainter than this part of the median mark is not seen.
+/// Smallest level of a visible mark, relative to the median mark.
 const FAINTEST_MARK: f64 = 0.15;
 
-/// A mark is darker than the others when its level is below their median by so many standard deviations, its own or those of the
-/// others' scatter: a part of it is in shadow, and what is left lies off its middle.
+/// Difference of a mark's level below the median of the marks at which it counts as darker, in standard
+/// deviations of this level or of the scatter of the marks, whichever is larger. A part of such a mark is in
+/// shadow, so the centroid of its lit part is off the mark's centre.
 const DARKER_MARK: f64 = 4.0;
 
-/// The middle feature's level over the noise below which nothing is seen at all.
+/// Smallest ratio of the median feature's level to the noise. Below it the target is invisible.
 const FAINTEST_LEVEL: f64 = 4.0;
 
-/// One pixel of so many more or less changes nothing that can be seen.
+/// Reciprocal of the share of changed pixels up to which the effect of a change is invisible.
 const UNSEEN: usize = 2000;
 
-/// Rounds of rejection.
+/// Largest number of rounds of rejection.
 const ROUNDS: usize = 3;
 
-/// Largest σ of range and of lateral position, as parts of the range, and of an angle, rad: beyond these the features in the
-/// field do not determine a pose.
+/// Largest σ of range and of lateral position, relative to the range, and of an angle, rad. Beyond these
+/// limits, the features in the field do not determine a pose.
 const LARGEST_SIGMA: (f64, f64, f64) = (0.05, 0.15, 0.15);
 
-/// A fitted field.
+/// Result of the fit to a field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitResult {
-    /// The pose and its covariance: the inverse information of the pixels that were used, levels, blur and side faces left
-    /// free, times the variance of their residuals.
+    /// Pose and covariance. The covariance is the inverse information of the used pixels, with levels, blur
+    /// and side faces as free parameters, times the variance of the residuals.
     pub estimate: PoseEstimate,
-    /// The part of the covariance that is the same error in the fields of seconds, m², m rad, rad².
+    /// Part of the covariance due to errors that are common to the fields of several seconds, m², m rad,
+    /// rad².
     pub common: Matrix6<f64>,
-    /// What became of every mark, with its centre as the pose predicts it.
+    /// Usage of every mark, with its centre predicted from the pose.
     pub marks: Vec<Mark>,
-    /// Image of the cross's centre (the front face's), as the pose predicts it.
+    /// Image of the centre of the cross's front face, predicted from the pose.
     pub cross_centre: PixelPoint,
-    /// Image of the disk's centre, as the pose predicts it: perspective corrected, not the centre of an ellipse.
+    /// Image of the disk's centre, predicted from the pose: with perspective, not the centre of an ellipse.
     pub circle_centre: PixelPoint,
-    /// Blur of lens and video along columns and rows, standard deviations without the pixel's own box, px.
+    /// Standard deviations of the blur by lens and video along columns and rows, without the pixel's box, px.
     pub blur_px: [f64; 2],
     /// Standard deviation of the residuals, DN.
     pub noise_dn: f64,
-    /// Pixels that were used.
+    /// Number of pixels used.
     pub pixels: u32,
 }
 
-/// Fits fields of one camera after the other; owns its buffers and begins with the blur of the last field.
+/// Fit of successive fields of one camera, with reusable buffers. Begins with the blur of the previous field.
 #[derive(Debug)]
 pub struct ModelFit {
     tables: Tables,
@@ -151,7 +158,7 @@ impl Default for ModelFit {
 }
 
 impl ModelFit {
-    /// No field seen yet.
+    /// Creates a fit without any field.
     pub fn new() -> Self {
         Self {
             tables: Tables::new(),
@@ -167,11 +174,12 @@ impl ModelFit {
         }
     }
 
-    /// The pose of a field from a first guess that is off by 2 px in the image at most.
+    /// Fits the pose of a field from a first guess with an error of at most 2 px in the image.
     ///
     /// # Errors
-    /// [`NoPose::OutOfField`] when most marks are outside the image and the rest does not determine a pose,
-    /// [`NoPose::TooFewFeatures`] when too little is seen, [`NoPose::Inconsistent`] when what is seen is not the target.
+    /// [`NoPose::OutOfField`] when most marks are outside the image and the remaining ones do not determine a
+    /// pose, [`NoPose::TooFewFeatures`] when too little is visible, [`NoPose::Inconsistent`] when the visible
+    /// features are not the target's.
     pub fn fit(
         &mut self,
         field: &Field,
@@ -182,13 +190,14 @@ impl ModelFit {
         self.fit_from(field, camera, target, initial, SLACK_PX, &COARSE)
     }
 
-    /// The pose of a field from a rough place: position within about 1 % of the range, angles within about a degree.
+    /// Fits the pose of a field from a rough pose: position within about 1 % of the range, angles within
+    /// about a degree.
     ///
-    /// The image's arrangement of bright and dark is searched for about the place; what shift is found is taken for one of the
-    /// position and for one of the attitude, and the better of the two fits is the answer.
+    /// The target's arrangement of bright and dark is searched for near the rough pose. The shift found is
+    /// attributed once to the position and once to the attitude, and the better of the two fits is returned.
     ///
     /// # Errors
-    /// Those of [`ModelFit::fit`]; [`NoPose::NoTarget`] when the target is not seen about the place.
+    /// Those of [`ModelFit::fit`]; [`NoPose::NoTarget`] when the target is not seen near the rough pose.
     pub fn fit_near(
         &mut self,
         field: &Field,
@@ -258,7 +267,8 @@ impl ModelFit {
         }
         let mut evaluation =
             solve(&scene, samples, &mut globals, &search, noise).ok_or(NoPose::TooFewFeatures)?;
-        // The first field of a video finds its blur only now, and the marks' corners ask for the pose to a hundredth of a pixel.
+        // In the first field of a video the blur is only determined here, and the correction at the marks'
+        // corners needs the pose to a hundredth of a pixel.
         let is_renewed = prepare(&mut self.tables, camera, target, &globals)?;
         let scene = Scene { camera, target, tables: &self.tables };
         let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
@@ -288,7 +298,7 @@ impl ModelFit {
     }
 }
 
-/// Makes the sampled profiles that the edges at some globals need; whether any was not there yet.
+/// Prepares the sampled profiles for the edges at the given globals. Returns true if any profile is new.
 fn prepare(
     tables: &mut Tables,
     camera: &CameraModel,
@@ -316,7 +326,8 @@ fn collect(
     if samples.patches.is_empty() { Err(too_few(samples)) } else { Ok(()) }
 }
 
-/// Rejects pixels, then patches, by the residuals of the last evaluation; whether anything changed that can be seen.
+/// Rejects pixels, then patches, by the residuals of the last evaluation. Returns true if the change is
+/// significant.
 fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPose> {
     let freedom = |used: usize| (used as f64 - LOCALS as f64 - 1.0).max(1.0);
     variances.clear();
@@ -328,7 +339,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
     mark_levels.extend(patches.iter().filter(|p| p.feature != Feature::Cross).map(|p| p.levels[LOCALS - 1]));
     let usual_mark = median(mark_levels).unwrap_or(0.0);
     mark_levels.iter_mut().for_each(|level| *level = (*level - usual_mark).abs());
-    // Of a normal distribution the median of the absolute deviations is 0.6745 σ.
+    // The median absolute deviation of a normal distribution is 0.6745 σ.
     let scatter_of_marks = median(mark_levels).unwrap_or(0.0) / 0.6745;
 
     let crosses = patches.iter().filter(|patch| patch.feature == Feature::Cross).count();
@@ -363,7 +374,8 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
             }
             Feature::Cross => level > 0.0,
         };
-        // Pixels that were rejected make the rest look well: what was rejected once must be clean to come back.
+        // Rejected pixels make the remaining ones appear consistent, so a rejected patch returns only when
+        // all its pixels are used.
         let is_used = is_like_the_others && is_seen && !patch.is_shaded && (patch.is_used || used == all);
         is_changed |= is_used != patch.is_used;
         patch.is_used = is_used;
@@ -371,7 +383,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
     Ok(is_changed || changed > pixels.len() / UNSEEN)
 }
 
-/// The answer, if what was used determines a pose and enough of what is seen looks like the target.
+/// Returns the result, if the used patches determine a pose and enough of the patches agree with the target.
 fn judge(
     samples: &Samples,
     groups: [&mut Groups; 3],
@@ -419,7 +431,7 @@ fn judge(
 }
 
 fn marks(samples: &Samples, scene: &Scene, pose: &Pose) -> Vec<Mark> {
-    // A mark whose pixels were all left out, in shadow or beside it, has no patch any more.
+    // A mark without any remaining pixel, in shadow or beside it, has no patch.
     let is_used = |index: usize| {
         samples.patches.iter().any(|patch| patch.feature == Feature::Mark(index) && patch.is_used)
     };
@@ -445,7 +457,7 @@ fn too_few(samples: &Samples) -> NoPose {
     if 2 * outside > samples.marks.len() { NoPose::OutOfField } else { NoPose::TooFewFeatures }
 }
 
-/// The middle value (the lower of two), sorting in place.
+/// Returns the median (the lower of two middle values). Sorts in place.
 fn median(values: &mut [f64]) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len().saturating_sub(1) / 2).copied()

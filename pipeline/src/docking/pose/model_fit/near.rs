@@ -1,5 +1,5 @@
-//! A first guess from a place that is known roughly: the features' arrangement is shifted over the image until bright and dark
-//! points of the target fall on bright and dark pixels.
+//! First guess from a roughly known pose: the arrangement of features is shifted over the image until bright
+//! and dark points of the target match bright and dark pixels.
 
 use contract::PixelPoint;
 use contract::docking::{Field, Pose, TargetModel};
@@ -8,20 +8,20 @@ use nalgebra::Vector3;
 use crate::CameraModel;
 use crate::docking::pose::geometry::project;
 
-/// Dark points lie this far beside a feature at least, px: beyond its blur.
+/// Smallest distance of dark points beside a feature, px: beyond its blur.
 const BESIDE_PX: f64 = 1.5;
 
-/// Correlation below which nothing is there.
+/// Correlation below which the target counts as not found.
 const LEAST_CORRELATION: f64 = 0.3;
 
-/// A point of the target as the rough pose shows it: columns, camera rows, and whether it is bright.
+/// Point of the target in the image at the rough pose: column, camera row, and brightness class.
 struct Point {
     at: PixelPoint,
     is_bright: bool,
 }
 
-/// By how much the target is shifted in the image against `rough`, px along columns and rows, within `reach_px`; `None` when it
-/// is not seen there.
+/// Returns the shift of the target in the image against `rough`, px along columns and rows, within
+/// `reach_px`. Returns `None` when the target is not seen there.
 pub(super) fn shift(
     field: &Field,
     camera: &CameraModel,
@@ -44,10 +44,11 @@ pub(super) fn shift(
     best.1
 }
 
-/// `rough`, turned so that the target is shifted by so much, and moved so.
+/// Returns two poses that shift the target in the image by `by`: `rough` with its position moved, and `rough`
+/// rotated.
 pub(super) fn shifted(camera: &CameraModel, rough: &Pose, by: [f64; 2]) -> [Pose; 2] {
     let (fx, fy) = camera.focal_px();
-    // Upright images: roll is small against what a second round of fitting repairs.
+    // Assumes an upright image: the effect of roll is small enough for a second round of fitting to correct.
     let (right, down) = (by[0] / fx, by[1] / fy);
     let d3 = rough.position_m.z;
     [
@@ -64,7 +65,8 @@ fn points(camera: &CameraModel, target: &TargetModel, rough: &Pose) -> Vec<Point
             points.push(Point { at, is_bright });
         }
     };
-    // A point on a feature's axis, and those on both sides of the feature, `half` from the axis along (c, s) to its edge.
+    // Adds a point on a feature's axis and points on both sides of the feature. `half` is the distance from
+    // the axis to the edge along (c, s).
     let mut pair = |centre: [f64; 2], (c, s): (f64, f64), half: f64, y3: f64| {
         let beside = half + half.max(BESIDE_PX * (rough.position_m.z - y3) / focal_px);
         add(centre[0], centre[1], y3, true);
@@ -93,7 +95,8 @@ fn points(camera: &CameraModel, target: &TargetModel, rough: &Pose) -> Vec<Point
     points
 }
 
-/// Correlation coefficient of the pixels with bright and dark; 0 when a quarter of the points is outside the image.
+/// Returns the correlation coefficient of the pixels with bright and dark. Returns 0 when more than a quarter
+/// of the points are outside the image.
 fn correlation(field: &Field, points: &[Point], by: [f64; 2]) -> f64 {
     let (image, lines) = (field.image(), field.lines());
     let (step, first_row) = (lines.step() as f64, lines.camera_row(0) as f64);

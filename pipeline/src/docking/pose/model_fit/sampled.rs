@@ -1,46 +1,49 @@
-//! What a blur that acts on pixels does to a straight edge, tabulated by the edge's direction.
+//! Profile of a straight edge under a blur that acts on pixel values, tabulated by the edge's direction.
 //!
-//! A digital filter, a Gaussian sampled at whole pixels, sums neighbouring pixels, each of which has integrated the light over
-//! its own square already. Along the axes the profile of an edge becomes a chain of straight pieces; off them the pieces are
-//! rounded, and near 45° it is almost the continuous profile. The table holds the exact sum less the continuous profile.
+//! A digital filter (a Gaussian sampled at integer pixels) sums neighbouring pixels, which have already
+//! integrated the optical image over their squares. Along the axes, the profile of an edge is a chain of
+//! straight segments; off the axes the segments are rounded, and near 45° the profile is almost the
+//! continuous one. The table holds the exact sum minus the continuous profile.
 
 use super::blur::{BOX_VARIANCE, Blur, TAPS};
 use super::gaussian::{Gaussian, WHOLE};
 
-/// Nodes a pixel: with an amplitude of 0.03 at a cycle a pixel, linear interpolation is good to 2e-4.
+/// Number of nodes per pixel. With an amplitude of 0.03 at one cycle per pixel, linear interpolation is
+/// accurate to 2e-4.
 const NODES: f64 = 32.0;
 
-/// Beyond this distance nothing is left, px.
+/// Distance beyond which the difference vanishes, px.
 const REACH_PX: f64 = 4.0;
 
-/// A power of two, so that a place in a table needs no check; 128 are used.
+/// Size of a table: a power of two, so an index needs no bounds check. 128 entries are used.
 const TABLE: usize = 256;
 
-/// Above this variance a sampled Gaussian is as good as a continuous one, px².
+/// Variance above which a sampled Gaussian equals a continuous one, px².
 pub(super) const SMOOTH_PX2: f64 = 1.5;
 
-/// A table is made when there is none within so much of an edge's normal, and of its blur, px² …
+/// Largest differences in an edge's normal and in its blur, px², from an existing table. Beyond these, a new
+/// table is made.
 const SAME_NORMAL: f64 = 0.004;
 const SAME_BLUR_PX2: f64 = 0.015;
 
-/// … and serves within so many times that, so that edges keep their tables while a solution is looked for. The profile changes
-/// by 0.001 a degree, and by 1 % of itself in 0.01 px².
+/// Factor on these differences up to which an existing table is used, so edges keep their tables during the
+/// solution. The profile changes by 0.001 per degree, and by 1 % of itself per 0.01 px².
 const SERVES: f64 = 6.0;
 
-/// Tables that are kept: a target has a few directions of edges, each of which turns slowly.
+/// Largest number of tables kept: a target has a few directions of edges, each of which turns slowly.
 const MOST_TABLES: usize = 24;
 
-/// Sampled over continuous step at distances from 0 on; odd in the distance.
+/// Sampled minus continuous step at distances from 0 on. Odd in the distance.
 #[derive(Debug, Clone)]
 struct Table {
     /// |n_x|, |n_y|.
     normal: (f64, f64),
     blur: (f64, f64),
-    /// At each node, and how much more at the next one.
+    /// Value at each node, and difference to the next node.
     steps: [(f64, f64); TABLE],
 }
 
-/// The tables that profiles of edges are read from.
+/// Tables for the profiles of edges.
 #[derive(Debug, Clone)]
 pub(super) struct Tables {
     pub(super) gaussian: Gaussian,
@@ -52,7 +55,7 @@ impl Tables {
         Self { gaussian: Gaussian::new(), profiles: SampledProfiles::default() }
     }
 
-    /// Makes the sampled profiles of edges with these normals; whether any was not there yet.
+    /// Prepares the sampled profiles for edges with these normals. Returns true if any profile is new.
     pub(super) fn prepare(&mut self, normals: &[(f64, f64)], blur: &Blur) -> bool {
         normals
             .iter()
@@ -60,21 +63,22 @@ impl Tables {
     }
 }
 
-/// Tables of sampled profiles, made as edges need them.
+/// Tables of sampled profiles, made on demand.
 #[derive(Debug, Clone, Default)]
 pub(super) struct SampledProfiles {
     tables: Vec<Table>,
-    /// The table that is replaced next.
+    /// Index of the table to be replaced next.
     oldest: usize,
 }
 
 impl SampledProfiles {
-    /// The table that is nearest to an edge's normal and blur, if there is one.
+    /// Returns the index of the table nearest to an edge's normal and blur, if one is near enough.
     pub(super) fn find(&self, normal: (f64, f64), blur: &Blur) -> Option<usize> {
         self.nearest(normal, blur).filter(|(_, off)| *off < SERVES).map(|(index, _)| index)
     }
 
-    /// The nearest table, and how far off it is: 1 is as far as may be when tables are made.
+    /// Returns the nearest table and its difference, in units of the largest difference at which no new table
+    /// is made.
     fn nearest(&self, normal: (f64, f64), blur: &Blur) -> Option<(usize, f64)> {
         let (nx, ny) = (normal.0.abs(), normal.1.abs());
         let mut nearest = None;
@@ -89,7 +93,7 @@ impl SampledProfiles {
         nearest
     }
 
-    /// Makes the table of an edge's normal, if there is none near it; whether one was made.
+    /// Makes a table for an edge's normal unless one is near. Returns true if a table was made.
     fn prepare(&mut self, gaussian: &Gaussian, normal: (f64, f64), blur: &Blur) -> bool {
         let is_smooth = blur.x.min(blur.y) > SMOOTH_PX2;
         if is_smooth || self.nearest(normal, blur).is_some_and(|(_, off)| off < 1.0) {
@@ -105,7 +109,7 @@ impl SampledProfiles {
         true
     }
 
-    /// Sampled over continuous step at distances across the edge, px, and its slope, 1/px.
+    /// Returns the sampled minus the continuous step at distances across the edge, px, and its slope, 1/px.
     #[inline(always)]
     pub(super) fn step_and_slope<const N: usize>(
         &self,
@@ -157,7 +161,7 @@ impl Table {
     }
 }
 
-/// The step of an edge that pixels have integrated and a sampled Gaussian has blurred.
+/// Returns the step of an edge after integration by pixels and blur by a sampled Gaussian.
 fn sampled((nx, ny): (f64, f64), taps: &[[f64; TAPS]; 2], distance: f64) -> f64 {
     let reach = TAPS as i32 - 1;
     let mut sum = 0.0;
@@ -171,7 +175,8 @@ fn sampled((nx, ny): (f64, f64), taps: &[[f64; TAPS]; 2], distance: f64) -> f64 
     sum
 }
 
-/// Share of a pixel inside a half plane whose border is so far from its centre: the integral of a trapezoid.
+/// Returns the share of a pixel inside a half plane whose border is at `distance` from the pixel's centre:
+/// the integral of a trapezoid.
 pub(super) fn covered(nx: f64, ny: f64, distance: f64) -> f64 {
     let (a, b) = (nx.max(ny), nx.min(ny).max(1e-4));
     let square = |x: f64| if x > 0.0 { x * x } else { 0.0 };
@@ -186,7 +191,7 @@ pub(super) fn covered(nx: f64, ny: f64, distance: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Coverage of a pixel by a half plane, counted on 400 × 400 points.
+    /// Returns the coverage of a pixel by a half plane, counted on 400 × 400 points.
     fn counted(nx: f64, ny: f64, distance: f64) -> f64 {
         let position = |i: u32| (f64::from(i) + 0.5) / 400.0 - 0.5;
         let inside =
@@ -199,7 +204,7 @@ mod tests {
         for degrees in [0.0, 3.0, 30.0, 45.0, 80.0_f64] {
             let (ny, nx) = libm::sincos(degrees.to_radians());
             for distance in [-0.8, -0.5, -0.2, 0.0, 0.1, 0.6, 0.71] {
-                // A line meets 400 to 566 of the counted points' cells, half of each in doubt.
+                // A line crosses 400 to 566 cells of the counted points; half of each cell is uncertain.
                 let off = covered(nx, ny, distance) - counted(nx, ny, distance);
                 assert!(off.abs() < 0.5 * 566.0 / 160_000.0 + 1e-4, "{degrees} {distance}: {off}");
             }
@@ -218,14 +223,14 @@ mod tests {
         };
         let diagonal = (0.5f64.sqrt(), 0.5f64.sqrt());
         assert!(tables.prepare(&[(1.0, 0.0), diagonal], &blur));
-        // The same diagonal mirrored has its table; the other axis gets one.
+        // The mirrored diagonal already has a table; the other axis gets a new one.
         assert!(!tables.prepare(&[(-diagonal.0, diagonal.1)], &blur));
         assert!(tables.prepare(&[(0.0, -1.0)], &blur) && tables.profiles.tables.len() == 3);
-        // By a sum over pixels in another program: 0.035 at 2.9° and 0.0049 at 45°.
+        // Reference values by a sum over pixels in another program: 0.035 at 2.9° and 0.0049 at 45°.
         let (chain, smooth) = (largest(&tables.profiles, (1.0, 0.0)), largest(&tables.profiles, diagonal));
         assert!((0.030..0.042).contains(&chain), "{chain}");
         assert!((0.004..0.006).contains(&smooth), "{smooth}");
-        // Odd in the distance, and nothing far off.
+        // Odd in the distance, and zero far away.
         let table = tables.profiles.find((1.0, 0.0), &blur).unwrap();
         let at = |distance: f64| tables.profiles.step_and_slope(table, &[distance]).0[0];
         assert!((at(0.3) + at(-0.3)).abs() < 1e-12 && at(3.9).abs() < 1e-4 && at(5.0) == 0.0);

@@ -1,9 +1,11 @@
-//! What a blur that acts on pixels makes of a mark, exactly: its share of every pixel's square, summed with the filter's weights.
+//! Exact coverage of a mark under a blur that acts on pixel values: its share of every pixel's square, summed
+//! with the filter's weights.
 //!
-//! The product of profiles across a mark's sides (`coverage.rs`) is exact along the sides. At the corners of an oblique mark it is
-//! not, because the profile of such a blur is another in every direction: a mark of 2 × 8 px is off by 0.5 % there. The error repeats
-//! with every pixel that the mark moves, so that all fields of a slow approach have the same: a few thousandths of a pixel
-//! between cross and marks. It changes little while a solution is refined, so it is found once and added.
+//! The product of profiles across a mark's sides (`coverage.rs`) is exact along the sides, but not at the
+//! corners of an oblique mark, because the profile of such a blur depends on the direction: the error is 0.5
+//! % for a mark of 2 × 8 px. The error repeats with every pixel that the mark moves, so it is the same in all
+//! fields of a slow approach: a few thousandths of a pixel between cross and marks. It changes little while a
+//! solution is refined, so it is computed once and added.
 
 use contract::PixelPoint;
 use contract::docking::{Field, Pose};
@@ -16,25 +18,26 @@ use super::samples::{Feature, Samples};
 use super::scene::Scene;
 use crate::docking::pose::geometry::PoseProjection;
 
-/// The filter reaches this many pixels to each side.
+/// Reach of the filter to each side, pixels.
 const REACH: usize = TAPS - 1;
 
-/// Of a mark narrower than this the share of the blur that acts on pixels is not known well enough to correct by.
+/// Smallest width of a mark for a correction, px. For narrower marks, the share of the blur that acts on
+/// pixels is too uncertain.
 const NARROWEST_PX: f64 = 1.0;
 
-/// Exact shares of pixels; owns its buffers.
+/// Exact shares of pixels, with reusable buffers.
 #[derive(Debug, Default)]
 pub(super) struct SampledMarks {
     squares: Vec<f64>,
     across: Vec<f64>,
 }
 
-/// A line a u + b v + c = 0 with a unit normal, positive inside.
+/// Line a u + b v + c = 0 with a unit normal, positive inside.
 type Line = (f64, f64, f64);
 
 impl SampledMarks {
-    /// Notes at every pixel of the marks how much more of the mark it shows, with a blur on pixels alone, than the product of profiles
-    /// says; whether there is any such pixel.
+    /// Stores at every pixel of the marks the exact coverage minus the product of profiles, for a blur that
+    /// acts on pixels only. Returns true if any pixel has a correction.
     pub(super) fn correct(
         &mut self,
         samples: &mut Samples,
@@ -59,7 +62,8 @@ impl SampledMarks {
             let Some(image) = MarkImage::new(corners, &view, blur, tables) else { continue };
             let Some(sides) = sides(corners, &view) else { continue };
             let across = |k: usize| {
-                // Normals inwards and opposite: the offsets' sum is the distance, for sides that are about parallel.
+                // Normals point inwards, so the sum of opposite offsets is the distance, for nearly parallel
+                // sides.
                 sides[k].2 + sides[k + 2].2
             };
             if across(0).min(across(1)) < NARROWEST_PX {
@@ -99,12 +103,12 @@ impl SampledMarks {
     }
 }
 
-/// Σ weight × value over the filter, from the first value it reaches on.
+/// Returns Σ weight × value over the filter. Index 0 is the first value within its reach.
 fn filtered(weights: &[f64; TAPS], value: impl Fn(usize) -> f64) -> f64 {
     (0..=2 * REACH).map(|k| weights[k.abs_diff(REACH)] * value(k)).sum()
 }
 
-/// The sides of a mark in the image; `None` when a corner is behind the camera.
+/// Returns the sides of a mark in the image, or `None` when a corner is behind the camera.
 fn sides(corners: &[[f64; 2]; 4], view: &PoseProjection) -> Option<[Line; 4]> {
     let [Some(a), Some(b), Some(c), Some(d)] =
         corners.map(|[y1, y2]| view.project_with_derivatives(&Vector3::new(y1, y2, 0.0)))
@@ -121,7 +125,7 @@ fn sides(corners: &[[f64; 2]; 4], view: &PoseProjection) -> Option<[Line; 4]> {
     }))
 }
 
-/// Share of the unit square about a point inside a quadrilateral.
+/// Returns the share of the unit square around a point that lies inside a quadrilateral.
 fn share(sides: &[Line; 4], u: f64, v: f64) -> f64 {
     let inside = sides.map(|(a, b, c)| a * u + b * v + c);
     let reach = sides.map(|(a, b, _)| 0.5 * (a.abs() + b.abs()));
@@ -132,7 +136,7 @@ fn share(sides: &[Line; 4], u: f64, v: f64) -> f64 {
     let of_side = |k: usize| covered(sides[k].0.abs(), sides[k].1.abs(), inside[k]);
     match is_cut {
         [false, false, false, false] => 1.0,
-        // Opposite sides leave out what does not overlap.
+        // Opposite sides exclude disjoint parts.
         [first, false, third, false] => {
             let left_out = |is_cut: bool, k: usize| if is_cut { 1.0 - of_side(k) } else { 0.0 };
             (1.0 - left_out(first, 0) - left_out(third, 2)).max(0.0)
@@ -145,9 +149,9 @@ fn share(sides: &[Line; 4], u: f64, v: f64) -> f64 {
     }
 }
 
-/// The same by clipping the square with one side after the other (Sutherland and Hodgman 1974).
+/// Returns the same share by clipping the square with one side after the other (Sutherland and Hodgman 1974).
 fn clipped(sides: &[Line; 4], u: f64, v: f64) -> f64 {
-    // A convex polygon gains a corner at most with each side.
+    // A convex polygon gains at most one corner per side.
     let mut polygon = [(0.0, 0.0); 8];
     polygon[..4].copy_from_slice(&[
         (u - 0.5, v - 0.5),
@@ -190,7 +194,7 @@ fn clipped(sides: &[Line; 4], u: f64, v: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A mark of 2.3 × 7.6 px about (0.2, −0.1), turned by some degrees.
+    /// Returns a mark of 2.3 × 7.6 px about (0.2, −0.1), rotated by `degrees`.
     fn turned(degrees: f64) -> [Line; 4] {
         let (s, c) = libm::sincos(degrees.to_radians());
         [(c, s, 1.15), (-s, c, 3.8), (-c, -s, 1.15), (s, -c, 3.8)]
@@ -211,7 +215,8 @@ mod tests {
                 };
                 let counted = (0..40_000).filter(is_inside).count() as f64 / 40_000.0;
                 let exact = share(&sides, u, v);
-                // Two sides at most meet 283 of the points' cells each, half of each in doubt.
+                // At most two sides cross 283 cells of the counted points each; half of each cell is
+                // uncertain.
                 assert!((exact - counted).abs() < 283.0 / 40_000.0, "{degrees} {u} {v}: {exact} {counted}");
                 sum += exact;
             }

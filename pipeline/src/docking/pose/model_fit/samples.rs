@@ -1,4 +1,5 @@
-//! Which pixels are looked at: bands along the edges of marks and cross, away from what is not in the model.
+//! Selection of pixels for the fit: bands along the edges of marks and cross, away from structures that are
+//! not in the model.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -15,7 +16,7 @@ use super::unknowns::{BLUR, GLOBALS, Globals, LOCALS, SIDES};
 use crate::CameraModel;
 use crate::docking::pose::geometry::{PoseProjection, to_pose};
 
-/// A pixel that is looked at.
+/// Pixel used by the fit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     /// Ideal image coordinates, px.
@@ -25,25 +26,26 @@ pub(super) struct Sample {
     pub(super) column: usize,
     pub(super) row: usize,
     pub(super) dn: f64,
-    /// Blurred share of what lies beyond the plate's rim.
+    /// Blurred share of the area beyond the plate's rim.
     pub(super) beyond_rim: f64,
-    /// How much darker a shadow makes the plate, DN.
+    /// Darkening of the plate by a shadow, DN.
     pub(super) shadow_dn: f64,
-    /// How much more a blur on pixels alone shows of the mark than its profiles say.
+    /// Exact coverage of a mark minus the product of its profiles, for a blur that acts on pixels only.
     pub(super) corner: f64,
     /// Coverage at the last evaluation.
     pub(super) coverage: f64,
     pub(super) is_used: bool,
 }
 
-/// What a patch shows.
+/// Feature in a patch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Feature {
     Mark(usize),
     Cross,
 }
 
-/// A mark, or a piece of an arm of the cross, with levels of its own: a shadow on one does not change the others.
+/// Mark, or piece of an arm of the cross, with separate levels: a shadow on one patch does not affect the
+/// others.
 #[derive(Debug, Clone)]
 pub(super) struct Patch {
     pub(super) feature: Feature,
@@ -52,17 +54,18 @@ pub(super) struct Patch {
     pub(super) centre: (f64, f64),
     pub(super) levels: [f64; LOCALS],
     pub(super) squares: f64,
-    /// Inverse of the levels' normal equations, and times what they share with the globals' derivatives.
+    /// Inverse of the levels' normal equations, and its product with their mixed terms with the globals'
+    /// derivatives.
     pub(super) levels_inverse: SMatrix<f64, LOCALS, LOCALS>,
     pub(super) levels_by_globals: SMatrix<f64, LOCALS, GLOBALS>,
     pub(super) used_samples: usize,
     pub(super) is_used: bool,
-    /// A shadow falls on the mark: it is not used again.
+    /// True if a shadow falls on the mark. The patch is then not used again.
     pub(super) is_shaded: bool,
 }
 
 impl Patch {
-    /// The patch of some pixels; nothing is known of its levels.
+    /// Creates the patch of some pixels, with unknown levels.
     pub(super) fn new(feature: Feature, pixels: Range<usize>, centre: (f64, f64)) -> Self {
         Self {
             feature,
@@ -80,44 +83,48 @@ impl Patch {
     }
 }
 
-/// Pixels below which a patch says nothing beyond its own levels.
+/// Number of pixels below which a patch determines no more than its levels.
 const LEAST_SAMPLES: usize = 10;
 
-/// Where an edge's blur has fallen off so far, in σ, pixels tell of the levels alone: where there are many, a few of them do.
+/// Distance from an edge, in σ of its blur, beyond which pixels determine only the levels. Where there are
+/// many such pixels, only some of them are used.
 const FLAT_FROM: f64 = 1.7;
 const MANY_SAMPLES: f64 = 6_000.0;
 const FLAT_THIN: usize = 4;
 
-/// Arms shorter than this share one patch; longer ones are cut into pieces of about twice this, px.
+/// Length of an arm below which the arms share one patch, px. Longer arms are cut into pieces of about twice
+/// this length.
 const SHORT_ARM_PX: f64 = 15.0;
 
-/// A mark of which a shadow takes more than this part anywhere is in shadow.
+/// Share of a shadow at any point of a mark above which the mark counts as shaded.
 const SHADED: f64 = 0.02;
 
-/// A pixel of a mark's patch of which a shadow takes more than this part says nothing: beside the mark the shadow takes a little of
-/// the plate, on it twenty times as much of the mark.
+/// Share of a shadow above which a pixel of a mark's patch is dropped. Beside the mark, the shadow reduces
+/// the plate's signal a little; on the mark, it reduces the mark's signal twenty times as much.
 const TOUCHED: f64 = 5e-4;
 
-/// Shares of the shadow between which a pixel is at its edge. Where that edge meets the cross's, the blurred part of the shadow
-/// that the cross leaves open is not the product of the two blurred shares: for parallel edges it is off by a quarter.
+/// Range of the shadow's share in which a pixel is at the shadow's edge. Where this edge meets the cross's
+/// edge, the blurred visible part of the shadow is not the product of the two blurred shares: for parallel
+/// edges the product is wrong by a quarter.
 const EDGE_OF_SHADOW: RangeInclusive<f64> = 0.01..=0.99;
 
-/// How far from the cross's edge, in σ of its blur, the plate's brightness is told from what the cross sheds on it: a shadow that
-/// hides almost behind the cross is seen there alone. At 1.6 σ that is a twentieth of the cross's level, known to a DN or so.
+/// Distance from the cross's edge, in σ of its blur, from which on the plate's brightness can be separated
+/// from the cross's blurred signal. A shadow almost hidden behind the cross is visible only there. At 1.6 σ
+/// this signal is a twentieth of the cross's level, known to about 1 DN.
 const BESIDE_CROSS: f64 = 1.6;
 
-/// Collects samples; owns its buffers.
+/// Collection of samples, with reusable buffers.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
     pub(super) pixels: Vec<Sample>,
     pub(super) patches: Vec<Patch>,
     pub(super) marks: Vec<MarkUse>,
-    /// The number of the collection that took a pixel last.
+    /// Number of the last collection that contains each pixel.
     taken: Vec<u32>,
     collection: u32,
 }
 
-/// Where and how one collection looks.
+/// Parameters of one collection.
 struct Search<'a> {
     field: &'a Field,
     camera: &'a CameraModel,
@@ -126,26 +133,28 @@ struct Search<'a> {
     tables: &'a Tables,
     reach_px: f64,
     blur_px: f64,
-    /// px/m on the plate and on the cross.
+    /// Scales on the plate and on the cross, px/m.
     plate_scale: f64,
     cross_scale: f64,
-    /// How far the side faces reach beyond the front face, px.
+    /// Extent of the side faces beyond the front face, px.
     side_px: f64,
-    /// The post between plate and cross, where it comes out from behind the cross: two image points and half its width.
+    /// Post between plate and cross, if it extends beyond the cross in the image: the image points of its
+    /// ends.
     post: Option<[(f64, f64); 2]>,
-    /// Every how many pixels is taken, at the edges and in the outer part of the bands, which is so wide on either side, px.
+    /// Thinning factors near the edges and in the outer part of the bands, and width of the outer part on
+    /// either side, px.
     thin: usize,
     flat_thin: usize,
     flat_px: f64,
-    /// Marks so near the cross in the image that each must keep off the other.
+    /// Indices of marks so near the cross in the image that pixels of one must avoid the other.
     crowded: Vec<usize>,
-    /// A circle about each mark with what its blur reaches: centre and radius, m.
+    /// Circle around each mark, including the reach of its blur: centre and radius, m.
     about_marks: Vec<([f64; 2], f64)>,
 }
 
 impl Samples {
-    /// Collects the pixels within `slack_px` + the blur's reach of an edge, as seen from a pose, about `most` of them. `None` when
-    /// the features are not in front of the camera.
+    /// Collects about `most` of the pixels within `slack_px` + the blur's reach of an edge, for a given pose.
+    /// Returns `None` when the features are not in front of the camera.
     #[allow(clippy::too_many_arguments, reason = "the scene, and how closely to look at it")]
     pub(super) fn collect(
         &mut self,
@@ -177,7 +186,8 @@ impl Samples {
         Some(())
     }
 
-    /// Mean level of the cross over the plate, DN; 0 where no piece of it was solved for.
+    /// Returns the mean level of the cross over the plate, DN; 0 if no piece of the cross has been solved
+    /// for.
     pub(super) fn cross_dn(&self) -> f64 {
         let levels = self
             .patches
@@ -188,8 +198,8 @@ impl Samples {
         if sum > 0.0 { sum / count } else { 0.0 }
     }
 
-    /// Looks for the shadow of the cross: what it takes from the plate is noted pixel by pixel, and marks on which it falls are
-    /// not used. `cross_dn`: how much brighter than the plate the cross is.
+    /// Searches for the shadow of the cross. Stores the darkening of the plate at each pixel, and excludes
+    /// the marks on which the shadow falls. `cross_dn` is the level of the cross over the plate, DN.
     pub(super) fn shade(
         &mut self,
         finder: &mut ShadowFinder,
@@ -230,7 +240,7 @@ impl Samples {
         for patch in &mut self.patches {
             let Feature::Mark(index) = patch.feature else { continue };
             let corners = &target.marks[index];
-            // Corners, middles of the sides, middle.
+            // Corners, midpoints of the sides, centre.
             let weights = [[1.0, 0.0, 0.0, 0.0], [0.5, 0.5, 0.0, 0.0], [0.25; 4]];
             let is_shaded = (0..4).any(|turn| {
                 weights.iter().any(|weight| {
@@ -245,7 +255,8 @@ impl Samples {
             patch.is_used &= !is_shaded;
         }
         if search.is_small() {
-            // A hundredth of a pixel is nothing beside the noise of a small cross, and its pixels are few.
+            // A hundredth of a pixel is negligible against the noise of a small cross, and its pixels are
+            // few.
             return;
         }
         let edge_px = search.reach_px;
@@ -261,7 +272,8 @@ impl Samples {
         });
     }
 
-    /// Drops pixels, of which the place among all is told too, and patches that are left with too few.
+    /// Drops the pixels for which `is_out` returns true (its last argument is the index among all pixels),
+    /// and patches left with too few pixels.
     fn leave_out(&mut self, is_out: impl Fn(&Patch, &Sample, usize) -> bool) {
         let mut kept = 0;
         for patch in &mut self.patches {
@@ -356,7 +368,8 @@ impl Samples {
         true
     }
 
-    /// Takes the free pixels within `reach_px` of a segment that `admit` lets in, with their share beyond the rim.
+    /// Collects the free pixels within `reach_px` of a segment for which `admit` returns a share beyond the
+    /// rim.
     fn collect_band(
         &mut self,
         search: &Search,
@@ -424,12 +437,13 @@ impl Samples {
     }
 }
 
-/// Length of a vector of moderate size; libm's takes ten times as long, for any size.
+/// Returns the length of a vector of moderate size. The version in libm works for any size but takes ten
+/// times as long.
 fn norm(a: f64, b: f64) -> f64 {
     (a * a + b * b).sqrt()
 }
 
-/// Narrows an interval of x to where low ≤ slope x + offset ≤ high.
+/// Narrows an interval of x to the part with low ≤ slope x + offset ≤ high.
 fn narrow(span: &mut (f64, f64), slope: f64, offset: f64, low: f64, high: f64) {
     if slope.abs() < 1e-9 {
         if !(low..=high).contains(&offset) {
@@ -473,7 +487,7 @@ impl<'a> Search<'a> {
         let reach_px = super::coverage::reach_px(blur) + slack_px;
         let post = [at(0.0, 0.0, 0.0)?, at(0.0, 0.0, back_m)?];
         let post_px = libm::hypot(post[0].0 - post[1].0, post[0].1 - post[1].1);
-        // Length of all edges, times the width of the bands, over the rows that a field leaves out.
+        // Length of all edges times the width of the bands, divided by the row step of the field.
         let mark_px: f64 = target
             .marks
             .iter()
@@ -519,13 +533,13 @@ impl<'a> Search<'a> {
         Some(search)
     }
 
-    /// Length of an arm of the cross, px.
+    /// Returns the length of an arm of the cross, px.
     fn arm_px(&self) -> f64 {
         let cross = &self.target.cross;
         (cross.half_length_m - 0.5 * cross.width_m) * self.cross_scale
     }
 
-    /// Whether the cross is one patch.
+    /// Returns true if the cross is a single patch.
     fn is_small(&self) -> bool {
         self.arm_px() < SHORT_ARM_PX
     }
@@ -534,16 +548,17 @@ impl<'a> Search<'a> {
         self.camera.project_vector(&self.view.to_camera(&Vector3::new(y1, y2, y3)))
     }
 
-    /// Blurred share of what lies beyond the plate's rim, and the distance inside the rim, px; `None` on it and beyond it. What is
-    /// there is taken to shine alike along a mark's patch; in truth it is seams and shadows, and where their share is above a half
-    /// they move small marks by more than these are known.
+    /// Returns the blurred share of the area beyond the plate's rim, and the distance inside the rim, px.
+    /// Returns `None` on the rim and beyond it. The area beyond is assumed to have constant brightness along
+    /// a mark's patch. In reality it has seams and shadows; where its share is above a half, they would shift
+    /// small marks by more than the uncertainty of their positions.
     fn beyond_rim(&self, u: f64, v: f64) -> Option<(f64, f64)> {
         let (y1, y2) = self.view.on_plane(u, v, 0.0)?;
         let inside_px = (self.target.plate_radius_m - norm(y1, y2)) * self.plate_scale;
         (inside_px > 0.0).then(|| (self.tables.gaussian.cdf_and_pdf(-inside_px / self.blur_px).0, inside_px))
     }
 
-    /// Distance from the cross's front face, px, negative inside.
+    /// Returns the distance from the cross's front face, px, negative inside.
     fn distance_from_cross_px(&self, u: f64, v: f64) -> f64 {
         let cross = &self.target.cross;
         let Some((y1, y2)) = self.view.on_plane(u, v, cross.height_m) else { return f64::INFINITY };
@@ -567,7 +582,7 @@ impl<'a> Search<'a> {
         self.is_on_marks(y1, y2, self.crowded.iter().copied())
     }
 
-    /// Whether a point of the plate lies on one of some marks or within reach of it.
+    /// Returns true if a point of the plate lies on one of the given marks or within reach of one.
     fn is_on_marks(&self, y1: f64, y2: f64, mut marks: impl Iterator<Item = usize>) -> bool {
         marks.any(|index| {
             let (centre, reach_m) = self.about_marks[index];
@@ -576,7 +591,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Whether the post may be seen at a point, or its blurred edge.
+    /// Returns true if the post or its blurred edge may be visible at a point.
     fn is_near_post(&self, u: f64, v: f64) -> bool {
         let Some([a, b]) = self.post else { return false };
         let (du, dv) = (b.0 - a.0, b.1 - a.1);

@@ -1,11 +1,11 @@
-//! What is fitted, and with what.
+//! Inputs of the fit.
 
 use contract::docking::TargetModel;
 
 use super::sampled::Tables;
 use crate::CameraModel;
 
-/// A target seen by a camera.
+/// Target seen by a camera.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
     pub(super) camera: &'a CameraModel,

@@ -1,8 +1,9 @@
-//! The shadow that the cross casts on the plate: where the Sun stands is found from the plate's own pixels.
+//! Shadow of the cross on the plate. The Sun's direction is determined from the pixels of the plate.
 //!
-//! A distant light shifts the cross's outline along the plate by −y3 s, s = (s1, s2) being the tangents of its direction; the
-//! thickness draws the outline out. On a dark plate the step is small against a white edge, but it lies beside the edges that
-//! the pose hangs on: left out, it moves them by a few hundredths of a pixel.
+//! A distant light source shifts the cross's outline along the plate by −y3 s, where s = (s1, s2) are the
+//! tangents of its direction; the cross's thickness elongates the outline. On a dark plate the step is small
+//! compared with a white edge, but it is beside the edges that determine the pose: if neglected, it shifts
+//! them by a few hundredths of a pixel.
 
 use std::f64::consts::TAU;
 
@@ -17,45 +18,48 @@ use super::sampled::Tables;
 use crate::CameraModel;
 use crate::docking::pose::geometry::PoseProjection;
 
-/// Cells of the plate's map along a side.
+/// Number of cells of the plate's map per side.
 const CELLS: usize = 64;
 
-/// Pixels of the plate that are looked at, about.
+/// Approximate number of pixels of the plate that are used.
 const PLATE_PIXELS: f64 = 6000.0;
 
-/// Pixels about the shadow's edges that place it, at most, and how far from the edges they lie, px.
+/// Largest number of pixels near the shadow's edges that determine its position.
 const EDGE_PIXELS: usize = 1200;
 
-/// What a shadow must explain to be one, in variances of a pixel: the best of all places explains 2 ln(places) ≈ 17 by chance.
+/// Smallest gain of a shadow, in variances of a pixel. By chance, the best of all positions has a gain of 2
+/// ln(positions) ≈ 17.
 const LEAST_GAIN: f64 = 40.0;
 
-/// What is kept of the evidence from field to field: the Sun stands still for seconds, and a shadow of which a few pixels are seen
-/// is no more than chance in a single field.
+/// Share of the evidence kept from field to field. The Sun's direction is constant over seconds, and a shadow
+/// with few visible pixels is not distinct from chance in a single field.
 const RETENTION: f64 = 0.9;
 
-/// The direction of before is gone on with while it explains this part of what the best place does.
+/// Smallest gain of the previous direction, relative to the best position's gain, for which the previous
+/// direction is kept.
 const AS_GOOD: f64 = 0.8;
 
-/// Pixels in shadow, and in light, without which a place is not judged.
+/// Smallest number of pixels in shadow, and in light, with which a position is evaluated.
 const LEAST_PIXELS: f64 = 4.0;
 
-/// A shadow shallower than this part of the cross's level moves no edge, and is rather an error of what the cross sheds beside it.
+/// Smallest depth of a shadow, relative to the cross's level. A shallower shadow shifts no edge, and is more
+/// likely an error of the cross's blurred signal.
 const LEAST_DEPTH: f64 = 0.01;
 
-/// Steps of refinement are damped as if the direction were known to this, tangent: of a shadow whose bars are not on the plate only
-/// the azimuth is seen.
+/// Standard deviation of the direction, tangent, assumed in the damping of refinement steps. A shadow whose
+/// bars are not on the plate determines only the azimuth.
 const LOOSE: f64 = 0.1;
 
-/// Steps of refinement.
+/// Largest number of refinement steps.
 const STEPS: usize = 4;
 
 /// Step of the numeric derivative, tangent of the Sun's direction: 0.3 mm on the plate.
 const STEP: f64 = 1e-3;
 
-/// Directions of the search.
+/// Number of directions in the search.
 const DIRECTIONS: u32 = 192;
 
-/// A pixel of the plate, clear of marks, cross and rim; what the cross sheds on it is taken away.
+/// Pixel of the plate, clear of marks, cross and rim, with the cross's blurred signal subtracted.
 #[derive(Debug, Clone, Copy)]
 struct PlatePixel {
     u: f64,
@@ -65,7 +69,8 @@ struct PlatePixel {
     dn: f64,
 }
 
-/// What fields say of a place: of the plate's step s there, told with weight w, Σ s w and Σ w, weights in variances of a pixel.
+/// Accumulated evidence at one position: Σ s w and Σ w, with s the plate's step there and w its weight, in
+/// variances of a pixel.
 #[derive(Debug, Clone, Copy, Default)]
 struct Evidence {
     step: f64,
@@ -73,36 +78,36 @@ struct Evidence {
 }
 
 impl Evidence {
-    /// What a darker plate there explains, in variances of a pixel.
+    /// Returns the gain of a darker plate there, in variances of a pixel.
     fn explained_variance(&self) -> f64 {
         if self.step > 0.0 { self.step * self.step / self.weight } else { 0.0 }
     }
 }
 
-/// The Sun's direction as the fields before place it.
+/// Direction of the Sun from previous fields.
 #[derive(Debug, Clone, Copy)]
 struct SunEstimate {
     tangents: Vector2<f64>,
     information: Matrix2<f64>,
 }
 
-/// Finds shadows field by field; owns its buffers, and remembers where the Sun stood.
+/// Search for shadows in successive fields, with reusable buffers and memory of the Sun's direction.
 #[derive(Debug, Default)]
 pub(super) struct ShadowFinder {
     pixels: Vec<PlatePixel>,
     /// Sums over the cells above and to the left: count and DN.
     sums: Vec<(f64, f64)>,
-    /// This field's evidence of each place, direction by direction, and that of all fields.
+    /// Evidence for each position, direction by direction, from this field and from all fields.
     field: Vec<Evidence>,
     evidence: Vec<Evidence>,
     sun_estimate: Option<SunEstimate>,
 }
 
-/// A shadow on the plate as a camera sees it.
+/// Shadow on the plate as seen by a camera.
 #[derive(Debug, Clone)]
 pub(super) struct Shadow {
     images: [MarkImage; 3],
-    /// How much darker it is than the plate, DN.
+    /// Darkening of the plate by the full shadow, DN.
     pub(super) depth_dn: f64,
 }
 
@@ -121,13 +126,13 @@ impl Shadow {
         Some(Self { images: [a, b, c], depth_dn: 0.0 })
     }
 
-    /// Blurred share of the shadow at an ideal image point.
+    /// Returns the blurred share of the shadow at an ideal image point.
     pub(super) fn share_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
         let [share] = self.shares_at(tables, &IdealPositions { u: [u], v: [v] });
         share
     }
 
-    /// The same at many points, into `shares`.
+    /// Writes the blurred shares of the shadow at many points to `shares`.
     pub(super) fn shares(
         &self,
         tables: &Tables,
@@ -163,7 +168,7 @@ impl Shadow {
     }
 }
 
-/// The shares of a shadow at a chunk of points.
+/// Computation of the shares of a shadow at a chunk of points.
 struct Shares<'a> {
     shadow: &'a Shadow,
     tables: &'a Tables,
@@ -173,15 +178,15 @@ struct Shares<'a> {
 impl WithSimd for Shares<'_> {
     type Output = [f64; CHUNK];
 
-    // Inline, all of it: only so is it compiled for the registers of the machine.
+    // Only fully inlined code is compiled for the registers of the machine.
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
         self.shadow.shares_at(self.tables, self.at)
     }
 }
 
-/// The shadows of the two bars and of the post, corners in the plate's plane. The hull that a bar's thickness draws out is
-/// taken for a rectangle: what that adds are corners of a few millimetres.
+/// Returns the shadows of the two bars and of the post, as corners in the plate's plane. The hull formed by a
+/// bar's thickness is approximated by a rectangle, which adds corners of a few millimetres.
 fn outline(target: &TargetModel, tangents: Vector2<f64>) -> [[[f64; 2]; 4]; 3] {
     let cross = &target.cross;
     let centre = tangents * -(cross.height_m - 0.5 * cross.thickness_m);
@@ -200,8 +205,9 @@ fn outline(target: &TargetModel, tangents: Vector2<f64>) -> [[[f64; 2]; 4]; 3] {
 }
 
 impl ShadowFinder {
-    /// The shadow on the plate, if one is seen. `lit_dn` says of a point (image and plate) how much the cross's blurred edge brightens
-    /// the bare plate there, DN; `None` where something else is seen.
+    /// Returns the shadow on the plate, if one is found. `lit_dn` returns the brightening of the bare plate
+    /// by the cross's blurred edge at a point (image and plate), DN, or `None` where the point is not bare
+    /// plate.
     #[allow(clippy::too_many_arguments, reason = "the scene, and which pixels of it are bare")]
     pub(super) fn find(
         &mut self,
@@ -218,7 +224,8 @@ impl ShadowFinder {
         let (before, variance) = self.search(target)?;
         let mut tangents = before.tangents;
         if before.information == Matrix2::zeros() {
-            // From a place on the map: as blurred as the map's cells are coarse, where they are coarser than the blur.
+            // Starting from a position on the map: the blur is increased to the coarseness of the map's
+            // cells, if this exceeds the blur.
             let cell = 2.0 * target.plate_radius_m / CELLS as f64;
             let (a, b) = (
                 view.project_with_derivatives(&Vector3::zeros())?,
@@ -240,8 +247,8 @@ impl ShadowFinder {
         (depth_dn > LEAST_DEPTH * cross_dn).then_some(shadow)
     }
 
-    /// The Sun's direction by Gauss and Newton's method from `tangents` on, the information that this field has of it, and the
-    /// shadow's depth, DN.
+    /// Determines the Sun's direction by the Gauss–Newton method, starting from `tangents`. Returns the
+    /// direction, the information on it in this field, and the shadow's depth, DN.
     #[allow(clippy::too_many_arguments, reason = "the scene, and where to begin")]
     fn refine(
         &self,
@@ -256,7 +263,8 @@ impl ShadowFinder {
         let mut seen = Matrix2::zeros();
         let shadow = Shadow::new(target, view, blur, tables, tangents)?;
         let [mut shares, mut to_first, mut to_second] = [const { Vec::new() }; 3];
-        // Only pixels about the shadow's edges place it; the others say what is light and dark.
+        // Only pixels near the shadow's edges determine its position; the other pixels determine the light
+        // and dark levels.
         let near: Vec<PlatePixel> = {
             shadow.shares(tables, image_points(&self.pixels), &mut shares);
             let is_edge = |share: &f64| (0.002..0.998).contains(share);
@@ -288,7 +296,8 @@ impl ShadowFinder {
             right += before.information * (before.tangents - tangents) * variance;
             normal += before.information * variance + damping;
             let step: Vector2<f64> = normal.try_inverse()? * right;
-            // Not farther than half a bar, where the next place of the search would be better.
+            // Steps are limited to half a bar; beyond that, the next position of the search would be a better
+            // start.
             let longest = 0.5 * target.cross.width_m / target.cross.height_m;
             tangents += step * (longest / step.norm().max(longest));
             if step.norm() < 1e-4 {
@@ -326,7 +335,7 @@ impl ShadowFinder {
             (high[0].floor() + 1.0).clamp(0.0, image.columns() as f64) as usize,
         );
         let area = rows.1.saturating_sub(rows.0) as f64 * columns.1.saturating_sub(columns.0) as f64;
-        // Every n-th pixel, another one in every row.
+        // Every n-th pixel, with a different offset in every row.
         let thin = ((area / PLATE_PIXELS).ceil() as usize).max(1);
         self.pixels.clear();
         for row in rows.0..rows.1 {
@@ -345,8 +354,8 @@ impl ShadowFinder {
         (self.pixels.len() >= 50).then_some(())
     }
 
-    /// The direction that explains the plate's pixels best in this field and those before, by sums over rectangles of a map of the plate,
-    /// and the variance of a pixel that it leaves, DN².
+    /// Finds the direction that best explains the plate's pixels in this field and previous ones, by sums
+    /// over rectangles of a map of the plate. Also returns the remaining variance of a pixel, DN².
     fn search(&mut self, target: &TargetModel) -> Option<(SunEstimate, f64)> {
         let radius = target.plate_radius_m;
         let cell = 2.0 * radius / CELLS as f64;
@@ -386,7 +395,7 @@ impl ShadowFinder {
         self.field.clear();
         for direction in 0..DIRECTIONS {
             let (s, c) = libm::sincos(f64::from(direction) * TAU / f64::from(DIRECTIONS));
-            // The post's shadow from the foot on, by its two halves, up to each distance.
+            // Sums of the post's shadow from its foot up to each distance, by its two halves.
             along.clear();
             along.push((0.0, 0.0));
             let mut of_post = (0.0, 0.0);
@@ -400,7 +409,7 @@ impl ShadowFinder {
                 }
                 along.push(of_post);
             }
-            // The bars hide the end of it.
+            // The bars hide its end.
             let end = |a: f64, b: f64| (a / c.abs()).min(b / s.abs());
             let hidden = (end(half, length).max(end(length, half)) / cell) as usize;
             for distance in 0..=reach {
@@ -427,7 +436,7 @@ impl ShadowFinder {
         for (place, (sum, here)) in self.evidence.iter_mut().zip(&self.field).enumerate() {
             sum.step = RETENTION * sum.step + here.step / left;
             sum.weight = RETENTION * sum.weight + here.weight / left;
-            // Of places that look alike the farthest: bars that are not seen are not on the plate.
+            // Takes the farthest of equivalent positions: invisible bars are not on the plate.
             if sum.explained_variance() >= best.0 {
                 best = (sum.explained_variance(), place);
             }
@@ -454,12 +463,12 @@ impl ShadowFinder {
     }
 }
 
-/// Image points of pixels.
+/// Returns the image points of pixels.
 fn image_points(pixels: &[PlatePixel]) -> impl Iterator<Item = (f64, f64)> {
     pixels.iter().map(|pixel| (pixel.u, pixel.v))
 }
 
-/// Light plate and depth of the shadow by least squares, DN.
+/// Returns the level of the lit plate and the depth of the shadow by least squares, DN.
 fn levels(pixels: &[PlatePixel], shares: &[f64]) -> Option<(f64, f64)> {
     let n = pixels.len() as f64;
     let (mut s, mut ss, mut d, mut sd) = (0.0, 0.0, 0.0, 0.0);

@@ -1,4 +1,4 @@
-//! Least squares with levels of its own for each patch: the levels are eliminated patch by patch.
+//! Least squares with separate levels for each patch; the levels are eliminated patch by patch.
 
 use std::ops::Range;
 
@@ -17,39 +17,41 @@ use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, GlobalMatrix, Globals, LOC
 use crate::docking::portions::inverse;
 use crate::docking::pose::geometry::{PoseProjection, to_pose};
 
-/// What is expected of blur, its share on pixels and side faces before the image is seen: mean and standard deviation. Weak; it decides only
-/// where the image does not.
+/// Priors of blur, and of its share on pixels and the side faces: mean and standard deviation. Weak priors,
+/// which are decisive only where the image is not.
 const BLUR_PRIOR_PX2: (f64, f64) = (0.5, 1.0);
 const SHARE_PRIOR: (f64, f64) = (0.5, 0.5);
 
-/// Ranges of blur, and of its share on pixels and side faces.
+/// Ranges of blur, and of its share on pixels and the side faces.
 const BLUR_RANGE_PX2: (f64, f64) = (0.02, 25.0);
 const SHARE_RANGE: (f64, f64) = (-0.5, 2.0);
 
-/// A step moves no edge farther than this, px.
+/// Largest displacement of an edge in one step, px.
 const LONGEST_STEP_PX: f64 = 1.5;
 
-/// Pixels of a patch that are looked at in any case.
+/// Smallest number of pixels of a patch that remain after thinning.
 const LEAST_OF_PATCH: usize = 3 * LOCALS;
 
-/// A step that promises less than this part of the noise's variance and does not keep it is the last.
+/// Predicted reduction, relative to the noise's variance, below which a step that fails to reduce the
+/// objective is the last.
 const UNSEEN_STEP: f64 = 0.5;
 
-/// How a solution is looked for.
+/// Parameters of a solution.
 #[derive(Debug, Clone)]
 pub(super) struct Search {
-    /// Added to the blur's variances: a blurred model finds its way from farther off.
+    /// Variance added to the blur, px². A blurred model converges from larger errors.
     pub(super) extra_blur_px2: f64,
-    /// The globals that are free.
+    /// Range of the free globals.
     pub(super) free: Range<usize>,
-    /// Every how many pixels is looked at.
+    /// Thinning: every `stride`-th pixel is used.
     pub(super) stride: usize,
     pub(super) steps: usize,
-    /// Converged when a step promises less than this part of the noise's variance.
+    /// Predicted reduction by a step, relative to the noise's variance, below which the solution has
+    /// converged.
     pub(super) decrement: f64,
 }
 
-/// The equations at some globals.
+/// Equations at given globals.
 #[derive(Debug, Clone)]
 pub(super) struct Evaluation {
     pub(super) information: GlobalMatrix,
@@ -61,13 +63,13 @@ pub(super) struct Evaluation {
 }
 
 impl Evaluation {
-    /// Variance of a pixel, DN².
+    /// Returns the variance of a pixel, DN².
     pub(super) fn variance(&self) -> f64 {
         (self.squares / self.freedom.max(1.0)).max(1e-9)
     }
 }
 
-/// The features' images at some globals.
+/// Images of the features at given globals.
 struct Images {
     marks: Vec<Option<MarkImage>>,
     cross: CrossImage,
@@ -103,7 +105,8 @@ impl Images {
     }
 }
 
-/// The directions of all edges at some globals, and their blur; `None` when the features are not in front of the camera.
+/// Returns the normals of all edges at given globals, and their blur. Returns `None` when the features are
+/// not in front of the camera.
 pub(super) fn normals(scene: &Scene, globals: &Globals) -> Option<(Vec<(f64, f64)>, Blur)> {
     let images = Images::new(scene, globals, 0.0)?;
     let marks = images.marks.iter().flatten().flat_map(MarkImage::normals);
@@ -111,8 +114,9 @@ pub(super) fn normals(scene: &Scene, globals: &Globals) -> Option<(Vec<(f64, f64
     Some((marks.chain(images.cross.normals()).collect(), blur))
 }
 
-/// Looks for the least squares from `globals` on by Levenberg and Marquardt's method. `noise` is the variance of a pixel
-/// that the priors are weighed against. `None` when the features leave the front of the camera or nothing is determined.
+/// Minimises the sum of squares from `globals` on by the Levenberg–Marquardt method. `noise` is the variance
+/// of a pixel, which weights the priors. Returns `None` when the features are no longer in front of the
+/// camera or nothing is determined.
 pub(super) fn solve(
     scene: &Scene,
     samples: &mut Samples,
@@ -134,7 +138,7 @@ pub(super) fn solve(
         let mut step = inverse(&damped)? * gradient;
         let promised = step.dot(&gradient);
         if promised <= search.decrement * now.variance() {
-            // The last step is taken on trust: what it changes in the residuals is less than can be seen.
+            // The last step is applied without evaluation: its effect on the residuals is negligible.
             *globals = bounded(&(*globals + step));
             break;
         }
@@ -156,49 +160,54 @@ pub(super) fn solve(
             now = next;
             damping *= 0.1;
         } else if promised <= UNSEEN_STEP * now.variance() || damping > 1e6 {
-            // The derivatives are those of a model that is nearly this one: they promise what is not there.
+            // The derivatives are those of an approximate model, and predict a reduction that does not exist.
             break;
         } else {
             damping = (damping * 10.0f64).max(1e-3);
         }
     }
     if !is_last_better {
-        // The samples hold a rejected trial's coverages.
+        // The samples contain the coverages of a rejected trial.
         evaluate(scene, samples, &images, globals, search, noise)?;
     }
     Some(now)
 }
 
-/// What is known of the globals at a solution beyond their values.
+/// Uncertainty of the globals at a solution, and corrections to them.
 pub(super) struct Uncertainty {
-    /// What the swelling of the features changes in the globals.
+    /// Change of the globals by the swelling of the features.
     pub(super) change: Globals,
     pub(super) covariance: GlobalMatrix,
-    /// The part of the covariance that is the scene's and the video's, and so the same in the fields of seconds.
+    /// Part of the covariance that is due to scene and video, and therefore common to the fields of several
+    /// seconds.
     pub(super) common: GlobalMatrix,
-    /// What is known of the swelling after this field.
+    /// Knowledge of the swelling after this field.
     pub(super) swelling: Swelling,
 }
 
-/// How far a cross of a few pixels, which is one patch, may lie off its place, px, one standard deviation: lines of a field are 2 px apart, and
-/// no other patch shows by its scatter what the video does to it.
+/// Position error of a cross of a few pixels, which is a single patch, px, one standard deviation. Lines of a
+/// field are 2 px apart, and there is no other patch whose scatter shows the video's effect on the cross.
 const SMALL_CROSS_PX: f64 = 0.04;
 
-/// The same of a mark that is narrower than a pixel; of a wider one it falls with the fourth power of the width.
+/// Position error of a mark narrower than a pixel, px, one standard deviation. For wider marks it decreases
+/// with the fourth power of the width.
 const SMALL_MARK_PX: f64 = 0.02;
 
-/// By which part of the swelling the cross may lie aside: its edges against a lit side face swell otherwise than those against the plate.
+/// Lateral displacement of the cross relative to the swelling: its edges against a lit side face swell
+/// differently from those against the plate.
 const SIDEWAYS: f64 = 0.5;
 
-/// The least part of a pixel's variance that is noise of its own: what lines and patches both explain is counted twice.
+/// Smallest share of a pixel's variance that is independent noise. Variance explained by both lines and
+/// patches is subtracted twice.
 const LEAST_NOISE: f64 = 0.25;
 
-/// Uncertainty of the globals at a solution: that of noise, independent from pixel to pixel, and of what lines and patches have in
-/// common.
+/// Computes the uncertainty of the globals at a solution, due to noise that is independent from pixel to
+/// pixel and to errors common to lines and patches.
 ///
-/// The estimate is off by H⁻¹ Jᵀ n, H being the information: with noise of σ² that has the covariance σ² H⁻¹, and with lines that
-/// are off by s_l e_l as well, of variance τ², H⁻¹ (σ² H + τ² Σ_l (Jᵀ e_l)(Jᵀ e_l)ᵀ) H⁻¹. A swelling of all features is one more unknown,
-/// of which the fields before told something. `None` when nothing is determined.
+/// The error of the estimate is H⁻¹ Jᵀ n, H being the information. With noise of σ² its covariance is σ² H⁻¹.
+/// With additional line errors s_l e_l of variance τ² it is H⁻¹ (σ² H + τ² Σ_l (Jᵀ e_l)(Jᵀ e_l)ᵀ) H⁻¹. A
+/// swelling of all features is an additional unknown with information from previous fields. Returns `None`
+/// when nothing is determined.
 pub(super) fn uncertainty(
     scene: &Scene,
     samples: &Samples,
@@ -284,13 +293,13 @@ pub(super) fn uncertainty(
     })
 }
 
-/// The shorter side of a mark, m.
+/// Returns the shorter side of a mark, m.
 fn width_m(corners: &[[f64; 2]; 4]) -> f64 {
     let side = |k: usize| (Vector2::from(corners[k]) - Vector2::from(corners[(k + 1) % 4])).norm();
     (0..4).map(side).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether a global is at the end of its range and would leave it.
+/// Returns true if a global is at the end of its range and would leave it.
 fn is_at_bound(i: usize, value: f64, gradient: f64) -> bool {
     let (low, high) = match i {
         0..BLUR => return false,
@@ -300,7 +309,7 @@ fn is_at_bound(i: usize, value: f64, gradient: f64) -> bool {
     (value <= low && gradient < 0.0) || (value >= high && gradient > 0.0)
 }
 
-/// Takes a global out of the equations: no step, and no coupling.
+/// Removes a global from the equations: no step, and no coupling.
 fn fix_parameter(i: usize, information: &mut GlobalMatrix, gradient: &mut Globals) {
     information.row_mut(i).fill(0.0);
     information.column_mut(i).fill(0.0);
@@ -319,7 +328,7 @@ fn bounded(globals: &Globals) -> Globals {
     bounded
 }
 
-/// The equations of all patches that are used; levels and squares of all patches are renewed.
+/// Returns the equations of all used patches. Updates levels and squares of all patches.
 fn evaluate(
     scene: &Scene,
     samples: &mut Samples,
@@ -344,7 +353,7 @@ fn evaluate(
             tables: scene.tables,
             share: globals[GRID],
         };
-        // A small patch keeps enough to know its levels by.
+        // A small patch keeps enough pixels to determine its levels.
         let stride = search.stride.min((patch.end - patch.first) / LEAST_OF_PATCH).max(1);
         let pixels = &mut pixels[patch.first..patch.end];
         let (centre, level) = (patch.centre, patch.levels[LOCALS - 1]);
@@ -369,22 +378,23 @@ fn evaluate(
     Some(sum)
 }
 
-/// What a pixel is over what it should be by the patch's levels and its last coverage, DN.
+/// Returns the difference between a pixel and its expected value by the patch's levels and the pixel's last
+/// coverage, DN.
 pub(super) fn residual(patch: &Patch, pixel: &Sample) -> f64 {
     let regressors = regressors(patch, pixel, pixel.coverage);
     let model: f64 = regressors.iter().zip(&patch.levels).map(|(x, level)| x * level).sum();
     pixel.dn + pixel.shadow_dn * (1.0 - pixel.coverage) - model
 }
 
-/// Solves a patch's levels and adds what is left of its equations (their Schur complement) to the sum.
+/// Solves for a patch's levels and adds its reduced equations (their Schur complement) to the sum.
 ///
-/// With L the regressors of the levels ℓ, A = Lᵀ L and D the derivatives of the coverage, the feature's level a being one of ℓ:
-/// information a² (DᵀD − DᵀL A⁻¹ LᵀD), gradient a Dᵀ(y − L ℓ).
+/// With L the regressors of the levels ℓ, A = Lᵀ L and D the derivatives of the coverage, the feature's level
+/// a being one of ℓ: information a² (DᵀD − DᵀL A⁻¹ LᵀD), gradient a Dᵀ(y − L ℓ).
 fn add_patch(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) {
     let mut normal =
         SMatrix::<f64, LOCALS, LOCALS>::from_fn(|i, j| gram.column_product(1 + i.min(j), 1 + i.max(j)));
     for i in 0..LOCALS {
-        // A level that no pixel of the patch shows is zero; another is hardly touched.
+        // A level without any pixel in the patch becomes zero; other levels change negligibly.
         normal[(i, i)] = if normal[(i, i)] > 1e-9 { normal[(i, i)] * (1.0 + 1e-9) } else { 1.0 };
     }
     let Some(normal) = inverse(&normal) else {
@@ -404,7 +414,7 @@ fn add_patch(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) 
     sum.freedom += patch.used_samples as f64 - LOCALS as f64;
     let feature = levels[LOCALS - 1];
     if feature <= 0.0 {
-        // Darker than the plate: whatever this is, the feature is not where the patch was looked for.
+        // Darker than the plate: the feature is not at the patch's position.
         return;
     }
     let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram.column_product(1 + i, FIRST_GLOBAL + j));

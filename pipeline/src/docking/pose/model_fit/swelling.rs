@@ -1,19 +1,19 @@
-//! How far the edges of bright features lie farther out than the target's dimensions have them: a video that is not linear in light moves
-//! them towards the darker side.
+//! Swelling: outward displacement of the edges of bright features from the target's dimensions. A nonlinear
+//! video signal moves the edges towards the darker side.
 
 use contract::docking::TargetModel;
 use nalgebra::Vector2;
 
-/// The step by which the effect of a swelling is formed, px.
+/// Step in the numeric derivative with respect to the swelling, px.
 pub(super) const STEP_PX: f64 = 0.05;
 
-/// Standard deviation of the swelling before anything is seen, px.
+/// Prior standard deviation of the swelling, px.
 const PRIOR_PX: f64 = 0.05;
 
-/// What is kept from field to field of what the fields before told.
+/// Share of the information from previous fields that is kept per field.
 const RETENTION: f64 = 0.9;
 
-/// What is known of the swelling: its information, 1/px², and that times its mean.
+/// Knowledge of the swelling: its information, 1/px², and the product of information and mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Swelling {
     pub(super) weight: f64,
@@ -21,19 +21,20 @@ pub(super) struct Swelling {
 }
 
 impl Default for Swelling {
-    /// Nothing seen yet.
+    /// Returns the prior.
     fn default() -> Self {
         Self { weight: 1.0 / (PRIOR_PX * PRIOR_PX), weighted: 0.0 }
     }
 }
 
 impl Swelling {
-    /// After a field that tells so much by itself.
+    /// Returns the knowledge after adding the information of one field.
     pub(super) fn add_information(&self, weight: f64, weighted: f64) -> Self {
         Self { weight: self.weight + weight, weighted: self.weighted + weighted }
     }
 
-    /// What is left of it for the next field: a video's law changes slowly, and not at all by itself.
+    /// Returns the knowledge that remains for the next field. The response of a video changes slowly, and
+    /// only by external causes.
     pub(super) fn decayed(&self) -> Self {
         let prior = Self::default();
         Self {
@@ -43,8 +44,8 @@ impl Swelling {
     }
 }
 
-/// The target with all edges of its features so far outside that they lie [`STEP_PX`] farther out in the image; `scale`: px/m on the
-/// plate.
+/// Returns the target with all edges of its features moved outwards by [`STEP_PX`] in the image. `scale` is
+/// that on the plate, px/m.
 pub(super) fn enlarged_target(target: &TargetModel, scale: f64) -> TargetModel {
     let by_m = STEP_PX / scale;
     let mut swollen = target.clone();

@@ -1,4 +1,4 @@
-//! The estimator on images made by another route ([`render`]).
+//! Tests of the estimator on images rendered independently ([`render`]).
 
 mod registers;
 mod render;
@@ -17,18 +17,19 @@ use crate::docking::pose::geometry::{project, to_pose, to_vector};
 const NARROW_PX: f64 = 2917.0;
 const WIDE_PX: f64 = 1055.0;
 
-/// A pose of an approach at a distance: off the axis by up to 3 % of the distance, turned by up to 1.5°, rolled by up to 4°.
+/// Returns a pose of an approach at a distance: off the axis by up to 3 % of the distance, turned by up to
+/// 1.5°, rolled by up to 4°.
 fn pose(distance_m: f64, seed: u64) -> Pose {
     let draw = |k: u64, limit: f64| limit * (2.0 * uniform(seed * 64 + k) - 1.0);
     let lateral = 0.03 * distance_m;
     let d = Vector3::new(draw(0, lateral), draw(1, lateral), distance_m * (1.0 + draw(2, 0.02)));
-    // It looks nearly at the target.
+    // The camera points nearly at the target.
     let pitch = -d.y / d.z + draw(3, 0.026_f64.min(0.05 * distance_m));
     let yaw = -d.x / d.z + draw(4, 0.026_f64.min(0.05 * distance_m));
     Pose { position_m: d, phi_rad: Vector3::new(pitch, yaw, draw(5, 0.07)) }
 }
 
-/// A first guess that puts cross and plate off by some 1 to 1.5 px, each on its own.
+/// Returns a first guess that displaces cross and plate independently by some 1 to 1.5 px.
 fn guess(camera: &Camera, truth: &Pose, seed: u64) -> Pose {
     let (f, _) = camera.focal_length_px();
     let (d, off) = (truth.position_m, |k: u64| (2.0 * uniform(seed * 64 + 32 + k) - 1.0) / f);
@@ -44,7 +45,7 @@ fn guess(camera: &Camera, truth: &Pose, seed: u64) -> Pose {
 struct Trial {
     errors: Vec<Vector6<f64>>,
     covariances: Vec<Matrix6<f64>>,
-    /// Cramér–Rao covariance of each trial's pose: levels and blur known.
+    /// Cramér–Rao covariance of each trial's pose, for known levels and blur.
     bounds: Vec<Matrix6<f64>>,
     centres_px: Vec<f64>,
     failures: Vec<NoPose>,
@@ -86,10 +87,11 @@ fn trial(focal_px: f64, distance_m: f64, poses: u64, draws: u64, noise_dn: f64) 
     trial
 }
 
-/// Inverse Fisher information of an even field, by differences of images.
+/// Returns the inverse Fisher information of an even field, by differences of images.
 fn bound(camera: &Camera, feature_model: &FeatureModel, truth: &Pose, noise_dn: f64) -> Matrix6<f64> {
-    // Steps of about 0.25 px each: the cross against the marks (two), size, shift (two), roll. In the pose's own coordinates
-    // a lateral step would be a shift, but for a sixtieth, and the image's own errors would count as parallax.
+    // Steps of about 0.25 px each: the cross against the marks (two), size, shift (two), roll. In the pose's
+    // coordinates, a lateral step would be a shift except for a sixtieth, and the rendering errors would
+    // count as parallax.
     let (f, _) = camera.focal_length_px();
     let (d, at) = (truth.position_m.z, to_vector(truth));
     let parallax = 0.25 * d * (d - 0.3) / (0.3 * f);
@@ -110,7 +112,8 @@ fn bound(camera: &Camera, feature_model: &FeatureModel, truth: &Pose, noise_dn: 
             plus.iter().zip(&minus).map(|(a, b)| 0.5 * (a - b)).collect()
         })
         .collect();
-    // The plate's rim moves with the pose too, and no estimator may trust it: only what is within it and 2 px counts.
+    // The plate's rim also moves with the pose, but estimators must not rely on it: only pixels more than 2
+    // px inside the rim count.
     let model = CameraModel::new(camera).unwrap();
     let centre = project(&model, truth, &Vector3::zeros()).unwrap();
     let rim = project(&model, truth, &Vector3::new(0.3, 0.0, 0.0)).unwrap().distance(centre) - 2.0;
@@ -135,7 +138,7 @@ fn rms(values: impl Iterator<Item = f64> + Clone) -> f64 {
     (values.map(|v| v * v).sum::<f64>() / n).sqrt()
 }
 
-/// Success, NEES, bias, and the bound, at one lens and distance.
+/// Checks success, NEES, bias, and the errors against the bound, for one lens and distance.
 fn check(focal_px: f64, distance_m: f64) {
     let trial = trial(focal_px, distance_m, 3, 20, 2.0);
     assert!(trial.failures.is_empty(), "{:?}", trial.failures);
@@ -163,7 +166,7 @@ fn check(focal_px: f64, distance_m: f64) {
     );
     // 60 draws of 6 parameters: a standard error of √(2/360) = 0.075.
     assert!((0.72..=1.28).contains(&nees), "NEES/6 {nees}");
-    // The bound knows levels and blur; the root mean square of 60 has 9 %.
+    // The bound assumes known levels and blur; the root mean square of 60 draws has an error of 9 %.
     assert!(ratio.iter().all(|r| *r < 2.0), "errors over the bound: {ratio:?}");
     assert!(rms(trial.centres_px.iter().copied()) < 0.1);
 }
@@ -222,7 +225,7 @@ fn without_noise_the_model_is_right_to_thousandths_of_a_pixel() {
             let truth = pose(distance_m, 300 + seed);
             let fitted = fit_one(&camera, &FeatureModel::default(), &truth, 0.0).unwrap();
             let model = CameraModel::new(&camera).unwrap();
-            // Rounding to whole DN is left, and the test image's own 1/512 px.
+            // The remaining errors are rounding to integer DN, and the test image's 1/512 px.
             for point in [Vector3::zeros(), Vector3::new(0.0, 0.0, 0.3), Vector3::new(0.25, 0.0, 0.0)] {
                 let error = project(&model, &fitted.estimate.pose, &point)
                     .unwrap()
@@ -242,7 +245,7 @@ fn a_half_shadowed_mark_is_rejected() {
         let fitted = fit_one(&camera, &feature_model, &truth, 2.0).unwrap();
         assert_eq!(fitted.marks[4].usage, MarkUse::Rejected, "{focal_px} px, {distance_m} m");
         assert!(fitted.marks.iter().filter(|mark| mark.usage == MarkUse::Used).count() >= 10);
-        // 6 degrees of freedom: 22 once in a thousand.
+        // 6 degrees of freedom: exceeds 22 once in a thousand.
         assert!(nees(&fitted, &truth) < 22.0, "{}", nees(&fitted, &truth));
     }
 }
@@ -251,8 +254,9 @@ fn a_half_shadowed_mark_is_rejected() {
 fn a_shadow_almost_behind_the_cross_is_found_in_a_few_fields() {
     let camera = camera(NARROW_PX, [0.0; 3]);
     let model = CameraModel::new(&camera).unwrap();
-    // 1.5° from the normal: a strip of 1.6 px beside the edges of one bar. A camera off the axis sees more of it, as from these two
-    // poses, or less: a strip under 1.2 px is not told from a cross that stands a little off.
+    // 1.5° from the normal: a strip of 1.6 px beside the edges of one bar. From a camera off the axis more of
+    // the strip is visible, as from these two poses, or less. A strip under 1.2 px cannot be distinguished
+    // from a small displacement of the cross.
     let feature_model = FeatureModel { shadow: Some(([0.0, -0.026], 12.0)), ..FeatureModel::default() };
     let mut sum = 0.0;
     let (poses, before, fields) = (2, 6, 14);
@@ -266,7 +270,8 @@ fn a_shadow_almost_behind_the_cross_is_found_in_a_few_fields() {
             sum += if draw < before { 0.0 } else { nees(&fitted, &truth) / 6.0 };
         }
     }
-    // 16 of χ²/6: standard deviation √(2/6/16) = 0.144, three of it. Unseen, a strip makes it 5 to 10.
+    // 16 values of χ²/6: standard deviation √(2/6/16) = 0.144; the tolerance is three times that. If the
+    // strip is not found, the mean is 5 to 10.
     let mean = sum / (poses * (fields - before)) as f64;
     assert!(mean < 1.43, "{mean}");
 }
@@ -279,8 +284,9 @@ fn doubled_noise_doubles_sigma() {
         .map(|noise| fit_one(&camera, &FeatureModel::default(), &truth, noise).unwrap().estimate.covariance);
     for i in 0..6 {
         let ratio = (twice[(i, i)] / once[(i, i)]).sqrt();
-        // σ is estimated from some thousand residuals, and rounding adds 1/12 to both variances: 3 %. What is expected of the
-        // side faces' brightness does not grow with the noise, and limits the lateral σ a little.
+        // σ is estimated from some thousand residuals, and rounding adds 1/12 to both variances: 3 %. The
+        // prior of the side faces' brightness does not scale with the noise, and limits the lateral σ a
+        // little.
         let lowest = if matches!(i, 2 | 5) { 1.9 } else { 1.75 };
         assert!((lowest..=2.1).contains(&ratio), "{i}: {ratio}");
     }
@@ -335,7 +341,7 @@ fn what_is_not_the_target_is_no_pose() {
     let dark = Frame::new(0, camera.columns, 288, 8, vec![0; camera.columns * 288], None).unwrap();
     let dark = Field::new(dark, Lines::Even, 576).unwrap();
     assert!(fit.fit(&dark, &model, &target(), &pose(5.0, 1)).is_err());
-    // Out of the field, behind the target, not a number.
+    // Outside the field, behind the target, not a number.
     let away = Pose { phi_rad: Vector3::new(0.5, 0.0, 0.0), ..pose(5.0, 1) };
     assert!(fit.fit(&empty, &model, &target(), &away).is_err());
     let behind = Pose { position_m: Vector3::new(0.0, 0.0, -5.0), ..pose(5.0, 1) };
@@ -355,7 +361,7 @@ fn derivatives_are_those_of_finite_differences() {
 
     let model = CameraModel::new(&camera(WIDE_PX, [0.0; 3])).unwrap();
     let (target, tables) = (target(), Tables::new());
-    // Off the axis: side faces towards +y1 and −y2 are seen, those of the ends too.
+    // Off the axis: the side faces towards +y1 and −y2 are visible, including those of the ends.
     let truth = Pose { position_m: Vector3::new(0.3, -0.4, 1.5), phi_rad: Vector3::new(0.27, -0.2, 0.05) };
     let mut at = super::unknowns::Globals::zeros();
     at.fixed_rows_mut::<6>(0).copy_from(&to_vector(&truth));
@@ -392,8 +398,8 @@ fn derivatives_are_those_of_finite_differences() {
                 (evaluate(&(at + step), seen.u, seen.v), evaluate(&(at - step), seen.u, seen.v));
             for k in 0..2 {
                 let numeric = (plus[k].0 - minus[k].0) / 2e-6;
-                // Neglected: the derivatives of the Edgeworth and corner terms, a percent of the slope of an edge
-                // (0.5 a px, 1000 px/rad).
+                // Neglected: the derivatives of the Edgeworth and corner terms, one percent of the slope of
+                // an edge (0.5 per px, 1000 px/rad).
                 let tolerance = if i < 6 { 20.0 } else { 0.03 };
                 assert!(
                     (analytic[k].1[i] - numeric).abs() < tolerance,

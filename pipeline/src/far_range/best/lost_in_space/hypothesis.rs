@@ -1,4 +1,4 @@
-//! An attitude to be tested, and the odds that the sources of a frame give it.
+//! Attitude hypothesis, and its odds by the sources of a frame.
 
 use contract::{CameraFrame, Icrs, ListedStar, PixelPoint, Rotation};
 use nalgebra::{Matrix2, Matrix3, Vector2};
@@ -9,7 +9,7 @@ use crate::far_range::attitude::{StarPair, solve_q_method};
 use crate::far_range::best::stars::{image_covariance, turn_derivative};
 use crate::far_range::identify::StarList;
 
-/// A source and the star that it is.
+/// Source matched with a star.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Match {
     pub(super) source: ImageSource,
@@ -22,41 +22,45 @@ impl Match {
     }
 }
 
-/// An attitude by matched sources, with the covariance, rad², of its error as a turn about the camera's axes.
+/// Attitude from matched sources, with the covariance, rad², of its error as a rotation about the camera's
+/// axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hypothesis {
     pub(super) camera_from_icrs: Rotation<CameraFrame, Icrs>,
     pub(super) covariance: Matrix3<f64>,
 }
 
-/// What the sources of a frame say about an attitude.
+/// Support of an attitude by the sources of a frame.
 #[derive(Debug)]
 pub(super) struct Support {
-    /// Natural logarithm of the likelihood of the sources by the attitude over that by chance.
+    /// Natural logarithm of the ratio of the sources' likelihoods by the attitude and by chance.
     pub(super) log_odds: f64,
-    /// The matches: those given first, then those found.
+    /// Matches: the given ones first, then those found.
     pub(super) matched: Vec<Match>,
 }
 
-/// Part of the sources that are no listed star: hot pixels, the target, stars beyond the list. With 0.7 a source without a star costs 0.36 in the
-/// logarithm of the odds, and one with a star gains about 7.
+/// Share of the sources that are not listed stars: hot pixels, the target, stars beyond the list. With 0.7, a
+/// source without a star lowers the logarithm of the odds by 0.36, and a source with a star raises it by
+/// about 7.
 const DISTRACTORS: f64 = 0.7;
 
-/// Squared normalised distance of a source from its star up to which they are matched: χ² with two degrees of freedom exceeds it once in 90.
+/// Largest squared normalised distance of a match between source and star: χ² with two degrees of freedom
+/// exceeds it once in 90.
 const MATCH_GATE: f64 = 9.0;
 
-/// A predicted star with the distribution of its source.
+/// Predicted star with the distribution of its source.
 struct Prediction {
     star: ListedStar,
     position: PixelPoint,
     information: Matrix2<f64>,
-    /// Density at its centre, px⁻².
+    /// Density at the centre of the distribution, px⁻².
     peak: f64,
     is_taken: bool,
 }
 
 impl Hypothesis {
-    /// The attitude that turns the stars onto their sources best, all alike in weight; `None` when they do not determine it.
+    /// Returns the attitude that best rotates the stars onto their sources, with equal weights; `None` when
+    /// they do not determine it.
     pub(super) fn new(matched: &[Match], model: &CameraModel) -> Option<Self> {
         let pairs: Vec<StarPair> = matched
             .iter()
@@ -67,11 +71,13 @@ impl Hypothesis {
         Some(Self { camera_from_icrs, covariance: information.try_inverse()? })
     }
 
-    /// Compares sources, in order of flux, with all predicted stars. The matches of `given` made the attitude and count nothing in the odds.
+    /// Compares sources, in order of flux, with all predicted stars. The matches in `given`, from which the
+    /// attitude was derived, are excluded from the odds.
     ///
-    /// A source has the density d/A + (1 − d) N(x; star)/n over an image of A px² with n predicted stars, and 1/A by chance (Lang et al. 2010, Eqs. 6
-    /// to 13 with one variance for each star: that of the source and of the attitude). N is that of the likeliest star instead of the sum over stars: a
-    /// lower bound. A star is the match of one source.
+    /// A source has the density d/A + (1 − d) N(x; star)/n over an image of A px² with n predicted stars, and
+    /// 1/A by chance (Lang et al. 2010, Eqs. 6 to 13 with one variance for each star: that of the source and
+    /// of the attitude). N is that of the likeliest star instead of the sum over stars, which is a lower
+    /// bound. Each star matches at most one source.
     pub(super) fn support(
         &self,
         sources: &[ImageSource],
@@ -131,7 +137,7 @@ impl Hypothesis {
     }
 }
 
-/// Information of a matched source about a turn of the camera about its axes, rad⁻².
+/// Returns the information of a matched source on a rotation of the camera about its axes, rad⁻².
 fn information(pair: &Match, model: &CameraModel) -> Matrix3<f64> {
     let r = pair.source.direction.vector();
     let (fx, fy) = model.focal_px();
@@ -140,7 +146,7 @@ fn information(pair: &Match, model: &CameraModel) -> Matrix3<f64> {
 }
 
 impl Prediction {
-    /// Squared distance of a position from the predicted one in standard deviations.
+    /// Returns the squared distance of a position from the predicted one, in standard deviations.
     fn squared_distance(&self, position: PixelPoint) -> f64 {
         let d = Vector2::new(position.x - self.position.x, position.y - self.position.y);
         (d.transpose() * self.information * d).x

@@ -1,16 +1,18 @@
-//! The stars that a camera is likely to see, out of a list: the brightest of each field.
+//! Selection of the stars that a camera is likely to see from a list: the brightest of each field.
 
 use contract::{ListedStar, PixelPoint};
 use nalgebra::Vector3;
 
 use crate::CameraModel;
 
-/// Stars kept in a circle of the size of the field. An image of ten stars is the brightest ten of them; where the list has more stars than these, the
-/// brightest sources of an image are still mostly of them.
+/// Number of stars kept in a circle of the size of the field. The stars of an image of ten stars are the
+/// brightest ten of the field; where the list has more stars than this number, the brightest sources of an
+/// image are still mostly among those kept.
 const STARS_IN_FIELD: u32 = 24;
 
-/// Stars of `stars` up to `max_magnitude`, in order of magnitude, except those with [`STARS_IN_FIELD`] brighter ones around them in a circle as
-/// large as the field of the camera. So their number is the same in rich and poor parts of the sky (as in Tetra3's star catalogues).
+/// Returns the stars of `stars` up to `max_magnitude`, in order of magnitude, except those with
+/// [`STARS_IN_FIELD`] brighter ones around them in a circle as large as the field of the camera. The density
+/// of stars is therefore equal in rich and poor parts of the sky (as in Tetra3's star catalogues).
 pub(super) fn brightest_of_each_field(
     stars: &[ListedStar],
     model: &CameraModel,
@@ -42,7 +44,8 @@ pub(super) fn brightest_of_each_field(
     stars
 }
 
-/// Directions of the corners of the detector, in order around it; `None` when one sees no direction.
+/// Returns the directions of the corners of the detector, in order around it; `None` when a corner has no
+/// direction.
 fn corners(model: &CameraModel) -> Option<[Vector3<f64>; 4]> {
     let (columns, rows) = model.size_px();
     let (right, bottom) = (columns as f64 - 0.5, rows as f64 - 0.5);
@@ -50,46 +53,48 @@ fn corners(model: &CameraModel) -> Option<[Vector3<f64>; 4]> {
     Some([at(-0.5, -0.5)?, at(right, -0.5)?, at(right, bottom)?, at(-0.5, bottom)?])
 }
 
-/// Solid angle of the field between great circles through its corners, sr; that of a hemisphere when a corner sees no direction.
+/// Returns the solid angle of the field between great circles through its corners, sr; that of a hemisphere
+/// when a corner has no direction.
 fn solid_angle(model: &CameraModel) -> f64 {
     let Some([a, b, c, d]) = corners(model) else { return std::f64::consts::TAU };
     triangle_solid_angle(&a, &b, &c) + triangle_solid_angle(&a, &c, &d)
 }
 
-/// Solid angle of the triangle of three unit vectors (van Oosterom & Strackee 1983, IEEE Trans. Biomed. Eng. 30, 125, Eq. 8), sr.
+/// Returns the solid angle of the triangle of three unit vectors (van Oosterom & Strackee 1983, IEEE Trans.
+/// Biomed. Eng. 30, 125, Eq. 8), sr.
 fn triangle_solid_angle(a: &Vector3<f64>, b: &Vector3<f64>, c: &Vector3<f64>) -> f64 {
     2.0 * libm::atan2(a.dot(&b.cross(c)).abs(), 1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }
 
-/// Chord between the corners that are farthest apart, 0 to 2.
+/// Returns the chord between the most distant corners, 0 to 2.
 pub(super) fn largest_chord(model: &CameraModel) -> f64 {
     corners(model).map_or(2.0, |[a, b, c, d]| (a - c).norm().max((b - d).norm()))
 }
 
-/// Directions in cubic cells, for the search of those near another one.
+/// Directions in cubic cells, for the search for neighbours of a direction.
 #[derive(Debug)]
 pub(super) struct Grid {
     cells: usize,
-    /// For each cell the direction put into it last.
+    /// Index of the last direction added to each cell.
     last: Vec<u32>,
-    /// For each direction the one put into its cell before.
+    /// Index of the previous direction in the same cell, for each direction.
     before: Vec<u32>,
     directions: Vec<Vector3<f64>>,
 }
 
-/// Most cells along an axis: 64³ of 4 bytes are a megabyte.
+/// Largest number of cells along an axis: 64³ of 4 bytes are a megabyte.
 const MAX_CELLS: f64 = 64.0;
 
 const NONE: u32 = u32::MAX;
 
 impl Grid {
-    /// An empty grid for searches up to the chord `reach`.
+    /// Creates an empty grid for searches up to the chord `reach`.
     pub(super) fn new(reach: f64) -> Self {
         let cells = (2.0 / reach).clamp(1.0, MAX_CELLS) as usize;
         Self { cells, last: vec![NONE; cells * cells * cells], before: Vec::new(), directions: Vec::new() }
     }
 
-    /// Adds a unit vector. Its number is that of the vectors added before.
+    /// Adds a unit vector. Its index is the number of vectors added before.
     pub(super) fn push(&mut self, direction: Vector3<f64>) {
         let [x, y, z] = [direction.x, direction.y, direction.z].map(|c| self.cell(c));
         let last = &mut self.last[(x * self.cells + y) * self.cells + z];
@@ -98,7 +103,8 @@ impl Grid {
         self.directions.push(direction);
     }
 
-    /// Visits number and chord of the vectors within the chord `reach` of a direction, until `visit` returns false. `reach` is at most that of the grid.
+    /// Calls `visit` with index and chord of each vector within the chord `reach` of a direction, until it
+    /// returns false. `reach` is at most that of the grid.
     pub(super) fn near(&self, direction: &Vector3<f64>, reach: f64, mut visit: impl FnMut(u32, f64) -> bool) {
         let range = |c: f64| self.cell(c).saturating_sub(1)..=(self.cell(c) + 1).min(self.cells - 1);
         for x in range(direction.x) {
@@ -117,7 +123,7 @@ impl Grid {
         }
     }
 
-    /// Cell of a coordinate, −1 to 1.
+    /// Returns the cell of a coordinate, −1 to 1.
     fn cell(&self, coordinate: f64) -> usize {
         // The conversion saturates at 0.
         ((0.5 * (coordinate + 1.0) * self.cells as f64) as usize).min(self.cells - 1)

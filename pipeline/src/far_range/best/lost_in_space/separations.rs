@@ -4,7 +4,7 @@ use contract::ListedStar;
 
 use super::selection::Grid;
 
-/// Two stars, by their index, and their separation.
+/// Indices of two stars, and their separation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StarPair {
     /// Chord between the directions, 2 sin(θ/2).
@@ -16,13 +16,15 @@ pub(super) struct StarPair {
 #[derive(Debug)]
 pub(super) struct StarPairs(Vec<StarPair>);
 
-/// Pairs of the list on a sky evenly filled, 12 bytes each. Where stars are many, wide pairs are left out.
+/// Number of pairs of the list for a uniformly filled sky, 12 bytes each. With many stars, wide pairs are
+/// omitted.
 const MAX_PAIRS: f64 = 1_000_000.0;
 
 impl StarPairs {
-    /// The pairs of stars whose chord is at most `largest_chord`, 0 to 2, or as far as the memory for them goes.
+    /// Creates the list of pairs of stars whose chord is at most `largest_chord`, 0 to 2, or smaller if
+    /// limited by memory.
     pub(super) fn new(stars: &[ListedStar], largest_chord: f64) -> Self {
-        // A cap of chord c holds the part c²/4 of the sphere, so N stars have N² c²/8 pairs.
+        // A cap of chord c covers the share c²/4 of the sphere, so N stars have N² c²/8 pairs.
         let affordable = (8.0 * MAX_PAIRS).sqrt() / stars.len().max(1) as f64;
         let largest = largest_chord.min(affordable);
         let mut grid = Grid::new(largest);
@@ -39,13 +41,13 @@ impl StarPairs {
         Self(pairs)
     }
 
-    /// The pairs whose chord differs by at most `tolerance` from `chord`.
+    /// Returns the pairs whose chord differs by at most `tolerance` from `chord`.
     pub(super) fn within(&self, chord: f64, tolerance: f64) -> &[StarPair] {
         let before = |limit: f64| self.0.partition_point(|pair| f64::from(pair.chord) < limit);
         self.0.get(before(chord - tolerance)..before(chord + tolerance)).unwrap_or_default()
     }
 
-    /// The largest chord of the list; 0 without pairs.
+    /// Returns the largest chord of the list; 0 without pairs.
     pub(super) fn largest_chord(&self) -> f64 {
         self.0.last().map_or(0.0, |pair| f64::from(pair.chord))
     }

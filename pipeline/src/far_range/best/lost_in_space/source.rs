@@ -1,12 +1,12 @@
-//! A source in the image.
+//! Source in the image.
 
 use contract::{CameraFrame, Direction, PixelPoint};
 
-/// Standard deviation of a source about its predicted star along an axis, px: centroid, star list, distortion, and what aberration bends the
-/// image by (10⁻⁴ of its half size).
+/// Standard deviation of a source about its predicted star along an axis, px: centroid, star list,
+/// distortion, and distortion of the image by aberration (10⁻⁴ of its half size).
 pub(super) const SOURCE_SIGMA_PX: f64 = 0.4;
 
-/// A source in the image.
+/// Source in the image.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ImageSource {
     /// Index in the argument of `LostInSpace::solve`.

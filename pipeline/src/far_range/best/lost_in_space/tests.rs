@@ -1,4 +1,4 @@
-//! Fields over the whole sky, with noise, missing stars and false sources.
+//! Tests on fields over the whole sky, with noise, missing stars and false sources.
 
 use contract::{Angle, Camera, Direction};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -6,11 +6,11 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use super::*;
 use crate::camera_model::tests::argon;
 
-/// Random numbers of one seed: SplitMix64 (Steele, Lea & Flood 2014).
+/// Random number generator: SplitMix64 (Steele, Lea & Flood 2014).
 struct Random(u64);
 
 impl Random {
-    /// Uniform in (0, 1).
+    /// Returns a uniform number in (0, 1).
     fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -19,18 +19,18 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64 + 1e-17
     }
 
-    /// Standard normal (Box & Muller).
+    /// Returns a standard normal number (Box & Muller).
     fn normal(&mut self) -> f64 {
         let (u, v) = (self.uniform(), self.uniform());
         (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v)
     }
 
-    /// A direction, evenly over the sphere.
+    /// Returns a direction, uniform over the sphere.
     fn direction(&mut self) -> Direction<Icrs> {
         Direction::from_vector(Vector3::from_fn(|_, _| self.normal())).unwrap()
     }
 
-    /// An attitude, evenly over all.
+    /// Returns an attitude, uniform over all rotations.
     fn attitude(&mut self) -> Rotation<CameraFrame, Icrs> {
         let [w, x, y, z] = [(); 4].map(|()| self.normal());
         Rotation::from_unit_quaternion(UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)))
@@ -42,7 +42,8 @@ impl Random {
     }
 }
 
-/// `count` stars up to a magnitude, evenly over the sky, their numbers growing as those of the sky: by √10 for each magnitude.
+/// Returns `count` stars up to a magnitude, uniform over the sky. Their number increases as in the real sky:
+/// by √10 per magnitude.
 fn even_sky(count: u32, faintest: f64) -> Vec<ListedStar> {
     let mut random = Random(7);
     (1..=count)
@@ -54,7 +55,7 @@ fn even_sky(count: u32, faintest: f64) -> Vec<ListedStar> {
         .collect()
 }
 
-/// The stars of Hipparcos up to Hp = 7.5 (format: sim/data/make_hipparcos2.py).
+/// Returns the stars of Hipparcos up to Hp = 7.5 (format: sim/data/make_hipparcos2.py).
 fn real_sky() -> Vec<ListedStar> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../sim/data/hipparcos2.bin");
     let bytes = std::fs::read(path).unwrap();
@@ -93,10 +94,11 @@ fn camera(columns: usize, rows: usize, field_deg: f64, k1: f64) -> CameraModel {
     .unwrap()
 }
 
-/// Most detectable stars of a field: what the pipeline hands over.
+/// Largest number of detectable stars of a field, as passed on by the pipeline.
 const MOST_DETECTABLE: usize = 60;
 
-/// Sources of a field with its `detectable` brightest stars: 0.3 px of noise, 0.3 mag of scatter, 30 % of the stars missing, 30 % of the sources false.
+/// Returns the sources of a field with its `detectable` brightest stars: 0.3 px of noise, 0.3 mag of scatter,
+/// 30 % of the stars missing, 30 % of the sources false.
 fn sources(
     random: &mut Random,
     model: &CameraModel,
@@ -131,13 +133,13 @@ fn sources(
 struct Tally {
     solved: u32,
     wrong: u32,
-    /// Off by more than 0.1° with the turn about the boresight.
+    /// Number of fields off by more than 0.1°, including the rotation about the boresight.
     turned: u32,
     false_matches: u32,
 }
 
-/// Solves `fields` random fields with at least ten stars of the list. Of each the brightest ten or more are detectable, up to `most_detectable`; `change`
-/// moves their images.
+/// Solves `fields` random fields with at least ten stars of the list. In each field, the brightest stars are
+/// detectable, from ten up to `most_detectable`; `change` moves their images.
 fn tally(
     sky: &[ListedStar],
     model: &CameraModel,
@@ -170,7 +172,8 @@ fn tally(
         let error = (found.camera_from_icrs * attitude.inverse()).quaternion().scaled_axis();
         let information = found.covariance.try_inverse().unwrap();
         let is_pointed = boresight(found.camera_from_icrs).separation(&boresight(attitude)).degrees() < 0.1;
-        // χ² with three degrees of freedom exceeds 27 once in 150,000; the turn about the boresight is known to 0.02 to 0.06°.
+        // χ² with three degrees of freedom exceeds 27 once in 150,000; the rotation about the boresight is
+        // accurate to 0.02 to 0.06°.
         if !is_pointed || error.dot(&(information * error)) > 27.0 {
             tally.wrong += 1;
         }
@@ -185,7 +188,7 @@ fn tally(
     tally
 }
 
-/// At least `least` of 300 fields are solved and none is wrong.
+/// Checks that at least `least` of 300 fields are solved and none is wrong.
 fn check(sky: &[ListedStar], model: &CameraModel, most_detectable: usize, least: u32) {
     let tally = tally(sky, model, 300, 26, most_detectable, |position| position);
     println!("of 300 fields: {tally:?}");
@@ -282,7 +285,7 @@ fn sources_that_are_not_finite_are_passed_over() {
     assert!(found.matched.iter().all(|(source, _)| *source >= 2));
 }
 
-/// A list of one crowded spot has as many stars as any field, and as few pairs.
+/// A list with one crowded region has as many stars as any field, and as few pairs.
 #[test]
 fn the_memory_of_a_crowded_list_is_bounded() {
     let mut random = Random(9);

@@ -1,4 +1,4 @@
-//! Triangles of sources among the stars.
+//! Search for triangles of sources among the stars.
 
 use contract::{CameraFrame, Direction, ListedStar};
 
@@ -6,34 +6,34 @@ use super::separations::StarPairs;
 use super::source::SOURCE_SIGMA_PX;
 use crate::CameraModel;
 
-/// Error of the separation of two sources that is allowed, px: three standard deviations.
+/// Largest error of the separation of two sources, px: three standard deviations.
 const SEPARATION_TOLERANCE_PX: f64 = 3.0 * std::f64::consts::SQRT_2 * SOURCE_SIGMA_PX;
 
-/// Least height of a triangle, px. The orientation of a lower one is uncertain, and its attitude imprecise.
+/// Smallest height of a triangle, px. Below it, the orientation is uncertain and the attitude imprecise.
 const LEAST_HEIGHT_PX: f64 = 5.0;
 
-/// All triples of 0..n in an order that turns away quickly from a source that is no star: neighbours in brightness first, the first source changing
-/// fastest (Mortari et al. 2004, Eq. 20).
+/// Returns all triples of 0..n in an order that quickly leaves a source that is not a star: neighbours in
+/// brightness first, the first source changing fastest (Mortari et al. 2004, Eq. 20).
 pub(super) fn pyramid_order(n: usize) -> impl Iterator<Item = [usize; 3]> {
     (1..n.saturating_sub(1)).flat_map(move |dj| {
         (1..n - dj).flat_map(move |dk| (0..n - dj - dk).map(move |i| [i, i + dj, i + dj + dk]))
     })
 }
 
-/// Search of triangles of sources among the stars, with its memory.
+/// Search for triangles of sources among the stars, with its buffers.
 pub(super) struct TriangleSearch<'a> {
     stars: &'a [ListedStar],
     pairs: &'a StarPairs,
-    /// Tolerance of a chord: an angle is longer than the change of its chord.
+    /// Tolerance of a chord, taken as an angle, which is larger than the change of its chord.
     tolerance: f64,
     least_height: f64,
     visited: usize,
-    /// For each star its last link, NONE before and after a search.
+    /// Index of the last link of each star, NONE before and after a search.
     last: Vec<u32>,
     links: Vec<Link>,
 }
 
-/// A star at the right separation from another one, in a chain of such stars.
+/// Star at the required separation from another star, in a chain of such stars.
 struct Link {
     from: u32,
     to: u32,
@@ -57,20 +57,21 @@ impl<'a> TriangleSearch<'a> {
         }
     }
 
-    /// Star pairs visited so far.
+    /// Returns the number of star pairs visited so far.
     pub(super) fn visited(&self) -> usize {
         self.visited
     }
 
-    /// The triples of stars, by their index, that have the separations of the corners and their sense of rotation.
+    /// Returns the triples of star indices that have the separations of the corners and their sense of
+    /// rotation.
     pub(super) fn matching_triples(&mut self, corners: [Direction<CameraFrame>; 3]) -> Vec<[u32; 3]> {
         let chord = |a: usize, b: usize| (corners[a].vector() - corners[b].vector()).norm();
-        // The sides opposite to the corners.
+        // Sides opposite to the corners.
         let sides = [chord(1, 2), chord(2, 0), chord(0, 1)];
         let longest = sides.into_iter().fold(0.0, f64::max);
         let turn = |[a, b, c]: [&nalgebra::Vector3<f64>; 3]| a.dot(&b.cross(c));
         let seen = turn([0, 1, 2].map(|corner| corners[corner].vector()));
-        // Twice the area over the base.
+        // Height: twice the area over the base.
         if longest > self.pairs.largest_chord() + self.tolerance || seen.abs() < self.least_height * longest {
             return Vec::new();
         }

@@ -1,4 +1,4 @@
-//! The equations of a patch, whatever the registers of the machine.
+//! Equality of a patch's equations on machines with different registers.
 
 use contract::docking::Pose;
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ use super::render::{camera, target};
 use crate::CameraModel;
 use crate::docking::pose::geometry::PoseProjection;
 
-/// 75 pixels about a place: two whole chunks and a part of one.
+/// Returns 75 pixels around a point: two full chunks and a part of one.
 fn samples(u: f64, v: f64) -> Vec<Sample> {
     let sample = |k: usize| Sample {
         u: u + (k % 15) as f64 - 7.0,
@@ -75,7 +75,7 @@ fn equations_are_the_sums_over_pixels_and_the_same_bits_on_all_registers() {
         for stride in [1, 4] {
             assert_eq!(found(true, stride), found(false, stride));
         }
-        // The sums one pixel after the other.
+        // Sums computed pixel by pixel.
         let mut sums = [[0.0; COLUMNS]; COLUMNS];
         let mut work = ChunkBuffers::NEW;
         for pixel in samples(at.u, at.v).iter().filter(|pixel| pixel.is_used) {

@@ -1,5 +1,6 @@
-//! Images of the target by another route than the model's: polygons on 128 scan lines a pixel, exact along a line, on cells of a
-//! quarter of a pixel; then discrete Gaussians and a pixel's box over the cells; then noise and rounding.
+//! Images of the target, rendered by a method independent of the model: polygons on 128 scan lines per pixel,
+//! exact along a line, on cells of a quarter of a pixel; then discrete Gaussians and a pixel's box over the
+//! cells; then noise and rounding.
 
 use contract::docking::{Field, Lines, Pose, StandOffCross, TargetModel};
 use contract::{Camera, Frame};
@@ -7,14 +8,14 @@ use nalgebra::{Rotation3, Vector3};
 
 use crate::docking::portions::tests::normal;
 
-/// Cells a pixel, along either axis.
+/// Number of cells per pixel, along either axis.
 const CELLS: usize = 4;
-/// Scan lines a cell. Exactly horizontal edges are off by 1/256 px at most.
+/// Number of scan lines per cell. Exactly horizontal edges are off by at most 1/256 px.
 const LINES: usize = 32;
-/// Pixels around the plate that are drawn.
+/// Margin around the plate that is rendered, pixels.
 const MARGIN: i64 = 8;
 
-/// What the target looks like.
+/// Appearance of the target.
 #[derive(Debug, Clone)]
 pub(super) struct FeatureModel {
     pub(super) plate_dn: f64,
@@ -22,11 +23,11 @@ pub(super) struct FeatureModel {
     pub(super) mark_dn: f64,
     pub(super) cross_dn: f64,
     pub(super) side_dn: f64,
-    /// Standard deviations along columns and rows, px.
+    /// Standard deviations of the blur along columns and rows, px.
     pub(super) blur_px: [f64; 2],
-    /// Of this mark only the half towards its first edge is lit.
+    /// Index of a mark of which only the half towards its first edge is lit.
     pub(super) half_shadowed: Option<usize>,
-    /// The cross's shadow on the plate: tangents of the light's direction, and its depth, DN.
+    /// Shadow of the cross on the plate: tangents of the light's direction, and its depth, DN.
     pub(super) shadow: Option<([f64; 2], f64)>,
 }
 
@@ -45,7 +46,7 @@ impl Default for FeatureModel {
     }
 }
 
-/// A square camera of 768 × 576 px.
+/// Returns a camera with 768 × 576 square pixels.
 pub(super) fn camera(focal_px: f64, radial: [f64; 3]) -> Camera {
     Camera {
         columns: 768,
@@ -60,7 +61,7 @@ pub(super) fn camera(focal_px: f64, radial: [f64; 3]) -> Camera {
     }
 }
 
-/// Twelve marks on a ring, and a cross.
+/// Returns a target with twelve marks on a ring, and a cross.
 pub(super) fn target() -> TargetModel {
     let marks = (0..12)
         .map(|k| {
@@ -87,7 +88,7 @@ pub(super) fn target() -> TargetModel {
     }
 }
 
-/// The expected DN of every pixel of the camera, row by row, without noise.
+/// Returns the expected DN of every pixel of the camera, row by row, without noise.
 pub(super) fn expected(
     camera: &Camera,
     target: &TargetModel,
@@ -129,7 +130,7 @@ pub(super) fn expected(
     ];
     let front = image(camera, pose, &outline, cross.height_m);
     let back = image(camera, pose, &outline, cross.height_m - cross.thickness_m);
-    // Every side face, seen or not: hidden ones lie under the front face.
+    // All side faces, visible or not: hidden ones are covered by the front face.
     let n = front.len() / outline.len();
     let mut solid = vec![front.clone(), back.clone()];
     for k in 0..outline.len() {
@@ -154,7 +155,7 @@ pub(super) fn expected(
     let (columns, rows) = ((x1 - x0) as usize, (y1 - y0) as usize);
     let width = columns * CELLS;
 
-    // Each group is a union; groups add their step over what is below.
+    // Each group is a union; each group adds its step to the levels below.
     let mut groups = vec![
         (vec![plate], feature_model.plate_dn - feature_model.beyond_dn),
         (marks, feature_model.mark_dn - feature_model.plate_dn),
@@ -165,13 +166,13 @@ pub(super) fn expected(
         let cast = |height: f64| {
             image(camera, pose, &outline.map(|[y1, y2]| [y1 - height * s1, y2 - height * s2]), 0.0)
         };
-        // What the cross hides of it is not darker.
+        // The part of the shadow hidden by the cross is not darkened.
         let hidden = solid.clone();
         solid.extend([cast(cross.height_m), cast(cross.height_m - cross.thickness_m)]);
         groups.extend([(solid, -depth_dn), (hidden, depth_dn)]);
     }
     let kernels = feature_model.blur_px.map(kernel);
-    // The box lies on a pixel's own cells, the Gaussian reaches equally far before and after.
+    // The box covers a pixel's cells; the Gaussian has the same reach before and after.
     let half = |axis: usize| (kernels[axis].len() - CELLS) / 2;
     let mut across = vec![0.0; columns * rows * CELLS];
     let mut cells = vec![0.0; width + 1];
@@ -217,7 +218,7 @@ pub(super) fn expected(
     dn
 }
 
-/// A field of such an image with noise of `noise_dn`, rounded to eight bits.
+/// Returns a field of such an image with noise of `noise_dn`, rounded to eight bits.
 pub(super) fn field(camera: &Camera, expected: &[f64], lines: Lines, noise_dn: f64, seed: u64) -> Field {
     let rows = lines.rows(camera.rows);
     let mut dn = Vec::with_capacity(rows * camera.columns);
@@ -231,7 +232,7 @@ pub(super) fn field(camera: &Camera, expected: &[f64], lines: Lines, noise_dn: f
     Field::new(Frame::new(0, camera.columns, rows, 8, dn, None).unwrap(), lines, camera.rows).unwrap()
 }
 
-/// Projects a polygon; with a distorting camera each edge in 24 pieces.
+/// Projects a polygon. With a distorting camera, each edge is divided into 24 pieces.
 fn image(camera: &Camera, pose: &Pose, polygon: &[[f64; 2]], height_m: f64) -> Vec<(f64, f64)> {
     let a = nalgebra::Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))
         * Rotation3::new(pose.phi_rad).matrix();
@@ -252,7 +253,7 @@ fn image(camera: &Camera, pose: &Pose, polygon: &[[f64; 2]], height_m: f64) -> V
     points
 }
 
-/// Where a horizontal line crosses a union of polygons (even-odd each): disjoint intervals.
+/// Returns the disjoint intervals in which a horizontal line crosses a union of polygons (even-odd each).
 fn union(polygons: &[Vec<(f64, f64)>], y: f64) -> Vec<(f64, f64)> {
     let mut intervals = Vec::new();
     for polygon in polygons {
@@ -287,7 +288,8 @@ fn add_span(cells: &mut [f64], from: f64, to: f64, level: f64) {
     cells[last] += level * (to - last as f64);
 }
 
-/// Gaussian, sampled at cells, then a pixel's box; of sum 1, begun half its length before a pixel's first cell.
+/// Returns the kernel of a Gaussian, sampled at cells, with a pixel's box. Its sum is 1, and it begins half
+/// its length before a pixel's first cell.
 fn kernel(sigma_px: f64) -> Vec<f64> {
     let sigma = sigma_px * CELLS as f64;
     let reach = (6.0 * sigma).ceil() as i64;
