@@ -402,7 +402,16 @@ mod tests {
         let values = [Some(4.0), None, Some(1.0), Some(8.0), Some(-2.0), Some(5.0), None, None];
         let blocks = Blocks::every(8, 2);
         let of = |reduction, taken: [bool; 4]| {
-            Side::from_run(reduction, &terms("any", reduction, &values).terms, &blocks).value(&taken)
+            // The other sets take no block.
+            let weights = taken.map(|taken| {
+                let mut weights = [0.0; SETS];
+                weights[3] = f64::from(u8::from(taken));
+                weights
+            });
+            let side = Side::from_run(reduction, &terms("any", reduction, &values).terms, &blocks);
+            let values = side.values(&weights);
+            assert!(values.iter().enumerate().all(|(set, value)| set == 3 || value.is_none()));
+            values[3]
         };
         let (all, some) = ([true; 4], [true, true, false, true]);
         // 4 + 1 + 8 − 2 + 5 = 16 for 5 values; without the third block 13 for 3.
