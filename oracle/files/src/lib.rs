@@ -3,7 +3,7 @@
 //! Every reader accepts files from untrusted sources. It returns a [`FileError`] that names the file, the
 //! location, the value and the expected value. It does not panic, and it allocates no more memory than the
 //! length of the file and [`contract::Camera::MAX_SIDE_PX`] justify. Writers do not overwrite files, except
-//! for [`WholeFile::replace`], which replaces an earlier file of the same kind.
+//! for [`AtomicFile::replace`], which replaces an earlier file of the same kind.
 
 #![cfg_attr(
     not(test),

@@ -53,7 +53,7 @@ pub struct Definition<'a, U> {
 
 impl<'a, U> Definition<'a, U> {
     /// Creates a rate over the units for which `holds` returns a value; more is better unless changed by
-    /// [`Definition::best`].
+    /// [`Definition::with_direction`].
     pub fn rate(
         name: impl Into<String>,
         words: impl Into<String>,
@@ -77,7 +77,7 @@ impl<'a, U> Definition<'a, U> {
 
     /// Creates a mean, median or root mean square over the units that have a value, in the unit `unit`. The
     /// values are assumed to be errors: a root mean square is better when smaller, a mean or median when
-    /// nearer to 0, unless changed by [`Definition::best`].
+    /// nearer to 0, unless changed by [`Definition::with_direction`].
     pub fn amount(
         name: impl Into<String>,
         words: impl Into<String>,

@@ -5,7 +5,7 @@
 //! order, on any machine, gives the same rows. Each case results in one row of a table ([`CaseRow`]): the
 //! drawn values, and every figure of its score.
 //!
-//! - [`StudyFile`], [`Law`], [`DesignKind`]: definition of a study, as a file states it.
+//! - [`StudyFile`], [`Distribution`], [`DesignKind`]: definition of a study, as a file states it.
 //! - [`Study`]: a checked study; creates the scenario of a case.
 //! - [`StudyPipeline`]: pipeline under test; created anew for every case.
 //! - [`evaluate`]: simulates, processes and scores a case.

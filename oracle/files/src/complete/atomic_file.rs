@@ -87,7 +87,7 @@ impl AtomicFile {
         Ok(Self { file, path: path.to_owned() })
     }
 
-    /// Creates a temporary file like [`WholeFile::create`], for a path that does not exist yet.
+    /// Creates a temporary file like [`AtomicFile::create`], for a path that does not exist yet.
     ///
     /// # Errors
     /// [`FileError::OutputTaken`] if the path exists; [`FileError::Io`] if the file cannot be created.
@@ -173,7 +173,7 @@ impl AtomicFile {
         Self::remove_abandoned_of(folder, Self::is_partial);
     }
 
-    /// Works like [`WholeFile::remove_abandoned`], for the files that `is` selects.
+    /// Works like [`AtomicFile::remove_abandoned`], for the files that `is` selects.
     pub fn remove_abandoned_of(folder: &Path, is: impl Fn(&Path) -> bool) {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         for path in entries.map(|entry| entry.path()).filter(|path| is(path)) {
