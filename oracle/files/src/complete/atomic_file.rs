@@ -159,7 +159,7 @@ impl AtomicFile {
     /// Syncs the file and gives it its name, replacing an earlier file of its kind.
     ///
     /// # Errors
-    /// Those of [`Earlier::check`]; [`FileError::Io`] if it cannot be synced or named.
+    /// Those of [`ReplaceableFile::check`]; [`FileError::Io`] if it cannot be synced or named.
     pub fn replace(self, earlier: ReplaceableFile<'_>) -> Result<(), FileError> {
         earlier.check(&self.path)?;
         self.sync()?;

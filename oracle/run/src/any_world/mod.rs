@@ -37,7 +37,7 @@ pub struct Options {
     pub renderer: RendererChoice,
 }
 
-/// A world without its types. [`Of`](crate::Of) converts a [`World`](crate::World) to it.
+/// A world without its types. [`ErasedWorld`](crate::ErasedWorld) converts a [`World`](crate::World) to it.
 pub trait AnyWorld: Sync {
     /// Code of the world, [`World::CODE`](crate::World::CODE).
     fn code(&self) -> &'static str;
