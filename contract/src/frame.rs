@@ -106,7 +106,7 @@ impl Frame {
     ///
     /// # Panics
     /// If the frame has no such row.
-    #[allow(clippy::indexing_slicing, reason = "as of a slice, the caller keeps to the size of the frame")]
+    #[allow(clippy::indexing_slicing, reason = "like a slice, requires an index inside the frame")]
     pub fn row(&self, y: usize) -> &[u16] {
         &self.dn[y * self.columns..(y + 1) * self.columns]
     }
@@ -115,7 +115,7 @@ impl Frame {
     ///
     /// # Panics
     /// If the frame has no such pixel.
-    #[allow(clippy::indexing_slicing, reason = "as of a slice, the caller keeps to the size of the frame")]
+    #[allow(clippy::indexing_slicing, reason = "like a slice, requires an index inside the frame")]
     pub fn dn_at(&self, x: usize, y: usize) -> u16 {
         self.dn[y * self.columns + x]
     }

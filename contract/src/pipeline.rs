@@ -49,7 +49,7 @@ pub trait Pipeline<I: Interface>: Send {
 
 /// Consecutive failed starts of a pipeline. One start is attempted per image until one succeeds.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("the pipeline did not start, {count} times in a row: {reason}")]
+#[error("the pipeline failed to start {count} times in a row: {reason}")]
 pub struct FailedStarts {
     /// Number of failed starts.
     pub count: u32,

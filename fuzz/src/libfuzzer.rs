@@ -13,8 +13,8 @@ static TARGET: OnceLock<(&Target, Sandbox)> = OnceLock::new();
 
 fn prepare() -> (&'static Target, Sandbox) {
     let name = std::env::var("BORESIGHT_TARGET").unwrap_or_default();
-    let target =
-        Target::named(&name).unwrap_or_else(|| panic!("BORESIGHT_TARGET is `{name}`, expected a target"));
+    let target = Target::named(&name)
+        .unwrap_or_else(|| panic!("BORESIGHT_TARGET is `{name}`, expected the name of a target"));
     // The default hook of the fuzzer ends the process at every panic. Panics inside the crate `parquet` and
     // the buffers that it slices are caught by the reader and turned into errors; a panic that reaches this
     // hook from elsewhere is a fault of the reader.
@@ -26,13 +26,13 @@ fn prepare() -> (&'static Target, Sandbox) {
             std::process::abort();
         }
     }));
-    (target, Sandbox::new().unwrap_or_else(|error| panic!("no sandbox: {error}")))
+    (target, Sandbox::new().unwrap_or_else(|error| panic!("the sandbox cannot be created: {error}")))
 }
 
 fuzz_target!(|bytes: &[u8]| {
     let (target, sandbox) = TARGET.get_or_init(prepare);
     if catch_unwind(std::panic::AssertUnwindSafe(|| target.run(sandbox, bytes))).is_err() {
-        eprintln!("a panic of the crate `parquet` came out of the reader");
+        eprintln!("the reader did not catch a panic of the crate `parquet`");
         std::process::abort();
     }
 });

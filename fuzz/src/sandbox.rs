@@ -28,7 +28,7 @@ impl Sandbox {
     /// If the file cannot be written.
     #[expect(
         clippy::expect_used,
-        reason = "without its file an input tests nothing, and must not pass for tested"
+        reason = "an input whose file cannot be written is not tested and must not pass"
     )]
     pub(crate) fn file(&self, name: &str, bytes: &[u8]) -> PathBuf {
         let path = self.path().join(name);

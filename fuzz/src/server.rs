@@ -30,7 +30,7 @@ pub(crate) fn http(_: &Sandbox, bytes: &[u8]) {
     assert!(answer.is_empty() || answer.starts_with(b"HTTP/1."), "{}", String::from_utf8_lossy(&answer));
     let lower = answer.to_ascii_lowercase();
     let has = |text: &[u8]| lower.windows(text.len()).any(|window| window == text);
-    assert!(!has(b"access-control-allow"), "an answer that other pages may read");
+    assert!(!has(b"access-control-allow"), "the response can be read by other pages");
 }
 
 fn addressed(bytes: &[u8], address: SocketAddr) -> Vec<u8> {
@@ -50,13 +50,13 @@ fn addressed(bytes: &[u8], address: SocketAddr) -> Vec<u8> {
 }
 
 /// Starts a monitor of two fields on the first call and returns its address.
-#[expect(clippy::expect_used, reason = "without a server nothing is tested, and it must not pass for tested")]
+#[expect(clippy::expect_used, reason = "without a server no input is tested, and the run must not pass")]
 fn address() -> SocketAddr {
     static ADDRESS: OnceLock<SocketAddr> = OnceLock::new();
     *ADDRESS.get_or_init(|| {
         let (told, address) = mpsc::channel();
         std::thread::spawn(move || {
-            let ready = move |address| told.send(address).expect("somebody waits for the address");
+            let ready = move |address| told.send(address).expect("the caller waits for the address");
             let bind = SocketAddr::from(([127, 0, 0, 1], 0));
             serve(&docking(), bind, ready, std::future::pending()).expect("the monitor serves")
         });
@@ -64,7 +64,7 @@ fn address() -> SocketAddr {
     })
 }
 
-#[expect(clippy::expect_used, reason = "built in, and no input")]
+#[expect(clippy::expect_used, reason = "built-in text, independent of the input")]
 fn docking() -> Feed {
     let source = ScenarioSource::read("docking").expect("a built-in scenario");
     let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 2048, sandbox: None };

@@ -35,11 +35,11 @@ fn read(path: &Path, raw: Option<FrameSize>) {
     }
 }
 
-#[expect(clippy::expect_used, reason = "the file stands beside this one and is no input")]
+#[expect(clippy::expect_used, reason = "the file is part of the corpus, independent of the input")]
 fn setup() -> &'static DockingSetup {
     static SETUP: OnceLock<DockingSetup> = OnceLock::new();
     SETUP.get_or_init(|| {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/corpus/setup/small.toml"));
-        SetupFile::read(path).expect("the setup of the corpus is one").setup()
+        SetupFile::read(path).expect("the setup of the corpus is valid").setup()
     })
 }

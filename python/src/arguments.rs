@@ -12,10 +12,8 @@ use crate::errors::refused;
 /// Reads a range of frames of a scenario with `count` frames; all frames if none is given.
 pub(crate) fn frames(given: Option<&Bound<'_, PyAny>>, count: u64) -> PyResult<Range<u64>> {
     let Some(given) = given else { return Ok(0..count) };
-    let expected = format!(
-        "a range of step 1 that is not empty, within range(0, {count}), as range(0, {})",
-        count.min(40)
-    );
+    let expected =
+        format!("a non-empty range of step 1 within range(0, {count}), such as range(0, {})", count.min(40));
     let refuse = || refused("frames", given.to_string(), &expected);
     let range = given.cast::<PyRange>().map_err(|_| refuse())?;
     let (start, stop) = (range.start()?, range.stop()?);

@@ -16,7 +16,7 @@
 )]
 #![allow(
     clippy::result_large_err,
-    reason = "the engine's failures are what they are, and are made once a call"
+    reason = "errors of the engine are large, and at most one is created per call"
 )]
 
 mod arguments;

@@ -89,7 +89,7 @@ impl PythonPipeline {
     ) -> Result<String, String> {
         let callable = self.callable.as_ref().map_err(Clone::clone)?;
         if self.ended.flag().load(Ordering::Relaxed) {
-            return Err("the work was ended".to_owned());
+            return Err("the run was interrupted".to_owned());
         }
         Python::attach(|py| {
             let asked = question(py).and_then(|(frame, telemetry)| callable.call1(py, (frame, telemetry)));
@@ -139,8 +139,8 @@ pub(crate) fn check(given: &Bound<'_, PyAny>) -> PyResult<()> {
 
 fn refused_kind(given: &Bound<'_, PyAny>) -> PyResult<PyErr> {
     let kind = given.get_type().name()?;
-    let expected = "None, the name of a built-in pipeline, `exec:COMMAND`, a callable of (frame, telemetry), or a class whose instances \
-                    are one";
+    let expected = "None, the name of a built-in pipeline, `exec:COMMAND`, a callable of (frame, \
+                    telemetry), or a class whose instances are such callables";
     Ok(refused("pipeline", format!("of type {kind}"), expected))
 }
 

@@ -62,7 +62,7 @@ impl Run {
         } else {
             ("docking", "a run of the far range")
         };
-        Err(refused(what, format!("asked of a run of {of}"), expected))
+        Err(refused(what, format!("not available for a run of {of}"), expected))
     }
 }
 
@@ -74,7 +74,7 @@ impl Run {
         let file = directory.join("run.toml");
         if !file.is_file() {
             return Err(FileError::new_err(format!(
-                "{}: there is no run.toml, expected the directory of a run",
+                "{}: run.toml is missing, expected the directory of a run",
                 directory.display()
             )));
         }

@@ -108,9 +108,9 @@ impl Scenario {
     fn with_values(&self, py: Python<'_>, values: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut overlay: Vec<(String, Value)> = Vec::new();
         for (path, value) in values {
-            let path: String = path
-                .extract()
-                .map_err(|_| refused("values", "a dictionary with a key that is no text", "paths as keys"))?;
+            let path: String = path.extract().map_err(|_| {
+                refused("values", "a dictionary with a key that is not text", "paths as keys")
+            })?;
             let value = json::from_python(&path, &value)?;
             overlay.push((path, value));
         }

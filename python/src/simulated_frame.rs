@@ -54,8 +54,9 @@ impl SimulatedFrame {
     #[getter]
     fn objects(&self) -> PyResult<Table> {
         let objects = self.objects.clone();
-        let objects = objects
-            .ok_or_else(|| refused("objects", "asked of a docking field", "a frame of the far range"))?;
+        let objects = objects.ok_or_else(|| {
+            refused("objects", "not available for a docking field", "a frame of the far range")
+        })?;
         Ok(Table::from_batch(objects))
     }
 
@@ -67,7 +68,9 @@ impl SimulatedFrame {
         let make = || -> PyResult<_> {
             let ([rows, columns], electrons) = py
                 .detach(|| own.prepared.world.expected(number))
-                .ok_or_else(|| refused("expected", "asked of a docking field", "a frame of the far range"))?
+                .ok_or_else(|| {
+                    refused("expected", "not available for a docking field", "a frame of the far range")
+                })?
                 .map_err(raised)?;
             Ok(PyArray1::from_vec(py, electrons).reshape([rows, columns])?.unbind())
         };

@@ -118,7 +118,7 @@ impl Table {
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let index = self.schema.index_of(name).map_err(|_| {
             let known = self.column_names().join(", ");
-            PyKeyError::new_err(format!("there is no column `{name}`; there are: {known}"))
+            PyKeyError::new_err(format!("no column `{name}`; available columns: {known}"))
         })?;
         self.column(py, index)
     }

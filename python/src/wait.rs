@@ -82,7 +82,8 @@ pub(crate) fn interruptibly<T: Send + 'static>(
             return Err(interrupt);
         }
     }
-    let panicked = |_| BoresightError::new_err("a fault of Boresight: the work panicked, see standard error");
+    let panicked =
+        |_| BoresightError::new_err("internal error of Boresight: a thread panicked, see standard error");
     let done = py.detach(|| worker.join()).map_err(panicked)?;
     ended.take().map_or_else(|| done.map_err(raised), Err)
 }

@@ -64,7 +64,7 @@ pub(crate) fn prepare_for_python(
             Err(other) => prepared = other,
         }
     }
-    Err(Failure::Usage(format!("frames of the world {} have no class", world.code())))
+    Err(Failure::Usage(format!("frames of the world {} have no Python class", world.code())))
 }
 
 /// Returns the factory of a callable pipeline for a world.
@@ -74,7 +74,9 @@ pub(crate) fn prepare_for_python(
 pub(crate) fn factory<P: PythonFactory>(world: &dyn AnyWorld, pipeline: P) -> Result<AnyFactory, Failure> {
     match world_entries::<P>().into_iter().find(|entry| entry.code == world.code()) {
         Some(entry) => Ok((entry.factory)(pipeline)),
-        None => Err(Failure::Usage(format!("a callable of the world {} cannot be called", world.code()))),
+        None => {
+            Err(Failure::Usage(format!("the world {} does not support callables as pipelines", world.code())))
+        }
     }
 }
 

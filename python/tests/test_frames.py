@@ -103,7 +103,7 @@ def test_the_truth_is_that_of_the_image(argon):
 
 @pytest.mark.parametrize("frames", [range(5, 5), range(10, 0), range(0, 10, 2), range(0, 10**6), (0, 4), 7, "0..4", range(-1, 4)])
 def test_a_range_that_is_none_is_refused(argon, frames):
-    with pytest.raises(boresight.InputError, match="expected a range of step 1"):
+    with pytest.raises(boresight.InputError, match="expected a non-empty range of step 1"):
         argon.frames(frames)
 
 

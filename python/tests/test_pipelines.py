@@ -83,10 +83,10 @@ def test_what_cannot_be_used_is_an_outcome_with_its_reason():
         (lambda f, t: Detection(float("nan"), 1), "expected finite numbers"),
         (lambda f, t: Detection(900, 1), "not on the detector of 752 × 580 pixels"),
         (lambda f, t: Detection(1, 1, los_j2000=(1, 1, 0)), "is not a unit vector"),
-        (lambda f, t: Detection(1, 1, sigma_x_px=0.1), "not all three"),
+        (lambda f, t: Detection(1, 1, sigma_x_px=0.1), "expected all three or none"),
         (lambda f, t: Detection(1, 1, sigma_x_px=0.1, sigma_y_px=0, correlation_xy=0), "its sigma_y_px is 0, expected a positive"),
         (lambda f, t: {"status": "detected", "x": 1}, "unknown field `x`"),
-        (lambda f, t: NoSolution("tired"), "its status `tired` is not known"),
+        (lambda f, t: NoSolution("tired"), "its status `tired` is unknown"),
         (lambda f, t: Pose((0, 0, 9), (0, 0, 0)), "unknown field `d_m`"),
         (lambda f: None, "positional argument"),
     ]:

@@ -33,7 +33,7 @@ def test_columns_have_numpy_types_and_nan_where_nothing_is(run):
     missing = np.array([status != "detected" for status in measured["status"]])
     assert np.array_equal(np.isnan(measured["x_px"]), missing)
     assert truth["time_utc"].dtype == "datetime64[ns]"
-    with pytest.raises(KeyError, match="there is no column `x`; there are: frame"):
+    with pytest.raises(KeyError, match="no column `x`; available columns: frame"):
         measured["x"]
 
 
@@ -106,7 +106,7 @@ def test_a_wrong_table_is_told_by_row_and_column(run, measurements, told):
 def test_what_is_no_run_is_told(tmp_path):
     with pytest.raises(boresight.InputError, match="expected the directory of a run"):
         boresight.score(tmp_path, tmp_path / "measurements.csv")
-    with pytest.raises(boresight.FileError, match=r"there is no run\.toml"):
+    with pytest.raises(boresight.FileError, match=r"run\.toml is missing"):
         boresight.Run.load(tmp_path)
 
 

@@ -112,7 +112,7 @@ impl Simulator {
                 return Err(OutOfRange::new(
                     "zero_suppression_dn",
                     floor_dn,
-                    "none beside [roi]: the pixels of regions are sent as they are",
+                    "no value with [roi]: the pixels of regions are transmitted unchanged",
                 )
                 .into());
             }

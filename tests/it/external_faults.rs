@@ -63,7 +63,7 @@ const PROGRAMS: [Faulty; 14] = [
     faulty(
         "crashes",
         "hello()\nask()\nsys.exit('the film is full')",
-        "exit status: 1; its last words: the film is full",
+        "exit status: 1; last error output: the film is full",
     ),
     faulty(
         "dies of a signal",
@@ -91,7 +91,7 @@ const PROGRAMS: [Faulty; 14] = [
         // In the same write as the greeting: a later line could be mistaken for the answer to the first
         // request.
         "ask()\nsay('{\"boresight_pipeline\": 1, \"name\": \"faulty\"}\\n{}\\n{}')\ntime.sleep(100)",
-        "it wrote a line without being asked",
+        "it wrote a line without a request",
     ),
     faulty(
         "closes its output and lives on",
@@ -280,11 +280,8 @@ fn a_program_that_never_greets_ends_a_run_in_both_worlds() {
             let bench = Bench::new();
             let run =
                 ["run", scenario, "--frames", frames, "--out", "run", "--no-report", "--pipeline", pipeline];
-            let parts = [
-                "did not start, 3 times in a row",
-                reason,
-                "3 frames were flown and are scored, 7 were not flown",
-            ];
+            let parts =
+                ["failed to start 3 times in a row", reason, "3 frames were run and scored, 7 were not run"];
             bench.boresight_words(&run).refused(&parts);
             let rows = bench.csv("run/measurements.csv");
             assert_eq!(rows.len(), 3);
@@ -294,11 +291,11 @@ fn a_program_that_never_greets_ends_a_run_in_both_worlds() {
             assert!(score["not_flown"]["reason"].as_str().unwrap().contains(reason), "{score}");
             // The partial run can be used like any other run.
             let again = bench.boresight("score run run/measurements.csv --json").done();
-            assert!(again.stderr.contains("7 were not flown"), "{}", again.stderr);
+            assert!(again.stderr.contains("7 were not run"), "{}", again.stderr);
             assert_eq!(again.json()["not_flown"], score["not_flown"]);
             bench.boresight("report run -o report.html").done();
             assert!(
-                bench.read("report.html").contains("The run is not complete: the pipeline did not start")
+                bench.read("report.html").contains("The run is not complete: the pipeline failed to start")
             );
         }
     }
@@ -312,7 +309,7 @@ fn a_run_of_two_frames_without_a_start_is_refused() {
     let words: Vec<&str> = run.chain(["exec:python3 missing.py"]).collect();
     let answer = bench.boresight_words(&words);
     let score = answer.json();
-    answer.refused(&["did not start, 2 times in a row", "0 were not flown"]);
+    answer.refused(&["failed to start 2 times in a row", "0 were not run"]);
     assert_eq!(score["not_flown"]["frames"], 0);
 }
 
@@ -342,7 +339,7 @@ fn a_program_that_never_greets_answers_no_dataset() {
                 continue;
             }
             let words = ["process", "set", "--out", out, "--pipeline", "exec:python3 missing.py"];
-            bench.boresight_words(&words).refused(&["did not start, 3 times in a row", "missing.py"]);
+            bench.boresight_words(&words).refused(&["failed to start 3 times in a row", "missing.py"]);
         }
         assert!(!bench.path("answers.csv").exists());
     }
@@ -369,7 +366,7 @@ fn cases_without_a_start_are_failed_rows_and_the_first_ten_end_a_study() {
     let replay =
         ["study", "replay", "study.toml", "--case", "8", "--out", "replay", "--no-report", "--pipeline"];
     let replay = bench.boresight_words(&[replay.as_slice(), &["exec:python3 missing.py"]].concat());
-    replay.refused(&["did not start, 3 times in a row", "1 were not flown"]);
+    replay.refused(&["failed to start 3 times in a row", "1 were not run"]);
     assert_eq!(bench.json("replay/score.json")["frames"], 3);
     for (out, more) in [("whole", [].as_slice()), ("pieces", &["--shards", "6"]), ("one", &["--jobs", "1"])] {
         run(12, out, more).refused(&["did not start in any of the first 10 cases", "missing.py"]);
@@ -408,7 +405,7 @@ fn a_flood_takes_no_memory() {
             "hello()\nask()\nwhile True:\n    os.write(2, b'grumble\\n' * 8000)",
             "it gave no answer within 3 s",
         ),
-        ("while True:\n    os.write(1, b'x' * 65536)", "at its greeting, it wrote a line longer"),
+        ("while True:\n    os.write(1, b'x' * 65536)", "during the greeting, it wrote a line longer"),
     ] {
         let bench = Bench::new();
         write_program(&bench, &FAR_RANGE, body);
@@ -420,7 +417,7 @@ fn a_flood_takes_no_memory() {
             bench.path("pids").display(),
         );
         let output = Command::new("sh").args(["-c", &script]).current_dir(bench.path("")).output().unwrap();
-        let expected = if reason.starts_with("at its greeting") { 2 } else { 0 };
+        let expected = if reason.starts_with("during the greeting") { 2 } else { 0 };
         let told = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(expected), "{body}\n{told}");
         check_none_left(&bench);

@@ -252,7 +252,7 @@ fn a_program_that_does_not_exist_is_refused_before_anything_is_written() {
         "--pipeline",
         "exec:no-such-program -x",
     ];
-    bench.boresight_words(&words).refused(&["there is no program `no-such-program`", "search path"]);
+    bench.boresight_words(&words).refused(&["program `no-such-program` not found", "search path"]);
     assert!(!bench.path("run").exists());
 }
 

@@ -48,7 +48,7 @@ fn a_run_is_identified_by_the_content_of_its_files() {
         "run.toml",
         "catalog.source",
         "stars.csv",
-        "was changed",
+        "has changed",
     ]);
 }
 

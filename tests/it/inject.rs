@@ -79,7 +79,7 @@ fn what_cannot_be_injected_is_refused_before_anything_is_written() {
     };
     refused("argon --inject attitud", &["'attitud'", "--inject", "attitude", "centroids"]);
     refused("argon --inject all", &["'all'", "--inject"]);
-    refused("starting-point --inject roi", &["--inject is roi", "`starting-point` has no [roi]"]);
+    refused("starting-point --inject roi", &["--inject roi", "`starting-point` has no [roi]"]);
     refused(
         "argon --inject attitude --pipeline exec:cat",
         &["--inject is attitude", "expected with the built-in pipeline `far_range`"],

@@ -146,7 +146,7 @@ fn a_missing_command_is_named() {
     let stage = FakeMitsuba::new("");
     let renderer = stage.renderer_of(stage.path("nowhere").display().to_string(), 30.0);
     let message = render(&renderer, 5.0).unwrap_err();
-    assert!(message.contains("the command of Mitsuba, cannot be started"), "{message}");
+    assert!(message.contains("Mitsuba cannot be started with"), "{message}");
 }
 
 #[test]
@@ -154,13 +154,13 @@ fn another_version_is_refused_and_so_is_another_program() {
     let message = FakeMitsuba::new("echo 'Mitsuba version 3.5.0 (Linux)'; echo scalar_rgb").message();
     assert!(message.contains("is Mitsuba 3.5.0, expected Mitsuba 3.9.1"), "{message}");
     let message = FakeMitsuba::new("echo 'hello'; exit 3").message();
-    assert!(message.contains("is not Mitsuba (it says: hello)"), "{message}");
+    assert!(message.contains("is not Mitsuba (output: hello)"), "{message}");
 }
 
 #[test]
 fn a_mitsuba_without_the_variant_is_refused() {
     let message = FakeMitsuba::new("echo 'Mitsuba version 3.9.1 (Linux)'; echo llvm_ad_rgb").message();
-    assert!(message.contains("has no variant scalar_rgb"), "{message}");
+    assert!(message.contains("lacks the variant scalar_rgb"), "{message}");
 }
 
 #[test]
@@ -202,7 +202,10 @@ fn a_render_that_hangs_is_ended_with_its_children() {
     let stage = FakeMitsuba::new(&format!("{HELP}sleep 100 & echo $! > $STAGE/child; echo sampling; wait"));
     let begin = Instant::now();
     let message = render(&stage.renderer(0.5), 5.0).unwrap_err();
-    assert!(message.contains("ended after 0.5 s") && message.contains("sampling"), "{message}");
+    assert!(
+        message.contains("exceeded the time limit of 0.5 s") && message.contains("sampling"),
+        "{message}"
+    );
     assert!(begin.elapsed() < Duration::from_secs(30));
     let child = fs::read_to_string(stage.path("child")).unwrap();
     let process = Path::new("/proc").join(child.trim());

@@ -87,7 +87,9 @@ fn a_check_asks_the_pipeline_too() {
     bench.boresight("run suppressed.toml --frames 0..1").refused(&["thresholds.mode is automatic"]);
     // An external program determines its own thresholds.
     bench.boresight("scenario check suppressed.toml --pipeline exec:true").done();
-    bench.boresight("scenario check suppressed.toml --pipeline nobody").refused(&["no pipeline `nobody`"]);
+    bench
+        .boresight("scenario check suppressed.toml --pipeline nobody")
+        .refused(&["unknown pipeline `nobody`"]);
 }
 
 #[test]
@@ -313,7 +315,7 @@ fn a_check_reports_the_telemetry_of_a_frame() {
         assert_eq!(check["frame_bytes_at_most"], bytes);
         assert_eq!(check["whole_image_bytes"], 654_240);
         let text = bench.boresight(&format!("scenario check {file}")).done().stdout;
-        assert!(text.contains(&format!(" {bytes} bytes of telemetry a frame")), "{text}");
+        assert!(text.contains(&format!(" {bytes} bytes of telemetry per frame")), "{text}");
     }
 }
 

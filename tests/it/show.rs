@@ -353,7 +353,11 @@ fn only_an_earlier_picture_is_replaced() {
     fs::create_dir(bench.path("folder.png")).unwrap();
     for name in ["mine.png", "text.png", "empty.png"] {
         let before = fs::read(bench.path(name)).unwrap();
-        bench.boresight(&format!("show run 10200 -o {name}")).refused(&[name, "another file", "--out"]);
+        bench.boresight(&format!("show run 10200 -o {name}")).refused(&[
+            name,
+            "a file of another kind",
+            "--out",
+        ]);
         assert!(fs::read(bench.path(name)).unwrap() == before);
     }
     bench.boresight("show run 10200 -o folder.png").refused(&["folder.png", "not a regular file"]);

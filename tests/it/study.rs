@@ -141,7 +141,7 @@ fn programs_are_part_of_a_study() {
     let run = |pipeline: &str, out: &str| {
         bench.boresight_words(&["study", "run", "study.toml", "--out", out, "--json", "--pipeline", pipeline])
     };
-    run("exec:no-such-program", "nothing").refused(&["there is no program `no-such-program`"]);
+    run("exec:no-such-program", "nothing").refused(&["program `no-such-program` not found"]);
     assert!(!bench.path("nothing").exists(), "nothing is begun for a program that is not there");
 
     bench.write("my pipeline.py", "import sys\nsys.exit('it is broken')\n");
@@ -157,7 +157,7 @@ fn programs_are_part_of_a_study() {
     let replay = shlex::split(summary["worst"][0]["replay"].as_str().unwrap()).unwrap();
     assert!(replay.contains(&words.to_owned()), "{replay:?}");
     let replay: Vec<&str> = replay[1..].iter().map(String::as_str).chain(["--out", "again"]).collect();
-    bench.boresight_words(&replay).refused(&["did not start", "it is broken"]);
+    bench.boresight_words(&replay).refused(&["failed to start", "it is broken"]);
     assert!(bench.read("again/measurements.csv").contains("failed: "));
 
     bench.write("my pipeline.py", "import sys\nsys.exit('it is broken in another way')\n");

@@ -16,7 +16,7 @@ impl Conformance for Docking {
         let full_scale = (u32::MAX >> (32 - u32::from(setup.bit_depth))) as u16;
         let columns = camera.columns;
         let inputs: [(&'static str, u64, Lines, f64, Pattern); 10] = [
-            ("an all-zero field first", 0, Lines::Even, 0.0, |_, _, _| 0),
+            ("an all-zero first field", 0, Lines::Even, 0.0, |_, _, _| 0),
             ("a flat field", 1, Lines::Odd, 0.02, |_, _, full| full / 3),
             ("a saturated field", 2, Lines::Even, 0.04, |_, _, full| full),
             ("a checkerboard", 3, Lines::Odd, 0.06, |x, y, full| if (x + y) % 2 == 0 { full } else { 0 }),
@@ -35,13 +35,7 @@ impl Conformance for Docking {
                 0.14,
                 |x, y, full| if x / 9 % 2 == y / 9 % 2 { full } else { 0 },
             ),
-            (
-                "the same time again",
-                8,
-                Lines::Even,
-                0.14,
-                |x, _, full| if x % 50 < 5 { full } else { full / 5 },
-            ),
+            ("a repeated time", 8, Lines::Even, 0.14, |x, _, full| if x % 50 < 5 { full } else { full / 5 }),
             (
                 "a field hours later",
                 9,
@@ -49,7 +43,7 @@ impl Conformance for Docking {
                 20_000.0,
                 |x, y, full| if x.abs_diff(y) < 4 { full } else { 0 },
             ),
-            ("a field from before", 10, Lines::Even, 0.2, |_, _, full| full / 7),
+            ("an earlier field", 10, Lines::Even, 0.2, |_, _, full| full / 7),
         ];
         let fields = inputs.into_iter().map(|(name, number, lines, time_s, dn)| {
             let rows = lines.rows(camera.rows);
@@ -78,25 +72,31 @@ impl Conformance for Docking {
                     return Some(format!("a pose is not finite: {measurement:?}"));
                 }
                 if !finite(best.covariance.as_slice()) || best.covariance.diagonal().min() < 0.0 {
-                    return Some(format!("a covariance is none: {:?}", best.covariance));
+                    return Some(format!(
+                        "a covariance is not finite or has a negative variance: {:?}",
+                        best.covariance
+                    ));
                 }
             }
             DockingSolution::RangeOnly { range_m, sigma_m } => {
                 if !(finite(&[*range_m, *sigma_m]) && *range_m > 0.0 && *sigma_m >= 0.0) {
-                    return Some(format!("a range is none: {range_m} m, {sigma_m} m"));
+                    return Some(format!(
+                        "a range is not finite and above 0, or its σ not finite and at least 0: {range_m} \
+                         m, {sigma_m} m"
+                    ));
                 }
             }
             DockingSolution::NoSolution(_) => {}
         }
         if outcome.motion.as_ref().is_some_and(|report| report.motions().next().is_none()) {
-            return Some("a report of a motion has no motion".to_owned());
+            return Some("a motion report contains no motion".to_owned());
         }
         let mut motions = outcome.motion.iter().flat_map(MotionReport::motions);
         if let Some(motion) = motions.find(|motion| !is_finite_motion(motion)) {
             return Some(format!("a motion is not finite: {motion:?}"));
         }
         let wish = outcome.digitiser.as_ref().and_then(|wish| wish.check().err());
-        wish.map(|error| format!("no digitiser has the setting asked for: {error}"))
+        wish.map(|error| format!("the requested setting of the digitiser is out of range: {error}"))
     }
 }
 

@@ -21,16 +21,16 @@ impl Conformance for FarRange {
             .map(|i| if (i % columns + i / columns) % 2 == 0 { full_scale } else { 0 })
             .collect();
         let images: Vec<(&'static str, f64, Vec<u16>)> = vec![
-            ("an all-zero frame first", 0.0, flat(0)),
+            ("an all-zero first frame", 0.0, flat(0)),
             ("a flat frame", 15.0, flat(full_scale / 50)),
             ("one bright pixel", 30.0, spot(columns / 2, rows / 2)),
             ("the bright pixel moved", 45.0, spot(columns / 2 + 2, rows / 2)),
-            ("the same time again", 45.0, spot(columns / 2 + 2, rows / 2)),
+            ("a repeated time", 45.0, spot(columns / 2 + 2, rows / 2)),
             ("a bright pixel in the corner", 60.0, spot(0, 0)),
             ("a saturated frame", 75.0, flat(full_scale)),
             ("a checkerboard", 90.0, checkerboard),
             ("a frame hours later", 20_000.0, spot(columns / 3, rows / 3)),
-            ("a frame from before", 100.0, spot(columns / 3, rows / 3)),
+            ("an earlier frame", 100.0, spot(columns / 3, rows / 3)),
         ];
         images
             .into_iter()
@@ -64,7 +64,9 @@ impl Conformance for FarRange {
             if measurement.line_of_sight.is_none()
                 && let Some(covariance) = &measurement.line_of_sight_covariance
             {
-                return Some(format!("a covariance has no line of sight that it is of: {covariance:?}"));
+                return Some(format!(
+                    "a covariance of the line of sight is stated without a line of sight: {covariance:?}"
+                ));
             }
         }
         if let Some(attitude) = &outcome.camera_from_icrs

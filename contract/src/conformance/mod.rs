@@ -57,7 +57,7 @@ pub fn check<I: Conformance>(
             broke(broken);
         }
         if outcome != again {
-            broke(format!("two fresh pipelines disagree: {outcome:?} and {again:?}"));
+            broke(format!("two new pipelines return different outcomes: {outcome:?} and {again:?}"));
         }
     }
     if violations.is_empty() { Ok(()) } else { Err(violations) }

@@ -73,7 +73,7 @@ impl Field {
     /// a camera gives.
     pub fn new(image: Frame, lines: Lines, camera_rows: usize) -> Result<Self, ContractError> {
         if image.rows() != lines.rows(camera_rows) {
-            let expected = "half the rows of the camera, or all of them when it is not interlaced";
+            let expected = "half the rows of the camera, or all rows of a progressive frame";
             return Err(OutOfRange::new("rows of a field", image.rows(), expected).into());
         }
         Ok(Self { image, lines, camera_rows })

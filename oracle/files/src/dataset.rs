@@ -173,7 +173,7 @@ impl CameraFile {
     /// Reads the image of a frame of this camera.
     fn read_image(&self, path: &Path, row: &TelemetryRow) -> Result<Frame, FileError> {
         let Camera { columns, rows, .. } = self.camera;
-        let image = read_image(path, Some(Size { columns, rows, whose: "that of camera.toml" }))?;
+        let image = read_image(path, Some(Size { columns, rows, whose: "the size in camera.toml" }))?;
         image.metadata.check(path, row)?;
         image.into_frame(path, row.frame, self.bit_depth, row.windows.clone())
     }
@@ -196,7 +196,7 @@ impl CameraFile {
 pub(crate) fn locate_alone(directory: &Path, file: &str, field: &str) -> Result<PathBuf, FileError> {
     let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
     locate_image(directory, &root, Some(file)).map_err(|reason| {
-        let expected = format!("an image in the dataset's directory; it is {reason}");
+        let expected = format!("an image in the dataset's directory; this path is {reason}");
         FileError::value(&directory.join("telemetry.csv"), FileLocation::Whole, field, file, expected)
     })
 }
@@ -213,7 +213,7 @@ pub(crate) fn refuse_twice<'a>(
         let real = path.canonicalize().map_err(|source| FileError::io(path, "open", source))?;
         if let Some(other) = known.insert(real, number) {
             let field = format!("file of {what} {number}");
-            let expected = format!("an image of its own; {what} {other} has it too");
+            let expected = format!("a separate image; {what} {other} has the same image");
             return Err(FileError::value(table, FileLocation::Whole, field, path.display(), expected));
         }
     }
@@ -232,7 +232,7 @@ fn refuse_unnamed(table: &Path, frames: &[DatasetFrame]) -> Result<(), FileError
         for entry in fs::read_dir(folder).map_err(error)? {
             let path = entry.map_err(error)?.path();
             if extension(&path).is_some_and(|e| extensions.contains(&e)) && !named.contains(path.as_path()) {
-                let expected = "a row that names it: the frame's telemetry is missing";
+                let expected = "an image that a row names: the telemetry of this image is missing";
                 return Err(FileError::value(table, FileLocation::Header, "file", path.display(), expected));
             }
         }

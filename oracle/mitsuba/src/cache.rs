@@ -64,7 +64,7 @@ impl Cache {
     /// # Errors
     /// [`FileError::Io`] when the directory cannot be created.
     pub(super) fn scratch_folder(&self) -> Result<ScratchFolder, FileError> {
-        let io = |source| FileError::Io { path: self.folder.clone(), doing: "create a folder in", source };
+        let io = |source| FileError::Io { path: self.folder.clone(), doing: "create a directory in", source };
         self.remove_abandoned();
         let folder = tempfile::Builder::new().prefix(RENDER).tempdir_in(&self.folder).map_err(io)?;
         // The file is locked before other processes can find it under its final name.

@@ -95,7 +95,7 @@ impl MitsubaCommand {
         if let ProcessEnd::TimeLimit = end {
             return Err(MitsubaError::TimeLimit {
                 limit_s: limit.as_secs_f64(),
-                doing: "asked for its version".to_owned(),
+                doing: "reporting its version".to_owned(),
                 words: process::last_output(&log),
             });
         }
@@ -108,7 +108,7 @@ impl MitsubaCommand {
                 Err(MitsubaError::WrongVersion { command: self.text(), found })
             }
             None => {
-                let found = format!("not Mitsuba (it says: {})", process::last_output(&log));
+                let found = format!("not Mitsuba (output: {})", process::last_output(&log));
                 Err(MitsubaError::WrongVersion { command: self.text(), found })
             }
         }

@@ -11,12 +11,12 @@ use super::{VARIANT, VERSION};
 pub enum MitsubaError {
     /// Mitsuba is not installed.
     #[error(
-        "Mitsuba is not there: neither `mitsuba` nor `uvx` is on the PATH. Get it with `pip install \
-         mitsuba=={VERSION}`, or name its command with --mitsuba or in BORESIGHT_MITSUBA"
+        "Mitsuba is not installed: neither `mitsuba` nor `uvx` is on the PATH. Install it with `pip install \
+         mitsuba=={VERSION}`, or give its command with --mitsuba or in BORESIGHT_MITSUBA"
     )]
     Missing,
     /// The requested command is not a valid command line.
-    #[error("{origin} is `{text}`, expected a command, as `/opt/venv/bin/mitsuba`")]
+    #[error("{origin} is `{text}`, expected a command such as `/opt/venv/bin/mitsuba`")]
     NoCommand {
         /// Origin of the text: `--mitsuba` or `BORESIGHT_MITSUBA`.
         origin: &'static str,
@@ -24,7 +24,7 @@ pub enum MitsubaError {
         text: String,
     },
     /// The command cannot be started.
-    #[error("`{command}`, the command of Mitsuba, cannot be started: {source}")]
+    #[error("Mitsuba cannot be started with `{command}`: {source}")]
     Start {
         /// Command line that was to be started.
         command: String,
@@ -40,13 +40,13 @@ pub enum MitsubaError {
         found: String,
     },
     /// Mitsuba lacks the variant.
-    #[error("`{command}` has no variant {VARIANT}; the one of `pip install mitsuba=={VERSION}` has it")]
+    #[error("`{command}` lacks the variant {VARIANT}; `pip install mitsuba=={VERSION}` provides it")]
     VariantMissing {
         /// Command line of Mitsuba.
         command: String,
     },
     /// Mitsuba exceeded the time limit and was killed with all its processes.
-    #[error("Mitsuba was ended after {limit_s} s while it was {doing}; its last words: {words}")]
+    #[error("Mitsuba exceeded the time limit of {limit_s} s while {doing}; last output: {words}")]
     TimeLimit {
         /// Time limit, s.
         limit_s: f64,
@@ -64,7 +64,7 @@ pub enum MitsubaError {
         words: String,
     },
     /// Mitsuba failed for any other reason.
-    #[error("Mitsuba ended with {status} while {doing}; its last words: {words}")]
+    #[error("Mitsuba ended with {status} while {doing}; last output: {words}")]
     Failed {
         /// Exit status of Mitsuba.
         status: String,

@@ -23,7 +23,7 @@ impl FromStr for CsvImages {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let refused = || format!("`{text}` is no format of these images; expected {}", Self::WORD);
+        let refused = || format!("`{text}` is not a format of these images; expected {}", Self::WORD);
         if text == Self::WORD { Ok(Self) } else { Err(refused()) }
     }
 }

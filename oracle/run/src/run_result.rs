@@ -80,7 +80,7 @@ impl fmt::Display for IncompleteRun {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { frames, failed_starts, reason } = self;
         let failed = FailedStarts { count: *failed_starts, reason: reason.clone() };
-        write!(f, "{failed}; {failed_starts} frames were flown and are scored, {frames} were not flown")
+        write!(f, "{failed}; {failed_starts} frames were run and scored, {frames} were not run")
     }
 }
 

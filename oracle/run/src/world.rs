@@ -163,7 +163,7 @@ pub trait World: Sized + Send + Sync + 'static {
     fn check_stream(&self, _: &FrameJobs<Self::Images>) -> Result<(), Failure> {
         let code = Self::CODE;
         Err(Failure::Usage(format!(
-            "--out is -, expected the name of a place: {code} writes nothing to standard output (`./-` is a file)"
+            "--out is -, expected a path: {code} writes nothing to standard output (`./-` names a file)"
         )))
     }
 
@@ -725,9 +725,7 @@ pub struct AnswerCount {
 /// # Errors
 /// [`Failure::Usage`] when an attitude is requested.
 pub fn refuse_attitude(attitude: Option<AttitudeChoice>) -> Result<(), Failure> {
-    attitude.map_or(Ok(()), |_| {
-        Err(Failure::Usage("--attitude is given, expected with a run of the far range alone".to_owned()))
-    })
+    attitude.map_or(Ok(()), |_| Err(Failure::Usage("--attitude requires a run of the far range".to_owned())))
 }
 
 pub(crate) fn unscorable(error: score::ScoreError) -> Failure {
@@ -739,5 +737,7 @@ pub(crate) fn paths<const N: usize>(files: &[PathBuf]) -> Result<[&Path; N], Fil
     let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
     let count = paths.len();
     let first = files.first().map_or_else(PathBuf::new, Clone::clone);
-    paths.try_into().map_err(|_| FileError::format(&first, "answers", format!("{count} files, expected {N}")))
+    paths
+        .try_into()
+        .map_err(|_| FileError::format(&first, "measurements", format!("{count} files, expected {N}")))
 }

@@ -58,7 +58,7 @@ pub fn world_by_name(word: &str) -> Result<&'static dyn AnyWorld, String> {
         let hint = toml_file::nearest(word, codes.iter().copied())
             .map_or(String::new(), |name| format!("; did you mean `{name}`?"));
         let expected: Vec<String> = codes.iter().map(|code| format!("`{code}`")).collect();
-        format!("there is no world `{word}`, expected {}{hint}", expected.join(" or "))
+        format!("unknown world `{word}`, expected {}{hint}", expected.join(" or "))
     })
 }
 

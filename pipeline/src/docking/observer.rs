@@ -97,7 +97,7 @@ impl Observer {
             .collect::<Result<Vec<_>, ContractError>>()?;
         setup.target.check()?;
         let marks = setup.target.marks.len() as f64;
-        require("target.marks (their number)", marks, "5 to 1000", |n| (5.0..=1000.0).contains(&n))?;
+        require("target.marks (number)", marks, "5 to 1000", |n| (5.0..=1000.0).contains(&n))?;
         Ok(Self {
             shapes: marks::shapes(&setup.target),
             target: setup.target.clone(),
@@ -119,7 +119,8 @@ impl Observer {
         telemetry: &FieldTelemetry,
     ) -> FieldObservation {
         let Some((camera, lens)) = self.cameras.get(telemetry.camera).cloned() else {
-            let text = format!("the field is of camera {}, which is not known", telemetry.camera);
+            let text =
+                format!("the field names camera {}, which the setup does not contain", telemetry.camera);
             return FieldObservation::without_solution(NoPose::Failed(text));
         };
         if view.columns() != camera.columns {

@@ -114,7 +114,7 @@ impl Protocol for Docking {
 pub fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
     let answer: Answer = parse(answer)?;
     if answer.field != number {
-        return Err(format!("it answered field {} instead of field {number}", answer.field));
+        return Err(format!("its answer is for field {}, expected field {number}", answer.field));
     }
     let solution = match answer.status.as_str() {
         "measured" => DockingSolution::Measured(Box::new(measurement(&answer)?)),
@@ -123,7 +123,7 @@ pub fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
             DockingSolution::Doubtful { measurement: Box::new(measurement(&answer)?), doubt }
         }
         status => match NoPose::parse(status) {
-            None => return Err(format!("its status `{}` is not known", shortened(status))),
+            None => return Err(format!("its status `{}` is unknown", shortened(status))),
             Some(NoPose::Failed(reason)) => DockingSolution::NoSolution(NoPose::Failed(shortened(&reason))),
             Some(reason) => DockingSolution::NoSolution(reason),
         },
@@ -134,17 +134,17 @@ pub fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
 
 fn measurement(answer: &Answer) -> Result<FieldMeasurement, String> {
     let (Some(d), Some(phi_deg)) = (answer.d_m, answer.phi_deg) else {
-        return Err("it measured a pose and gave no d_m and phi_deg".to_owned());
+        return Err("its status requires a pose, but d_m or phi_deg is missing".to_owned());
     };
     let position_m = Vector3::from(d);
     if position_m == Vector3::zeros() {
-        return Err("its d_m is the target's own centre".to_owned());
+        return Err("its d_m is the centre of the target, expected a position outside".to_owned());
     }
     let sigma_d = answer.sigma_d_m.unwrap_or_default();
     let sigma_phi = answer.sigma_phi_deg.unwrap_or_default().map(f64::to_radians);
     for sigma in sigma_d.iter().chain(&sigma_phi) {
         if *sigma < 0.0 {
-            return Err(format!("its standard deviation {sigma} is below 0"));
+            return Err(format!("its standard deviation is {sigma}, expected 0 or more"));
         }
     }
     let [a, b, c] = sigma_d;
@@ -156,10 +156,13 @@ fn measurement(answer: &Answer) -> Result<FieldMeasurement, String> {
 }
 
 fn range_only(answer: &Answer) -> Result<DockingSolution, String> {
-    let range_m = answer.range_m.ok_or("it measured the range alone and gave no range_m")?;
+    let range_m = answer.range_m.ok_or("its status requires a range, but range_m is missing")?;
     let sigma_m = answer.sigma_range_m.unwrap_or(0.0);
     if range_m <= 0.0 || sigma_m < 0.0 {
-        return Err(format!("its range_m {range_m} or sigma_range_m {sigma_m} is below 0"));
+        return Err(format!(
+            "its range_m is {range_m}, expected above 0, or its sigma_range_m is {sigma_m}, expected 0 or \
+             more"
+        ));
     }
     Ok(DockingSolution::RangeOnly { range_m, sigma_m })
 }
@@ -168,10 +171,16 @@ fn digitiser(answer: &Answer) -> Result<Option<Digitiser>, String> {
     let (contrast, brightness) = match (answer.contrast, answer.brightness) {
         (None, None) => return Ok(None),
         (Some(contrast), Some(brightness)) => (contrast, brightness),
-        _ => return Err("it asked for one of contrast and brightness, and not for the other".to_owned()),
+        _ => {
+            return Err(
+                "it requests only one of contrast and brightness, expected both or neither".to_owned()
+            );
+        }
     };
     let digitiser = Digitiser { contrast, brightness };
-    digitiser.check().map_err(|error| format!("it asked for what no digitiser has: {error}"))?;
+    digitiser
+        .check()
+        .map_err(|error| format!("its requested setting of the digitiser is out of range: {error}"))?;
     Ok(Some(digitiser))
 }
 
@@ -225,21 +234,27 @@ mod tests {
     #[test]
     fn values_that_cannot_be_are_refused() {
         let measured = |rest: &str| format!(r#"{{"field": 7, "status": "measured", {rest}}}"#);
-        refused(&measured(r#""d_m": [0, 0, 9]"#), "gave no d_m and phi_deg");
+        refused(&measured(r#""d_m": [0, 0, 9]"#), "d_m or phi_deg is missing");
         refused(&measured(r#""d_m": [0, 0, NaN], "phi_deg": [0, 0, 0]"#), "cannot be read");
-        refused(&measured(r#""d_m": [0, 0, 0], "phi_deg": [0, 0, 0]"#), "target's own centre");
+        refused(&measured(r#""d_m": [0, 0, 0], "phi_deg": [0, 0, 0]"#), "centre of the target");
         refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0]"#), "cannot be read");
-        refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "sigma_d_m": [1, 1, -1]"#), "below 0");
-        refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "contrast": 1"#), "not for the other");
+        refused(
+            &measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "sigma_d_m": [1, 1, -1]"#),
+            "is -1, expected 0 or more",
+        );
+        refused(
+            &measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "contrast": 1"#),
+            "expected both or neither",
+        );
         refused(
             &measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "contrast": 0, "brightness": 0"#),
-            "no digitiser",
+            "setting of the digitiser is out of range",
         );
         refused(&measured(r#""d_m": [0, 0, 9], "phi_Deg": [0, 0, 0]"#), "unknown field `phi_Deg`");
         refused(r#"{"field": 7, "status": "range_only"}"#, "no range_m");
-        refused(r#"{"field": 7, "status": "doubtful: motion"}"#, "gave no d_m and phi_deg");
-        refused(r#"{"field": 7, "status": "doubtful"}"#, "its status `doubtful` is not known");
-        refused(r#"{"field": 8, "status": "no_target"}"#, "it answered field 8 instead of field 7");
-        refused(r#"{"field": 7, "status": "fine"}"#, "its status `fine` is not known");
+        refused(r#"{"field": 7, "status": "doubtful: motion"}"#, "d_m or phi_deg is missing");
+        refused(r#"{"field": 7, "status": "doubtful"}"#, "its status `doubtful` is unknown");
+        refused(r#"{"field": 8, "status": "no_target"}"#, "its answer is for field 8, expected field 7");
+        refused(r#"{"field": 7, "status": "fine"}"#, "its status `fine` is unknown");
     }
 }

@@ -165,7 +165,8 @@ impl ProcessPlan {
                     &shlex::try_quote(&self.program).unwrap_or_else(|_| self.program.as_str().into()),
                 ),
                 reason: format!(
-                    "there is no program `{}`, expected one of the search path or the path of an executable file",
+                    "program `{}` not found, expected a program on the search path or the path of an \
+                     executable file",
                     self.program
                 ),
             }),
@@ -176,14 +177,14 @@ impl ProcessPlan {
     fn start(&self, greeting: Result<Vec<u8>, String>) -> Result<Process, String> {
         let mut process =
             Process::start(&self.program, &self.arguments, self.memory_bytes, self.sandbox.as_ref())
-                .map_err(|error| format!("`{}` does not start: {error}", self.program))?;
+                .map_err(|error| format!("`{}` cannot be started: {error}", self.program))?;
         let greeted = greeting
             .map_err(Fault::Broken)
             .and_then(|line| process.exchange(line, self.start_limit))
             .and_then(|line| protocol::check_greeting(&line).map_err(Fault::Broken));
         match greeted {
             Ok(()) => Ok(process),
-            Err(fault) => Err(format!("at its greeting, {}", process.end(fault))),
+            Err(fault) => Err(format!("during the greeting, {}", process.end(fault))),
         }
     }
 }

@@ -96,7 +96,7 @@ impl Process {
             Err(TryRecvError::Empty) => {}
             Err(TryRecvError::Disconnected) => return Err(Fault::Closed("its output")),
             Ok(Event::Line(_)) => {
-                return Err(Fault::Broken("it wrote a line without being asked".to_owned()));
+                return Err(Fault::Broken("it wrote a line without a request".to_owned()));
             }
             Ok(event) => return Err(fault(&event)),
         }
@@ -107,7 +107,7 @@ impl Process {
         match sent {
             Ok(()) => {}
             Err(TrySendError::Full(_)) => {
-                return Err(Fault::Broken("it answered without reading what it was asked".to_owned()));
+                return Err(Fault::Broken("it answered without reading the request".to_owned()));
             }
             Err(TrySendError::Disconnected(_)) => return Err(Fault::Closed("its input")),
         }
@@ -145,7 +145,7 @@ impl Process {
         }
         let errors = self.errors.lock().unwrap_or_else(PoisonError::into_inner).last_lines();
         if !errors.is_empty() {
-            text.push_str("; its last words: ");
+            text.push_str("; last error output: ");
             text.push_str(&errors);
         }
         text

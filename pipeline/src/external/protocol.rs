@@ -144,7 +144,7 @@ pub fn check_greeting(answer: &[u8]) -> Result<(), String> {
     if answer.boresight_pipeline == VERSION {
         Ok(())
     } else {
-        Err(format!("it speaks version {} of the protocol, expected {VERSION}", answer.boresight_pipeline))
+        Err(format!("it uses version {} of the protocol, expected {VERSION}", answer.boresight_pipeline))
     }
 }
 
@@ -203,7 +203,7 @@ impl Protocol for FarRange {
 pub fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Outcome, String> {
     let answer: Answer = parse(answer)?;
     if answer.frame != number {
-        return Err(format!("it answered frame {} instead of frame {number}", answer.frame));
+        return Err(format!("its answer is for frame {}, expected frame {number}", answer.frame));
     }
     let camera_from_icrs = answer
         .q_cam_j2000
@@ -215,7 +215,7 @@ pub fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Ou
         }
         DETECTED => Solution::Detected(measurement(&answer, size_px)?),
         status => match NoSolution::parse(status) {
-            None => return Err(format!("its status `{}` is not known", shortened(status))),
+            None => return Err(format!("its status `{}` is unknown", shortened(status))),
             Some(NoSolution::Failed(reason)) => Solution::NoSolution(NoSolution::Failed(shortened(&reason))),
             Some(reason) => Solution::NoSolution(reason),
         },
@@ -231,7 +231,7 @@ pub fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Ou
 
 fn measurement(answer: &Answer, (columns, rows): (usize, usize)) -> Result<Measurement, String> {
     let (Some(x), Some(y)) = (answer.x_px, answer.y_px) else {
-        return Err("it detected a target and gave no x_px and y_px".to_owned());
+        return Err("its status requires a position, but x_px or y_px is missing".to_owned());
     };
     let position = PixelPoint::new(x, y);
     if !position.is_on_detector(columns, rows) {
@@ -251,7 +251,7 @@ fn measurement(answer: &Answer, (columns, rows): (usize, usize)) -> Result<Measu
     let of_position = answer.position_covariance();
     let of_line_of_sight = answer.line_of_sight_covariance();
     if line_of_sight.is_none() && of_line_of_sight.iter().any(Option::is_some) {
-        return Err("it states a covariance of a line of sight, and no los_j2000".to_owned());
+        return Err("it states a covariance of a line of sight, but no los_j2000".to_owned());
     }
     let in_px = |[x, y, correlation]: [f64; 3]| Covariance2::from_sigmas(x, y, correlation);
     Ok(Measurement {
@@ -275,7 +275,7 @@ fn covariance(
     let values = match said {
         [None, None, None] => return Ok(None),
         [Some(x), Some(y), Some(correlation)] => [x, y, correlation],
-        _ => return Err(format!("it gave some of {} and not all three", keys.join(", "))),
+        _ => return Err(format!("it states only some of {}, expected all three or none", keys.join(", "))),
     };
     let refused = |wrong: OutOfRange| {
         let [x, y, correlation] = keys;
@@ -290,7 +290,8 @@ fn covariance(
 }
 
 pub(super) fn line(value: &impl Serialize) -> Result<Vec<u8>, String> {
-    let mut line = serde_json::to_vec(value).map_err(|error| format!("no line can be made: {error}"))?;
+    let mut line =
+        serde_json::to_vec(value).map_err(|error| format!("the line cannot be encoded: {error}"))?;
     line.push(b'\n');
     Ok(line)
 }
@@ -387,9 +388,12 @@ mod tests {
         refused(&px("0", "1", "0"), "its sigma_x_px is 0, expected a positive number");
         refused(&px("1", "-2", "0"), "its sigma_y_px is -2, expected a positive number");
         refused(&px("1", "2", "1"), "its correlation_xy is 1, expected above -1 to below 1");
-        refused(&px("1", "2", "null"), "some of sigma_x_px, sigma_y_px, correlation_xy and not all three");
+        refused(
+            &px("1", "2", "null"),
+            "only some of sigma_x_px, sigma_y_px, correlation_xy, expected all three or none",
+        );
         let degrees = r#""sigma_ra_deg": 1, "sigma_dec_deg": 0, "correlation_ra_dec": 0"#;
-        refused(degrees, "a covariance of a line of sight, and no los_j2000");
+        refused(degrees, "a covariance of a line of sight, but no los_j2000");
         refused(
             &format!(r#""los_j2000": [0, 0, 1], {degrees}"#),
             "its sigma_dec_deg is 0, expected a positive",
@@ -425,7 +429,7 @@ mod tests {
         let detected = |rest: &str| format!(r#"{{"frame": 7, "status": "detected", {rest}}}"#);
         refused(&detected(r#""x_px": NaN, "y_px": 1"#), "cannot be read");
         refused(&detected(r#""x_px": 1e999, "y_px": 1"#), "cannot be read");
-        refused(&detected(r#""x_px": null, "y_px": 1"#), "gave no x_px and y_px");
+        refused(&detected(r#""x_px": null, "y_px": 1"#), "x_px or y_px is missing");
         refused(&detected(r#""x_px": 100, "y_px": 1"#), "is not on the detector of 100 × 80 pixels");
         refused(&detected(r#""x_px": 1, "y_px": 1, "los_j2000": [1, 1, 0]"#), "is not a unit vector");
         refused(&detected(r#""x_px": 1, "y_px": 1, "los_j2000": [0, 0, 0]"#), "is not a unit vector");
@@ -438,8 +442,8 @@ mod tests {
     fn an_answer_that_is_none_is_refused() {
         refused("hello", "its answer `hello` cannot be read");
         refused("", "cannot be read");
-        refused(r#"{"frame": 8, "status": "no_target"}"#, "it answered frame 8 instead of frame 7");
-        refused(r#"{"frame": 7, "status": "fine"}"#, "its status `fine` is not known");
+        refused(r#"{"frame": 8, "status": "no_target"}"#, "its answer is for frame 8, expected frame 7");
+        refused(r#"{"frame": 7, "status": "fine"}"#, "its status `fine` is unknown");
         assert!(read(&"x".repeat(100_000)).unwrap_err().len() < 400, "a message quotes the beginning only");
     }
 
@@ -447,6 +451,6 @@ mod tests {
     fn a_greeting_in_another_version_is_refused() {
         assert!(check_greeting(br#"{"boresight_pipeline": 1, "name": "a"}"#).is_ok());
         let reason = check_greeting(br#"{"boresight_pipeline": 2, "name": "a"}"#).unwrap_err();
-        assert_eq!(reason, "it speaks version 2 of the protocol, expected 1");
+        assert_eq!(reason, "it uses version 2 of the protocol, expected 1");
     }
 }

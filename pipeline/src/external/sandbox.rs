@@ -111,7 +111,7 @@ mod landlocked {
                     _ => Err(std::io::Error::other(MISSING)),
                 }
             };
-            let ended = || Err(std::io::Error::other("the thread that starts it ended"));
+            let ended = || Err(std::io::Error::other("the thread that starts the process panicked"));
             std::thread::scope(|scope| scope.spawn(restricted).join()).unwrap_or_else(|_| ended())
         }
 
@@ -177,7 +177,7 @@ mod landlocked {
     /// Oldest version of the access rights with which a process is started.
     const OLDEST: ABI = ABI::V1;
     const MISSING: &str =
-        "the kernel has no Landlock (Linux 5.13 and later, switched on), expected it for a sandbox";
+        "the kernel lacks Landlock, which the sandbox requires (Linux 5.13 or later, with Landlock enabled)";
 
     /// Returns rules that allow nothing: no file, no TCP, no signal to other processes.
     fn rules() -> Result<RulesetCreated, String> {
@@ -226,7 +226,7 @@ impl Sandbox {
     /// # Errors
     /// Always.
     pub fn check() -> Result<(), String> {
-        Err("this system has no Landlock, expected Linux 5.13 or later for a sandbox".to_owned())
+        Err("this system lacks Landlock, which the sandbox requires (Linux 5.13 or later)".to_owned())
     }
 
     pub(super) fn spawn(

@@ -111,23 +111,24 @@ impl FarRangeConfig {
         let Some(floor_dn) = zero_suppression_dn else { return Ok(()) };
         let refused = |path, value: &str, expected| Err(OutOfRange::new(path, value, expected));
         if self.weights == Weights::AboveBackground {
-            let expected = "intensity, with zero_suppression_dn: the background does not arrive";
+            let expected = "intensity with zero_suppression_dn, because the background is not transmitted";
             return refused("weights", "above_background", expected);
         }
         if self.mode == Mode::Best {
-            let expected = "paper, with zero_suppression_dn: a fit takes the faint pixels of an image too";
+            let expected =
+                "paper with zero_suppression_dn, because the fit also uses the faint pixels of an image";
             return refused("mode", "best", expected);
         }
         match self.thresholds {
             ThresholdConfig::Automatic { .. } => {
-                let expected = "constant, with zero_suppression_dn: the background does not arrive";
+                let expected = "constant with zero_suppression_dn, because the background is not transmitted";
                 refused("thresholds.mode", "automatic", expected)
             }
             ThresholdConfig::Constant { low, .. } => {
                 let full_scale = f64::from(u32::MAX >> (32 - u32::from(bit_depth.clamp(1, 16))));
                 if (low * full_scale).floor() < f64::from(floor_dn) {
                     let value = format!("{low}, {} DN", (low * full_scale).floor());
-                    let expected = "zero_suppression_dn or more: below it pixels arrive as 0";
+                    let expected = "zero_suppression_dn or more, because fainter pixels are transmitted as 0";
                     return refused("thresholds.low", &value, expected);
                 }
                 Ok(())
@@ -176,7 +177,8 @@ mod tests {
         };
         // Full scale is 4095: 0.0165 is 67.6 DN, so a pixel passes from 68 on.
         assert_eq!(checked(&constant(0.0165, "")), Ok(()));
-        let expected = "thresholds.low is 0.016, 65 DN, expected zero_suppression_dn or more: below it pixels arrive as 0";
+        let expected = "thresholds.low is 0.016, 65 DN, expected zero_suppression_dn or more, because \
+                        fainter pixels are transmitted as 0";
         assert_eq!(checked(&constant(0.016, "")), Err(expected.to_owned()));
         for (json, field) in [
             (r#"{"mode": "paper"}"#.to_owned(), "thresholds.mode is automatic"),

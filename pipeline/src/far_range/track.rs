@@ -43,7 +43,7 @@ impl TrackingConfig {
     /// # Errors
     /// [`OutOfRange`] for the first value outside its range.
     pub(super) fn check(&self) -> Result<(), OutOfRange> {
-        let expected = "0 to 1e6, and not 0 with the other weight";
+        let expected = "0 to 1e6, and above 0 if the other weight is 0";
         require("tracking.weight_size", self.weight_size, expected, |v| v + self.weight_displacement > 0.0)
     }
 }

@@ -9,7 +9,7 @@ pub(super) fn unusable(frame: &Frame, telemetry: &Telemetry, model: &CameraModel
     let (columns, rows) = model.size_px();
     if (frame.columns(), frame.rows()) != (columns, rows) {
         return Some(format!(
-            "a frame of {} × {} pixels for a camera of {columns} × {rows}",
+            "the frame has {} × {} pixels, expected {columns} × {rows}, the size of the camera",
             frame.columns(),
             frame.rows()
         ));

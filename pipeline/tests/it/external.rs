@@ -178,7 +178,7 @@ fn the_example_keeps_the_contract() {
 
 #[test]
 fn a_program_that_is_not_there_does_not_start() {
-    dies(&Bench::command("/nowhere/pipeline --fast"), "`/nowhere/pipeline` does not start");
+    dies(&Bench::command("/nowhere/pipeline --fast"), "`/nowhere/pipeline` cannot be started");
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn a_command_that_cannot_be_meant_is_refused() {
 #[test]
 fn another_version_is_refused() {
     let bench = Bench::python("ask(); say('{\"boresight_pipeline\": 2, \"name\": \"x\"}'); ask()");
-    dies(&bench, "at its greeting, it speaks version 2 of the protocol, expected 1");
+    dies(&bench, "during the greeting, it uses version 2 of the protocol, expected 1");
 }
 
 #[test]
@@ -207,7 +207,7 @@ fn a_greeting_that_is_no_greeting_is_refused() {
 fn a_program_that_never_greets_is_ended() {
     let mut bench = Bench::python("time.sleep(60)");
     bench.factory.start_timeout_s = 0.3;
-    dies(&bench, "at its greeting, it gave no answer within 0.3 s");
+    dies(&bench, "during the greeting, it gave no answer within 0.3 s");
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn a_program_that_hangs_is_ended_with_its_children() {
 #[test]
 fn a_crash_is_told_with_its_status_and_last_words() {
     let bench = Bench::python("hello()\nask()\nsys.stderr.write('no film\\n')\nsys.exit(3)");
-    dies(&bench, "at frame 0, it ended with exit status: 3; its last words: no film");
+    dies(&bench, "at frame 0, it ended with exit status: 3; last error output: no film");
 }
 
 #[test]
@@ -268,9 +268,9 @@ fn an_unusable_answer_costs_its_frame_alone() {
     let mut pipeline = bench.build();
     let expected = [
         "cannot be read",
-        "frame 99 instead of frame 1",
+        "frame 99, expected frame 1",
         "cannot be read",
-        "gave no x_px",
+        "x_px or y_px is missing",
         "not on the detector",
     ];
     for (number, expected) in expected.into_iter().enumerate() {
@@ -296,7 +296,7 @@ fn a_flood_of_lines_is_stopped() {
     // counts as an answer to the wrong frame.
     let stopped = (1..1000).find_map(|number| {
         let reason = reason(&process(&mut *pipeline, number));
-        reason.contains("it wrote a line without being asked").then_some(reason)
+        reason.contains("it wrote a line without a request").then_some(reason)
     });
     assert_eq!(Some(reason(&process(&mut *pipeline, 1000))), stopped, "it stays ended");
 }

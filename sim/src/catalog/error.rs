@@ -17,7 +17,7 @@ pub enum CatalogError {
     },
     /// The file has none of the known formats.
     #[error(
-        "catalogue {}: the format is not known; expected CSV (name ending in .csv), hip2.dat (I/311) or \
+        "catalogue {}: unknown format; expected CSV (name ending in .csv), hip2.dat (I/311) or \
          hip_main.dat (I/239)",
         path.display()
     )]
@@ -55,7 +55,7 @@ pub enum CatalogError {
         problem: String,
     },
     /// A column of a CSV file has an unknown name.
-    #[error("catalogue {}: the column `{name}` is not known, did you mean `{nearest}`?", path.display())]
+    #[error("catalogue {}: unknown column `{name}`, did you mean `{nearest}`?", path.display())]
     UnknownColumn {
         /// Path of the file.
         path: PathBuf,
@@ -73,7 +73,7 @@ pub enum CatalogError {
         name: &'static str,
     },
     /// Two stars have the same number.
-    #[error("catalogue {}, line {line}: the id {id} was already given in line {first_line}", path.display())]
+    #[error("catalogue {}, line {line}: the id {id} is already used in line {first_line}", path.display())]
     DuplicateId {
         /// Path of the file.
         path: PathBuf,

@@ -97,12 +97,12 @@ impl CameraConfig {
         require(
             "cameras[].until_range_m",
             self.until_range_m,
-            "0 for the last camera, less than that of the one before, above 0 for the others",
+            "0 for the last camera, above 0 for the others, less than for the previous camera",
             |m| if last { m == 0.0 } else { m > 0.0 && before.is_none_or(|before| m < before.until_range_m) },
         )?;
         let Camera { columns, rows, .. } = self.camera;
         if before.is_some_and(|Self { camera, .. }| (camera.columns, camera.rows) != (columns, rows)) {
-            let expected = "columns and rows of the first camera: one detector behind all lenses";
+            let expected = "the columns and rows of the first camera: all lenses share one detector";
             return Err(OutOfRange::new("cameras[].camera", format!("{columns} × {rows}"), expected));
         }
         Ok(())

@@ -132,7 +132,7 @@ impl ShadeConfig {
             .zip(outer.iter().cycle().skip(1))
             .fold(Vector3::zeros(), |sum, (a, b)| sum + a.cross(b));
         let Some(normal) = Unit::try_new(area, 1e-6).map(Unit::into_inner) else {
-            return refused("a polygon with an area");
+            return refused("a polygon with a nonzero area");
         };
         if outer.iter().any(|corner| (corner - outer[0]).dot(&normal).abs() > FLATNESS_M) {
             return refused("corners in one plane");
@@ -159,7 +159,7 @@ impl LightingConfig {
         }
         if let Some(FloodlightConfig { inner_half_angle_deg, outer_half_angle_deg, .. }) = self.floodlight {
             let (path, expected) =
-                ("lighting.floodlight.outer_half_angle_deg", "more than the inner one, at most 89");
+                ("lighting.floodlight.outer_half_angle_deg", "more than inner_half_angle_deg, at most 89");
             require(path, outer_half_angle_deg, expected, |a| a > inner_half_angle_deg)?;
         }
         for (index, glint) in self.glints.iter().enumerate() {

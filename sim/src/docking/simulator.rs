@@ -161,7 +161,7 @@ impl DockingSimulator {
             return Ok((time_s, state));
         }
         let value = format!("({:.3}, {:.3}, {:.3}) m at field {field}", place_m.x, place_m.y, place_m.z);
-        Err(OutOfRange::new("approach", value, "a camera in front of the target and of all that is about it"))
+        Err(OutOfRange::new("approach", value, "a camera in front of the target and of all parts around it"))
     }
 
     /// Number of fields from the beginning to the end of the approach.

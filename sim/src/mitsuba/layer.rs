@@ -36,17 +36,22 @@ impl Layer {
         let mut layers = Vec::new();
         if let Some(sun) = lighting.sun {
             require("lighting.sun.irradiance", sun.irradiance, "0 or more", light)?;
-            require("lighting.sun.towards", sun.towards.norm(), "a vector with a length", |v| v > 0.0)?;
+            require("lighting.sun.towards", sun.towards.norm(), "a vector of nonzero length", |v| v > 0.0)?;
             layers.push(Self::Sun(sun));
         }
         if let Some(lamp) = lighting.floodlight {
             let (inner, outer) = (lamp.inner_half_angle_rad, lamp.outer_half_angle_rad);
             require("lighting.floodlight.intensity", lamp.intensity, "0 or more", light)?;
-            require("lighting.floodlight.axis", lamp.axis.norm(), "a vector with a length", |v| v > 0.0)?;
+            require("lighting.floodlight.axis", lamp.axis.norm(), "a vector of nonzero length", |v| v > 0.0)?;
             require("lighting.floodlight.position_m", lamp.position_m.sum(), "finite numbers", |_| true)?;
             require("lighting.floodlight.inner_half_angle_rad", inner, "0 or more", light)?;
             let wider = |v: f64| v > inner && v < std::f64::consts::FRAC_PI_2;
-            require("lighting.floodlight.outer_half_angle_rad", outer, "more than inner, below π/2", wider)?;
+            require(
+                "lighting.floodlight.outer_half_angle_rad",
+                outer,
+                "more than inner_half_angle_rad, below π/2",
+                wider,
+            )?;
             layers.push(Self::Floodlight(lamp));
         }
         if lighting.fill_radiance > 0.0 || lighting.sky_radiance > 0.0 {

@@ -47,7 +47,7 @@ impl Settings {
     /// the image.
     pub fn check(&self, camera: &Camera) -> Result<Crop, OutOfRange> {
         if !(1..=64).any(|side| side * side == self.samples) {
-            let expected = "the square of a number from 1 to 64: 16, 64, 256, …";
+            let expected = "the square of an integer from 1 to 64: 16, 64, 256, …";
             return Err(OutOfRange::new("samples", self.samples, expected));
         }
         let crop = self.crop.unwrap_or_else(|| Crop::full_frame(camera));
@@ -58,7 +58,7 @@ impl Settings {
             Ok(crop)
         } else {
             let value = format!("{}×{} px at ({}, {})", crop.columns, crop.rows, crop.x, crop.y);
-            Err(OutOfRange::new("crop", value, "a part of the camera's image"))
+            Err(OutOfRange::new("crop", value, "a non-empty rectangle within the camera's image"))
         }
     }
 }

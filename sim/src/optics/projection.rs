@@ -78,7 +78,8 @@ impl Projection {
                 "camera.radial, camera.tangential",
                 format!("{:?}, {:?}", camera.radial, camera.tangential),
                 format!(
-                    "a distortion that does not fold inside the detector: it does {:.0} px from the principal point",
+                    "a distortion that is one-to-one on the detector: this one folds back {:.0} px from the \
+                     principal point",
                     projection.distortion.distort(Offset { u: projection.domain_px, v: 0.0 }).length()
                 ),
             )

@@ -105,7 +105,7 @@ impl CosmicRayConfig {
     /// Checks the bound on the number of hits in a frame.
     pub(super) fn check(&self) -> Result<(), OutOfRange> {
         let Some(bump) = &self.south_atlantic else { return Ok(()) };
-        let expected = "at most 1e5 particles a second and cm², times the rate";
+        let expected = "at most 1e5 particles per cm² and second (value: factor × rate_per_cm2_s)";
         let peak = self.rate_per_cm2_s * bump.peak_factor;
         require("sensor.cosmic_rays.south_atlantic.peak_factor", peak, expected, |v| v <= 1e5)
     }
@@ -162,8 +162,7 @@ impl CosmicRays {
         let peak = self.config.south_atlantic.map_or(1.0, |bump| bump.peak_factor);
         let hits = self.mean_hits(longest_s, self.config.rate_per_cm2_s * peak);
         let value = format!("{} ({hits:.3e} hits in a frame of {longest_s} s)", self.config.rate_per_cm2_s);
-        let expected =
-            "at most 1e5 hits in a frame: highest rate times area times the longest exposure and readout_s";
+        let expected = "at most 1e5 hits per frame: highest rate × area × (longest exposure + readout_s)";
         let refused = || OutOfRange::new("sensor.cosmic_rays.rate_per_cm2_s", value, expected);
         if hits <= MOST_HITS { Ok(()) } else { Err(refused()) }
     }

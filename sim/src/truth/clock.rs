@@ -38,7 +38,7 @@ pub fn parse_utc(text: &str) -> Result<Epoch, OutOfRange> {
     let refuse = |expected| OutOfRange::new("time", text, expected);
     let civil = Civil::parse(text)
         .ok_or_else(|| refuse("a UTC time such as 2012-04-25T12:18:54.5Z, from 1972 to 2261"))?;
-    let label_ns = civil.label_ns().ok_or_else(|| refuse("a date and time that exist"))?;
+    let label_ns = civil.label_ns().ok_or_else(|| refuse("an existing date and time"))?;
     if civil.second < 60 {
         return Ok(epoch_of_tai(label_ns + tai_minus_utc_ns(label_ns)));
     }
@@ -47,7 +47,7 @@ pub fn parse_utc(text: &str) -> Result<Epoch, OutOfRange> {
     if leap_seconds().any(|leap| leap_label_ns(&leap) == inserted_before) {
         Ok(epoch_of_tai(label_ns + tai_minus_utc_ns(label_ns) - NS_PER_S))
     } else {
-        Err(refuse("second 60 only where a leap second was inserted"))
+        Err(refuse("second 60 only at an inserted leap second"))
     }
 }
 

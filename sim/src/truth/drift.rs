@@ -36,9 +36,7 @@ impl DriftConfig {
     /// [`OutOfRange`] if the periods are missing.
     pub(super) fn check(&self, path: &str) -> Result<(), OutOfRange> {
         let count = self.periods_s.len() as f64;
-        require(path, count, "at least one of periods_s where the rms is not 0", |n| {
-            self.is_still() || n > 0.0
-        })
+        require(path, count, "at least one period, unless the rms is 0", |n| self.is_still() || n > 0.0)
     }
 
     /// Returns true if the error is always zero.

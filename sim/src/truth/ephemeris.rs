@@ -61,7 +61,7 @@ pub fn check_covered(path: impl Into<String>, value: &str, time: Epoch) -> Resul
     if COVERAGE.contains(&clock::tdb_j2000_s(time)) {
         Ok(())
     } else {
-        Err(OutOfRange::new(path, value, format!("a time of the ephemerides, {COVERAGE_TEXT}")))
+        Err(OutOfRange::new(path, value, format!("a time covered by the ephemerides, {COVERAGE_TEXT}")))
     }
 }
 

@@ -86,8 +86,9 @@ impl Schedule {
         for (index, config) in configs.iter().enumerate() {
             config.check().map_err(|error| error.in_entry(index))?;
             if !names.insert(config.name.as_str()) {
-                return Err(OutOfRange::new("schedule[].name", config.name.clone(), "a name used once")
-                    .in_entry(index));
+                return Err(
+                    OutOfRange::new("schedule[].name", config.name.clone(), "a unique name").in_entry(index)
+                );
             }
             // Counted in TAI: in UTC, adding seconds across a leap second would lose one second.
             let start =
@@ -96,7 +97,7 @@ impl Schedule {
                 && start <= before.time(before.frames.end - 1)
             {
                 let value = format!("{} (group `{}`)", config.start_utc, config.name);
-                let expected = "after the last frame of the group before it";
+                let expected = "after the last frame of the previous group";
                 return Err(OutOfRange::new("schedule[].start_utc", value, expected).in_entry(index));
             }
             let frames = first_frame..first_frame + config.count;

@@ -109,7 +109,8 @@ impl Trajectory {
             return Err(OutOfRange::new(
                 "orbit.relative",
                 format!("{:?}", config.relative),
-                "a chaser's orbit with e at most 0.9, perigee above 100 km, not in the equator",
+                "a chaser orbit with an eccentricity of at most 0.9, a perigee above 100 km and an \
+                 inclination to the equator",
             ));
         }
         let mut last = Arc { start_s: 0.0, chaser };
@@ -120,11 +121,11 @@ impl Trajectory {
             check_covered(format!("orbit.manoeuvres[{index}].time_utc"), &manoeuvre.time_utc, time)?;
             let start_s = seconds_between(epoch, time);
             if start_s <= last.start_s {
-                let expected = "after the orbit's epoch and after the manoeuvre before it";
+                let expected = "after the orbit's epoch and after the previous manoeuvre";
                 return Err(manoeuvre.refused_time(index, expected));
             }
             let chaser = manoeuvre.apply(&last.chaser_at(start_s)).ok_or_else(|| {
-                manoeuvre.refused_impulse(index, "an impulse that leaves a supported orbit")
+                manoeuvre.refused_impulse(index, "an impulse that results in a supported orbit")
             })?;
             last = Arc { start_s, chaser };
             arcs.push(last);

@@ -70,7 +70,7 @@ fn suppressed_images_are_whole_images_above_the_floor() {
     }
     let both = Simulation { zero_suppression_dn: Some(67), ..restless(67) };
     let refusal = Simulator::new(&both, std::path::Path::new("")).unwrap_err().to_string();
-    assert!(refusal.starts_with("zero_suppression_dn is 67, expected none beside [roi]"), "{refusal}");
+    assert!(refusal.starts_with("zero_suppression_dn is 67, expected no value with [roi]"), "{refusal}");
 }
 
 /// Overflowing wells, cosmic-ray hits, dead pixels, smear: with and without line noise, which leaves no pixel

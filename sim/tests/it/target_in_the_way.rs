@@ -111,7 +111,7 @@ fn no_camera_is_inside_of_it_in_any_frame() {
         message.starts_with("orbit.relative is 5") && message.contains("m from the target's centre"),
         "{message}"
     );
-    assert!(message.ends_with("expected a camera outside of the target"), "{message}");
+    assert!(message.ends_with("expected a camera outside the target"), "{message}");
     simulation.target = black_box();
     simulator(&simulation);
     let relative = &mut simulation.orbit.relative;
@@ -142,7 +142,7 @@ fn exposures_hits_and_epochs_that_cannot_be_are_refused() {
     simulation.sensor.cosmic_rays.as_mut().unwrap().readout_s = 1000.0;
     let message = refusal(&simulation);
     assert!(message.contains("sensor.cosmic_rays.rate_per_cm2_s is 10000 (1.371e5 hits"), "{message}");
-    assert!(message.contains("expected at most 1e5 hits in a frame"), "{message}");
+    assert!(message.contains("expected at most 1e5 hits per frame"), "{message}");
 
     for epoch in ["1989-12-31T00:00:00Z", "2051-01-01T00:00:00Z"] {
         let mut simulation = still();

@@ -26,8 +26,8 @@ fn a_catalogue_that_is_not_there_is_named() {
 
 #[test]
 fn a_catalogue_of_no_known_format_is_refused() {
-    check("dat", Some("Sirius, Canopus, Arcturus\n"), &["the format is not known", "hip2.dat"]);
-    check("dat", Some(""), &["the format is not known"]);
+    check("dat", Some("Sirius, Canopus, Arcturus\n"), &["unknown format", "hip2.dat"]);
+    check("dat", Some(""), &["unknown format"]);
 }
 
 #[test]

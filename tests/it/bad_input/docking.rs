@@ -84,14 +84,14 @@ fn a_mistake_in_a_target_file_has_its_position_there() {
 fn options_of_the_other_world_are_refused() {
     let bench = Bench::new();
     for (words, parts) in [
-        ("run docking --inject roi --out a", ["--inject is roi", "far-range"]),
+        ("run docking --inject roi --out a", ["--inject roi", "far-range"]),
         ("run docking --pipeline far_range --out a", ["`far_range`", "`docking`"]),
         ("run docking --save-frames fits --out a", ["--save-frames: `fits`", "png, avi, mjpeg or y4m"]),
         ("render docking --format exr --out a", ["--format: `exr`", "png, avi, mjpeg or y4m"]),
         ("render docking --expected --out a", ["--expected", "far-range"]),
-        ("render docking --format avi --out -", ["--out is -", "y4m"]),
+        ("render docking --format avi --out -", ["--out -", "y4m"]),
         ("render docking --format avi --out a", ["fields", "mjpeg"]),
-        ("run argon --renderer mitsuba --out a", ["--renderer is mitsuba", "docking"]),
+        ("run argon --renderer mitsuba --out a", ["--renderer mitsuba", "docking"]),
         ("run argon --mitsuba-rays 16 --out a", ["--mitsuba-rays", "--renderer mitsuba"]),
         ("render docking --mitsuba m --out a", ["--mitsuba", "--renderer mitsuba"]),
         ("run docking --frames 30000..30001 --out a", ["30000..30001", "0..25169"]),
@@ -123,7 +123,7 @@ fn a_sequence_that_is_not_there_or_not_known_is_refused() {
     check_refused(&bench, "process a.avi --scenario docking --setup b.toml", &["--setup", "--scenario"]);
     check_refused(&bench, "process a.avi --setup nowhere.toml", &["nowhere.toml"]);
     bench.write("a.mov", "x");
-    check_refused(&bench, "process a.mov --scenario docking", &["a.mov", "avi, y4m", "--raw 768x576"]);
+    check_refused(&bench, "process a.mov --scenario docking", &["a.mov", "avi or y4m", "--raw 768x576"]);
     bench.write("empty/readme.txt", "x");
     check_refused(&bench, "process empty --scenario docking", &["empty", "images *.png"]);
     check_refused(&bench, "process empty", &["empty", "camera.toml", "setup.toml"]);
@@ -134,7 +134,7 @@ fn a_field_order_a_rate_or_a_size_that_is_none_is_refused() {
     let bench = video();
     for (option, parts) in [
         ("--field-order odd", ["--field-order", "top or bottom"]),
-        ("--frame-rate-hz 0", ["frames a second", "0.001 to"]),
+        ("--frame-rate-hz 0", ["frames per second", "0.001 to"]),
         ("--frame-rate-hz fast", ["--frame-rate-hz", "'fast'"]),
         ("--raw 768", ["--raw", "768x576"]),
         ("--raw 640x480", ["640 × 480", "768 × 576"]),
@@ -230,10 +230,10 @@ fn a_video_that_does_not_fit_its_table_is_refused() {
     let table = bench.read("set/telemetry.csv");
     let lines: Vec<&str> = table.lines().collect();
     bench.write("set/telemetry.csv", lines[..3].join("\n") + "\n");
-    check_refused(&bench, "process set", &["telemetry.csv", "frames without a row"]);
+    check_refused(&bench, "process set", &["telemetry.csv", "frame without a row"]);
     let more = lines[4].replacen("24003", "24004", 1).replace(lines[4].split(',').nth(2).unwrap(), "500");
     bench.write("set/telemetry.csv", table.clone() + &more + "\n");
-    check_refused(&bench, "process set", &["telemetry.csv, line 6", "24004", "has ended"]);
+    check_refused(&bench, "process set", &["telemetry.csv, line 6", "24004", "ends before this row"]);
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn numbers_dates_and_names_of_scenarios() {
     for (old, new, parts) in [
         ("gain_e_per_dn = 10.0", "gain_e_per_dn = 1e400", &["sensor.gain_e_per_dn", "overflowed"][..]),
         ("seed = 1 ", "seed = -1 ", &["s.toml:", "seed", "-1"]),
-        ("seed = 1 ", "seed = 1.5 ", &["seed", "1.5", "whole number"]),
+        ("seed = 1 ", "seed = 1.5 ", &["seed", "1.5", "an integer"]),
         ("[sensor]", "[s\u{435}nsor]", &["s.toml:", "unquoted key"]),
         ("title = ", "world = \"\"\ntitle = ", &["world", "far_range"]),
         ("count = 400", "count = 0", &["schedule[0].count", "1 to 1e8"]),
@@ -29,12 +29,20 @@ fn numbers_dates_and_names_of_scenarios() {
         // Printed as written, without three hundred zeros.
         ("cadence_s = 15.0", "cadence_s = 1e300", &["schedule[0].cadence_s: is 1e300, expected"]),
         ("pixel_width_um = 8.6", "pixel_width_um = 1e-300", &["camera.pixel_width_um: is 1e-300, expected"]),
-        ("2012-04-25T00:10:00Z", "2012-02-30T00:10:00Z", &["schedule[0].start_utc", "that exist"]),
-        ("2012-04-25T00:10:00Z", "2012-04-25T24:00:00Z", &["schedule[0].start_utc", "that exist"]),
+        (
+            "2012-04-25T00:10:00Z",
+            "2012-02-30T00:10:00Z",
+            &["schedule[0].start_utc", "an existing date and time"],
+        ),
+        (
+            "2012-04-25T00:10:00Z",
+            "2012-04-25T24:00:00Z",
+            &["schedule[0].start_utc", "an existing date and time"],
+        ),
         ("2012-04-25T00:10:00Z", "2012-04-25T00:10:00", &["schedule[0].start_utc", "a UTC time"]),
         ("2012-04-25T00:10:00Z", "2013-06-30T23:59:60Z", &["schedule[0].start_utc", "leap second"]),
         ("columns = 752", "columns = 1000000", &["camera.columns", "16384"]),
-        ("columns = 752", "columns = 752.0", &["camera.columns", "whole number"]),
+        ("columns = 752", "columns = 752.0", &["camera.columns", "an integer"]),
         ("focal_length_mm = 20.187", "focal_length_mm = -0.0", &["camera.focal_length_mm", "-0"]),
         ("principal_x_px = 395.0", "principal_x_px = 1e9", &["camera.principal_x_px"]),
         ("radial = [2.6e-8, 0.0, 0.0]", "radial = [nan, 0.0, 0.0]", &["camera.radial[0]", "NaN"]),
@@ -51,7 +59,7 @@ fn numbers_dates_and_names_of_scenarios() {
             &["orbit.target.semi_major_axis_km: is 100,"],
         ),
         ("a_dlambda_m = -10000.0", "a_dlambda_m = -1e12", &["orbit.relative.a_dlambda_m"]),
-        ("\"silicon_ccd\"", "[[700.0, 0.5], [600.0, 0.5]]", &["radiometry.quantum_efficiency", "grow"]),
+        ("\"silicon_ccd\"", "[[700.0, 0.5], [600.0, 0.5]]", &["radiometry.quantum_efficiency", "increasing"]),
         (
             "\"silicon_ccd\"",
             "[[500.0, 1.5], [600.0, 0.5]]",
@@ -65,7 +73,7 @@ fn numbers_dates_and_names_of_scenarios() {
         ("name = \"first orbit\"", "name = \"\"", &["schedule[0].name", "empty"]),
         ("source = \"hipparcos2\"", "source = \".\"", &["not a regular file"]),
         ("source = \"hipparcos2\"", "source = \"\"", &["catalog.source", "is empty"]),
-        ("source = \"hipparcos2\"", "source = \"s.toml\"", &["s.toml", "format is not known"]),
+        ("source = \"hipparcos2\"", "source = \"s.toml\"", &["s.toml", "unknown format"]),
     ] {
         with_change(&bench, old, new);
         check_refused(&bench, RENDER, parts);
@@ -106,8 +114,8 @@ fn tables_beside_a_scenario() {
         (format!("{head}1,0,0,nan\n"), "hp_mag is `nan`"),
         (format!("{head}-1,0,0,3\n"), "id is `-1`"),
         (format!("{head}\"1,0,0,3\n"), "line 2"),
-        (head.replace(',', ";"), "not known"),
-        (format!("id,{head}1,1,0,0,3\n"), "stands there twice"),
+        (head.replace(',', ";"), "unknown column"),
+        (format!("id,{head}1,1,0,0,3\n"), "occurs twice"),
     ] {
         bench.write("c.csv", content);
         check_refused(&bench, RENDER, &["c.csv", part]);

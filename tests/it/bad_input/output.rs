@@ -37,7 +37,7 @@ fn a_report_replaces_nothing_but_a_report() {
     bench.write("scenario.toml", "mine");
     bench.write("mine.html", "<!doctype html><title>mine</title>");
     for name in ["run/measurements.csv", "scenario.toml", "mine.html"] {
-        let parts = [name, "another file", "earlier report"];
+        let parts = [name, "a file of another kind", "earlier report"];
         check_refused(&bench, &format!("report run --out {name}"), &parts);
         check_refused(&bench, &format!("gate base run --report {name}"), &parts);
         check_refused(&bench, &format!("visibility uasc-far-range --report {name}"), &parts);
@@ -52,7 +52,7 @@ fn a_report_replaces_nothing_but_a_report() {
             std::fs::set_permissions(bench.path("page.html"), permissions).unwrap();
         };
         set_mode(0o444);
-        check_refused(&bench, "report run --out page.html", &["page.html", "may not be written"]);
+        check_refused(&bench, "report run --out page.html", &["page.html", "is read-only"]);
         std::os::unix::fs::symlink(bench.path("page.html"), bench.path("link.html")).unwrap();
         check_refused(&bench, "report run --out link.html", &["link.html", "not a regular file"]);
         check_refused(&bench, "report run --out /dev/null", &["/dev/null", "not a regular file"]);
@@ -85,7 +85,7 @@ fn a_manual_replaces_nothing_but_its_pages() {
         bench.boresight("man --out man").done();
     }
     bench.write("man/boresight-run.1", "mine");
-    bench.boresight("man --out man").refused(&["man/boresight-run.1", "another file"]);
+    bench.boresight("man --out man").refused(&["man/boresight-run.1", "a file of another kind"]);
     assert_eq!(bench.read("man/boresight-run.1"), "mine");
 }
 
@@ -95,7 +95,7 @@ fn the_checksums_of_a_run_stay() {
     let bench = Bench::new();
     bench.boresight("run argon --frames 0..40 --out run --no-report").done();
     bench.write("study.toml", STUDY);
-    let parts = ["run/SHA256SUMS", "another file"];
+    let parts = ["run/SHA256SUMS", "a file of another kind"];
     check_refused(&bench, "gate baseline run --out run --reason x --block-length 2", &parts);
     check_refused(&bench, "gate baseline run --out run --reason x --block-length 2 --replace", &parts);
     check_refused(&bench, "study run study.toml --out run", &parts);

@@ -39,7 +39,7 @@ fn check_impossible(built_in: &str, parts: &[&str], change: impl FnOnce(&mut Tab
 #[test]
 fn a_camera_inside_of_the_target_is_refused() {
     let parts =
-        ["orbit.relative", "from the target's centre at frame ", "expected a camera outside of the target"];
+        ["orbit.relative", "from the target's centre at frame ", "expected a camera outside the target"];
     check_impossible("starting-point", &parts, |table| {
         set(table, "target.radius_m", 400.0);
         set(table, "orbit.relative.a_dlambda_m", -10.0);
@@ -62,8 +62,11 @@ fn a_camera_inside_of_the_target_is_refused() {
 #[test]
 fn an_epoch_outside_of_the_ephemerides_is_refused() {
     for epoch in ["1975-04-25T00:00:00Z", "2077-04-25T00:00:00Z"] {
-        let parts =
-            ["orbit.epoch_utc", epoch, "expected a time of the ephemerides, from 1990-01-01 to 2050-01-05"];
+        let parts = [
+            "orbit.epoch_utc",
+            epoch,
+            "expected a time covered by the ephemerides, from 1990-01-01 to 2050-01-05",
+        ];
         check_impossible("starting-point", &parts, |table| set(table, "orbit.epoch_utc", epoch));
     }
 }
@@ -89,7 +92,7 @@ fn more_hits_than_a_frame_may_have_are_refused() {
     let parts = [
         "sensor.cosmic_rays.rate_per_cm2_s",
         "hits in a frame of 0.25 s",
-        "expected at most 1e5 hits in a frame",
+        "expected at most 1e5 hits per frame",
     ];
     check_impossible("starting-point", &parts, |table| {
         set(table, "camera.columns", 128);
@@ -124,7 +127,7 @@ fn a_distortion_beyond_sip_is_reported_and_its_fits_files_have_none() {
         assert!(!header.contains("A_ORDER"), "{header}");
     }
     // If a corner has no direction, or more than one, the camera is invalid.
-    let parts = ["camera.radial", "does not fold inside the detector: it does 4"];
+    let parts = ["camera.radial", "one-to-one on the detector: this one folds back 4"];
     check_impossible("starting-point", &parts, |table| {
         set(table, "camera.radial", vec![Value::Float(-7e-7), Value::Float(0.0), Value::Float(0.0)]);
     });

@@ -78,7 +78,7 @@ fn a_missing_key_is_named_with_its_table() {
 
 #[test]
 fn a_value_of_the_wrong_type_is_named() {
-    check_edited("seed = 1 #", "seed = \"one\" #", &["seed", "string \"one\"", "a whole number"]);
+    check_edited("seed = 1 #", "seed = \"one\" #", &["seed", "string \"one\"", "an integer"]);
     check_edited("kind = \"gaussian\"", "kind = \"square\"", &["`square`", "`gaussian`"]);
 }
 

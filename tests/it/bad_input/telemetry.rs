@@ -38,7 +38,7 @@ fn a_frame_whose_image_is_missing_is_named() {
 
 #[test]
 fn a_frame_whose_row_is_missing_is_named_by_its_image() {
-    check(|table| drop(table.remove(2)), &["frames/000021.png", "the frame's telemetry is missing"]);
+    check(|table| drop(table.remove(2)), &["frames/000021.png", "the telemetry of this image is missing"]);
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn frames_given_twice_or_out_of_order_are_refused() {
         4,
         "time_utc",
         "2012-04-22T00:00:00Z",
-        &["`time_utc`", "later than the time of the row above"],
+        &["`time_utc`", "later than the time of the previous row"],
     );
 }
 

@@ -255,10 +255,12 @@ fn an_interrupted_command_says_what_it_kept() {
         let out = words.split(' ').next().unwrap();
         let told = interrupted(&format!("{words} {out}"), &|| bench.path(out).join("run.toml").exists());
         assert!(told.contains(&format!("interrupted: {out} holds an unfinished run")), "{told}");
-        assert!(unfinished(out) && bench.read(&format!("{out}/UNFINISHED.txt")).contains("is not continued"));
-        bench.boresight(&format!("{words} {out}")).refused(&[out, "killed, failed, or still goes on"]);
+        assert!(
+            unfinished(out) && bench.read(&format!("{out}/UNFINISHED.txt")).contains("cannot be continued")
+        );
+        bench.boresight(&format!("{words} {out}")).refused(&[out, "in progress, killed or failed"]);
         for reader in [format!("report {out}"), format!("score {out} {out}/measurements.csv")] {
-            bench.boresight(&reader).refused(&[out, "UNFINISHED.txt is there"]);
+            bench.boresight(&reader).refused(&[out, "UNFINISHED.txt exists"]);
         }
     }
 
@@ -288,10 +290,10 @@ fn an_unfinished_run_says_that_it_is_one() {
     let places = [bench.path("out/truth")];
     let words = "run small.toml --frames 0..300 --out out";
     assert_eq!(kill_at(command(&bench, words), KillTime::Writing(1), &places), ProcessEnd::Killed);
-    let reason = "holds a run that was killed, failed, or still goes on; nothing is overwritten";
+    let reason = "contains an incomplete run (in progress, killed or failed); nothing is overwritten";
     bench.boresight(words).refused(&["out", reason, "--out"]);
     bench.boresight("process out").refused(&["out/telemetry.csv"]);
     bench.write("mine.csv", "frame,status,x_px,y_px\n0,no_target,,\n");
-    bench.boresight("score out mine.csv").refused(&["out", "UNFINISHED.txt is there"]);
-    bench.boresight("report out").refused(&["out", "UNFINISHED.txt is there"]);
+    bench.boresight("score out mine.csv").refused(&["out", "UNFINISHED.txt exists"]);
+    bench.boresight("report out").refused(&["out", "UNFINISHED.txt exists"]);
 }

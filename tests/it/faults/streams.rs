@@ -67,7 +67,7 @@ fn a_reader_that_goes_away_ends_a_stream_and_spoils_no_result() {
     let (output, beginning) = run("render docking --frames 18000..18200 --format y4m --out -", 10);
     assert_eq!((output.status.code(), beginning.as_str()), (Some(2), "YUV4MPEG2 "));
     assert!(
-        stderr(&output).contains("standard output: cannot write: its reader has gone"),
+        stderr(&output).contains("standard output: cannot write: the reading process closed the stream"),
         "{}",
         stderr(&output)
     );

@@ -72,8 +72,9 @@ fn numbers<'a, T: FromStr>(
 ) -> Result<Vec<Option<T>>, FileError> {
     let number = |(row, cell): (usize, Option<&str>)| {
         cell.map(|cell| {
-            let wrong =
-                || FileError::value(path, FileLocation::Row(row as u64), name, cell, "a number or nothing");
+            let wrong = || {
+                FileError::value(path, FileLocation::Row(row as u64), name, cell, "a number or an empty cell")
+            };
             cell.trim().parse().map_err(|_| wrong())
         })
         .transpose()

@@ -36,7 +36,8 @@ impl ReplaceableFile<'_> {
     /// [`FileError::NotReplaced`]; [`FileError::Io`] if the file cannot be read.
     pub fn check(&self, path: &Path) -> Result<(), FileError> {
         let refused = |reason: &str| {
-            let (path, expected) = (path.to_owned(), format!("a free name, or that of {}", self.description));
+            let (path, expected) =
+                (path.to_owned(), format!("an unused name, or the name of {}", self.description));
             Err(FileError::NotReplaced { path, reason: reason.to_owned(), expected })
         };
         let error = |source| FileError::io(path, "open", source);
@@ -55,9 +56,9 @@ impl ReplaceableFile<'_> {
         let file = sim::regular_file::open(path).map_err(error)?;
         file.take(BEGINNING_BYTES).read_to_end(&mut beginning).map_err(error)?;
         if !(self.matches)(&beginning) {
-            return refused("exists and is another file");
+            return refused("exists and is a file of another kind");
         }
-        if metadata.permissions().readonly() { refused("exists and may not be written") } else { Ok(()) }
+        if metadata.permissions().readonly() { refused("exists and is read-only") } else { Ok(()) }
     }
 }
 
@@ -212,7 +213,8 @@ mod tests {
         let foreign = ReplaceableFile { description: "an earlier one", matches: &earlier(b"zeroth") };
         let refused = foreign.check(&path).unwrap_err().to_string();
         assert!(
-            refused.contains("another file, expected a free name, or that of an earlier one"),
+            refused
+                .contains("a file of another kind, expected an unused name, or the name of an earlier one"),
             "{refused}"
         );
         assert!(foreign.check(folder.path()).unwrap_err().to_string().contains("not a regular file"));
@@ -223,7 +225,7 @@ mod tests {
             std::fs::set_permissions(&path, permissions).unwrap();
         };
         set_readonly(true);
-        assert!(first.check(&path).unwrap_err().to_string().contains("may not be written"));
+        assert!(first.check(&path).unwrap_err().to_string().contains("is read-only"));
         #[allow(clippy::permissions_set_readonly_false, reason = "in a folder of this test")]
         set_readonly(false);
         second.replace(first).unwrap();

@@ -86,7 +86,7 @@ impl Checksums {
             let wrong =
                 |expected: &str| FileError::value(&path, FileLocation::Line(number), "line", line, expected);
             let (recorded, name) =
-                parse(line).ok_or_else(|| wrong("64 hexadecimal digits, two blanks, a name"))?;
+                parse(line).ok_or_else(|| wrong("64 hexadecimal digits, two spaces and a name"))?;
             if !is_inside(name) {
                 return Err(wrong("the name of a file in this directory, without `..`"));
             }
@@ -96,7 +96,8 @@ impl Checksums {
             let file = directory.join(name);
             if let Some(found) = file_sha256(&file)?.filter(|found| found != recorded) {
                 let expected = format!(
-                    "{recorded}, that of {}: the file was damaged, or changed since it was written; if on purpose, take its line out of there",
+                    "{recorded} as in {}: the file is damaged or was changed after it was written; after an \
+                     intended change, remove its line from that list",
                     path.display()
                 );
                 return Err(FileError::value(&file, FileLocation::Whole, "SHA-256", found, expected));
@@ -107,7 +108,7 @@ impl Checksums {
 }
 
 fn replaceable<'a>(matches: &'a dyn Fn(&[u8]) -> bool) -> ReplaceableFile<'a> {
-    ReplaceableFile { description: "the checksums of the files that are to be written", matches }
+    ReplaceableFile { description: "checksums of the files to be written", matches }
 }
 
 /// Returns true if `text` consists only of checksum lines for files in `names`.
@@ -225,7 +226,7 @@ mod tests {
         std::fs::write(folder.path().join("b.csv"), "2").unwrap();
         Checksums::write(folder.path(), &["a.csv"]).unwrap();
         let message = Checksums::write(folder.path(), &["b.csv"]).unwrap_err().to_string();
-        assert!(message.contains("SHA256SUMS") && message.contains("another file"), "{message}");
+        assert!(message.contains("SHA256SUMS") && message.contains("a file of another kind"), "{message}");
         assert!(Checksums::check_own(folder.path(), &["b.csv"]).is_err());
         Checksums::write(folder.path(), &["a.csv", "b.csv"]).unwrap();
         assert!(Checksums::check_own(folder.path(), &["b.csv", "a.csv"]).is_ok());

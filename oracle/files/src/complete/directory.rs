@@ -26,9 +26,10 @@ const SEALED: [&str; 13] = [
 /// File that marks a run directory as incomplete.
 const UNFINISHED: &str = "UNFINISHED.txt";
 const UNFINISHED_TEXT: &str = "\
-The run in this directory has not ended: it was interrupted or killed, it failed, or it still goes on.
-Tables appear when they are complete, telemetry.csv after the truth, score.json last; images are complete up to the last one.
-Nothing here passes for a result, and the run is not continued: remove the directory, and run it again.
+The run in this directory is incomplete: it is in progress, was interrupted or killed, or failed.
+Tables appear when they are complete: telemetry.csv after the truth, score.json last. Images are complete \
+up to the last one.
+No file here is a result, and the run cannot be continued: remove the directory and start the run again.
 ";
 
 /// A fresh output directory for a run, with the names of its files.
@@ -46,13 +47,13 @@ impl RunDirectory {
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let taken = |reason| FileError::OutputTaken { path: path.to_owned(), reason };
         if path.as_os_str().is_empty() {
-            return Err(taken("an empty name is no directory"));
+            return Err(taken("is an empty name, which is not a directory"));
         }
         match fs::read_dir(path) {
             Ok(mut entries) => {
                 if entries.next().is_some() {
                     return Err(taken(if is_unfinished(path) {
-                        "holds a run that was killed, failed, or still goes on; nothing is overwritten"
+                        "contains an incomplete run (in progress, killed or failed); nothing is overwritten"
                     } else {
                         "exists and is not empty; nothing is overwritten"
                     }));
@@ -233,8 +234,8 @@ pub fn refuse_unfinished(path: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Usage(format!(
-        "{}: holds a run that was killed, failed, or still goes on ({UNFINISHED} is there), expected a finished one: remove it when \
-         nothing runs, and run its command again",
+        "{}: contains an incomplete run (in progress, killed or failed: {UNFINISHED} exists), expected a \
+         complete run: if it is not in progress, remove the directory and repeat the command of the run",
         path.display()
     )))
 }
@@ -281,7 +282,7 @@ mod tests {
         RunDirectory::create(&path).unwrap();
         fs::write(path.join("run.toml"), "mine").unwrap();
         let message = RunDirectory::create(&path).unwrap_err().to_string();
-        assert!(message.contains("holds a run that was killed") && message.contains("--out"), "{message}");
+        assert!(message.contains("contains an incomplete run") && message.contains("--out"), "{message}");
         assert_eq!(fs::read_to_string(path.join("run.toml")).unwrap(), "mine");
         for (inside, reason) in
             [("run.toml", "exists and is not a directory"), ("run.toml/below", "cannot create")]

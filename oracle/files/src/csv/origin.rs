@@ -67,7 +67,7 @@ pub fn read_origins(path: &Path, frame: &str) -> Result<Vec<AnswerOrigin>, FileE
             FileError::value(path, FileLocation::Line(line), column, found, expected)
         };
         let text = cell(number).unwrap_or_default();
-        let number = text.parse().map_err(|_| refuse(frame, text, "a number of a frame"))?;
+        let number = text.parse().map_err(|_| refuse(frame, text, "the number of a frame"))?;
         let time = cell(time)
             .map(|text| parse_utc(text).map_err(|expected| refuse(TIME, text, &expected)))
             .transpose()?;

@@ -182,7 +182,9 @@ impl CsvRow<'_> {
         match previous {
             Some(previous) if number <= previous => Err(self.error(
                 column,
-                format!("more than {previous}, that of the row before (each {column} once, ascending)"),
+                format!(
+                    "more than {previous}, the {column} of the previous row (each {column} once, ascending)"
+                ),
             )),
             _ => Ok(()),
         }
@@ -195,7 +197,7 @@ impl CsvRow<'_> {
         columns: impl IntoIterator<Item = &'static str>,
     ) -> Result<(), FileError> {
         let full = columns.into_iter().find(|column| !self.text(column).trim().is_empty());
-        let nothing = || format!("nothing, as the status is `{}`", self.text("status"));
+        let nothing = || format!("an empty cell, because the status is `{}`", self.text("status"));
         full.map_or(Ok(()), |column| Err(self.error(column, nothing())))
     }
 
@@ -311,7 +313,7 @@ pub(crate) fn csv_error(path: &Path, error: &csv::Error) -> FileError {
             line(pos),
             "number of cells",
             len,
-            format!("{expected_len}, as many as the header has"),
+            format!("{expected_len}, as in the header"),
         ),
         csv::ErrorKind::Utf8 { pos, err } => {
             FileError::value(path, line(pos), format!("cell {}", err.field() + 1), "bytes", "text in UTF-8")

@@ -40,7 +40,7 @@ pub(super) fn to_cells(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> [f64;
 }
 
 /// Returns the covariance after conversion to the cells of a file and back.
-#[expect(clippy::indexing_slicing, reason = "the places are those of a matrix of six")]
+#[expect(clippy::indexing_slicing, reason = "the indices are those of a 6 × 6 matrix")]
 pub(super) fn as_filed(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> Matrix6<f64> {
     let mut filed = Matrix6::zeros();
     for (i, j) in triangle_indices() {
@@ -52,7 +52,7 @@ pub(super) fn as_filed(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> Matri
 }
 
 /// Returns the covariance in the cells of `columns`, if present.
-#[expect(clippy::indexing_slicing, reason = "the places are those of a matrix of six")]
+#[expect(clippy::indexing_slicing, reason = "the indices are those of a 6 × 6 matrix")]
 pub(super) fn from_cells(
     row: &CsvRow<'_>,
     columns: [&'static str; CELLS],

@@ -165,14 +165,14 @@ pub fn read_motion(path: &Path) -> Result<Vec<(u64, MotionReport)>, FileError> {
             PAPER => {
                 if let Some((_, report)) = reports.last_mut().filter(|(last, _)| *last == line.field) {
                     if report.paper.is_some() {
-                        return Err(row.error("estimator", "each estimator once a field"));
+                        return Err(row.error("estimator", "each estimator once per field"));
                     }
                     report.paper = motion;
                     continue;
                 }
                 MotionReport { best: None, paper: motion }
             }
-            _ => return Err(row.error("estimator", "`best`, or `paper` after it")),
+            _ => return Err(row.error("estimator", "`best`, or `paper` after `best`")),
         };
         row.check_ascends("field", line.field, reports.last().map(|(field, _)| *field))?;
         reports.push((line.field, report));

@@ -71,7 +71,7 @@ impl TomlTable for SetupFile {
             if (camera.columns, camera.rows) != (first.columns, first.rows) {
                 let size = format!("{} × {}", camera.columns, camera.rows);
                 let expected =
-                    format!("{} × {}, columns and rows of the first camera", first.columns, first.rows);
+                    format!("{} × {}, the columns and rows of the first camera", first.columns, first.rows);
                 return Err(OutOfRange::new(format!("cameras[{index}]"), size, expected));
             }
         }

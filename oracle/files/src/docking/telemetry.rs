@@ -86,9 +86,10 @@ fn parse(row: &CsvRow<'_>, previous: Option<&FieldRow>) -> Result<FieldRow, File
     let (field, time_s) = (line.field, line.time_s);
     row.check_ascends("field", field, previous.map(|previous| previous.field))?;
     if let Some(previous) = previous.filter(|previous| time_s <= previous.telemetry.time_s) {
-        return Err(
-            row.error("time_s", format!("later than {}, that of the row before", previous.telemetry.time_s))
-        );
+        return Err(row.error(
+            "time_s",
+            format!("later than {}, the time of the previous row", previous.telemetry.time_s),
+        ));
     }
     let lines = Lines::parse(line.lines.trim()).ok_or_else(|| row.error("lines", "all, even or odd"))?;
     let nominal = Digitiser::default();

@@ -54,8 +54,9 @@ impl Row for FrameCluster {
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
         let cluster = |(i, row): (usize, ClusterRow)| {
             let ClusterRow { frame, position, size, pixels, .. } = row;
-            let label = label(&row.label, row.star_id)
-                .ok_or_else(|| columns.error(i, "label", &row.label, "one of the words of this column"))?;
+            let label = label(&row.label, row.star_id).ok_or_else(|| {
+                columns.error(i, "label", &row.label, "one of the values that this column allows")
+            })?;
             Ok(Self { frame, cluster: Cluster { position, size, pixels, label } })
         };
         ClusterRow::rows(columns)?.into_iter().enumerate().map(cluster).collect()

@@ -153,7 +153,7 @@ fn outcome(
     let attitude_source = match line.attitude.trim() {
         "" => None,
         code => Some(AttitudeSource::parse(code).ok_or_else(|| {
-            row.error("attitude", "`stars`, `too_few_stars`, `no_stars`, `no_match` or nothing")
+            row.error("attitude", "`stars`, `too_few_stars`, `no_stars`, `no_match` or an empty cell")
         })?),
     };
     let solution = match reason {
@@ -164,7 +164,7 @@ fn outcome(
                 let is_x = !PixelPoint::new(position.x, 0.0).is_on_detector(columns, rows);
                 let (column, count) = if is_x { (POSITION[0], columns) } else { (POSITION[1], rows) };
                 let expected = format!(
-                    "a place on the detector of {columns} × {rows} pixels, -0.5 to {}",
+                    "a position on the detector of {columns} × {rows} pixels, -0.5 to {}",
                     count as f64 - 0.5
                 );
                 return Err(row.error(column, expected));
@@ -174,7 +174,7 @@ fn outcome(
                 .map(|[x, y, correlation]| Covariance2::from_sigmas(x, y, correlation));
             let of_line_of_sight = line.line_of_sight_covariance.map(Covariance2::from_degrees);
             if of_line_of_sight.is_some() && line.line_of_sight.is_none() {
-                let expected = "nothing, as the row has no line of sight";
+                let expected = "an empty cell, because the row has no line of sight";
                 return Err(row.error(LINE_OF_SIGHT_COVARIANCE[0], expected));
             }
             Solution::Detected(Measurement {

@@ -49,7 +49,7 @@ pub fn read_stars(path: &Path) -> Result<Vec<StarRow>, FileError> {
     CsvReader::open::<StarRow>(path)?.read_rows(|row, previous: Option<&StarRow>| {
         let star = StarRow::read(row)?;
         if previous.is_some_and(|previous| star.id <= previous.id) {
-            return Err(row.error("id", "more than that of the row before (each star once, ascending)"));
+            return Err(row.error("id", "more than the id of the previous row (each star once, ascending)"));
         }
         if !(0.0..=360.0).contains(&star.ra_deg) {
             return Err(row.error("ra_deg", "0 to 360"));

@@ -99,7 +99,7 @@ fn parse(row: &CsvRow<'_>, previous: Option<&TelemetryRow>) -> Result<TelemetryR
     row.check_ascends("frame", frame, previous.map(|row| row.frame))?;
     let time = parse_utc(time_utc.trim()).map_err(|expected| row.error("time_utc", expected))?;
     if previous.is_some_and(|previous| time <= previous.telemetry.time) {
-        return Err(row.error("time_utc", "later than the time of the row above"));
+        return Err(row.error("time_utc", "later than the time of the previous row"));
     }
     if exposure_s < 0.0 {
         return Err(row.error("exposure_s", "0 or greater"));

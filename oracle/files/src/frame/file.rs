@@ -101,7 +101,7 @@ pub(crate) fn read_image(path: &Path, size: Option<Size<'_>>) -> Result<RawImage
         "exr" => exr::read(path, size),
         _ => {
             let reason =
-                format!("the extension `{extension}` is none of fits, fit, fts, png, tif, tiff, exr");
+                format!("the extension is `{extension}`, expected fits, fit, fts, png, tif, tiff or exr");
             Err(FileError::format(path, "image", reason))
         }
     }

@@ -64,7 +64,7 @@ pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, File
         let bytes = header.data_bytes()?;
         let end = offset.checked_add(bytes).filter(|&end| end <= length).ok_or_else(|| {
             let left = length.saturating_sub(offset);
-            header.error("bytes of data", bytes, format!("at most {left}, as the file ends there"))
+            header.error("bytes of data", bytes, format!("at most {left}, the bytes left in the file"))
         })?;
         if header.is_image()? {
             let image = read_image(&header, &mut reader, bytes, size)?;
@@ -73,7 +73,7 @@ pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, File
         }
         offset = end.next_multiple_of(BLOCK_SIZE as u64);
         if offset >= length {
-            return Err(FileError::format(path, "FITS", "it holds no two-dimensional image"));
+            return Err(FileError::format(path, "FITS", "it contains no two-dimensional image"));
         }
         reader.seek(SeekFrom::Start(offset)).map_err(io)?;
     }
@@ -100,7 +100,7 @@ fn read_header(path: &Path, reader: &mut impl Read, first: bool) -> Result<Vec<C
             return parse_header_blocks(&header).map_err(|error| FileError::format(path, "FITS", error));
         }
     }
-    Err(FileError::format(path, "FITS", format!("a header without END in {MAX_HEADER_BLOCKS} blocks")))
+    Err(FileError::format(path, "FITS", format!("a header has no END within {MAX_HEADER_BLOCKS} blocks")))
 }
 
 /// Cards of one header, accessed by keyword.
@@ -124,7 +124,7 @@ impl Header<'_> {
         const STORED: [&str; 7] = ["BITPIX", "NAXIS", "NAXIS1", "NAXIS2", "BSCALE", "BZERO", "BLANK"];
         let count = |keyword: &str| self.cards.iter().filter(|card| card.keyword_str() == keyword).count();
         match STORED.into_iter().find(|keyword| count(keyword) > 1) {
-            Some(keyword) => Err(self.error(keyword, format!("there {} times", count(keyword)), "once")),
+            Some(keyword) => Err(self.error(keyword, format!("present {} times", count(keyword)), "once")),
             None => Ok(()),
         }
     }
@@ -134,7 +134,7 @@ impl Header<'_> {
         match self.value(keyword) {
             None | Some(Value::Undefined) => Ok(None),
             Some(Value::Integer(number)) => Ok(Some(*number)),
-            Some(other) => Err(self.error(keyword, format!("{other:?}"), "a whole number")),
+            Some(other) => Err(self.error(keyword, format!("{other:?}"), "an integer")),
         }
     }
 
@@ -146,7 +146,7 @@ impl Header<'_> {
             (None, Some(default)) => Ok(default),
             _ => {
                 let value = number.map_or_else(|| "missing".to_owned(), |n| n.to_string());
-                Err(self.error(keyword, value, "a whole number, 0 or greater"))
+                Err(self.error(keyword, value, "an integer, 0 or greater"))
             }
         }
     }
@@ -200,7 +200,7 @@ impl Header<'_> {
             return Err(FileError::format(
                 self.path,
                 "FITS",
-                "its image is tile-compressed, which is not supported; funpack it",
+                "tile-compressed images are not supported; decompress the file with funpack",
             ));
         }
         let image = match self.value("XTENSION") {
@@ -266,7 +266,7 @@ impl Header<'_> {
             match self.value(&keyword) {
                 Some(Value::String(text)) => windows::parse_one(text)
                     .ok_or_else(|| self.error(&keyword, text, "`x y columns rows` within the detector")),
-                _ => Err(self.error(&keyword, "missing", format!("a region, as NROI is {count}"))),
+                _ => Err(self.error(&keyword, "missing", format!("a region, because NROI is {count}"))),
             }
         };
         // Stops at the first missing region, so a false NROI costs no memory.
@@ -301,7 +301,7 @@ fn check_sums(
     let is_whole = unit.len() as u64 == length;
     let refused = |keyword: &str, recorded: &str, of: &str| {
         let expected = format!(
-            "the sum of {of}: the file was damaged, or changed by a program that left the keyword as it was"
+            "the checksum of {of}: the file is damaged, or a program changed it without updating the keyword"
         );
         Err(header.error(keyword, recorded, expected))
     };
@@ -329,12 +329,16 @@ fn read_image(
 ) -> Result<RawImage, FileError> {
     let path = header.path;
     let [columns, rows, ..] = *header.axes()? else {
-        return Err(FileError::format(path, "FITS", "it holds no two-dimensional image"));
+        return Err(FileError::format(path, "FITS", "it contains no two-dimensional image"));
     };
     let (columns, rows) = checked_size(path, columns, rows, size)?;
     let (scale, zero) = (header.number("BSCALE", 1.0)?, header.number("BZERO", 0.0)?);
     if scale == 0.0 {
-        return Err(header.error("BSCALE", scale, "another number: with it all pixels are the same"));
+        return Err(header.error(
+            "BSCALE",
+            scale,
+            "a number other than 0, which would make all pixels equal",
+        ));
     }
     let width = header.bytes_per_sample()? as usize;
     let pixel_bytes = columns * rows * width;
@@ -342,7 +346,7 @@ fn read_image(
         return Err(header.error(
             "PCOUNT and GCOUNT",
             bytes,
-            format!("{pixel_bytes} bytes of data, as of the image"),
+            format!("{pixel_bytes} bytes of data, the size of the image"),
         ));
     }
     // The size has two limits: the largest detector, and the length of the file, which the caller has
@@ -428,10 +432,10 @@ mod tests {
         fs::write(&path, format!("{header:2880}")).unwrap();
         let file = fs::File::options().write(true).open(&path).unwrap();
         file.set_len(2880 + 8 * 16384 * 16384).unwrap();
-        let size = Size { columns: 752, rows: 580, whose: "that of the camera" };
+        let size = Size { columns: 752, rows: 580, whose: "the size of the camera" };
         let message = read(&path, Some(size)).unwrap_err().to_string();
         assert!(
-            message.contains("16384 × 16384") && message.contains("752 × 580, that of the camera"),
+            message.contains("16384 × 16384") && message.contains("752 × 580, the size of the camera"),
             "{message}"
         );
     }

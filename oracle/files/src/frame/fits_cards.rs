@@ -143,8 +143,8 @@ fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileErro
         }
         None => {
             cards.comment(astrometric);
-            cards.comment("aberration is folded into CRVAL and CD. No SIP follows the distortion");
-            cards.comment("to the corners: they are right near CRPIX alone.");
+            cards.comment("aberration is folded into CRVAL and CD. No SIP polynomial fits the");
+            cards.comment("distortion at the corners: coordinates are accurate only near CRPIX.");
         }
     }
     Ok(())

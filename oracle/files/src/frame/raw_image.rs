@@ -42,7 +42,8 @@ impl ImageMetadata {
     /// Checks the stated data against a row of the telemetry, to detect images with interchanged file names.
     pub(crate) fn check(&self, path: &Path, row: &TelemetryRow) -> Result<(), FileError> {
         let refused = |field: &str, found: String, expected: String| {
-            let expected = format!("{expected}, that of frame {} in the telemetry which names it", row.frame);
+            let expected =
+                format!("{expected}, the value of frame {} in the telemetry that names this file", row.frame);
             Err(FileError::value(path, FileLocation::Header, field, found, expected))
         };
         let telemetry = &row.telemetry;
@@ -68,7 +69,7 @@ impl ImageMetadata {
 pub(crate) struct Size<'a> {
     pub(crate) columns: usize,
     pub(crate) rows: usize,
-    /// Source of the size, for messages: `that of camera.toml`.
+    /// Source of the size, for messages: `the size in camera.toml`.
     pub(crate) whose: &'a str,
 }
 
@@ -85,7 +86,7 @@ impl RawImage {
         windows: Option<Vec<Window>>,
     ) -> Result<Frame, FileError> {
         if let Some(own) = self.bit_depth.filter(|own| *own != bit_depth) {
-            let expected = format!("{bit_depth}, that of the camera");
+            let expected = format!("{bit_depth}, the bit depth of the camera");
             return Err(FileError::value(path, FileLocation::Header, "bit depth", own, expected));
         }
         let columns = self.columns.max(1);
@@ -144,7 +145,7 @@ pub(crate) fn checked_size(
         let found = format!("{columns} × {rows}");
         let expected = match size {
             Some(Size { columns, rows, whose }) => format!("{columns} × {rows}, {whose}"),
-            None => format!("1 to {} pixels a side", Camera::MAX_SIDE_PX),
+            None => format!("1 to {} pixels per side", Camera::MAX_SIDE_PX),
         };
         FileError::value(path, FileLocation::Header, "image size", found, expected)
     })
@@ -156,7 +157,7 @@ pub(crate) fn check_claim(path: &Path, claimed_bytes: u64) -> Result<(), FileErr
     const MAX_FROM_ONE_BYTE: u64 = 4096;
     let length = std::fs::metadata(path).map_err(|source| FileError::io(path, "open", source))?.len();
     if claimed_bytes > length.saturating_mul(MAX_FROM_ONE_BYTE) {
-        let expected = format!("no more than a file of {length} bytes can hold");
+        let expected = format!("at most the pixels that a file of {length} bytes can contain");
         Err(FileError::value(path, FileLocation::Header, "bytes of pixels", claimed_bytes, expected))
     } else {
         Ok(())

@@ -44,7 +44,7 @@ pub(crate) fn check_footer(path: &Path, file: &mut File, length: u64) -> Result<
     match is_flat(Compact(&footer)) {
         Some(true) => Ok(()),
         Some(false) => {
-            Err(FileError::format(path, "Parquet", "its columns are nested, which no table of ours is"))
+            Err(FileError::format(path, "Parquet", "its columns are nested; tables of Boresight are flat"))
         }
         None => Err(FileError::format(path, "Parquet", "its footer is damaged")),
     }
@@ -100,7 +100,7 @@ pub(crate) fn check_claims(
     let rows = rows.chain([u64::try_from(metadata.file_metadata().num_rows()).ok()]);
     let most = length.saturating_mul(MAX_ROWS_A_BYTE);
     if rows.map(|rows| rows.filter(|&rows| rows <= most)).any(|rows| rows.is_none()) {
-        let reason = format!("it claims more rows than a file of {length} bytes can hold");
+        let reason = format!("it states more rows than a file of {length} bytes can contain");
         return Err(FileError::format(path, "Parquet", reason));
     }
     for column in metadata.row_groups().iter().flat_map(RowGroupMetaData::columns) {
@@ -141,21 +141,18 @@ fn check_pages(path: &Path, file: &mut File, mut at: u64, end: u64) -> Result<()
             return wrong(at, "has a damaged header");
         };
         if believes {
-            return wrong(
-                at,
-                "is of an encoding that is not supported (DELTA_BYTE_ARRAY, DELTA_LENGTH_BYTE_ARRAY)",
-            );
+            return wrong(at, "has an unsupported encoding (DELTA_BYTE_ARRAY, DELTA_LENGTH_BYTE_ARRAY)");
         }
         if unpacked > packed.saturating_mul(MAX_FROM_ONE_BYTE).saturating_add(64) {
-            return wrong(at, &format!("claims {unpacked} bytes, packed into {packed}"));
+            return wrong(at, &format!("states {unpacked} bytes, compressed to {packed}"));
         }
         // Each value takes at least one byte, and the crate allocates memory for all of them.
         if dictionary_values > unpacked {
-            return wrong(at, &format!("claims {dictionary_values} values in {unpacked} bytes"));
+            return wrong(at, &format!("states {dictionary_values} values in {unpacked} bytes"));
         }
         let size = header_bytes.saturating_add(packed);
         if size > left {
-            return wrong(at, "goes on beyond its column");
+            return wrong(at, "extends beyond its column");
         }
         at = at.saturating_add(size);
     }

@@ -98,7 +98,7 @@ impl ParquetFile {
                 return Err(damaged(&path, format!("it has column `{name}` more than once")));
             }
             let column_type = column.column_type.clone().map_err(|other| {
-                damaged(&path, format!("column `{name}` is of type {other}, which no table of ours has"))
+                damaged(&path, format!("column `{name}` has type {other}, which no table of Boresight uses"))
             })?;
             let (name, is_nullable) = (name.to_owned(), column.is_nullable);
             wanted.push(WantedColumn { index, name, column_type, is_nullable });
@@ -231,7 +231,7 @@ impl Batches {
 
 /// Pages may contain more rows than the footer states, even without limit: a run of equal values takes a few
 /// bytes.
-const MORE_ROWS: &str = "it has more rows than its footer says";
+const MORE_ROWS: &str = "it has more rows than its footer states";
 
 impl OpenGroup {
     /// Rejects pages that continue after the last row of the group.
@@ -341,7 +341,7 @@ fn read_texts(
     TextCells::from_bytes(bytes, ends, is_valid).ok_or_else(|| "a text that is not UTF-8".into())
 }
 
-const DISAGREE: &str = "the values of a column are not as many as its levels say";
+const DISAGREE: &str = "the number of values in a column differs from the number in its levels";
 
 /// Reads the values that are not null; for a nullable column, returns one flag per row.
 fn read_values<T: DataType>(
@@ -491,6 +491,6 @@ mod tests {
             parquet::file::writer::SerializedFileWriter::new(out, Arc::new(schema), Default::default());
         writer.unwrap().close().unwrap();
         let message = all(&path, &["n"], 10).unwrap_err().to_string();
-        assert!(message.contains("column `n` is of type Int64, which no table of ours has"), "{message}");
+        assert!(message.contains("column `n` has type Int64, which no table of Boresight uses"), "{message}");
     }
 }

@@ -145,7 +145,7 @@ impl<R: Row> TableReader<R> {
             for (i, row) in rows.iter().enumerate() {
                 let frame = row.frame();
                 if let Some(last) = self.last_frame.filter(|&last| frame < last) {
-                    let expected = format!("{last} or more, as rows are ordered by frame");
+                    let expected = format!("{last} or more, because rows are ordered by frame");
                     return Err(columns.error(i, R::FRAME, frame, expected));
                 }
                 self.last_frame = Some(frame);

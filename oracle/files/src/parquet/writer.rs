@@ -166,7 +166,7 @@ fn check(columns: &[Column], rows: usize) -> ParquetResult<()> {
         let (name, found) = (column.name(), column.values().len());
         if found != rows {
             return Err(ParquetError::General(format!(
-                "column `{name}` has {found} rows, expected {rows} as the first column"
+                "column `{name}` has {found} rows, expected {rows} as in the first column"
             )));
         }
         if let Some(row) = column.values().first_null().filter(|_| !column.is_nullable()) {
@@ -234,7 +234,7 @@ fn encode(writer: &mut ColumnWriter<'_>, column: &Column, rows: &Range<usize>) -
             encode_texts(writer, cells, rows, is_nullable)
         }
         (_, values) => Err(ParquetError::General(format!(
-            "column `{}` is of type {}, which is not its type in the file",
+            "column `{}` has type {}, which differs from its type in the file",
             column.name(),
             values.column_type()
         ))),

@@ -170,8 +170,8 @@ macro_rules! cell {
 }
 
 cell!(bool, Boolean, "true or false");
-cell!(u32, UInt32, "a whole number, 0 or greater");
-cell!(u64, UInt64, "a whole number, 0 or greater");
+cell!(u32, UInt32, "an integer, 0 or greater");
+cell!(u64, UInt64, "an integer, 0 or greater");
 cell!(f32, Float32, "a finite number", f32::is_finite);
 cell!(f64, Float64, "a finite number", f64::is_finite);
 cell!(Nanoseconds, Timestamp, "nanoseconds since 1970");

@@ -269,7 +269,7 @@ mod tests {
             ),
             (
                 Some(Column::texts("lines", ["odd", "upper", "odd"])),
-                "row 1: `lines` is `upper`, expected one of the words of this column",
+                "row 1: `lines` is `upper`, expected one of the values that this column allows",
             ),
         ] {
             let error = read(other).unwrap_err();

@@ -166,7 +166,7 @@ macro_rules! value {
 macro_rules! words {
     ($($type:ty),+) => {
         $($crate::table::field::value!($type: [&'a str; 1], |value| [value.code()], |[word]| {
-            <$type>::parse(word).ok_or_else(|| "one of the words of this column".to_owned())
+            <$type>::parse(word).ok_or_else(|| "one of the values that this column allows".to_owned())
         });)+
     };
 }

@@ -18,7 +18,7 @@ pub(crate) fn format_one(window: &Window) -> String {
 
 /// Description of the input of [`parse`], for messages.
 pub(crate) const EXPECTED: &str =
-    "regions `x y columns rows` separated by `;`, `none`, or nothing for the whole image";
+    "regions `x y columns rows` separated by `;`, `none`, or an empty cell for the whole image";
 
 /// Parses the output of [`format`]; the inner `Option` is `None` if the whole image was transmitted.
 pub(crate) fn parse(text: &str) -> Result<Option<Vec<Window>>, &'static str> {

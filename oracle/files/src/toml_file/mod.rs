@@ -203,7 +203,7 @@ fn is_whole(span: &Range<usize>, text: &str) -> bool {
 /// Replaces the names of Rust types in messages of serde by their meaning.
 fn in_plain_words(message: &str) -> String {
     let types = ["usize", "u64", "u32", "u8"];
-    let whole = "a whole number from 0";
+    let whole = "an integer from 0";
     types
         .iter()
         .fold(message.to_owned(), |text, name| {
@@ -216,7 +216,7 @@ fn in_plain_words(message: &str) -> String {
 /// between the radial ones.
 fn opencv_order(path: &str, message: &str) -> &'static str {
     if path.ends_with("radial") && message.starts_with("invalid length") {
-        ": k1, k2, k3; OpenCV's order is k1, k2, p1, p2, k3, of which p1, p2 are `tangential` here"
+        ": k1, k2, k3; OpenCV's order is k1, k2, p1, p2, k3, whose p1 and p2 belong to `tangential` here"
     } else {
         ""
     }

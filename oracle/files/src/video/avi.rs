@@ -53,7 +53,7 @@ impl AviReader {
             match &chunk.id.0[2..] {
                 b"db" | b"dc" => {}
                 b"pc" => {
-                    return Err(self.walker.error(&chunk, "a change of palette, which is not supported"));
+                    return Err(self.walker.error(&chunk, "palette changes are not supported"));
                 }
                 _ => continue,
             }
@@ -78,15 +78,14 @@ impl AviReader {
                     return Err(self.walker.error(chunk, expected));
                 }
                 self.walker.read(chunk, &mut self.bytes)?;
-                let wrong = || self.walker.error(chunk, "not a frame of its layout");
+                let wrong = || self.walker.error(chunk, "does not match the pixel layout of the stream");
                 frame.grey(&self.bytes).ok_or_else(wrong)
             }
             Coding::MotionJpeg => {
                 // A JPEG image takes at most the size of its uncompressed colours, plus headers and noise.
                 let most = 6 * self.stream.columns * self.stream.rows + (1 << 16);
                 if size > most {
-                    let reason =
-                        format!("{size} bytes of JPEG, expected {most} at most for the size of the image");
+                    let reason = format!("{size} bytes of JPEG, expected at most {most} for this image size");
                     return Err(self.walker.error(chunk, reason));
                 }
                 self.walker.read(chunk, &mut self.bytes)?;
@@ -119,12 +118,12 @@ fn decode_jpeg(bytes: &[u8], columns: usize, rows: usize) -> Result<Vec<u16>, St
     if decoder.dimensions() != Some((columns, rows)) {
         let (c, r) = decoder.dimensions().unwrap_or_default();
         return Err(format!(
-            "a JPEG image of {c} × {r} pixels, expected {columns} × {rows}, those of its header"
+            "a JPEG image of {c} × {r} pixels, expected {columns} × {rows} as in the stream header"
         ));
     }
     let grey = decoder.decode().map_err(|error| format!("not a readable JPEG image: {error:?}"))?;
     if grey.len() != columns * rows {
-        return Err(format!("{} values, expected one a pixel, {columns} × {rows}", grey.len()));
+        return Err(format!("{} values, expected one per pixel, {columns} × {rows}", grey.len()));
     }
     Ok(grey.into_iter().map(u16::from).collect())
 }

@@ -30,7 +30,7 @@ const LONGEST_BYTES: u32 = 4096;
 /// size of the video; memory is never allocated for any other size.
 pub(super) fn read(walker: &mut Walker, size: (usize, usize)) -> Result<VideoStream, FileError> {
     if !matches!(walker.step()?, Item::List(kind) if &kind.0 == b"AVI ") {
-        return Err(walker.input().error("AVI", "a RIFF file of another kind"));
+        return Err(walker.input().error("AVI", "its RIFF type is not `AVI `"));
     }
     let mut streams = 0_u8;
     let mut rate_hz = None;
@@ -81,7 +81,7 @@ fn rate(walker: &Walker, chunk: &Chunk, bytes: &[u8]) -> Result<Option<f64>, Fil
     let (scale, rate) = (word(bytes, 20), word(bytes, 24));
     match (scale, rate) {
         (0, 0) => Ok(None),
-        (0, _) | (_, 0) => Err(walker.error(chunk, format!("a rate of {rate}/{scale} frames a second"))),
+        (0, _) | (_, 0) => Err(walker.error(chunk, format!("a rate of {rate}/{scale} frames per second"))),
         _ => Ok(Some(f64::from(rate) / f64::from(scale))),
     }
 }
@@ -98,8 +98,9 @@ fn video_stream(
     let width = word(bytes, 4) as i32;
     let height = word(bytes, 8) as i32;
     if i64::from(width) != columns as i64 || i64::from(height).abs() != rows as i64 {
-        let reason =
-            format!("images of {width} × {height} pixels, expected {columns} × {rows}, those of the camera");
+        let reason = format!(
+            "images of {width} × {height} pixels, expected {columns} × {rows}, the size of the camera"
+        );
         return Err(walker.error(chunk, reason));
     }
     if index > 99 {
@@ -123,7 +124,7 @@ fn video_stream(
         (b"I420" | b"IYUV" | b"YV12", _) => (Layout::Planar420, false),
         _ => {
             let reason = format!(
-                "compression `{compression}` with {bits} bits a pixel; expected MJPG, Y800, YUY2, UYVY, I420 or \
+                "compression `{compression}` with {bits} bits per pixel; expected MJPG, Y800, YUY2, UYVY, I420 or \
                  uncompressed bitmaps of 8, 24 or 32 bits"
             );
             return Err(walker.error(chunk, reason));
@@ -139,7 +140,7 @@ fn video_stream(
 fn palette(walker: &Walker, chunk: &Chunk, bytes: &[u8]) -> Result<Option<Box<[u8; 256]>>, FileError> {
     let header = word(bytes, 0) as usize;
     let Some(colours) = bytes.get(header.max(40)..) else {
-        return Err(walker.error(chunk, format!("a bitmap header of {header} bytes")));
+        return Err(walker.error(chunk, format!("a bitmap header of {header} bytes, longer than its chunk")));
     };
     if colours.len() < 4 {
         return Ok(None);

@@ -69,7 +69,7 @@ pub(super) fn check_frames(
     if (0.001..=1000.0).contains(&frame_rate_hz) {
         return Ok(());
     }
-    Err(FileError::value(path, FileLocation::Header, "frames a second", frame_rate_hz, "0.001 to 1000"))
+    Err(FileError::value(path, FileLocation::Header, "frames per second", frame_rate_hz, "0.001 to 1000"))
 }
 
 impl AviWriter {
@@ -184,7 +184,8 @@ impl AviWriter {
         let size = self.chunk.len() as u32;
         if self.position + u64::from(size) + 16 * (self.index.len() as u64 + 2) > MAX_BYTES {
             let reason = format!(
-                "frame {} would make it larger than the 4 GB of AVI 1.0; write Motion-JPEG, images, or a part",
+                "with frame {} the file exceeds the 4 GB of AVI 1.0; write Motion-JPEG, images, or fewer \
+                 frames",
                 self.index.len()
             );
             return Err(FileError::format(&self.path, "AVI", reason));

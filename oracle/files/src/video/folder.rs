@@ -62,7 +62,7 @@ pub fn read_listed_field(
     let Some(file) = row.file.as_deref() else { return Ok(None) };
     let path = locate_alone(directory, file, &format!("file of field {}", row.field))?;
     let Some(camera) = setup.cameras.get(row.telemetry.camera) else {
-        let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
+        let expected = format!("0 to {}, the index of a camera", setup.cameras.len().saturating_sub(1));
         let field = format!("camera of field {}", row.field);
         let table = directory.join("telemetry.csv");
         return Err(FileError::value(&table, FileLocation::Whole, field, row.telemetry.camera, expected));
@@ -80,7 +80,7 @@ pub(super) fn camera_of<'a>(
 ) -> Result<&'a Camera, FileError> {
     let camera = row.telemetry.camera;
     setup.cameras.get(camera).ok_or_else(|| {
-        let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
+        let expected = format!("0 to {}, the index of a camera", setup.cameras.len().saturating_sub(1));
         FileError::value(table, FileLocation::Line(line), "camera", camera, expected)
     })
 }
@@ -90,7 +90,7 @@ impl ListedField {
     pub(super) fn read(&self, setup: &DockingSetup) -> Result<(Field, FieldTelemetry), FileError> {
         let camera = &self.camera;
         let (columns, rows) = (camera.columns, self.row.lines.rows(camera.rows));
-        let size = Size { columns, rows, whose: "the size of lines of the camera" };
+        let size = Size { columns, rows, whose: "the size of such a field of the camera" };
         let image = read_image(&self.path, Some(size))?;
         let frame = image.into_frame(&self.path, self.row.field, setup.bit_depth, None)?;
         let field = Field::new(frame, self.row.lines, camera.rows);
@@ -124,7 +124,7 @@ pub(super) fn by_name(directory: &Path) -> Result<Vec<PathBuf>, FileError> {
 /// Reads an image as a whole frame.
 pub(super) fn read_frame(path: &Path, index: u64, format: &Format) -> Result<VideoFrame, FileError> {
     let &Format { columns, rows, .. } = format;
-    let whose = "the size of the camera; fields need a telemetry.csv";
+    let whose = "the size of the camera; images of single fields need a telemetry.csv";
     let image = read_image(path, Some(Size { columns, rows, whose }))?;
     let frame = image.into_frame(path, index, format.bit_depth, None)?;
     Ok(VideoFrame { index, dn: frame.dn().to_vec() })

@@ -50,7 +50,7 @@ impl<F: Iterator<Item = Result<VideoFrame, FileError>>> ListedVideo<F> {
         let frame = match second.map_or_else(|| self.frames.next(), |frame| Some(Ok(frame))) {
             Some(frame) => frame?,
             None => {
-                let expected = "a field of the video, which has ended";
+                let expected = "a field of the video, which ends before this row";
                 return Err(FileError::value(
                     &self.table,
                     FileLocation::Line(line),
@@ -84,7 +84,7 @@ impl<F: Iterator<Item = Result<VideoFrame, FileError>>> Iterator for ListedVideo
             Err(FileError::value(
                 &self.table,
                 FileLocation::Header,
-                "frames without a row",
+                "frame without a row",
                 frame.index,
                 expected,
             ))

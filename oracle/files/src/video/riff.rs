@@ -78,7 +78,7 @@ impl Walker {
         }
         let room = self.lists.last().map_or(u64::MAX, |list| list.end - self.next);
         if room < 8 {
-            return Err(self.cut_list("has no room for another chunk and is not at its end"));
+            return Err(self.cut_list("has bytes left, but too few for another chunk"));
         }
         let offset = self.next;
         let mut header = [0; 8];
@@ -102,9 +102,8 @@ impl Walker {
         }
         if u64::from(chunk.size) > room - 8 {
             let left = room - 8;
-            return Err(
-                self.error(&chunk, format!("{} bytes are claimed, and its list has {left} left", chunk.size))
-            );
+            return Err(self
+                .error(&chunk, format!("it states {} bytes, but {left} are left in its list", chunk.size)));
         }
         if outermost || &id.0 == b"LIST" {
             self.open(&chunk)
@@ -119,9 +118,13 @@ impl Walker {
     fn open(&mut self, chunk: &Chunk) -> Result<Item, FileError> {
         if chunk.size < 4 {
             // Left by a recorder that was stopped before it could write the size.
-            return Err(
-                self.error(chunk, format!("a list of {} bytes; the recording was not completed", chunk.size))
-            );
+            return Err(self.error(
+                chunk,
+                format!(
+                    "a list of {} bytes, expected at least 4; the recording was not completed",
+                    chunk.size
+                ),
+            ));
         }
         if self.lists.len() == Self::DEEPEST {
             return Err(self.error(chunk, format!("lists are nested deeper than {}", Self::DEEPEST)));
@@ -153,7 +156,7 @@ impl Walker {
     }
 
     fn cut_short(&self) -> FileError {
-        self.cut_list("is not complete: the file ends there")
+        self.cut_list("is incomplete: the file ends there")
     }
 
     fn cut_list(&self, what: &str) -> FileError {

@@ -35,8 +35,9 @@ impl FromStr for FrameSize {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let sides = text.split_once('x').and_then(|(c, r)| Some((c.parse().ok()?, r.parse().ok()?)));
-        let (columns, rows) =
-            sides.ok_or_else(|| format!("`{text}` is not a size of frames; expected as 768x576"))?;
+        let (columns, rows) = sides.ok_or_else(|| {
+            format!("`{text}` is not a size of frames; expected COLUMNSxROWS, such as 768x576")
+        })?;
         Ok(Self { columns, rows })
     }
 }
@@ -100,8 +101,8 @@ impl FieldSource {
                 return Self::listed_video(&video, table, rows, setup);
             }
             if rows.iter().all(|(_, row)| row.file.is_none()) {
-                let expected = "the names of images, or fields.avi or fields.y4m beside the table: a run keeps them with \
-                                --save-frames";
+                let expected = "names of images, or fields.avi or fields.y4m in the directory of the table; \
+                                a run keeps its images with --save-frames";
                 return Err(FileError::value(
                     &table,
                     FileLocation::Header,
@@ -130,7 +131,7 @@ impl FieldSource {
         } else if is("avi") {
             Self::avi(open()?, setup, options)
         } else {
-            let reason = "the extension is none of avi, y4m; raw frames need their size (--raw 768x576)";
+            let reason = "the extension is not avi or y4m; raw frames need their size (--raw 768x576)";
             Err(open().err().unwrap_or_else(|| FileError::format(path, "video", reason)))
         }
     }
@@ -144,8 +145,8 @@ impl FieldSource {
     ) -> Result<Self, FileError> {
         let camera = setup.cameras.first().map_or((0, 0), |camera| (camera.columns, camera.rows));
         if setup.bit_depth != 8 {
-            let expected = format!("{}, those of the digitiser", setup.bit_depth);
-            return Err(FileError::value(video, FileLocation::Header, "bits of a sample", 8, expected));
+            let expected = format!("{}, the bit depth of the digitiser", setup.bit_depth);
+            return Err(FileError::value(video, FileLocation::Header, "bits per sample", 8, expected));
         }
         let input = Input::file(video)?;
         let is_avi = video.extension().is_some_and(|extension| extension == "avi");
@@ -189,7 +190,7 @@ impl FieldSource {
         let (columns, rows) = (format.columns, format.rows);
         if let Some(given) = options.raw.filter(|given| (given.columns, given.rows) != (columns, rows)) {
             let size = format!("{} × {}", given.columns, given.rows);
-            let expected = format!("{columns} × {rows}, those of the camera");
+            let expected = format!("{columns} × {rows}, the size of the camera");
             return Err(FileError::value(&path, FileLocation::Whole, "size of raw frames", size, expected));
         }
         Ok(Self::from_frames(&path, format, StreamReader::raw(input, (columns, rows))))
@@ -235,7 +236,7 @@ impl Iterator for FieldSource {
 /// Returns the number of columns and rows of the camera that took the sequence.
 fn size(path: &Path, setup: &DockingSetup, options: &SequenceOptions) -> Result<(usize, usize), FileError> {
     let camera = setup.cameras.get(options.camera).ok_or_else(|| {
-        let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
+        let expected = format!("0 to {}, the index of a camera", setup.cameras.len().saturating_sub(1));
         FileError::value(path, FileLocation::Whole, "camera", options.camera, expected)
     })?;
     camera.check().map_err(|source| FileError::contract(path, source))?;
@@ -256,14 +257,14 @@ fn format(
     };
     if bit_depth != setup.bit_depth {
         return wrong(
-            "bits of a sample",
+            "bits per sample",
             bit_depth.to_string(),
-            &format!("{}, those of the digitiser", setup.bit_depth),
+            &format!("{}, the bit depth of the digitiser", setup.bit_depth),
         );
     }
     let rate_hz = options.frame_rate_hz.or(rate_hz).unwrap_or(DEFAULT_RATE_HZ);
     if !RATES_HZ.contains(&rate_hz) {
-        return wrong("frames a second", rate_hz.to_string(), "0.001 to 100000");
+        return wrong("frames per second", rate_hz.to_string(), "0.001 to 100000");
     }
     options.digitiser.check().map_err(|source| FileError::contract(path, source))?;
     let (scan, camera, digitiser) = (options.scan, options.camera, options.digitiser);

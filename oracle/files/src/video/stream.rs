@@ -61,7 +61,7 @@ impl StreamReader {
             let text = |side: Option<u64>| side.map_or_else(|| "?".to_owned(), |n| n.to_string());
             let (c, r) = (text(claimed.0), text(claimed.1));
             let reason = format!(
-                "header: frames of {c} × {r} pixels, expected {columns} × {rows}, those of the camera"
+                "header: frames of {c} × {r} pixels, expected {columns} × {rows}, the size of the camera"
             );
             return Err(input.error(Y4M, reason));
         }
@@ -159,6 +159,6 @@ fn rate(input: &Input, text: &str) -> Result<Option<f64>, FileError> {
     match ratio {
         Some((0, 0)) => Ok(None),
         Some((n, d)) if n > 0 && d > 0 => Ok(Some(f64::from(n) / f64::from(d))),
-        _ => Err(input.error(Y4M, format!("header: frame rate `{text}`, expected as 25:1"))),
+        _ => Err(input.error(Y4M, format!("header: frame rate `{text}`, expected a ratio such as 25:1"))),
     }
 }

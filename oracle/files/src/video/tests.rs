@@ -323,7 +323,7 @@ fn a_header_of_y4m_that_lies_is_refused() {
         ("RIFF\n", "YUV4MPEG2"),
         ("", "empty"),
         ("YUV4MPEG2 W2 H2 Cmono\nframe\n1234", "byte 22"),
-        ("YUV4MPEG2 W2 H2 F1:4000000000\n", "frames a second"),
+        ("YUV4MPEG2 W2 H2 F1:4000000000\n", "frames per second"),
     ] {
         let message =
             opened(FieldSource::y4m(input(header.as_bytes()), &setup(2, 2), &options(TOP))).1.unwrap();
@@ -404,20 +404,20 @@ fn headers_that_lie_are_refused() {
         assert!(message.contains(part), "{message}");
     };
     check(4, 0, "not completed");
-    check(4, 100, "bytes are claimed, and its list has 88 left");
-    check(4, 1 << 30, "is not complete: the file ends there");
-    check(at(b"movi") - 4, u32::MAX, "bytes are claimed");
+    check(4, 100, "but 88 are left in its list");
+    check(4, 1 << 30, "is incomplete: the file ends there");
+    check(at(b"movi") - 4, u32::MAX, "are left in its list");
     check(at(b"movi") - 4, 0, "not completed");
     check(at(b"00db") + 4, u32::MAX, "chunk `00db`");
     check(at(b"00db") + 4, 20, "20 bytes, expected 15, or 24 with padding");
     check(strf + 4, 8, "8 bytes, expected 40 to 4096");
-    check(strf + 12, 1 << 30, "expected 5 × 3, those of the camera");
+    check(strf + 12, 1 << 30, "expected 5 × 3, the size of the camera");
     check(strf + 12, u32::MAX, "-1 × 3");
     check(strf + 16, i32::MIN as u32, "× -2147483648");
-    check(strf + 20, 1 | 4 << 16, "4 bits a pixel");
+    check(strf + 20, 1 | 4 << 16, "4 bits per pixel");
     check(strf + 24, u32::from_le_bytes(*b"H264"), "`H264`");
-    check(at(b"strh") + 8 + 20, 0, "frames a second");
-    check(8, u32::from_le_bytes(*b"WAVE"), "another kind");
+    check(at(b"strh") + 8 + 20, 0, "frames per second");
+    check(8, u32::from_le_bytes(*b"WAVE"), "RIFF type");
 }
 
 #[test]
@@ -464,15 +464,15 @@ fn what_cannot_be_opened_says_why() {
     assert!(message(&directory.path().join("no.avi"), &set, &options(TOP)).contains("cannot open"));
     let other = directory.path().join("a.mp4");
     fs::write(&other, "x").unwrap();
-    assert!(message(&other, &set, &options(TOP)).contains("avi, y4m"));
+    assert!(message(&other, &set, &options(TOP)).contains("avi or y4m"));
     let grey = golden("grey.avi");
     let deep = DockingSetup { bit_depth: 10, ..setup(48, 35) };
-    assert!(message(&grey, &deep, &options(TOP)).contains("10, those of the digitiser"));
+    assert!(message(&grey, &deep, &options(TOP)).contains("10, the bit depth of the digitiser"));
     assert!(message(&grey, &set, &options(TOP)).contains("48 × 35 pixels, expected 4 × 4"));
     let second = SequenceOptions { camera: 2, ..options(TOP) };
-    assert!(message(&grey, &setup(48, 35), &second).contains("0 to 1, one of the cameras"));
+    assert!(message(&grey, &setup(48, 35), &second).contains("0 to 1, the index of a camera"));
     let still = SequenceOptions { frame_rate_hz: Some(0.0), ..options(TOP) };
-    assert!(message(&grey, &setup(48, 35), &still).contains("frames a second"));
+    assert!(message(&grey, &setup(48, 35), &still).contains("frames per second"));
 }
 
 proptest! {

@@ -36,12 +36,12 @@ impl Weaver {
         };
         let size = (field.image().columns(), field.camera_rows());
         if size != (self.columns, self.rows) {
-            let expected = format!("{} × {}, those of the file", self.columns, self.rows);
+            let expected = format!("{} × {}, the size of the frames of the file", self.columns, self.rows);
             return wrong("size of a field's frame", format!("{} × {}", size.0, size.1), &expected);
         }
         match self.waits_for {
             Some(lines) if lines != field.lines() => {
-                let expected = format!("{}, the other half of the field before", lines.code());
+                let expected = format!("{}, the other half of the previous field", lines.code());
                 return wrong("lines of a field", field.lines().code().to_owned(), &expected);
             }
             _ => {}

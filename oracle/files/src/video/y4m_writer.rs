@@ -113,9 +113,11 @@ impl Y4mWriter {
 
     fn put(&mut self, write: impl FnOnce(&mut dyn Write, &[u8]) -> io::Result<()>) -> Result<(), FileError> {
         write(self.out.as_mut(), self.weaver.frame()).map_err(|source| match source.kind() {
-            ErrorKind::BrokenPipe => {
-                FileError::io(&self.path, "write", io::Error::new(source.kind(), "its reader has gone"))
-            }
+            ErrorKind::BrokenPipe => FileError::io(
+                &self.path,
+                "write",
+                io::Error::new(source.kind(), "the reading process closed the stream"),
+            ),
             _ => FileError::io(&self.path, "write", source),
         })
     }

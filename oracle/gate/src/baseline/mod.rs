@@ -440,8 +440,8 @@ mod tests {
             assert_eq!(std::fs::read_dir(other.path()).unwrap().count(), 1);
             assert_eq!(std::fs::read_to_string(other.path().join(name)).unwrap(), text);
         };
-        parts("baseline.toml", "name = 1\n", "another file");
-        parts("rows.parquet", "mine", "another file");
+        parts("baseline.toml", "name = 1\n", "a file of another kind");
+        parts("rows.parquet", "mine", "a file of another kind");
         parts("SHA256SUMS", &format!("{}  run.toml\n", "0".repeat(64)), "checksums of the files");
         baseline.write(folder.path(), Replacement::Allow).unwrap();
     }

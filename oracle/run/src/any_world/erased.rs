@@ -151,7 +151,7 @@ impl<W: World> AnyWorld for ErasedWorld<W> {
     ) -> Result<AnyFactory, Failure> {
         match scenario.as_any().downcast_ref::<W::Scenario>() {
             Some(scenario) => Ok(AnyFactory::new(choice.factory::<W>(W::config(scenario), scratch)?)),
-            None => Err(Failure::Usage(format!("the scenario is of another world than {}", W::CODE))),
+            None => Err(Failure::Usage(format!("the scenario belongs to another world than {}", W::CODE))),
         }
     }
 

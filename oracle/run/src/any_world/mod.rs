@@ -276,7 +276,7 @@ impl AnyFactory {
     pub fn downcast<I: Interface>(&self) -> Result<&dyn PipelineFactory<I>, Failure> {
         match self.factory.downcast_ref::<Box<dyn PipelineFactory<I> + Send>>() {
             Some(factory) => Ok(factory.as_ref()),
-            None => Err(Failure::Usage("the pipeline is of another world than the scenario".to_owned())),
+            None => Err(Failure::Usage("the pipeline belongs to another world than the scenario".to_owned())),
         }
     }
 }
@@ -414,7 +414,7 @@ impl ScenarioSource {
     pub fn typed<S: ScenarioFile>(&self, what: &str) -> Result<&S, Failure> {
         self.scenario.as_any().downcast_ref().ok_or_else(|| {
             Failure::Usage(format!(
-                "{what}: scenario `{}` is of another world, expected one of {}",
+                "{what}: scenario `{}` belongs to another world, expected a scenario of {}",
                 self.name,
                 S::WORLD
             ))

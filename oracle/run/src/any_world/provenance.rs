@@ -57,7 +57,7 @@ fn check_record_beside(world: &dyn AnyWorld, directory: &Path, answers: &Path) -
     let other = world_of_run(&record)?;
     let refuse = |field: &str, found: &str, expected: &str| {
         Failure::Usage(format!(
-            "{}: {} are of another run: `{field}` is `{found}`, expected `{expected}`, as in {}",
+            "{}: {} belongs to another run: `{field}` is `{found}`, expected `{expected}`, as in {}",
             record.display(),
             answers.file_name().unwrap_or_default().display(),
             truth.display()
@@ -112,7 +112,7 @@ fn check_origins(world: &dyn AnyWorld, directory: &Path, answers: &Path) -> Resu
             FileError::value(answers, FileLocation::Line(origin.line), column, found, expected)
         };
         if let Some(configuration) = origin.configuration.as_ref().filter(|found| **found != hash) {
-            let expected = format!("{hash}, the hash of {}", directory.join("run.toml").display());
+            let expected = format!("{hash}, the hash in {}", directory.join("run.toml").display());
             return Err(refuse("configuration", configuration, &expected).into());
         }
         if let Some((found, expected)) = origin.time.zip(times.get(&origin.frame))

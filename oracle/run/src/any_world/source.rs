@@ -94,7 +94,8 @@ impl ScenarioSource {
             let sha256 = file_sha256(&path)?.ok_or_else(missing)?;
             if let Some(earlier) = self.contents.get(&path).filter(|earlier| **earlier != sha256) {
                 let message = format!(
-                    "is {}, whose SHA-256 is {sha256}, expected {earlier}: the file was changed since",
+                    "is {}, whose SHA-256 is {sha256}, expected {earlier}: the file has changed since that \
+                     hash was recorded",
                     path.display()
                 );
                 return Err(self.refuse(role, message));

@@ -92,7 +92,8 @@ impl PipelineChoice {
         let hint = toml_file::nearest(word, [built_in, EXEC])
             .map_or(String::new(), |name| format!("; did you mean `{name}`?"));
         Err(Failure::Usage(format!(
-            "there is no pipeline `{word}` in the world `{built_in}`; expected `{built_in}` or `exec:COMMAND`{hint}"
+            "unknown pipeline `{word}` for the world `{built_in}`; expected `{built_in}` or \
+             `exec:COMMAND`{hint}"
         )))
     }
 }

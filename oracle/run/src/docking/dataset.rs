@@ -56,7 +56,7 @@ impl std::str::FromStr for FieldImages {
             "avi" => Ok(Self::Avi),
             "mjpeg" => Ok(Self::MotionJpeg),
             "y4m" => Ok(Self::Y4m),
-            _ => Err(format!("`{text}` is no format of docking fields; expected png, avi, mjpeg or y4m")),
+            _ => Err(format!("`{text}` is not a format of docking fields; expected png, avi, mjpeg or y4m")),
         }
     }
 }

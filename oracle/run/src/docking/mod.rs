@@ -67,9 +67,7 @@ impl World for DockingMission {
     fn prepare(source: &ScenarioSource, _: &DockingScenario, options: Options) -> Result<Self, Failure> {
         refuse_attitude(options.attitude)?;
         match options.inject {
-            Some(stage) => {
-                Err(Failure::Usage(format!("--inject is {stage}, expected with a far-range scenario alone")))
-            }
+            Some(stage) => Err(Failure::Usage(format!("--inject {stage} requires a far-range scenario"))),
             None => Self::new(source, DockingRenderer::new(options.renderer)?),
         }
     }
@@ -107,7 +105,7 @@ impl World for DockingMission {
         });
         let text = format!(
             "{name}: {fields} fields in {seconds:.0} s, target {} with {} marks, {cameras} cameras, no mistake found{}\n\
-             {fields} fields of {} each, uncompressed {} in all",
+             {fields} fields of {} each, uncompressed {} in total",
             target.name,
             target.marks.len(),
             lines.concat(),
@@ -133,7 +131,7 @@ impl World for DockingMission {
 
     fn check_frame_jobs(&self, frame_jobs: &FrameJobs<FieldImages>) -> Result<(), Failure> {
         if frame_jobs.expectation == Expectation::Kept {
-            let message = "--expected is given, expected with a far-range scenario alone";
+            let message = "--expected requires a far-range scenario";
             return Err(Failure::Usage(message.to_owned()));
         }
         let count = frame_jobs.frames.end - frame_jobs.frames.start;
@@ -141,8 +139,8 @@ impl World for DockingMission {
             && count > most
         {
             return Err(Failure::Usage(format!(
-                "{count} fields are more than the {most} of an uncompressed AVI of 4 GB; expected fewer (--frames), or mjpeg, \
-                 png or y4m"
+                "{count} fields exceed the {most} that fit into an uncompressed AVI of 4 GB; select fewer \
+                 with --frames, or write mjpeg, png or y4m"
             )));
         }
         self.probe(frame_jobs.frames.start)
@@ -156,7 +154,7 @@ impl World for DockingMission {
         if frame_jobs.images == Some(FieldImages::Y4m) {
             return Ok(());
         }
-        let message = "--out is -, expected with --format y4m alone: no other format is a stream";
+        let message = "--out - requires --format y4m: no other format can be streamed";
         Err(Failure::Usage(message.to_owned()))
     }
 

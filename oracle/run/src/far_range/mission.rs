@@ -58,7 +58,7 @@ impl FarRangeMission {
         scenario.score.attitude = attitude.or(scenario.score.attitude);
         if inject == Some(Stage::Roi) && scenario.roi.take().is_none() {
             return Err(Failure::Usage(format!(
-                "--inject is roi, expected a scenario with regions of interest: `{}` has no [roi]",
+                "--inject roi requires a scenario with regions of interest: `{}` has no [roi]",
                 source.name
             )));
         }
@@ -73,7 +73,7 @@ impl FarRangeMission {
         let (_, star_epoch) = simulator
             .schedule()
             .frame(0)
-            .ok_or_else(|| Failure::Usage(format!("scenario `{}` has no frame", source.name)))?;
+            .ok_or_else(|| Failure::Usage(format!("scenario `{}` has no frames", source.name)))?;
         let (stars, listed) = &*uploaded(&scenario, &simulator, star_epoch);
         let setup = setup(&run_file.scenario, listed.clone());
         Ok(Self { simulator, run_file, setup, stars: stars.clone(), star_epoch })

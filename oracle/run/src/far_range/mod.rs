@@ -77,7 +77,7 @@ impl World for FarRangeMission {
 
     fn prepare(source: &ScenarioSource, _: &FarRangeScenario, options: Options) -> Result<Self, Failure> {
         if let Some(renderer) = options.renderer.word() {
-            let message = format!("--renderer is {renderer}, expected with a docking scenario alone");
+            let message = format!("--renderer {renderer} requires a docking scenario");
             return Err(Failure::Usage(message));
         }
         Self::with_options(source, options.inject, options.attitude)
@@ -93,13 +93,15 @@ impl World for FarRangeMission {
         let bit_depth = scenario.sensor.bit_depth;
         let image = image_bytes(scenario.camera.columns, scenario.camera.rows, bit_depth);
         let (budget, telemetry) = match &scenario.roi {
-            None => (image, format!("whole images: {image} bytes of telemetry a frame")),
+            None => (image, format!("whole images: {image} bytes of telemetry per frame")),
             Some(roi) => {
                 let budget = roi.budget_bytes(bit_depth);
                 let regions = format!("{} regions of {} × {} pixels", roi.count, roi.columns, roi.rows);
                 (
                     budget,
-                    format!("{regions}: {budget} bytes of telemetry a frame at most, a whole image {image}"),
+                    format!(
+                        "{regions}: at most {budget} bytes of telemetry per frame (whole image: {image})"
+                    ),
                 )
             }
         };
@@ -124,13 +126,15 @@ impl World for FarRangeMission {
             "fits_bytes": file,
         });
         let limit = match limit {
-            Some(limit) => format!("the faintest with SNR {LIMITING_SNR} in the longest has V = {limit:.2}"),
-            None => format!("no star has SNR {LIMITING_SNR} in the longest"),
+            Some(limit) => format!(
+                "the faintest star with SNR {LIMITING_SNR} in the longest exposure has V = {limit:.2}"
+            ),
+            None => format!("no star has SNR {LIMITING_SNR} in the longest exposure"),
         };
         let text = format!(
             "{name}: {frames} frames, {stars} stars, no mistake found\n{telemetry}\n{}\n\
              exposures of {shortest_s} s to {longest_s} s; {limit}\n\
-             {frames} frames in {duration_s:.0} s; as FITS {} each, {} in all",
+             {frames} frames in {duration_s:.0} s; as FITS {} each, {} in total",
             view.text(),
             size(file),
             size(file.saturating_mul(frames)),
@@ -141,8 +145,8 @@ impl World for FarRangeMission {
     fn warnings(&self) -> Vec<String> {
         let beyond = dataset::sip_reach_px(&self.simulator, &self.scenario().camera).map(|reach_px| {
             format!(
-                "camera.radial, camera.tangential: no SIP follows the distortion beyond {reach_px:.0} px from the principal point; \
-                 FITS files are written without it"
+                "camera.radial, camera.tangential: no SIP polynomial fits the distortion beyond \
+                 {reach_px:.0} px from the principal point; FITS files are written without SIP"
             )
         });
         beyond.into_iter().collect()
@@ -327,7 +331,7 @@ impl World for FarRangeMission {
             }
             let granted = scorer.granted(measured_attitudes.take(number)?).ok_or_else(|| {
                 Failure::Usage(format!(
-                    "{}: there is no row of frame {number}, expected its attitude for --attitude telemetry",
+                    "{}: frame {number} has no row; --attitude telemetry requires its attitude",
                     telemetry.display()
                 ))
             })?;
@@ -357,7 +361,7 @@ fn setup_of(directory: &Path, dataset: &Dataset) -> Result<Setup, Failure> {
     } else {
         let epoch = dataset
             .star_epoch()
-            .ok_or_else(|| Failure::Usage(format!("{}: a dataset without frames", directory.display())))?;
+            .ok_or_else(|| Failure::Usage(format!("{}: the dataset has no frames", directory.display())))?;
         star_list(&Catalog::hipparcos2(), camera.magnitude_limit, epoch)
     };
     Ok(Setup {

@@ -63,7 +63,7 @@ fn header(path: &Path, line: &str) -> Result<Vec<(Column, &'static str)>, Catalo
             return Err(CatalogError::UnknownColumn { path: path.to_path_buf(), name, nearest });
         };
         if header.contains(column) {
-            return Err(problem(path, 1, format!("the column `{name}` stands there twice")));
+            return Err(problem(path, 1, format!("the column `{name}` occurs twice")));
         }
         header.push(*column);
     }
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn an_unknown_column_is_told_its_neighbour() {
-        refused("id,ra_dge,dec_deg,hp_mag\n", "the column `ra_dge` is not known, did you mean `ra_deg`?");
+        refused("id,ra_dge,dec_deg,hp_mag\n", "unknown column `ra_dge`, did you mean `ra_deg`?");
         refused("id,ra_deg,dec_deg,hp_mag,pm_ra\n", "did you mean `pm_ra_mas_per_yr`?");
     }
 
@@ -215,8 +215,8 @@ mod tests {
         refused("id,ra_deg,hp_mag\n", "the column dec_deg is missing");
         refused("id,ra_deg,dec_deg\n", "the column hp_mag (or v_mag) is missing");
         refused("id,ra_deg,dec_deg,hp_mag,v_mag\n", "exclude each other");
-        refused("id,ra_deg,dec_deg,hp_mag,id\n", "`id` stands there twice");
-        refused("", "the column `` is not known");
+        refused("id,ra_deg,dec_deg,hp_mag,id\n", "`id` occurs twice");
+        refused("", "unknown column ``");
     }
 
     #[test]
@@ -229,7 +229,7 @@ mod tests {
         refuse("2,nan,0,4,", "ra_deg is `nan`");
         refuse("2,1,0,inf,", "hp_mag is `inf`");
         refuse("2,1,0,,", "column 7: hp_mag is ``");
-        refuse("-2,1,0,4,", "column 1: id is `-2`, expected a whole number");
+        refuse("-2,1,0,4,", "column 1: id is `-2`, expected an integer");
         refuse("2,1,0,4,red", "column 9: b_v is `red`");
         refuse("2,1,0,4", "line 3: 4 fields, expected 5");
     }

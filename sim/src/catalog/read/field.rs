@@ -33,7 +33,7 @@ impl Field<'_> {
     }
 
     pub(super) fn id(&self) -> Result<u32, CatalogError> {
-        self.text.trim().parse().map_err(|_| self.error("a whole number from 0 to 4294967295"))
+        self.text.trim().parse().map_err(|_| self.error("an integer from 0 to 4294967295"))
     }
 
     /// Parses a finite number from `low` to `high`.

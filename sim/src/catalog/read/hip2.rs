@@ -24,7 +24,9 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<Vec<(usize, CatalogStar)>
 
 fn star(path: &Path, line: usize, content: &str) -> Result<CatalogStar, CatalogError> {
     if !is_line(content) {
-        let problem = format!("not a line of hip2.dat: expected at least {LENGTH} plain characters");
+        let problem = format!(
+            "not a line of hip2.dat: expected at least {LENGTH} ASCII characters without `|` and `,`"
+        );
         return Err(CatalogError::Line { path: path.to_path_buf(), line, problem });
     }
     // An ASCII line of this length contains every column.

@@ -83,7 +83,7 @@ impl PsfConfig {
                 require("psf.halo_sigma_px", halo_sigma_px, "from psf.sigma_px to 100", |v| v >= sigma_px)
             }
             Self::Defocus { radius_px, sigma_px } => {
-                let expected = "0.05 to 10 and a hundredth of psf.radius_px or more";
+                let expected = "0.05 to 10, and at least a hundredth of psf.radius_px";
                 require("psf.sigma_px", sigma_px, expected, |v| v >= 0.01 * radius_px)
             }
             _ => Ok(()),

@@ -64,7 +64,12 @@ impl RadiometryConfig {
         if let Self::Spectral { quantum_efficiency, band_nm, .. } = self {
             quantum_efficiency.check()?;
             if let Some([short, long]) = *band_nm {
-                require("radiometry.band_nm", long, "greater than the first, at most 1100", |w| w > short)?;
+                require(
+                    "radiometry.band_nm",
+                    long,
+                    "greater than the first wavelength, at most 1100",
+                    |w| w > short,
+                )?;
             }
         }
         Ok(())

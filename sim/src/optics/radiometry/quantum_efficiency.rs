@@ -41,7 +41,7 @@ impl QuantumEfficiency {
         let Self::Table(table) = self else { return Ok(()) };
         for pair in table.windows(2) {
             let [[before, _], [after, _]] = pair else { continue };
-            require("radiometry.quantum_efficiency", *after, "wavelengths that grow", |w| w > *before)?;
+            require("radiometry.quantum_efficiency", *after, "increasing wavelengths", |w| w > *before)?;
         }
         Ok(())
     }

@@ -143,7 +143,7 @@ impl Background {
             return Err(OutOfRange::new(
                 "radiometry.kind",
                 "zero_point",
-                "spectral, because stray light of background.sun, .earth, .moon goes by the aperture",
+                "spectral, because stray light of background.sun, .earth, .moon depends on the aperture",
             )
             .into());
         }

@@ -73,7 +73,7 @@ impl BlanketsTable {
         require(
             "station.blankets.tile_width_m",
             self.tile_width_m,
-            "greater than 0, so large that there are at most 1000 tiles",
+            "greater than 0, and large enough for at most 1000 tiles",
             |w| 2.0 * PI * face.radius_m / w * self.rings as f64 <= MAX_TILES,
         )?;
         let least_m = self.ring_width_m.min(self.tile_width_m);
@@ -83,11 +83,13 @@ impl BlanketsTable {
         require(
             "station.blankets.thickness_m",
             self.thickness_m,
-            "greater than 0, less than the docking unit stands out from the face",
+            "greater than 0, less than the height of the docking unit above the face",
             |t| t < depth_m - unit.depth_m,
         )?;
         let [least, greatest] = self.reflectance;
-        require("station.blankets.reflectance", least, "0 to 1, the least first", |rho| rho <= greatest)
+        require("station.blankets.reflectance", least, "0 to 1, the smaller value first", |rho| {
+            rho <= greatest
+        })
     }
 
     /// Returns the tiles on `face`, which lies `depth_m` behind the disk's plane.

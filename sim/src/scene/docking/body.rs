@@ -137,12 +137,12 @@ impl Body {
         match *self {
             Self::Cylinder { from_m, to_m, .. } => {
                 let length_m = (vector(to_m) - vector(from_m)).norm();
-                require(format!("{path}.to_m"), length_m, "1 mm from from_m at least", |l| l >= 1e-3)
+                require(format!("{path}.to_m"), length_m, "at least 1 mm from from_m", |l| l >= 1e-3)
             }
             Self::Box { .. } => Ok(()),
             Self::Panel { size_m, cells: [across, along], gap_m, .. } => {
                 let count = across * along;
-                require(format!("{path}.cells"), count as f64, "1 to 64 in all", |_| count <= MAX_CELLS)?;
+                require(format!("{path}.cells"), count as f64, "1 to 64 in total", |_| count <= MAX_CELLS)?;
                 let cell_m = (size_m[0] / across as f64).min(size_m[1] / along as f64);
                 require(format!("{path}.gap_m"), gap_m, "0 or more, less than a cell", |gap| gap < cell_m)
             }

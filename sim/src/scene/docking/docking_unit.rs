@@ -144,7 +144,7 @@ impl DockingUnitTable {
 impl BlockRing {
     fn check(&self, ring_width_m: f64) -> Result<(), OutOfRange> {
         let (path, [along_m, across_m, height_m]) = ("docking_unit.blocks.size_m", self.size_m);
-        let expected = "along the radius greater than 0, less than the ring is wide";
+        let expected = "a radial size greater than 0 and less than the width of the ring";
         require(path, along_m, expected, |x| x < ring_width_m)?;
         [across_m, height_m]
             .into_iter()

@@ -102,7 +102,7 @@ impl MarksTable {
             ring.check(plate)?;
         }
         let count = self.ring.map_or(0, |ring| ring.count) + self.quad.len();
-        require("number of marks", count as f64, "1 to 64, of marks.ring and marks.quad together", |n| {
+        require("number of marks", count as f64, "1 to 64 in marks.ring and marks.quad together", |n| {
             (1.0..=MAX_MARKS as f64).contains(&n)
         })?;
         let quads = self.quads();
@@ -116,13 +116,15 @@ impl MarksTable {
                 ))
             };
             if !quad.iter().all(|corner| inside_plate(*corner, plate)) {
-                return refuse("four corners 0.1 mm inside the plate's edge at least");
+                return refuse("four corners at least 0.1 mm inside the plate's edge");
             }
             if !is_convex_counter_clockwise(quad) {
-                return refuse("a convex quadrangle, its corners counter-clockwise seen from the front");
+                return refuse(
+                    "a convex quadrilateral with corners counter-clockwise as seen from the front",
+                );
             }
             if quads[..i].iter().any(|other| overlap(other, quad)) {
-                return refuse("a mark apart from those before it");
+                return refuse("a mark that overlaps no earlier mark");
             }
         }
         Ok(())
@@ -156,7 +158,7 @@ impl MarkRing {
         require(
             "marks.ring.circle_radius_m",
             self.circle_radius_m,
-            "a radius that leaves the marks 0.1 mm inside the plate's edge at least",
+            "a radius that leaves the marks at least 0.1 mm inside the plate's edge",
             |_| inside_plate([outer_m, self.width_m / 2.0], plate),
         )?;
         // Neighbouring marks are closest at their inner corners.
@@ -164,7 +166,7 @@ impl MarkRing {
         require(
             "marks.ring.count",
             self.count as f64,
-            "1 to 64, as many as have room side by side on the circle",
+            "1 to 64, and at most as many as fit side by side on the circle",
             |n| n * angle < 2.0 * PI,
         )
     }

@@ -52,9 +52,12 @@ impl StationTable {
         check_source("station.source", &self.source)?;
         let [dy1_m, dy2_m] = [0, 1].map(|axis| unit.axis_m[axis] - self.centre_m[axis]);
         let reach_m = libm::hypot(dy1_m, dy2_m) + unit.outer_radius_m;
-        require("station.radius_m", self.radius_m, "rim and docking unit inside, at most 100", |r| {
-            r - self.rim_m > reach_m
-        })?;
+        require(
+            "station.radius_m",
+            self.radius_m,
+            "large enough for rim and docking unit, at most 100",
+            |r| r - self.rim_m > reach_m,
+        )?;
         require("station.depth_m", self.depth_m, "more than docking_unit.depth_m, at most 100", |h| {
             h > unit.depth_m
         })?;

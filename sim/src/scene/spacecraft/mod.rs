@@ -134,7 +134,7 @@ impl Spacecraft {
                 for (i, config) in plates.iter().enumerate() {
                     all.push(config.plate().map_err(|error| error.in_entry(i))?);
                 }
-                require("target.plates", all.len() as f64, "1 to 200, a box counting six", |n| {
+                require("target.plates", all.len() as f64, "1 to 200, where a box counts as six", |n| {
                     n >= 1.0 && n <= MAX_PLATES as f64
                 })?;
                 Model::Plates {
@@ -178,7 +178,7 @@ impl Spacecraft {
             Some(outline) if outline.holds_camera() => Err(OutOfRange::new(
                 "orbit.relative",
                 format!("{range_m:.3} m from the target's centre at frame {frame}"),
-                "a camera outside of the target",
+                "a camera outside the target",
             )),
             _ => Ok(()),
         }

@@ -74,10 +74,10 @@ impl PlateConfig {
         let unit = |vector: Vector3<f64>| vector.try_normalize(1e-9);
         let none = |field, value: [f64; 3], expected| OutOfRange::new(field, format!("{value:?}"), expected);
         let normal = unit(self.normal.into())
-            .ok_or_else(|| none("target.plates[].normal", self.normal, "a vector that is not 0"))?;
+            .ok_or_else(|| none("target.plates[].normal", self.normal, "a nonzero vector"))?;
         let up =
             unit(self.up.into()).and_then(|up| unit(up - normal * normal.dot(&up))).ok_or_else(|| {
-                none("target.plates[].up", self.up, "a vector that is not 0 and not along the normal")
+                none("target.plates[].up", self.up, "a nonzero vector that is not parallel to the normal")
             })?;
         Ok(Plate {
             centre: self.centre_m.into(),

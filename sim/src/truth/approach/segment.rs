@@ -152,7 +152,7 @@ impl AxialMotion {
         require(
             "approach.segments[].to_d3_m",
             to_d3_m,
-            "a place ahead, beyond the change of speed, reached at a speed above 0 within 1e5 s",
+            "a position ahead, beyond the change of speed, reached at a speed above 0 within 1e5 s",
             |_| duration_s > 0.0 && duration_s <= MAX_DURATION_S,
         )?;
         self.end_rate_m_s = rates_m_s[0];
@@ -175,7 +175,8 @@ impl AxialMotion {
             require(
                 "approach.segments[] (d3 where the motion turns, m)",
                 stretch.range_and_rate_at(turn_s).0,
-                "not nearer than contact and at most 20000: begin the change of speed farther out, or make ramp_s shorter",
+                "not nearer than contact and at most 20000: begin the change of speed farther out, or \
+                 reduce ramp_s",
                 |d3_m| (least_d3_m..=*D3_M.end()).contains(&d3_m),
             )
         })
