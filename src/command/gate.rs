@@ -108,7 +108,10 @@ impl std::str::FromStr for Tolerance {
             Some(Self { figure: figure.trim().to_owned(), size })
         });
         parsed.ok_or_else(|| {
-            format!("`{text}` is no tolerance; expected FIGURE=SIZE with a size of 0 or more, as in ra_rms_deg=0.001")
+            format!(
+                "tolerance is `{text}`, expected FIGURE=SIZE with a size of 0 or more, as in \
+                 ra_rms_deg=0.001"
+            )
         })
     }
 }
@@ -141,7 +144,7 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
     // Checked now, before minutes are spent on a report that could not be written.
     if let Some(path) = arguments.junit.as_ref().filter(|path| path.exists()) {
         return Err(Failure::Usage(format!(
-            "--junit is {}, which exists and is not overwritten; expected the name of a new file",
+            "--junit is {}, which exists; expected the name of a new file",
             path.display()
         )));
     }
