@@ -27,7 +27,7 @@ const REPORTS = {
   "far range": {
     words: ["run", "argon", "--frames", "9000..9060", "--out", "DIR"],
     headings: [
-      /^Table 2, beside the published one$/,
+      /^Table 2, with published values$/,
       /^Fig\. 2: .*images? of an orbit/,
       /^Fig\. 3: track of the target in pixels$/,
       /^Fig\. 4: position of the chaser/,
@@ -35,7 +35,7 @@ const REPORTS = {
       /^Fig\. 6: a whole and a truncated region/,
       /^Fig\. 7: stars/,
       /^Fig\. 8: attitude of the camera/,
-      /^Fig\. 9: angles of the correction of aberration$/,
+      /^Fig\. 9: angles of the aberration correction$/,
       /^Causes/,
       /^Error budget by stage$/,
       /^Frames$/,
