@@ -68,7 +68,8 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         && !choice.is_built_in(world.code())
     {
         return Err(Failure::Usage(format!(
-            "--inject is {stage}, expected with the built-in pipeline `{}` alone: another one has no place to put the truth in",
+            "--inject is {stage}, which applies only to the built-in pipeline `{}`: other pipelines have no \
+             such stage",
             world.code()
         )));
     }
@@ -93,7 +94,7 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
     };
     let note = arguments
         .inject
-        .map(|stage| format!("the truth was injected for {stage}: this is no result of the pipeline"));
+        .map(|stage| format!("the truth replaced {stage}: this is not a result of the whole pipeline"));
     let shown = Presentation { name: &source.name, has_report: !arguments.no_report, note };
     execute(prepared.as_ref(), &frame_jobs, &factory, &directory, shown, output)
 }
