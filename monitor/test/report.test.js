@@ -54,7 +54,7 @@ const REPORTS = {
   },
   visibility: {
     words: ["visibility", "uasc-far-range", "--frames", "0", "--out", "DIR"],
-    headings: [/^Detection against magnitude$/, /^Stars over the sky$/, /^Window of exposures against range$/],
+    headings: [/^Detection against magnitude$/, /^Stars over the sky$/, /^Exposure window against range$/],
     pictures: 0,
   },
   gate: {
@@ -66,7 +66,7 @@ const REPORTS = {
       mkdirSync(join(directory, "gate"));
     },
     words: ["gate", "BASELINE", "WORSE", "--report", "REPORT"],
-    headings: [/^What changed$/, /^Frames that flipped$/],
+    headings: [/^Changes of the figures$/, /^Frames with changed verdict$/],
     pictures: 1,
   },
 };

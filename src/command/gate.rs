@@ -47,10 +47,10 @@ struct CompareArguments {
     /// the baseline
     #[arg(long, value_name = "FIGURE=SIZE")]
     tolerance: Vec<Tolerance>,
-    /// Let figures with a best value (a bias, a NEES) change, for a reason that the report repeats
+    /// Accept changes of figures with a best value (a bias, a NEES); the report states the reason
     #[arg(long, requires = "reason")]
     accept_changed: bool,
-    /// Reason why they may change
+    /// Reason why these figures may change
     #[arg(long, value_name = "TEXT", requires = "accept_changed", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     reason: Option<String>,
     /// Also write the report as JUnit XML, or the reason why nothing could be compared; a new file
@@ -125,7 +125,7 @@ pub(super) fn gate(arguments: &GateArguments, output: &Output) -> Result<Answer,
         (Some(GateCommand::Baseline(arguments)), _) => make_baseline(arguments, output),
         (None, Some(arguments)) => run_gate(arguments, output),
         // clap requires one of the two.
-        (None, None) => Err(Failure::Usage("BASELINE and RESULT are missing, expected both".to_owned())),
+        (None, None) => Err(Failure::Usage("BASELINE and RESULT are missing".to_owned())),
     }
 }
 

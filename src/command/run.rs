@@ -26,7 +26,7 @@ pub(super) struct RunArguments {
     pipeline: PipelineOptions,
     #[command(flatten)]
     attitude: AttitudeOption,
-    /// Give the built-in pipeline the truth instead of this stage's result, to measure the stage's
+    /// Replace the result of this stage of the built-in pipeline by the truth, to measure the stage's
     /// contribution to the error
     #[arg(long, value_name = "STAGE")]
     inject: Option<Stage>,

@@ -108,7 +108,7 @@ pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
     figures.sort_by(|_, a, _, b| a.adjusted_p.total_cmp(&b.adjusted_p));
     let pairing = match report.pairing {
         Pairing::Frames => "the same frames",
-        Pairing::Blocks => "blocks of time, another seed",
+        Pairing::Blocks => "time blocks, different seed",
     };
     Page {
         title: format!("{}: {}", report.name, report.verdict.words()),
@@ -184,7 +184,7 @@ fn effects(report: &GateReport) -> Section {
         .iter()
         .filter(|(_, figure)| figure.difference.is_some())
         .partition(|(name, _)| figure_by_name(name).is_rate());
-    let mut section = Section::new("effects", "What changed");
+    let mut section = Section::new("effects", "Changes of the figures");
     if !rates.is_empty() {
         let (traces, layout) = differences(&rates, |_| 0.01, "difference, points");
         let caption = "Rates: result minus baseline with 95 % intervals, in percentage points, and the \
@@ -250,7 +250,7 @@ fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &st
 fn flipped_units(report: &GateReport, frames: FlippedFrames) -> Section {
     let section = Section::new("flips", format!("{} with changed verdict", capital(&report.units)));
     let Some(flips) = &report.flips else {
-        return section.text("The frames differ: only blocks are compared, and single frames are not.");
+        return section.text("The frames differ: blocks are compared, not single frames.");
     };
     let section = section.text(format!(
         "{} lost (correct only in the baseline), {} won (correct only in the result), {} changed otherwise.",
@@ -288,5 +288,5 @@ fn flipped_units(report: &GateReport, frames: FlippedFrames) -> Section {
     } else {
         section
     };
-    section.folded("All with changed verdict", table)
+    section.folded("List of changed verdicts", table)
 }

@@ -312,7 +312,7 @@ fn sky(report: &VisibilityReport) -> Section {
 /// Returns the section on exposure time against range.
 fn exposure_window(report: &VisibilityReport) -> Section {
     let curve = &report.exposure_window;
-    let section = Section::new("exposure-window", "Window of exposures against range");
+    let section = Section::new("exposure-window", "Exposure window against range");
     if curve.is_empty() {
         return section.text("The file defines no target: no over-exposure limits the exposure.");
     }

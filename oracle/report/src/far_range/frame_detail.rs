@@ -141,7 +141,7 @@ impl FrameDetail {
             let mut picture = picture_of(&exposure, &around, 6.0)?;
             picture.title = if target.cut < 0.02 { "Whole.".to_owned() } else { "Truncated.".to_owned() };
             picture.caption = format!(
-                "Frame {}, {}, {:.2} km: {:.0} % of the target's electrons are lost.",
+                "Frame {}, {}, {:.2} km: {:.0} % of the target's electrons are cut off.",
                 exposure.truth.frame,
                 exposure.truth.group,
                 exposure.truth.range_km,

@@ -214,7 +214,7 @@ fn causes(run: &FarRangeRun) -> Section {
             traces.push(bars.hover_template("%{x}: %{y} %"));
         }
         section = section.chart(Chart::new(
-            format!("{title} by cause, percent of the frames of a group."),
+            format!("{title} by cause, percent of the frames in each group."),
             340,
             data,
             traces,
