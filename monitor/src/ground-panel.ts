@@ -48,7 +48,7 @@ export class GroundPanel {
     context.drawImage(this.base, 0, 0);
     const ground = this.last?.ground;
     if (!ground) {
-      this.note.textContent = "no orbit is known";
+      this.note.textContent = "no orbit defined";
       return;
     }
     const path = geoPath(this.projection, context);

@@ -50,7 +50,7 @@ async function start(): Promise<void> {
       if (state) {
         waiting.textContent = state.failure
           ? `The run has ended: ${state.failure}`
-          : `Processing: frame ${state.processed} of ${state.to - 1} is next, ${player.frame} is wanted`;
+          : `Processing: next frame ${state.processed} of ${state.to - 1}, waiting for ${player.frame}`;
       }
     },
     change: () => controls(),

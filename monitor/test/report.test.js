@@ -27,7 +27,7 @@ const REPORTS = {
   "far range": {
     words: ["run", "argon", "--frames", "9000..9060", "--out", "DIR"],
     headings: [
-      /^Table 2, beside the published one$/,
+      /^Table 2, with published values$/,
       /^Fig\. 2: .*images? of an orbit/,
       /^Fig\. 3: track of the target in pixels$/,
       /^Fig\. 4: position of the chaser/,
@@ -35,7 +35,7 @@ const REPORTS = {
       /^Fig\. 6: a whole and a truncated region/,
       /^Fig\. 7: stars/,
       /^Fig\. 8: attitude of the camera/,
-      /^Fig\. 9: angles of the correction of aberration$/,
+      /^Fig\. 9: angles of the aberration correction$/,
       /^Causes/,
       /^Error budget by stage$/,
       /^Frames$/,
@@ -54,7 +54,7 @@ const REPORTS = {
   },
   visibility: {
     words: ["visibility", "uasc-far-range", "--frames", "0", "--out", "DIR"],
-    headings: [/^Detection against magnitude$/, /^Stars over the sky$/, /^Window of exposures against range$/],
+    headings: [/^Detection against magnitude$/, /^Stars over the sky$/, /^Exposure window against range$/],
     pictures: 0,
   },
   gate: {
@@ -66,7 +66,7 @@ const REPORTS = {
       mkdirSync(join(directory, "gate"));
     },
     words: ["gate", "BASELINE", "WORSE", "--report", "REPORT"],
-    headings: [/^What changed$/, /^Frames that flipped$/],
+    headings: [/^Changes of the figures$/, /^Frames with changed verdict$/],
     pictures: 1,
   },
 };

@@ -102,7 +102,7 @@ def test_a_store_that_holds_another_study_is_refused(program, study, store):
     before = store.cat_file(f"{URL}/plan.json")
     study.write_text(STUDY.replace("seed = 9", "seed = 10"))
     done = on_dask(program, study)
-    assert done.returncode == 1 and b"the folder holds another study" in done.stderr, done.stderr.decode()
+    assert done.returncode == 1 and b"the folder contains another study" in done.stderr, done.stderr.decode()
     assert store.cat_file(f"{URL}/plan.json") == before and json.loads(before)["shards"] == SHARDS
 
 

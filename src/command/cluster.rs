@@ -26,7 +26,7 @@ impl FromStr for Engine {
             None if text == "dask" => Ok(Self::Dask(None)),
             Some(("dask", address)) if !address.is_empty() => Ok(Self::Dask(Some(address.to_owned()))),
             _ => Err(format!(
-                "there is no engine `{text}`; expected local, dask, or dask=ADDRESS as in dask=tcp://10.0.0.1:8786"
+                "engine is `{text}`, expected local, dask, or dask=ADDRESS as in dask=tcp://10.0.0.1:8786"
             )),
         }
     }
@@ -38,7 +38,7 @@ const PYTHON: &str = "BORESIGHT_PYTHON";
 const PROGRAM: &str = "BORESIGHT_PROGRAM";
 
 const INSTALL: &str =
-    "`pip install './python[dask]'` installs it, and BORESIGHT_PYTHON names the interpreter";
+    "install it with `pip install './python[dask]'`, and set BORESIGHT_PYTHON to the interpreter";
 
 /// Returns an error if Python, the package or Dask is missing.
 ///
@@ -78,7 +78,9 @@ pub(super) fn run_on_dask(
     let program = match std::env::var(PROGRAM) {
         Ok(program) => program,
         Err(_) => std::env::current_exe()
-            .map_err(|error| Failure::Usage(format!("the path of this program is not known: {error}")))?
+            .map_err(|error| {
+                Failure::Usage(format!("the path of this program cannot be determined: {error}"))
+            })?
             .to_string_lossy()
             .into_owned(),
     };
@@ -117,7 +119,7 @@ pub(super) fn run_on_dask(
     }
     let status = child
         .wait()
-        .map_err(|error| Failure::Usage(format!("--engine dask: `{python}` was lost: {error}")))?;
+        .map_err(|error| Failure::Usage(format!("--engine dask: waiting for `{python}` failed: {error}")))?;
     let log = log.join().unwrap_or_default();
     if status.success() {
         Ok(())

@@ -75,8 +75,9 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
     output.answer(
         &json!({ "directory": path, "frames": frames }),
         format!(
-            "{frames} {1}s in {0}\nfor a pipeline: {files}; the truth is apart in truth/\n\
-             next: boresight process {0}, or a pipeline of your own and boresight score {0} MEASUREMENTS",
+            "{frames} {1}s in {0}\n\
+             for a pipeline: {files}; the truth is separate in truth/\n\
+             next: boresight process {0}, or your own pipeline and boresight score {0} MEASUREMENTS",
             path.display(),
             world.image(),
         ),
@@ -115,12 +116,14 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     match dataset {
         Some(world) if is_plain => process_dataset(world, arguments, output),
         Some(_) if !is_docking && !sequence.names_cameras() => Err(Failure::Usage(match sequence.given() {
-            Some(option) => format!("{option} is given, expected with docking alone"),
-            None => "--out is -, expected the name of a place: only docking writes to standard output (`./-` is a file)".to_owned(),
+            Some(option) => format!("{option} applies only to docking"),
+            None => "--out is -, expected a path: only docking writes to standard output (a file named - is \
+                ./-)"
+                .to_owned(),
         })),
         None if !is_stream && path.is_dir() && !sequence.names_cameras() => Err(Failure::Usage(format!(
-            "{}: expected camera.toml (far range) or setup.toml (docking) in it, or --scenario SCENARIO for a folder of docking \
-             images",
+            "{}: neither camera.toml (far range) nor setup.toml (docking) in it; for a folder of docking \
+             images give --scenario SCENARIO",
             path.display()
         ))),
         _ => process_sequence(arguments, output),
@@ -162,7 +165,7 @@ fn process_dataset(
     let summary = processed.summary.iter().map(|summary| (summary.key.to_owned(), json!(summary.counts)));
     let document: Map<String, Value> =
         files.chain([("frames".to_owned(), json!(frames))]).chain(summary).collect();
-    let mut text = format!("{frames} {}s processed, answers in {}", world.image(), measurements.display());
+    let mut text = format!("{frames} {}s processed, outcomes in {}", world.image(), measurements.display());
     if let Some(summary) = &processed.summary {
         text.push('\n');
         text.push_str(&summary.text);
@@ -240,7 +243,7 @@ impl SequenceArguments {
     fn check_free(&self, table: &Path) -> Result<(), Failure> {
         match self.given_of_fields() {
             Some(option) if table.is_file() => Err(Failure::Usage(format!(
-                "{option} is given, expected without {}, which tells camera, lines and time of every field",
+                "{option} conflicts with {}, which states camera, lines and time of every field",
                 table.display()
             ))),
             _ => Ok(()),
@@ -265,7 +268,7 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
         (None, None) => {
             let name = if path == Path::new("-") { "standard input".into() } else { path.to_string_lossy() };
             return Err(Failure::Usage(format!(
-                "{name}: cameras and target are not known, expected --scenario SCENARIO or --setup FILE"
+                "{name}: cameras and target are undefined; give --scenario SCENARIO or --setup FILE"
             )));
         }
     };
@@ -300,7 +303,7 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
             "features": measurements.with_file_name("features.parquet"),
             "frames": fields,
         }),
-        format!("{fields} fields processed, answers in {}", measurements.display()),
+        format!("{fields} fields processed, outcomes in {}", measurements.display()),
     )?;
     Ok(Answer::Yes)
 }

@@ -24,7 +24,8 @@ pub(super) fn note_unfinished_run(directory: &RunDirectory) {
     let path = directory.path().display().to_string();
     report_interruption(move || {
         format!(
-            "{path} holds an unfinished run, which is not continued: remove it, and run the command again"
+            "{path} contains an unfinished run, which cannot be continued: remove it, and run the command \
+             again"
         )
     });
 }

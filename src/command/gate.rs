@@ -47,10 +47,10 @@ struct CompareArguments {
     /// the baseline
     #[arg(long, value_name = "FIGURE=SIZE")]
     tolerance: Vec<Tolerance>,
-    /// Let figures with a best value (a bias, a NEES) change, for a reason that the report repeats
+    /// Accept changes of figures with a best value (a bias, a NEES); the report states the reason
     #[arg(long, requires = "reason")]
     accept_changed: bool,
-    /// Reason why they may change
+    /// Reason why these figures may change
     #[arg(long, value_name = "TEXT", requires = "accept_changed", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     reason: Option<String>,
     /// Also write the report as JUnit XML, or the reason why nothing could be compared; a new file
@@ -108,7 +108,10 @@ impl std::str::FromStr for Tolerance {
             Some(Self { figure: figure.trim().to_owned(), size })
         });
         parsed.ok_or_else(|| {
-            format!("`{text}` is no tolerance; expected FIGURE=SIZE with a size of 0 or more, as in ra_rms_deg=0.001")
+            format!(
+                "tolerance is `{text}`, expected FIGURE=SIZE with a size of 0 or more, as in \
+                 ra_rms_deg=0.001"
+            )
         })
     }
 }
@@ -122,7 +125,7 @@ pub(super) fn gate(arguments: &GateArguments, output: &Output) -> Result<Answer,
         (Some(GateCommand::Baseline(arguments)), _) => make_baseline(arguments, output),
         (None, Some(arguments)) => run_gate(arguments, output),
         // clap requires one of the two.
-        (None, None) => Err(Failure::Usage("BASELINE and RESULT are missing, expected both".to_owned())),
+        (None, None) => Err(Failure::Usage("BASELINE and RESULT are missing".to_owned())),
     }
 }
 
@@ -141,7 +144,7 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
     // Checked now, before minutes are spent on a report that could not be written.
     if let Some(path) = arguments.junit.as_ref().filter(|path| path.exists()) {
         return Err(Failure::Usage(format!(
-            "--junit is {}, which exists and is not overwritten; expected the name of a new file",
+            "--junit is {}, which exists; expected the name of a new file",
             path.display()
         )));
     }

@@ -21,7 +21,7 @@ use super::scratch_directory::remove_all;
 static KEPT: Mutex<Option<Box<dyn Fn() -> String + Send>>> = Mutex::new(None);
 
 /// Message for a command that sets no other message.
-const NOTHING_HALF: &str = "no file was left half written; the same command begins anew";
+const NOTHING_HALF: &str = "no file is partly written; the same command starts again from the beginning";
 
 /// Sets the message of an interrupt from now on: which results the command keeps, and how to continue. An
 /// empty text prints nothing.

@@ -58,7 +58,7 @@ enum Command {
     /// Monte Carlo: a scenario with variation of any parameter that can vary
     #[command(subcommand)]
     Study(study::StudyCommand),
-    /// Find cameras that see enough stars and the target: verify requirements, find exposure, aperture or
+    /// Find cameras that detect enough stars and the target: verify requirements, find exposure, aperture or
     /// field
     Visibility(visibility::VisibilityArguments),
     /// Test whether a result is worse than a baseline; exit status 1 if it is
@@ -69,8 +69,8 @@ enum Command {
     Show(show::ShowArguments),
     /// Serve an operator's page on loopback: camera, ground track, phase chart, model and parameters
     #[command(
-        after_help = "SCENARIO may be the directory of a run: it is then replayed, its pictures drawn anew. The name of a built-in \
-                      scenario is that scenario; a folder of that name is ./NAME."
+        after_help = "SCENARIO may be the directory of a run, which is replayed with its pictures rendered \
+            again. The name of a built-in scenario takes precedence over a folder of that name (./NAME)."
     )]
     Monitor(monitor::MonitorArguments),
     /// List, check and start scenarios

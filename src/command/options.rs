@@ -22,8 +22,7 @@ impl FromStr for FrameRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let expected =
-            || format!("`{text}` is not a range of frames; expected A..B with A < B, as in 0..100");
+        let expected = || format!("range of frames is `{text}`, expected A..B with A < B, as in 0..100");
         let (from, to) = text.split_once("..").ok_or_else(expected)?;
         let from = from.trim().parse().map_err(|_| expected())?;
         let to = to.trim().parse().map_err(|_| expected())?;
@@ -114,7 +113,8 @@ pub(super) struct AttitudeOption {
 /// Parses the path of a command's output; rejects `-`, which means standard output elsewhere.
 pub(super) fn output_path() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|word| match word.to_str() {
-        Some("-") => Err("expected a name: only docking's `render` and `process` write to standard output (`./-` is a file)"),
+        Some("-") => Err("expected a path: only `render` and `process` of docking write to standard output \
+            (a file named - is ./-)"),
         Some("") => Err("expected a name"),
         _ => Ok(PathBuf::from(word)),
     })
@@ -156,9 +156,7 @@ impl RendererOptions {
             ("--mitsuba-rays", self.mitsuba_rays.is_some()),
         ];
         match given.iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) => {
-                Err(Failure::Usage(format!("{option} is given, expected with --renderer mitsuba alone")))
-            }
+            Some((option, _)) => Err(Failure::Usage(format!("{option} applies only to --renderer mitsuba"))),
             None => Ok(()),
         }
     }

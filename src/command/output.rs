@@ -24,7 +24,7 @@ impl Output {
     pub(super) fn answer(&self, document: &impl Serialize, text: impl Display) -> Result<(), Failure> {
         if self.json {
             let json = serde_json::to_string_pretty(document)
-                .map_err(|error| Failure::Usage(format!("the answer cannot be written as JSON: {error}")))?;
+                .map_err(|error| Failure::Usage(format!("the output cannot be written as JSON: {error}")))?;
             print_json(&json)
         } else {
             print_line(harmless_but_styled(&text.to_string()))
@@ -39,7 +39,7 @@ impl Output {
     /// Prints `document` if `--json` is given; for a command that has no other output on stdout.
     #[cfg_attr(
         not(feature = "monitor"),
-        expect(dead_code, reason = "only the monitor answers while it runs")
+        expect(dead_code, reason = "only the monitor writes output while it runs")
     )]
     pub(super) fn document(&self, document: &impl Serialize) -> Result<(), Failure> {
         if self.json { self.answer(document, "") } else { Ok(()) }
@@ -48,9 +48,7 @@ impl Output {
     /// Rejects an argument that needs stdout if `--json` is given.
     pub(super) fn check_free(&self, argument: &str) -> Result<(), Failure> {
         if self.json {
-            return Err(Failure::Usage(format!(
-                "{argument} is given, expected without --json: both write to stdout"
-            )));
+            return Err(Failure::Usage(format!("{argument} conflicts with --json: both write to stdout")));
         }
         Ok(())
     }

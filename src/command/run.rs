@@ -26,7 +26,7 @@ pub(super) struct RunArguments {
     pipeline: PipelineOptions,
     #[command(flatten)]
     attitude: AttitudeOption,
-    /// Give the built-in pipeline the truth instead of this stage's result, to measure the stage's
+    /// Replace the result of this stage of the built-in pipeline by the truth, to measure the stage's
     /// contribution to the error
     #[arg(long, value_name = "STAGE")]
     inject: Option<Stage>,
@@ -68,7 +68,8 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         && !choice.is_built_in(world.code())
     {
         return Err(Failure::Usage(format!(
-            "--inject is {stage}, expected with the built-in pipeline `{}` alone: another one has no place to put the truth in",
+            "--inject is {stage}, which applies only to the built-in pipeline `{}`: other pipelines have no \
+             such stage",
             world.code()
         )));
     }
@@ -93,7 +94,7 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
     };
     let note = arguments
         .inject
-        .map(|stage| format!("the truth was injected for {stage}: this is no result of the pipeline"));
+        .map(|stage| format!("the truth replaced {stage}: this is not a result of the whole pipeline"));
     let shown = Presentation { name: &source.name, has_report: !arguments.no_report, note };
     execute(prepared.as_ref(), &frame_jobs, &factory, &directory, shown, output)
 }

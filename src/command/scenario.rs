@@ -94,7 +94,7 @@ fn camera(name: &str, output: &Output) -> Result<(), Failure> {
     let Some(camera) = CAMERAS.iter().find(|camera| camera.name == name) else {
         let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
         return Err(Failure::Usage(format!(
-            "`{name}` is no built-in camera; there are: {}",
+            "`{name}` is not a built-in camera; built-in cameras: {}",
             names.join(", ")
         )));
     };

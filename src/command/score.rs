@@ -44,7 +44,7 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
                 let other = worlds().into_iter().find(|world| world.evidence_file() == Some(name));
                 let code = other.map_or("another world", |world| world.code());
                 return Err(Failure::Usage(format!(
-                    "{option} is given, expected with a run of {} alone",
+                    "{option} applies only to runs of {}",
                     code.replace('_', " ")
                 )));
             }

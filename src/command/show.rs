@@ -81,7 +81,7 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
     let (_, panels, close_up) =
         PANELS.iter().find(|(code, ..)| *code == source.world.code()).ok_or_else(|| {
             Failure::Usage(format!(
-                "{}: there is no picture of the world {}",
+                "{}: frames of the world {} cannot be drawn",
                 source.name,
                 source.world.code()
             ))
@@ -92,7 +92,8 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
         if arguments.view == ShownArea::Target {
             panel.view = panel.close_up.take().ok_or_else(|| {
                 Failure::Usage(format!(
-                    "--view is target, and frame {frame} has neither a target nor an answer in it, expected --view frame"
+                    "--view is target, but frame {frame} has neither a target nor a measurement; use --view \
+                     frame"
                 ))
             })?;
         } else if *close_up == CloseUp::None {

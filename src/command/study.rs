@@ -141,7 +141,7 @@ impl FromStr for ShardSelection {
         });
         parsed
             .filter(|parsed| (1..=parsed.of).contains(&parsed.shard))
-            .ok_or_else(|| format!("`{text}` is no shard; expected I/N with I from 1 to N, as in 3/20"))
+            .ok_or_else(|| format!("shard is `{text}`, expected I/N with I from 1 to N, as in 3/20"))
     }
 }
 
@@ -178,8 +178,8 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let choice = arguments.pipeline.choice(&[&study.scenario_file(), &arguments.study, &arguments.out]);
     if arguments.shard.is_some() && study.file.stop.until.is_some() {
         return Err(Failure::Usage(format!(
-            "--shard is given, expected with a study of a fixed number of cases: `{}` stops by a figure (stop.until), which no shard \
-             knows alone",
+            "--shard applies only to a study with a fixed number of cases: `{}` stops by a figure \
+             (stop.until), which one shard cannot determine",
             study.name
         )));
     }
@@ -208,7 +208,7 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     report_interruption(move || {
         let (finished, plan, folder) = (store.finished_cases(), store.plan(), store.folder().display());
         format!(
-            "{finished} of {} cases are kept in {folder}; the same command goes on from there",
+            "{finished} of {} cases are stored in {folder}; the same command continues from there",
             plan.cases
         )
     });
@@ -341,7 +341,8 @@ fn refuse_until(study: &Study) -> Result<(), Failure> {
     match study.file.stop.until {
         None => Ok(()),
         Some(_) => Err(Failure::Usage(format!(
-            "`{}` stops by a figure (stop.until), expected a study of a fixed number of cases: no shard knows the figure alone",
+            "`{}` stops by a figure (stop.until), expected a study with a fixed number of cases: one shard \
+             cannot determine the figure",
             study.name
         ))),
     }
@@ -414,8 +415,8 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
     let hash = study.hash_with(&choice);
     if let Some(expected) = arguments.hash.as_ref().filter(|expected| !hash.starts_with(*expected)) {
         return Err(Failure::Usage(format!(
-            "--hash is {expected}, the study's is {hash}: expected the same, as the case is not the one of the rows (the study, a file that it \
-             reads, the pipeline or Boresight was changed)"
+            "--hash is {expected}, but the hash of the study is {hash}: the case would differ from its row, \
+             because the study, a file that it reads, the pipeline or Boresight was changed"
         )));
     }
     let case = study.case(arguments.case)?;

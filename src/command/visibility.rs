@@ -57,9 +57,7 @@ pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Re
     check_option(arguments.report.as_ref())?;
     let mut requirements = Requirements::read(word)?;
     if requirements.file.requirements.is_empty() {
-        return Err(Failure::Usage(format!(
-            "{word}: there is no [[requirements]], expected at least one: where nothing is asked, nothing is met"
-        )));
+        return Err(Failure::Usage(format!("{word}: no [[requirements]], expected at least one")));
     }
     if let Some(frames) = arguments.frames {
         requirements.file.confirm.frames = frames;

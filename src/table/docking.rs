@@ -12,18 +12,19 @@ use crate::table::far_range::{finish, percent, plain_table, share};
 /// wrong results by cause. Ends with a line feed.
 pub fn docking(score: &DockingScore, styled: bool) -> String {
     let rows = rows(score);
-    let mut text = if score.renderer == "mitsuba" { "Scene drawn by Mitsuba.\n" } else { "" }.to_owned();
+    let mut text = if score.renderer == "mitsuba" { "Scene rendered by Mitsuba.\n" } else { "" }.to_owned();
     text.push_str(&fields(&rows, styled));
     text.push_str(
-        "Pose: all six parameters given and none grossly wrong, percent (95 % interval) of the fields in which the target is resolved or\n\
-         a pose is given, and of the clear ones (resolved and wholly in the picture). Range only: from the station's outline, percent of the fields (its error).\n\
-         Errors: root mean squares over the poses, by the best estimator / by the paper's formulas; across: of d1 and d2 together.\n\
-         In 3σ: errors within three of their standard deviations; NEES is 1 in the mean when σ says the truth. Doubtful: a pose that failed the pipeline's own tests.\n",
+        "Pose: all six parameters reported and none grossly wrong, percent (95 % interval) of the fields with a resolved target or\n\
+         with a reported pose. Of clear: percent of the fields with a resolved target wholly in the image. Range only: measured from\n\
+         the station's outline, percent of the fields (RMS error). Errors: RMS over the poses, best estimator / paper's formulas;\n\
+         across: d1 and d2 together. In 3σ: errors within three standard deviations. NEES: mean 1 if σ is correct. Doubtful: failed\n\
+         the pipeline's own tests.\n",
     );
     if score.portions > 0 {
         text.push('\n');
         text.push_str(&portions(&rows, styled));
-        text.push_str("Root mean squares of the errors at the end of portions; in 3σ and NEES from the second report on.\n");
+        text.push_str("RMS errors at the end of portions; in 3σ and NEES from the second report on.\n");
     }
     text.push_str(&latency(score));
     if let Some(note) = warm_up_note(score.warm_up_frames, "fields") {
@@ -42,7 +43,7 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
     ));
     text.push('\n');
     text.push_str(&causes(
-        "Wrong answers by error",
+        "Wrong measurements by error",
         &rows,
         &GrossError::ALL.map(GrossError::code),
         |row| row.wrong.clone(),
@@ -121,7 +122,7 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
     let header = [
         "range, lens",
         "fields",
-        "error of range\nbest / paper",
+        "range error\nbest / paper",
         "across\nbest / paper",
         "attitude\nbest / paper",
         "in 3σ\n%",
@@ -131,7 +132,7 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
         "pose\n%",
         "of clear\n%",
         "range only\n%",
-        "nothing\n%",
+        "missed\n%",
     ];
     sheet(
         &header,
@@ -199,12 +200,12 @@ fn latency(score: &DockingScore) -> String {
     let latency = value(names::LATENCY_FIELDS)
         .map(|n| format!("First pose {n:.0} fields after the target was first clear."));
     let portion = value(names::PORTION_LATENCY_FIELDS)
-        .map(|n| format!("A portion takes {n:.1} fields from its first measured one to its report."));
+        .map(|n| format!("A portion takes {n:.1} fields from its first measured field to its report."));
     let renewed = value(names::RENEWED_WITHIN_1S).map(|rate| {
-        format!("In {} % of the clear fields the last report is at most a second old.", percent(rate))
+        format!("In {} % of the clear fields, the last report is at most 1 s old.", percent(rate))
     });
     let speed = value(names::SPEED_SCORE_MEAN)
-        .map(|score| format!("SPEED pose score, mean over the poses: {score:.4}."));
+        .map(|score| format!("Mean SPEED pose score of the poses: {score:.4}."));
     let lines: Vec<String> = [latency, portion, renewed, speed].into_iter().flatten().collect();
     if lines.is_empty() { String::new() } else { format!("\n{}\n", lines.join("\n")) }
 }
@@ -320,7 +321,7 @@ mod tests {
         let line = text.lines().find(|line| line.starts_with("30–20 m")).unwrap();
         assert!(line.contains("100 (") && line.contains(" mm / "), "{line}");
         assert!(text.lines().any(|line| line.starts_with("all")), "{text}");
-        assert!(text.contains("too far") && text.ends_with("Wrong answers by error: none\n"), "{text}");
+        assert!(text.contains("too far") && text.ends_with("Wrong measurements by error: none\n"), "{text}");
     }
 
     #[test]

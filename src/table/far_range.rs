@@ -37,14 +37,14 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
     let fits = one_line.lines().next().is_some_and(|line| line.chars().count() <= style.width);
     let mut text = if fits { one_line } else { sheet(&columns, &rows, "\n", style.styled) };
     text.push_str(
-        "Rates in percent with their 95 % intervals; RMS over the correct, of RA and Dec in seconds of arc,\n\
-         of the centroid (x, y) in pixels; start-up: frames before the first 20 correct answers in a row.\n\
-         The cause of a wrong answer is what kept the target itself from being taken.\n",
+        "Rates in percent with 95 % intervals. RMS of correct measurements: RA and Dec in arcsec, centroid\n\
+         (x, y) in pixels. Start-up: frames before the first 20 correct measurements in a row. Cause of a\n\
+         wrong measurement: reason why the target was not selected.\n",
     );
     if !score.consistency.is_empty() {
         text.push_str(
-            "NEES and the shares within σ are of the covariances that correct answers state; honest ones have\n\
-             1, 68.3 and 99.7.\n",
+            "NEES and percent within 1 and 3 σ by the covariances of correct measurements; correct covariances\n\
+             give 1, 68.3 and 99.7.\n",
         );
     }
     if let Some(note) = warm_up_note(score.warm_up_frames, "frames") {
@@ -56,12 +56,13 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
     if let Some(distance) = style.reference.and_then(|table| table.distance(score)) {
         let Table2Distance { mean_points, worst_points } = distance;
         text.push_str(&format!(
-            "The 30 cells differ from the published ones by {mean_points:.1} points in the mean, {worst_points:.1} at worst.\n"
+            "The 30 cells differ from the published values by {mean_points:.1} points on average, \
+             {worst_points:.1} at most.\n"
         ));
     }
     for (title, pick) in [
         ("Misses by cause", (|column: &Column<'_>| column.misses) as Counts),
-        ("Wrong answers by cause", |column| column.wrong),
+        ("Wrong measurements by cause", |column| column.wrong),
     ] {
         text.push('\n');
         text.push_str(&causes(title, &columns, pick, style.styled));
@@ -167,7 +168,7 @@ const CONSISTENCY: [(&str, &str, Format); 6] = [
 fn consistency(rows: &[ConsistencyRow], styled: bool) -> String {
     let mut table = plain_table(styled);
     let labels = CONSISTENCY.map(|(label, ..)| label);
-    table.set_header(["Correct answers with a covariance", "images"].into_iter().chain(labels));
+    table.set_header(["Correct measurements with covariance", "images"].into_iter().chain(labels));
     for row in rows {
         let cells = CONSISTENCY.map(|(_, name, format)| figure(row.figures.get(name), format).0);
         let label = format!("{}: {}", row.by, row.value.replace('_', " "));
@@ -364,7 +365,7 @@ mod tests {
             far_range(&score, TableStyle { width: 100, ..TableStyle::default() })
         };
         assert!(text(Some("own and telemetry")).contains("by the attitude `own and telemetry`"));
-        assert!(text(Some("none")).contains("No answer has a line of sight"));
+        assert!(text(Some("none")).contains("No measurement has a line of sight"));
         assert_eq!(text(Some("own")), text(None));
         assert!(["own and telemetry", "none"].iter().all(|word| widest(&text(Some(word))) <= 100));
     }
@@ -450,7 +451,7 @@ mod tests {
             .collect();
         let mean = differences.iter().sum::<f64>() / 30.0;
         let worst = differences.iter().copied().fold(0.0, f64::max);
-        let expected = format!("by {mean:.1} points in the mean, {worst:.1} at worst");
+        let expected = format!("by {mean:.1} points on average, {worst:.1} at most");
         let text = far_range(&score, style);
         assert!(text.contains(&expected), "{expected}\n{text}");
     }
@@ -466,7 +467,7 @@ mod tests {
         let text = far_range(&score(2, 300), TableStyle::default());
         let misses = line(&text, "merged with star");
         assert!(misses.contains("15 (5.0)") && misses.contains("30 (5.0)"), "{text}");
-        assert!(text.ends_with("Wrong answers by cause: none\n"), "{text}");
+        assert!(text.ends_with("Wrong measurements by cause: none\n"), "{text}");
     }
 
     #[test]

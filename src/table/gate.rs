@@ -47,24 +47,24 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
     let paired = match report.pairing {
         Pairing::Frames => format!("the same {}", report.units),
         Pairing::Blocks => format!(
-            "other noise (seeds {} and {}), stretch against stretch",
+            "different noise (seeds {} and {}), compared by time span",
             report.baseline_seed, report.result_seed
         ),
     };
     let mut text = format!("{}: {verdict}\n", report.name);
     text.push_str(&finish(table));
     text.push_str(&format!(
-        "{} {} in {} blocks; {paired}. Worse: adjusted for all figures, p at most {}, and by more than the tolerance; or, of a rate on the same\n\
-         frames, lost in a row or so one-sidedly that it is no chance.\n\
-         Changed: of a figure with a best value (a bias), differs from the baseline as surely, and is no farther from that value.\n\
-         Visible: the worsening that is seen with a probability of 95 % or more. Rates in percent.\n\
+        "{} {} in {} blocks; {paired}. Worse: p, adjusted for all figures, is at most {}, and the worsening exceeds the\n\
+         tolerance; or, for a rate on the same frames, losses in a row or an excess of losses that chance does not explain.\n\
+         Changed: a figure with a best value (a bias) differs as significantly from the baseline, but is no farther from that value.\n\
+         Visible: smallest worsening that is detected with a probability of 95 % or more. Rates in percent.\n\
          Baseline: {}\n",
         report.count, report.units, report.blocks, report.alpha, report.reason,
     ));
     let left_out = report.figures.len() - rows.len();
     if left_out > 0 {
         text.push_str(&format!(
-            "Not shown: {left_out} more figures, none of them worse or better; --json has them.\n"
+            "Not shown: {left_out} more figures, none worse or better; --json lists them.\n"
         ));
     }
     for note in &report.notes {
@@ -138,9 +138,13 @@ pub fn baseline_text(baseline: &Baseline) -> String {
     let (run, rule) = (&header.run, &header.blocks);
     let units = run.kind.units(&run.world);
     let remembers = if rule.memory_of.is_empty() {
-        "no figure remembers anything".to_owned()
+        "no figure is correlated in time".to_owned()
     } else {
-        format!("{} remembers {} {units}", figure_by_name(&rule.memory_of).words, rule.memory)
+        format!(
+            "{} has the longest correlation, {} {units}",
+            figure_by_name(&rule.memory_of).words,
+            rule.memory
+        )
     };
     format!(
         "{} with seed {}: {} {units} in {} blocks of about {}; {remembers}\n",

@@ -39,31 +39,37 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         ]);
     }
     let stopped = match summary.waited {
-        Some(StoppingStatus::NarrowEnough) => ", stopped as its figure was known well enough",
+        Some(StoppingStatus::NarrowEnough) => ", stopped at the required precision",
         _ => "",
     };
     let draws = if summary.sweep.is_empty() { String::new() } else { format!(" ({} draws)", summary.draws) };
     let mut text = format!("{}: {} cases of {}{draws}{stopped}\n", summary.study, summary.cases, summary.of);
     if summary.waited == Some(StoppingStatus::NearlyConstant) {
         text.push_str(
-            "The figure of `until` is the same in nearly every draw: how much it scatters is not known, and the study did not stop for it. \
-             A figure that varies can be waited for.\n",
+            "The figure of `until` is equal in nearly every draw: its scatter is unknown, and the study did \
+             not stop by it. Choose a figure that varies.\n",
         );
     }
     if summary.failed_cases > 0 {
         let cases = summary.failed_cases;
-        text.push_str(&format!("In {cases} of them the pipeline itself failed: it crashed, gave no answer in time, or none that can be read.\n"));
+        text.push_str(&format!(
+            "The pipeline failed in {cases} cases: it crashed, timed out, or returned an unreadable \
+             outcome.\n"
+        ));
     }
     if let Some(first) = summary.errors.first() {
         text.push_str(&format!(
-            "{} cases cannot be run: their values make no scenario (`error` in cases.parquet). The first is case {}: {}\n",
-            summary.error_cases, first.case, harmless(&first.error)
+            "{} cases cannot be run: their values give no valid scenario (`error` in cases.parquet). The \
+             first is case {}: {}\n",
+            summary.error_cases,
+            first.case,
+            harmless(&first.error)
         ));
     }
     text.push_str(&finish(table));
     text.push_str(
-        "Intervals are of 95 %, over independent draws. All together: rates over all frames (Wilson, by the scatter between draws), other\n\
-         figures the mean of the cases (Student's t). Quantiles are of the cases (order statistics; none of too few draws).\n",
+        "95 % intervals, over independent draws. All cases together: rates over all frames (Wilson, with the scatter between draws),\n\
+         other figures as mean of the cases (Student's t). Quantiles are over the cases (order statistics; none for too few draws).\n",
     );
     if let Some(note) = warm_up_note(summary.warm_up_frames, "frames of every case") {
         text.push_str(&format!("{note}\n"));
@@ -74,7 +80,9 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     text.push_str(&requirements(summary, styled));
     if !summary.causes.is_empty() {
         let mut table = plain_table(styled);
-        table.set_header(["misses and wrong answers by cause", "frames", "share of all", "cases"].map(bold));
+        table.set_header(
+            ["misses and wrong measurements by cause", "frames", "share of all", "cases"].map(bold),
+        );
         for (name, cause) in &summary.causes {
             let share = cause.share.as_ref().map_or_else(|| "–".to_owned(), percents);
             table.add_row([cause_words(name), cause.frames.to_string(), share, cause.cases.to_string()]);
@@ -105,7 +113,7 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     text.push_str(&indices(summary, &figures, styled));
     if !summary.worst.is_empty() {
         let mut table = plain_table(styled);
-        table.set_header(["worst cases", &by_label, "again, with its frames"].map(bold));
+        table.set_header(["worst cases", &by_label, "command to repeat the case"].map(bold));
         for case in &summary.worst {
             table.add_row([format!("case {}", case.case), number(by, case.value), case.replay.clone()]);
         }
@@ -113,7 +121,7 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         text.push_str(&finish(table));
         let more = summary.worst_of.saturating_sub(summary.worst.len() as u64);
         if more > 0 {
-            text.push_str(&format!("{more} more cases are as bad as the last of these.\n"));
+            text.push_str(&format!("{more} more cases have the same value as the last one listed.\n"));
         }
     }
     text
@@ -156,7 +164,7 @@ fn requirements(summary: &Summary, styled: bool) -> String {
         RequirementVerdict::Met => "All requirements are met.",
         RequirementVerdict::NotMet => "Not all requirements are met.",
         RequirementVerdict::NotDecided => {
-            "Not all requirements are decided: more cases are needed, or a limit further away."
+            "Not all requirements are decided: run more cases, or relax a limit."
         }
     };
     format!("\n{}{together}\n", finish(table))
@@ -202,11 +210,11 @@ fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String 
             .get(name)
             .map(|figure| [figure.p05, figure.p95].map(|quantile| quantile.map(|quantile| quantile.value)));
         let reason = if values.is_some_and(|[low, high]| low.is_some() && low == high) {
-            "it is the same in nearly all cases"
+            "the figure is equal in nearly all cases"
         } else {
-            "there are too few cases, or nothing drawn is a number"
+            "there are too few cases, or no drawn value is a number"
         };
-        text.push_str(&format!("\n{}: no correlation with what was drawn, as {reason}.\n", label(name)));
+        text.push_str(&format!("\n{}: no correlation with drawn values, because {reason}.\n", label(name)));
     }
     text
 }
@@ -226,7 +234,7 @@ fn indices(summary: &Summary, figures: &[&String], styled: bool) -> String {
         }
         let mut table = plain_table(styled);
         let by = format!("variance of {} by", label(name));
-        table.set_header([&by, "alone", "95 %", "with others", "95 %"].map(bold));
+        table.set_header([&by, "first order", "95 %", "total", "95 %"].map(bold));
         for index in indices {
             let interval = |[low, high]: [f64; 2]| format!("{low:.2} to {high:.2}");
             table.add_row([

@@ -65,7 +65,8 @@ fn in_figures(report: &VisibilityReport) -> String {
     let camera = &report.camera;
     let field = camera.field_deg.map_or_else(String::new, |[x, y]| format!("field {x:.1}° × {y:.1}°, "));
     format!(
-        "{field}{} e⁻/s from V = 0, threshold {} DN, background {} e⁻/s a pixel, saturation {} e⁻, nominal exposure {} s (stars trail {:.2} px)",
+        "{field}{} e⁻/s from V = 0, threshold {} DN, background {} e⁻/s per pixel, saturation {} e⁻, nominal \
+         exposure {} s (stars trail {:.2} px)",
         digits(camera.zero_point_e_per_s),
         camera.threshold_dn,
         digits(camera.background_e_per_s),
@@ -109,8 +110,8 @@ fn curves(report: &VisibilityReport) -> Vec<TextTable> {
         ]
     });
     sheets.push(TextTable {
-        title: format!("Exposure: V detected with 50 % and {asked}, stars over the sky"),
-        head: vec!["exposure, s", "V, 50 %", "V, asked", "stars", "enough, %"],
+        title: format!("Exposure: V detected with 50 % and {asked} probability, stars over the sky"),
+        head: vec!["exposure, s", "V, 50 %", "V, required", "stars", "enough, %"],
         rows: rows.collect(),
     });
     let rows = report.sky.worst.iter().map(|pointing| {
@@ -124,7 +125,7 @@ fn curves(report: &VisibilityReport) -> Vec<TextTable> {
     });
     sheets.push(TextTable {
         title: "Worst pointings at the nominal exposure".to_owned(),
-        head: vec!["RA, °", "Dec, °", "bright enough", "detected", "enough, %"],
+        head: vec!["RA, °", "Dec, °", "above limit", "detected", "enough, %"],
         rows: rows.collect(),
     });
     if !report.exposure_window.is_empty() {
@@ -140,7 +141,7 @@ fn curves(report: &VisibilityReport) -> Vec<TextTable> {
             ]
         });
         sheets.push(TextTable {
-            title: "Exposures that spare the target and leave enough stars".to_owned(),
+            title: "Exposures without over-exposed target and with enough stars".to_owned(),
             head: vec!["range, km", "longest, s", "shortest, s", "", "median, s", "stars", "enough, %"],
             rows: rows.collect(),
         });
@@ -178,8 +179,10 @@ fn remarks(report: &VisibilityReport) -> Vec<String> {
     let sky = &report.sky;
     let [sun, moon, earth] = sky.excluded;
     let mut lines = vec![format!(
-        "Sky: {} of {} pointings count ({sun} excluded by the Sun, {moon} by the Moon, {earth} by the Earth); {:.1} stars in the mean, {:.1}, {:.1} and {:.1} \
-         in the worst 1, 10 and 50 %; {} % have {} stars, and {} % of the pointings have them with {} % or more.",
+        "Sky: {} of {} pointings count ({sun} excluded by the Sun, {moon} by the Moon, {earth} by the \
+         Earth). Detected stars: mean {:.1}; 1, 10 and 50 % of the pointings have fewer than {:.1}, {:.1} \
+         and {:.1}. The mean probability of enough stars is {} % ({} stars); {} % of the pointings have \
+         enough with a probability of {} % or more.",
         sky.counted,
         sky.pointings,
         sky.stars,
@@ -194,7 +197,7 @@ fn remarks(report: &VisibilityReport) -> Vec<String> {
     if let Some(lost) = &report.stars_lost {
         let nearer = |range: Option<f64>, what: &str| {
             range.map_or_else(
-                || format!("at no range of the curve or at all {what}"),
+                || format!("at no range, or at every range, of the curve {what}"),
                 |km| format!("nearer than {} km {what}", digits(km)),
             )
         };
@@ -202,13 +205,14 @@ fn remarks(report: &VisibilityReport) -> Vec<String> {
             "Fewer than {} stars remain: {}; {}.",
             lost.n_min,
             nearer(lost.half_of_frames_km, "in half of the frames"),
-            nearer(lost.window_closes_km, "no exposure gives both with the probability asked for")
+            nearer(lost.window_closes_km, "no exposure meets both limits with the required probability")
         ));
     }
     let count = |status| report.requirements.iter().filter(|verdict| verdict.status == status).count();
     if !report.requirements.is_empty() {
         lines.push(format!(
-            "{} met (simulated), {} met (law), {} not decided, {} not met, {} impossible. Simulated rates with one-sided bounds; of stars with two-sided limits of 95 %.",
+            "{} met (simulated), {} met (model), {} not decided, {} not met, {} impossible. Simulated rates \
+             have one-sided bounds; those of stars have two-sided 95 % limits.",
             count(Status::MetSimulated),
             count(Status::MetModel),
             count(Status::NotDecided),

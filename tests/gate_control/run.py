@@ -79,7 +79,7 @@ class Control:
         """The report, or `None` where there is too little data for any figure."""
         done = self.run("gate", baseline, result, "--json", expected=(0, 1, 2))
         if done.returncode == 2:
-            if "cannot compare: " not in done.stderr or "leave no figure" not in done.stderr:
+            if "cannot compare: " not in done.stderr or "are too few to find any figure" not in done.stderr:
                 sys.exit(done.stderr)
             return None
         return json.loads(done.stdout)

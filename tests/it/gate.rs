@@ -220,7 +220,9 @@ fn the_same_run_is_no_worse_and_a_worse_one_shuts_the_gate() {
     let lines = bench.read("worse/measurements.csv");
     let some = lines.lines().enumerate().filter(|(i, _)| *i == 0 || i % 3 != 0).map(|(_, line)| line);
     bench.write("worse/measurements.csv", some.collect::<Vec<_>>().join("\n") + "\n");
-    bench.boresight("gate base worse").refused(&["cannot compare", "no measurement of 20 of 60 frames"]);
+    bench
+        .boresight("gate base worse")
+        .refused(&["cannot compare", "20 of 60 frames have no row in the result"]);
 }
 
 /// Regression test: the errors of centroids by the true attitude, 2″, used to be compared with the errors of
@@ -281,10 +283,10 @@ fn figures_that_count_other_things_are_not_compared() {
     let text = format!("frame,status,x_px,y_px\n{}\n", lines.join("\n"));
     bench.write("centroids/measurements.csv", text);
     let refused = |words: &str, parts: &[&str]| {
-        let all = [&["cannot compare", "--figures chooses others"], parts].concat();
+        let all = [&["cannot compare", "select other figures with --figures"], parts].concat();
         bench.boresight(words).refused(&all);
     };
-    let attitude = "is of lines of sight by the attitude `own` in the baseline and";
+    let attitude = "uses lines of sight by the attitude `own` in the baseline and";
     refused("gate base centroids", &[attitude, "`none` in the result"]);
     refused("gate base centroids --attitude true", &[attitude, "`true` in the result"]);
     // Figures of the image are compared for any attitude.

@@ -67,7 +67,7 @@ fn the_frames_of_an_injected_run_are_those_of_the_honest_one() {
 #[test]
 fn an_injected_run_says_so_under_its_table() {
     let answer = Bench::new().boresight("run argon --frames 0..3 --inject attitude --out run").done();
-    assert!(answer.stdout.contains("the truth was injected for attitude"), "{}", answer.stdout);
+    assert!(answer.stdout.contains("the truth replaced attitude"), "{}", answer.stdout);
 }
 
 #[test]
@@ -82,6 +82,6 @@ fn what_cannot_be_injected_is_refused_before_anything_is_written() {
     refused("starting-point --inject roi", &["--inject roi", "`starting-point` has no [roi]"]);
     refused(
         "argon --inject attitude --pipeline exec:cat",
-        &["--inject is attitude", "expected with the built-in pipeline `far_range`"],
+        &["--inject is attitude", "only to the built-in pipeline `far_range`"],
     );
 }

@@ -133,7 +133,7 @@ impl PageText {
     }
 }
 
-/// Compares a caption such as "2500 of 9000 right answers and 3 of 3 wrong ones" with the points of every
+/// Compares a caption such as "2500 of 9000 correct measurements and 3 of 3 wrong ones" with the points of every
 /// panel, except rings.
 fn check_points(words: &str, chart: &Value) {
     let told: usize = words
@@ -199,7 +199,7 @@ fn the_points_of_a_long_run_lie_as_all_of_its_errors_do() {
     let chart = chart.unwrap();
     let json: Value = serde_json::from_str(&chart.json()).unwrap();
     let (_, words) = chart.caption.split_once("Drawn: ").unwrap();
-    assert!(words.starts_with("2500 of 12000 right answers."), "{words}");
+    assert!(words.starts_with("2500 of 12000 correct measurements."), "{words}");
     check_points(words.split('.').next().unwrap(), &json);
     let numbers = |trace: &Value| -> Vec<f64> {
         let mut y: Vec<f64> = trace["y"].as_array().unwrap().iter().map(|y| y.as_f64().unwrap()).collect();
@@ -207,7 +207,7 @@ fn the_points_of_a_long_run_lie_as_all_of_its_errors_do() {
         y
     };
     let traces = json["data"].as_array().unwrap();
-    let drawn = numbers(traces.iter().find(|trace| trace["name"] == "right").unwrap());
+    let drawn = numbers(traces.iter().find(|trace| trace["name"] == "correct").unwrap());
     let mut all: Vec<f64> = (0..count).map(law).collect();
     all.sort_by(f64::total_cmp);
     let below = |of: &[f64], level: f64| of.partition_point(|&value| value < level) as f64 / of.len() as f64;
@@ -227,7 +227,7 @@ fn the_page_of_a_far_range_run_has_the_papers_figures_and_the_numbers_of_its_sco
     let page = PageText::read(&bench, "run/report.html");
     page.check(&["table-2", "fig-2", "fig-3", "fig-4", "fig-5", "fig-6", "fig-7", "fig-8", "fig-9"]);
     page.check(&["causes", "budget", "frames"]);
-    assert!(page.html.contains("images over one another") && page.html.contains("--budget all"));
+    assert!(page.html.contains("the superimposed images of an orbit") && page.html.contains("--budget all"));
     let km: Vec<f64> = bench.frames("run").iter().map(|truth| truth.range_km).collect();
     let (least, most) = (km.iter().copied().fold(f64::MAX, f64::min), km.iter().copied().fold(0.0, f64::max));
     assert!(page.html.contains(&format!("<dt>Range</dt><dd>{least:.2} to {most:.2} km</dd>")));
@@ -255,7 +255,7 @@ fn the_page_of_a_far_range_run_has_the_papers_figures_and_the_numbers_of_its_sco
     assert!((squares.iter().sum::<f64>().sqrt() - range_km).abs() < 5e-4, "{squares:?}, {range_km}");
     // The chart of errors holds the errors of the detected frames, one per frame.
     let errors = page.charts().into_iter().find(|chart| chart.to_string().contains("RA error")).unwrap();
-    let drawn: usize = ["right", "wrong"]
+    let drawn: usize = ["correct", "wrong"]
         .iter()
         .map(|name| {
             let traces = errors["data"].as_array().unwrap();
@@ -293,8 +293,8 @@ fn a_run_with_injected_truth_says_so() {
     bench.boresight("run argon --frames 300..303 --inject roi --out run").done();
     let page = PageText::read(&bench, "run/report.html");
     page.check(&["fig-6"]);
-    assert!(page.html.contains("The truth was injected for roi"));
-    assert!(page.html.contains("sends whole images"));
+    assert!(page.html.contains("The truth replaced roi"));
+    assert!(page.html.contains("transmits whole images"));
 }
 
 #[test]
@@ -310,20 +310,20 @@ fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
     let page = PageText::read(&bench, "honest/report.html");
     page.check(&["budget"]);
     let chart = page.charts().into_iter().find(|chart| chart.to_string().contains("RMS error")).unwrap();
-    assert_eq!(chart["data"][0]["x"], serde_json::json!(["none: the honest run", "attitude", "roi"]));
+    assert_eq!(chart["data"][0]["x"], serde_json::json!(["none (unmodified run)", "attitude", "roi"]));
     let own = bench.json("attitude/score.json")["figures"]["ra_rms_deg"]["value"].as_f64().unwrap();
     assert!((chart["data"][0]["y"][1].as_f64().unwrap() - own).abs() < 1e-6);
 
     bench.boresight("report honest --budget honest").refused(&["honest/run.toml", "`inject` is missing"]);
-    bench.boresight("report roi --budget attitude").refused(&["--budget", "honest run"]);
+    bench.boresight("report roi --budget attitude").refused(&["--budget", "without --inject"]);
     bench.boresight("run argon --frames 220..239 --inject attitude --out short --no-report").done();
-    bench.boresight("report honest --budget short").refused(&["short/run.toml", "other frames"]);
+    bench.boresight("report honest --budget short").refused(&["short/run.toml", "the frames differ"]);
     bench.boresight("run argon --seed 5 --frames 220..240 --inject attitude --out seed --no-report").done();
     bench.boresight("report honest --budget seed").refused(&["seed/run.toml", "`scenario`"]);
     bench.boresight("report honest --budget nowhere").refused(&["nowhere/run.toml"]);
     bench.boresight("run docking --frames 24000..24001 --out docking --no-report").done();
     bench.boresight("report honest --budget docking").refused(&["docking/run.toml", "`scenario.world`"]);
-    bench.boresight("report docking --budget roi").refused(&["--budget", "far range", "docking"]);
+    bench.boresight("report docking --budget roi").refused(&["--budget", "far-range", "docking"]);
 }
 
 #[test]
@@ -336,7 +336,7 @@ fn the_runs_of_an_error_budget_are_flown_once_and_kept() {
     let chart = page.charts().into_iter().find(|chart| chart.to_string().contains("RMS error")).unwrap();
     let stages = ["centroids", "identities", "attitude", "roi", "aberration"];
     let told = chart["data"][0]["x"].as_array().unwrap();
-    assert_eq!(told[0], "none: the honest run");
+    assert_eq!(told[0], "none (unmodified run)");
     assert!(told[1..].iter().zip(stages).all(|(told, stage)| *told == stage), "{told:?}");
     let kept: BTreeSet<_> = bench.tree("run/budget").into_keys().collect();
     let files =
@@ -352,10 +352,10 @@ fn the_runs_of_an_error_budget_are_flown_once_and_kept() {
     bench.boresight("report run --out later.html").done();
     bench.check_same("run/report.html", "later.html");
 
-    bench.boresight("report run --budget all --budget attitude").refused(&["--budget", "`all` alone"]);
-    bench.boresight("report attitude --budget all").refused(&["--budget is all", "honest run"]);
+    bench.boresight("report run --budget all --budget attitude").refused(&["--budget", "only `all`"]);
+    bench.boresight("report attitude --budget all").refused(&["--budget is all", "without --inject"]);
     bench.boresight("run docking --frames 24000..24001 --out docking --no-report").done();
-    bench.boresight("report docking --budget all").refused(&["--budget", "far range", "docking"]);
+    bench.boresight("report docking --budget all").refused(&["--budget", "far-range", "docking"]);
 }
 
 #[test]

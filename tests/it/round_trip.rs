@@ -214,7 +214,7 @@ fn centroids_have_lines_of_sight_by_the_attitude_that_is_requested_alone() {
     assert!(size(&granted) < 0.015 && size(&telemetry) > 0.02, "{} {}", size(&granted), size(&telemetry));
 
     let table = |words: &str| bench.boresight(&format!("score run outside.csv {words}")).done().stdout;
-    assert!(table("").contains("No answer has a line of sight"));
+    assert!(table("").contains("No measurement has a line of sight"));
     assert!(table("--attitude true").contains("by the attitude `true`"));
 
     // For a pipeline with its own line of sight, no attitude is provided.

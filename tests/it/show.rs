@@ -388,7 +388,11 @@ fn bad_input_is_named() {
     bench.boresight("show run").refused(&["FRAME"]);
     bench.boresight("show nowhere 1").refused(&["nowhere", "does not exist"]);
     bench.write("plain/readme.txt", "");
-    bench.boresight("show plain 1").refused(&["plain", "neither run.toml nor camera.toml", "run directory"]);
+    bench.boresight("show plain 1").refused(&[
+        "plain",
+        "no run.toml, camera.toml or setup.toml",
+        "run directory",
+    ]);
     bench.boresight("show plain/readme.txt 1").refused(&["is not a directory"]);
     bench.boresight("show run 10200 --stretch log").refused(&["log", "asinh, linear or full"]);
     bench.boresight("show run 10200 --measurements none.csv").refused(&["none.csv"]);

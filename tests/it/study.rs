@@ -62,7 +62,7 @@ fn what_is_there_is_kept_and_what_is_missing_or_damaged_is_made_again() {
 
     fs::write(&paths[2], &bytes[..middle]).unwrap();
     let answer = bench.boresight("study merge study.toml --out out");
-    answer.refused(&["shards 3 of 3 are missing or were damaged"]);
+    answer.refused(&["shards 3 of 3 are missing or damaged"]);
 }
 
 #[test]
@@ -111,7 +111,9 @@ fn two_studies_never_mix() {
     bench.boresight("study run study.toml --out out").done();
     check_same_files(&tree, &bench.tree("out"));
     bench.write("out/shards/3-of-9.parquet", "");
-    bench.boresight("study merge study.toml --out out").refused(&["3-of-9.parquet", "none of the 2 shards"]);
+    bench
+        .boresight("study merge study.toml --out out")
+        .refused(&["3-of-9.parquet", "not one of the 2 shards"]);
 }
 
 #[test]
@@ -245,7 +247,7 @@ fn a_study_stops_when_its_figure_is_known_well_enough() {
     assert_eq!(cases("narrow", 3), ended(24, "too_wide"));
     assert_eq!(cases("constant", 3), ended(24, "nearly_constant"));
     let told = bench.boresight("study merge constant.toml --out constant-3").done();
-    assert!(told.stdout.contains("the same in nearly every draw"), "{}", told.stdout);
+    assert!(told.stdout.contains("is equal in nearly every draw"), "{}", told.stdout);
     bench.boresight("study run wide.toml --out x --shard 1/3").refused(&["--shard", "stop.until"]);
     bench.boresight("study plan wide.toml").refused(&["stop.until"]);
 }
@@ -404,12 +406,12 @@ fn a_study_that_is_wrong_says_where() {
     };
     refused("\"argon\"", "\"argom\"", &["scenario", "did you mean `argon`"]);
     refused("psf.sigma_px", "psf.sigma", &["case 0", "psf", "sigma"]);
-    refused("psf.sigma_px", "psff.sigma_px", &["vary[0].path", "no `psff`"]);
-    refused("\"psf.sigma_px\"", "\"title\"", &["vary[0].path", "is `title`", "seed of its own"]);
+    refused("psf.sigma_px", "psff.sigma_px", &["vary[0].path", "no key `psff`"]);
+    refused("\"psf.sigma_px\"", "\"title\"", &["vary[0].path", "is `title`", "seeds already differ"]);
     // The scoring of cases is not a parameter: figures with different limits, or with different attitudes,
     // have no common mean.
     refused("\"psf.sigma_px\"", "\"score.within_deg[0]\"", &["vary[0].path", "is `score.within_deg[0]`"]);
-    refused("psf.sigma_px", "schedule[9].count", &["vary[0].path", "has 5 of these"]);
+    refused("psf.sigma_px", "schedule[9].count", &["vary[0].path", "has 5 elements"]);
     refused("psf.sigma_px", "sensor.hot_pixels", &["vary[1].path", "sensor.hot_pixels"]);
     refused("sigma = 0.1", "sigma = -0.1", &["vary[0].distribution.sigma", "-0.1", "above 0"]);
     refused("kind = \"normal\"", "kind = \"normale\"", &["normale"]);
@@ -429,7 +431,7 @@ fn a_study_that_is_wrong_says_where() {
     refused("frames = \"2000..2002\"", "frames = \"2..1\"", &["frames", "2..1", "A < B"]);
     refused("seed = 5", "seed = 5\ndesign = \"sobel\"", &["design", "sobel", "did you mean `sobol`"]);
     refused("seed = 5", "seed = 5\ndesign = \"saltelli\"", &["stop.cases", "multiple of 4"]);
-    refused("seed = 5", "seed = 5\nreplications = 3", &["replications", "is 3", "latin_hypercube or sobol"]);
+    refused("seed = 5", "seed = 5\nreplications = 3", &["replications", "is 3", "latin_hypercube and sobol"]);
     refused("seed = 5", "seed = 5\nreplications = 0", &["replications", "is 0", "1 to 10000"]);
     refused("seed = 5", "seed = 5\ndesign = \"sobol\"\nreplications = 4", &["stop.cases", "multiple of 4"]);
     refused(
@@ -450,7 +452,7 @@ fn a_study_that_is_wrong_says_where() {
     // A distribution that leaves the valid range of a parameter: the message names the case and the value in
     // its scenario.
     refused("mean = 0.8, sigma = 0.1", "mean = -3.0, sigma = 0.1", &["case 0", "psf.sigma_px"]);
-    bench.boresight("study check nothing.toml").refused(&["nothing.toml", "no study"]);
+    bench.boresight("study check nothing.toml").refused(&["nothing.toml", "cannot be read"]);
 }
 
 /// Requirements are decided at each point of the sweep. They change no row; a study with different

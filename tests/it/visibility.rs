@@ -231,7 +231,7 @@ find = { parameter = "exposure_s", from = 0.01, to = 0.25 }
     let verdict = &report["requirements"][0];
     assert_eq!((status, verdict["status"].as_str()), (Some(0), Some("met_simulated")), "{verdict:#}");
     assert!(
-        verdict["evidence"].as_str().unwrap().contains("so that 150 frames show the 80.0 % asked"),
+        verdict["evidence"].as_str().unwrap().contains("at which 150 frames prove the required 80.0 %"),
         "{verdict:#}"
     );
     let found = &verdict["found"];
@@ -424,7 +424,7 @@ fn too_few_frames_show_nothing() {
     assert_eq!((status, &verdict["status"]), (Some(0), &"met_law".into()), "{verdict:#}");
     let evidence = verdict["evidence"].as_str().unwrap();
     // 0.97^98 = 0.0505, 0.97^99 = 0.0490; the number is searched in steps of a tenth.
-    assert!(evidence.contains("too few frames to show it: about 1"), "{evidence}");
+    assert!(evidence.contains("too few frames for a proof: about 1"), "{evidence}");
     let (report, status) = answer(&lines(110), "");
     let verdict = &report["requirements"][0];
     assert_eq!((status, &verdict["status"]), (Some(0), &"met_simulated".into()), "{verdict:#}");

@@ -83,7 +83,8 @@ impl Identity {
     pub fn pairing(&self, result: &Self) -> Result<Pairing, Failure> {
         let cannot = |field: &str, baseline: &dyn std::fmt::Display, result: &dyn std::fmt::Display| {
             Failure::Usage(format!(
-                "cannot compare: `{field}` is `{baseline}` in the baseline and `{result}` in the result, expected the same"
+                "cannot compare: `{field}` is `{baseline}` in the baseline and `{result}` in the result; \
+                 both need the same value"
             ))
         };
         let optional = |text: &Option<String>| text.clone().unwrap_or_else(|| "none".to_owned());

@@ -29,14 +29,16 @@ pub fn read_result(directory: &Path, attitude: Option<AttitudeChoice>) -> Result
     } else if cases.is_file() {
         if attitude.is_some() {
             return Err(Failure::Usage(format!(
-                "--attitude is given, expected with a run alone: the cases of {} are scored already, by [score] of their scenario",
+                "--attitude applies only to a run: the cases of {} are already scored, with [score] of their \
+                 scenario",
                 directory.display()
             )));
         }
         study(directory, &cases)?
     } else {
         return Err(Failure::Usage(format!(
-            "{}: there is neither `run.toml` nor `cases.parquet`, expected the directory of a run or of a study that is complete",
+            "{}: neither `run.toml` nor `cases.parquet` in it, expected the directory of a run or of a \
+             complete study",
             directory.display()
         )));
     };

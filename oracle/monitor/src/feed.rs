@@ -78,7 +78,7 @@ impl Feed {
             }
         }
         let worlds = WORLDS.map(|(code, _)| code).join(" and ");
-        Err(Failure::Usage(format!("the monitor shows the worlds {worlds} alone")))
+        Err(Failure::Usage(format!("the monitor supports only the worlds {worlds}")))
     }
 }
 
@@ -128,7 +128,8 @@ pub(super) fn frames<R: Row>(measurements: &Measurements, table: &str) -> Result
     let count = frames.end - frames.start;
     if count > MAX_FRAMES {
         return Err(Failure::Usage(format!(
-            "{count} frames are monitored, expected at most {}: what is known of each is kept (--frames A..B)",
+            "{count} frames are selected, expected at most {}, because the monitor stores every report; \
+             select fewer with --frames A..B",
             MAX_FRAMES
         )));
     }
@@ -147,14 +148,14 @@ fn numbers<R: Row>(path: &Path) -> Result<Range<u64>, Failure> {
         }
         let after = number.checked_add(1).ok_or_else(|| {
             let message = format!(
-                "{}: frame {number} is the last number there is, expected a smaller one",
+                "{}: frame is {number}, the largest integer; expected a smaller number",
                 path.display()
             );
             Failure::Usage(message)
         })?;
         frames = Some(frames.map_or(number, |frames| frames.start)..after);
     }
-    frames.ok_or_else(|| Failure::Usage(format!("{}: no frame, expected one or more", path.display())))
+    frames.ok_or_else(|| Failure::Usage(format!("{}: has no frames, expected at least one", path.display())))
 }
 
 /// Returns the path if the file exists.

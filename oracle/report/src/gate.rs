@@ -95,12 +95,12 @@ pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
     let lead = if worse.is_empty() && !names.is_empty() {
         let accepted = report.accepted.as_ref().map(|reason| format!(" Accepted: {reason}"));
         format!(
-            "Changed against the baseline, and no farther from the best value: {}.{}",
+            "Changed from the baseline, but no farther from the best value: {}.{}",
             names.join(", "),
             accepted.unwrap_or_default()
         )
     } else if worse.is_empty() {
-        format!("No figure is worse than in the baseline, of {} compared.", report.figures.len())
+        format!("None of the {} compared figures is worse than in the baseline.", report.figures.len())
     } else {
         format!("Worse than in the baseline: {}.", worse.join(", "))
     };
@@ -108,13 +108,13 @@ pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
     figures.sort_by(|_, a, _, b| a.adjusted_p.total_cmp(&b.adjusted_p));
     let pairing = match report.pairing {
         Pairing::Frames => "the same frames",
-        Pairing::Blocks => "blocks of time, another seed",
+        Pairing::Blocks => "time blocks, different seed",
     };
     Page {
         title: format!("{}: {}", report.name, report.verdict.words()),
         kind: "Gate: a result against a baseline",
         version: report.result_version.clone(),
-        lead: vec![lead, format!("The baseline is one because: {}", report.reason)],
+        lead: vec![lead, format!("Reason for the baseline: {}", report.reason)],
         warnings: report.notes.clone(),
         facts: vec![
             ("Compared", format!("{} {}", report.count, report.units)),
@@ -155,8 +155,8 @@ fn effects(report: &GateReport) -> Section {
         "blocks",
     ])
     .caption(
-        "Result minus baseline, with 95 % intervals; rates in percent, their differences in points; p of a worsening, adjusted for all figures \
-         together.",
+        "Result minus baseline, with 95 % intervals; rates in percent, their differences in percentage \
+         points; p of a worsening, adjusted for all figures.",
     )
     .narrow();
     for (name, figure) in &report.figures {
@@ -184,18 +184,19 @@ fn effects(report: &GateReport) -> Section {
         .iter()
         .filter(|(_, figure)| figure.difference.is_some())
         .partition(|(name, _)| figure_by_name(name).is_rate());
-    let mut section = Section::new("effects", "What changed");
+    let mut section = Section::new("effects", "Changes of the figures");
     if !rates.is_empty() {
         let (traces, layout) = differences(&rates, |_| 0.01, "difference, points");
-        let caption = "Rates: result minus baseline with 95 % intervals, in percentage points, and what is tolerated. The table says \
-                       which way is better.";
+        let caption = "Rates: result minus baseline with 95 % intervals, in percentage points, and the \
+            tolerance. The table states which direction is better.";
         section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
     }
     // Amounts have different units; on one axis they are shown in units of their tolerances.
     let amounts: Vec<_> = amounts.into_iter().filter(|(_, figure)| figure.tolerance > 0.0).collect();
     if !amounts.is_empty() {
         let (traces, layout) = differences(&amounts, |figure| figure.tolerance, "difference ÷ tolerance");
-        let caption = "The other figures: result minus baseline with 95 % intervals, in units of each figure's tolerance.";
+        let caption = "Other figures: result minus baseline with 95 % intervals, in units of each figure's \
+            tolerance.";
         section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
     }
     section.table(table)
@@ -247,28 +248,29 @@ fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &st
 
 /// Returns the section on the units that flipped.
 fn flipped_units(report: &GateReport, frames: FlippedFrames) -> Section {
-    let section = Section::new("flips", format!("{} that flipped", capital(&report.units)));
+    let section = Section::new("flips", format!("{} with changed verdict", capital(&report.units)));
     let Some(flips) = &report.flips else {
-        return section.text("The frames are not the same: only blocks of them are compared, and none can be said to have flipped.");
+        return section.text("The frames differ: blocks are compared, not single frames.");
     };
     let section = section.text(format!(
-        "{} were right and are not any more, {} are right and were not, {} changed otherwise.",
+        "{} lost (correct only in the baseline), {} won (correct only in the result), {} changed otherwise.",
         flips.lost, flips.won, flips.other
     ));
     if flips.units.is_empty() {
         return section;
     }
     let section = match frames.reason {
-        Some(reason) => section.text(format!("There are no pictures: {reason}")),
+        Some(reason) => section.text(format!("No pictures: {reason}")),
         None if frames.pictures.is_empty() => section,
         None => section
             .text(
-                "Of every change a frame, drawn anew from the result's run.toml, with the result's answer. Green: the truth; orange: the \
-                 answer; yellow: clusters or outlines, with what the pipeline took them for.",
+                "One frame for each kind of change, rendered again from the result's run.toml, with the \
+                 result's measurement. Green: truth; orange: measurement; yellow: clusters or outlines, with \
+                 the pipeline's classification.",
             )
             .pictures(frames.pictures),
     };
-    let mut table = DataTable::new(["number", "group", "how", "from", "cause", "to", "cause"]);
+    let mut table = DataTable::new(["number", "group", "change", "from", "cause", "to", "cause"]);
     for flip in flips.units.iter().take(MAX_ROWS) {
         let cause = |cause: &Option<String>| cause.as_deref().map(display_name).unwrap_or_default();
         table.push([
@@ -282,12 +284,9 @@ fn flipped_units(report: &GateReport, frames: FlippedFrames) -> Section {
         ]);
     }
     let section = if flips.units.len() > MAX_ROWS {
-        section.text(format!(
-            "The first {MAX_ROWS} of {}; `boresight gate --json` lists all.",
-            flips.units.len()
-        ))
+        section.text(format!("First {MAX_ROWS} of {}; `boresight gate --json` lists all.", flips.units.len()))
     } else {
         section
     };
-    section.folded("All that flipped", table)
+    section.folded("List of changed verdicts", table)
 }

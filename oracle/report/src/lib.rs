@@ -88,7 +88,7 @@ fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Resul
 pub fn check_budget(directory: &Path) -> Result<(), Failure> {
     if !is_far_range_run(directory)? {
         return Err(Failure::Usage(format!(
-            "--budget is given, expected with a run of the far range alone: {} is none",
+            "--budget applies only to far-range runs: {} is not one",
             directory.display()
         )));
     }

@@ -37,13 +37,14 @@ impl ResultKind {
             Ok(Self::Study)
         } else if has("study.json") || has("study.toml") {
             Err(Failure::Usage(format!(
-                "{}: there is no `summary.json`, expected a study that is complete: `boresight study run` again does what is missing",
+                "{}: no `summary.json` in it, expected a complete study; run `boresight study run` again to \
+                 finish it",
                 directory.display()
             )))
         } else if directory.is_dir() {
             Err(Failure::Usage(format!(
-                "{}: there is neither `run.toml` nor `summary.json` nor `visibility.json`, expected the directory of a run, of a study \
-                 or of `boresight visibility --out`",
+                "{}: no `run.toml`, `summary.json` or `visibility.json` in it, expected the directory of a \
+                 run, of a study or of `boresight visibility --out`",
                 directory.display()
             )))
         } else {
@@ -61,7 +62,7 @@ pub(super) fn is_far_range_run(directory: &Path) -> Result<bool, Failure> {
 /// Returns the failure for a missing file of a run.
 pub(super) fn missing(directory: &Path, name: &str) -> Failure {
     Failure::Usage(format!(
-        "{}: is missing, expected the directory of a run: of a rendered dataset there is nothing to report yet",
+        "{}: is missing, expected the directory of a run; a rendered dataset has no results to report",
         directory.join(name).display()
     ))
 }

@@ -49,7 +49,7 @@ impl StudyResult {
         let path = directory.join("cases.parquet");
         if !path.is_file() {
             return Err(Failure::Usage(format!(
-                "{}: is missing, expected beside summary.json: `boresight study merge` writes both",
+                "{}: is missing beside summary.json; `boresight study merge` writes both",
                 path.display()
             )));
         }
@@ -73,7 +73,7 @@ pub fn study_page(study: &StudyResult) -> Page {
     let by = figure_by_name(worst_by).words;
     let lead = match summary.figures.get(worst_by).and_then(|figure| figure.all) {
         Some(all) => format!(
-            "{} cases; {by}, by which the worst are the worst, is {}.",
+            "{} cases; {by}, the figure that ranks the cases, is {}.",
             summary.cases,
             estimate_text(worst_by, &all)
         ),
@@ -128,10 +128,8 @@ pub fn study_page(study: &StudyResult) -> Page {
 fn stopped(summary: &Summary) -> &'static str {
     match summary.waited {
         Some(StoppingStatus::NarrowEnough) => "yes",
-        Some(StoppingStatus::TooWide) => "no: its interval is wider than asked",
-        Some(StoppingStatus::NearlyConstant) => {
-            "no: it is the same in nearly every draw, and its scatter is not known"
-        }
+        Some(StoppingStatus::TooWide) => "no: interval wider than required",
+        Some(StoppingStatus::NearlyConstant) => "no: equal in nearly every draw, scatter unknown",
         None => "no",
     }
 }
@@ -163,9 +161,19 @@ fn label(key: &str) -> String {
 /// Returns the section on all figures: the value over all cases, and the quantiles over the cases.
 fn figures(study: &StudyResult) -> Section {
     let summary = &study.summary;
-    let mut table = DataTable::new(["figure", "cases", "all", "5 % of cases below", "median", "95 % of cases below"]).caption(
-        "With 95 % intervals. All: of a rate all frames of all cases together, of another figure the mean of the cases.",
-    ).narrow();
+    let mut table = DataTable::new([
+        "figure",
+        "cases",
+        "all",
+        "5 % of cases below",
+        "median",
+        "95 % of cases below",
+    ])
+    .caption(
+        "With 95 % intervals. All: for a rate, all frames of all cases together; for other figures, the mean \
+         of the cases.",
+    )
+    .narrow();
     for (name, figure) in &summary.figures {
         let estimate = |estimate: &Option<Estimate>| {
             estimate.as_ref().map_or_else(|| "–".to_owned(), |e| estimate_text(name, e))
@@ -218,16 +226,17 @@ fn figures(study: &StudyResult) -> Section {
         data.push([figure_by_name(name).words, number(name, all.value), bound(all.low), bound(all.high)]);
     }
     let height = 110 + 30 * rates.len() as u32;
-    let caption = "Rates over all frames, and how far the cases spread about them.";
+    let caption = "Rates over all frames, and their spread over the cases.";
     section.chart(Chart::new(caption, height, data, traces, layout)).table(table)
 }
 
 /// Returns the section on the requirements with their verdicts.
 fn requirements(summary: &Summary) -> Section {
-    let mut table = DataTable::new(["requirement", "at", "found", "lower bound", "upper bound", "verdict"]).caption(
-        "Each bound holds alone with the confidence of its requirement. Met: the bound towards the limit keeps to it; not met: the other \
-         bound is beyond it.",
-    );
+    let mut table = DataTable::new(["requirement", "at", "found", "lower bound", "upper bound", "verdict"])
+        .caption(
+            "Each bound holds individually with the confidence of its requirement. Met: the worse bound is \
+             within the limit; not met: the better bound is beyond it.",
+        );
     for result in &summary.requirements {
         let name = &result.requirement.figure;
         let cell = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
@@ -246,7 +255,7 @@ fn requirements(summary: &Summary) -> Section {
 /// Returns the section on the causes of missed and wrong frames.
 fn causes(summary: &Summary) -> Section {
     let mut table = DataTable::new(["cause", "frames", "share of all, %", "cases"])
-        .caption("Frames of all cases that count; shares with 95 % intervals.");
+        .caption("Frames of all counted cases; shares with 95 % intervals.");
     let percent = |value: f64| format!("{:.2}", 100.0 * value);
     for (name, cause) in &summary.causes {
         let share = cause.share.as_ref().map_or_else(String::new, |share| {
@@ -257,7 +266,7 @@ fn causes(summary: &Summary) -> Section {
         let words = name.replacen('.', ": ", 1).replace('_', " ");
         table.push([words, cause.frames.to_string(), share, cause.cases.to_string()]);
     }
-    Section::new("causes", "Misses and wrong answers by cause").table(table)
+    Section::new("causes", "Misses and wrong measurements by cause").table(table)
 }
 
 /// Returns the section on the sweep: a curve of each figure, starting with the figure that ranks the worst
@@ -276,7 +285,7 @@ fn sweep(study: &StudyResult) -> Section {
     let mut section = Section::new("sweep", "Sweep");
     if left_out > 0 {
         section = section.text(format!(
-            "Of the figures the first {MAX_CURVES} are drawn; summary.json has all at every point."
+            "The charts show the first {MAX_CURVES} figures; summary.json has all figures at every point."
         ));
     }
     section.charts(charts).table(differences(summary))
@@ -332,8 +341,8 @@ fn curve(summary: &Summary, name: &str) -> Chart {
 /// Returns a table of the changes of all figures at each step of the sweep.
 fn differences(summary: &Summary) -> DataTable {
     let mut table = DataTable::new(["figure", "of", "from", "to", "difference", "draws"]).caption(
-        "Points of the sweep that differ in one value, each draw compared with itself; with 95 % intervals. Differences of rates are in \
-         points of a percent.",
+        "Sweep points that differ in one value, compared draw by draw; with 95 % intervals. Differences of \
+         rates are in percentage points.",
     );
     for step in &summary.differences {
         let changed = step.from.iter().find(|(path, from)| step.to.get(*path) != Some(from));
@@ -361,8 +370,7 @@ fn sensitivities(study: &StudyResult) -> Section {
     let correlations = &study.summary.correlations;
     let section = Section::new("sensitivities", "Sensitivities");
     if correlations.is_empty() {
-        return section
-            .text("There is nothing to correlate: too few cases, or nothing drawn that is a number.");
+        return section.text("No correlations: too few cases, or no drawn value is a number.");
     }
     let mut figures: Vec<&String> = Vec::new();
     let mut parameters: Vec<&String> = Vec::new();
@@ -404,8 +412,8 @@ fn sensitivities(study: &StudyResult) -> Section {
         ]);
     }
     section.chart(Chart::new(
-        "Spearman's rank correlation of figures with what was drawn: 1, the figure grows whenever the value does; −1, it falls. The \
-         table has the 95 % intervals.",
+        "Spearman's rank correlation of figures with drawn values: 1 if the figure always grows with the \
+         value, −1 if it always falls. The table has the 95 % intervals.",
         140 + 24 * figures.len() as u32,
         data,
         vec![map],
@@ -452,7 +460,8 @@ fn indices(study: &StudyResult) -> Section {
     ];
     Section::new("indices", "Sobol indices").chart(Chart::new(
         format!(
-            "Of {}: the part of its variance that is a value's alone, and with all in which it takes part.",
+            "Variance of {}: part due to each value by itself (first order), and part that includes all \
+             interactions of the value (total).",
             figure_by_name(&summary.worst_by).words
         ),
         400,
@@ -467,7 +476,7 @@ fn scatter(study: &StudyResult) -> Section {
     let (summary, table) = (&study.summary, &study.table);
     let name = &summary.worst_by;
     let section =
-        Section::new("scatter", format!("{} against what was drawn", capital(&figure_by_name(name).words)));
+        Section::new("scatter", format!("{} against drawn values", capital(&figure_by_name(name).words)));
     let Some(values) = table.figure(name) else { return section.text("No case has the figure.") };
     let mut charts = Vec::new();
     for parameter in table.drawn.keys() {
@@ -485,7 +494,7 @@ fn scatter(study: &StudyResult) -> Section {
         let mut sorted = rows.clone();
         sorted.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b]).then(a.cmp(&b)));
         let mut data = DataTable::new(["from", "to", "cases", "smallest", "mean", "largest"])
-            .caption("By stretches of the drawn value; cases.parquet has every case.");
+            .caption("By interval of the drawn value; cases.parquet has every case.");
         for bin in bins(sorted.len(), TABLE_BINS.min(12)) {
             let (first, last) = (sorted[bin.start], sorted[bin.end - 1]);
             let mut cells = vec![significant(numbers[first]), significant(numbers[last])];
@@ -494,7 +503,7 @@ fn scatter(study: &StudyResult) -> Section {
         }
         charts.push(Chart::new(
             format!(
-                "{} against {parameter}, a point a case. {}",
+                "{} against {parameter}, one point per case. {}",
                 figure_by_name(name),
                 thinning_caption(&[(rows.len(), "cases")], true)
             ),
@@ -507,17 +516,11 @@ fn scatter(study: &StudyResult) -> Section {
     let left_out = charts.len().saturating_sub(MAX_SCATTERS);
     charts.truncate(MAX_SCATTERS);
     let section = if left_out > 0 {
-        section.text(format!(
-            "Of so many drawn values the first {MAX_SCATTERS} are shown; cases.parquet has all."
-        ))
+        section.text(format!("First {MAX_SCATTERS} drawn values; cases.parquet has all."))
     } else {
         section
     };
-    if charts.is_empty() {
-        section.text("Nothing that was drawn is a number.")
-    } else {
-        section.charts(charts)
-    }
+    if charts.is_empty() { section.text("No drawn value is a number.") } else { section.charts(charts) }
 }
 
 /// Returns the table of the worst cases, with the commands that repeat them.
@@ -526,16 +529,16 @@ fn worst(study: &StudyResult) -> Section {
     let way = match figure_by_name(&summary.worst_by).sense.better {
         Better::More => "the smallest",
         Better::Less => "the largest",
-        Better::Near(_) => "the farthest from what is best",
+        Better::Near(_) => "the farthest from the best value",
     };
     let section = Section::new("worst", "Worst cases");
     if summary.worst.is_empty() {
-        return section.text("No case has the figure by which they would be the worst.");
+        return section.text("No case has the figure that ranks the cases.");
     }
     let drawn: Vec<&String> = summary.worst[0].drawn.keys().collect();
     let mut head = vec!["case".to_owned(), label(&summary.worst_by)];
     head.extend(drawn.iter().map(|name| (*name).clone()));
-    head.push("runs it again".to_owned());
+    head.push("command to repeat the case".to_owned());
     let mut table = DataTable::new(head).wordy();
     for case in &summary.worst {
         let mut cells = vec![case.case.to_string(), number(&summary.worst_by, case.value)];
@@ -548,8 +551,8 @@ fn worst(study: &StudyResult) -> Section {
     }
     let more = match summary.worst_of.saturating_sub(summary.worst.len() as u64) {
         0 => String::new(),
-        more => format!(" {more} more cases are as bad as the last of these."),
+        more => format!(" {more} more cases have the same value as the last one listed."),
     };
     let words = figure_by_name(&summary.worst_by).words;
-    section.text(format!("Those whose {words} is {way}.{more}")).table(table)
+    section.text(format!("Cases whose {words} is {way}.{more}")).table(table)
 }

@@ -50,11 +50,11 @@ pub fn visibility_page(report: &VisibilityReport) -> Page {
             ("File", report.name.clone()),
             ("Field", field),
             ("Nominal exposure", format!("{} s", significant(camera.nominal_s))),
-            ("Stars needed", camera.n_min.to_string()),
-            ("With probability", probability(camera.probability)),
+            ("Required stars", camera.n_min.to_string()),
+            ("Required probability", probability(camera.probability)),
             ("Star of V = 0", format!("{} e/s", significant(camera.zero_point_e_per_s))),
             ("Saturation", format!("{} e", significant(camera.saturation_e))),
-            ("Background", format!("{} e/s and pixel", significant(camera.background_e_per_s))),
+            ("Background", format!("{} e/s per pixel", significant(camera.background_e_per_s))),
             ("Boresight", report.version.clone()),
         ],
         sections: sections.into_iter().filter(|section| !section.blocks.is_empty()).collect(),
@@ -73,9 +73,9 @@ fn rate_text(simulated: Option<&SimulatedRate>) -> String {
 fn requirements(report: &VisibilityReport) -> Section {
     let mut table = DataTable::new([
         "requirement",
-        "says",
+        "text",
         "status",
-        "asked",
+        "required",
         "reached",
         "margin",
         "simulated",
@@ -84,20 +84,20 @@ fn requirements(report: &VisibilityReport) -> Section {
     let mut found = DataTable::new([
         "requirement",
         "parameter",
-        "value that meets it",
+        "value that meets the requirement",
         "probability",
         "simulated",
-        "value that does not",
-        "its probability",
+        "value that fails",
+        "probability at that value",
     ])
-    .caption("What was looked for.");
+    .caption("Results of the searches.");
     for verdict in &report.requirements {
         let margin = verdict.margin.map(|margin| match verdict.margin_unit.as_ref() {
             "points" => format!("{margin:.1} points"),
             unit => format!("{} {unit}", significant(margin)),
         });
         let evidence = match &verdict.binds {
-            Some(binds) => format!("{}. What binds: {binds}.", verdict.evidence),
+            Some(binds) => format!("{}. Binding constraint: {binds}.", verdict.evidence),
             None => verdict.evidence.clone(),
         };
         table.push([
@@ -131,13 +131,13 @@ fn requirements(report: &VisibilityReport) -> Section {
 fn detection(report: &VisibilityReport) -> Section {
     let section = Section::new("detection", "Detection against magnitude");
     if report.detection.is_empty() {
-        return section.text("No star is detected with half of the chances at the nominal exposure.");
+        return section.text("No star is detected with a probability of 50 % at the nominal exposure.");
     }
     let model = &report.detection;
     let seen = &report.detection_simulated;
     let magnitudes: Vec<f64> = model.iter().map(|p| p.magnitude).collect();
     let mut traces = vec![dashed(
-        "law, a star of mean colour",
+        "model, a star of mean colour",
         magnitudes,
         model.iter().map(|p| rounded(p.probability, 6)).collect(),
         REFERENCE,
@@ -145,15 +145,23 @@ fn detection(report: &VisibilityReport) -> Section {
     if !seen.is_empty() {
         let x: Vec<f64> = seen.iter().map(|p| p.magnitude).collect();
         let expected = seen.iter().map(|p| rounded(p.analytic, 6)).collect();
-        let model = line("law, mean over the simulated stars", x.clone(), expected, MEASURED);
+        let model = line("model, mean over the simulated stars", x.clone(), expected, MEASURED);
         traces.push(model.mode(Mode::LinesAndMarkers).marker(Marker::new().size(13).symbol(Symbol::Square)));
         let low: Vec<f64> = seen.iter().map(|p| p.low).collect();
         let high: Vec<f64> = seen.iter().map(|p| p.high).collect();
         let rate = seen.iter().map(|p| rounded(p.count as f64 / p.of.max(1) as f64, 6)).collect();
         traces.push(intervals("simulated, the same stars, 95 %", x, rate, &low, &high, BESIDE));
     }
-    let mut data =
-        DataTable::new(["V", "electrons", "probability", "detected", "of", "low", "high", "law over them"]);
+    let mut data = DataTable::new([
+        "V",
+        "electrons",
+        "probability",
+        "detected",
+        "of",
+        "low",
+        "high",
+        "model, same stars",
+    ]);
     for point in model {
         let simulated = seen.iter().find(|s| s.magnitude == point.magnitude);
         let number = |pick: fn(&visibility::SimulatedPoint) -> f64| cell(simulated.map(pick));
@@ -172,9 +180,10 @@ fn detection(report: &VisibilityReport) -> Section {
         ]);
     }
     section.chart(Chart::new(
-        "Probability that a star is detected at the nominal exposure. What is simulated (orange) is to be held against the law over the very stars of \
-         the simulation (blue squares). Both are flatter than the law of one star (grey): stars of one V magnitude have colours of their own, by \
-         which they are brighter or fainter in the camera's band than a star of mean colour.",
+        "Probability that a star is detected at the nominal exposure. Compare the simulation (orange) with \
+         the model averaged over the same stars (blue squares). Both curves are flatter than the model for a \
+         star of mean colour (grey), because stars of equal V magnitude but different colour are brighter or \
+         fainter in the camera's band.",
         400,
         data,
         traces,
@@ -187,7 +196,7 @@ fn limiting_magnitude(report: &VisibilityReport) -> Section {
     let curve = &report.limiting_magnitude;
     let section = Section::new("limiting-magnitude", "Limiting magnitude against exposure");
     if curve.is_empty() {
-        return section.text("There is no curve.");
+        return section.text("No curve.");
     }
     let x: Vec<f64> = curve.iter().map(|p| p.exposure_s).collect();
     let y = |pick: &dyn Fn(&visibility::LimitPoint) -> Option<f64>| {
@@ -206,8 +215,13 @@ fn limiting_magnitude(report: &VisibilityReport) -> Section {
         Panel::new("probability", vec![line("enough", x, y(&|p| Some(p.probability)), MEASURED)]),
     ];
     let (traces, layout) = stacked(log_axis("exposure, s"), panels);
-    let mut data =
-        DataTable::new(["exposure, s", "V at 0.5", "V at what is asked", "stars", "probability of enough"]);
+    let mut data = DataTable::new([
+        "exposure, s",
+        "V at 0.5",
+        "V at required probability",
+        "stars",
+        "probability of enough stars",
+    ]);
     for p in curve {
         data.push([
             significant(p.exposure_s),
@@ -218,7 +232,7 @@ fn limiting_magnitude(report: &VisibilityReport) -> Section {
         ]);
     }
     section.chart(Chart::new(
-        "The faintest star that is detected, the stars detected in the mean over the sky, and how probable enough of them are.",
+        "Limiting magnitude, mean number of detected stars over the sky, and probability of enough stars.",
         620,
         data,
         traces,
@@ -231,12 +245,12 @@ fn sky(report: &VisibilityReport) -> Section {
     let sky = &report.sky;
     let section = Section::new("sky", "Stars over the sky");
     if sky.map.is_empty() {
-        return section.text("No pointing was looked at.");
+        return section.text("No pointing was evaluated.");
     }
     let counted: Vec<_> = sky.map.iter().filter(|p| p.excluded.is_none()).collect();
     let (traces, layout) = sky_map(&counted, sky.map.len());
     let mut data = DataTable::new(["Dec from, °", "Dec to, °", "pointings", "fewest stars", "mean", "most"])
-        .caption("By declination, of the pointings that count; sky.csv has every pointing.");
+        .caption("Counted pointings by declination; sky.csv has every pointing.");
     let mut by_declination = counted.clone();
     by_declination.sort_by(|a, b| a.dec_deg.total_cmp(&b.dec_deg));
     for bin in bins(by_declination.len(), 18) {
@@ -253,11 +267,12 @@ fn sky(report: &VisibilityReport) -> Section {
         "time (UTC)",
         "stars above the limit",
         "stars detected, expected",
-        "probability of enough",
+        "probability of enough stars",
     ])
     .caption(format!(
-        "The pointings with the fewest stars. The limit is the magnitude at which a star of mean colour is detected with {}; the expected number \
-         counts every star of the field by its own chance, fainter ones too, and so may be larger.",
+        "The pointings with the fewest stars. The limit is the magnitude at which a star of mean colour is \
+         detected with {}; the expected number is the sum of the detection probabilities of all stars of the \
+         field, fainter ones included, and can be larger.",
         probability(report.camera.probability)
     ));
     for p in &sky.worst {
@@ -272,8 +287,8 @@ fn sky(report: &VisibilityReport) -> Section {
     }
     section
         .text(format!(
-            "{} of {} pointings count; {sun} are excluded by the Sun, {moon} by the Moon, {earth} by the Earth. {} stars in the mean; 1, 10 \
-             and 50 % of the pointings have fewer than {}, {} and {}.",
+            "{} of {} pointings count; {sun} are excluded by the Sun, {moon} by the Moon, {earth} by the \
+             Earth. Mean {} stars; 1, 10 and 50 % of the pointings have fewer than {}, {} and {}.",
             sky.counted,
             sky.pointings,
             significant(sky.stars),
@@ -282,9 +297,10 @@ fn sky(report: &VisibilityReport) -> Section {
             significant(sky.quantiles[2])
         ))
         .chart(Chart::new(
-            "Stars detected at the nominal exposure, expected number: each place has that of the nearest boresight that counts, and none where the \
-             next one is farther than one and a half of their distances. Mollweide's equal-area projection, as seen from within: right ascension \
-             grows to the left, 0 in the middle; a line every 30°.",
+            "Expected number of detected stars at the nominal exposure. Each direction shows the number of \
+             the nearest counted boresight, and none if that is farther than 1.5 times the spacing of the \
+             boresights. Mollweide's equal-area projection, as seen from within: right ascension grows to \
+             the left, 0 in the middle; a line every 30°.",
             480,
             data,
             traces,
@@ -296,9 +312,9 @@ fn sky(report: &VisibilityReport) -> Section {
 /// Returns the section on exposure time against range.
 fn exposure_window(report: &VisibilityReport) -> Section {
     let curve = &report.exposure_window;
-    let section = Section::new("exposure-window", "Window of exposures against range");
+    let section = Section::new("exposure-window", "Exposure window against range");
     if curve.is_empty() {
-        return section.text("There is no target in the file: its light bounds no exposure.");
+        return section.text("The file defines no target: no over-exposure limits the exposure.");
     }
     let x: Vec<f64> = curve.iter().map(|p| rounded(p.range_km, 6)).collect();
     let y = |pick: &dyn Fn(&visibility::WindowPoint) -> Option<f64>| {
@@ -306,17 +322,17 @@ fn exposure_window(report: &VisibilityReport) -> Section {
     };
     let traces = vec![
         line("longest: target not over-exposed", x.clone(), y(&|p| Some(p.longest_s)), WRONG),
-        line("the same in half of the aspects", x.clone(), y(&|p| Some(p.median_s)), BESIDE),
+        line("longest in half of the aspects", x.clone(), y(&|p| Some(p.median_s)), BESIDE),
         line("shortest: enough stars", x, y(&|p| p.shortest_s), MEASURED),
     ];
     let mut data = DataTable::new([
         "range, km",
         "longest, s",
-        "in half, s",
+        "longest in half, s",
         "shortest, s",
         "open",
         "stars",
-        "probability of enough",
+        "probability of enough stars",
     ]);
     for p in curve {
         data.push([
@@ -332,13 +348,14 @@ fn exposure_window(report: &VisibilityReport) -> Section {
     let closes = report.stars_lost.as_ref().and_then(|lost| lost.window_closes_km);
     let section = match closes {
         Some(range_km) => section.text(format!(
-            "Approaching, the window closes at {} km: nearer, no exposure has both enough stars and the target not over-exposed.",
+            "The window closes at {} km: at shorter range, no exposure gives enough stars without \
+             over-exposing the target.",
             significant(range_km)
         )),
         None => section,
     };
     section.chart(Chart::new(
-        "Where the blue line is below the red one, there are exposures that do both.",
+        "Where the blue line is below the red one, an exposure meets both limits.",
         420,
         data,
         traces,
@@ -371,7 +388,7 @@ fn target_range(report: &VisibilityReport) -> Section {
         ]);
     }
     section.chart(Chart::new(
-        "The farthest that the target is detected with the probability that is asked for, by phase angle.",
+        "Greatest range at which the target is detected with the required probability, by phase angle.",
         360,
         data,
         traces,

@@ -65,7 +65,7 @@ pub struct FarRangeJudgement {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ScoreError {
     /// A frame that does not follow the previous frame: it would be counted twice, or out of order.
-    #[error("frame {frame} follows frame {previous}, expected frames in ascending order, each once")]
+    #[error("frame {frame} follows frame {previous}, expected each frame once, in ascending order")]
     Order {
         /// Number of the previous frame.
         previous: u64,
@@ -85,7 +85,7 @@ pub enum ScoreError {
         expected: &'static str,
     },
     /// An object of another frame.
-    #[error("an object of frame {object} is given with frame {frame}")]
+    #[error("frame {frame} contains an object of frame {object}")]
     ForeignObject {
         /// Number of the scored frame.
         frame: u64,

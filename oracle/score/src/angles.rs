@@ -75,10 +75,10 @@ pub fn attitude_note(word: Option<&str>) -> Option<String> {
     match word? {
         "own" => None,
         "none" => {
-            Some("No answer has a line of sight: RA and Dec have no figures (docs/score.md).".to_owned())
+            Some("No measurement has a line of sight: no figures for RA and Dec (docs/score.md).".to_owned())
         }
         word => Some(format!(
-            "RA and Dec are by the attitude `{word}`, not all the pipeline's own (docs/score.md)."
+            "RA and Dec by the attitude `{word}`, not only by the pipeline's own (docs/score.md)."
         )),
     }
 }

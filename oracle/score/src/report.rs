@@ -168,7 +168,9 @@ fn mean(sequences: &[Vec<f64>]) -> Option<f64> {
 /// `images` is "frames" or "fields".
 pub fn warm_up_note(frames: u64, images: &str) -> Option<String> {
     (frames > 0).then(|| {
-        format!("The first {frames} {images}, the pipeline's start-up, are the group `warm-up` and count in no other figure.")
+        format!(
+            "The first {frames} {images} are the warm-up: group `warm-up`, excluded from all other figures."
+        )
     })
 }
 

@@ -239,7 +239,7 @@ pub(super) fn judge(
     let line_of_sight = LineOfSightError::from_measurement(measurement, truth, unproject, granted);
     let is_on_detector = measurement.position.is_on_detector(detector.columns, detector.rows);
     if !is_on_detector || (measurement.line_of_sight.is_some() && line_of_sight.is_none()) {
-        let no_answer = Outcome::none(NoSolution::Failed("the answer is no direction".to_owned()));
+        let no_answer = Outcome::none(NoSolution::Failed("the measurement is not a direction".to_owned()));
         return missed(Some(&no_answer));
     }
     let centre = target(objects).map(|target| target.position).or(truth.target_position);

@@ -9,7 +9,7 @@ pub const MAX_PANELS: usize = 16;
 #[derive(Debug, Error)]
 pub enum ShowError {
     /// No panel, or too many panels for a picture.
-    #[error("{0} frames are asked for, expected 1 to {MAX_PANELS}")]
+    #[error("{0} frames are selected, expected 1 to {MAX_PANELS}")]
     PanelCount(usize),
     /// A view without pixels, or a canvas that cannot be allocated.
     #[error("a picture of {width} × {height} pixels cannot be drawn")]

@@ -43,7 +43,7 @@ impl StartCounter {
         } else if self.failed_cases.fetch_add(1, Ordering::Relaxed) + 1 >= most {
             return Err(Failure::Usage(match (&case.row.error, &case.first_failure) {
                 (Some(error), _) => {
-                    format!("none of the first {most} cases can be run; of case {}: {error}", case.row.case)
+                    format!("none of the first {most} cases can be run; case {}: {error}", case.row.case)
                 }
                 (None, first) => {
                     let reason = first.as_ref().map_or("", |first| &first.reason);
@@ -103,7 +103,7 @@ impl<'a> Campaign<'a> {
     pub fn reopen(study: &'a Study, pipeline: &'a dyn StudyPipeline, out: &Path) -> Result<Self, Failure> {
         if ShardStore::planned_shards(out).is_none() {
             return Err(Failure::Usage(format!(
-                "{}: there is no plan.json that can be read, expected the directory of a study's shards",
+                "{}: no readable plan.json in it, expected the directory of a study's shards",
                 out.display()
             )));
         }
@@ -191,7 +191,7 @@ impl<'a> Campaign<'a> {
             }
         }
         Ok(Failure::Usage(format!(
-            "shards {} of {shards} are missing or were damaged; `boresight study run` makes them",
+            "shards {} of {shards} are missing or damaged; `boresight study run` runs them",
             missing.join(", ")
         )))
     }

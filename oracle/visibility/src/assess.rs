@@ -42,8 +42,8 @@ pub fn assess(requirements: &Requirements, progress: impl Fn(&str)) -> Result<Vi
     if sky.counted == 0 {
         let [sun, moon, earth] = sky.excluded;
         return Err(Failure::Usage(format!(
-            "`{}`: the exclusion angles of [sky] leave none of {} pointings (Sun {sun}, Moon {moon}, limb of the Earth {earth}), expected \
-             angles that leave some: of no sky nothing can be verified",
+            "`{}`: the exclusion angles of [sky] exclude all {} pointings (Sun {sun}, Moon {moon}, limb of \
+             the Earth {earth}), expected smaller angles that leave some pointings to verify",
             requirements.name, sky.pointings
         )));
     }
@@ -92,7 +92,7 @@ const DISAGREEMENT: f64 = 0.999;
 fn simulation_text(simulated: Option<&SimulatedRate>, model: f64) -> String {
     let Some(s) = simulated else { return "not simulated".to_owned() };
     let (low, high) = clopper_pearson(s.count, s.of, DISAGREEMENT);
-    let remark = if (low..=high).contains(&model) { "" } else { ", which DISAGREES with the law" };
+    let remark = if (low..=high).contains(&model) { "" } else { ", which DISAGREES with the model" };
     format!(
         "simulated {} of {} frames ({:.1} to {:.1} %){remark}",
         s.count,
@@ -103,7 +103,7 @@ fn simulation_text(simulated: Option<&SimulatedRate>, model: f64) -> String {
 }
 
 /// Binding limit when the model meets a requirement but the frames do not.
-const REFUTED: &str = "simulation: fewer frames meet it than the analytic law says";
+const REFUTED: &str = "simulation: fewer frames meet the requirement than the detection model predicts";
 /// Largest number of frames for which the number needed for a decision is computed.
 const MAX_FRAMES: u64 = 10_000;
 
@@ -139,8 +139,8 @@ fn frames_in_words(status: Status, asked: f64, reached: f64, simulated: Option<&
     let enough = std::iter::successors(Some(s.of.max(1)), |frames| Some(frames + frames.div_ceil(10)))
         .take_while(|frames| *frames <= MAX_FRAMES)
         .find(|frames| shows(*frames));
-    let too_few = "too few frames to show it";
-    enough.map_or_else(|| format!(", {too_few}"), |frames| format!(", {too_few}: about {frames} would"))
+    let too_few = "too few frames for a proof";
+    enough.map_or_else(|| format!(", {too_few}"), |frames| format!(", {too_few}: about {frames} needed"))
 }
 
 impl<'a> Assessment<'a> {
@@ -246,7 +246,7 @@ impl<'a> Assessment<'a> {
             let (goal, asked) = (100.0 * goal, 100.0 * asked);
             let frames = file.confirm.frames;
             evidence.push_str(&format!(
-                "; aimed at {goal:.1} %, so that {frames} frames show the {asked:.1} % asked"
+                "; searched for {goal:.1} %, at which {frames} frames prove the required {asked:.1} %"
             ));
         }
         if let (Some(value), Some(probability)) = (failing_value, failing) {
@@ -258,7 +258,7 @@ impl<'a> Assessment<'a> {
             ));
         }
         if !is_monotone {
-            evidence.push_str("; beyond, not everywhere met");
+            evidence.push_str("; not met everywhere beyond this value");
         }
         Ok(Verdict {
             status,
@@ -446,7 +446,7 @@ impl<'a> Assessment<'a> {
 
     fn reached_in_words(&self, demand: &Demand, reached: &DesignPerformance, asked: f64) -> String {
         let DesignPerformance { probability, exposure_s, range_km } = *reached;
-        let percent = format!("{:.1} % ({:.1} % asked)", 100.0 * probability, 100.0 * asked);
+        let percent = format!("{:.1} % ({:.1} % required)", 100.0 * probability, 100.0 * asked);
         let exposure = format!("{} s", digits(exposure_s));
         match (demand, range_km) {
             (Demand::Stars { n_min, over, .. }, _) => {
@@ -519,7 +519,7 @@ mod tests {
     #[test]
     fn the_frames_that_would_decide_are_named() {
         let words = |reached| frames_in_words(Status::NotDecided, 0.9, reached, Some(&simulated(27, 29)));
-        assert!(words(1.0).contains("about 29 would"), "{}", words(1.0));
-        assert_eq!(words(0.9), ", too few frames to show it");
+        assert!(words(1.0).contains("about 29 needed"), "{}", words(1.0));
+        assert_eq!(words(0.9), ", too few frames for a proof");
     }
 }

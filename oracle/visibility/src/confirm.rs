@@ -229,7 +229,9 @@ impl Bench<'_> {
                 (time, orbit, turned(body, turn_deg))
             }
             (Setting::Moment { .. }, None) => {
-                return Err(Failure::Usage("a moment of an orbit needs the scenario it is of".to_owned()));
+                return Err(Failure::Usage(
+                    "target.light.kind \"orbit\" needs camera.scenario, which defines the orbit".to_owned(),
+                ));
             }
         };
         let guidance = match self.motion.guidance {
@@ -261,7 +263,7 @@ impl Bench<'_> {
     }
 
     /// Returns a simulation of one frame.
-    #[allow(clippy::too_many_arguments, reason = "each is a part of a flight, and they are met once")]
+    #[allow(clippy::too_many_arguments, reason = "each is a parameter of the simulation; one caller")]
     fn flight(
         &self,
         time: Epoch,
@@ -337,7 +339,7 @@ fn circular(
     let velocity_km_s = transverse * (mean_motion_rad_s(a_km) * a_km);
     let elements = Elements::from_state(&State { position_km: radial * a_km, velocity_km_s });
     let elements = elements.ok_or_else(|| {
-        Failure::Usage("a simulated orbit lies in the equator, expected another seed".to_owned())
+        Failure::Usage("a simulated orbit lies in the equatorial plane; use another seed".to_owned())
     })?;
     Ok(ElementsConfig {
         semi_major_axis_km: elements.semi_major_axis_km,

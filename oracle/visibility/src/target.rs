@@ -82,7 +82,7 @@ impl TargetModel {
         };
         if aspects.is_empty() {
             let expected = "an orbit on which the target is lit";
-            return Err(OutOfRange::new("target.light", "without a sunlit moment", expected).into());
+            return Err(OutOfRange::new("target.light", "never sunlit", expected).into());
         }
         Ok(Self { body: prepared, aspects })
     }

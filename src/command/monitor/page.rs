@@ -30,8 +30,8 @@ pub(in crate::command) fn monitor(arguments: &MonitorArguments, output: &Output)
     };
     if !is_page_built() {
         return Err(Failure::Usage(format!(
-            "the monitor's page is not in this executable, expected that it was built before: {BUILD_COMMAND}, then build or run \
-             boresight again"
+            "this executable was built without the monitor's page; build the page with {BUILD_COMMAND}, then \
+             build or run boresight again"
         )));
     }
     let mut announced = Ok(());
@@ -56,7 +56,7 @@ impl MonitorArguments {
         ];
         match given.iter().find(|(_, is_given)| *is_given) {
             Some((option, _)) => Err(Failure::Usage(format!(
-                "{option} is given with the directory {}, expected with a scenario alone: a run directory is shown as it was flown",
+                "{option} applies only to a scenario: the run directory {} is replayed unchanged",
                 self.selection.scenario
             ))),
             None => Ok(()),
@@ -102,8 +102,9 @@ fn replay(directory: &Path) -> Result<(String, Feed), Failure> {
         [truth, "telemetry.csv", "measurements.csv"].iter().find(|name| !directory.join(name).is_file())
     {
         return Err(Failure::Usage(format!(
-            "{}: run.toml is there and {missing} is not, expected the directory of a run that is finished: this one still goes on, was \
-             killed, or no pipeline has processed its frames. `boresight monitor SCENARIO` flies a run and shows it as it goes on",
+            "{}: has run.toml but no {missing}, expected the directory of a finished run: this run is still \
+             in progress, was killed, or has unprocessed frames. `boresight monitor SCENARIO` shows a run \
+             while it is simulated",
             directory.display()
         )));
     }

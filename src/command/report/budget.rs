@@ -22,12 +22,12 @@ pub(super) fn run_budget(directory: &Path, output: &Output) -> Result<Vec<PathBu
     let run = FarRangeRun::read(directory)?;
     if run.run_file.inject.is_some() {
         return Err(Failure::Usage(
-            "--budget is all, expected with the report of an honest run alone".to_owned(),
+            "--budget is all, which applies only to the report of a run without --inject".to_owned(),
         ));
     }
     let (Some(first), Some(last)) = (run.truths.first(), run.truths.last()) else {
         return Err(Failure::Usage(format!(
-            "{}: the run has no frame, expected one or more",
+            "{}: the run has no frames, expected at least one",
             directory.display()
         )));
     };
@@ -86,7 +86,7 @@ fn run_stage(
         })?;
         // From a stage that was not completed.
         let earlier = ReplaceableFile {
-            description: "that of an earlier flight",
+            description: "a file of an earlier budget run",
             matches: &|beginning| beginning.starts_with(b"name = "),
         };
         AtomicFile::with_text(&folder.join(name), &text)?.replace(earlier)?;

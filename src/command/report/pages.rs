@@ -33,7 +33,7 @@ pub(super) fn write_report(
         [only] if only == Path::new(ALL) => report_with_budget(directory, &run_budget(directory, output)?)?,
         several if several.iter().any(|path| path == Path::new(ALL)) => {
             return Err(Failure::Usage(
-                "--budget is `all` and a directory, expected `all` alone: it flies every stage".to_owned(),
+                "--budget is `all` and a directory, expected only `all`, which runs every stage".to_owned(),
             ));
         }
         directories => report_with_budget(directory, directories)?,

@@ -36,7 +36,7 @@ impl PixelSource {
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Stored => "stored image",
-            Self::DrawnAgain => "drawn again from run.toml",
+            Self::DrawnAgain => "rendered again from run.toml",
         }
     }
 }

@@ -332,7 +332,7 @@ impl FieldRecord<'_> {
         table.push("rows", format!("{}{with}", self.row.lines.code()));
         table.push("pixels", source.words());
         if by_other {
-            table.push("renderer", "fast, of the run Mitsuba");
+            table.push("renderer", "fast (run: Mitsuba)");
         }
         let used =
             |usage: &str| self.features.iter().filter(|row| row.kind == "mark" && row.usage == usage).count();
@@ -340,7 +340,7 @@ impl FieldRecord<'_> {
             table.push("marks", format!("{} used, {} rejected", used("used"), used("rejected")));
         }
         if let Some(reason) = self.reason() {
-            table.push("answer", reason);
+            table.push("outcome", reason);
         }
         let mut tables = vec![table];
         let truth = self.truth.as_ref().map(|truth| Parameters::from_pose(&truth.pose));

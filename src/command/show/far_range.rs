@@ -132,7 +132,8 @@ fn images(
 /// Returns the failure of a frame that can be neither read nor drawn again.
 pub(super) fn not_stored(source: &Source, unit: &str, number: u64) -> Failure {
     Failure::Usage(format!(
-        "{}: no image is named for {unit} {number}, expected one, or run.toml beside the table to draw it again",
+        "{}: no image listed for {unit} {number}, expected an image, or run.toml beside the table to render \
+         it again",
         source.directory.join("telemetry.csv").display()
     ))
 }
@@ -307,7 +308,7 @@ impl FrameRecord {
         }
         if let Some(target) = self.target() {
             table.push("target SNR", format!("{:.1}", target.snr));
-            table.push("cut", format!("{:.0} % of its light", 100.0 * target.cut));
+            table.push("cut", format!("{:.0} % of its signal", 100.0 * target.cut));
         }
         let point = |at: PixelPoint| format!("{:.2}, {:.2} px", at.x, at.y);
         if let Some(at) = self.target_position() {
@@ -322,7 +323,7 @@ impl FrameRecord {
                     },
                     point,
                 );
-                table.push("answer", position);
+                table.push("measured", position);
                 if let Some((x, y)) = self.error_px() {
                     table.push("error", format!("{x:+.2}, {y:+.2} px"));
                 }
@@ -330,7 +331,7 @@ impl FrameRecord {
                     table.push("stars", format!("{stars} identified"));
                 }
             }
-            Some(None) => table.push("answer", "no row"),
+            Some(None) => table.push("measured", "no row"),
             None => {}
         }
         vec![table]

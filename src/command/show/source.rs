@@ -34,7 +34,7 @@ impl Source {
             world
         } else {
             let what = if directory.is_dir() {
-                "holds neither run.toml nor camera.toml nor setup.toml"
+                "contains no run.toml, camera.toml or setup.toml"
             } else if directory.exists() {
                 "is not a directory"
             } else {
@@ -47,7 +47,7 @@ impl Source {
         };
         if !has("telemetry.csv") {
             return Err(Failure::Usage(format!(
-                "{}: telemetry.csv is missing, expected a run or dataset that is finished",
+                "{}: telemetry.csv is missing, expected a finished run or dataset",
                 directory.display()
             )));
         }
@@ -94,7 +94,7 @@ impl Source {
                         format!(", {} to {}", number_of(first), number_of(last))
                     });
                     Failure::Usage(format!(
-                        "{}: there is no {unit} {number}, expected one of its {}{known}",
+                        "{}: has no {unit} {number}, expected one of its {}{known}",
                         self.directory.join("telemetry.csv").display(),
                         rows.len()
                     ))

@@ -254,7 +254,7 @@ fn an_interrupted_command_says_what_it_kept() {
     for words in ["run long.toml --out", "render long.toml --out"] {
         let out = words.split(' ').next().unwrap();
         let told = interrupted(&format!("{words} {out}"), &|| bench.path(out).join("run.toml").exists());
-        assert!(told.contains(&format!("interrupted: {out} holds an unfinished run")), "{told}");
+        assert!(told.contains(&format!("interrupted: {out} contains an unfinished run")), "{told}");
         assert!(
             unfinished(out) && bench.read(&format!("{out}/UNFINISHED.txt")).contains("cannot be continued")
         );
@@ -271,7 +271,7 @@ fn an_interrupted_command_says_what_it_kept() {
     let told = interrupted("study run study.toml --shards 1 --out study", &begun);
     let kept =
         told.split("interrupted: ").nth(1).and_then(|text| text.split(' ').next()?.parse::<u64>().ok());
-    assert!(kept.unwrap() >= 3 && told.contains("the same command goes on"), "{told}");
+    assert!(kept.unwrap() >= 3 && told.contains("the same command continues"), "{told}");
     let before = bench.read(&format!("study/shards/{}", journal().unwrap().file_name().display()));
     let told = interrupted("study run study.toml --shards 1 --out study", &|| {
         lines(journal().unwrap().path()) > before.lines().count() + 6

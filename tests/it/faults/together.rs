@@ -40,7 +40,7 @@ fn workers_of_the_same_study_make_it_together() {
         std::fs::remove_file(bench.path(&out).join("shards/3-of-8.parquet")).unwrap();
         let outputs = together(&bench, &[shard.as_str(), merge.as_str()]);
         assert!(outputs[0].status.success(), "{}", stderr(&outputs[0]));
-        let is_early = stderr(&outputs[1]).contains("shards 3 of 8 are missing or were damaged");
+        let is_early = stderr(&outputs[1]).contains("shards 3 of 8 are missing or damaged");
         assert!(outputs[1].status.success() || is_early, "{}", stderr(&outputs[1]));
         check_same_files(&bench.tree("whole"), &complete_files(&bench, &out));
     }
@@ -66,7 +66,7 @@ fn of_two_studies_that_begin_in_one_directory_one_is_refused() {
             _ => panic!("{done:?}: {}{}", stderr(&outputs[0]), stderr(&outputs[1])),
         };
         assert_eq!(loser.status.code(), Some(2));
-        assert!(stderr(loser).contains("holds another study"), "{}", stderr(loser));
+        assert!(stderr(loser).contains("contains another study"), "{}", stderr(loser));
         check_same_files(&bench.tree(&format!("whole-{winner}")), &bench.tree(&format!("out-{round}")));
     }
 }

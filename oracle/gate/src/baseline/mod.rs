@@ -131,7 +131,7 @@ impl Baseline {
         let reason = reason.trim();
         if reason.is_empty() {
             return Err(Failure::Usage(
-                "--reason is empty, expected why this result is what later ones are held against".to_owned(),
+                "--reason is empty: it must say why this result becomes the baseline".to_owned(),
             ));
         }
         let Identity { kind, world, .. } = &sample.identity;
@@ -142,7 +142,8 @@ impl Baseline {
         let blocks = Blocks::cut(kind, world, &sample.table, length);
         if blocks.count() < LEAST_BLOCKS {
             return Err(Failure::Usage(format!(
-                "the result has {units} {} in {} blocks, expected at least {LEAST_BLOCKS} blocks: fewer cannot show anything. A longer run, or --block-length, gives more",
+                "the result has {units} {} in {} blocks, expected at least {LEAST_BLOCKS} blocks for a test; \
+                 make a longer run, or set a shorter --block-length",
                 kind.units(world),
                 blocks.count()
             )));
@@ -205,7 +206,7 @@ impl Baseline {
         for path in [&header, &rows] {
             if replace == Replacement::Refuse && path.exists() {
                 return Err(Failure::Usage(format!(
-                    "{}: exists; a baseline is replaced with --replace alone",
+                    "{}: a baseline exists; replace it with --replace",
                     path.display()
                 )));
             }
@@ -239,7 +240,7 @@ impl Baseline {
         let [path, rows_path] = paths(folder);
         if !path.is_file() {
             return Err(Failure::Usage(format!(
-                "{}: there is no `baseline.toml`, expected a folder that `boresight gate baseline` wrote",
+                "{}: no `baseline.toml` in it, expected a folder written by `boresight gate baseline`",
                 folder.display()
             )));
         }
@@ -264,7 +265,10 @@ impl Baseline {
         let is_of_header = |path: &Path| Ok::<_, FileError>(file_sha256(path)? == header.rows_sha256);
         let rows_path = if waiting.is_file() && is_of_header(&waiting)? { waiting } else { rows_path };
         if !is_of_header(&rows_path)? {
-            let message = format!("is not that of {}: one of the two files was changed", rows_path.display());
+            let message = format!(
+                "differs from the checksum of {}: one of the two files was changed",
+                rows_path.display()
+            );
             return Err(refuse("rows_sha256", message));
         }
         let (mut table, numbers) = rows::read(&rows_path, &figures)?;
@@ -275,28 +279,28 @@ impl Baseline {
         if recorded != units as u64 {
             return Err(refuse(
                 "units",
-                format!("is {recorded}, expected {units}, the rows of {}", rows_path.display()),
+                format!("is {recorded}, expected {units}, the number of rows of {}", rows_path.display()),
             ));
         }
         let blocks = Blocks::from_numbers(numbers);
         let (recorded, count) = (header.blocks.count, blocks.count());
         if recorded != count as u64 || count < LEAST_BLOCKS {
             let expected =
-                format!("the blocks of {} ({count}), at least {LEAST_BLOCKS}", rows_path.display());
+                format!("the number of blocks in {} ({count}), at least {LEAST_BLOCKS}", rows_path.display());
             return Err(refuse("blocks.count", format!("is {recorded}, expected {expected}")));
         }
         for figure in &table.figures {
             let Some(recorded) = header.figures.get(&figure.name) else { continue };
             let known = BaselineFigure { tolerance: recorded.tolerance, ..baseline_figure(figure) };
             if !(recorded.tolerance.is_finite() && recorded.tolerance >= 0.0) {
-                let message = format!("is {}, expected a size of 0 or more", recorded.tolerance);
+                let message = format!("is {}, expected a tolerance of 0 or more", recorded.tolerance);
                 return Err(refuse(&format!("figures.{}.tolerance", figure.name), message));
             }
             if recorded != &known {
                 let value = known.value.map_or_else(|| "none".to_owned(), |value| value.to_string());
                 return Err(refuse(
                     &format!("figures.{}", figure.name),
-                    format!("is not what the rows give, expected {value} of {}", known.of),
+                    format!("differs from the rows, expected {value} of {}", known.of),
                 ));
             }
         }
@@ -451,10 +455,7 @@ mod tests {
         let (_, folder) = written(6);
         let mut other = Baseline::new(run(7), "another", Some(1)).unwrap();
         let message = other.write(folder.path(), Replacement::Refuse).unwrap_err().to_string();
-        assert!(
-            message.contains("baseline.toml: exists; a baseline is replaced with --replace"),
-            "{message}"
-        );
+        assert!(message.contains("baseline.toml: a baseline exists; replace it with --replace"), "{message}");
         assert_eq!(Baseline::read(folder.path()).unwrap().header.units, 6);
         other.write(folder.path(), Replacement::Allow).unwrap();
         assert_eq!(Baseline::read(folder.path()).unwrap(), other);
@@ -545,7 +546,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         baseline.write(folder.path(), Replacement::Refuse).unwrap();
         let message = Baseline::read(folder.path()).unwrap_err().to_string();
-        let parts = ["blocks.count", "is 4, expected the blocks of", "(4), at least 5"];
+        let parts = ["blocks.count", "is 4, expected the number of blocks in", "(4), at least 5"];
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     }
 
@@ -562,8 +563,8 @@ mod tests {
             assert!(parts.iter().all(|part| message.contains(part)), "{old}: {message}");
         };
         refused("format = 2", "format = 3", &["baseline.toml:1:10: format", "is 3, expected 2"]);
-        refused("units = 6", "units = 7", &["units", "is 7, expected 6, the rows of"]);
-        refused("count = 6", "count = 7", &["blocks.count", "is 7, expected the blocks of", "(6)"]);
+        refused("units = 6", "units = 7", &["units", "is 7, expected 6, the number of rows of"]);
+        refused("count = 6", "count = 7", &["blocks.count", "is 7, expected the number of blocks in", "(6)"]);
         refused(
             "by = \"median\"",
             "by = \"middle\"",
@@ -574,7 +575,7 @@ mod tests {
         refused(
             "tolerance = 0.001",
             "tolerance = -0.001",
-            &["figures.hit_rate.tolerance", "is -0.001, expected a size of 0"],
+            &["figures.hit_rate.tolerance", "is -0.001, expected a tolerance of 0"],
         );
         refused("tolerance = 0.001", "tolerance = inf", &["figures.hit_rate.tolerance", "is inf"]);
         refused("of = 5", "of = 4", &["figures.ra_median_deg", "expected 1.5 of 5"]);
@@ -590,6 +591,6 @@ mod tests {
         let message = Baseline::read(folder.path()).unwrap_err().to_string();
         assert!(message.contains("rows_sha256") && message.contains("was changed"), "{message}");
         let message = Baseline::read(&folder.path().join("nowhere")).unwrap_err().to_string();
-        assert!(message.contains("nowhere: there is no `baseline.toml`"), "{message}");
+        assert!(message.contains("nowhere: no `baseline.toml`"), "{message}");
     }
 }

@@ -103,7 +103,7 @@ pub(crate) fn read(
     };
     for (row, (before, this)) in (1..).zip(table.units.iter().zip(table.units.iter().skip(1))) {
         if this.number <= before.number {
-            let expected = format!("more than {}, that of the row before", before.number);
+            let expected = format!("more than {}, the number in the row before", before.number);
             return Err(refuse(row, "number", &this.number, expected));
         }
     }
@@ -129,7 +129,7 @@ fn names(figures: &[(String, Reduction)]) -> impl Iterator<Item = String> {
 
 /// Creates the error of a missing column. Either file may be damaged, so the message names both.
 fn no_column(path: &Path, name: &str) -> FileError {
-    let wanted = "of its type, though the figures of baseline.toml ask for it";
+    let wanted = "of the type that the figures in baseline.toml need";
     FileError::format(path, "Parquet", format!("it has no column `{name}` {wanted}"))
 }
 
@@ -264,7 +264,8 @@ mod tests {
         for number in [3, 2] {
             table.units[2].number = number;
             let message = refusal(&table, &[0; 4]);
-            let parts = ["row 2", &format!("`number` is `{number}`"), "more than 3, that of the row before"];
+            let parts =
+                ["row 2", &format!("`number` is `{number}`"), "more than 3, the number in the row before"];
             assert!(parts.iter().all(|part| message.contains(part)), "{message}");
         }
         let message = refusal(&UnitTable::default(), &[]);
@@ -289,7 +290,7 @@ mod tests {
         write(&File::create_new(&path).unwrap(), &path, &table(), |_| 0).unwrap();
         for name in ["dec_rms_deg", "number"] {
             let message = read(&path, &[(name.to_owned(), Reduction::Rms)]).unwrap_err().to_string();
-            assert!(message.contains(&format!("no column `{name}` of its type")), "{message}");
+            assert!(message.contains(&format!("no column `{name}` of the type")), "{message}");
         }
     }
 }

@@ -20,7 +20,8 @@ pub(crate) fn check_units(baseline: &Baseline, result: &Sample, what: &str) -> R
         None => return Ok(()),
     };
     Err(Failure::Usage(format!(
-        "cannot compare: `{what}` is `{of_baseline}` in the baseline and `{of_result}` in the result, expected the same {what}"
+        "cannot compare: `{what}` is `{of_baseline}` in the baseline and `{of_result}` in the result; both \
+         need the same {what}"
     )))
 }
 
@@ -34,8 +35,8 @@ pub(crate) fn check_reported(baseline: &Baseline, result: &Sample, what: &str) -
     let (before, _) = silent(&baseline.sample.table.units);
     match silent(&result.table.units) {
         (after, Some(first)) if after > before => Err(Failure::Usage(format!(
-            "cannot compare: the result has no measurement of {after} of {} {what} (the first is number {first}), the baseline of {before}; \
-             expected a row of each, `no solution` included",
+            "cannot compare: {after} of {} {what} have no row in the result (the first is number {first}), \
+             {before} in the baseline; expected one row each, also for `no solution`",
             result.table.units.len()
         ))),
         _ => Ok(()),
@@ -73,13 +74,15 @@ pub(crate) fn pairs<'a>(
                     check_alike(before, after).map(|()| (before, after))
                 }
                 Some(after) => Err(Failure::Usage(format!(
-                    "cannot compare: `{}` is a `{}` in the baseline and a `{}` in the result, expected the same",
+                    "cannot compare: `{}` is a `{}` in the baseline and a `{}` in the result; both need the \
+                     same reduction",
                     before.name,
                     before.reduction.code(),
                     after.reduction.code()
                 ))),
                 None => Err(Failure::Usage(format!(
-                    "cannot compare: `{}` is a figure of the baseline and not of the result; --figures chooses others",
+                    "cannot compare: the result has no figure `{}`, the baseline has; select other figures \
+                     with --figures",
                     before.name
                 ))),
             }
@@ -92,21 +95,20 @@ pub(crate) fn pairs<'a>(
 fn check_alike(before: &FigureTerms, after: &FigureTerms) -> Result<(), Failure> {
     let cannot = |is: &str, of_baseline: String, of_result: String, hint: &str| {
         Err(Failure::Usage(format!(
-            "cannot compare: `{}` {is} {of_baseline} in the baseline and {of_result} in the result, expected the same ({hint}); --figures \
-             chooses others",
+            "cannot compare: `{}` {is} {of_baseline} in the baseline and {of_result} in the result; set the \
+             same {hint}, or select other figures with --figures",
             before.name
         )))
     };
     if before.limit_deg != after.limit_deg {
-        let shown =
-            |limit: Option<f64>| limit.map_or("a limit that is not recorded".to_owned(), |l| format!("{l}°"));
+        let shown = |limit: Option<f64>| limit.map_or("an unrecorded limit".to_owned(), |l| format!("{l}°"));
         let (before, after) = (shown(before.limit_deg), shown(after.limit_deg));
         return cannot("counts errors below", before, after, "`within_deg` of the scenario's [score]");
     }
     match (&before.attitude, &after.attitude) {
         (Some(before), Some(after)) if before != after => {
             let [before, after] = [before, after].map(|attitude| format!("`{attitude}`"));
-            cannot("is of lines of sight by the attitude", before, after, "--attitude")
+            cannot("uses lines of sight by the attitude", before, after, "--attitude")
         }
         _ => Ok(()),
     }
@@ -156,8 +158,7 @@ mod tests {
         answered.table.units[4] = unit(4, "missed", Some("not_linked"));
         compared(hits(&BEFORE), &answered);
         let message = refusal(silent(&BEFORE, &[1]), &silent(&AFTER, &[5, 7]), &CompareOptions::default());
-        let expected =
-            "the result has no measurement of 2 of 12 frames (the first is number 5), the baseline of 1;";
+        let expected = "2 of 12 frames have no row in the result (the first is number 5), 1 in the baseline;";
         assert!(message.contains(expected), "{message}");
     }
 
@@ -201,7 +202,10 @@ mod tests {
         };
         let refused = |before: Sample, after: Sample, part: &str| {
             let message = refusal(before.clone(), &after, &CompareOptions::default());
-            assert!(message.contains(part) && message.contains("--figures chooses others"), "{message}");
+            assert!(
+                message.contains(part) && message.contains("select other figures with --figures"),
+                "{message}"
+            );
             let options =
                 CompareOptions { figures: vec!["hit_rate".to_owned()], ..CompareOptions::default() };
             assert_eq!(compare(&baseline(before), &after, &options).unwrap().verdict, FigureVerdict::NoWorse);
@@ -209,13 +213,15 @@ mod tests {
         refused(
             of(Some(0.024), None),
             of(Some(0.25), None),
-            "`ra_within_1px` counts errors below 0.024° in the baseline and 0.25° in the result, expected the same (`within_deg`",
+            "`ra_within_1px` counts errors below 0.024° in the baseline and 0.25° in the result; set the \
+             same `within_deg`",
         );
-        refused(of(None, None), of(Some(0.25), None), "a limit that is not recorded in the baseline");
+        refused(of(None, None), of(Some(0.25), None), "an unrecorded limit in the baseline");
         refused(
             of(Some(0.024), Some("true")),
             of(Some(0.024), Some("own")),
-            "`ra_within_1px` is of lines of sight by the attitude `true` in the baseline and `own` in the result",
+            "`ra_within_1px` uses lines of sight by the attitude `true` in the baseline and `own` in the \
+             result",
         );
         // A result without detections has no attitude: it is worse, but comparable.
         let report = compared(of(None, Some("own")), &of(None, None));
@@ -230,14 +236,11 @@ mod tests {
         let both = |first| sample(vec![first, rate("hit_rate", &BEFORE)]);
         let message =
             refusal(both(mean("ra_mean_deg")), &both(mean("dec_mean_deg")), &CompareOptions::default());
-        assert!(
-            message.contains("`ra_mean_deg` is a figure of the baseline and not of the result"),
-            "{message}"
-        );
+        assert!(message.contains("the result has no figure `ra_mean_deg`"), "{message}");
         let rms = FigureTerms { reduction: Reduction::Rms, ..mean("ra_mean_deg") };
         let message = refusal(both(mean("ra_mean_deg")), &both(rms), &CompareOptions::default());
-        let expected =
-            "`ra_mean_deg` is a `mean` in the baseline and a `rms` in the result, expected the same";
+        let expected = "`ra_mean_deg` is a `mean` in the baseline and a `rms` in the result; both need the \
+            same reduction";
         assert!(message.contains(expected), "{message}");
         // A figure that only the result has is not compared.
         let report = compared(hits(&BEFORE), &both(mean("ra_mean_deg")));

@@ -101,7 +101,8 @@ pub fn compare(
     }
     if figures.values().all(|figure| figure.verdict == FigureVerdict::TooLittleData) {
         return Err(Failure::Usage(format!(
-            "cannot compare: {} {units} in {} blocks leave no figure that could be found worse at alpha = {alpha}, expected more of them",
+            "cannot compare: {} {units} in {} blocks are too few to find any figure worse at alpha = \
+             {alpha}; compare a longer result",
             baseline.header.units,
             blocks.count()
         )));
@@ -314,7 +315,7 @@ mod tests {
         let report = compare(&baseline(before.clone()), &after, &with(0.05)).unwrap();
         assert_eq!(report.verdict, FigureVerdict::Worse);
         let message = refusal(before, &after, &with(0.03));
-        let expected = "5 frames in 5 blocks leave no figure that could be found worse at alpha = 0.03";
+        let expected = "5 frames in 5 blocks are too few to find any figure worse at alpha = 0.03";
         assert!(message.contains(expected), "{message}");
     }
 

@@ -36,15 +36,16 @@ pub(crate) fn notes(noted: &NoteInputs<'_>) -> Vec<String> {
     let (before, after) = (&baseline.sample.identity, &result.identity);
     if pairing == Pairing::Blocks && before.seed == after.seed {
         notes.push(format!(
-            "The seed is the same and the frames are not: the simulator has changed (version {} then, {} now). Compared as with another seed.",
+            "The seed is the same, but the frames differ: the simulator has changed (version {} then, {} \
+             now). Compared block by block, as for another seed.",
             before.version, after.version
         ));
     }
     notes.extend(loss_note(noted));
     if !noted.beyond_blocks.is_empty() {
         notes.push(format!(
-            "With other frames there is too little data for {}: the difference is remembered from block to block. The same frames decide \
-             it, or a longer run.",
+            "Too little data for {} with different frames: the difference is correlated from block to block. \
+             Compare the same frames, or make a longer run.",
             labels(noted.beyond_blocks)
         ));
     }
@@ -53,8 +54,9 @@ pub(crate) fn notes(noted: &NoteInputs<'_>) -> Vec<String> {
     let by_chance = normal_quantile(1.0 - 0.05 / noted.figures.len() as f64) / (noted.blocks as f64).sqrt();
     if noted.correlation > by_chance {
         notes.push(format!(
-            "Neighbouring blocks go together (correlation {:.2}, by chance at most {by_chance:.2}): they are too short, and \
-             probabilities too small. A baseline with a longer --block-length cures it, as long as blocks are many.",
+            "Neighbouring blocks are correlated (correlation {:.2}, by chance at most {by_chance:.2}): they \
+             are too short, and the probabilities too small. Make a baseline with a longer --block-length \
+             that still leaves many blocks.",
             noted.correlation
         ));
     }
@@ -77,7 +79,8 @@ fn loss_note(noted: &NoteInputs<'_>) -> Option<String> {
         format!(", {} of them in a row (numbers {first} to {last})", run.longest)
     });
     Some(format!(
-        "{}: {} {units} were lost and {} won{place}. That is no chance (p {:.1e}), though too few blocks have it.",
+        "{}: {} {units} were lost and {} won{place}. Chance does not explain this (p {:.1e}), although it \
+         affects too few blocks for the block test.",
         figure_by_name(name).words,
         run.lost,
         run.won,

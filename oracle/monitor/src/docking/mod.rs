@@ -54,12 +54,12 @@ impl MonitoredWorld for DockingMission {
         if let Measurements::Replay(directory) = measurements
             && RunFile::<DockingScenario>::read(&directory.join("run.toml"))?.mitsuba.is_some()
         {
-            notes.push("The run's pictures were Mitsuba's; these are the fast renderer's.");
+            notes.push("The run used Mitsuba; these pictures are from the fast renderer.");
         }
         if context.ground.is_some() {
             notes.push(
-                "The scenario names no orbit: the track is that of 51.6° and 370 km on which the Sun stands where the \
-                 scene has it.",
+                "The scenario defines no orbit: the ground track is that of an orbit of 51.6° and 370 km \
+                 with the scene's direction of the Sun.",
             );
         }
         let session = json!({

@@ -63,7 +63,7 @@ impl<'a> DockingReporter<'a> {
             outcome
         {
             parameters.push(Parameter {
-                section: "Range of the outline",
+                section: "Range from outline",
                 name: "range_m",
                 label: "d₃",
                 unit: "m",
@@ -216,7 +216,7 @@ const BEST: Section = (
     ],
 );
 const PAPER: Section = (
-    "Field, the paper's formulas",
+    "Field, paper's formulas",
     [
         ("paper_d1_m", "d₁"),
         ("paper_d2_m", "d₂"),

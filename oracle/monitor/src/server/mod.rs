@@ -117,7 +117,7 @@ fn answer_requests(
         .map_err(|error| Failure::Usage(format!("the server's threads cannot be started: {error}")))?;
     let served = runtime.block_on(async {
         let refused =
-            |error| Failure::Usage(format!("--bind is {bind}, expected an address that is free: {error}"));
+            |error| Failure::Usage(format!("--bind is {bind}, expected a free address and port: {error}"));
         let listener = TcpListener::bind(bind).await.map_err(refused)?;
         let address = listener.local_addr().map_err(refused)?;
         ready(address);
@@ -160,11 +160,13 @@ fn router(shared: Arc<ServerState>, guard: Guard) -> Router {
 async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Response {
     let mut response = match guard.admits(request.uri().path(), request.headers()) {
         Admission::Granted => next.run(request).await,
-        Admission::OtherHost => {
-            (StatusCode::MISDIRECTED_REQUEST, "this host is not served here\n").into_response()
-        }
+        Admission::OtherHost => (
+            StatusCode::MISDIRECTED_REQUEST,
+            "unknown host: open the page by the address that the monitor printed\n",
+        )
+            .into_response(),
         Admission::OtherPage => {
-            (StatusCode::FORBIDDEN, "requests of other pages are not answered\n").into_response()
+            (StatusCode::FORBIDDEN, "requests from other pages are rejected\n").into_response()
         }
     };
     for (name, value) in HEADERS {
@@ -184,7 +186,7 @@ async fn page(uri: Uri, request: Request) -> Response {
     };
     match asset(name) {
         Some((data, kind)) => ([(header::CONTENT_TYPE, kind)], Body::from(data)).into_response(),
-        None => (StatusCode::NOT_FOUND, "there is no such file\n").into_response(),
+        None => (StatusCode::NOT_FOUND, "no such file\n").into_response(),
     }
 }
 
@@ -296,5 +298,5 @@ fn not_yet(session: &Session) -> Response {
 }
 
 fn not_a_frame() -> Response {
-    (StatusCode::NOT_FOUND, "there is no such frame\n").into_response()
+    (StatusCode::NOT_FOUND, "no such frame\n").into_response()
 }

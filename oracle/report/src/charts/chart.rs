@@ -109,7 +109,7 @@ pub(crate) fn cloud(
     let rings = value.map_or_else(Vec::new, |value| extremes(rows.len(), &|place| value(rows[place])));
     if !rings.is_empty() {
         let marker = Marker::new().size(6).colour(REFERENCE).symbol(Symbol::Ring);
-        traces.push(of(rings).name("smallest and largest of each fiftieth".to_owned()).marker(marker));
+        traces.push(of(rings).name("smallest and largest of each fiftieth part".to_owned()).marker(marker));
     }
     traces
 }

@@ -59,9 +59,9 @@ pub(crate) fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String 
     let parts: Vec<String> = clouds.iter().filter(|(count, _)| *count > 0).map(of).collect();
     let mut text = format!("Drawn: {}.", parts.join(" and "));
     if clouds.iter().any(|(count, _)| *count > CLOUD) {
-        text.push_str(" A sample is one at random of each stretch, and so lies as all of them do.");
+        text.push_str(" The sample has one random point per interval and so the distribution of all points.");
         if rings {
-            text.push_str(" Rings are the smallest and the largest of each fiftieth.");
+            text.push_str(" Rings mark the smallest and the largest point of each fiftieth part.");
         }
     }
     text

@@ -73,7 +73,7 @@ impl FieldDetail {
             let mut picture = Picture::new(pixels, window, lines, Stretch::Linear)?;
             picture.title = match (unit.verdict.as_str(), &unit.cause) {
                 ("success", _) => "Measured.".to_owned(),
-                ("range_only", _) => "Range alone.".to_owned(),
+                ("range_only", _) => "Range only.".to_owned(),
                 (verdict, Some(cause)) => format!("{}: {}.", capital(verdict), display_name(cause)),
                 (verdict, None) => format!("{}.", capital(verdict)),
             };
@@ -131,7 +131,7 @@ fn true_marks(truth: &FieldTruth) -> impl Iterator<Item = Mark> {
         at,
         shape: Shape::Circle(radius.max(0.5)),
         class: "truth",
-        title: format!("circle of the marks, true without tilt: radius {radius:.2} px"),
+        title: format!("circle of the marks, truth without tilt: radius {radius:.2} px"),
     });
     mark(truth.cross_centre, 5.0, "centre of the cross")
         .into_iter()
@@ -161,18 +161,18 @@ fn feature_mark(row: &FeatureRow) -> Mark {
 /// Describes the outcome of a field in words.
 fn answer_words(outcome: Option<&DockingOutcome>) -> String {
     match outcome.map(|outcome| &outcome.solution) {
-        None => "no answer".to_owned(),
+        None => "no outcome".to_owned(),
         Some(DockingSolution::Measured(measured)) => {
             format!("ρ measured {:.3} m", measured.best.pose.position_m.norm())
         }
         Some(DockingSolution::Doubtful { measurement, doubt }) => {
             format!("{doubt}, ρ measured {:.3} m", measurement.best.pose.position_m.norm())
         }
-        Some(DockingSolution::RangeOnly { range_m, .. }) => format!("range alone {range_m:.2} m"),
+        Some(DockingSolution::RangeOnly { range_m, .. }) => format!("range only {range_m:.2} m"),
         Some(DockingSolution::NoSolution(reason)) => match reason.to_string() {
             // A reason in the pipeline's wording.
-            text if text.contains(' ') => format!("the pipeline says: {text}"),
-            code => format!("the pipeline says: {}", display_name(&code)),
+            text if text.contains(' ') => format!("the pipeline reports: {text}"),
+            code => format!("the pipeline reports: {}", display_name(&code)),
         },
     }
 }

@@ -20,7 +20,7 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
         .filter(|&row| run.outcomes[row].as_ref().is_some_and(|outcome| outcome.measurement().is_some()))
         .collect();
     if rows.is_empty() {
-        return section.text("No field was measured.");
+        return section.text("No field has a measured pose.");
     }
     let error = |row: usize, i: usize| {
         let measured = run.outcomes[row].as_ref().and_then(DockingOutcome::measurement);
@@ -43,7 +43,7 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
         };
         let range = limits(right.iter().map(|&row| error(row, i)));
         beyond += outside(range, rows.iter().map(|&row| error(row, i)));
-        let mut traces = cloud("right", &right, Some(&|row| error(row, i)), MEASURED, |rows| {
+        let mut traces = cloud("correct", &right, Some(&|row| error(row, i)), MEASURED, |rows| {
             let (x, y) = of(rows);
             points("", x, y, MEASURED)
         });
@@ -57,8 +57,8 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
     for name in names {
         head.extend(["number", "smallest", "mean", "largest"].map(|what| format!("{name}: {what}")));
     }
-    let mut data =
-        DataTable::new(head).caption("By stretches of measured fields; measurements.csv has every field.");
+    let mut data = DataTable::new(head)
+        .caption("One row per group of consecutive measured fields; measurements.csv has every field.");
     for bin in bins(rows.len(), TABLE_BINS) {
         let mut cells = vec![format!("{:.2}", run.truths[rows[bin.start]].time_s)];
         for i in 0..6 {
@@ -70,7 +70,7 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
         format!(
             "Measured minus true. {} {}",
             note_outside(beyond, 6 * rows.len()),
-            thinning_caption(&[(right.len(), "right fields"), (wrong.len(), "wrong ones")], true)
+            thinning_caption(&[(right.len(), "correct fields"), (wrong.len(), "wrong ones")], true)
         ),
         900,
         data,

@@ -8,8 +8,8 @@ pub(super) fn outside(range: [f64; 2], values: impl Iterator<Item = f64>) -> usi
 /// Returns the sentence of a caption on the errors outside the axes.
 pub(super) fn note_outside(count: usize, of: usize) -> String {
     match count {
-        0 => format!("All {of} errors lie inside of the axes."),
-        _ => format!("{count} of {of} errors lie outside of the axes; zoom out (double click) for them."),
+        0 => format!("All {of} errors are within the axes."),
+        _ => format!("{count} of {of} errors are outside the axes; double-click to zoom out."),
     }
 }
 

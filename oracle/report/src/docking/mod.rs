@@ -60,8 +60,9 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldDetail) -> Result<Page, Failu
         kind: "Docking: a run",
         version: run.run_file.version.clone(),
         lead: vec![format!(
-            "{} fields: the pose was measured in {} of those in which it can be asked for; of all fields {} were doubtful by the pipeline's own \
-             tests, and {} grossly wrong and not doubtful.",
+            "{} fields: the pose was measured in {} of the fields in which it can be required; of all \
+             fields, {} were doubtful by the pipeline's own tests, and {} were grossly wrong but not \
+             doubtful.",
             run.score.frames,
             figure("success_rate"),
             figure("doubtful_rate"),
@@ -98,15 +99,23 @@ fn figures_section(run: &DockingRun) -> Section {
         groups.chain([("all", score.frames, score.portions, &score.figures)])
     };
     let rms = ["range_rms_m", "lateral_rms_m", "attitude_rms_deg", "motion_range_rate_rms_m_s"];
-    let mut accuracy =
-        DataTable::new(["range", "range error, m", "across, m", "attitude, °", "range rate, m/s", "doubtful", "wrong"])
-            .caption(
-                "Root mean squares of the errors of measured fields, and of the reported range rate; doubtful and grossly wrong in percent of the \
-                 fields, with 95 % intervals; by true range and lens.",
-            );
-    let mut honesty =
-        DataTable::new(["range", "within 3 σ", "NEES", "motion within 3 σ", "motion NEES"]).caption(
-            "How honest σ is: percent within 3 σ, with 95 % intervals (99.73 of normal errors), and NEES (1 in the mean).",
+    let mut accuracy = DataTable::new([
+        "range",
+        "range error, m",
+        "across, m",
+        "attitude, °",
+        "range rate, m/s",
+        "doubtful",
+        "wrong",
+    ])
+    .caption(
+        "RMS errors of measured fields and of the reported range rate; doubtful and grossly wrong poses in \
+         percent of the fields, with 95 % intervals; by true range and lens.",
+    );
+    let mut honesty = DataTable::new(["range", "within 3 σ", "NEES", "motion within 3 σ", "motion NEES"])
+        .caption(
+            "Consistency of σ: percent of errors within 3 σ, with 95 % intervals (99.73 for normal errors), \
+             and NEES (mean 1 if σ is correct).",
         );
     for (name, _, _, figures) in groups() {
         let number = |key: &str| cell(figures.get(key).and_then(|figure| figure.value));
@@ -120,7 +129,7 @@ fn figures_section(run: &DockingRun) -> Section {
         honesty.push([name.to_owned()].into_iter().chain(of_fields).chain(of_motion).collect::<Vec<_>>());
     }
     let mut answers =
-        DataTable::new(["range", "fields", "reports", "success", "of clear ones", "range alone", "missed"])
+        DataTable::new(["range", "fields", "reports", "success", "of clear ones", "range only", "missed"])
             .caption("Percent, with 95 % intervals, by true range and lens.");
     for (name, frames, portions, figures) in groups() {
         let mut cells = vec![name.to_owned(), frames.to_string(), portions.to_string()];
@@ -161,7 +170,7 @@ fn verdicts(run: &DockingRun) -> Section {
             if cause.is_empty() { what.to_owned() } else { format!("{what}: {}", display_name(cause)) };
         let colour = match what {
             "success" => MEASURED,
-            "range alone" => BESIDE,
+            "range only" => BESIDE,
             _ => colour_of(cause),
         };
         let bars = bars(&name, &groups, percent.collect(), colour);
@@ -170,7 +179,7 @@ fn verdicts(run: &DockingRun) -> Section {
     let counted = |of: &dyn Fn(&DockingGroup) -> u64| score.groups.values().map(of).collect::<Vec<u64>>();
     for name in ["success_rate", "range_only_rate"] {
         let count = |figures: &IndexMap<String, Figure>| figures.get(name).map_or(0, |figure| figure.count);
-        let what = if name == "success_rate" { "success" } else { "range alone" };
+        let what = if name == "success_rate" { "success" } else { "range only" };
         add(what, "", counted(&|group| count(&group.figures)), count(&score.figures));
     }
     for (test, all) in &score.doubtful {
@@ -182,8 +191,8 @@ fn verdicts(run: &DockingRun) -> Section {
     for (cause, all) in &score.misses {
         add("missed", cause, counted(&|group| group.misses.get(cause).copied().unwrap_or(0)), *all);
     }
-    Section::new("verdicts", "What became of the fields").chart(Chart::new(
-        "Percent of the fields of a range and lens.",
+    Section::new("verdicts", "Outcomes of the fields").chart(Chart::new(
+        "Percent of the fields at each range and lens.",
         420,
         data,
         traces,
@@ -212,18 +221,19 @@ fn fields(run: &DockingRun, sheet: &FieldDetail) -> Result<Section, Failure> {
         }
     }
     let mut section = Section::new("fields", "Fields").text(
-        "Of every range one success or more, then of every kind of wrong answer and of miss the field in the middle of all of that kind, drawn \
-         anew from run.toml. Orange: what was recognised (cross, circle of the marks, marks that were used); yellow: outlines of \
-         station and docking unit; violet: marks that were rejected or missing; green: true centres of cross and disk.",
+        "One success or more for each range, then the middle field of each kind of wrong measurement and of \
+         miss, rendered again from run.toml. Orange: recognised features (cross, circle of the marks, used \
+         marks); yellow: outlines of station and docking unit; violet: rejected or missing marks; green: \
+         true centres of cross and disk.",
     );
     if run.score.renderer != "fast" {
         section = section.text(format!(
-            "The fields of the run were drawn by {}, these by the fast renderer: the same scene, other shades.",
+            "The run used {}; these pictures are from the fast renderer: the same scene with other shading.",
             run.score.renderer
         ));
     }
     Ok(match sheet.reason() {
-        Some(reason) => section.text(format!("There are no pictures: {reason}")),
+        Some(reason) => section.text(format!("No pictures: {reason}")),
         None => section.pictures(sheet.pictures(run, &chosen)?),
     })
 }

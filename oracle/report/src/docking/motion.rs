@@ -17,7 +17,7 @@ use crate::page::data_table::DataTable;
 /// Number of rows of the tables behind the charts.
 const TABLE_BINS: usize = 60;
 /// Caption of a table that contains a sample of the reports.
-const SAMPLED: &str = "Every so many reports; motion.csv has all of them.";
+const SAMPLED: &str = "A regular selection of the reports; motion.csv has all of them.";
 /// Fill of a band of three standard deviations.
 const BAND: &str = "rgba(47,127,193,0.2)";
 /// The seven parameters of the paper (3.2): name, unit, number of decimals.
@@ -76,7 +76,7 @@ pub(super) fn sections(run: &DockingRun) -> [Section; 2] {
     let six = Section::new("fig-6", "Fig. 6: accuracy of the motion");
     let best = MotionEstimate::from_reports(run, |report| &report.best);
     if best.is_empty() {
-        let none = "No portion of fields ended in this run with a motion.";
+        let none = "No portion of fields in this run ended with a motion estimate.";
         return [five.text(none), six.text(none)];
     }
     let paper = MotionEstimate::from_reports(run, |report| &report.paper);
@@ -158,8 +158,8 @@ fn parameters(run: &DockingRun, best: &[MotionEstimate]) -> Chart {
         data.push(cells);
     }
     let caption = format!(
-        "Range, range rate, passive pitch and yaw, and the three active angles at the last moment of every portion, with three \
-         standard deviations as the pipeline tells them, and the truth. {}",
+        "Range, range rate, passive pitch and yaw, and the three active angles at the end of each portion, \
+         with ±3 σ as reported by the pipeline, and the truth. {}",
         thinning_caption(&[(best.len(), "reports")], true)
     );
     Chart::new(caption, 1080, data, traces, layout)
@@ -200,7 +200,7 @@ fn sigmas(best: &[MotionEstimate]) -> Chart {
         let sigmas = estimate.sigmas.iter().map(|sigma| format!("{sigma:.7}"));
         data.push([format!("{:.2}", estimate.time_s)].into_iter().chain(sigmas));
     }
-    let caption = "Standard deviations that the pipeline tells, at the last moment of every portion.";
+    let caption = "Standard deviations reported by the pipeline at the end of each portion.";
     Chart::new(caption, 640, data, traces, layout)
 }
 
@@ -227,7 +227,7 @@ fn errors(all: &[MotionEstimate], about: &str, name: &str, colour: &'static str)
     for (name, unit, _) in PARAMETERS {
         head.extend(["number", "smallest", "mean", "largest"].map(|what| format!("{name}, {unit}: {what}")));
     }
-    let text = format!("{about}, measured minus true, by stretches of time; motion.csv has all reports.");
+    let text = format!("{about}, measured minus true, by time interval; motion.csv has all reports.");
     let mut data = DataTable::new(head).caption(text);
     for bin in bins(all.len(), TABLE_BINS) {
         let estimate = &all[bin];
@@ -236,7 +236,7 @@ fn errors(all: &[MotionEstimate], about: &str, name: &str, colour: &'static str)
         data.push(cells);
     }
     let caption = format!(
-        "{about} against the truth, measured minus true, with bands of three standard deviations as the pipeline tells them. {} {}",
+        "{about}, measured minus true, with bands of ±3 σ as reported by the pipeline. {} {}",
         note_outside(beyond, 7 * all.len()),
         thinning_caption(&[(all.len(), "reports")], true)
     );

@@ -77,7 +77,7 @@ impl DockingRun {
         }
         if truths.is_empty() || score.frames != truths.len() as u64 || verdicts.len() != truths.len() {
             return Err(Failure::Usage(format!(
-                "{}: `frames` is {}, expected the {} of truth/fields.parquet, at least 1",
+                "{}: `frames` is {}, expected {} as in truth/fields.parquet, and at least 1",
                 directory.join("score.json").display(),
                 score.frames,
                 truths.len()
@@ -92,7 +92,7 @@ impl DockingRun {
             outcomes.push(answers.next_if(|(field, _)| *field == truth.field).map(|(_, outcome)| outcome));
             telemetry.push(rows.next_if(|row| row.field == truth.field).ok_or_else(|| {
                 Failure::Usage(format!(
-                    "{}: there is no row of field {}, expected one for every field of the truth",
+                    "{}: no row for field {}, expected one for every field of the truth",
                     directory.join("telemetry.csv").display(),
                     truth.field
                 ))

@@ -50,7 +50,7 @@ pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
         "cross-track, km",
         "range, km",
     ])
-    .caption("Every so many frames; the trajectory is that of run.toml.");
+    .caption("A regular selection of the frames; the trajectory is that of run.toml.");
     for bin in bins(rtn_km.len(), TABLE_BINS) {
         let (truth, [radial, along, cross]) = (&run.truths[bin.start], rtn_km[bin.start]);
         let mut cells = vec![shown_time(truth), truth.frame.to_string()];
@@ -59,7 +59,8 @@ pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
     }
     Ok(Section::new("fig-4", "Fig. 4: position of the chaser in the orbital frame of the target").chart(
         Chart::new(
-            "The true position: radial, along-track and cross-track axes move with the target, which is at (0, 0).",
+            "True position. The radial, along-track and cross-track axes move with the target, which is at \
+             (0, 0).",
             460,
             data,
             traces,

@@ -35,7 +35,7 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
     let section = Section::new("fig-8", "Fig. 8: attitude of the camera with respect to the chaser");
     let stated: Vec<usize> = (0..count).filter(|&row| measured[row][0].is_finite()).collect();
     if stated.is_empty() {
-        return section.text("The pipeline does not tell the camera's attitude.");
+        return section.text("The pipeline reports no attitude of the camera.");
     }
     let truth =
         |row: usize| degrees(run.truths[row].camera_from_icrs * run.truths[row].body_from_icrs.inverse());
@@ -61,8 +61,8 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
     );
     section.chart(Chart::new(
         format!(
-            "Euler angles 123 of the rotation from the chaser's body to the camera: the pipeline's attitude of the camera against \
-             telemetry's of the body, so that the noise of both is in it. {}",
+            "Euler angles 123 of the rotation from the chaser's body to the camera: the camera's attitude by \
+             the pipeline against the body's attitude by telemetry. It contains the noise of both. {}",
             thinning_caption(&[(stated.len(), "attitudes")], true)
         ),
         600,
@@ -94,10 +94,10 @@ pub(super) fn aberration(run: &FarRangeRun) -> Result<Section, Failure> {
     let traces = vec![
         component("about x", 0, MEASURED),
         component("about y", 1, BESIDE),
-        component("whole", 2, REFERENCE),
+        component("total", 2, REFERENCE),
     ];
     let (traces, layout) = stacked(time_axis(run), vec![Panel::new("angle, °", traces)]);
-    let mut data = DataTable::new(["time (UTC)", "about x, °", "about y, °", "whole, °"]);
+    let mut data = DataTable::new(["time (UTC)", "about x, °", "about y, °", "total, °"]);
     for bin in bins(rows.len(), TABLE_BINS) {
         let angle = angles[bin.start];
         data.push([
@@ -107,9 +107,9 @@ pub(super) fn aberration(run: &FarRangeRun) -> Result<Section, Failure> {
             format!("{:.6}", angle[2]),
         ]);
     }
-    Ok(Section::new("fig-9", "Fig. 9: angles of the correction of aberration").chart(Chart::new(
-        "The correction of Eqs. 20 to 24 about the camera's axes, of the true velocity about the Sun: along the orbit it swings \
-         with the chaser's own velocity about the Earth's.",
+    Ok(Section::new("fig-9", "Fig. 9: angles of the aberration correction").chart(Chart::new(
+        "Correction of Eqs. 20 to 24 about the camera's axes, for the true velocity about the Sun. It \
+         oscillates along the orbit, because the chaser's orbital velocity adds to the Earth's.",
         340,
         data,
         traces,

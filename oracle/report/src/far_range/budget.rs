@@ -19,11 +19,12 @@ pub(super) fn budget(run: &FarRangeRun) -> Section {
     }
     if run.budget.is_empty() {
         return section.text(
-            "Nothing was held against this run. `boresight report DIR --budget all` flies the same frames once a stage, with the truth in the \
-             place of that stage's result, and shows here what each stage of the built-in pipeline costs (docs/report.md).",
+            "This run has no budget yet. `boresight report DIR --budget all` runs the same frames once per \
+             stage, with the truth instead of that stage's result, and shows here the contribution of each \
+             stage of the built-in pipeline to the error (docs/report.md).",
         );
     }
-    let honest = ("none: the honest run".to_owned(), &run.score);
+    let honest = ("none (unmodified run)".to_owned(), &run.score);
     let injected = run.budget.iter().map(|injected| (injected.stage.to_string(), &injected.score));
     let rows: Vec<(String, &Score)> = [honest].into_iter().chain(injected).collect();
     let rates = [
@@ -35,11 +36,11 @@ pub(super) fn budget(run: &FarRangeRun) -> Section {
     ];
     let amounts = [names::RA_RMS_DEG, names::DEC_RMS_DEG, names::RA_MEAN_DEG, names::DEC_MEAN_DEG];
     let mut table = DataTable::new(
-        ["true stage".to_owned()]
+        ["replaced stage".to_owned()]
             .into_iter()
             .chain(rates.into_iter().chain(amounts).map(|name| figure_by_name(name).words)),
     )
-    .caption("Rates in percent with 95 % intervals, errors of the right answers in degrees.");
+    .caption("Rates in percent with 95 % intervals, errors of the correct measurements in degrees.");
     for (stage, score) in &rows {
         let mut cells = vec![stage.clone()];
         cells.extend(rates.map(|name| percent_cell(score.figures.get(name))));
@@ -64,14 +65,15 @@ pub(super) fn budget(run: &FarRangeRun) -> Section {
     let traces = vec![of("RA", names::RA_RMS_DEG, MEASURED), of("Dec", names::DEC_RMS_DEG, BESIDE)];
     section
         .text(
-            "The same frames, each time with the truth in the place of one stage's result: what becomes better is what that stage \
-             costs (docs/score.md).",
+            "The same frames, each time with the truth instead of one stage's result: the improvement is the \
+             contribution of that stage to the error (docs/score.md).",
         )
         .chart(Chart::new(
-            "RMS error of the right answers with 95 % intervals, by the stage that was told the truth.",
+            "RMS error of the correct measurements with 95 % intervals, by the stage that was replaced by \
+             the truth.",
             380,
             table,
             traces,
-            axes("true stage", "RMS error, °"),
+            axes("replaced stage", "RMS error, °"),
         ))
 }

@@ -21,14 +21,15 @@ const FIGURES: [&str; 6] = [
 
 /// Returns the table of consistency; empty if no correct measurement states a covariance.
 pub(super) fn covariances(score: &Score) -> Section {
-    let section = Section::new("covariances", "Covariances of the answers");
+    let section = Section::new("covariances", "Covariances of the measurements");
     if score.consistency.is_empty() {
         return section;
     }
     let labels = FIGURES.map(|name| figure_by_name(name).words);
     let mut table = DataTable::new([String::new(), "frames".to_owned()].into_iter().chain(labels)).caption(
-        "Correct answers that state a covariance. NEES per dimension is 1 in the mean when covariances are honest, above 1 when they are too \
-         small; percent of the components within 1 and 3 σ are 68.27 and 99.73 for normal errors. With 95 % intervals.",
+        "Correct measurements with a covariance. The mean NEES per dimension is 1 if the covariances are \
+         correct and above 1 if they are too small; 68.27 and 99.73 % of the components are within 1 and 3 σ \
+         for normal errors. With 95 % intervals.",
     );
     let mut push = |label: String, frames: u64, figures: &IndexMap<String, Figure>| {
         let cells = FIGURES.map(|name| figure_text(name, figures.get(name)));

@@ -102,7 +102,7 @@ impl FrameDetail {
         let whole = Window { x: 0, y: 0, columns, rows: rows_px };
         let pixels = Pixels { columns, rows: rows_px, dn: &brightest };
         let mut picture = Picture::new(pixels, whole, RowMapping::WHOLE, Stretch::Stars)?;
-        picture.title = format!("{} images over one another.", rows.len());
+        picture.title = format!("{} images, superimposed.", rows.len());
         picture.caption = format!(
             "Frames {} to {}, {} to {} (UTC), {}.",
             run.truths[first].frame,
@@ -141,7 +141,7 @@ impl FrameDetail {
             let mut picture = picture_of(&exposure, &around, 6.0)?;
             picture.title = if target.cut < 0.02 { "Whole.".to_owned() } else { "Truncated.".to_owned() };
             picture.caption = format!(
-                "Frame {}, {}, {:.2} km: {:.0} % of the target's electrons are lost.",
+                "Frame {}, {}, {:.2} km: {:.0} % of the target's electrons are cut off.",
                 exposure.truth.frame,
                 exposure.truth.group,
                 exposure.truth.range_km,
@@ -169,7 +169,7 @@ impl FrameDetail {
 /// Describes the verdict on a frame in words.
 fn title(verdict: &FrameVerdict) -> String {
     match verdict.verdict {
-        Verdict::Correct { .. } => "Right.".to_owned(),
+        Verdict::Correct { .. } => "Correct.".to_owned(),
         Verdict::Missed { cause } => format!("Missed: {}.", display_name(cause.code())),
         Verdict::Wrong { cause, taken, .. } => {
             format!("Wrong: {}; taken: {}.", display_name(cause.code()), display_name(taken.code()))
@@ -195,7 +195,7 @@ fn distance(outcome: Option<&Outcome>, exposure: &Exposure) -> String {
     let measured = outcome.and_then(Outcome::measurement);
     match measured.zip(target(exposure)) {
         Some((measured, target)) => {
-            format!(", answer {:.2} px from the target", measured.position.distance(target.position))
+            format!(", measurement {:.2} px from the target", measured.position.distance(target.position))
         }
         None => String::new(),
     }
@@ -266,7 +266,7 @@ fn true_mark(target: &ObjectTruth) -> Mark {
 
 fn answer_mark(outcome: Option<&Outcome>) -> Option<Mark> {
     let at = outcome?.measurement()?.position;
-    let title = format!("answer: ({:.2}, {:.2}) px", at.x, at.y);
+    let title = format!("measurement: ({:.2}, {:.2}) px", at.x, at.y);
     Some(Mark { at, shape: Shape::Cross(6.0), class: "measured", title })
 }
 
@@ -296,6 +296,6 @@ fn cluster_mark(cluster: &Cluster) -> Mark {
         at: PixelPoint::new(cluster.position.x - half, cluster.position.y - half),
         shape: Shape::Rectangle { width: 2.0 * half, height: 2.0 * half },
         class: "cluster",
-        title: format!("cluster of {} px, taken for: {taken}", cluster.pixels),
+        title: format!("cluster of {} px, classified as: {taken}", cluster.pixels),
     }
 }

@@ -18,8 +18,9 @@ use crate::page::Section;
 /// Margin around the detector, so that a mark at its edge is drawn completely, px.
 const ROOM_PX: f64 = 8.0;
 /// Legend of the marks in a picture.
-const KEY: &str = "Green: the target's true place; orange cross: the answer; blue: true stars that can be detected, violet: planets, the \
-                   Moon, hot pixels, tracks of particles; yellow: clusters, with what the pipeline took them for; dashed: transmitted regions.";
+const KEY: &str = "Green: true position of the target; orange cross: measurement; blue: true stars that can \
+    be detected; violet: planets, the Moon, hot pixels, cosmic-ray hits; yellow: clusters, with the \
+    pipeline's classification; dashed: transmitted regions.";
 /// Range of the images in the paper's Fig. 2, km.
 const SAMPLE_RANGE_KM: f64 = 16.0;
 /// Number of overlaid images: ten degrees of an orbit between consecutive images.
@@ -27,9 +28,9 @@ const OVERLAID: usize = 36;
 
 /// Returns the section on Fig. 2: a whole image, and overlaid images of one orbit.
 pub(super) fn sample(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
-    let section = Section::new("fig-2", "Fig. 2: a whole image, and the images of an orbit over one another");
+    let section = Section::new("fig-2", "Fig. 2: a whole image, and the superimposed images of an orbit");
     if let Some(reason) = sheet.reason() {
-        return Ok(section.text(format!("There are no pictures: {reason}")));
+        return Ok(section.text(format!("No pictures: {reason}")));
     }
     let away = |row: &usize| (run.truths[*row].range_km - SAMPLE_RANGE_KM).abs();
     let nearest = |rows: &mut dyn Iterator<Item = usize>| rows.min_by(|a, b| away(a).total_cmp(&away(b)));
@@ -41,8 +42,9 @@ pub(super) fn sample(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, 
     let pictures = [sheet.full_frame(run, row)?, sheet.overlaid(run, &overlaid)?];
     Ok(section
         .text(format!(
-            "The frame nearest to the paper's 16 km, with everything in it that can be detected, and frames of the orbit around it, of which every \
-             pixel is shown as it was at its brightest: the target runs along its ellipse, stars along their tracks. {KEY}"
+            "The frame nearest to the paper's 16 km, with all detectable objects, and the maximum of each \
+             pixel over the frames of the orbit around it: the target moves along its ellipse, stars along \
+             their tracks. {KEY}"
         ))
         .pictures(pictures.into_iter().flatten().collect()))
 }
@@ -80,7 +82,7 @@ pub(super) fn track(run: &FarRangeRun) -> Section {
         let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
         curve("measured, wrong", x, y, WRONG).custom_data(frames).hover_template(hover)
     };
-    let mut traces = cloud("measured, right", &right, None, MEASURED, |rows| trace_of(points, rows));
+    let mut traces = cloud("measured, correct", &right, None, MEASURED, |rows| trace_of(points, rows));
     let kept: Vec<usize> = sampled(wrong.len()).into_iter().map(|i| wrong[i]).collect();
     traces.push(trace_of(crosses, &kept));
     traces.push(true_track(run, &at).hover_template(hover));
@@ -91,8 +93,8 @@ pub(super) fn track(run: &FarRangeRun) -> Section {
     let data = by_bins(run, &[("true x, px", &|row| at(row)[0], 1), ("true y, px", &|row| at(row)[1], 1)]);
     Section::new("fig-3", "Fig. 3: track of the target in pixels").chart(Chart::new(
         format!(
-            "Where the target is and where it was measured, whole detector. {}",
-            thinning_caption(&[(right.len(), "right answers"), (wrong.len(), "wrong ones")], false)
+            "True and measured position of the target, whole detector. {}",
+            thinning_caption(&[(right.len(), "correct measurements"), (wrong.len(), "wrong ones")], false)
         ),
         620,
         data,
@@ -125,7 +127,7 @@ fn true_track(run: &FarRangeRun, at: &dyn Fn(usize) -> [f64; 2]) -> Trace {
 pub(super) fn regions(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
     let section = Section::new("fig-6", "Fig. 6: a whole and a truncated region of interest");
     if run.run_file.scenario.roi.is_none() {
-        return Ok(section.text("The camera of this scenario sends whole images: nothing is cut."));
+        return Ok(section.text("The camera of this scenario transmits whole images: nothing is truncated."));
     }
     let dec = |row: usize| match run.verdicts[row].verdict {
         Verdict::Correct { error } => error.centroid_px.map(|[_, y]| y.abs()),
@@ -143,17 +145,19 @@ pub(super) fn regions(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section,
     let whole = sheet.first_region(run, near.into_iter().step_by(step), |cut| cut < 0.02)?;
     let note = match (&whole, &truncated) {
         (Some(_), Some(_)) => {
-            "Left whole, right truncated: the camera keeps regions of a fixed size, and of a target larger than one the rest is lost."
+            "Left whole, right truncated: the camera transmits regions of a fixed size, and the part of the \
+             target beyond its region is lost."
         }
-        (Some(_), None) => "No target of this run was cut by its region.",
-        (None, Some(_)) => "No target of this run was found whole in its region.",
-        (None, None) => "No frame of this run shows a region with the target alone.",
+        (Some(_), None) => "No target of this run was truncated by its region.",
+        (None, Some(_)) => "No whole target of this run was detected in its region.",
+        (None, None) => "No frame of this run has a region with only the target.",
     };
     let pictures: Vec<_> = whole.into_iter().chain(truncated).collect();
     if pictures.is_empty() {
         return Ok(section.text(note));
     }
-    let key = "Green: the target's true centre, and a circle around its light; orange: the answer; dashed: the transmitted region.";
+    let key = "Green: true centre of the target, and a circle around its image; orange: measurement; dashed: \
+        transmitted region.";
     Ok(section.text(format!("{note} {key}")).pictures(pictures))
 }
 
@@ -171,11 +175,11 @@ pub(super) fn frames(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, 
         middle(&|verdict| matches!(verdict, Verdict::Wrong { cause, .. } if *cause == of));
     }
     let section = Section::new("frames", "Frames").text(format!(
-        "A right answer, then of every kind of miss and of wrong answer the frame in the middle of all of that kind, rendered anew \
-         from run.toml. {KEY} Brightness is stretched in every picture by itself."
+        "A correct measurement, then the middle frame of each kind of miss and of wrong measurement, \
+         rendered again from run.toml. {KEY} Each picture has its own brightness scale."
     ));
     Ok(match sheet.reason() {
-        Some(reason) => section.text(format!("There are no pictures: {reason}")),
+        Some(reason) => section.text(format!("No pictures: {reason}")),
         None => section.pictures(sheet.pictures(run, &chosen)?),
     })
 }

@@ -34,7 +34,7 @@ impl InjectedRun {
         let path = directory.join("run.toml");
         let refuse = |what: &str| Err(Failure::Usage(format!("{}: {what}", path.display())));
         if !is_far_range_run(directory)? {
-            return refuse("`scenario.world` is that of docking, expected a run of the far range");
+            return refuse("`scenario.world` is docking, expected a far-range run");
         }
         let run_file = RunFile::<FarRangeScenario>::read(&path)?;
         let Some(stage) = run_file.inject else {
@@ -46,18 +46,18 @@ impl InjectedRun {
         }
         if own.inject.is_some() {
             return Err(Failure::Usage(
-                "--budget is given, expected with the report of an honest run alone".to_owned(),
+                "--budget applies only to the report of a run without --inject".to_owned(),
             ));
         }
         if scenario != own.identity() || run_file.catalog_sha256 != own.catalog_sha256 {
-            return refuse("`scenario` is another one, expected that of the honest run");
+            return refuse("`scenario` differs from that of the reported run");
         }
         let score: Score = read_json(&directory.join("score.json"), "score")?;
         let frames = |score: &Score| {
             score.groups.iter().map(|(name, group)| (name.clone(), group.frames)).collect::<Vec<_>>()
         };
         if frames(&score) != frames(honest_score) {
-            return refuse("the run is of other frames, expected those of the honest run");
+            return refuse("the frames differ from those of the reported run");
         }
         Ok(Self { stage, score })
     }

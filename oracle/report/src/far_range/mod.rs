@@ -66,13 +66,13 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Fa
     let mut warnings = Vec::new();
     if let Some(stage) = run.run_file.inject {
         warnings.push(format!(
-            "The truth was injected for {stage}: this is no result of the pipeline, but of all its other stages."
+            "The truth replaced {stage}: this is a result of the other stages, not of the whole pipeline."
         ));
     }
     let fact = |name, value: String| (name, value);
     let shown = |name: &str| run.score.figures.get(name).map_or_else(String::new, shown_percent);
     let lead = format!(
-        "{} frames: the target was found in {} of them, {} of them rightly and {} wrongly.",
+        "{} frames: the target was detected in {} of them, in {} correctly and in {} wrongly.",
         run.score.frames,
         shown("hit_rate"),
         shown("correct_rate"),
@@ -130,9 +130,8 @@ fn figures_section(run: &FarRangeRun) -> Section {
     let mut head = vec![String::new()];
     head.extend(groups.iter().map(|group| (*group).clone()));
     head.push("all".to_owned());
-    let mut table = DataTable::new(head).caption(
-        "Percent, with 95 % intervals; rates of the errors are of the frames with a detected target.",
-    );
+    let mut table = DataTable::new(head)
+        .caption("Percent, with 95 % intervals; rates of errors refer to the frames with a detected target.");
     let columns = || {
         score
             .groups
@@ -162,16 +161,17 @@ fn figures_section(run: &FarRangeRun) -> Section {
             table.push(row("— published", cells.collect()));
         }
     }
-    let title = if published.is_some() { "Table 2, beside the published one" } else { "Table 2" };
+    let title = if published.is_some() { "Table 2, with published values" } else { "Table 2" };
     let mut section = Section::new("table-2", title);
     if published.is_some() {
         section = section.text(
-            "Published: Benninghoff, Tzschichholz, Boge and Gaias, the ARGON experiment of PRISMA, 23–27 April 2012, their Table 2; its figures are of whole days.",
+            "Published: Benninghoff, Tzschichholz, Boge and Gaias, the ARGON experiment of PRISMA, 23–27 \
+             April 2012, their Table 2; its figures are for whole days.",
         );
     }
     if let Some(distance) = published.and_then(|table| table.distance(score)) {
         section = section.text(format!(
-            "The 30 cells differ from the published ones by {:.1} points in the mean, {:.1} at worst.",
+            "The 30 cells differ from the published values by {:.1} points on average, {:.1} at most.",
             distance.mean_points, distance.worst_points
         ));
     }
@@ -182,11 +182,11 @@ fn figures_section(run: &FarRangeRun) -> Section {
 fn causes(run: &FarRangeRun) -> Section {
     let score = &run.score;
     let groups: Vec<&String> = score.groups.keys().collect();
-    let mut section = Section::new("causes", "Causes of misses and of wrong answers");
+    let mut section = Section::new("causes", "Causes of misses and of wrong measurements");
     type Counts = fn(&GroupScore) -> &IndexMap<String, u64>;
     let kinds: [(&str, &IndexMap<String, u64>, Counts); 2] = [
         ("Misses", &score.misses, |group| &group.misses),
-        ("Wrong answers", &score.wrong, |group| &group.wrong),
+        ("Wrong measurements", &score.wrong, |group| &group.wrong),
     ];
     for (title, all, of) in kinds {
         if all.is_empty() {
@@ -214,7 +214,7 @@ fn causes(run: &FarRangeRun) -> Section {
             traces.push(bars.hover_template("%{x}: %{y} %"));
         }
         section = section.chart(Chart::new(
-            format!("{title} by cause, percent of the frames of a group."),
+            format!("{title} by cause, percent of the frames in each group."),
             340,
             data,
             traces,

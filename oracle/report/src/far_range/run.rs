@@ -90,7 +90,7 @@ impl FarRangeRun {
             outcomes.push(answers.next_if(|(frame, _)| *frame == truth.frame).map(|(_, outcome)| outcome));
             telemetry.push(rows.next_if(|row| row.frame == truth.frame).ok_or_else(|| {
                 Failure::Usage(format!(
-                    "{}: there is no row of frame {}, expected one for every frame of the truth",
+                    "{}: no row for frame {}, expected one for every frame of the truth",
                     directory.join("telemetry.csv").display(),
                     truth.frame
                 ))
@@ -98,7 +98,7 @@ impl FarRangeRun {
         }
         if verdicts.is_empty() || score.frames != verdicts.len() as u64 || truths.len() != verdicts.len() {
             return Err(Failure::Usage(format!(
-                "{}: `frames` is {}, expected the {} of truth/frames.parquet, at least 1",
+                "{}: `frames` is {}, expected {} as in truth/frames.parquet, and at least 1",
                 directory.join("score.json").display(),
                 score.frames,
                 truths.len()
@@ -193,7 +193,8 @@ pub(super) fn by_bins(run: &FarRangeRun, columns: &[BinColumn<'_>]) -> DataTable
         head.extend(["number", "smallest", "mean", "largest"].map(|what| format!("{name}: {what}")));
     }
     let mut table = DataTable::new(head).caption(
-        "A line is a stretch of frames; measurements.csv and truth/frames.parquet have every frame.",
+        "One row per group of consecutive frames; measurements.csv and truth/frames.parquet have every \
+         frame.",
     );
     for bin in bins(run.truths.len(), TABLE_BINS) {
         let first = &run.truths[bin.start];

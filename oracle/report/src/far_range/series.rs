@@ -17,7 +17,9 @@ const MEAN_OF: usize = 100;
 pub(super) fn errors(run: &FarRangeRun) -> Section {
     let section = Section::new("fig-5", "Fig. 5: errors of right ascension and declination");
     if run.score.attitude.as_deref() == Some("none") {
-        return section.text("There are none: \"All figures\" has the errors of the centroid, in pixels.");
+        return section.text(
+            "No line of sight was reported: \"All figures\" has the errors of the centroid, in pixels.",
+        );
     }
     let component = |row: usize, index: usize| {
         let error = run.verdicts[row].verdict.line_of_sight_error();
@@ -46,7 +48,7 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
             (run.times(rows), y, rows.iter().map(|&row| run.truths[row].frame).collect())
         };
         let hover = "frame %{customdata}<br>%{x}<br>%{y}°";
-        let mut traces = cloud("right", &right, Some(&|row| component(row, index)), MEASURED, |rows| {
+        let mut traces = cloud("correct", &right, Some(&|row| component(row, index)), MEASURED, |rows| {
             let (x, y, frames) = of(rows);
             points("", x, y, MEASURED).custom_data(frames).hover_template(hover)
         });
@@ -71,16 +73,17 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
     let data = by_bins(
         run,
         &[
-            ("RA error of the right, °", &|row| right_only(row, 0), 4),
-            ("Dec error of the right, °", &|row| right_only(row, 1), 4),
+            ("RA error, correct, °", &|row| right_only(row, 0), 4),
+            ("Dec error, correct, °", &|row| right_only(row, 1), 4),
         ],
     );
     section.chart(Chart::new(
         format!(
-            "Angles of the line of sight in the camera system, measured minus true: RA across columns, Dec across rows. The axes \
-             fit the right answers; {beyond} of {} wrong ones lie beyond them and are seen by zooming out (double click). {}",
+            "Angles of the line of sight in the camera system, measured minus true: RA across columns, Dec \
+             across rows. The axes fit the correct measurements; {beyond} of {} wrong ones are outside the \
+             axes (double-click to zoom out). {}",
             wrong.len(),
-            thinning_caption(&[(right.len(), "right answers"), (wrong.len(), "wrong ones")], true)
+            thinning_caption(&[(right.len(), "correct measurements"), (wrong.len(), "wrong ones")], true)
         ),
         560,
         data,
@@ -96,7 +99,7 @@ pub(super) fn stars(run: &FarRangeRun) -> Section {
     let stated: Vec<usize> = (0..count).filter(|&row| number(row).is_finite()).collect();
     let section = Section::new("fig-7", "Fig. 7: stars identified in each image");
     if stated.is_empty() {
-        return section.text("The pipeline does not tell how many stars it identified.");
+        return section.text("The pipeline reports no number of identified stars.");
     }
     let mut sum = 0.0;
     let mut means = Vec::with_capacity(stated.len());
@@ -119,12 +122,12 @@ pub(super) fn stars(run: &FarRangeRun) -> Section {
             .hover_template("frame %{customdata}<br>%{x}<br>%{y} stars")
     });
     traces.push(line("mean of the last 100 images", mean_times, mean_values, BESIDE));
-    traces.push(dashed("least for an attitude", ends.to_vec(), vec![f64::from(least); 2], REFERENCE));
+    traces.push(dashed("minimum for an attitude", ends.to_vec(), vec![f64::from(least); 2], REFERENCE));
     let (traces, layout) = stacked(time_axis(run), vec![Panel::new("stars", traces)]);
     let data = by_bins(run, &[("stars", &number, 1)]);
     section.chart(Chart::new(
         format!(
-            "The mean is over the last {MEAN_OF} images. {}",
+            "Mean over the last {MEAN_OF} images. {}",
             thinning_caption(&[(stated.len(), "images")], true)
         ),
         380,

@@ -67,7 +67,8 @@ pub(crate) fn cell(value: Option<f64>) -> String {
 pub(crate) fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
     let head = ["figure", "value", "95 % low", "95 % high", "count", "of", "independent"];
     let mut table = DataTable::new(head).caption(
-        "All figures of score.json; rates are fractions from 0 to 1. Independent: what the frames are worth, neighbours being alike.",
+        "All figures of score.json; rates are fractions from 0 to 1. Independent: effective number of \
+         independent frames, as neighbouring frames are correlated.",
     );
     for (name, figure) in figures {
         let is_rate = figure_by_name(name).is_rate();

@@ -127,7 +127,7 @@ impl Page {
     /// [`Failure::Usage`] when the page cannot be composed.
     pub fn html(&self) -> Result<String, Failure> {
         let failure = |error: &dyn std::fmt::Display| {
-            Failure::Usage(format!("the report cannot be put together: {error}"))
+            Failure::Usage(format!("the report cannot be generated: {error}"))
         };
         let template = PageTemplate {
             page: self,

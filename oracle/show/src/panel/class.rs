@@ -91,7 +91,7 @@ impl Class {
             Self::Planet => "planet or Moon, truth",
             Self::HotPixel => "hot pixel, truth",
             Self::CosmicRay => "cosmic-ray hit, truth",
-            Self::Answer => "answer of the pipeline",
+            Self::Answer => "measurement",
             Self::Region => "transmitted region",
             Self::TrueCentre => "cross and disk, truth",
             Self::Cross => "cross, recognised",

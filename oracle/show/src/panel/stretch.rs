@@ -46,7 +46,7 @@ impl FromStr for Stretch {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|stretch| stretch.code() == text);
-        known.ok_or_else(|| format!("`{text}` is no stretch, expected asinh, linear or full"))
+        known.ok_or_else(|| format!("stretch is `{text}`, expected asinh, linear or full"))
     }
 }
 

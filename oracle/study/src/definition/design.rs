@@ -57,12 +57,12 @@ impl Design {
         };
         if of_sequence > MAX_DIMENSIONS {
             return Err(format!(
-                "a design of at most {MAX_DIMENSIONS} dimensions, and this one has {of_sequence}"
+                "a design of at most {MAX_DIMENSIONS} dimensions; this design has {of_sequence}"
             ));
         }
         if kind == DesignKind::Saltelli && (dimensions == 0 || !points.is_multiple_of(dimensions as u64 + 2))
         {
-            return Err(format!("a multiple of {}, the parameters and two more", dimensions + 2));
+            return Err(format!("a multiple of {}, the number of parameters plus two", dimensions + 2));
         }
         let directions = if of_sequence == 0 {
             Vec::new()

@@ -111,7 +111,7 @@ impl Distribution {
                 let (low, high) = (min.unwrap_or(f64::MIN), max.unwrap_or(f64::MAX));
                 require(low < high, "max", &high, "more than min")?;
                 let inside = standard_normal((high - mean) / sigma) - standard_normal((low - mean) / sigma);
-                let expected = "limits between which a millionth of the distribution lies at least";
+                let expected = "limits that include at least a millionth of the distribution";
                 require(inside > 1e-6, "sigma", sigma, expected)
             }
             Self::Uniform { min, max } => {

@@ -110,9 +110,8 @@ impl Study {
     /// # Errors
     /// A [`Failure`] with the location of the first mistake.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let text = toml_file::read_text(path).map_err(|error| {
-            Failure::Usage(format!("`{}` is no study that can be read: {error}", path.display()))
-        })?;
+        let text = toml_file::read_text(path)
+            .map_err(|error| Failure::Usage(format!("study `{}` cannot be read: {error}", path.display())))?;
         let file: StudyFile = toml_file::parse(path, &text)?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
         let refuse =
@@ -162,7 +161,7 @@ impl Study {
             })?;
             check_free(&mut taken, &value_path).map_err(|message| refuse(&at("path"), message))?;
             if swept.values.is_empty() {
-                return Err(refuse(&at("values"), "is [], expected one value or more".to_owned()));
+                return Err(refuse(&at("values"), "is [], expected at least one value".to_owned()));
             }
             check_finite(&swept.values)
                 .map_err(|(k, message)| refuse(&at(&format!("values[{k}]")), message))?;
@@ -173,7 +172,7 @@ impl Study {
         let Some(cells) = counts.into_iter().try_fold(1_u64, |cells, count| cells.checked_mul(count)) else {
             return Err(refuse(
                 "sweep",
-                "has 2^64 combinations or more, expected no more than cases".to_owned(),
+                "has 2^64 combinations or more, expected at most the number of cases".to_owned(),
             ));
         };
         let cases = file.stop.cases;
@@ -189,7 +188,7 @@ impl Study {
             return Err(refuse("stop.cases", expected));
         }
         if file.design == DesignKind::Saltelli && !sweep.is_empty() {
-            return Err(refuse("design", "is saltelli, expected without a sweep".to_owned()));
+            return Err(refuse("design", "is saltelli, expected another design, or no sweep".to_owned()));
         }
         let replications = file.replications;
         if !(1..=MAX_REPLICATIONS).contains(&replications) {
@@ -200,7 +199,7 @@ impl Study {
         }
         if replications > 1 && !matches!(file.design, DesignKind::LatinHypercube | DesignKind::Sobol) {
             let message = format!(
-                "is {replications}, expected 1, or the design latin_hypercube or sobol: others have no replications"
+                "is {replications}, expected 1; only the designs latin_hypercube and sobol have replications"
             );
             return Err(refuse("replications", message));
         }
@@ -212,8 +211,7 @@ impl Study {
             return Err(refuse("stop.cases", expected));
         }
         if file.stop.until.is_some() && file.design != DesignKind::Random {
-            let message =
-                "is given, expected with the random design alone: of another one, all cases belong together";
+            let message = "applies only to the random design: the cases of other designs form one unit";
             return Err(refuse("stop.until", message.to_owned()));
         }
         let dimensions = file.vary.iter().map(|dispersion| dispersion.distribution.dimensions()).sum();
@@ -402,7 +400,7 @@ impl Study {
             Some(range) => Ok(range),
             None => {
                 let message = format!(
-                    "is `{text}`, expected A..B with A < B, frames of the scenario, which has {count}"
+                    "is `{text}`, expected A..B with A < B, within the {count} frames of the scenario"
                 );
                 Err(self.refuse("frames", message))
             }
@@ -638,7 +636,7 @@ impl VariedParameter {
                 EULER_123
             } else {
                 let message = format!(
-                    "is `{path}`, expected a table of the scenario with {}, or with {}",
+                    "is `{path}`, expected a table of the scenario with the keys {}, or {}",
                     BORESIGHT.join(", "),
                     EULER_123.join(", ")
                 );
@@ -659,20 +657,21 @@ type Problem = (&'static str, String);
 
 /// Rejects non-finite numbers: values are stored as JSON, which has null for them.
 fn check_finite(values: &[Value]) -> Result<(), (usize, String)> {
-    let message = || "is not finite, expected a finite number or another value".to_owned();
+    let message = || "is not finite, expected a finite number, or a value of another type".to_owned();
     values.iter().position(Value::is_null).map_or(Ok(()), |place| Err((place, message())))
 }
 
 fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String> {
     if path.text().split('.').next().is_some_and(|first| NOT_VARIED.contains(&first)) {
         return Err(format!(
-            "is `{}`, expected a parameter of what is simulated or of the pipeline: every case has a seed of its own already, and all are scored alike",
+            "is `{}`, expected a parameter of the simulation or of the pipeline: seeds already differ \
+             between cases, and all cases are scored with the same settings",
             path.text()
         ));
     }
     if let Some(other) = taken.iter().find(|other| other.overlaps(path)) {
         return Err(format!(
-            "is `{}`, expected a path apart from `{}`, which is set too",
+            "is `{}`, which overlaps `{}`, also set; expected separate paths",
             path.text(),
             other.text()
         ));

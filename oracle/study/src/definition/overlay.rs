@@ -19,7 +19,7 @@ pub fn with_overlay(source: &ScenarioSource, values: &[(String, Value)]) -> Resu
     let seed = document.get("seed").and_then(Value::as_u64).filter(|seed| i64::try_from(*seed).is_ok());
     let seed = seed.ok_or_else(|| {
         let found = document.get("seed").unwrap_or(&Value::Null);
-        Failure::Usage(format!("`seed` is {found}, expected a whole number, 0 to {}", i64::MAX))
+        Failure::Usage(format!("`seed` is {found}, expected an integer, 0 to {}", i64::MAX))
     })?;
     source.with_values(&document, seed, source.name.clone())
 }
@@ -33,7 +33,7 @@ pub fn value_at(source: &ScenarioSource, path: &str) -> Result<Value, Failure> {
     let refuse = |expected: &str| Failure::Usage(format!("`{path}` is given, expected {expected}"));
     let document = source.scenario.to_json()?;
     let found = ValuePath::parse(path).map_err(refuse)?.get(&document).cloned();
-    found.ok_or_else(|| refuse("the path of a value in the scenario, which has none there"))
+    found.ok_or_else(|| refuse("the path of a value in the scenario; it has none at this path"))
 }
 
 /// Step of a path to a value.
@@ -54,7 +54,7 @@ impl ValuePath {
     /// Parses a path; the error states the expected form.
     pub(crate) fn parse(text: &str) -> Result<Self, &'static str> {
         const EXPECTED: &str =
-            "a path of names and places, as in `sensor.gain_e_per_dn` or `schedule[2].count`";
+            "a path of keys and indices, as in `sensor.gain_e_per_dn` or `schedule[2].count`";
         let mut steps = Vec::new();
         for part in text.split('.') {
             let (name, places) = part.split_once('[').map_or((part, None), |(name, rest)| (name, Some(rest)));
@@ -100,11 +100,11 @@ impl ValuePath {
                 Step::Key(name) => at
                     .get_mut(name)
                     .filter(|value| !value.is_null())
-                    .ok_or_else(|| format!("a path in the scenario, which has no `{name}` there"))?,
+                    .ok_or_else(|| format!("a path in the scenario; it has no key `{name}` at this path"))?,
                 Step::Index(index) => {
                     let count = at.as_array().map_or(0, Vec::len);
                     at.get_mut(index)
-                        .ok_or_else(|| format!("a path in the scenario, which has {count} of these"))?
+                        .ok_or_else(|| format!("a path in the scenario; this list has {count} elements"))?
                 }
             };
         }
@@ -118,11 +118,11 @@ impl ValuePath {
                 let count = values.len();
                 let place = values.get_mut(*index);
                 let place =
-                    place.ok_or_else(|| format!("a path in the scenario, which has {count} of these"))?;
+                    place.ok_or_else(|| format!("a path in the scenario; this list has {count} elements"))?;
                 *place = like(Some(place), new);
                 Ok(())
             }
-            _ => Err("the path of a value in a table or a list of the scenario".to_owned()),
+            _ => Err("the path of a value in a table or list of the scenario".to_owned()),
         }
     }
 }

@@ -97,7 +97,7 @@ impl StudyRequirement {
         match (self.at_least, self.at_most) {
             (Some(limit), None) => Ok(Limit::AtLeast(limit)),
             (None, Some(limit)) => Ok(Limit::AtMost(limit)),
-            (Some(_), Some(_)) => Err(("at_most", "is given beside at_least, expected one of the two")),
+            (Some(_), Some(_)) => Err(("at_most", "is given beside at_least, expected only one of the two")),
             (None, None) => Err(("figure", "has no limit, expected at_least or at_most")),
         }
     }
@@ -172,7 +172,7 @@ impl RequirementResult {
             (RequirementVerdict::Met, _) => "met".to_owned(),
             (RequirementVerdict::NotMet, _) => "not met".to_owned(),
             (RequirementVerdict::NotDecided, Some(cases)) => {
-                format!("not decided: about {cases} cases needed, {} known", self.cases)
+                format!("not decided: needs about {cases} cases, has {}", self.cases)
             }
             (RequirementVerdict::NotDecided, None) => "not decided".to_owned(),
         };

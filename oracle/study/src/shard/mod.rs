@@ -103,8 +103,9 @@ impl Plan {
         let plan: Option<Self> = serde_json::from_str(&text).ok();
         plan.filter(|plan| plan.sha256 == plan.computed_sha256()).ok_or_else(|| {
             Failure::Usage(format!(
-                "{}: is damaged (its checksum `sha256` does not agree); delete it, and with it study.json, cases.parquet, summary.json and \
-                 SHA256SUMS where they are there: `boresight study run` makes them anew, with the shards that are whole",
+                "{}: is damaged (`sha256` differs from its content); delete it and, if they exist, \
+                 study.json, cases.parquet, summary.json and SHA256SUMS: `boresight study run` runs this \
+                 shard again and keeps the undamaged ones",
                 path.display()
             ))
         })
@@ -161,8 +162,8 @@ impl ShardStore {
         let (plan, path) = (&self.plan, path.display());
         let other = |field: &str, found: &dyn std::fmt::Display, expected: &dyn std::fmt::Display| {
             Failure::Usage(format!(
-                "{path}: `{field}` is `{found}`, expected `{expected}`: the folder holds another study, or the same one made \
-                 otherwise; give another folder with --out"
+                "{path}: `{field}` is `{found}`, expected `{expected}`: the folder contains another study, \
+                 or this study with other settings; give another folder with --out"
             ))
         };
         if found.hash != plan.hash {
@@ -206,7 +207,7 @@ impl ShardStore {
                 known.contains(&path) || is_journal && known.contains(&path.with_extension("parquet"));
             if !AtomicFile::is_partial(&path) && !is_known {
                 return Err(Failure::Usage(format!(
-                    "{}: is none of the {} shards of `{}`, expected nothing else there",
+                    "{}: not one of the {} shards of `{}`; move it out of this folder",
                     path.display(),
                     self.plan.shards,
                     self.plan.study

@@ -44,7 +44,8 @@ pub fn binding_of(
         let n_min = n_min.unwrap_or(file.n_min);
         if design.stars_chance(file.exposure.max_s, n_min, SkyStatistic::Sky)? >= required {
             return Ok(
-                "saturation: the exposure that leaves the target not over-exposed is too short for the stars"
+                "saturation: the longest exposure without over-exposure of the target is too short for the \
+                 stars"
                     .to_owned(),
             );
         }
@@ -60,10 +61,10 @@ pub fn binding_of(
     let exposed_s = exposure_s.unwrap_or(design.reached(demand, None)?.exposure_s);
     let dark_e = background_e(&design.camera, exposed_s, design.background_e_per_s()?);
     if is_flooded(&design.camera, &design.rule, dark_e) {
-        return Ok(format!("background: {dark_e:.0} electrons in a pixel lift the empty frame above I1"));
+        return Ok(format!("background: {dark_e:.0} electrons per pixel raise the empty frame above I1"));
     }
     if again()?.without_smear().reached(demand, exposure_s)?.probability >= required {
-        return Ok("smear: the motion during the exposure spreads the light over too many pixels".to_owned());
+        return Ok("smear: the motion during the exposure spreads the signal over too many pixels".to_owned());
     }
     let (Demand::Stars { n_min, .. } | Demand::ExposureWindow { n_min, .. }) = demand else {
         return noise_or_signal(design, requirements, demand, exposure_s, required);
@@ -76,13 +77,14 @@ pub fn binding_of(
         enough += usize::from(field.stars.len() >= n_min);
     }
     if counted == 0 {
-        return Ok("exclusion: no pointing is left by the exclusion angles".to_owned());
+        return Ok("exclusion: the exclusion angles exclude all pointings".to_owned());
     }
     let everywhere = matches!(demand, Demand::Stars { over: SkyStatistic::EveryPointing, .. });
     let share = enough as f64 / counted as f64;
     if share < required || (everywhere && enough < counted) {
         return Ok(format!(
-            "field: too small; only {:.1} % of the pointings have {n_min} stars of the catalogue in it, however faint",
+            "field: too small; only {:.1} % of the pointings have {n_min} catalogue stars in the field, of \
+             any magnitude",
             100.0 * share
         ));
     }
@@ -102,14 +104,16 @@ fn noise_or_signal(
     quiet.background = Default::default();
     let quiet = Design::new(requirements, &quiet, POINTINGS, exposure_s.unwrap_or(0.0))?;
     if quiet.reached(demand, exposure_s)?.probability >= required {
-        return Ok("noise: without dark current, read noise and background it would be met".to_owned());
+        return Ok(
+            "noise: the requirement would be met without dark current, read noise and background".to_owned()
+        );
     }
     Ok(match design.rule {
         DetectionRule::Dn { high_dn, .. } => {
-            format!("signal: too little light for the threshold of {high_dn} DN")
+            format!("signal: too few electrons for the threshold of {high_dn} DN")
         }
         DetectionRule::Sigmas { high, .. } => {
-            format!("signal: too little light for the threshold of {high} standard deviations")
+            format!("signal: too few electrons for the threshold of {high} standard deviations")
         }
     })
 }

@@ -97,7 +97,7 @@ impl Status {
     pub fn words(self) -> &'static str {
         match self {
             Self::MetSimulated => "met (simulated)",
-            Self::MetModel => "met (law)",
+            Self::MetModel => "met (model)",
             Self::NotMet => "not met",
             Self::NotDecided => "not decided",
             Self::Impossible => "impossible",

@@ -67,7 +67,7 @@ impl Requirements {
                 None => format!("built-in requirements: {}", names.collect::<Vec<_>>().join(", ")),
             };
             Failure::Usage(format!(
-                "`{word}` is neither a built-in requirement file nor a TOML file that can be read ({error}); {hint}"
+                "`{word}` is neither a built-in requirement file nor a readable TOML file ({error}); {hint}"
             ))
         })?;
         let name =
@@ -107,7 +107,7 @@ impl Requirements {
                 Some(table.body.clone().or(scenario.as_ref().map(|s| s.target.clone())).ok_or_else(|| {
                     source.refuse(
                         "target",
-                        "has no `body`, expected one, as there is no scenario to take it from".to_owned(),
+                        "has no `body`: set it, or set camera.scenario, which defines it".to_owned(),
                     )
                 })?)
             }
@@ -116,7 +116,8 @@ impl Requirements {
             body.check().map_err(|error| source.explain(error.into()))?;
         }
         if let (Some(TargetLight::Orbit { .. }), None) = (file.target.as_ref().map(|t| &t.light), &scenario) {
-            let message = "is \"orbit\", expected camera.scenario beside it, whose orbit it is".to_owned();
+            let message =
+                "is \"orbit\", which needs camera.scenario: the scenario defines the orbit".to_owned();
             return Err(source.refuse("target.light.kind", message));
         }
         Ok(Self { name, file, camera, scenario, target })
@@ -165,7 +166,7 @@ impl Source<'_> {
     ) -> Result<CameraConfig, Failure> {
         let preset = table.preset.as_ref().map(|name| self.preset(name)).transpose()?;
         let needed = |what: &str| {
-            self.refuse("camera", format!("has no `{what}`, expected it, or a `scenario` to take it from"))
+            self.refuse("camera", format!("has no `{what}`: set it, or set a `scenario` that defines it"))
         };
         let (camera, sensor) = match (preset, scenario) {
             (Some(Preset { camera, sensor }), _) => (camera, sensor),
@@ -201,7 +202,7 @@ impl Source<'_> {
                     *aperture_diameter_mm = diameter_mm
                 }
                 RadiometryConfig::ZeroPoint { .. } => {
-                    let message = "is given, expected with a spectral radiometry alone".to_owned();
+                    let message = "applies only to spectral radiometry".to_owned();
                     return Err(self.refuse("camera.aperture_diameter_mm", message));
                 }
             }
@@ -212,7 +213,8 @@ impl Source<'_> {
     fn preset(&self, name: &str) -> Result<Preset, Failure> {
         let Some(built_in) = CAMERAS.iter().find(|camera| camera.name == name) else {
             let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
-            let message = format!("`{name}` is no built-in camera; there are: {}", names.join(", "));
+            let message =
+                format!("`{name}` is not a built-in camera; built-in cameras: {}", names.join(", "));
             return Err(self.refuse("camera.preset", message));
         };
         Ok(toml_file::parse(Path::new(name), built_in.text)?)

@@ -421,7 +421,7 @@ impl RequirementFile {
             let at = format!("requirements[{i}]");
             if requirement.id.trim().is_empty() || ids.contains(&requirement.id.as_str()) {
                 let value = format!("`{}`", requirement.id);
-                return Err(OutOfRange::new(format!("{at}.id"), value, "a name that no other has"));
+                return Err(OutOfRange::new(format!("{at}.id"), value, "a unique name"));
             }
             ids.push(&requirement.id);
             self.check_demand(requirement, &at)?;
@@ -453,7 +453,7 @@ impl RequirementFile {
         })?;
         let by_exposure = parameter == Parameter::ExposureS;
         if by_exposure && matches!(requirement.demand, Demand::ExposureWindow { .. }) {
-            let expected = "another one: the window is one of exposures";
+            let expected = "another parameter: this requirement already varies the exposure";
             return Err(OutOfRange::new(path("parameter"), "\"exposure_s\"", expected));
         }
         Ok(())
@@ -478,10 +478,10 @@ impl RequirementFile {
 impl TargetTable {
     fn check(&self) -> Result<(), OutOfRange> {
         let [near, far] = self.ranges_km;
-        require("target.ranges_km[1]", far, "a second number beyond the first, to 1e5", |v| v > near)?;
+        require("target.ranges_km[1]", far, "a second number above the first, at most 1e5", |v| v > near)?;
         match &self.light {
             TargetLight::Phases { phases_deg, .. } if !phases_deg.is_sorted_by(|a, b| a < b) => {
-                Err(OutOfRange::new("target.light.phases_deg", "not growing", "growing angles"))
+                Err(OutOfRange::new("target.light.phases_deg", "not ascending", "ascending angles"))
             }
             TargetLight::Phases { .. } | TargetLight::Orbit { .. } => Ok(()),
         }
