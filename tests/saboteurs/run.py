@@ -270,7 +270,7 @@ def caught_by(suite: Suite, with_fault: dict, sound: dict) -> dict[str, list[str
 
 
 def table(rows: list[tuple[Path, dict[str, list[str]]]]) -> str:
-    lines = ["| fault | what it is | caught by | a test | tests |", "| --- | --- | --- | --- | --- |"]
+    lines = ["| fault | description | caught by | a test | tests |", "| --- | --- | --- | --- | --- |"]
     for patch, caught in rows:
         suites = ", ".join(f"`{suite}` ({len(names)})" for suite, names in caught.items())
         first = next(iter(caught.values()), [""])[0].rpartition("::")[2]
