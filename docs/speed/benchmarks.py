@@ -63,7 +63,7 @@ def size_table(found):
     lines["floor: the image's memory filled"] = found["floor"]["memory filled"]
     lines["floor: a 64-bit random word a pixel, one by one"] = found["floor"]["random words one by one"]
     lines["far-range pipeline, 160 stars"] = found["pipeline"]["size"]
-    lines["floor: one look at every pixel"] = found["pipeline floor"]["largest pixel"]
+    lines["floor: one read of every pixel"] = found["pipeline floor"]["largest pixel"]
     rows = [[f"{line[size] / (1000 * int(size)):.3f}" for size in sizes] for line in lines.values()]
     return page.table(head, rows, lines)
 
