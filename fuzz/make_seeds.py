@@ -1,9 +1,9 @@
-"""The seeds of the corpus: small files of every kind, made by our own writers.
+"""Makes the seeds of the corpus: small files of every kind, written by Boresight's writers.
 
     python3 fuzz/make_seeds.py target/release/boresight
 
-Writes into fuzz/corpus/ the files named `small*`, `argon*` and `docking*`, and leaves all others (what the fuzzer found) alone.
-Standard library alone.
+Writes the files `small*`, `argon*` and `docking*` into fuzz/corpus/, and leaves all others (found by the
+fuzzer) unchanged. Needs only the standard library.
 """
 
 import hashlib
@@ -19,7 +19,7 @@ import zlib
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent
 COLUMNS, ROWS = 48, 36
-# What `run_directory` puts together, see fuzz/src/runs.rs.
+# Files that `run_directory` combines, see fuzz/src/runs.rs.
 FAR_RUN = ["run.toml", "score.json", "measurements.csv", "telemetry.csv", "clusters.parquet", "truth/frames.parquet", "truth/objects.parquet"]
 DOCKING_RUN = ["run.toml", "setup.toml", "score.json", "measurements.csv", "motion.csv", "telemetry.csv", "features.parquet", "truth/fields.parquet"]
 
@@ -39,7 +39,7 @@ def keep(target, name, content):
 
 
 def portable(text):
-    """A run.toml or study.json without the folder that it was made in, and with the hash that goes with that."""
+    """A run.toml or study.json without its original folder, and with the matching hash."""
     text = re.sub(r'"[^"]*/stars\.csv"', '"stars.csv"', text)
     # Without the hashes of its files a scenario is known by their paths.
     text = re.sub(r"^\[files\]\n(?:.+\n)*\n", "", text, flags=re.M)
@@ -159,7 +159,7 @@ def make(program, folder):
 
 
 def tiff():
-    """A grey image of 16 bits in two strips, one of them deflated by nobody: Boresight writes no TIFF."""
+    """Grey image of 16 bits in two strips, one of them deflated, made by hand: Boresight writes no TIFF."""
     columns, rows = 8, 4
     pixels = struct.pack(f"<{columns * rows}H", *(37 * i % 4096 for i in range(columns * rows)))
     packed = zlib.compress(pixels)

@@ -1,7 +1,7 @@
 """Keeps golden/manifest.toml: the hash of every file, and why it was made last.
 
-A script that makes references calls `begin()` first and `record()` for each file that it wrote. After editing a script
-alone, `python3 golden/manifest.py PATH... --reason "..."` records its new hash.
+A script that makes references calls `begin()` first and `record()` for each file that it wrote. After editing
+a script alone, `python3 golden/manifest.py PATH... --reason "..."` records its new hash.
 """
 
 import argparse

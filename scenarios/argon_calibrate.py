@@ -5,17 +5,18 @@
     cargo build --release
     python3 scenarios/argon_calibrate.py show                  # the free parameters, their values and their ranges
     python3 scenarios/argon_calibrate.py check                 # the whole of ARGON against the table
-    python3 scenarios/argon_calibrate.py fit --evaluations 300 # prints the best values found, as they are found
-    python3 scenarios/argon_calibrate.py fit --leave-out 4     # fits the other days from the first values, and says
-                                                               # what becomes of day 4
-    python3 scenarios/argon_calibrate.py budget                # what each stage costs, and what the best mode wins back
+    python3 scenarios/argon_calibrate.py fit --evaluations 300 # prints the best values during the fit
+    python3 scenarios/argon_calibrate.py fit --leave-out 4     # fits the other days from the first values, and prints
+                                                               # the result of day 4
+    python3 scenarios/argon_calibrate.py budget                # the loss of each stage, and the gain of the best mode
 
-This is a calibration and not a prediction: the table has 25 independent cells, and what the paper does not print is
-chosen here so that they come out. What the paper gives (camera, days, numbers of images, 30 to 3 km) is not touched.
-A fit runs blocks of consecutive frames spread over each day, the same in every evaluation and with the same random
-draws, and looks for the least mean absolute difference (with a fifth of the worst) by pattern search (Hooke & Jeeves 1961):
-one parameter after the other, up and down, with steps that halve when nothing helps. `check` runs all 16,077 frames.
-The scenario is not written: put the values found into argon.toml by hand, and look at the whole table.
+This is a calibration, not a prediction: the table has 25 independent cells, and values that the paper does
+not print are chosen here to reproduce them. Values from the paper (camera, days, numbers of images, 30 to 3
+km) stay unchanged. A fit runs blocks of consecutive frames spread over each day, equal in every evaluation
+and with equal random draws, and minimises the mean absolute difference (with a fifth of the worst) by pattern
+search (Hooke & Jeeves 1961): one parameter after the other, up and down, with steps that halve when no change
+improves it. `check` runs all 16,077 frames. The scenario is not written: enter the values into argon.toml by
+hand, and examine the whole table.
 """
 
 import argparse
@@ -36,7 +37,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIO = ROOT / "scenarios" / "argon.toml"
 
-# Benninghoff et al., Table 2, percent: days 1 to 5. oracle/score/src/argon_table2.rs has it too; a test compares the two.
+# Benninghoff et al., Table 2, percent: days 1 to 5. oracle/score/src/argon_table2.rs has it too; a test
+# compares both.
 TABLE_2 = {
     "hit_rate": [94.92, 94.99, 92.22, 92.63, 96.41],
     "ra_within_1px": [83.50, 83.95, 85.63, 87.30, 84.96],
@@ -45,8 +47,8 @@ TABLE_2 = {
     "dec_within_2px": [91.94, 93.21, 81.80, 40.65, 34.49],
 }
 
-# The free parameters, twelve at most: path in the scenario, range, scale, and its first value, set by hand with the table in view.
-# Everything else in argon.toml is fixed.
+# Free parameters, twelve at most: path in the scenario, range, scale, and first value, set by hand to match
+# the table. Everything else in argon.toml is fixed.
 PARAMETERS = [
     ("target.boxes.0.surface.diffuse", 0.08, 0.6, "log", 0.25),
     ("target.boxes.0.surface.specular", 0.02, 0.4, "log", 0.35),
@@ -102,7 +104,8 @@ def in_blocks(scenario, blocks, length):
     for day in scenario["schedule"]:
         start = datetime.fromisoformat(day["start_utc"])
         for block in range(blocks):
-            # Each block in its part of the day, at a place of its own: evenly spaced ones may all see one phase of the orbit.
+            # Each block is at its own position in its part of the day: evenly spaced ones might all see one
+            # phase of the orbit.
             within = math.fmod(0.6180339887 * (block + 1), 1.0)
             first = round((day["count"] - WARM_UP - length) * (block + within) / blocks)
             for name, offset, count in [("warm-up", 0, WARM_UP), (day["name"], WARM_UP, length)]:
@@ -117,9 +120,10 @@ def in_blocks(scenario, blocks, length):
 
 
 def quicker(scenario):
-    """The scenario without what gives every pixel a mean of its own (a fixed pattern of a percent, a smooth background of
-    some electrons): it multiplies the time of a frame and moves a cell of the table by 0.4 points in the mean, 2.5 at worst
-    (6 blocks of 80 frames a day, which know a rate to some 3 points)."""
+    """The scenario without effects that give every pixel its own mean (a fixed pattern of a percent, a smooth
+    background of some electrons): they multiply the time of a frame and move a cell of the table by 0.4
+    points in the mean, 2.5 at worst (6 blocks of 80 frames a day, which determine a rate to some 3 points).
+    """
     trial = copy.deepcopy(scenario)
     trial["sensor"].pop("fixed_pattern", None)
     if trial.pop("background", None):
@@ -175,7 +179,8 @@ def show_table(rates, out=sys.stdout):
 
 
 def show_budget(scenario, options):
-    """Each stage of the pipeline with the truth in its place, whole images, and the best mode, on the same stretches."""
+    """Prints the error budget on equal stretches: truth in place of each stage's result, whole images, and
+    the best mode."""
     best = copy.deepcopy(scenario)
     best["far_range"]["mode"] = "best"
     cases = [("as flown", scenario, [])]
@@ -238,7 +243,7 @@ def main():
         return loss(known[key], seen)
 
     if options.leave_out:
-        # Not from the answer that knows all days.
+        # Starts from the first values: the current ones were fitted to all days.
         values = [first for *_, first in PARAMETERS]
     else:
         values = [lookup(scenario, path) for path, *_ in PARAMETERS]

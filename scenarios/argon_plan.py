@@ -1,21 +1,22 @@
 #!/usr/bin/env python3
-"""Plans the approach of the scenario `argon`: prints its orbit and schedule as TOML, or a check of them with --check.
+"""Plans the approach of the scenario `argon`: prints orbit and schedule as TOML, or checks them (--check).
 
     python3 scenarios/argon_plan.py            # prints [orbit] and [[schedule]], to be put into scenarios/argon.toml
     python3 scenarios/argon_plan.py --check    # prints ranges, field angles, light
 
-The seed paper gives the frame of the ARGON experiment (30 km to 3 km, 23 to 27 April 2012, about 16 km on 25 April
-11:30 to 13:00 UTC, a relative orbit that shrinks) and no manoeuvre. Everything else here is assumed. The plan is
-flown ground-in-the-loop: at each event the relative elements are computed exactly, and a pair of impulses half an
-orbit apart is chosen by linear theory (D'Amico 2010, chapter 2) to meet the next waypoint:
+The seed paper gives the frame of the ARGON experiment (30 km to 3 km, 23 to 27 April 2012, about 16 km on 25
+April 11:30 to 13:00 UTC, a relative orbit that shrinks) and no manoeuvre. Everything else here is assumed.
+The plan is flown ground-in-the-loop: at each event the relative elements are computed exactly, and a pair of
+impulses half an orbit apart is chosen by linear theory (D'Amico 2010, chapter 2) to meet the next waypoint:
     da   = 2 (dv1 + dv2) / n            sets the drift of lambda, -3/2 n da
     |de| = 2 (dv1 - dv2) / n            along the mean argument of latitude of the first impulse
     |di| = dvn / n                      along the same, given with the first impulse
-Both vectors are set along +y: with dix = 0 the chaser's node does not drift away from the target's, and with de
-parallel to di the separation across the flight direction never vanishes, so that an unplanned drift past the target is
-safe. The turn of de with the perigee (-3 deg a day, 80 m in the end) is left alone.
+Both vectors are set along +y: with dix = 0 the chaser's node does not drift away from the target's, and with
+de parallel to di the separation across the flight direction never vanishes, so that an unplanned drift past
+the target is safe. The turn of de with the perigee (-3 deg a day, 80 m in the end) is left alone.
 
-It is a second implementation of the simulator's orbits, in another language: the simulator's tests compare the two.
+It is a second implementation of the simulator's orbits, in another language: the simulator's tests compare
+the two.
 """
 
 import math
@@ -33,8 +34,8 @@ ARGP_DEG, M_DEG = 90.0, 270.0
 # Relative elements at the epoch, m.
 LAMBDA0, DE0, DI0 = -30000.0, 400.0, 400.0
 
-# Event time (UTC, not before), waypoint of lambda at the next event's time, |de| and |di| after the event (m).
-# The chaser rests at 30 km until the first event. DI None: no normal impulse.
+# Event time (UTC, not before), waypoint of lambda at the next event's time, |de| and |di| after the event
+# (m). The chaser rests at 30 km until the first event. DI None: no normal impulse.
 EVENTS = [
     (datetime(2012, 4, 23, 8, 0), -27000.0, 385.0, None),
     (datetime(2012, 4, 24, 0, 0), -20000.0, 350.0, 350.0),
@@ -44,9 +45,9 @@ EVENTS = [
 ]
 END = datetime(2012, 4, 28, 0, 0)
 
-# Images: the counts are the paper's (Table 2), hours and cadence are assumed. One cadence for all days; 15 s lets the
-# 5415 images of day 4 fit into a day. Day 3 is shifted by 6 s so that its image 1516 is at 12:18:54, as is the sample
-# image in the paper.
+# Images: the counts are the paper's (Table 2), hours and cadence are assumed. One cadence for all days; 15 s
+# fits the 5415 images of day 4 into a day. Day 3 is shifted by 6 s so that its image 1516 is at 12:18:54, the
+# time of the sample image in the paper.
 CADENCE_S = 15.0
 DAYS = [
     ("day 1", "2012-04-23T07:00:00", 1634),
@@ -92,7 +93,7 @@ def drifted(el, dt):
 
 
 def state(el):
-    """Position (km) and velocity (km/s) from the true anomaly: another way than the simulator's."""
+    """Position (km) and velocity (km/s) from the true anomaly, a method that differs from the simulator's."""
     a, e, i, raan, argp, m = el
     anomaly = m
     for _ in range(50):

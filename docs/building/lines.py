@@ -3,8 +3,8 @@
 
     python3 docs/building/lines.py [DIRECTORY]
 
-Tests are files and folders of the name `tests`, and the item after `#[cfg(test)]`. Research programs, examples, benchmarks and scripts of
-other languages are not counted.
+Tests are files and folders named `tests`, and the item after `#[cfg(test)]`. Research programs, examples,
+benchmarks and scripts of other languages are not counted.
 """
 
 import collections

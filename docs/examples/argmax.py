@@ -1,4 +1,4 @@
-"""The least that a pipeline for Boresight can be: --pipeline "exec:python3 docs/examples/argmax.py"
+"""Minimal pipeline for Boresight: --pipeline "exec:python3 docs/examples/argmax.py"
 
 The target is the brightest pixel. Needs numpy and astropy.
 """

@@ -1,7 +1,7 @@
 """A pipeline for Boresight in plain Python: --pipeline "exec:python3 docs/examples/brightest.py"
 
-The target is the brightest cluster of two pixels or more that has moved by less than 8 px since the frame before:
-right while the camera follows the target and the stars stream through. It measures in the image only.
+The target is the brightest cluster of two pixels or more that has moved by less than 8 px since the frame
+before: right while the camera follows the target and the stars stream through. It measures in the image only.
 """
 import array, json, math, sys
 

@@ -1,7 +1,7 @@
 """A docking pipeline for Boresight in plain Python: --pipeline "exec:python3 docs/examples/fixed_pose.py"
 
-It measures nothing: it says that the camera is 10 m before the target. What it shows is the protocol, with a wish for the
-digitiser at its first field.
+It measures nothing and always reports that the camera is 10 m in front of the target. It shows the protocol,
+with a setting for the digitiser in its first answer.
 """
 import json, sys
 

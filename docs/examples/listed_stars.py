@@ -1,4 +1,4 @@
-"""Places of the listed stars in a frame, for the examples with SEP and photutils: which objects are no target."""
+"""Positions of the listed stars in a frame, for the examples with SEP and photutils, which exclude stars."""
 import numpy as np
 
 def rotated(quaternion, vectors):  # v_b = q v_a q*, Hamilton, scalar first

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Makes a folder of night-sky images for docs/tutorial-night-sky.md, or compares attitudes with those that the images were made with.
+"""Makes a folder of night-sky images for docs/tutorial-night-sky.md, or compares attitudes with the true
+ones.
 
     python3 docs/examples/night_sky.py make sky
     python3 docs/examples/night_sky.py compare sky
 
-Needs numpy. Nothing of Boresight is used but its copy of the Hipparcos catalogue (sim/data/hipparcos2.bin): the stars are Gaussians with Poisson
-noise, seen at random attitudes by a camera of 24.1 x 19.3 degrees, without aberration. The attitude in telemetry.csv is the identity. `sky-truth.csv`,
-beside the folder, has the attitudes of the camera.
+Needs numpy. Uses nothing of Boresight except its copy of the Hipparcos catalogue (sim/data/hipparcos2.bin):
+stars are Gaussians with Poisson noise, imaged at random attitudes by a camera of 24.1 x 19.3 degrees, without
+aberration. The attitude in telemetry.csv is the identity. `sky-truth.csv`, beside the folder, has the
+attitudes of the camera.
 """
 
 import csv
@@ -46,7 +48,8 @@ prior = "none"
 
 
 def stars():
-    """Unit vectors and magnitudes (Hp) of Hipparcos to 8.5; the format is at the head of sim/data/make_hipparcos2.py."""
+    """Unit vectors and magnitudes (Hp) of Hipparcos to 8.5; the format is at the head of
+    sim/data/make_hipparcos2.py."""
     data = (pathlib.Path(__file__).parents[2] / "sim/data/hipparcos2.bin").read_bytes()[48:]
     rows = np.frombuffer(data, np.uint8).reshape(-1, 29).astype(np.int64)
 

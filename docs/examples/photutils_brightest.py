@@ -1,6 +1,7 @@
 """A pipeline for Boresight with photutils: --pipeline "exec:python3 docs/examples/photutils_brightest.py"
 
-Background and noise by clipping, segments above five sigmas, and of those at no listed star the brightest. Needs numpy, astropy and photutils.
+Background and noise by clipping, segments above five sigmas, and among those away from listed stars the
+brightest. Needs numpy, astropy and photutils.
 """
 import json, sys, warnings
 import numpy as np

@@ -1,6 +1,7 @@
-"""A pipeline for Boresight with SEP (Source Extractor): --pipeline "exec:python3 docs/examples/sep_brightest.py"
+"""A pipeline for Boresight with SEP: --pipeline "exec:python3 docs/examples/sep_brightest.py"
 
-The median subtracted, objects above five sigmas, and of those at no listed star the brightest; its centre is the windowed one. Needs numpy, astropy and sep.
+Subtracts the median, detects objects above five sigmas, and takes the brightest away from listed stars, at
+its windowed centre. Needs numpy, astropy and sep.
 """
 import json, sys
 import numpy as np, sep

@@ -1,8 +1,10 @@
-"""Whether frames of two simulators are frames of one law: differences of means and variances in their standard errors."""
+"""Statistical agreement of frames from two simulators: differences of means and variances in standard errors.
+"""
 
 import numpy as np
 
-# A comparison has some thirty differences, of which one in a hundred and fifty thousand is beyond 4.5 by chance.
+# A comparison has some thirty differences, of which one in a hundred and fifty thousand exceeds 4.5 by
+# chance.
 LIMIT = 4.5
 
 
@@ -12,8 +14,9 @@ def dn_variance(scene, mean_e):
 
 
 def differences(scene, ours, theirs):
-    """Of as many frames (frame, row, column) from two simulators: the background's mean and variance, the light of all stars, and
-    the pixels of stars one by one (chi-square, whose standard deviation is that of its own law)."""
+    """Compares equal numbers of frames (frame, row, column) from two simulators: mean and variance of the
+    background, total flux of the stars, and single pixels of stars (chi-square, with the standard deviation
+    of its distribution)."""
     stars = scene.star_map()
     dark, lit = stars < 1e-3, stars > 1.0
     count = len(ours)
@@ -35,7 +38,8 @@ def differences(scene, ours, theirs):
 
 
 def from_expectation(scene, frames):
-    """How far the mean of frames is from the expected image, which scipy's error function gives and no simulator."""
+    """Deviation of the mean of frames from the expected image, which comes from scipy's error function and
+    from no simulator."""
     stars = scene.star_map()
     lit = stars > 1.0
     mean_e = stars[lit] + scene.sky_e + scene.dark_e
@@ -44,5 +48,5 @@ def from_expectation(scene, frames):
 
 
 def chi_square(offs, variances):
-    """Σ offs²/variance, as standard deviations from its mean."""
+    """Σ deviation²/variance, as standard deviations from its mean."""
     return float(((offs**2 / variances).sum() - offs.size) / np.sqrt(2.0 * offs.size))

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the criterion benchmarks and writes what they find: docs/speed/benchmarks.json, docs/speed/cost.svg, tables of docs/speed.md.
+"""Runs the criterion benchmarks; writes docs/speed/benchmarks.json, cost.svg and tables of docs/speed.md.
 
     python3 docs/speed/benchmarks.py --python venv/bin/python [--no-run]
 
-The interpreter needs matplotlib (docs/speed/requirements.txt). With `--no-run` the estimates of the last run are read. Times are
-processor times of one thread, criterion's medians. Exit 0: done; 2: something is missing.
+The interpreter needs matplotlib (docs/speed/requirements.txt). With `--no-run` the estimates of the last run
+are read. Times are processor times of one thread, criterion's medians. Exit 0: done; 2: something is missing.
 """
 
 import argparse
@@ -63,7 +63,7 @@ def size_table(found):
     lines["floor: the image's memory filled"] = found["floor"]["memory filled"]
     lines["floor: a 64-bit random word a pixel, one by one"] = found["floor"]["random words one by one"]
     lines["far-range pipeline, 160 stars"] = found["pipeline"]["size"]
-    lines["floor: one look at every pixel"] = found["pipeline floor"]["largest pixel"]
+    lines["floor: one read of every pixel"] = found["pipeline floor"]["largest pixel"]
     rows = [[f"{line[size] / (1000 * int(size)):.3f}" for size in sizes] for line in lines.values()]
     return page.table(head, rows, lines)
 
@@ -99,7 +99,7 @@ def chart(found, file):
     import matplotlib
 
     matplotlib.use("svg")
-    # The same numbers give the same file.
+    # Equal numbers give equal files.
     matplotlib.rcParams.update({"svg.hashsalt": "boresight", "svg.fonttype": "none", "font.size": 9})
     from matplotlib import pyplot
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Compares frames and their detection with other tools, in one run: docs/speed/rivals.json and the tables of docs/speed.md.
+"""Compares frames and their detection with other tools; writes docs/speed/rivals.json, tables of speed.md.
 
     python3 -m venv venv && venv/bin/pip install -r docs/speed/requirements.txt
     python3 docs/speed/compare.py --python venv/bin/python
 
-Processor time of one thread, not wall time; in every round each work has its turn (A B C, A B C …), so that whatever else the
-machine does falls on all alike. Given are the least and the median over the rounds. Before anything is timed the frames of every simulator
-that claims our expected image are held against ours in mean and variance, and the detectors against the stars.
-Exit 0: done; 1: a simulator disagrees; 2: something is missing.
+Times are processor time of one thread. Every round runs each work once (A B C, A B C, …), so that other load
+on the machine affects all alike; results are the least and the median over the rounds. First, the frames of
+every simulator that claims our expected image are compared with ours in mean and variance, and the detectors
+with the stars. Exit 0: done; 1: a simulator disagrees; 2: something is missing.
 """
 
 import argparse
@@ -21,7 +21,7 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Name for the example frame_speed, name in the table, how many in a turn: of frames that differ, all that there are.
+# Name for the example frame_speed, name in the table, number of frames in a turn: all where frames differ.
 FRAMES = [
     ("plain", "**Boresight**: the plain frame, whole", 10),
     ("plain-uneven", "Boresight: the same, a response and a dark current of its own for every pixel", 10),
@@ -131,7 +131,8 @@ def check_agreement(scene, ours, makers):
 
 
 def stars_found(scene, places):
-    """How many of the stars have a place found within 1.5 px, and how many places have no star within 3 px."""
+    """Number of stars with a position found within 1.5 px, and number of positions without a star within 3
+    px."""
     import numpy as np
 
     places = np.asarray(places, dtype=float).reshape(-1, 2)
@@ -160,7 +161,7 @@ def turn_here(work, count):
 
 def main():
     given = arguments()
-    # Before numpy is there: its libraries look at this when they begin.
+    # Set before numpy is imported: its libraries read these variables when they are loaded.
     for library in ("OMP", "OPENBLAS", "MKL", "NUMBA", "RAYON"):
         os.environ[f"{library}_NUM_THREADS"] = "1"
     try:

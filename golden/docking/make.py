@@ -1,13 +1,13 @@
 """Makes golden/docking/*.exr: docking scenes rendered by Mitsuba.
 
-The scenes are told to Mitsuba by this project's own exporter (sim/src/mitsuba), which the suite mitsuba_live holds against
-closed forms; what shines where is Mitsuba's work alone. Needs cargo, and Mitsuba 3.9.1 on the PATH or in
+This project's exporter (sim/src/mitsuba), which the suite mitsuba_live compares with closed forms, writes the
+scenes for Mitsuba; Mitsuba alone computes the radiance. Needs cargo, and Mitsuba 3.9.1 on the PATH or in
 BORESIGHT_MITSUBA. Takes some ten minutes of four cores.
 
     python3 -m venv .venv && .venv/bin/pip install -r golden/docking/requirements.txt
     PATH=$PWD/.venv/bin:$PATH python3 golden/docking/make.py --reason "why the old ones are wrong"
 
-A built-in target that has changed is taken over with `cp scenarios/targets/progress.toml golden/docking/target.toml`.
+A changed built-in target is copied with `cp scenarios/targets/progress.toml golden/docking/target.toml`.
 """
 
 import pathlib

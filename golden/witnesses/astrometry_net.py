@@ -1,16 +1,20 @@
 #!/usr/bin/env python3
-"""A second plate solver that nobody here wrote: astrometry.net with its own extractor and the Tycho-2 catalogue.
+"""Independent plate solver: astrometry.net with its extractor and the Tycho-2 catalogue.
 
     astrometry_net.py [--pointings 300]
 
-The frames of plate_solve.py. The extractor (image2xy) and the lost-in-space identification (solve-field, with nothing known but that a pixel is 1 to 2 arcmin wide) are
-astrometry.net's. What it identified is then fitted here by one rotation (Kabsch 1976), because its own result is a linear projection on a catalogue that knows no aberration. Demanded, as in plate_solve.py:
-- at least 99 % are solved of the frames in which ten stars or more are detectable (SNR of 5 or more in the truth table);
-- no bias of the boresight above 0.02 px along columns or rows, nor of the roll by more than that at the edge of the field;
+Frames of plate_solve.py. The extractor (image2xy) and the lost-in-space identification (solve-field, given
+only that a pixel is 1 to 2 arcmin wide) are astrometry.net's. Identified stars are fitted here by one
+rotation (Kabsch 1976), because astrometry.net's result is a linear projection on a catalogue without
+aberration. Required, as in plate_solve.py:
+- at least 99 % of the frames with ten or more detectable stars (SNR of 5 or more in the truth table) are
+  solved;
+- no bias of the boresight above 0.02 px along columns or rows, nor of the roll by more than that at the edge
+  of the field;
 - the scatter about the truth is that of the stars about the fit, within a factor of two.
 
-Prints what was found; exit status 0 when all of it holds, 1 when not. Needs the package `boresight` (pip install ./python), requirements.txt, and
-Debian's `astrometry.net` and `astrometry-data-tycho2-10-19`.
+Prints the results; exit status 0 when all of it holds, 1 when not. Needs the package `boresight` (pip install
+./python), requirements.txt, and Debian's `astrometry.net` and `astrometry-data-tycho2-10-19`.
 """
 
 import argparse
@@ -30,12 +34,12 @@ LEAST_STARS = 10
 LEAST_SOLVED = 0.99
 MOST_BIAS_PX = 0.02
 LIGHT_SPEED_KM_S = 299792.458
-# Beyond it a star was taken for another, or its image runs into a neighbour's: three times the width of a star.
+# Larger distances mean a wrong match, or an image merged with a neighbour's: three times the width of a star.
 MOST_APART_PX = 2.5
 
 
 def extracted(frame, directory):
-    """Places that image2xy finds, pixels from 0, with their flux, the brightest first."""
+    """Positions found by image2xy, pixels from 0, with their flux, the brightest first."""
     image, found = directory / "frame.fits", directory / "found.fits"
     fits.PrimaryHDU(frame.pixels.astype(np.float32)).writeto(image, overwrite=True)
     subprocess.run(["image2xy", "-O", "-o", found, image], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -45,7 +49,8 @@ def extracted(frame, directory):
 
 
 def identified(places, flux, size, directory):
-    """What solve-field makes of places in a pinhole image: places and catalogued unit vectors of the stars that it knows; None without a solution."""
+    """Result of solve-field for positions in a pinhole image: positions and catalogued unit vectors of the
+    identified stars; None without a solution."""
     columns, rows = size
     table = fits.BinTableHDU.from_columns([
         fits.Column(name="X", format="D", array=places[:, 0] + 1.0),
@@ -75,7 +80,8 @@ def rotation(seen, stars):
 
 
 def fitted(pinhole, stars, scale):
-    """Rotation of the camera from stars at pinhole places, without those that are far off; sigmas about its axes, rad, from the scatter of the rest."""
+    """Rotation of the camera from stars at pinhole positions, without outliers; sigmas about its axes, rad,
+    from the scatter of the others."""
     seen = np.column_stack([pinhole, np.ones(len(pinhole))])
     seen /= np.linalg.norm(seen, axis=1, keepdims=True)
     kept = np.ones(len(seen), bool)
@@ -110,7 +116,7 @@ def main():
             detectable += 1
             places, flux = extracted(frame, directory)
             middle = np.array([(columns - 1) / 2, (rows - 1) / 2])
-            # A pinhole with square pixels about the middle of the image, which solve-field takes for its projection's.
+            # Pinhole image with square pixels about its middle, the projection that solve-field assumes.
             known = identified(camera.undistorted(places) * scale + middle, flux, (columns, rows), directory)
             if known is None:
                 print(f"pointing {k}: not solved, {len(places)} places")

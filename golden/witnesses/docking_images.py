@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
-"""Whether Mitsuba's images of the docking target, made again, are the committed ones.
+"""Compares Mitsuba's images of the docking target, made again, with the committed ones.
 
     docking_images.py COMMITTED MADE NAME...
 
-Same scene, same version, same random numbers: the same rays. A machine gives the same bytes every time, on one core or two; those of another one differed from the committed ones in 1 to 4 pixels of
-100,000, by 0.002 of full scale at most, half a ray: the last digit of a single-precision number decides on which side of an edge a ray passes. Demanded of every image: no more than one pixel of 1000
-differs (by more than a unit of the half-precision numbers that are kept), none by more than four of its rays, and the mean by no more than 1e-6 of full scale. (What the noise of other rays would be: 0.013
-% of full scale on flats in every pixel, 0.44 % on edges.)
+With equal scene, version and random numbers the rays are equal. A machine gives equal bytes every time, on
+one core or two; images of another machine differed from the committed ones in 1 to 4 pixels of 100,000, by
+0.002 of full scale at most, half a ray: the last digit of a single-precision number decides on which side of
+an edge a ray passes. Required of every image: no more than one pixel of 1000 differs (by more than a unit of
+the stored half-precision numbers), none by more than four of its rays, and the mean by no more than 1e-6 of
+full scale. (Noise of other rays would be 0.013 % of full scale on flats in every pixel, 0.44 % on edges.)
 
-Prints what was found; exit status 0 when all of it holds, 1 when not. Needs Mitsuba and numpy (golden/docking/requirements.txt).
+Prints the results; exit status 0 when all of it holds, 1 when not. Needs Mitsuba and numpy
+(golden/docking/requirements.txt).
 """
 
 import pathlib

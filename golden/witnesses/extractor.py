@@ -1,24 +1,36 @@
 #!/usr/bin/env python3
-"""An extractor that nobody here wrote finds our stars: SEP (Source Extractor), with a matched filter.
+"""Independent extractor: SEP (Source Extractor) with a matched filter finds Boresight's stars.
 
     extractor.py [--pointings 40]
 
-Frames of ARGON's camera with every effect of its detector, at boresights spread evenly over the sky. What is demanded is predicted from the truth table's `electrons` and places and from the data sheet, by
-closed forms; nothing is fitted. S² = sigma² + 1/12 is the width of an image (a Gaussian, and the pixel), F its electrons without the halo, b the variance of a pixel without stars, electrons².
-- Recall. The filter's answer at a pixel d from the star has the mean F/sqrt(4 pi S² b) exp(-d²/4S²), what the halo adds, the variance 1 + F/(3 pi S² b), and the correlation exp(-d²/4S²) between
-  pixels; a star is found when it passes the threshold at any pixel within 2 px. The share found in every bin of the signal-to-noise ratio is that within 2 points and three standard errors; above twice the
-  threshold at least 99 % are found.
-- Places. Its windowed centre, with a window as wide as the image, has in each coordinate the variance 8 pi S⁴ b/F² + (16/9) S²/F: that of the best estimate where the background has the noise, 4/3 of its
-  root where the light has. The root of the mean square, in units of that, is 1 within 8 % and three standard errors in every bin; the median of all errors is 0 within 0.01 px.
-- Electrons. The sum over a circle of 3 px about the true place, less the mean of a ring, times the gain, over the share of a star's light that the closed form has there (a Gaussian of variance
-  sigma² + 1/6: once the pixels collect it, once they are cut by the circle; and the halo's), is `electrons`: the ratio, by least squares, is 1 within 0.3 % and 3.5 standard errors in every bin, and
-  within 0.3 % and three of all stars together, so that an error of 1 % shows. The 0.3 % are for what the closed form leaves out: stars too faint for the table, a dark current that differs from pixel to
-  pixel. The scatter is that of light, dark current, reading and rounding within 5 % and three standard errors: gain and noise are no others.
+Frames of ARGON's camera with every effect of its detector, at boresights spread evenly over the sky.
+Requirements are predicted by closed forms from the truth table's `electrons` and positions and from the data
+sheet; nothing is fitted. S² = sigma² + 1/12 is the width of an image (a Gaussian, and the pixel), F its
+electrons without the halo, b the variance of a pixel without stars, electrons².
+- Recall. The filter output at a pixel d from the star has the mean F/sqrt(4 pi S² b) exp(-d²/4S²) plus that
+  of the halo, the variance 1 + F/(3 pi S² b), and the correlation exp(-d²/4S²) between pixels; a star is
+  found when the output exceeds the threshold at any pixel within 2 px. The share found in every bin of the
+  signal-to-noise ratio agrees within 2 points and three standard errors; above twice the threshold at least
+  99 % are found.
+- Positions. SEP's windowed centre, with a window as wide as the image, has in each coordinate the variance 8
+  pi S⁴ b/F² + (16/9) S²/F: that of the best estimate where the background dominates the noise, 4/3 of its
+  root where the star's shot noise does. The root of the mean square, in units of that, is 1 within 8 % and
+  three standard errors in every bin; the median of all errors is 0 within 0.01 px.
+- Electrons. The sum over a circle of 3 px about the true position, less the mean of a ring, times the gain,
+  over the closed form's share of the star's flux there (a Gaussian of variance sigma² + 1/6: collected by
+  pixels and cut by the circle; and the halo's), is `electrons`: the ratio, by least squares, is 1 within 0.3
+  % and 3.5 standard errors in every bin, and within 0.3 % and three of all stars together, so that an error
+  of 1 % shows. The 0.3 % allow for effects outside the closed form: stars too faint for the table, dark
+  current that differs from pixel to pixel. The scatter is that of signal, dark current, readout and rounding
+  within 5 % and three standard errors, which confirms gain and noise.
 - The level of the background, in the rings, is bias, dark current and sky within 0.05 DN.
-Stars that saturate, that have a neighbour within 6 px or a hot pixel within 4, or lie within 8 px of the edge, are left out; of electrons also those within 12 px of the edge, with less than half of their
-ring free of others, or with more than 1 % of a brighter neighbour's halo in the circle.
 
-Prints what was found; exit status 0 when all of it holds, 1 when not. Needs the package `boresight` (pip install ./python) and requirements.txt.
+Excluded are stars that saturate, that have a neighbour within 6 px or a hot pixel within 4, or lie within 8
+px of the edge; for electrons also those within 12 px of the edge, with less than half of their ring free of
+others, or with more than 1 % of a brighter neighbour's halo in the circle.
+
+Prints the results; exit status 0 when all of it holds, 1 when not. Needs the package `boresight` (pip install
+./python) and requirements.txt.
 """
 
 import argparse
@@ -35,7 +47,8 @@ SIGMA_PX, HALO_PX, HALO_SHARE = 0.8, 4.0, 0.0434
 WIDTH_PX = math.sqrt(SIGMA_PX**2 + 1.0 / 12.0)
 GAIN_E, BIAS_DN, FULL_DN = 10.0, 40.0, 4095
 READ_NOISE_E, DARK_E_PER_S, EXPOSURE_S = 15.0, 40.0, 0.25
-# Below it the simulator cuts an image off; a Gaussian halo then lacks 2 pi HALO_PX² times as much, whatever its star.
+# The simulator cuts an image off below this level; a Gaussian halo then lacks 2 pi HALO_PX² times as much,
+# for every star.
 FLOOR_E = 0.01
 
 RECALL_EDGES = [3, 4, 4.5, 5, 5.5, 6, 7, 8, 10]
@@ -56,17 +69,17 @@ def kernel():
 
 
 def lone(stars, others, columns, rows):
-    """Which stars have nobody near."""
+    """Mask of the stars without a neighbour."""
     keep = (stars[:, 0] > 8) & (stars[:, 0] < columns - 9) & (stars[:, 1] > 8) & (stars[:, 1] < rows - 9)
     for i, star in enumerate(stars):
         distances = np.hypot(*(others[:, :2] - star[:2]).T)
-        # The star itself is one of them, at no distance.
+        # The star itself is one of them, at distance 0.
         keep[i] &= np.sum(distances < others[:, 2]) == 1
     return keep
 
 
 def beyond(radius_px, variance):
-    """The share of a round Gaussian's light outside a circle."""
+    """Fraction of a round Gaussian outside a circle."""
     return math.exp(-(radius_px**2) / (2.0 * variance))
 
 
@@ -76,15 +89,16 @@ def halo_at(electrons, distance_px):
     return HALO_SHARE * electrons / (2.0 * math.pi * variance) * np.exp(-(distance_px**2) / (2.0 * variance))
 
 
-# Of a star's light, in the circle less what the ring has of it.
+# Fraction of a star's flux in the circle, less its contribution to the ring.
 CORE, HALO = SIGMA_PX**2 + 1.0 / 6.0, HALO_PX**2 + 1.0 / 6.0
 CAUGHT = ((1.0 - HALO_SHARE) * (1.0 - beyond(CIRCLE_PX, CORE)) + HALO_SHARE * (1.0 - beyond(CIRCLE_PX, HALO))
           - HALO_SHARE * (beyond(RING_PX[0], HALO) - beyond(RING_PX[1], HALO)) * CIRCLE_AREA / RING_AREA)
 
-# Pixels that a circle cuts count by the square of their share: of noise it has less than its area, by 1/6 px² for every px of its edge, whatever the edge's direction (1/6 along rows, 0.165 at 45 degrees).
+# Pixels cut by the circle count by the square of their share: the noise is less than that of the area, by 1/6
+# px² for every px of the edge, in every direction of the edge (1/6 along rows, 0.165 at 45 degrees).
 CIRCLE_NOISE = CIRCLE_AREA - 2.0 * math.pi * CIRCLE_PX / 6.0
 
-# Noise of the filter on the pixels about a star; every star is predicted from DRAWS of its own.
+# Noise of the filter on the pixels about a star; each star's prediction has its own DRAWS.
 DRAWS = 400
 _GRID = np.array([(x, y) for y in range(-3, 4) for x in range(-3, 4)], float)
 _CORRELATION = np.exp(-np.sum((_GRID[:, None] - _GRID[None]) ** 2, axis=2) / (4.0 * WIDTH_PX**2))
@@ -92,12 +106,12 @@ _NOISE = np.random.default_rng(0).standard_normal((250 * DRAWS, len(_GRID))) @ n
 
 
 def chance(number, x, y, electrons, variance_e2):
-    """That the filter passes the threshold at a pixel within 2 px of a star."""
+    """Probability that the filter exceeds the threshold at a pixel within 2 px of a star."""
     draws = _NOISE[DRAWS * (number % 250) :][:DRAWS]
     squares = np.sum((_GRID - [x - round(x), y - round(y)]) ** 2, axis=1)
     near = squares < 4.0
     core = (1.0 - HALO_SHARE) * electrons
-    # A level as broad as the halo is seen with the filter's sum over the root of the sum of its squares.
+    # A level as broad as the halo passes the filter with its sum over the root of the sum of its squares.
     answer = (core / math.sqrt(4.0 * math.pi * WIDTH_PX**2) * np.exp(-squares[near] / (4.0 * WIDTH_PX**2))
               + 2.0 * math.sqrt(math.pi) * WIDTH_PX * halo_at(electrons, np.sqrt(squares[near] + WIDTH_PX**2))) / math.sqrt(variance_e2)
     spread = math.sqrt(1.0 + core / (3.0 * math.pi * WIDTH_PX**2 * variance_e2))
@@ -105,7 +119,7 @@ def chance(number, x, y, electrons, variance_e2):
 
 
 def covered(objects, shape):
-    """Pixels on which anything of the truth table is seen, with a margin."""
+    """Pixels covered by any object of the truth table, with a margin."""
     mask = np.zeros(shape, bool)
     for x, y, radius in objects:
         x0, x1 = int(max(x - radius, 0)), int(min(x + radius + 2, shape[1]))
@@ -117,7 +131,8 @@ def covered(objects, shape):
 
 
 def electrons_of(image, stars, mask):
-    """SEP's sums about true places: electrons of the stars, the part of each ring that is free of others, and the level in it, DN."""
+    """SEP's sums about true positions: electrons of the stars, the fraction of each ring that is free of
+    others, and the level in it, DN."""
     sums, _, _ = sep.sum_circle(image, stars[:, 0], stars[:, 1], CIRCLE_PX, subpix=0)
     free, _, _ = sep.sum_circann((~mask).astype(float), stars[:, 0], stars[:, 1], *RING_PX)
     lit, _, _ = sep.sum_circann(np.where(mask, 0.0, image), stars[:, 0], stars[:, 1], *RING_PX)
@@ -126,12 +141,14 @@ def electrons_of(image, stars, mask):
 
 
 def looked_at(frame, dither):
-    """What SEP says of a frame's stars: for each its truth (x, y, snr, electrons), b, what is predicted and what is found."""
+    """SEP's results for a frame's stars: for each its truth (x, y, snr, electrons), b, prediction and
+    measurement."""
     image = frame.pixels.astype(float)
     rows, columns = image.shape
-    # SEP finds the background by median and mode, which of whole numbers are off by up to half of one: it looks at a dithered image.
+    # SEP computes the background by median and mode, which are off by up to half of one for integers: the
+    # image is dithered.
     background = sep.Background(image + dither.uniform(-0.5, 0.5, image.shape), bw=64, bh=64).back()
-    # What the data sheet says of a pixel without stars: SEP's own estimate is of whole numbers too.
+    # Noise of a pixel without stars by the data sheet: SEP's estimate also suffers from integers.
     light_e = EXPOSURE_S * (DARK_E_PER_S + frame.truth["background_e_per_s"])
     variance_e2 = READ_NOISE_E**2 + light_e + GAIN_E**2 / 12.0
     noise = np.full_like(image, math.sqrt(variance_e2) / GAIN_E)
@@ -142,7 +159,7 @@ def looked_at(frame, dither):
     kinds = np.array(list(objects["kind"]))
     table = np.column_stack([np.asarray(objects[name], float) for name in ("x_px", "y_px", "snr", "electrons", "peak_electrons", "radius_px", "bloom_px")])
     is_star = kinds == "star"
-    # Beside stars that matter themselves; hot pixels and tracks only close by.
+    # Distances that exclude a star: large for stars and planets, small for hot pixels and cosmic-ray hits.
     reach = np.where(is_star | (kinds == "planet"), 6.0, 4.0)
     matter = table[:, 2] > 1.0
     stars = table[is_star & (table[:, 2] > 2.0) & (table[:, 4] < 0.5 * (FULL_DN - BIAS_DN) * GAIN_E)]
@@ -183,10 +200,10 @@ def recall_holds(snr, expected, found):
 
 
 def places_hold(snr, electrons, variance_e2, found, errors):
-    """Whether the places scatter as predicted, and whether few are far off."""
+    """Checks that the positions scatter as predicted, and that few are outliers."""
     core = (1.0 - HALO_SHARE) * electrons
     sigma = np.sqrt(8.0 * math.pi * WIDTH_PX**4 * variance_e2 / core**2 + 16.0 / 9.0 * WIDTH_PX**2 / core)
-    # A particle's track through a star, or a windowed centre that runs away: counted, and no part of the law.
+    # A cosmic-ray hit on a star, or a diverging windowed centre: counted, and outside the prediction.
     far = np.max(np.abs(np.nan_to_num(errors)), axis=1) * snr > OUTLIER * WIDTH_PX
     holds = True
     for name, inside in bins(PLACE_EDGES, snr):
@@ -203,9 +220,10 @@ def places_hold(snr, electrons, variance_e2, found, errors):
 
 
 def electrons_hold(snr, electrons, variance_e2, flux, free):
-    """Whether the electrons are those of the truth table in every bin, over all, and scatter as predicted."""
+    """Checks that the electrons agree with the truth table in every bin and over all, and scatter as
+    predicted."""
     lit = electrons + 2.0 * math.pi * HALO_PX**2 * FLOOR_E
-    # A ring's own noise is in the level that is taken away.
+    # The subtracted level contains the noise of the ring.
     sigma = np.sqrt(variance_e2 * (CIRCLE_NOISE + CIRCLE_AREA**2 / (RING_AREA * np.maximum(free, 0.1))) + CAUGHT * lit) / CAUGHT
     pulls = (flux - lit) / sigma
     measured = np.isfinite(flux)

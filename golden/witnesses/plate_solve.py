@@ -1,14 +1,20 @@
 #!/usr/bin/env python3
-"""A plate solver that nobody here wrote solves our frames: tetra3rs with its own extractor and its own catalogue (Gaia DR3).
+"""Independent plate solver: tetra3rs with its extractor and its catalogue (Gaia DR3) solves Boresight's
+frames.
 
     plate_solve.py [--pointings 300]
 
-Frames of ARGON's camera with every effect of its detector, at boresights spread evenly over the sky, whole images of 0.25 s. Each is solved lost in space. Demanded:
-- at least 99 % are solved of the frames in which ten stars or more are detectable (SNR of 5 or more in the truth table);
-- no bias of the boresight above 0.02 px along columns or rows, nor of the roll by more than that at the edge of the field;
-- the scatter about the truth is that which the solver claims, within a factor of two (it knows neither colours nor the wings of bright stars).
+Frames of ARGON's camera with every effect of its detector, at boresights spread evenly over the sky, whole
+images of 0.25 s. Each is solved lost in space. Required:
+- at least 99 % of the frames with ten or more detectable stars (SNR of 5 or more in the truth table) are
+  solved;
+- no bias of the boresight above 0.02 px along columns or rows, nor of the roll by more than that at the edge
+  of the field;
+- the scatter about the truth is that stated by the solver, within a factor of two (it models neither colours
+  nor the wings of bright stars).
 
-Prints what was found; exit status 0 when all of it holds, 1 when not. Needs the package `boresight` (pip install ./python) and requirements.txt.
+Prints the results; exit status 0 when all of it holds, 1 when not. Needs the package `boresight` (pip install
+./python) and requirements.txt.
 """
 
 import argparse
@@ -48,7 +54,8 @@ def main():
         if stars < LEAST_STARS:
             continue
         detectable += 1
-        # The solver's pixels: of a pinhole, square, from the principal point, in widths of a pixel. Its extractor counts from the middle of the image.
+        # Pixels of the solver: of a pinhole, square, from the principal point, in widths of a pixel. Its
+        # extractor counts from the middle of the image.
         places = np.array([(c.x + (columns - 1) / 2, c.y + (rows - 1) / 2, c.brightness) for c in found.centroids])
         ideal = camera.undistorted(places[:, :2]) * scale
         result = database.solve_from_centroids(

@@ -1,4 +1,6 @@
-"""Frames over the whole sky: the camera of ARGON with every effect of its detector, at boresights spread evenly."""
+"""Frames over the whole sky: the camera of ARGON with every effect of its detector, at boresights spread
+evenly.
+"""
 
 import math
 
@@ -15,14 +17,16 @@ GOLDEN_TURN = math.pi * (3.0 - math.sqrt(5.0))
 
 
 def lattice(count):
-    """Right ascension, declination and roll, degrees, of a spherical Fibonacci lattice; the rolls go round by another irrational."""
+    """Right ascension, declination and roll, degrees, of a spherical Fibonacci lattice; the rolls advance by
+    another irrational."""
     for k in range(count):
         declination = math.asin(1.0 - (2.0 * k + 1.0) / count)
         yield math.degrees(k * GOLDEN_TURN) % 360.0, math.degrees(declination), (k * math.sqrt(2.0) * 360.0) % 360.0
 
 
 def scenario_at(base, start_utc, ra_deg, dec_deg, roll_deg):
-    """ARGON's camera looking there at that time, whole images at its longest exposure: no regions, no shutter control."""
+    """ARGON's camera at a boresight and time, whole images at its longest exposure: no regions, no exposure
+    control."""
     return base.with_values({
         "attitude.guidance": {"mode": "inertial", "ra_deg": ra_deg, "dec_deg": dec_deg, "roll_deg": roll_deg},
         "roi": None,
@@ -32,7 +36,8 @@ def scenario_at(base, start_utc, ra_deg, dec_deg, roll_deg):
 
 
 def moments(base):
-    """Times with the directions to the Sun and to the centre of the Earth: eight along an orbit, in April and in October."""
+    """Times with the directions to the Sun and to the centre of the Earth: eight along an orbit, in April and
+    in October."""
     for day in ("2012-04-23T07", "2012-10-23T07"):
         for eighth in range(8):
             seconds = eighth * 741
@@ -45,7 +50,8 @@ def moments(base):
 
 
 def clear_moment(known, ra_deg, dec_deg):
-    """The time at which Sun and limb of the Earth are farthest from a boresight, each beyond its exclusion angle."""
+    """Time at which Sun and limb of the Earth are farthest from a boresight, each beyond its exclusion angle.
+    """
     ra, dec = math.radians(ra_deg), math.radians(dec_deg)
     boresight = np.array([math.cos(dec) * math.cos(ra), math.cos(dec) * math.sin(ra), math.sin(dec)])
     angle = lambda other: math.degrees(math.acos(float(np.clip(boresight @ other, -1.0, 1.0))))
@@ -55,7 +61,8 @@ def clear_moment(known, ra_deg, dec_deg):
 
 
 def frames(count, base=None):
-    """A frame a boresight, with its number, at a time at which neither Sun nor Earth is near: no camera works otherwise. Of ARGON, or of `base`, a scenario like it."""
+    """Yields a frame per boresight, with its number, at a time when neither Sun nor Earth is near, as a
+    camera requires. The scenario is ARGON, or `base`, a similar one."""
     base = base or boresight.Scenario.load("argon")
     known = list(moments(base))
     for k, (ra_deg, dec_deg, roll_deg) in enumerate(lattice(count)):
@@ -66,7 +73,8 @@ def frames(count, base=None):
 
 
 def observer_velocity_km_s(frame):
-    """Of the camera against the barycentre, ICRS axes, km/s: the Earth by ERFA's ephemeris in astropy, and the true orbit."""
+    """Velocity of the camera against the barycentre, ICRS axes, km/s: the Earth by ERFA's ephemeris in
+    astropy, and the true orbit."""
     time = Time(str(frame.truth["time_utc"]).removesuffix("Z"), scale="utc")
     _, earth = get_body_barycentric_posvel("earth", time)
     orbit = np.array([frame.truth[f"velocity_{axis}_km_s"] for axis in "xyz"])
@@ -84,7 +92,8 @@ def camera_from_icrs(frame):
 
 
 class Camera:
-    """ARGON's camera as its data sheet has it, written here once more: pixels to the plane of a pinhole of square pixels."""
+    """ARGON's camera by its data sheet, implemented independently: pixels to the plane of a pinhole of square
+    pixels."""
 
     def __init__(self, camera):
         self.f = np.array([camera["focal_length_mm"] / (camera[f"pixel_{side}_um"] * 1e-3) for side in ("width", "height")])

@@ -1,13 +1,18 @@
 #!/usr/bin/env python3
-"""OpenCV projects our stars: places on the detector against cv2.projectPoints, with radial and tangential distortion.
+"""Independent projection: star positions on the detector against cv2.projectPoints, with radial and
+tangential distortion.
 
     projection.py [--pointings 12]
 
-The camera of ARGON with square pixels (OpenCV's polynomial goes by directions, ours by pixels: with square ones they are the same numbers in other units), with distortion of some ten pixels at the corners, at boresights spread evenly
-over the sky. Directions of the stars are those of the truth table, without aberration: it is added here by its own formula (special relativity), and by the Earth's velocity as ERFA's ephemeris has it.
-Demanded: every star, up to the corners, within 0.001 px. (The deflection of light by the Sun, left out here, is below 0.0003 px more than 50 degrees from it.)
+The camera of ARGON with square pixels (OpenCV's polynomial uses directions, ours pixels: with square ones the
+numbers are equal in other units), with distortion of some ten pixels at the corners, at boresights spread
+evenly over the sky. Directions of the stars are those of the truth table, without aberration, which is added
+here by another formula (special relativity) with the Earth's velocity of ERFA's ephemeris. Required: every
+star, up to the corners, within 0.001 px. (Deflection by the Sun, omitted here, is below 0.0003 px more than
+50 degrees from it.)
 
-Prints what was found; exit status 0 when it holds, 1 when not. Needs the package `boresight` (pip install ./python) and requirements.txt.
+Prints the results; exit status 0 when it holds, 1 when not. Needs the package `boresight` (pip install
+./python) and requirements.txt.
 """
 
 import argparse
@@ -25,7 +30,8 @@ RADIAL, TANGENTIAL = (8e-8, -3e-14, 2e-20), (4e-6, -6e-6)  # px^-2, px^-4, px^-6
 
 
 def aberrated(directions, velocity_km_s):
-    """Unit vectors as a moving observer sees them (Klioner 2003, Astron. J. 125, 1580, eq. 33 without gravitation)."""
+    """Unit vectors as a moving observer sees them (Klioner 2003, Astron. J. 125, 1580, eq. 33 without
+    gravitation)."""
     beta = velocity_km_s / LIGHT_SPEED_KM_S
     inverse_gamma = np.sqrt(1.0 - beta @ beta)
     along = directions @ beta

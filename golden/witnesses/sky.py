@@ -1,19 +1,27 @@
 #!/usr/bin/env python3
-"""How many stars there are in a circular field: our list of stars against Tycho-2 and against the literature.
+"""Number of stars in a circular field: our list of stars against Tycho-2 and against the literature.
 
     sky.py
 
-Counts to magnitude 5, 6 and 7 in circular fields 8, 12 and 20 degrees wide around 200,000 centres spread evenly over the sky: their mean and the emptiest field. Demanded:
-- the mean number of stars from 5 to 6 and to 7 is that of Tycho-2 (Hog et al. 2000, as astrometry.net packs it, V_T made to V for a star of B-V = 0.5) to 5 %; a seventh of the stars brighter than 5
-  are not in that packing, which the table shows and nothing is demanded of;
-- the mean is that of Liebe's fit, 6.57 exp(1.08 M) stars brighter than M over the sky (2002, IEEE Trans. Aerosp. Electron. Syst. 38, 587), to 25 %, which is what a fit of two numbers is good for: to V = 7
-  it has 12 to 24 % less than every count below;
-- the whole list has as many stars as published counts of the whole sky (PUBLISHED, each with where it was read and what it is good for);
-- the emptiest field has as many stars as that of Tycho-2, within 2 or a fifth;
-The least number in a field was found published nowhere for these magnitudes and widths: Kleiman (An Analytical Approach to the Determination of Stellar Fields of View, 36 pages) tabulates how wide a circular
-field must be to hold 1, 2 and 3 stars wherever it looks, of 1064 stars to 4.7, and what could be read of it is the abstract. Tycho-2 alone holds it.
+Counts to magnitude 5, 6 and 7 in circular fields 8, 12 and 20 degrees wide around 200,000 centres spread
+evenly over the sky: their mean and the emptiest field. Required:
+- the mean number of stars from 5 to 6 and to 7 is that of Tycho-2 (Hog et al. 2000, as packed by
+  astrometry.net, V_T converted to V for a star of B-V = 0.5) to 5 %; a seventh of the stars brighter than 5
+  are missing in that packing, which the table shows without a requirement;
+- the mean is that of Liebe's fit, 6.57 exp(1.08 M) stars brighter than M over the sky (2002, IEEE Trans.
+  Aerosp. Electron. Syst. 38, 587), to 25 %, the accuracy of a fit of two numbers: to V = 7 it has 12 to 24 %
+  less than every count below;
+- the whole list has as many stars as published counts of the whole sky (PUBLISHED, each with source and
+  accuracy);
+- the emptiest field has as many stars as that of Tycho-2, within 2 or a fifth.
 
-Prints the table; exit status 0 when all of it holds, 1 when not. Needs the package `boresight` (pip install ./python), requirements.txt and Debian's `astrometry-data-tycho2-10-19`.
+No publication was found with the least number in a field for these magnitudes and widths: Kleiman (An
+Analytical Approach to the Determination of Stellar Fields of View, 36 pages) tabulates the width of a
+circular field that holds 1, 2 and 3 stars in every direction, of 1064 stars to 4.7, and only the abstract
+could be read. Tycho-2 alone confirms it.
+
+Prints the table; exit status 0 when all of it holds, 1 when not. Needs the package `boresight` (pip install
+./python), requirements.txt and Debian's `astrometry-data-tycho2-10-19`.
 """
 
 import pathlib
@@ -29,22 +37,28 @@ import pointings
 TYCHO2 = pathlib.Path("/usr/share/astrometry/index-tycho2-10.littleendian.fits")
 CENTRES = 200_000
 MAGNITUDES, WIDTHS_DEG = (5.0, 6.0, 7.0), (8.0, 12.0, 20.0)
-# V = V_T - 0.090 (B-V)_T (ESA 1997, The Hipparcos and Tycho Catalogues, vol. 1, section 1.3), with (B-V)_T = 0.59 for B-V = 0.5.
+# V = V_T - 0.090 (B-V)_T (ESA 1997, The Hipparcos and Tycho Catalogues, vol. 1, section 1.3), with (B-V)_T =
+# 0.59 for B-V = 0.5.
 V_MINUS_VT = -0.053
 
-# Name, {magnitude: stars that bright or brighter over the sky}, how near.
+# Name, {magnitude: stars of that or smaller magnitude over the sky}, tolerance.
 PUBLISHED = [
-    # Counts of the first Hipparcos Catalogue, from whose second reduction ours comes: other stars than these would be a fault of our reading, a few per cent are what V is made of.
+    # Counts of the first Hipparcos Catalogue, whose second reduction is ours: other stars would be a fault of
+    # our reader; a few per cent come from the definition of V.
     ("Hipparcos (OEIS A053406)", {5.0: 1600, 6.0: 4968, 7.0: 15328}, 0.03),
-    # Counts of Tycho (stargazing.net/david/constel/howmanystars.html, as astro.chilie.dk has them), between whole magnitudes: 0.05 mag is 5 %.
+    # Counts of Tycho (stargazing.net/david/constel/howmanystars.html, quoted by astro.chilie.dk), between
+    # integer magnitudes: 0.05 mag is 5 %.
     ("Tycho (stargazing.net)", {5.5: 2822, 6.5: 8768}, 0.05),
-    # Tycho-2 with UCAC4 (hnsky.com/star_count.htm), in a magnitude that is not said: V_T, if it is, is fainter than V by 0.05, 6 % of the stars.
+    # Tycho-2 with UCAC4 (hnsky.com/star_count.htm), in an unstated magnitude: V_T, if used, is fainter than V
+    # by 0.05, 6 % of the stars.
     ("Tycho-2 and UCAC4 (HNSKY)", {5.0: 1744, 6.0: 5326, 7.0: 16503}, 0.10),
-    # log10 N a square degree = -0.0003 m^3 + 0.0019 m^2 + 0.484 m - 3.82 from 4 to 25 (Space Math, "How many stars are in the sky?"): three digits, so 1 %, of a law over 21 magnitudes.
+    # log10 N a square degree = -0.0003 m^3 + 0.0019 m^2 + 0.484 m - 3.82 from 4 to 25 (Space Math, "How many
+    # stars are in the sky?"): three digits, so 1 %, of a polynomial over 21 magnitudes.
     ("polynomial of Space Math", {m: 41252.96 * 10.0 ** (-0.0003 * m**3 + 0.0019 * m**2 + 0.484 * m - 3.82) for m in MAGNITUDES}, 0.05),
-    # A round table that newspapers print (neagle.com, 2013-03-28), of older photometry whose zero is that of V to 0.1 mag, 10 % of the stars.
+    # A rounded table printed in newspapers (neagle.com, 2013-03-28), of older photometry whose zero is that
+    # of V to 0.1 mag, 10 % of the stars.
     ("round table", {5.0: 1620, 6.0: 4850, 7.0: 14300}, 0.10),
-    # Made to be complete to 6.5 (Hoffleit & Jaschek 1991), and with some that are fainter.
+    # A catalogue complete to 6.5 (Hoffleit & Jaschek 1991), with some fainter stars.
     ("Bright Star Catalogue", {6.5: 9096}, 0.10),
 ]
 
@@ -61,7 +75,8 @@ def ours():
 
 
 def tycho2():
-    """Unit vectors and V of the stars of an index of astrometry.net: coordinates are packed into 32 bits each, over the range that the index tells."""
+    """Unit vectors and V of the stars of an index of astrometry.net: coordinates are packed into 32 bits
+    each, over the range stated in the index."""
     with fits.open(TYCHO2) as index:
         data = {hdu.columns[0].name: hdu.data for hdu in index[1:]}
         lowest = np.frombuffer(data["kdtree_range_stars"].tobytes(), "<f8")

@@ -1,4 +1,4 @@
-"""What the tests share: the command to be compared with."""
+"""Fixtures of the tests: the command that results are compared with."""
 
 import os
 import shlex
@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="session")
 def command():
-    """Runs the command `boresight`: that of BORESIGHT_PROGRAM, or the one that cargo makes of this tree."""
+    """Runs the command `boresight`: that of BORESIGHT_PROGRAM, or the one built by cargo from this tree."""
     program = os.environ.get("BORESIGHT_PROGRAM", "cargo run --release --locked --quiet --")
 
     def run(*words: object) -> str:

@@ -1,4 +1,5 @@
-"""The command out of the package: its answers and exit statuses, the monitor's page in it, and that Ctrl-C ends it."""
+"""The command of the package: its output and exit statuses, the monitor's page in it, and its end by Ctrl-C.
+"""
 
 import json
 import signal
@@ -12,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = [sys.executable, "-m", "boresight"]
-"""Not the program `boresight` that is built apart."""
+"""Command of the package, not the separately built program `boresight`."""
 SCRIPT = [str(Path(sysconfig.get_path("scripts")) / "boresight")]
 
 

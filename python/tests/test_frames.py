@@ -91,7 +91,8 @@ def test_a_frame_that_there_is_not_is_told(argon, number):
 
 
 def test_the_truth_is_that_of_the_image(argon):
-    """Where the target is in the truth, there is light in the image: the brightest pixel of a frame with its target bright and alone."""
+    """The brightest pixel of a frame lies at the true position of its target, which is bright and isolated.
+    """
     frame = argon.frame(8001)
     objects = frame.objects
     assert objects["kind"][0] == "target"
@@ -127,8 +128,8 @@ def test_threads_of_a_stream_that_nobody_reads_on_end(argon):
 
 
 def test_python_runs_while_frames_are_made(argon):
-    """The interpreter's lock is free: another thread counts on while this one waits for frames. Were it held, the other would run
-    once or twice a frame."""
+    """The interpreter's lock is free: another thread counts while this one waits for frames. With the lock
+    held, it would run once or twice a frame."""
     counted, stop = [0], threading.Event()
 
     def count():

@@ -1,4 +1,4 @@
-"""The notebooks run, and what their text says is held against their numbers in their last cell."""
+"""The notebooks run; their last cell compares the numbers in their text with the results."""
 
 from pathlib import Path
 

@@ -36,7 +36,8 @@ def program():
 
 @pytest.fixture
 def store(monkeypatch):
-    """An S3 on this machine with a bucket; its files by fsspec. The environment leads this process and its children there."""
+    """An S3 server on this machine with a bucket; its files by fsspec. The environment directs this process
+    and its children to it."""
     server = ThreadedMotoServer(ip_address="127.0.0.1", port=0)
     server.start()
     host, port = server.get_host_and_port()
@@ -86,7 +87,7 @@ def test_results_in_an_object_store_are_those_of_one_process(program, study, sto
         assert store.cat_file(f"{URL}/{name}") == (whole / name).read_bytes(), name
     assert store.exists(f"{URL}/report.html")
 
-    # Run again, a whole shard is left as it is, and a damaged one is made anew.
+    # A second run keeps complete shards and makes a damaged one again.
     before = shards(store)
     first, *others = sorted(before)
     content = store.cat_file(first)

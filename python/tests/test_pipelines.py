@@ -1,4 +1,4 @@
-"""A pipeline written in Python is scored like any other, and what it does wrong is an outcome."""
+"""A pipeline written in Python is scored like any other, and its errors are outcomes."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""The same numbers as the command, bit for bit."""
+"""The package returns the numbers of the command, bit for bit."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""A study of a pipeline written in Python: every case is a run of its own, whatever runs beside it."""
+"""Studies of a pipeline written in Python: cases that run side by side do not affect each other."""
 
 import pytest
 
@@ -29,7 +29,7 @@ def study(tmp_path):
 
 
 class Remembering:
-    """Answers with what only its own case can have told it: the number of listed stars, and how many frames it has seen."""
+    """Answers with data of its case only: the number of listed stars, and the number of frames received."""
 
     def __init__(self, setup):
         self.stars, self.seen = len(setup["stars"]), 0

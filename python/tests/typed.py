@@ -1,4 +1,4 @@
-"""What type checkers must accept, and refuse: checked by `mypy --strict`, never run."""
+"""Code that type checkers must accept, or refuse: checked by `mypy --strict`, never run."""
 
 from typing import Any
 

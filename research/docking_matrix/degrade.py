@@ -1,7 +1,8 @@
 """Degradations of the fields of a rendered docking dataset, by OpenCV and ffmpeg.
 
-A sequence is an array (fields, rows, columns) of 8-bit grey values; fields alternate between the even and the odd rows of a
-camera frame, first field first. Every function returns a new array. None of it uses the television of the simulator.
+A sequence is an array (fields, rows, columns) of 8-bit grey values; fields alternate between the even and the
+odd rows of a camera frame, first field first. Every function returns a new array. None of it uses the
+television of the simulator.
 """
 
 import subprocess
@@ -13,7 +14,8 @@ TURN_DEG = 2.0
 
 
 def blurred(fields, sigma_px):
-    """Each field by itself, through ffmpeg's Gaussian filter; σ in pixels of the field, along columns and rows."""
+    """Each field by itself, through ffmpeg's Gaussian filter; σ in pixels of the field, along columns and
+    rows."""
     _, rows, columns = fields.shape
     command = ["ffmpeg", "-v", "error", "-f", "rawvideo", "-pix_fmt", "gray", "-s", f"{columns}x{rows}", "-i", "-",
                "-vf", f"gblur=sigma={sigma_px}:steps=4", "-f", "rawvideo", "-pix_fmt", "gray", "-"]
@@ -22,7 +24,8 @@ def blurred(fields, sigma_px):
 
 
 def blurred_frames(fields, sigma_px):
-    """Both fields of a frame woven, blurred and parted again: each then shows a part of the other's moment."""
+    """Both fields of a frame interleaved, blurred and separated again: each then contains a part of the
+    other's time."""
     made = fields.copy()
     for k in range(0, len(fields) - 1, 2):
         frame = np.empty((2 * fields.shape[1], fields.shape[2]), np.uint8)
@@ -56,7 +59,7 @@ def black(fields, part, seed):
 
 
 def repeated(fields, part, seed):
-    """In the place of some fields the one of the same rows before, bit for bit."""
+    """Replaces some fields by the preceding field of the same rows, bit for bit."""
     made = fields.copy()
     for k in share(len(fields), part, seed):
         made[k] = made[k - 2]
@@ -64,7 +67,8 @@ def repeated(fields, part, seed):
 
 
 def turned(fields, principal, first_is_odd):
-    """The picture turned about the principal point by TURN_DEG, its content from +x towards +y; each field by itself."""
+    """The picture turned about the principal point by TURN_DEG, its content from +x towards +y; each field by
+    itself."""
     _, rows, columns = fields.shape
     cos, sin = np.cos(np.radians(TURN_DEG)), np.sin(np.radians(TURN_DEG))
     made = []
@@ -85,7 +89,7 @@ def everything(fields, scene):
     return jpeg(repeated(fields, 0.1, scene["seed"]), 50)
 
 
-# Name, whether the picture is turned, and the function of fields and scene.
+# Name, True if the picture is turned, function of fields and scene.
 KINDS = {
     "none": (False, lambda fields, scene: fields),
     "blur 1.5": (False, lambda fields, scene: blurred(fields, 1.5)),

@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
-"""Docking on degraded television: eleven kinds of degradation, made by ffmpeg and OpenCV, at three ranges, in two motions.
+"""Docking on degraded television: eleven kinds of degradation by ffmpeg and OpenCV, at three ranges, in two
+motions.
 
     python3 research/docking_matrix/run.py --boresight target/release/boresight                # 1000 fields a cell
     python3 research/docking_matrix/run.py --boresight target/release/boresight --blocks 1     # 40 fields a cell, minutes
     python3 research/docking_matrix/run.py --boresight ... --blocks 1 --fields 12 --kinds none "blur 3" --check
 
-A cell is a kind, a range and a motion; it is measured in blocks of consecutive fields, each block by a pipeline that has seen
-nothing before. `constant` moves at constant velocity before a camera with noise alone; `approach` is the scenario `docking` with
-every artefact. `defocus` is not degraded: the simulator's lens has the blur. Printed per cell: the share of measured, doubtful and
-grossly wrong fields, what is wrong and not doubtful with the upper end of its 95 % interval (Clopper and Pearson), NEES over its
-dimension, and the share of motion parameters within 3 σ.
+A cell is a kind, a range and a motion, measured in blocks of consecutive fields, each block by a new
+pipeline. `constant` moves at constant velocity before a camera with noise only; `approach` is the scenario
+`docking` with every artefact. `defocus` is not degraded: the simulator's lens has the blur. Printed per cell:
+the share of measured, doubtful and grossly wrong fields, the share of wrong and not doubtful fields with the
+upper end of its 95 % interval (Clopper and Pearson), NEES over its dimension, and the share of motion
+parameters within 3 σ.
 
---renderer mitsuba draws the scene by Mitsuba (docs/mitsuba.md): half a minute of CPU a field at 64 rays, so that a sample of six fields a block is
-what there is time for; its images are kept in --mitsuba-cache.
+--renderer mitsuba renders the scene by Mitsuba (docs/mitsuba.md): half a minute of CPU a field at 64 rays,
+which allows a sample of six fields a block; its images are kept in --mitsuba-cache.
 
     python3 research/docking_matrix/run.py --boresight ... --renderer mitsuba --mitsuba venv/bin/mitsuba --blocks 1 --fields 6 --motions constant
 
@@ -43,18 +45,20 @@ SCENARIO = ROOT / "scenarios" / "docking.toml"
 PRINCIPAL_PX = (383.5, 287.5)
 SEED = 27
 
-# Constant velocity: d3 at the beginning and its rate; the approach: first and last field of the scenario. Even: whole frames.
+# Constant velocity: d3 at the beginning and its rate; approach: first and last field of the scenario. Even
+# numbers: whole frames.
 RANGES = {
     "far": {"d3_m": 44.0, "rate_m_s": -0.6, "fields": (15850, 16550)},
     "middle": {"d3_m": 20.0, "rate_m_s": -0.4, "fields": (16850, 17650)},
     "near": {"d3_m": 5.0, "rate_m_s": -0.1, "fields": (21900, 22700)},
 }
-# Blur of the simulator's own lens, px, at a distance.
+# Blur of the simulator's lens, px, at a distance.
 DEFOCUS = [(2.2, 27.0), (3.0, 27.0), (5.0, 20.0), (3.0, 55.0)]
 
 
 def scenario(approach_toml, blur_px=0.7, is_quiet=True):
-    """The scenario of this tree with another approach and blur; quiet: of the television the noise alone."""
+    """The scenario of this tree with another approach and blur; `quiet` keeps only the noise of the
+    television."""
     lines, section, kept = SCENARIO.read_text().splitlines(), "", []
     for line in lines:
         if line.startswith("["):
@@ -88,7 +92,7 @@ class Cell:
         figures = score["figures"]
 
         def pooled(name):
-            """The sum and the number of what a figure is counted over: of a rate `count` is the sum itself."""
+            """Sum of a figure's values and their number; the sum of a rate is its `count`."""
             figure = figures.get(name) or {}
             value, number = figure.get("value"), figure.get("count" if name == "nees_mean" else "of", 0)
             return (0.0, 0) if value is None else (value * number, number)
@@ -117,7 +121,8 @@ HEAD = ("motion    range        kind            fields measured doubtful wrong  
 
 
 def upper(count, of):
-    """Upper end of the two-sided 95 % interval of a rate (Clopper and Pearson 1934); one-sided where nothing was seen."""
+    """Upper end of the two-sided 95 % interval of a rate (Clopper and Pearson 1934); one-sided for a count of
+    0."""
     if count >= of:
         return 1.0
     if count == 0:
@@ -140,7 +145,8 @@ def boresight(program, *words):
 
 
 def turned_truth(table):
-    """The truth of a camera that sees the turned picture: exp([phi']) = exp([phi]) Rz(-turn); see degrade.turned."""
+    """The truth of a camera that sees the turned picture: exp([phi']) = exp([phi]) Rz(-turn); see
+    degrade.turned."""
     half = -0.5 * math.radians(degrade.TURN_DEG)
     turn = np.array([math.cos(half), 0.0, 0.0, math.sin(half)])
 

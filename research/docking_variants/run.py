@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Variants of the scenario `docking`, drawn by a study: is sigma honest at every range?
+"""Variants of the scenario `docking`, drawn by a study: tests the consistency of sigma at every range.
 
     python3 research/docking_variants/run.py --boresight target/release/boresight --out variants [--cases 30] [--jobs 1]
 
-The draws are those of study.toml (Sun, television, lens, approach), the approach is approach.toml, all else is scenarios/docking.toml. Every case is
-flown with `boresight study replay`; a case that is there already is not flown again. Printed by bin of true range and lens: NEES of single
-fields over its dimension, accuracy, doubtful and wrong fields, and for each parameter of the motion the share of reports within three standard
-deviations. The intervals are of 95 %, clustered by run: Student's t over the runs' sums (a ratio's linearised scatter).
+The draws are those of study.toml (Sun, television, lens, approach), the approach is approach.toml, everything
+else is scenarios/docking.toml. Every case is run with `boresight study replay`; existing cases are not
+repeated. Printed by bin of true range and lens: NEES of single fields over its dimension, accuracy, doubtful
+and wrong fields, and for each parameter of the motion the share of reports within three standard deviations.
+The intervals are of 95 %, clustered by run: Student's t over the runs' sums (a ratio's linearised scatter).
 
-Needs nothing but Python.
+Needs only Python.
 """
 
 import argparse
@@ -22,12 +23,13 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
 PARAMETERS = ["range", "range_rate", "alpha", "beta", "phi1", "phi2", "phi3"]
-# Two-sided 95 % of Student's t by degrees of freedom (Abramowitz and Stegun, table 26.10); between them the next smaller.
+# Two-sided 95 % of Student's t by degrees of freedom (Abramowitz and Stegun, table 26.10); for others the
+# next smaller entry is used.
 STUDENT = {1: 12.71, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 7: 2.36, 9: 2.26, 14: 2.14, 19: 2.09, 29: 2.045, 59: 2.00, 119: 1.98}
 
 
 def write_study(out):
-    """The study beside its scenario: docking with this folder's approach."""
+    """Study and scenario: docking with this folder's approach."""
     out.mkdir(parents=True, exist_ok=True)
     kept, section = [], ""
     for line in (ROOT / "scenarios" / "docking.toml").read_text().splitlines():

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Writes the scenarios of the project's own gates from the built-in ones, from which they differ by when images are taken alone.
+"""Writes the scenarios of the project's gates from the built-in ones; they differ only in the times of
+images.
 
     python3 scenarios/gates/make.py
 
-`argon.toml`: thirty stretches of thirty images, six on each day, instead of 16,077 images. A stretch is a block: the next one is hours
-away. They begin at places of the golden ratio within equal parts of the day, so that no period of the orbit or of a drift is met at one
-phase alone.
+`argon.toml`: thirty stretches of thirty images, six on each day, instead of 16,077 images. A stretch is a
+block: the next one is hours away. They begin at positions of the golden ratio within equal parts of the day,
+so that they sample all phases of every period of the orbit or of a drift.
 
 `docking.toml`: from 30 m to contact in half a minute instead of from 500 m in eight minutes.
 """

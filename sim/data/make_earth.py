@@ -1,19 +1,20 @@
 """Makes earth.bin: the barycentric positions of the Earth and the Sun as Chebyshev polynomials.
 
-Source: ERFA `epv00` (pyerfa 2.0.1.5, numpy 2.4.6), an analytical series fitted to DE405; by its own documentation
-the barycentric Earth is within 13.4 km and 4.9 mm/s of DE405 (1900-2100). Frame ICRS (BCRS axes), time TDB, unit km.
+Source: ERFA `epv00` (pyerfa 2.0.1.5, numpy 2.4.6), an analytical series fitted to DE405; by its documentation
+the barycentric Earth is within 13.4 km and 4.9 mm/s of DE405 (1900-2100). Frame ICRS (BCRS axes), time TDB,
+unit km.
 
     python3 make_earth.py earth.bin
 
-Layout: little-endian f64, no header. PIECES records, each for PIECE_DAYS days from START_JD on, of
-3 x EARTH_TERMS coefficients (Earth x, then y, then z, the constant term first) and 3 x SUN_TERMS (the Sun's).
-Argument of the polynomials: -1 at the start of a piece, +1 at its end. sim/src/truth/ephemeris.rs holds the same
-constants.
+Layout: little-endian f64, no header. PIECES records, each for PIECE_DAYS days from START_JD on, of 3 x
+EARTH_TERMS coefficients (Earth x, then y, then z, the constant term first) and 3 x SUN_TERMS (the Sun's).
+Argument of the polynomials: -1 at the start of a piece, +1 at its end. sim/src/truth/ephemeris.rs holds the
+same constants.
 
-Why 32 days and 18 terms: the Moon swings the Earth by 4700 km and 12 m/s every 27.3 days, and the last terms must
-follow that and its harmonics. The polynomials are fitted to the velocity and integrated, because a fit to the position
-is several times worse in velocity at the ends of a piece, and the velocity is what aberration needs. The script
-measures what is left and stops when it is more than the stated limits.
+Reason for 32 days and 18 terms: the Moon moves the Earth by 4700 km and 12 m/s every 27.3 days, and the last
+terms must follow that and its harmonics. The polynomials are fitted to the velocity and integrated, because a
+fit to the position is several times worse in velocity at the ends of a piece, and aberration needs the
+velocity. The script measures the residuals and stops when they exceed the stated limits.
 """
 
 import sys

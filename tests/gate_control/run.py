@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Holds the gate against what it promises, with runs of the program itself.
+"""Tests the claims of the gate, with runs of the program itself.
 
     python3 tests/gate_control/run.py                                   # all parts, hours on two cores
     python3 tests/gate_control/run.py sequences --trials 40             # one part, fewer trials
 
-Null control, 400 pairs of results that differ by their seed alone; at most 31 may be found worse (20 are expected at 5 %):
+Null control, 400 pairs of results that differ only by their seed; at most 31 may be found worse (20 are
+expected at 5 %):
   sequences   single sequences of 400 images (scenarios/starting-point.toml)
   studies     studies of 12 draws, 16 images each
   sweeps      studies of 8 draws at two points of a sweep
@@ -12,8 +13,9 @@ Null control, 400 pairs of results that differ by their seed alone; at most 31 m
 Faults planted in the measurements of 100 runs, on the same frames:
   far_range   scenarios/gates/argon.toml
   docking     scenarios/gates/docking.toml
-A fault whose effect is at least as large as the gate itself states as visible must be found in 95 of 100 runs; of fewer than 20
-such runs in all but one, of fewer than four in all.
+
+A fault whose effect is at least the gate's stated smallest visible change must be found in 95 of 100 runs;
+among fewer than 20 such runs in all except one, among fewer than four in all.
 
 Needs Python's standard library and the program, built (`cargo build --release --locked`, or --program).
 """
@@ -61,7 +63,7 @@ values = [60, 90]
 
 
 class Control:
-    """The program, and a folder for what it writes."""
+    """The program, and a folder for its output."""
 
     def __init__(self, program, folder):
         self.program, self.folder = program, pathlib.Path(folder)
@@ -96,7 +98,8 @@ class Control:
 
 
 def null_pair(control, kind, pair):
-    """Whether two results that differ by their seed alone are told apart; how many figures had too little data, and of how many."""
+    """Compares two results that differ only by their seed; also returns the number of figures with too little
+    data, and the number of all."""
     folders = [control.folder / f"{kind}-{pair}-{side}" for side in "ab"]
     baseline = control.folder / f"{kind}-{pair}-baseline"
     for side, folder in enumerate(folders):
@@ -118,7 +121,7 @@ def null_control(control, kind, trials, jobs):
     alarms = sum(bool(alarms) for alarms, _, _ in pairs)
     names = collections.Counter(name for alarms, _, _ in pairs for name in alarms)
     little = sum(little for _, little, _ in pairs) / sum(count for _, _, count in pairs)
-    # 31 of 400: two and a half standard deviations above what is expected.
+    # 31 of 400: two and a half standard deviations above the expectation.
     most = math.floor(0.05 * trials + 2.55 * math.sqrt(0.05 * 0.95 * trials))
     print(f"{kind}: {alarms} of {trials} pairs rejected, at most {most} allowed; too little data for {little:.1%} of the figures", flush=True)
     print(f"  {dict(names.most_common(6))}", flush=True)
@@ -171,7 +174,7 @@ def stale(rows, _):
 
 
 def shifted(column, by):
-    """The column of a measurement with something added; places stay on the detector."""
+    """Adds a constant to a column of a measurement; positions stay on the detector."""
     last = {"x_px": 751.0, "y_px": 579.0}[column]
 
     def plant(rows, _):
@@ -259,16 +262,17 @@ def plan_of(world):
 
 
 def faults_of_seed(control, world, seed):
-    """Of each fault whether it was found, and whether the gate states a change of its size as visible."""
+    """For each fault: True if it was found, and True if the gate states a change of its size as visible."""
     scenario, faults = plan_of(world)
     run = control.folder / f"{world}-{seed}"
     baseline, faulty = run.with_suffix(".baseline"), run.with_suffix(".faulty")
     control.run("run", SCENARIOS / "gates" / f"{scenario}.toml", "--seed", seed, "--out", run)
-    # What is not the pipeline's measurement is not the fault's.
+    # Removes files that are not measurements: the faults do not change them.
     for name in ("SHA256SUMS", "score.json", "report.html", "motion.csv"):
         (run / name).unlink(missing_ok=True)
     rows = read_rows(run)
-    # The faults of centroids leave the line of sight to the program: so does what they are held against.
+    # Faults of centroids have no line of sight of the pipeline, nor has the baseline that they are compared
+    # with.
     plain = without_line_of_sight(lambda rows, _: rows)
     found = {}
     for name, fault in faults.items():
@@ -287,7 +291,8 @@ def faults_of_seed(control, world, seed):
 
 
 def is_visible(report):
-    """Whether any figure differs, for the worse or from a best value, by what the gate states as visible."""
+    """Returns true if any figure differs, for the worse or from a best value, by the gate's smallest visible
+    change."""
 
     def of_figure(figure):
         run = figure["loss_run"]

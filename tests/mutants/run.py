@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
-"""Mutation testing (cargo-mutants) of what an oracle must not have wrong: score, gate, statistics, astrometry, cameras, attitude.
+"""Mutation testing (cargo-mutants) of the oracle's core: score, gate, statistics, astrometry, cameras,
+attitude.
 
-A mutant is compiled in seconds: the crates of the oracle are small, and in a copy of the tree the simulator and the pipelines are pruned
-to the modules in question and what they need; a module sees the same code, and is tested by its own tests. Survivors that are no faults are argued away in
-`.cargo/mutants.toml`.
+A mutant is compiled in seconds: the crates of the oracle are small, and in a copy of the tree the simulator
+and the pipelines are pruned to the modules in question and their dependencies; a module has the same code,
+and is tested by its own tests. Survivors that are no faults are explained in `.cargo/mutants.toml`.
 
     python3 tests/mutants/run.py                  every group; exit 1 when a mutant survives
     python3 tests/mutants/run.py score sim        some
     python3 tests/mutants/run.py --shard 0/8      every group, each eighth mutant: a sample in a part of the time
     python3 tests/mutants/run.py --list           the groups and how many mutants they have
 
-Needs cargo-mutants 27 (`cargo install --locked cargo-mutants@27.1.0`). What became of each mutant is in target/mutants/GROUP/mutants.out.
+Needs cargo-mutants 27 (`cargo install --locked cargo-mutants@27.1.0`). The result of each mutant is in
+target/mutants/GROUP/mutants.out.
 """
 
 import argparse
@@ -23,7 +25,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# By group: package, files, suites of integration tests beside the tests of the library, words that choose tests and words that leave tests out.
+# By group: package, files, suites of integration tests beside the tests of the library, words that select
+# tests and words that exclude tests.
 GROUPS = {
     "score": ("boresight-score", ["oracle/score/src/**"], [], [], []),
     # Intervals are tried by thousands of samples, which without optimisation takes a minute.
@@ -47,7 +50,7 @@ GROUPS = {
     ),
 }
 
-# What is left of the module trees of large crates, by the folder of the crate.
+# Remaining module trees of large crates, by the folder of the crate.
 PRUNED = {
     "sim": {
         "sim/src/lib.rs": "pub mod catalog;\nmod constants;\nmod error;\npub mod optics;\npub mod regular_file;\npub mod truth;\npub use error::SimError;",

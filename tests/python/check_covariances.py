@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Recomputes the score's figures of covariances with numpy, from the files alone.
+"""Recomputes the score's figures of covariances with numpy, from the files only.
 
     check_covariances.py BORESIGHT DATASET
 
-Makes measurements of a rendered far-range dataset: true places and lines of sight with normal errors of known covariances, in which every third frame
-is scaled so that covariances are too small by half. Has `BORESIGHT score` judge them, and computes NEES, shares within 1 and 3 sigma and the rows of
-`consistency` anew from `measurements.csv` and the tables of truth, by the definitions of docs/score.md and with matrices inverted by numpy.
+Makes measurements of a rendered far-range dataset: true positions and lines of sight with normal errors of
+known covariances, in which every third frame is scaled so that covariances are too small by half. Runs
+`BORESIGHT score` on them, and computes NEES, shares within 1 and 3 sigma and the rows of `consistency` from
+`measurements.csv` and the tables of truth, by the definitions of docs/score.md and with matrices inverted by
+numpy.
 
 Prints a line a figure; exit 0 when all agree to 1e-9, 1 when one does not.
 """
@@ -58,7 +60,7 @@ def target_of(objects):
 
 
 def make(frames, objects, path):
-    """Measurements whose errors have the covariances that they state, but for every third."""
+    """Measurements whose errors have the stated covariances, except for every third."""
     random = np.random.default_rng(7)
     rows = []
     for index, frame in enumerate(frames):

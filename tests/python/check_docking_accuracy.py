@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Asserts that the pose is measured better than by OpenCV, from the table of research/src/bin/docking_accuracy on standard input.
+"""Asserts that the pose is more accurate than OpenCV's, from the table of docking_accuracy on standard input.
 
     cargo run --release -p boresight-research --bin docking_accuracy -- OUT --poses 10 --python PYTHON | python3 tests/python/check_docking_accuracy.py
 
-In every row: nine poses of ten are answered, the root mean squares of the errors of range, place and angles are smaller than OpenCV's on
-the same frames, and within 2.5 times the Cramer-Rao bound (2 are wanted of 200 poses; a root mean square of ten is known to a quarter).
+In every row: nine poses of ten are answered, the root mean squares of the errors of range, position and
+angles are smaller than OpenCV's on the same frames, and within 2.5 times the Cramer-Rao bound (2 is the goal
+for 200 poses; a root mean square of ten has an uncertainty of a quarter).
 """
 
 import sys
@@ -32,7 +33,7 @@ def main():
         if share < 0.9:
             sys.exit(f"{name}: {share:.0%} of the poses are answered, expected 90 %")
         for what, ours, theirs in zip(WHAT, best, opencv):
-            # Where OpenCV gives no result there is nothing to be better than.
+            # Rows without a result of OpenCV have nothing to compare with.
             if theirs != "-" and not float(ours) < float(theirs):
                 sys.exit(f"{name}: error of {what}: {ours}, expected below OpenCV's {theirs}")
         for what, over in zip(WHAT, methods["best/3"]):

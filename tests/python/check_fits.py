@@ -4,13 +4,14 @@
     check_fits.py DATASET [--png DIR]
 
 For each FITS frame that DATASET/telemetry.csv names:
-- its world coordinates against DATASET/truth/objects.parquet: stars on the detector, from ra_deg and dec_deg to
-  x_px and y_px, within 0.05 px with SIP over the whole field, and within 0.05 px without SIP near the principal
-  point, where distortion is below a hundredth of a pixel;
+- its world coordinates against DATASET/truth/objects.parquet: stars on the detector, from ra_deg and dec_deg
+  to x_px and y_px, within 0.05 px with SIP over the whole field, and within 0.05 px without SIP near the
+  principal point, where distortion is below a hundredth of a pixel;
 - its exposure and its times against telemetry.csv, and the cards that make a frame repeatable;
 - its pixels against the 16-bit PNG of the same frame, if there is one beside it or in --png.
 
-Prints one line of figures a check; exit 0 when all hold, 1 when one does not, 2 when the dataset cannot be read.
+Prints one line of figures a check; exit 0 when all hold, 1 when one does not, 2 when the dataset cannot be
+read.
 """
 
 import argparse
@@ -26,7 +27,7 @@ from astropy.time import Time
 from astropy.wcs import WCS, FITSFixedWarning
 from PIL import Image
 
-# The fit promises 0.01 px; the rest is room for what a truth table rounds or a centroid adds.
+# The fit guarantees 0.01 px; the remainder allows for rounding in the truth table and errors of a centroid.
 TOLERANCE_PX = 0.05
 # Distortion k1 r^3 of the flight camera (2.6e-8 px^-2) stays below 0.007 px within this radius.
 CENTRE_RADIUS_PX = 64.0
@@ -37,7 +38,7 @@ REQUIRED_CARDS = ["EXPTIME", "DATE-BEG", "DATE-AVG", "DATE-END", "TIMESYS", "RAD
 
 
 class Report:
-    """Figures of every check, and whether all of them held."""
+    """Figures of every check, and True if all of them held."""
 
     def __init__(self):
         self.failed = False
@@ -52,7 +53,8 @@ def worst(distances):
 
 
 def check_wcs(header, stars, frame):
-    """Distances, px, between truth and world coordinates: with SIP everywhere, without SIP near the centre."""
+    """Distances, px, between truth and world coordinates: with SIP everywhere, without SIP near the centre.
+    """
     with warnings.catch_warnings():
         # A note that DATE-BEG has filled in MJD-BEG is not a fault of the header.
         warnings.simplefilter("ignore", FITSFixedWarning)

@@ -1,15 +1,16 @@
-"""The pose of docking frames with OpenCV: the referee of research/src/bin/docking_accuracy.
+"""Estimates the pose of docking frames with OpenCV: the reference of research/src/bin/docking_accuracy.
 
     python docking_pnp.py FOLDER [--quiet]
 
-FOLDER holds setup.json (camera and target), poses.csv (frame, file, truth, and a prior whose position is off by 1 % of the
-range) and the frames, progressive PNG. For every frame: the target is found about the place that the prior predicts
-(normalised correlation with a drawing of the target), the marks and the arms of the cross are centroids of adaptively
-thresholded blobs, weighted with what stands above the dark plate; then the iterative solvePnP of the 12 mark centres with the
-cross's centre and the centres of its four arms, without RANSAC (which sometimes rejects the stand-off cross), begun at the
-prior. A mark whose residual is beyond 3 sigma of the others' (and half a pixel) is cut by a shadow and left out; a pose more than
-10 % of the range off the prior is no answer. Written to opencv.csv: frame, d1_m, d2_m, d3_m, phi1_rad, phi2_rad, phi3_rad; empty where OpenCV has no answer. The
-truth is only read for the errors that are printed.
+FOLDER holds setup.json (camera and target), poses.csv (frame, file, truth, and a prior whose position is off
+by 1 % of the range) and the frames, progressive PNG. For every frame: the target is found near the position
+predicted by the prior (normalised correlation with a drawing of the target); the marks and the arms of the
+cross are centroids of adaptively thresholded blobs, weighted by their excess over the dark plate; then the
+iterative solvePnP uses the 12 mark centres, the cross's centre and the centres of its four arms, without
+RANSAC (which sometimes rejects the stand-off cross), starting at the prior. A mark whose residual is beyond 3
+sigma of the others' (and half a pixel) is cut by a shadow and left out; a pose more than 10 % of the range
+off the prior is no answer. Written to opencv.csv: frame, d1_m, d2_m, d3_m, phi1_rad, phi2_rad, phi3_rad;
+empty where OpenCV has no answer. The truth is only read for the printed errors.
 """
 
 import argparse
@@ -79,7 +80,7 @@ def drawing(target, pose, shape):
 
 
 def shift_of_prior(image, target, prior):
-    """Where the target is, from where the prior puts it, in whole pixels."""
+    """Shift of the target from its predicted position, in integer pixels."""
     outline = np.concatenate([target.marks.reshape(-1, 3), target.arms.reshape(-1, 3)])
     pixels = target.project(outline, prior)
     low = np.floor(pixels.min(axis=0) - 3).astype(int)
@@ -97,7 +98,8 @@ def shift_of_prior(image, target, prior):
 
 
 def centroid(image, binary, corners, centre_guess):
-    """Sub-pixel centre of the blob of a feature: brightness above the plate, inside the dilated blob next to the guess."""
+    """Sub-pixel centre of the blob of a feature: brightness above the plate, inside the dilated blob next to
+    the guess."""
     size = np.ptp(corners, axis=0)
     reach = np.ceil(0.5 * size + 3).astype(int)
     middle = np.round(centre_guess).astype(int)
@@ -126,8 +128,9 @@ def centroid(image, binary, corners, centre_guess):
 
 
 def arm_centre(image, corners):
-    """The arm's middle by the weighted centroid of the quadrilateral's surroundings, which touch the crossing: only the axis is
-    measured, by the rows or columns across the arm; the middle along it is that of the quadrilateral."""
+    """The arm's middle by the weighted centroid of the quadrilateral's surroundings, which touch the
+    crossing: only the axis is measured, by the rows or columns across the arm; the middle along it is that of
+    the quadrilateral."""
     direction = corners[1] - corners[0]
     length = np.linalg.norm(direction)
     if length < 2:

@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""The built-in pipeline against programs that a competent user would write, on ARGON and four other cameras.
+"""Compares the built-in pipeline with programs that a competent user would write, on ARGON and four other
+cameras.
 
     python3 tests/rivals/run.py [--program target/release/boresight] [--frames 300]
 
-Each of the five days of ARGON and each scenario of scenarios/comparison/ is processed by the best mode and by the examples argmax.py, brightest.py,
-sep_brightest.py and photutils_brightest.py. A table has the share of correct answers and the RMS of the centroid along x and y, px, over the frames in which a program took the target. The exit status is 1
-where the best mode is correct less often than a rival by more than 0.1 points, or where its centroid is worse in the frames in which both took the target. Needs what tests/python/requirements.txt names.
+The best mode and the examples argmax.py, brightest.py, sep_brightest.py and photutils_brightest.py process
+each of the five days of ARGON and each scenario of scenarios/comparison/. A table has the share of correct
+outcomes and the RMS of the centroid along x and y, px, over the frames in which a program measured the
+target. The exit status is 1 if the best mode is correct less often than a rival by more than 0.1 points, or
+if its centroid is worse in the frames in which both measured the target. Needs the packages of
+tests/python/requirements.txt.
 """
 
 import argparse
@@ -30,7 +34,8 @@ DAYS = {"argon, day 1": 0, "argon, day 2": 1634, "argon, day 3": 4612, "argon, d
 
 
 def scored(program, scenario, frames, pipeline):
-    """Correct rate of a run, and the errors of its centroids in the frames where it took the target: {frame: (x, y)}, px."""
+    """Correct rate of a run, and the errors of its centroids in the frames where it took the target: {frame:
+    (x, y)}, px."""
     with tempfile.TemporaryDirectory() as out:
         command = [program, "run", str(scenario), "--no-report", "--json", "--out", f"{out}/run"]
         command += ["--frames", frames] if frames else []

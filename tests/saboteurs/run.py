@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
-"""Tests the tests: plants each fault of `faults/` and says which suites catch it.
+"""Tests the tests: plants each fault of `faults/` and reports the suites that catch it.
 
-Every fault is a patch that puts wrong code behind a switch, `contract::sabotage("NAME")`. All patches are applied to one copy of
-the tree, the tests are compiled once, and run for each fault with BORESIGHT_SABOTAGE=NAME. The tree itself stays as it is.
+Every fault is a patch that puts wrong code behind a switch, `contract::sabotage("NAME")`. All patches are
+applied to one copy of the tree, the tests are compiled once, and run for each fault with
+BORESIGHT_SABOTAGE=NAME. The tree itself is not changed.
 
-    python3 tests/saboteurs/run.py --check            every patch applies to the tree as it is (no compiler needed)
+    python3 tests/saboteurs/run.py --check            every patch applies to the current tree (no compiler needed)
     python3 tests/saboteurs/run.py                    all faults, the fast suites; exit 1 when one is not caught
     python3 tests/saboteurs/run.py --only gain-inverted
-    python3 tests/saboteurs/run.py --suites first     only until one suite catches it: the question of a new fault
+    python3 tests/saboteurs/run.py --suites first     only until one suite catches it: for a new fault
     python3 tests/saboteurs/run.py --suites all       slow tests too
     python3 tests/saboteurs/run.py --write            and write the table into docs/saboteurs.md
 
-A suite is the unit tests of a crate (`sim/src`) or a module of its integration tests (`sim/tests/pixel_distribution`). One that was run once
-with a fault is not run again as long as its executable is the same: a run that was interrupted goes on.
+A suite is the unit tests of a crate (`sim/src`) or a module of its integration tests
+(`sim/tests/pixel_distribution`). A result for a fault is reused while the suite's executable is unchanged: an
+interrupted run continues.
 """
 
 import argparse
@@ -34,27 +36,27 @@ HERE = ROOT / "tests" / "saboteurs"
 PAGE = ROOT / "docs" / "saboteurs.md"
 BEGIN, END = "<!-- written by tests/saboteurs/run.py -->", "<!-- end -->"
 
-# All packages of the workspace are compiled and run but these: the Python package computes nothing, the fuzzer only feeds
-# the readers, and the research programs have no tests.
+# All packages of the workspace are compiled and run except these: the Python package computes nothing, the
+# fuzzer only feeds the readers, and the research programs have no tests.
 LEFT_OUT = {"boresight-python", "boresight-fuzz", "boresight-research"}
 
-# Fails at any change of the code, right or wrong: it says that something changed, and is no witness against a fault.
+# Fails at any change of the code, right or wrong, and so is no witness against a fault.
 FROZEN = re.compile(r"frozen")
 
-# Suites that ask about the tree and not about what it computes: the switches of the faults change it.
+# Suites about the tree rather than its computations: the switches of the faults change it.
 OF_THE_TREE = {"tests/architecture", "tests/import_circles", "tests/named_suites", "tests/supply_chain"}
 
-# Left out unless `--suites all`: suites whose subject is the command line, a browser or another program, not what is computed …
+# Left out unless `--suites all`: suites about the command line, a browser or another program, and …
 SLOW_SUITES = {"tests/monitor", "tests/mitsuba", "tests/shell", "tests/bad_input"}
-# … and tests that take long, by suite and name; others of their kind are run.
+# … tests that take long, by suite and name; others of their kind are run.
 SLOW_TESTS = {
     "pipeline/src": ["wide_at_1_m_errors", "narrow_at_3_m_errors", "narrow_at_5_m_errors"],
     "tests/gate": ["null_control", "frames_taken_for_independent"],
 }
 
-# A test that hangs has noticed something; so long may it take, at least.
+# Shortest time limit of a test: one that hangs has noticed something.
 LEAST_LIMIT_S = 180.0
-# … and so long a suite without a fault.
+# Time limit of a suite without a fault.
 LONGEST_S = 3600.0
 
 
@@ -67,18 +69,18 @@ def patches() -> list[Path]:
 
 
 def sentence(patch: Path) -> str:
-    """What a fault is: the text above its changes."""
+    """Description of a fault: the text above its changes."""
     return " ".join(patch.read_text().split("\n--- ", 1)[0].split())
 
 
 def touched(patch: Path, crates: Iterable[str]) -> set[str]:
-    """Those of the crates (their folders; the root package is '') that a fault changes."""
+    """Crates that a fault changes, by folder; the root package is ''."""
     files = re.findall(r"^\+\+\+ b/(\S+)", patch.read_text(), re.MULTILINE)
     return {max((crate for crate in crates if not crate or file.startswith(f"{crate}/")), key=len) for file in files}
 
 
 def check() -> int:
-    """Whether all patches apply to the tree as it is, each alone and all together."""
+    """Checks that all patches apply to the current tree, each alone and all together."""
     bad = [p for p in faults() if git_apply(ROOT, [HERE / "switch.patch", p], "--check").returncode]
     together = git_apply(ROOT, patches(), "--check")
     for patch in bad:
@@ -96,14 +98,15 @@ def check() -> int:
 
 
 def git_apply(folder: Path, files: list[Path], *options: str) -> subprocess.CompletedProcess:
-    # A line of context is enough: neighbours change, the line that is made wrong does not.
+    # One line of context is enough: neighbouring lines change, the line of the fault does not.
     command = ["git", "apply", "-C1", *options, *map(str, files)]
     environment = os.environ | {"GIT_CEILING_DIRECTORIES": str(folder.parent)}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
 
 
 def plant(tree: Path) -> None:
-    """Makes `tree` the tree with all faults in it. Files that stay as they were keep their times, so that little is compiled anew."""
+    """Makes `tree` the tree with all faults. Unchanged files keep their times, so that little is compiled
+    again."""
     listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True)
     names = [name for name in listed.stdout.decode().split("\0") if name and (ROOT / name).is_file()]
     with tempfile.TemporaryDirectory() as folder:
@@ -123,7 +126,7 @@ def plant(tree: Path) -> None:
             if not goal.exists() or goal.read_bytes() != source.read_bytes():
                 goal.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(source, goal)
-    # Some suites ask git which files there are.
+    # Some suites list the files by git.
     for command in (["init", "--quiet"], ["add", "--all"]):
         subprocess.run(["git", *command], cwd=tree, check=True, stderr=subprocess.DEVNULL)
 
@@ -148,7 +151,8 @@ def names_of_tests(executable: Path, folder: Path) -> list[str]:
 
 
 def by_module(unit: str, kind: str, tests: list[str]) -> dict[str, list[str]]:
-    """The suites of an executable: of integration tests one per module at the root (`tests/NAME`), else one of all tests."""
+    """The suites of an executable: of integration tests one per module at the root (`tests/NAME`), else one
+    of all tests."""
     if kind != "test":
         return {unit: tests}
     suites: dict[str, list[str]] = {}
@@ -199,7 +203,8 @@ def dependents(tree: Path) -> dict[str, set[str]]:
 
 
 def run_suite(suite: Suite, fault: str, threads: int, skipped: list[str], limit_s: float) -> dict:
-    """Runs the tests of a suite with a fault on, or none (''): which passed, which failed, how long it took."""
+    """Runs the tests of a suite with a fault on, or none (''): which passed, which failed, how long it took.
+    """
     environment = os.environ | {
         "BORESIGHT_SABOTAGE": fault,
         "CARGO_MANIFEST_DIR": str(suite.folder),
@@ -226,14 +231,14 @@ def run_suite(suite: Suite, fault: str, threads: int, skipped: list[str], limit_
 
 
 class Kept:
-    """What was run before, in a file: (fault, suite, its executable) to what came of it."""
+    """Earlier results in a file: (fault, suite, executable of the suite) to result."""
 
     def __init__(self, path: Path):
         self.path = path
         self.runs = json.loads(path.read_text()) if path.exists() else {}
 
     def seconds(self, suite: Suite) -> float:
-        """How long a suite takes without a fault, as far as it was ever run."""
+        """Duration of a suite without a fault, if it was ever run."""
         of = [run["seconds"] for key, run in self.runs.items() if key.startswith(f"- {suite.name} ")]
         return of[-1] if of else float("inf")
 
@@ -248,7 +253,7 @@ class Kept:
 
 
 def control(run: Callable[[Suite, str, float], dict], suite: Suite) -> dict:
-    """What comes of a suite without any fault: everything must pass."""
+    """Runs a suite without any fault: everything must pass."""
     sound = run(suite, "", LONGEST_S)
     if sound["failed"] or sound["died"]:
         tests = ", ".join(sound["failed"]) or sound["died"]
@@ -257,7 +262,7 @@ def control(run: Callable[[Suite, str, float], dict], suite: Suite) -> dict:
 
 
 def caught_by(suite: Suite, with_fault: dict, sound: dict) -> dict[str, list[str]]:
-    """By the suite's name, the tests that pass without the fault and fail with it; those that are frozen left out."""
+    """By suite, the tests that pass without the fault and fail with it, except frozen ones."""
     names = [name for name in with_fault["failed"] if name in sound["passed"] and not FROZEN.search(name)]
     if not names and with_fault["died"]:
         names = [f"({with_fault['died']})"]
@@ -265,7 +270,7 @@ def caught_by(suite: Suite, with_fault: dict, sound: dict) -> dict[str, list[str
 
 
 def table(rows: list[tuple[Path, dict[str, list[str]]]]) -> str:
-    lines = ["| fault | what it is | caught by | a test | tests |", "| --- | --- | --- | --- | --- |"]
+    lines = ["| fault | description | caught by | a test | tests |", "| --- | --- | --- | --- | --- |"]
     for patch, caught in rows:
         suites = ", ".join(f"`{suite}` ({len(names)})" for suite, names in caught.items())
         first = next(iter(caught.values()), [""])[0].rpartition("::")[2]
@@ -318,7 +323,8 @@ def main() -> int:
         own = touched(patch, reach)
         crates = set().union(*(reach[crate] for crate in own))
         able = [suite for suite in suites if suite.crate in crates]
-        # From the cheap to the dear. Where one is enough, those of the crate itself come before, and no time is asked for.
+        # In order of duration. With `--suites first`, suites of the fault's crate come first, and only stored
+        # durations are used.
         near = lambda suite: (suite.crate not in own, kept.seconds(suite), suite.name)
         able.sort(key=near if options.suites == "first" else lambda suite: control(run, suite)["seconds"])
         caught, took = {}, 0.0

@@ -1,9 +1,9 @@
 """Counts wording patterns that CONVENTIONS.md excludes, and lines wider than it allows.
 
 A block is a comment (consecutive lines of one kind) in Rust, Python, TypeScript or TOML, a docstring, or a
-paragraph, list entry or table row in Markdown. Fails if 1 % or more of the blocks of any of these kinds match a
-pattern, or if a comment or paragraph is wider than 110 columns. Exempt from the width are tables, code, and words
-that cannot be broken (links, addresses).
+paragraph, list entry or table row in Markdown. Fails if 1 % or more of the blocks of any of these kinds match
+a pattern, or if a comment or paragraph is wider than 110 columns. Exempt from the width are tables, code, and
+words that cannot be broken (links, addresses).
 
     python3 tests/words/run.py                 # counts by kind and pattern
     python3 tests/words/run.py --list [PATH]   # every match, and every wide line, below PATH

@@ -1,4 +1,4 @@
-"""Boresight: camera frames whose truth is known, and an oracle for the pipelines that look at them.
+"""Boresight: camera frames with known truth, and an oracle for the pipelines that process them.
 
     import boresight
 
@@ -9,8 +9,8 @@
     run = boresight.run(argon, frames=range(8000, 8100))
     print(run.score["figures"]["correct_rate"])
 
-The numbers are those of the command `boresight`, bit for bit. docs/python.md has the whole of it, CONVENTIONS.md frames, pixels, units and
-time.
+The numbers are those of the command `boresight`, bit for bit. docs/python.md describes the package,
+CONVENTIONS.md frames, pixels, units and time.
 """
 
 from boresight._boresight import (

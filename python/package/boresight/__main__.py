@@ -1,4 +1,6 @@
-"""The command `boresight`, out of the package: `python -m boresight ARGUMENTS`, or the script `boresight` that is installed with it."""
+"""Entry point of the command `boresight` of the package: `python -m boresight ARGUMENTS`, or the installed
+script `boresight`.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +14,9 @@ from boresight._boresight import command
 
 def main() -> int:
     """Runs the command of this process's arguments and gives its exit status."""
-    # Python would keep Ctrl-C to itself until the command has ended.
+    # Python would hold Ctrl-C back until the command has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    # What `study run --engine dask` starts: this Python, and on the workers this command.
+    # Interpreter that `study run --engine dask` starts here, and the command that it starts on workers.
     os.environ.setdefault("BORESIGHT_PYTHON", sys.executable)
     script = shutil.which("boresight", path=os.path.dirname(sys.executable))
     if script:

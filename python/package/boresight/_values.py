@@ -19,11 +19,11 @@ from boresight.answers import Detection, NoSolution, Pose, RangeOnly
 from boresight.errors import InputError
 
 WHOLE = {"frame", "field", "n_stars"}
-"""Columns of whole numbers: pandas keeps those with gaps as floating-point ones."""
+"""Columns of integers: pandas stores those with gaps as floating-point numbers."""
 
 
 def plain(value: Any) -> Any:
-    """A number or an array of numpy as Python's own."""
+    """Converts a number or an array of numpy to a Python value."""
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"{type(value).__name__} is neither a number, a text, a list nor a dictionary")
@@ -38,13 +38,15 @@ def to_json(what: str, value: Any) -> str:
 
 
 def answer_line(answer: Any, key: str, number: int) -> str:
-    """A pipeline's answer to frame (or field) `number` as a line of the protocol of docs/external-pipeline.md."""
+    """A pipeline's answer to frame (or field) `number` as a line of the protocol of
+    docs/external-pipeline.md."""
     given = answer
     if answer is None:
         answer = NoSolution()
     if isinstance(answer, (Detection, NoSolution, Pose, RangeOnly)):
         named = {field.name: getattr(answer, field.name) for field in dataclasses.fields(answer)}
-        # What is not given is no key of the answer: so a Detection among docking fields is refused for what it is.
+        # Missing values add no key to the answer, so that a Detection for a docking field is refused by its
+        # status.
         answer = {"status": answer.status} | {name: value for name, value in named.items() if value is not None}
     elif not isinstance(answer, Mapping):
         of = "Pose, RangeOnly, NoSolution" if key == "field" else "Detection, NoSolution"
@@ -56,7 +58,7 @@ def answer_line(answer: Any, key: str, number: int) -> str:
 
 
 def callable_hash(given: Any) -> bytes:
-    """SHA-256 of what tells a pipeline in Python from others: its name and its source; without a source it is like no other."""
+    """SHA-256 of name and source of a Python pipeline; random if the source is unavailable."""
     known = given if inspect.isclass(given) or inspect.isroutine(given) else type(given)
     try:
         source = inspect.getsource(known)
@@ -67,7 +69,7 @@ def callable_hash(given: Any) -> bytes:
 
 
 def columns_of(table: Any) -> Mapping[str, Any]:
-    """The columns of a table: ours, pyarrow's, polars', pandas', or a dictionary."""
+    """Columns of a table of boresight, pyarrow, polars or pandas, or of a dictionary."""
     columns: Mapping[str, Any]
     if isinstance(table, Mapping):
         columns = table
@@ -88,7 +90,7 @@ def columns_of(table: Any) -> Mapping[str, Any]:
 
 
 def cell(name: str, value: Any) -> str:
-    """A cell of CSV; what is not there is empty."""
+    """Cell of CSV; empty for a missing value."""
     if hasattr(value, "item"):
         value = value.item()
     if value is None or (isinstance(value, float) and math.isnan(value)) or str(value) == "<NA>":

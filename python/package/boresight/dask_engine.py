@@ -1,14 +1,16 @@
-"""The shards of a study on the workers of a Dask cluster.
+"""Runs the shards of a study on the workers of a Dask cluster.
 
     python -m boresight.dask_engine --program boresight --out DIR|URL [--scheduler ADDRESS] [--workers N] < plan.json
 
-The plan is what `boresight study plan --json` prints. The files that it names travel to every worker, once, by their content: the study, its
-scenario, what its cases read, and the files among the words of a program. Each shard is one call of the program on some worker,
-which writes its file below DIR (a folder that all workers see) and answers with its manifest. The program does nothing for a shard
-that is there and whole, so that a task which the scheduler starts twice costs one look at a file.
+The plan is the output of `boresight study plan --json`. The files that it names are sent to every worker,
+once, by their content: the study, its scenario, the inputs of its cases, and the files among the words of a
+program. Each shard is one call of the program on some worker, which writes its file below DIR (a folder
+shared by all workers) and returns its manifest. The program skips a complete shard: a task that the scheduler
+starts twice only reads one file.
 
-With the URL of an object store, as in s3://bucket/study, a worker fetches the shard from there if there is one, runs the program in a folder of
-its own, and puts what it made into the store. At the end the shards are fetched and merged here, and the results are put beside them.
+With the URL of an object store, as in s3://bucket/study, a worker fetches an existing shard from the store,
+runs the program in a private folder, and stores the results. At the end the shards are fetched and merged
+here, and the results are stored beside them.
 """
 
 from __future__ import annotations
@@ -27,24 +29,26 @@ import tempfile
 from contextlib import nullcontext
 
 MISSING = 3
-"""Exit status that tells that Dask is not installed, or what reaches the object store."""
+"""Exit status if Dask, or the package for the object store, is not installed."""
 
 PR_SET_PDEATHSIG = 1
-"""`prctl` of Linux: the signal that a process gets when its parent dies."""
+"""`prctl` of Linux: the signal that a process receives when its parent dies."""
 
 RETRIES = 3
-"""How often a shard is tried again after its program was killed. A program that ends by itself, with whatever status, is not."""
+"""Number of retries of a shard whose program was killed. A program that ends by itself, with any status, is
+not retried."""
 
 DEATHS = 100
-"""How many workers may die over a shard before the scheduler gives it up: a cluster that takes machines away is no fault of a shard.
-Of a cluster on this machine; a scheduler elsewhere has its own configuration."""
+"""Number of workers that may die during a shard before the scheduler gives it up: a cluster that removes
+machines is no fault of a shard. For a cluster on this machine; a scheduler elsewhere has its own
+configuration."""
 
 CONNECT_S = 30
-"""How long a scheduler may take to answer, s."""
+"""Longest time until a scheduler answers, s."""
 
 
 def die_with_parent() -> None:
-    """Ends the child with its worker: nothing goes on computing for a cluster that is gone. On Linux alone."""
+    """Ends the child with its worker, so that nothing computes for a cluster that is gone. Linux only."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
@@ -60,12 +64,13 @@ def digest_of(files: dict[str, bytes]) -> str:
 
 
 def copy_of(path: str, below: str) -> str:
-    """Where the copy of a file or folder lies, below a folder that mirrors the absolute paths."""
+    """Path of the copy of a file or folder, below a folder that mirrors the absolute paths."""
     return os.path.join(below, *pathlib.PurePath(path).parts[1:])
 
 
 def unpack(files: dict[str, bytes], below: str) -> None:
-    """Writes files below a folder, each at its absolute path. Absolute paths of the others that a TOML file has become those of the copies."""
+    """Writes files below a folder, each at its absolute path. In TOML files, absolute paths of the other
+    files are replaced by those of the copies."""
     for path, content in files.items():
         if path.endswith(".toml"):
             for other in files:
@@ -76,7 +81,7 @@ def unpack(files: dict[str, bytes], below: str) -> None:
         copy.parent.mkdir(parents=True, exist_ok=True)
         whole = copy.with_name(f".{copy.name}.{os.getpid()}")
         whole.write_bytes(content)
-        # Programs among them are run.
+        # Some of the files are programs.
         whole.chmod(0o755)
         whole.replace(copy)
 
@@ -87,7 +92,7 @@ class Store:
     def __init__(self, url: str) -> None:
         from fsspec.core import url_to_fs  # type: ignore[import-untyped, unused-ignore]
 
-        # Other workers put objects there meanwhile: listings are not kept.
+        # Other workers store objects meanwhile: listings are not cached.
         self.files, self.root = url_to_fs(url, use_listings_cache=False)
 
     def fetch(self, name: str, folder: str) -> bytes | None:
@@ -102,7 +107,7 @@ class Store:
         return content
 
     def put(self, name: str, folder: str, known: bytes | None = None) -> None:
-        """Copies a file below a folder into the store, unless its content is what the store is known to hold."""
+        """Copies a file below a folder into the store, unless the store holds the content `known`."""
         content = pathlib.Path(folder, name).read_bytes()
         if content != known:
             self.files.pipe_file(f"{self.root}/{name}", content)
@@ -119,7 +124,8 @@ def shard_name(shard: int, of: int) -> str:
 def run_shard(
     command: list[str], shard: int, of: int, out: str, folder: str, directory: str, files: list[str]
 ) -> dict:
-    """Runs the program for one shard, with its results in `out`; gives its manifest, or `failed` with what the program said."""
+    """Runs the program for one shard, with its results in `out`; returns its manifest, or `failed` with the
+    program's error."""
     from distributed import get_worker
 
     below = os.path.join(get_worker().local_directory, folder)
@@ -138,15 +144,16 @@ def run_shard(
                 for name in names:
                     store.put(name, own, known[name])
         except Exception as error:
-            # Stores raise what they like; the scheduler tries again.
+            # Stores raise exceptions of any type; the scheduler retries.
             raise RuntimeError(f"worker {get_worker().address}: {out}: {error}") from error
     return manifest
 
 
 def run_program(words: list[str], workdir: str) -> dict:
-    """Runs the program and gives what it prints as JSON, or `failed` with what it said.
+    """Runs the program and returns its JSON output, or `failed` with its error.
 
-    A program that was killed raises an error, and the scheduler tries again; one that ended by itself would end in the same way.
+    A killed program raises an error, and the scheduler retries; one that ended by itself would end in the
+    same way.
     """
     from distributed import get_worker
 
@@ -162,9 +169,10 @@ def run_program(words: list[str], workdir: str) -> dict:
 
 
 def merge(program: str, plan: dict, url: str) -> int:
-    """Fetches the shards of a study from a store, has the program merge them, and puts the results into the store; the program's exit status."""
+    """Fetches the shards of a study from a store, runs the program that merges them, and stores the results;
+    returns the program's exit status."""
     store, pieces = Store(url), plan["pieces"]
-    # Those of a shard, without `--shard I/N`.
+    # Arguments of a shard, without `--shard I/N`.
     words = list(pieces[0]["arguments"])
     place = words.index("--shard")
     del words[place : place + 2]
@@ -175,7 +183,7 @@ def merge(program: str, plan: dict, url: str) -> int:
         done = subprocess.run([program, *words, "--out", folder], cwd=plan["directory"])
         # 1: merged, and a requirement is not met.
         if done.returncode in (0, 1):
-            # The checksums last: they hold for all others.
+            # Checksums are stored last: they cover all other files.
             for name in sorted(os.listdir(folder), key=lambda name: name == "SHA256SUMS"):
                 if name not in ("plan.json", "shards") and not name.startswith("."):
                     store.put(name, folder)
@@ -201,7 +209,7 @@ def main() -> int:
         print(error, file=sys.stderr)
         return MISSING
 
-    # What goes wrong is said once, below.
+    # Errors are reported once, below.
     logging.disable(logging.CRITICAL)
     given = arguments()
     plan = json.load(sys.stdin)
@@ -218,7 +226,7 @@ def main() -> int:
     done = 0
     try:
         local = {"n_workers": given.workers, "threads_per_worker": 1, "host": "127.0.0.1", "dashboard_address": None}
-        # The workers here write to the same standard error; what went wrong is the last line of it.
+        # Workers of this machine write to the same standard error, whose last line is the error.
         scheduler = nullcontext(given.scheduler) if given.scheduler else LocalCluster(**local, silence_logs=logging.CRITICAL)
         with scheduler as cluster, Client(cluster, timeout=CONNECT_S) as client:
             client.register_plugin(StudyFiles(files, folder))

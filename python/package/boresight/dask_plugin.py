@@ -1,4 +1,6 @@
-"""The plugin that writes the files of a study on every worker of a Dask cluster. Imported where Dask is installed alone."""
+"""Plugin that writes the files of a study on every worker of a Dask cluster. Imported only where Dask is
+installed.
+"""
 
 from __future__ import annotations
 

@@ -1,12 +1,12 @@
-"""What goes wrong, as exceptions."""
+"""Exceptions of the package."""
 
 
 class BoresightError(Exception):
-    """Whatever keeps boresight from giving an answer."""
+    """Base class of all errors of boresight."""
 
 
 class InputError(BoresightError, ValueError):
-    """A value, a file or a table that is not as it should be: the message names it, and what is expected."""
+    """Invalid value, file or table; the message has the name and the expected value."""
 
 
 class FileError(BoresightError, OSError):
