@@ -133,8 +133,8 @@ impl PageText {
     }
 }
 
-/// Compares a caption such as "2500 of 9000 correct measurements and 3 of 3 wrong ones" with the points of every
-/// panel, except rings.
+/// Compares a caption such as "2500 of 9000 correct measurements and 3 of 3 wrong ones" with the points of
+/// every panel, except rings.
 fn check_points(words: &str, chart: &Value) {
     let told: usize = words
         .split(" and ")

@@ -16,8 +16,8 @@ use crate::CameraModel;
 #[serde(deny_unknown_fields, default)]
 pub struct TrackingConfig {
     /// Δp_max: greatest distance between the expected and the observed position of a cluster, px, above 0
-    /// to 20000. Must cover the motion of the target between two frames; a larger value links unlisted stars as
-    /// well.
+    /// to 20000. Must cover the motion of the target between two frames; a larger value links unlisted stars
+    /// as well.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 20000))]
     pub max_displacement_px: f64,
     /// Δs_max: greatest change of the weighted size, in units of full scale, above 0 to 1e9.

@@ -245,7 +245,8 @@ impl DockingSimulator {
         Ok(self.transmit(workspace, &field_state))
     }
 
-    /// Makes the video signal of a field from an image drawn elsewhere from [`DockingSimulator::field_state`].
+    /// Makes the video signal of a field from an image drawn elsewhere from
+    /// [`DockingSimulator::field_state`].
     ///
     /// # Errors
     /// [`SimError::OutOfRange`] if the field does not exist; [`SimError::Contract`] if the image differs in

@@ -13,7 +13,8 @@ pub enum MissCause {
     NotReported,
     /// The target is not resolved: a bar of its cross is narrower than two pixels.
     TooFar,
-    /// The target is outside the image ([`TargetVisibility::Outside`]), or partly outside if the pipeline states so.
+    /// The target is outside the image ([`TargetVisibility::Outside`]), or partly outside if the pipeline
+    /// states so.
     OutsideField,
     /// At least [`MissCause::LOST_LINES`] of the image's lines were lost.
     LostLines,

@@ -21,7 +21,8 @@ const MIN_HEIGHT: f64 = 0.4;
 const MIN_PLATEAU_SAMPLES: f64 = 4.0;
 
 /// Finds the two edges of a bright bar of about the given width. `values` are grey values at `first`,
-/// `first + step`, …, and extend a little beyond the bar on both sides. Returns `None` where there is no such bar.
+/// `first + step`, …, and extend a little beyond the bar on both sides. Returns `None` where there is no such
+/// bar.
 ///
 /// An edge is defined as the position of a step with the same sum of grey values. This position is accurate
 /// to a few hundredths of a pixel although the rows of a field are undersampled; a crossing of the half level

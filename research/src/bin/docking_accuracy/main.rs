@@ -2,7 +2,8 @@
 //! OpenCV's `solvePnP` on identical frames, and the Cramér–Rao bound of these frames, over random poses and
 //! Sun directions.
 //!
-//!     cargo run --release -p boresight-research --bin docking_accuracy -- OUT [--poses 200] [--seed 1] [--python PYTHON] [--rows wide-5m,narrow-5m] [--noise 2]
+//!     cargo run --release -p boresight-research --bin docking_accuracy -- OUT [--poses 200] [--seed 1]
+//!     [--python PYTHON] [--rows wide-5m,narrow-5m] [--noise 2]
 //!
 //! Frames and truth are written below OUT, one directory per row of the table. With `--python` (an
 //! interpreter with the packages of tests/python/docking_requirements.txt) `tests/python/docking_pnp.py`

@@ -1,6 +1,7 @@
 //! Compares the errors of the docking pipeline with its standard deviations.
 //!
-//!     cargo run --release -p boresight-research --bin docking_consistency -- [--approaches 200] [--portions 6] [--seed 1] [--only steady]
+//!     cargo run --release -p boresight-research --bin docking_consistency -- [--approaches 200] [--portions
+//!     6] [--seed 1] [--only steady]
 //!
 //! Seeded approaches are drawn and measured field by field by the built-in pipeline: constant velocity with
 //! noise only, constant velocity with every artefact, and swinging approaches. For the portions from the

@@ -3,7 +3,8 @@
 //! with identical random draws to the pipeline. The program prints both scores side by side, and the
 //! difference of the two answers field by field.
 //!
-//!     cargo run --release -p boresight-research --bin docking_judge -- [--poses 4] [--samples 64] [--seed 1] [--rows wide-5m,narrow-5m]
+//!     cargo run --release -p boresight-research --bin docking_judge -- [--poses 4] [--samples 64] [--seed 1]
+//!     [--rows wide-5m,narrow-5m]
 //!
 //! Mitsuba renders the square about the target's disk; outside it both images come from the fast renderer.
 //! Rendered images are kept in Mitsuba's cache (docs/mitsuba.md) and are not rendered again.

@@ -2,7 +2,8 @@
 //! approach of the docking scenario, with every artefact of the scenario, or on clean random poses at one
 //! distance.
 //!
-//!     cargo run --release -p boresight-research --bin docking_recognition -- [--every 400] [--block 8] [--from 0] [--to 25169]
+//!     cargo run --release -p boresight-research --bin docking_recognition -- [--every 400] [--block 8]
+//!     [--from 0] [--to 25169]
 //!         [--lens wide] [--poses 100 --range 20] [--out DIR]
 //!
 //! Each block begins with a new pipeline. Printed per bin of range and per lens: the number of fields with

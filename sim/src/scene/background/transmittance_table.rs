@@ -25,8 +25,8 @@ const BIAS: u64 = 1023;
 /// (p/2)(p/2 + 1)/8 · 512⁻². Twice this bound holds everywhere except in the steps of a bend: 1.2e-5 of the
 /// transmittance for p = 6, 1.1e-4 for p = 20, the largest. In the step of a bend the error is a quarter of a
 /// step times the change of the slope. Beyond 143°, where θ is no smooth function of x, the table is over
-/// √(1 + cos θ), in which the transmittance is nearly linear: the error is at most p(p + 1)/8 · (0.0013/2.5)²,
-/// 1.4e-5 for p = 20.
+/// √(1 + cos θ), in which the transmittance is nearly linear: the error is at most p(p + 1)/8 ·
+/// (0.0013/2.5)², 1.4e-5 for p = 20.
 #[derive(Debug, Clone)]
 pub(super) struct TransmittanceTable {
     values: Vec<f64>,

@@ -126,8 +126,8 @@ impl Groups {
             .sum()
     }
 
-    /// Returns the covariance of the gradient from a shift along the lines of variance 1 px² that is shared by
-    /// several groups.
+    /// Returns the covariance of the gradient from a shift along the lines of variance 1 px² that is shared
+    /// by several groups.
     pub(super) fn common_shift_covariance(&self, groups: impl Iterator<Item = usize>) -> GlobalMatrix {
         let score = self.common_score(groups, 0);
         score * score.transpose()
