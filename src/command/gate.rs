@@ -51,8 +51,7 @@ struct CompareArguments {
     #[arg(long, requires = "reason")]
     accept_changed: bool,
     /// Reason why these figures may change
-    #[arg(long, value_name = "TEXT", requires = "accept_changed", value_parser =
-    #clap::builder::NonEmptyStringValueParser::new())]
+    #[arg(long, value_name = "TEXT", requires = "accept_changed", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     reason: Option<String>,
     /// Also write the report as JUnit XML, or the reason why nothing could be compared; a new file
     #[arg(long, value_name = "FILE", value_parser = output_path())]

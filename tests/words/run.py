@@ -120,7 +120,7 @@ def wide_lines(path: Path, lines: list[str]) -> list[int]:
             exempt = line.lstrip().startswith(("|", "<", "!", "[", "#")) or line.startswith("    ")
         else:
             code = path.suffix == ".toml" and re.match(r"\s*# ?[\w.]+ = ", line)
-            exempt = code or not re.match(r"\s*(//|#)", line) or re.match(r"\s*//[/!] *\|", line)
+            exempt = code or not re.match(r"\s*(//|# )", line) or re.match(r"\s*//[/!] *\|", line)
         longest = max(len(word) for word in re.sub(r"\[[^\]]*\]\([^)]*\)", lambda m: m[0].replace(" ", "_"), line).split())
         if not exempt and longest < WIDTH // 2:
             wide.append(number)

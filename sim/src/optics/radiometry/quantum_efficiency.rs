@@ -14,8 +14,7 @@ pub enum QuantumEfficiency {
     /// Wavelength (nm, increasing, 200 to 1200) and electrons per photon (0 to 1), 2 to 1000 pairs; linear
     /// between them, 0 outside.
     Table(
-        #[schemars(length(min = 2, max = 1000), extend("items" = { "type": "array", "minItems": 2, "maxItems":
-        #2, "prefixItems": [
+        #[schemars(length(min = 2, max = 1000), extend("items" = { "type": "array", "minItems": 2, "maxItems": 2, "prefixItems": [
             { "type": "number", "minimum": 200, "maximum": 1200 },
             { "type": "number", "minimum": 0, "maximum": 1 },
         ] }))]
