@@ -26,6 +26,24 @@ fn output(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
+/// Width of the paragraphs of a page, columns.
+const WIDTH: usize = 110;
+
+/// Wraps a paragraph.
+fn wrapped(text: &str) -> String {
+    let mut lines: Vec<String> = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().unwrap();
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(word.to_owned());
+        } else {
+            let space = if line.is_empty() { "" } else { " " };
+            write!(line, "{space}{word}").unwrap();
+        }
+    }
+    lines.join("\n")
+}
+
 /// Names of the subcommands that a help text lists.
 fn subcommands(help: &str) -> Vec<&str> {
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
@@ -51,9 +69,9 @@ fn append_help(page: &mut String, command: &[&str]) {
 
 #[test]
 fn the_page_of_the_command_line_is_the_programs_help() {
-    let mut page = "# Command line\n\nThe help of every command, as the program prints it. `REMAKE=1 cargo test --test it \
-                    reference_pages::` writes this page.\n"
-        .to_owned();
+    let intro = "The help of every command, as the program prints it. \
+                 `REMAKE=1 cargo test --test it reference_pages::` writes this page.";
+    let mut page = format!("# Command line\n\n{}\n", wrapped(intro));
     append_help(&mut page, &[]);
     check_page("command-line.md", &page);
 }
@@ -143,7 +161,7 @@ impl<'a> SchemaPage<'a> {
         write!(self.page, "\n### {title}\n").unwrap();
         let description = cell(text(schema, "description"));
         if !description.is_empty() {
-            write!(self.page, "\n{description}\n").unwrap();
+            write!(self.page, "\n{}\n", wrapped(&description)).unwrap();
         }
         self.page.push_str("\n| key | type | range | default | meaning |\n| --- | --- | --- | --- | --- |\n");
         for (key, property) in properties {
@@ -217,10 +235,10 @@ fn prefix(title: &str) -> String {
 
 #[test]
 fn the_page_of_scenario_keys_is_the_schema() {
-    let mut page = "# Scenario keys\n\nEvery key of a scenario file with its type, range and default, from the JSON Schema \
-                    (`boresight scenario schema`). A key without a default is required or may be absent, as stated. \
-                    Unknown keys are refused. `REMAKE=1 cargo test --test it reference_pages::` writes this page.\n"
-        .to_owned();
+    let intro = "Every key of a scenario file with its type, range and default, from the JSON Schema \
+                 (`boresight scenario schema`). Unknown keys are refused. \
+                 `REMAKE=1 cargo test --test it reference_pages::` writes this page.";
+    let mut page = format!("# Scenario keys\n\n{}\n", wrapped(intro));
     for (world, title) in [("far_range", "Far range"), ("docking", "Docking")] {
         let schema: Value = serde_json::from_str(&output(&["scenario", "schema", "--world", world])).unwrap();
         let Value::Object(definitions) = &schema["$defs"] else { panic!("no definitions") };

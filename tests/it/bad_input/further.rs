@@ -162,7 +162,10 @@ fn words_of_the_command_line_and_of_studies() {
             "[[vary]]\npath = \"target.albedo\"\ndistribution = { kind = \"choice\", values = [nan] }\n",
             &["vary[2].distribution.values[0]", "not finite"],
         ),
-        ("[[sweep]]\npath = \"schedule[99].count\"\nvalues = [1]\n", &["sweep[0].path", "which has"]),
+        (
+            "[[sweep]]\npath = \"schedule[99].count\"\nvalues = [1]\n",
+            &["sweep[0].path", "this list has 5 elements"],
+        ),
     ] {
         bench.write("study.toml", format!("{STUDY}{more}"));
         check_refused(&bench, "study check study.toml", parts);

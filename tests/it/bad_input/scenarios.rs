@@ -130,7 +130,7 @@ fn an_array_of_fixed_length_has_exactly_its_values() {
     }
     // In a table whose `kind` determines its keys, the reported location is that of the table.
     check_mistake(
-        "kind = \"gaussian\" # or one of these, each line in place of the two here:\nsigma_px = 0.8",
+        "kind = \"gaussian\" # or one of these, instead of the two lines here:\nsigma_px = 0.8",
         "kind = \"airy\"\nlambda_n_px = [1.2, 1.2, 0.3]",
         &["psf", "invalid length 3"],
     );

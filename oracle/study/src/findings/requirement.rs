@@ -20,7 +20,7 @@ const MAX_CASES: f64 = 1e9;
 pub struct StudyRequirement {
     /// Name of a figure of the score, as in `correct_rate`.
     pub figure: String,
-    /// Lower limit, in the figure's unit; a fraction from 0 to 1 for a rate. Exactly one of `at_least` and
+    /// Lower limit, in the figure's unit; for a rate the fraction, not percent. Exactly one of `at_least` and
     /// `at_most` is given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -1e18, max = 1e18))]

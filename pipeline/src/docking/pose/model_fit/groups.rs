@@ -120,22 +120,10 @@ impl Groups {
 
     /// Returns the covariance of the gradient from effects of variance 1 that are shared by several groups.
     pub(super) fn common_covariance(&self, groups: impl Iterator<Item = usize> + Clone) -> GlobalMatrix {
-        (0..EFFECTS)
-            .map(|k| self.common_score(groups.clone(), k))
-            .map(|score| score * score.transpose())
-            .sum()
-    }
-
-    /// Returns the covariance of the gradient from a shift along the lines of variance 1 px² that is shared
-    /// by several groups.
-    pub(super) fn common_shift_covariance(&self, groups: impl Iterator<Item = usize>) -> GlobalMatrix {
-        let score = self.common_score(groups, 0);
-        score * score.transpose()
-    }
-
-    /// Returns the change of the gradient by a unit of an effect in all of several groups.
-    fn common_score(&self, groups: impl Iterator<Item = usize>, effect: usize) -> Globals {
-        groups.filter_map(|group| Some(self.groups.get(group)?.scores[effect])).sum()
+        let sum = |k: usize| -> Globals {
+            groups.clone().filter_map(|group| Some(self.groups.get(group)?.scores[k])).sum()
+        };
+        (0..EFFECTS).map(sum).map(|scores| scores * scores.transpose()).sum()
     }
 
     /// Treats the swelling as an unknown of the fit; its effect is that of the first group. Returns the

@@ -197,14 +197,6 @@ const SMALL_MARK_PX: f64 = 0.02;
 /// differently from those against the plate.
 const SIDEWAYS: f64 = 0.5;
 
-/// Shift of the cross relative to the marks along the lines by ringing of the video signal, px, one standard
-/// deviation; a tolerance of the equipment.
-///
-/// Ringing a exp(−x/d) sin(2πx/p) after an edge moves the edge's first moment by a (2π/p)/(1/d² + (2π/p)²):
-/// 0.04 px for a = 0.06, d = 2.5 px, p = 5 px. The fit weights the pixels near an edge, and marks and cross
-/// have edges of both signs at different distances: a quarter of that shift is taken to differ between them.
-const RINGING_PX: f64 = 0.01;
-
 /// Smallest share of a pixel's variance that is independent noise. Variance explained by both lines and
 /// patches is subtracted twice.
 const LEAST_NOISE: f64 = 0.25;
@@ -290,8 +282,7 @@ pub(super) fn uncertainty(
     let (change, by_swelling, swelling) = swellings.estimate_swelling(&inverse, variance, known_swelling)?;
     let crosses = used().filter(|(_, patch)| patch.feature == Feature::Cross).map(|(index, _)| index);
     let aside_px = SIDEWAYS * swelling.weighted / swelling.weight;
-    by_patches += of_patches.common_covariance(crosses.clone()) * (aside_px * aside_px);
-    by_patches += of_patches.common_shift_covariance(crosses) * (RINGING_PX * RINGING_PX);
+    by_patches += of_patches.common_covariance(crosses) * (aside_px * aside_px);
     let noise = (variance - explained_by_lines - explained_by_patches).max(LEAST_NOISE * variance);
     let common = inverse * by_patches * inverse + by_swelling;
     Some(Uncertainty {
