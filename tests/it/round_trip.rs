@@ -236,7 +236,7 @@ fn a_run_keeps_the_attitude_that_it_grants() {
     assert!(score["figures"]["ra_rms_deg"]["of"].as_u64() > Some(0), "{score}");
     assert_eq!(bench.boresight("score run run/measurements.csv --json").done().json(), score);
     assert!(bench.read("run/report.html").contains("by the attitude `telemetry`"));
-    let message = "expected with a run of the far range alone";
+    let message = "requires a run of the far range";
     bench
         .boresight("run docking --frames 0..2 --attitude true --out other")
         .refused(&["--attitude requires a run of the far range"]);

@@ -55,9 +55,13 @@ fn a_check_reports_what_follows_from_the_numbers() {
     let bytes = std::fs::metadata(bench.path("set/frames/000000.fits")).unwrap().len();
     near(&check["fits_bytes"], bytes as f64, 2880.5);
     let text = bench.boresight("scenario check starting-point").done().stdout;
-    for part in
-        ["field of view 18.", "exposures of 0.001 s to 0.25 s", "SNR 5", "400 frames in 5985 s", " MB in all"]
-    {
+    for part in [
+        "field of view 18.",
+        "exposures of 0.001 s to 0.25 s",
+        "SNR 5",
+        "400 frames in 5985 s",
+        " MB in total",
+    ] {
         assert!(text.contains(part), "`{part}` in {text}");
     }
     let check = bench.boresight("scenario check docking --json").done().json();

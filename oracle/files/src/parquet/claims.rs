@@ -257,7 +257,7 @@ mod tests {
         std::fs::write(&path, &bytes).unwrap();
         let mut file = File::open(&path).unwrap();
         let message = check_pages(&path, &mut file, 0, bytes.len() as u64).unwrap_err().to_string();
-        assert!(message.contains("the page at byte 0 claims 2147483647 values in 150 bytes"), "{message}");
+        assert!(message.contains("the page at byte 0 states 2147483647 values in 150 bytes"), "{message}");
     }
 
     #[test]

@@ -412,6 +412,6 @@ mod tests {
             ParquetWriter::new(Vec::new(), Path::new("a"), &[Column::new("x", [0.5])], Default::default())
                 .unwrap();
         let other = writer.write(&[Column::new("x", [1_u64])]).unwrap_err().to_string();
-        assert!(other.contains("column `x` is of type UInt64"), "{other}");
+        assert!(other.contains("column `x` has type UInt64"), "{other}");
     }
 }
