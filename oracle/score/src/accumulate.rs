@@ -130,7 +130,7 @@ fn check_possible(truth: &FrameTruth, objects: &[ObjectTruth]) -> Result<(), Sco
 ///     inject: None,
 ///     columns: 752,
 ///     rows: 580,
-///     limits: WithinLimits::of_degrees([0.024, 0.048]),
+///     limits: WithinLimits::from_degrees([0.024, 0.048]),
 ///     warm_up_frames: 0,
 ///     unproject: Box::new(|_| Some(contract::Direction::z())),
 /// };

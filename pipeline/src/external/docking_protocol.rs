@@ -251,7 +251,7 @@ mod tests {
             "setting of the digitiser is out of range",
         );
         refused(&measured(r#""d_m": [0, 0, 9], "phi_Deg": [0, 0, 0]"#), "unknown field `phi_Deg`");
-        refused(r#"{"field": 7, "status": "range_only"}"#, "no range_m");
+        refused(r#"{"field": 7, "status": "range_only"}"#, "range_m is missing");
         refused(r#"{"field": 7, "status": "doubtful: motion"}"#, "d_m or phi_deg is missing");
         refused(r#"{"field": 7, "status": "doubtful"}"#, "its status `doubtful` is unknown");
         refused(r#"{"field": 8, "status": "no_target"}"#, "its answer is for field 8, expected field 7");

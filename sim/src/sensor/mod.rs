@@ -7,20 +7,20 @@
 //! ```
 //! use boresight_sim::draw::ExpectedImage;
 //! use boresight_sim::randomness::Seed;
-//! use boresight_sim::sensor::{FlatLaws, Opening, RawImage, Sensor};
-//! fn right(sensor: &Sensor, image: &mut ExpectedImage, laws: &mut FlatLaws, raw: &mut RawImage) {
+//! use boresight_sim::sensor::{ExposureInterval, FlatSamplers, RawImage, Sensor};
+//! fn right(sensor: &Sensor, image: &mut ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
 //!     let seed = Seed { seed: 1, case: 0 };
-//!     let charge = sensor.collect(image, &Opening { seed, middle_s: 0.0, exposure_s: 0.5 });
-//!     let _ = sensor.read_out(&charge, &seed, 0, laws, raw);
+//!     let charge = sensor.collect(image, &ExposureInterval { seed, middle_s: 0.0, exposure_s: 0.5 });
+//!     let _ = sensor.read_out(&charge, &seed, 0, samplers, raw);
 //! }
 //! ```
 //! A readout of photoelectrons does not compile:
 //! ```compile_fail,E0308
 //! use boresight_sim::draw::ExpectedImage;
 //! use boresight_sim::randomness::Seed;
-//! use boresight_sim::sensor::{FlatLaws, RawImage, Sensor};
-//! fn wrong(sensor: &Sensor, image: &ExpectedImage, laws: &mut FlatLaws, raw: &mut RawImage) {
-//!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, laws, raw);
+//! use boresight_sim::sensor::{FlatSamplers, RawImage, Sensor};
+//! fn wrong(sensor: &Sensor, image: &ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
+//!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, samplers, raw);
 //! }
 //! ```
 

@@ -116,7 +116,7 @@ fn no_camera_is_inside_of_it_in_any_frame() {
     simulator(&simulation);
     let relative = &mut simulation.orbit.relative;
     (relative.a_da_m, relative.a_dlambda_m) = (-50.0, -140.0);
-    assert!(refusal(&simulation).contains("outside of the target"));
+    assert!(refusal(&simulation).contains("outside the target"));
 }
 
 #[test]

@@ -465,7 +465,7 @@ mod tests {
         other.write(&inner, Replacement::Allow).unwrap();
         std::fs::remove_file(inner.join("baseline.toml")).unwrap();
         let message = other.write(&inner, Replacement::Refuse).unwrap_err().to_string();
-        assert!(message.contains("rows.parquet: exists"), "{message}");
+        assert!(message.contains("rows.parquet: a baseline exists"), "{message}");
     }
 
     #[test]
