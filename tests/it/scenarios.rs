@@ -70,7 +70,7 @@ fn a_check_reports_what_follows_from_the_numbers() {
     assert_eq!((&check["frames"], &check["field_bytes"]), (&json!(25_169), &json!(768 * 288)));
     let text = bench.boresight("scenario check docking").done().stdout;
     assert!(
-        text.contains("camera TV-1: field of view 14.999° × ") && text.contains("5.6 GB in all"),
+        text.contains("camera TV-1: field of view 14.999° × ") && text.contains("5.6 GB in total"),
         "{text}"
     );
 }
