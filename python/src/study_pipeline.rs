@@ -71,7 +71,7 @@ impl StudyPipeline for PythonStudyPipeline {
         let range = study.file.frames.as_ref().and_then(|frames| frames.split_once(".."));
         let frames = range.map(|(from, to)| format!(", frames=range({}, {})", from.trim(), to.trim()));
         format!(
-            "boresight.run(boresight.Scenario.of_case({:?}, {case}){}, pipeline={})",
+            "boresight.run(boresight.Scenario.from_case({:?}, {case}){}, pipeline={})",
             path.display().to_string(),
             frames.unwrap_or_default(),
             self.name

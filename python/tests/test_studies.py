@@ -51,7 +51,7 @@ def test_each_case_is_a_run_of_its_own(study, pipeline):
     rows = result.rows
     assert len(rows) == 6 and not any(rows["has_failed"]) and result.first_failure is None
     for case in range(6):
-        alone = boresight.run(boresight.Scenario.of_case(study, case), frames=range(2000, 2004), pipeline=pipeline)
+        alone = boresight.run(boresight.Scenario.from_case(study, case), frames=range(2000, 2004), pipeline=pipeline)
         for name in ("hit_rate", "correct_rate", "stars_mean"):
             figure = alone.score["figures"][name]
             assert rows[f"{name}.count"][case] == figure["count"] and rows[f"{name}.of"][case] == figure["of"]
@@ -130,4 +130,4 @@ def test_what_is_no_pipeline_is_refused_before_anything_is_made(study, wrong, tm
 
 def test_a_case_that_is_not_there_is_refused(study):
     with pytest.raises(boresight.InputError, match="`case` is 6, expected a case of the study, 0 to 5"):
-        boresight.Scenario.of_case(study, 6)
+        boresight.Scenario.from_case(study, 6)

@@ -157,7 +157,7 @@ class Scenario:
         Raises `InputError` with line and column of the first mistake.
         """
     @staticmethod
-    def of_case(study: _Word, case: int) -> Scenario:
+    def from_case(study: _Word, case: int) -> Scenario:
         """Returns the scenario of a case of a study (docs/studies.md), with the values and the seed drawn for
         it.
 
