@@ -8,6 +8,8 @@ use boresight::gate::row_columns;
 use boresight::study::case_columns;
 use boresight::visibility;
 
+use crate::support::check_page;
+
 /// Row of the page: names, type, and meaning of the columns.
 fn line(field: &FieldDeclaration, is_csv: bool) -> String {
     let names: Vec<String> = field.names.iter().map(|name| format!("`{name}`")).collect();
@@ -47,19 +49,8 @@ fn page(old: &str) -> String {
     page
 }
 
-/// With `REMAKE=1` in the environment this test rewrites the page.
 #[test]
 fn the_page_of_formats_has_every_column() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/formats.md");
-    let old = std::fs::read_to_string(&path).unwrap();
-    let new = page(&old);
-    if std::env::var_os("REMAKE").is_some() {
-        std::fs::write(&path, &new).unwrap();
-    } else {
-        let other = old.lines().zip(new.lines()).find(|(old, new)| old != new);
-        assert!(
-            old == new,
-            "docs/formats.md differs from the declarations; REMAKE=1 writes it anew: {other:#?}"
-        );
-    }
+    check_page("formats.md", &page(&std::fs::read_to_string(path).unwrap()));
 }

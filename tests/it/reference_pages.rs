@@ -2,47 +2,10 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
-use std::path::Path;
-use std::process::Command;
 
 use serde_json::Value;
 
-/// Compares a page with its generated text; with `REMAKE=1` in the environment, writes it.
-fn check_page(name: &str, new: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name);
-    if std::env::var_os("REMAKE").is_some() {
-        std::fs::write(&path, new).unwrap();
-        return;
-    }
-    let old = std::fs::read_to_string(&path).unwrap_or_default();
-    let other = old.lines().zip(new.lines()).find(|(old, new)| old != new);
-    assert!(old == new, "docs/{name} differs from the program; REMAKE=1 writes it: {other:#?}");
-}
-
-/// Standard output of the program.
-fn output(arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_boresight")).args(arguments).output().unwrap();
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// Width of the paragraphs of a page, columns.
-const WIDTH: usize = 110;
-
-/// Wraps a paragraph.
-fn wrapped(text: &str) -> String {
-    let mut lines: Vec<String> = vec![String::new()];
-    for word in text.split_whitespace() {
-        let line = lines.last_mut().unwrap();
-        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            lines.push(word.to_owned());
-        } else {
-            let space = if line.is_empty() { "" } else { " " };
-            write!(line, "{space}{word}").unwrap();
-        }
-    }
-    lines.join("\n")
-}
+use crate::support::{Bench, check_page};
 
 /// Names of the subcommands that a help text lists.
 fn subcommands(help: &str) -> Vec<&str> {
@@ -55,15 +18,15 @@ fn subcommands(help: &str) -> Vec<&str> {
 }
 
 /// Appends the help of a command and of its subcommands.
-fn append_help(page: &mut String, command: &[&str]) {
+fn append_help(page: &mut String, bench: &Bench, command: &[&str]) {
     let arguments: Vec<&str> = command.iter().copied().chain(["--help"]).collect();
-    let help = output(&arguments);
+    let help = bench.boresight_words(&arguments).done().stdout;
     let title = ["boresight"].iter().chain(command).copied().collect::<Vec<&str>>().join(" ");
     let level = "#".repeat(2 + command.len().saturating_sub(1));
     let lines: Vec<&str> = help.lines().map(str::trim_end).collect();
     write!(page, "\n{level} {title}\n\n```text\n{}\n```\n", lines.join("\n")).unwrap();
     for name in subcommands(&help) {
-        append_help(page, &command.iter().copied().chain([name]).collect::<Vec<&str>>());
+        append_help(page, bench, &command.iter().copied().chain([name]).collect::<Vec<&str>>());
     }
 }
 
@@ -71,8 +34,8 @@ fn append_help(page: &mut String, command: &[&str]) {
 fn the_page_of_the_command_line_is_the_programs_help() {
     let intro = "The help of every command, as the program prints it. \
                  `REMAKE=1 cargo test --test it reference_pages::` writes this page.";
-    let mut page = format!("# Command line\n\n{}\n", wrapped(intro));
-    append_help(&mut page, &[]);
+    let mut page = format!("# Command line\n\n{intro}\n");
+    append_help(&mut page, &Bench::new(), &[]);
     check_page("command-line.md", &page);
 }
 
@@ -161,7 +124,7 @@ impl<'a> SchemaPage<'a> {
         write!(self.page, "\n### {title}\n").unwrap();
         let description = cell(text(schema, "description"));
         if !description.is_empty() {
-            write!(self.page, "\n{}\n", wrapped(&description)).unwrap();
+            write!(self.page, "\n{description}\n").unwrap();
         }
         self.page.push_str("\n| key | type | range | default | meaning |\n| --- | --- | --- | --- | --- |\n");
         for (key, property) in properties {
@@ -238,9 +201,9 @@ fn the_page_of_scenario_keys_is_the_schema() {
     let intro = "Every key of a scenario file with its type, range and default, from the JSON Schema \
                  (`boresight scenario schema`). Unknown keys are refused. \
                  `REMAKE=1 cargo test --test it reference_pages::` writes this page.";
-    let mut page = format!("# Scenario keys\n\n{}\n", wrapped(intro));
+    let mut page = format!("# Scenario keys\n\n{intro}\n");
     for (world, title) in [("far_range", "Far range"), ("docking", "Docking")] {
-        let schema: Value = serde_json::from_str(&output(&["scenario", "schema", "--world", world])).unwrap();
+        let schema = Bench::new().boresight(&format!("scenario schema --world {world}")).done().json();
         let Value::Object(definitions) = &schema["$defs"] else { panic!("no definitions") };
         let mut section =
             SchemaPage { definitions, written: BTreeSet::new(), page: format!("\n## {title}\n") };

@@ -144,7 +144,7 @@ pub(super) fn table(distribution: &PixelDistribution, mean_e: f64, extra_e: u32)
 #[cfg(test)]
 mod tests {
     use super::super::config::tests::twelve_bit;
-    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram};
+    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram, two_sample_p};
     use super::*;
     use crate::randomness::{Effect, Seed};
     use crate::sensor::SensorConfig;
@@ -167,12 +167,7 @@ mod tests {
             // Sampler and table share only the parameters.
             let sampled =
                 histogram((0..n).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
-            let (mut chi2, mut bins) = (0.0, 0.0);
-            for (a, b) in drawn.iter().zip(&sampled).filter(|(a, b)| *a + *b >= 20) {
-                chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
-                bins += 1.0;
-            }
-            let p = super::super::pixel_distribution::tests::chi_square_tail(chi2, bins);
+            let p = two_sample_p(&drawn, &sampled);
             assert!(p > 1e-4, "mean {mean_e}: p = {p} against the sampler");
         }
     }

@@ -366,7 +366,7 @@ fn n_at_most(rest: f32) -> [f32; TABLES_PER_MEAN] {
 mod tests {
     use super::super::SensorConfig;
     use super::super::config::tests::twelve_bit;
-    use super::super::pixel_distribution::tests::{chi_square_p, chi_square_tail, from_zero, histogram};
+    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram, two_sample_p};
     use super::*;
     use crate::randomness::{Effect, Seed};
 
@@ -392,12 +392,7 @@ mod tests {
             let mut stream = streams.stream_at(2 * n);
             let sampled =
                 histogram((0..n).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
-            let (mut chi2, mut bins) = (0.0, 0.0);
-            for (a, b) in drawn.iter().zip(&sampled).filter(|(a, b)| *a + *b >= 20) {
-                chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
-                bins += 1.0;
-            }
-            let p = chi_square_tail(chi2, bins);
+            let p = two_sample_p(&drawn, &sampled);
             assert!(p > 1e-4, "mean {mean_e}: p = {p} against the sampler");
         }
     }

@@ -282,6 +282,17 @@ pub(super) mod tests {
         ChiSquared::new(degrees_of_freedom).unwrap().sf(chi2)
     }
 
+    /// Chi-square test of two histograms of equally many draws, over the bins with at least 20 draws in both
+    /// together.
+    pub(in crate::sensor) fn two_sample_p(a: &[usize], b: &[usize]) -> f64 {
+        let (mut chi2, mut bins) = (0.0, 0.0);
+        for (a, b) in a.iter().zip(b).filter(|(a, b)| *a + *b >= 20) {
+            chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
+            bins += 1.0;
+        }
+        chi_square_tail(chi2, bins)
+    }
+
     /// Pearson's test of counts against probabilities; bins are merged until each has an expected count of
     /// ten.
     pub(in crate::sensor) fn chi_square_p(counts: &[usize], probabilities: &[f64]) -> f64 {

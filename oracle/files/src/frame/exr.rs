@@ -53,19 +53,9 @@ pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
 /// [`FileError::Io`] if the file exists or cannot be written; [`FileError::Value`] if the number of values is
 /// not columns × rows.
 pub fn write_expected(path: &Path, expected: &ExpectedImage) -> Result<(), FileError> {
-    let (columns, rows) = checked_size(path, expected.columns as u64, expected.rows as u64, None)?;
-    if expected.electrons.len() != columns * rows {
-        let got = expected.electrons.len();
-        return Err(FileError::value(
-            path,
-            FileLocation::Header,
-            "pixels",
-            got,
-            format!("{}", columns * rows),
-        ));
-    }
+    let size = checked_values(path, (expected.columns, expected.rows), expected.electrons.len())?;
     let attributes = attributes(path, "electrons", "expected")?;
-    write_channel(path, (columns, rows), attributes, FlatSamples::F32(expected.electrons.clone()))
+    write_channel(path, size, attributes, FlatSamples::F32(expected.electrons.clone()))
 }
 
 /// Reads an expectation from the output of [`write_expected`] or any image with one channel.
@@ -83,20 +73,24 @@ pub fn read_expected(path: &Path) -> Result<ExpectedImage, FileError> {
 /// [`FileError::Io`] if the file exists or cannot be written; [`FileError::Value`] if the number of values is
 /// not columns × rows.
 pub fn write_radiance(path: &Path, image: &RadianceImage) -> Result<(), FileError> {
-    let (columns, rows) = checked_size(path, image.columns as u64, image.rows as u64, None)?;
-    if image.radiance.len() != columns * rows {
-        let got = image.radiance.len();
-        return Err(FileError::value(
-            path,
-            FileLocation::Header,
-            "pixels",
-            got,
-            format!("{}", columns * rows),
-        ));
-    }
+    let size = checked_values(path, (image.columns, image.rows), image.radiance.len())?;
     let attributes = attributes(path, "radiance", "radiance")?;
     let samples = image.radiance.iter().map(|&v| f16::from_f32(v)).collect();
-    write_channel(path, (columns, rows), attributes, FlatSamples::F16(samples))
+    write_channel(path, size, attributes, FlatSamples::F16(samples))
+}
+
+/// Returns the columns and rows of an image, after a check that it has one value per pixel.
+fn checked_values(
+    path: &Path,
+    (columns, rows): (usize, usize),
+    values: usize,
+) -> Result<(usize, usize), FileError> {
+    let (columns, rows) = checked_size(path, columns as u64, rows as u64, None)?;
+    if values != columns * rows {
+        let wanted = (columns * rows).to_string();
+        return Err(FileError::value(path, FileLocation::Header, "pixels", values, wanted));
+    }
+    Ok((columns, rows))
 }
 
 /// Reads radiances from the output of [`write_radiance`], an image rendered by Mitsuba, or any image with one
