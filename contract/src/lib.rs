@@ -33,6 +33,7 @@ mod error;
 mod far_range;
 mod frame;
 mod measurement;
+pub mod navigation;
 mod pipeline;
 mod pixel;
 mod readout;

@@ -1,0 +1,52 @@
+//! Traits that a navigator implements.
+
+use hifitime::Epoch;
+
+use super::{Answer, Disposition, Event, NavigationSetup};
+use crate::ContractError;
+
+/// Estimation of the relative orbit under test.
+///
+/// A navigator is built afresh for each sequence of events. It receives events in the order of their arrival;
+/// their times may be out of order, repeated, or have gaps of days. It must answer every requested epoch, and
+/// no answer may contain NaN: see [`crate::conformance::navigation`].
+pub trait Navigator: Send {
+    /// Receives one event. An event that cannot be used is recorded in [`Navigator::dispositions`].
+    fn receive(&mut self, event: &Event);
+
+    /// Answers each epoch, in order, from all events received so far. Epochs may be before the first and
+    /// after the last event. Answers do not influence later answers.
+    fn estimates(&mut self, epochs: &[Epoch]) -> Vec<Answer>;
+
+    /// Returns the use of each measurement received so far, in the order of arrival; empty if the navigator
+    /// does not report it.
+    fn dispositions(&mut self) -> Vec<Disposition> {
+        Vec::new()
+    }
+}
+
+/// Mode of a navigator, which determines how it is driven.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// All events are received before the first epoch is answered; each answer depends on all events.
+    Batch,
+    /// Each epoch is answered once the events that arrived until then are received; answers for epochs in the
+    /// past are not expected to be better than at that time.
+    Sequential,
+}
+
+/// Builds navigators, one per sequence of events.
+pub trait NavigatorFactory: Sync {
+    /// Returns the name for tables and logs.
+    fn name(&self) -> String;
+
+    /// Returns the mode of its navigators.
+    fn mode(&self) -> Mode;
+
+    /// Builds a fresh navigator that has received no event.
+    ///
+    /// # Errors
+    /// [`ContractError::OutOfRange`] for a setup with a value outside its range;
+    /// [`ContractError::CannotBuild`] if the navigator's own configuration does not allow it.
+    fn build(&self, setup: &NavigationSetup) -> Result<Box<dyn Navigator>, ContractError>;
+}
