@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the criterion benchmarks; writes docs/speed/benchmarks.json, cost.svg and tables of docs/speed.md.
+"""Runs the criterion benchmarks; writes benchmarks.json, benchmarks.md and cost.svg in docs/speed.
 
     python3 docs/speed/benchmarks.py --python venv/bin/python [--no-run]
 
@@ -140,7 +140,7 @@ def main():
     except KeyError as missing:
         print(f"criterion has no estimate of {missing}: run without --no-run", file=sys.stderr)
         sys.exit(2)
-    text = "\n\n".join([f"{page.machine()}.", *tables, "![Cost against size and star count](speed/cost.svg)"])
+    text = "\n\n".join([f"{page.machine()}.", *tables, "![Cost against size and star count](cost.svg)"])
     if given.dry:
         print(text)
         return

@@ -1,20 +1,23 @@
-"""Writes generated parts of docs/speed.md: the text between `<!-- NAME: ... -->` and `<!-- end of NAME -->`.
+"""Writes generated parts of docs/speed.md and docs/speed/benchmarks.md.
+
+A part is the text between `<!-- NAME: ... -->` and `<!-- end of NAME -->`.
 """
 
 import pathlib
 import re
 
 FOLDER = pathlib.Path(__file__).resolve().parent
-PAGE = FOLDER.parent / "speed.md"
+PAGES = {"rivals": FOLDER.parent / "speed.md", "benchmarks": FOLDER / "benchmarks.md"}
 
 
 def replace(name, text):
     """Replaces a generated part by a text."""
     part = re.compile(rf"(<!-- {name}: [^\n]*-->\n).*?(\n<!-- end of {name} -->)", re.DOTALL)
-    page, count = part.subn(lambda found: f"{found[1]}\n{text.strip()}\n{found[2]}", PAGE.read_text())
+    path = PAGES[name]
+    page, count = part.subn(lambda found: f"{found[1]}\n{text.strip()}\n{found[2]}", path.read_text())
     if count != 1:
-        raise SystemExit(f"{PAGE} has {count} parts called {name}, expected one")
-    PAGE.write_text(page)
+        raise SystemExit(f"{path} has {count} parts called {name}, expected one")
+    path.write_text(page)
 
 
 def table(head, rows, names):

@@ -10,7 +10,7 @@ BORESIGHT_SABOTAGE=NAME. The tree itself is not changed.
     python3 tests/saboteurs/run.py --only gain-inverted
     python3 tests/saboteurs/run.py --suites first     only until one suite catches it: for a new fault
     python3 tests/saboteurs/run.py --suites all       slow tests too
-    python3 tests/saboteurs/run.py --write            and write the table into docs/saboteurs.md
+    python3 tests/saboteurs/run.py --write            and write the table into results.md
 
 A suite is the unit tests of a crate (`sim/src`) or a module of its integration tests
 (`sim/tests/pixel_distribution`). A result for a fault is reused while the suite's executable is unchanged: an
@@ -33,7 +33,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = ROOT / "tests" / "saboteurs"
-PAGE = ROOT / "docs" / "saboteurs.md"
+PAGE = ROOT / "tests" / "saboteurs" / "results.md"
 BEGIN, END = "<!-- written by tests/saboteurs/run.py -->", "<!-- end -->"
 
 # All packages of the workspace are compiled and run except these: the Python package computes nothing, the
@@ -55,9 +55,9 @@ SLOW_TESTS = {
 }
 
 # Shortest time limit of a test: one that hangs has noticed something.
-LEAST_LIMIT_S = 180.0
+MIN_LIMIT_S = 180.0
 # Time limit of a suite without a fault.
-LONGEST_S = 3600.0
+MAX_LIMIT_S = 3600.0
 
 
 def faults() -> list[Path]:
@@ -254,7 +254,7 @@ class Kept:
 
 def control(run: Callable[[Suite, str, float], dict], suite: Suite) -> dict:
     """Runs a suite without any fault: everything must pass."""
-    sound = run(suite, "", LONGEST_S)
+    sound = run(suite, "", MAX_LIMIT_S)
     if sound["failed"] or sound["died"]:
         tests = ", ".join(sound["failed"]) or sound["died"]
         sys.exit(f"without any fault {suite.name} fails, expected all its tests to pass: {tests}")
@@ -280,13 +280,13 @@ def table(rows: list[tuple[Path, dict[str, list[str]]]]) -> str:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description="Plants faults and says which suites catch them.")
-    parser.add_argument("--check", action="store_true", help="only whether every patch applies")
-    parser.add_argument("--only", action="append", metavar="NAME", help="this fault; may be repeated")
-    parser.add_argument("--suites", choices=["first", "fast", "all"], default="fast", help="until one catches it; without slow tests; all (fast)")
+    parser = argparse.ArgumentParser(description="Plants faults and reports the suites that catch them.")
+    parser.add_argument("--check", action="store_true", help="only check that every patch applies")
+    parser.add_argument("--only", action="append", metavar="NAME", help="only this fault; may be repeated")
+    parser.add_argument("--suites", choices=["first", "fast", "all"], default="fast", help="suites until one catches the fault; all but slow ones (default); all")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="threads of a suite (all processors)")
-    parser.add_argument("--target-dir", type=Path, help="where cargo compiles (saboteurs/build in the target directory)")
-    parser.add_argument("--write", action="store_true", help="write the table into docs/saboteurs.md; of a run of all faults")
+    parser.add_argument("--target-dir", type=Path, help="build directory (default: saboteurs/build in the target directory)")
+    parser.add_argument("--write", action="store_true", help="write the table into tests/saboteurs/results.md; of a run of all faults")
     parser.add_argument("cargo", nargs="*", help="further arguments of cargo, after --")
     options = parser.parse_args()
     if options.check:
@@ -330,7 +330,7 @@ def main() -> int:
         caught, took = {}, 0.0
         for suite in able:
             sound = control(run, suite)
-            with_fault = run(suite, patch.stem, max(LEAST_LIMIT_S, 10.0 * sound["seconds"]))
+            with_fault = run(suite, patch.stem, max(MIN_LIMIT_S, 10.0 * sound["seconds"]))
             took += with_fault["seconds"]
             caught |= caught_by(suite, with_fault, sound)
             if caught and options.suites == "first":
