@@ -25,15 +25,16 @@ pub struct OutOfRange {
 }
 
 /// Longest number, in characters, that is printed without an exponent.
-const LONGEST_NUMBER: usize = 24;
+const MAX_NUMBER_CHARS: usize = 24;
 
 impl OutOfRange {
     /// Creates the error for `value` at `path`.
     pub fn new(path: impl Into<String>, value: impl ToString, expected: impl Into<String>) -> Self {
         let value = value.to_string();
         // Prints 1e300 in exponent form rather than as a line of zeros.
-        let long =
-            Some(&value).filter(|text| text.len() > LONGEST_NUMBER).and_then(|text| text.parse::<f64>().ok());
+        let long = Some(&value)
+            .filter(|text| text.len() > MAX_NUMBER_CHARS)
+            .and_then(|text| text.parse::<f64>().ok());
         let value = long.map_or(value, |number| format!("{number:e}"));
         Self { path: path.into(), value, expected: expected.into() }
     }
@@ -341,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_outside_its_range_is_told_with_its_path() {
+    fn an_out_of_range_number_is_reported_with_its_path() {
         check(&table(), "table").unwrap();
         assert_eq!(message(|t| t.gain = 0.0), "table.gain is 0, expected 0.05 to 1e5");
         assert_eq!(message(|t| t.open = 0.0), "table.open is 0, expected above 0 to 5");
@@ -352,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_refused_with_a_range_and_without() {
+    fn non_finite_numbers_are_refused_with_and_without_a_range() {
         assert_eq!(message(|t| t.free = f64::NAN), "table.free is NaN, expected a finite number");
         assert_eq!(message(|t| t.free = f64::NEG_INFINITY), "table.free is -inf, expected a finite number");
         assert_eq!(message(|t| t.gain = f64::NAN), "table.gain is NaN, expected 0.05 to 1e5");
@@ -370,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn an_enum_is_held_to_the_ranges_of_what_it_is() {
+    fn an_enum_is_checked_against_the_ranges_of_its_variant() {
         let law = |law: Law| move |t: &mut Table| t.law = Some(law.clone());
         check(&Table { law: Some(Law::Other { index: 150.0 }), ..table() }, "").unwrap();
         check(&Table { law: Some(Law::Plain), ..table() }, "").unwrap();
@@ -387,13 +388,13 @@ mod tests {
     }
 
     #[test]
-    fn the_schema_tells_the_range() {
+    fn the_schema_contains_the_range() {
         let gain = schema::<Table>().pointer("/properties/gain").unwrap().clone();
         assert_eq!((gain["minimum"].as_f64(), gain["maximum"].as_f64()), (Some(0.05), Some(1e5)));
     }
 
     #[test]
-    fn a_range_is_told_in_few_words() {
+    fn a_range_is_printed_briefly() {
         let words = |at_least, at_most, more_than, less_than| {
             Range { at_least, at_most, more_than, less_than }.description()
         };
@@ -407,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_in_a_list_takes_the_first_empty_brackets() {
+    fn a_list_index_fills_the_first_empty_brackets() {
         let error = OutOfRange::new("a[].b[].c", 1, "2").in_entry(3);
         assert_eq!(error.in_entry(4).path, "a[3].b[4].c");
     }

@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn right_ascension_and_declination_come_back() {
+    fn right_ascension_and_declination_round_trip() {
         for (ra, dec) in [(0.0, 0.0), (10.0, -80.0), (359.5, 45.0), (180.0, 89.9999)] {
             let direction = Direction::from_ra_dec(Angle::from_degrees(ra), Angle::from_degrees(dec));
             assert!((direction.ra().degrees() - ra).abs() < 1e-9);

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn euler_123_comes_back() {
+    fn euler_123_round_trips() {
         let angles = [10.0, -35.0, 170.0].map(Angle::from_degrees);
         let (phi, theta, psi) =
             Rotation::<CameraFrame, Body>::from_euler_123(angles[0], angles[1], angles[2]).euler_123();

@@ -62,7 +62,7 @@ mod tests {
 
     /// With an invalid base run, the fuzzer would never get past its first error.
     #[test]
-    fn what_is_put_together_is_right() {
+    fn the_assembled_run_is_valid() {
         let sandbox = Sandbox::new().unwrap();
         for (run, files) in RUNS {
             files.iter().for_each(|(file, right)| drop(sandbox.file(&format!("{run}{file}"), right)));

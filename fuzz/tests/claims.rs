@@ -1,7 +1,7 @@
 //! Readers do not allocate the size that a file claims: a hundred bytes that claim 60000 × 60000 pixels cost
 //! no more memory than a small image.
 
-#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+#![allow(clippy::unwrap_used, reason = "tests and their helpers fail by panicking")]
 
 use std::fs;
 use std::path::Path;
@@ -98,7 +98,7 @@ fn fits(side: u32, bytes: usize) -> Vec<u8> {
 }
 
 #[test]
-fn a_header_that_lies_about_its_size_costs_nothing() {
+fn a_false_size_in_a_header_allocates_nothing() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let sandbox = Sandbox::new().unwrap();
     // 16384 pixels per side is allowed for a detector: such a file must be rejected by its length.

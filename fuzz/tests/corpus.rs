@@ -1,6 +1,6 @@
 //! Runs every input of the corpus through its target: fixed faults stay fixed.
 
-#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+#![allow(clippy::unwrap_used, reason = "tests and their helpers fail by panicking")]
 
 use std::collections::BTreeSet;
 use std::fs;

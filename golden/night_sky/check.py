@@ -47,7 +47,7 @@ MAS = np.radians(1 / 3.6e6)
 ARCSEC = np.degrees(1) * 3600
 # A star counts as detectable where its brightest pixel stands out by ten standard deviations.
 DETECTABLE_SIGMAS = 10
-LEAST_DETECTABLE = 10
+MIN_DETECTABLE = 10
 BIAS_DN = 64
 SOLVED, FALSE_DEG, ACROSS_PX = 0.99, 0.1, 0.1
 # Second pass, arc minutes: error of the telemetry across the boresight, and the calibration's value for each
@@ -320,7 +320,7 @@ def unshifted(turns, truths):
 
 def judged(what, camera, errors, truths, detectable, variances):
     """Prints a line; returns True if the camera's requirements hold."""
-    rich = [error for error, count in zip(errors, detectable) if count >= LEAST_DETECTABLE]
+    rich = [error for error, count in zip(errors, detectable) if count >= MIN_DETECTABLE]
     share = sum(error is not None for error in rich) / max(len(rich), 1)
     solved = [at for at, error in enumerate(errors) if error is not None]
     if not solved:

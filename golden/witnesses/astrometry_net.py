@@ -30,12 +30,12 @@ from astropy.io import fits
 import pointings
 
 DETECTABLE_SNR = 5.0
-LEAST_STARS = 10
-LEAST_SOLVED = 0.99
-MOST_BIAS_PX = 0.02
+MIN_STARS = 10
+MIN_SOLVED = 0.99
+MAX_BIAS_PX = 0.02
 LIGHT_SPEED_KM_S = 299792.458
 # Larger distances mean a wrong match, or an image merged with a neighbour's: three times the width of a star.
-MOST_APART_PX = 2.5
+MAX_APART_PX = 2.5
 
 
 def extracted(frame, directory):
@@ -88,7 +88,7 @@ def fitted(pinhole, stars, scale):
     for _ in range(5):
         turn = rotation(seen[kept], stars[kept])
         off = scale * np.linalg.norm(seen - stars @ turn.T, axis=1)
-        kept = off < min(MOST_APART_PX, 3.0 * 1.4826 * np.median(off[kept]) + 0.01)
+        kept = off < min(MAX_APART_PX, 3.0 * 1.4826 * np.median(off[kept]) + 0.01)
     sigma = np.sqrt(np.sum((off[kept] / scale) ** 2) / (2.0 * kept.sum() - 3.0))
     # Information about small turns: a turn by w moves the star s by w × s.
     information = sum(np.eye(3) - np.outer(s, s) for s in seen[kept])
@@ -111,7 +111,7 @@ def main():
             rows, columns = frame.pixels.shape
             objects = frame.objects
             is_star = np.array([kind == "star" for kind in objects["kind"]])
-            if int(np.sum(is_star & (np.nan_to_num(np.asarray(objects["snr"])) >= DETECTABLE_SNR))) < LEAST_STARS:
+            if int(np.sum(is_star & (np.nan_to_num(np.asarray(objects["snr"])) >= DETECTABLE_SNR))) < MIN_STARS:
                 continue
             detectable += 1
             places, flux = extracted(frame, directory)
@@ -143,13 +143,13 @@ def main():
     error_px = errors.std(axis=0) * to_px / np.sqrt(len(errors))
     pull = np.sqrt(np.mean((errors / claims) ** 2, axis=0))
     share = solved / max(detectable, 1)
-    print(f"{count} pointings, {detectable} with {LEAST_STARS} detectable stars or more: {solved} solved ({100 * share:.1f} %), {wrong} wrong; {np.mean(stars_used):.0f} stars a frame")
+    print(f"{count} pointings, {detectable} with {MIN_STARS} detectable stars or more: {solved} solved ({100 * share:.1f} %), {wrong} wrong; {np.mean(stars_used):.0f} stars a frame")
     for i, axis in enumerate(["about x (rows)", "about y (columns)", "roll, at the edge"]):
         rms = np.sqrt(np.mean(errors[:, i] ** 2)) * to_px[i]
         print(f"{axis}: bias {bias_px[i]:+.4f} ± {error_px[i]:.4f} px, RMS {rms:.4f} px, {pull[i]:.2f} times what the stars' scatter tells")
     holds = {
-        f"{100 * LEAST_SOLVED:.0f} % solved": share >= LEAST_SOLVED and wrong == 0,
-        f"no bias above {MOST_BIAS_PX} px": bool(np.all(np.abs(bias_px) <= MOST_BIAS_PX)),
+        f"{100 * MIN_SOLVED:.0f} % solved": share >= MIN_SOLVED and wrong == 0,
+        f"no bias above {MAX_BIAS_PX} px": bool(np.all(np.abs(bias_px) <= MAX_BIAS_PX)),
         "scatter as the stars', within a factor of two": bool(np.all((pull > 0.5) & (pull < 2.0))),
     }
     for claim, is_so in holds.items():

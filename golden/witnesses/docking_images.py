@@ -21,7 +21,7 @@ import mitsuba
 import numpy as np
 
 RAYS = 256  # samples of cases.toml
-MOST_PIXELS, MOST_APART, MOST_MEAN = 1e-3, 4.0 / RAYS, 1e-6
+MAX_PIXELS, MAX_APART, MAX_MEAN = 1e-3, 4.0 / RAYS, 1e-6
 HALF_UNIT = 2.0**-10
 
 
@@ -48,7 +48,7 @@ def main():
         difference = np.abs(ours - theirs)
         share, most, shift = np.mean(difference > HALF_UNIT * np.abs(theirs)), difference.max(), abs(np.mean(ours - theirs))
         print(f"{name}: {share:.1e} of the pixels differ, by up to {most:.4f} of full scale, the mean by {shift:.0e}")
-        agree &= bool(share <= MOST_PIXELS and most <= MOST_APART and shift <= MOST_MEAN)
+        agree &= bool(share <= MAX_PIXELS and most <= MAX_APART and shift <= MAX_MEAN)
         pixels, apart, mean = max(pixels, share), max(apart, most), max(mean, shift)
     what = "the same bytes" if same == len(names) else f"{same} the same bytes, of the others up to {pixels:.0e} of the pixels differ, by up to {apart:.4f} of full scale"
     print(f"{'ok  ' if agree else 'FAIL'} {len(names)} images, {what}")

@@ -52,9 +52,9 @@ READ_NOISE_E, DARK_E_PER_S, EXPOSURE_S = 15.0, 40.0, 0.25
 FLOOR_E = 0.01
 
 RECALL_EDGES = [3, 4, 4.5, 5, 5.5, 6, 7, 8, 10]
-RECALL_APART, LEAST_RECALL = 0.02, 0.99
+RECALL_APART, MIN_RECALL = 0.02, 0.99
 PLACE_EDGES = [8, 12, 20, 35, 60]
-PLACE_APART, MOST_BIAS_PX, OUTLIER, MOST_OUTLIERS = 0.08, 0.01, 8.0, 0.005
+PLACE_APART, MAX_BIAS_PX, OUTLIER, MAX_OUTLIERS = 0.08, 0.01, 8.0, 0.005
 FLUX_EDGES = [5, 8, 12, 20, 35, 60, 150]
 FLUX_APART, SCATTER_APART, FLUX_OUTLIER = 0.003, 0.05, 6.0
 LEVEL_APART_DN = 0.05
@@ -216,7 +216,7 @@ def places_hold(snr, electrons, variance_e2, found, errors):
     counted = found & (snr >= PLACE_EDGES[0]) & (snr < PLACE_EDGES[-1])
     outliers = np.sum(far & counted) / max(counted.sum(), 1)
     print(f"{int(np.sum(far & counted))} of them are off by more than {OUTLIER} sigma/snr ({100 * outliers:.2f} %)")
-    return bool(holds), bool(outliers <= MOST_OUTLIERS)
+    return bool(holds), bool(outliers <= MAX_OUTLIERS)
 
 
 def electrons_hold(snr, electrons, variance_e2, flux, free):
@@ -240,7 +240,7 @@ def electrons_hold(snr, electrons, variance_e2, flux, free):
         together = abs(ratio - 1.0) <= FLUX_APART + 3.0 * error  # The last are all.
     share = np.sum(far) / max(np.sum(measured), 1)
     print(f"{int(np.sum(far))} of {int(np.sum(measured))} are off by more than {FLUX_OUTLIER:.0f} sigma ({100 * share:.2f} %)")
-    return bool(every), bool(together), bool(scatter), bool(share <= MOST_OUTLIERS)
+    return bool(every), bool(together), bool(scatter), bool(share <= MAX_OUTLIERS)
 
 
 def main():
@@ -267,14 +267,14 @@ def main():
 
     holds = {
         f"as many found as predicted within {100 * RECALL_APART:.0f} points and three standard errors, at every snr": as_many,
-        f"at least {100 * LEAST_RECALL:.0f} % found above twice the threshold": bool(recall >= LEAST_RECALL),
+        f"at least {100 * MIN_RECALL:.0f} % found above twice the threshold": bool(recall >= MIN_RECALL),
         f"places scatter as predicted within {100 * PLACE_APART:.0f} % and three standard errors, at every snr": places,
-        f"no more than {100 * MOST_OUTLIERS} % of the places far off": few_far,
-        f"no bias of position above {MOST_BIAS_PX} px": bool(np.all(np.abs(bias) <= MOST_BIAS_PX)),
+        f"no more than {100 * MAX_OUTLIERS} % of the places far off": few_far,
+        f"no bias of position above {MAX_BIAS_PX} px": bool(np.all(np.abs(bias) <= MAX_BIAS_PX)),
         f"electrons within {100 * FLUX_APART} % and 3.5 standard errors at every snr": every,
         f"electrons within {100 * FLUX_APART} % and three standard errors over all": together,
         f"electrons scatter as predicted within {100 * SCATTER_APART:.0f} % and three standard errors": scatter,
-        f"no more than {100 * MOST_OUTLIERS} % of the electrons far off": few_wrong,
+        f"no more than {100 * MAX_OUTLIERS} % of the electrons far off": few_wrong,
         f"background within {LEVEL_APART_DN} DN": bool(abs(background) <= LEVEL_APART_DN),
     }
     for claim, is_so in holds.items():

@@ -26,9 +26,9 @@ import tetra3rs
 import pointings
 
 DETECTABLE_SNR = 5.0
-LEAST_STARS = 10
-LEAST_SOLVED = 0.99
-MOST_BIAS_PX = 0.02
+MIN_STARS = 10
+MIN_SOLVED = 0.99
+MAX_BIAS_PX = 0.02
 ARCSEC = 206264.806
 
 
@@ -51,7 +51,7 @@ def main():
         is_star = np.array([kind == "star" for kind in objects["kind"]])
         stars = int(np.sum(is_star & (np.nan_to_num(np.asarray(objects["snr"])) >= DETECTABLE_SNR)))
         found = tetra3rs.extract_centroids(frame.pixels, max_centroids=100, min_pixels=2, local_bg_block_size=48, matched_filter_sigma=0.85)
-        if stars < LEAST_STARS:
+        if stars < MIN_STARS:
             continue
         detectable += 1
         # Pixels of the solver: of a pinhole, square, from the principal point, in widths of a pixel. Its
@@ -81,12 +81,12 @@ def main():
     pull = np.sqrt(np.mean((errors / claims) ** 2, axis=0))
     rms = np.sqrt(np.mean(errors**2, axis=0)) * ARCSEC
     share = solved / max(detectable, 1)
-    print(f"{count} pointings, {detectable} with {LEAST_STARS} detectable stars or more: {solved} solved ({100 * share:.1f} %), {wrong} wrong")
+    print(f"{count} pointings, {detectable} with {MIN_STARS} detectable stars or more: {solved} solved ({100 * share:.1f} %), {wrong} wrong")
     for i, axis in enumerate(["about x (rows)", "about y (columns)", "roll, at the edge"]):
         print(f"{axis}: bias {bias_px[i]:+.4f} ± {error_px[i]:.4f} px, RMS {rms[i]:.2f} arcsec, {pull[i]:.2f} times what is claimed")
     holds = {
-        f"{100 * LEAST_SOLVED:.0f} % solved": share >= LEAST_SOLVED and wrong == 0,
-        f"no bias above {MOST_BIAS_PX} px": bool(np.all(np.abs(bias_px) <= MOST_BIAS_PX)),
+        f"{100 * MIN_SOLVED:.0f} % solved": share >= MIN_SOLVED and wrong == 0,
+        f"no bias above {MAX_BIAS_PX} px": bool(np.all(np.abs(bias_px) <= MAX_BIAS_PX)),
         "scatter as claimed, within a factor of two": bool(np.all((pull > 0.5) & (pull < 2.0))),
     }
     for claim, is_so in holds.items():

@@ -24,7 +24,7 @@ import numpy as np
 import pointings
 
 LIGHT_SPEED_KM_S = 299792.458
-MOST_APART_PX = 0.001
+MAX_APART_PX = 0.001
 PIXEL_UM = 8.6
 RADIAL, TANGENTIAL = (8e-8, -3e-14, 2e-20), (4e-6, -6e-6)  # px^-2, px^-4, px^-6; px^-1
 
@@ -61,8 +61,8 @@ def main():
         moved.extend(np.linalg.norm(undistorted - expected, axis=1))
     apart = np.array(apart)
     print(f"{len(apart)} stars, moved by up to {max(moved):.1f} px by the distortion: {np.median(apart):.1e} px apart in the median, {apart.max():.1e} px at worst")
-    holds = bool(len(apart) > 100 and apart.max() <= MOST_APART_PX)
-    print(f"{'ok  ' if holds else 'FAIL'} every star within {MOST_APART_PX} px of OpenCV's place")
+    holds = bool(len(apart) > 100 and apart.max() <= MAX_APART_PX)
+    print(f"{'ok  ' if holds else 'FAIL'} every star within {MAX_APART_PX} px of OpenCV's place")
     return 0 if holds else 1
 
 

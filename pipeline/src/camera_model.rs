@@ -321,7 +321,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_place_that_overflows_in_one_coordinate_is_none() {
+    fn a_position_with_an_overflowing_coordinate_is_none() {
         assert!(argon().pixel_from_ideal(1e3, 1.0).is_some());
         assert_eq!(argon().pixel_from_ideal(1e110, 1.0), None);
     }

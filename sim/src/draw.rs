@@ -236,7 +236,7 @@ impl ExpectedImage {
         }
     }
 
-    /// Flat level, electrons per pixel: the whole background where it does not vary.
+    /// Returns the flat level, electrons per pixel: the background in pixels where it does not vary.
     pub fn flat_e(&self) -> f64 {
         let pattern_e = self.background.pattern.as_ref().map_or(0.0, |(electrons, _)| *electrons);
         self.background.light_e + (self.background.dark_e + pattern_e)
@@ -479,7 +479,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pixel_that_differs_from_the_flat_level_is_told_once_and_in_order() {
+    fn every_pixel_off_the_flat_level_is_listed_once_and_in_order() {
         let mut image = ExpectedImage::new(150, 70);
         image.clear(5.0);
         for (x, y) in [(64.0, 30.0), (66.0, 31.0), (0.0, 0.0), (149.0, 69.0), (127.5, 5.0)] {

@@ -130,7 +130,7 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for ShapeVisitor<V> {
                 if found == expected {
                     Ok(read)
                 } else {
-                    Err(A::Error::invalid_length(found, &Values(expected)))
+                    Err(A::Error::invalid_length(found, &ArrayLength(expected)))
                 }
             }
         }
@@ -145,10 +145,10 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for ShapeVisitor<V> {
     }
 }
 
-/// Expected length, in the wording of serde, which refuses arrays that are too short.
-struct Values(usize);
+/// Expected length of an array, printed in serde's own wording.
+struct ArrayLength(usize);
 
-impl Expected for Values {
+impl Expected for ArrayLength {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "an array of length {}", self.0)
     }
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_is_read_as_toml_reads_it() {
+    fn valid_values_are_read_as_by_toml() {
         for text in [
             "corners = [[[1, 2], [3, 4]], [[5, 6.5], [7, 8]]]\npair = [1, 2]",
             "step = 'none'",

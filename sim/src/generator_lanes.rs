@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_and_what_is_skipped_are_the_same_on_all_registers() {
+    fn steps_and_skips_are_the_same_on_all_registers() {
         struct Steps(GeneratorLanes);
         impl WithSimd for Steps {
             type Output = Vec<[u64; LANES]>;
@@ -185,7 +185,7 @@ mod tests {
 
     /// Words of neighbouring lanes, and of one lane at neighbouring indices, differ in half of their bits.
     #[test]
-    fn neighbouring_lanes_and_places_share_no_bits_but_by_chance() {
+    fn neighbouring_lanes_and_positions_share_bits_only_by_chance() {
         let streams = Seed { seed: 1, case: 0 }.streams(0, Effect::PixelNoise);
         let (mut differ, mut bits) = (0_u64, 0_u64);
         for index in 0..500 {

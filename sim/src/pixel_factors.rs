@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pixel_has_its_factor_however_it_is_asked_for() {
+    fn every_access_path_gives_a_pixel_the_same_factor() {
         for (columns, rows) in [(1, 1), (63, 2), (64, 3), (65, 2), (130, 5), (752, 4)] {
             let of = |x: usize, y: usize| (y * 1000 + x) as f32;
             let factors =

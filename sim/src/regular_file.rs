@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_may_have_no_end_or_is_too_large_is_refused() {
+    fn endless_or_oversized_input_is_refused() {
         assert!(open(Path::new("/dev/zero")).is_err() && open(Path::new("/")).is_err());
         assert!(read(Path::new("/dev/zero"), 10).is_err());
         #[cfg(target_os = "linux")]

@@ -180,7 +180,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn json_means_the_same_and_orders_nothing_of_a_terminal() {
+    fn escaped_json_has_the_same_meaning_and_no_control_characters() {
         let document = serde_json::json!({ "day\u{9b}2J": "ä\u{7f}\u{80}\u{9f}\u{a0}\u{1b}" });
         let shown = harmless_json(&serde_json::to_string_pretty(&document).unwrap());
         assert!(!shown.chars().any(|character| character.is_control() && character != '\n'), "{shown:?}");
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_terminal_gets_letter_styles_and_nothing_else() {
+    fn a_terminal_receives_only_letter_styles() {
         assert_eq!(harmless_but_styled("\u{1b}[1;31mday\u{1b}[0m 1\tä\n"), "\u{1b}[1;31mday\u{1b}[0m 1\tä\n");
         assert_eq!(
             harmless_but_styled("\u{1b}[2J\u{1b}]0;x\u{7}\u{1b}["),

@@ -17,7 +17,7 @@ const MARK: &str = ".boresight-scratch";
 const UNLOCKED: Duration = Duration::from_secs(3600);
 
 /// Temporary directories of this process.
-static PLACES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static DIRECTORIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// A temporary directory, removed when the value is dropped.
 pub(super) struct ScratchDirectory {
@@ -66,7 +66,7 @@ pub(super) fn remove_all() {
 }
 
 fn directories() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
-    PLACES.lock().unwrap_or_else(PoisonError::into_inner)
+    DIRECTORIES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Removes the directories of killed processes. Errors are ignored, because no process reads these
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_process_left_is_removed_and_nothing_else() {
+    fn only_leftovers_of_ended_processes_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         let old = |name: &str, file: &str| old_directory(folder.path(), name, file);
         let left = old("boresight-scratch-left", MARK);

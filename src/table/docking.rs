@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn a_score_of_nothing_prints_dashes() {
+    fn an_empty_score_prints_dashes() {
         let text = docking(&score(&[]), false);
         assert!(text.contains('–') && !text.contains("NaN"), "{text}");
     }

@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ra_and_dec_rest_on_is_reported() {
+    fn the_attitude_behind_ra_and_dec_is_reported() {
         let text = |attitude: Option<&str>| {
             let score = Score { attitude: attitude.map(str::to_owned), ..score(5, 3000) };
             far_range(&score, TableStyle { width: 100, ..TableStyle::default() })
@@ -416,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_mode_stands_below_when_its_groups_are_the_same() {
+    fn the_best_mode_is_printed_below_if_its_groups_are_the_same() {
         let mut best = score(5, 300);
         best.figures.insert(names::CORRECT_RATE.to_owned(), Figure::rate(&[vec![true; 300]]));
         let style =
@@ -471,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn a_score_of_nothing_prints_dashes() {
+    fn an_empty_score_prints_dashes() {
         let mut empty = score(0, 0);
         empty.misses.clear();
         let text = far_range(&empty, TableStyle::default());

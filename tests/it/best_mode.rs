@@ -505,7 +505,7 @@ fn frames_are_added_up_until_a_faint_target_is_found() {
 }
 
 #[test]
-fn a_target_that_fades_is_followed_below_what_a_frame_shows() {
+fn a_fading_target_is_followed_below_the_detection_limit_of_a_frame() {
     let (mut correct, mut wrong, mut n) = (0, 0, 0);
     for run in 0..10 {
         // From a signal-to-noise ratio of 15 to 3 in twenty frames.

@@ -316,7 +316,7 @@ fn boresight(words: &str) -> u8 {
 }
 
 #[test]
-fn a_world_of_its_own_runs_through_everything() {
+fn a_separate_world_runs_through_every_command() {
     let bench = Bench::new();
     let at = |name: &str| bench.path(name).display().to_string();
     let (scenario, run, set) = (at("dot.toml"), at("run"), at("set"));

@@ -88,7 +88,7 @@ fn the_example_of_a_program_keeps_the_contract() {
 /// The example reports 10 m for each field; the camera is between 9.9 and 10.1 m in these, at the turning
 /// point of the approach.
 #[test]
-fn the_example_of_a_program_is_scored_and_its_wish_for_the_digitiser_heeded() {
+fn the_example_program_is_scored_and_its_digitiser_settings_are_applied() {
     let bench = Bench::new();
     let command = format!("exec:{}", example());
     let words =

@@ -21,7 +21,7 @@ fn simulate_all(approaches: u64, portions: u64, noise_dn: f64) -> Vec<MeasuredAp
 }
 
 #[test]
-fn errors_are_as_large_as_sigma_says_and_sigma_follows_noise_and_range() {
+fn errors_agree_with_sigma_and_sigma_follows_noise_and_range() {
     let (once, twice) = (simulate_all(APPROACHES, 3, 2.0), simulate_all(DOUBLED, 2, 4.0));
     let tally = Tally::from_approaches(&once, Estimator::Exact);
     assert_eq!(tally.portions, 2 * APPROACHES as usize);

@@ -21,7 +21,7 @@ fn poses(rows: &Rows) -> Vec<[f64; 6]> {
 
 /// Grey AVI and Y4M hold the same bytes as the images; Motion-JPEG holds nearly the same.
 #[test]
-fn a_dataset_is_processed_alike_whatever_its_images_are_kept_in() {
+fn a_dataset_is_processed_alike_in_every_image_format() {
     let bench = Bench::new();
     for format in ["png", "avi", "y4m", "mjpeg"] {
         bench.boresight(&format!("render docking --frames {NEAR} --format {format} --out {format}")).done();
@@ -66,7 +66,7 @@ fn a_stream_is_rendered_and_measured_live() {
 
 /// A dataset that begins with an odd field is a video whose lower field comes first.
 #[test]
-fn the_order_of_fields_is_heeded() {
+fn the_order_of_fields_is_applied() {
     let bench = Bench::new();
     bench.boresight("render docking --frames 24001..24009 --format avi --out set").done();
     bench.boresight("process set").done();
@@ -155,7 +155,7 @@ fn a_target_upside_down_is_inconsistent_where_only_the_earlier_fields_show_it() 
 /// only round outlines. The motion in the fields is inconsistent with this, and from the third field on the
 /// poses are doubtful.
 #[test]
-fn known_limit_a_target_upside_down_begun_within_5_m_is_taken_for_upright_in_two_fields() {
+fn known_limit_an_upside_down_target_first_seen_within_5_m_is_reported_upright_in_two_fields() {
     let statuses = upside_down(&Bench::new(), &still_scenario([0.0; 3], 4.0), 6);
     let (first, later) = statuses.split_at(2);
     assert!(first.iter().all(|status| status == "measured"), "the limit is gone: {statuses:?}");

@@ -210,17 +210,17 @@ fn check_runs(world: &World) {
 }
 
 #[test]
-fn in_a_far_range_run_each_is_an_outcome_with_its_reason_and_nothing_is_left() {
+fn in_a_far_range_run_each_failure_is_an_outcome_with_its_reason_and_no_process_is_left() {
     check_runs(&FAR_RANGE);
 }
 
 #[test]
-fn in_a_docking_run_each_is_an_outcome_with_its_reason_and_nothing_is_left() {
+fn in_a_docking_run_each_failure_is_an_outcome_with_its_reason_and_no_process_is_left() {
     check_runs(&DOCKING);
 }
 
 #[test]
-fn over_a_dataset_each_is_an_outcome_with_its_reason_and_nothing_is_left() {
+fn over_a_dataset_each_failure_is_an_outcome_with_its_reason_and_no_process_is_left() {
     for world in [FAR_RANGE, DOCKING] {
         let rendered = Bench::new();
         let words = format!("render {} --frames {} --format png --out set", world.scenario, world.frames);
@@ -240,7 +240,7 @@ fn over_a_dataset_each_is_an_outcome_with_its_reason_and_nothing_is_left() {
 /// A study continues past a failing program, reports the affected cases, and gives the same results when it
 /// is run again.
 #[test]
-fn in_a_study_each_is_a_failed_case_and_the_study_goes_on() {
+fn in_a_study_each_failure_is_a_failed_case_and_the_study_continues() {
     with_each(|faulty @ Faulty { name, body, .. }| {
         let bench = Bench::new();
         bench.write(
@@ -315,7 +315,7 @@ fn a_run_of_two_frames_without_a_start_is_refused() {
 
 /// One failed start costs its frame; the program is started again, because it has no state yet.
 #[test]
-fn a_program_that_starts_in_the_end_goes_on() {
+fn a_program_that_starts_late_is_used() {
     let bench = Bench::new();
     let body = "if len(open(os.environ['PIDS']).readlines()) < 3:\n    sys.exit('not yet')\nhello()\nwhile True:\n    none(ask())";
     write_program(&bench, &FAR_RANGE, body);
@@ -376,7 +376,7 @@ fn cases_without_a_start_are_failed_rows_and_the_first_ten_end_a_study() {
 
 /// An unusable answer costs only its frame.
 #[test]
-fn garbage_costs_its_frame_alone_in_both_worlds() {
+fn invalid_output_fails_only_its_frame_in_both_worlds() {
     let body = "hello()\nfor text in ('Paris', '[1, 2', '{\"KEY\": 99, \"status\": \"no_target\"}'):\n    n = ask()\n    \
                 say(text.replace('KEY', KEY))\nwhile True:\n    none(ask())";
     for (world, frames) in [(FAR_RANGE, "100..105"), (DOCKING, "18000..18005")] {

@@ -206,7 +206,7 @@ fn check_fails_after_two(program: &str, more: &[&str], parts: &[&str]) {
 }
 
 #[test]
-fn a_program_that_crashes_costs_its_frames_and_its_last_words_are_kept() {
+fn a_crashing_program_fails_its_frames_and_its_last_output_is_kept() {
     let then = "sys.exit('the film is full')";
     check_fails_after_two(&answers_two_then(then), &[], &["at frame 102", "the film is full"]);
 }
@@ -220,7 +220,7 @@ fn a_program_that_hangs_is_ended_after_its_timeout() {
 }
 
 #[test]
-fn an_answer_that_is_garbage_costs_its_frame_and_is_shown() {
+fn an_invalid_answer_fails_its_frame_and_is_shown() {
     check_fails_after_two(&answers_two_then("print('Paris', flush=True)"), &[], &["Paris"]);
 }
 

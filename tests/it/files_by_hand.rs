@@ -42,7 +42,7 @@ fn turned([w, x, y, z]: [f64; 4], [a, b, c]: [f64; 3]) -> [f64; 3] {
 }
 
 #[test]
-fn the_table_of_telemetry_says_what_is_measured() {
+fn the_telemetry_table_defines_the_measured_frames() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("telemetry.csv");
     let mut writer = TelemetryWriter::create(&path).unwrap();

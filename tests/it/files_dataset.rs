@@ -114,7 +114,7 @@ fn edit(path: &Path, from: &str, to: &str) {
 }
 
 #[test]
-fn a_dataset_of_every_format_comes_back() {
+fn a_dataset_of_every_format_round_trips() {
     for format in ImageFormat::ALL {
         let (_parent, run) = dataset(format);
         let dataset = Dataset::open(run.path()).unwrap();
@@ -198,7 +198,7 @@ fn a_bad_camera_file_names_the_field() {
 }
 
 #[test]
-fn a_directory_without_a_dataset_says_what_is_missing() {
+fn a_directory_without_a_dataset_is_reported_with_the_missing_file() {
     let empty = tempdir().unwrap();
     assert!(refusal(empty.path()).contains("camera.toml"));
 }

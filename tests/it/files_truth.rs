@@ -92,7 +92,7 @@ fn message<R: Row>(path: &Path) -> String {
 }
 
 #[test]
-fn frames_come_back_to_the_bit() {
+fn frames_round_trip_bit_for_bit() {
     let frames: Vec<_> = (0..300).map(|i| frame(7 * i)).collect();
     let (_directory, path) = write(frames.iter().cloned().map(|frame| vec![frame]));
     let back: Vec<_> =
@@ -101,7 +101,7 @@ fn frames_come_back_to_the_bit() {
 }
 
 #[test]
-fn objects_come_back_to_the_bit_over_many_batches() {
+fn objects_round_trip_bit_for_bit_over_many_batches() {
     // More rows than two batches of the reader; every third frame has no rows.
     let objects = |frame: u64| {
         if frame.is_multiple_of(3) { vec![] } else { (0..200).map(|i| object(frame, i)).collect() }

@@ -12,7 +12,7 @@ use crate::support::{Bench, check_same_files};
 
 /// Maximum number of rejections out of 400 pairs without a worsening: 20 are expected at 5 %, with a standard
 /// deviation of 4.4.
-const MOST_OF_400: usize = 31;
+const MAX_REJECTIONS_OF_400: usize = 31;
 
 /// Number of trials that the gate rejects.
 fn rejected(trials: u64, is_worse: impl Fn(u64) -> bool + Sync) -> usize {
@@ -20,34 +20,34 @@ fn rejected(trials: u64, is_worse: impl Fn(u64) -> bool + Sync) -> usize {
 }
 
 #[test]
-fn null_control_other_seeds_are_rejected_as_often_as_alpha_says() {
+fn null_control_other_seeds_are_rejected_at_the_rate_alpha() {
     let run = |seed: u64| sample_of(seed, &Synthetic { stretches: 12, frames: 30 }.run(seed));
     let count =
         rejected(400, |trial| rejects(&baseline_of(run(2 * trial)), &run(2 * trial + 1), Pairing::Blocks));
     println!("made-up runs with other seeds: {count} of 400 rejected");
-    assert!(count <= MOST_OF_400, "{count} of 400");
+    assert!(count <= MAX_REJECTIONS_OF_400, "{count} of 400");
 }
 
 #[test]
-fn null_control_a_harmless_change_on_the_same_frames_is_rejected_as_often_as_alpha_says() {
+fn null_control_a_harmless_change_on_the_same_frames_is_rejected_at_the_rate_alpha() {
     let count = rejected(400, |trial| {
         let frames = Synthetic { stretches: 12, frames: 30 }.run(trial);
         let [a, b] = [0, 1].map(|pipeline| sample_of(trial, &harmless(&frames, trial, pipeline)));
         rejects(&baseline_of(a), &b, Pairing::Frames)
     });
     println!("made-up runs with a harmless change: {count} of 400 rejected");
-    assert!(count <= MOST_OF_400, "{count} of 400");
+    assert!(count <= MAX_REJECTIONS_OF_400, "{count} of 400");
 }
 
 #[test]
-fn null_control_a_harmless_change_in_episodes_is_rejected_as_often_as_alpha_says() {
+fn null_control_a_harmless_change_in_episodes_is_rejected_at_the_rate_alpha() {
     let count = rejected(400, |trial| {
         let frames = Synthetic { stretches: 30, frames: 30 }.run(trial);
         let [a, b] = [0, 1].map(|pipeline| sample_of(trial, &harmless_in_episodes(&frames, trial, pipeline)));
         rejects(&baseline_of(a), &b, Pairing::Frames)
     });
     println!("made-up runs with a harmless change in episodes: {count} of 400 rejected");
-    assert!(count <= MOST_OF_400, "{count} of 400");
+    assert!(count <= MAX_REJECTIONS_OF_400, "{count} of 400");
 }
 
 /// Counterpart of the null-control tests above: if the frames of the same runs are treated as independent,
@@ -102,7 +102,7 @@ fn the_smallest_visible_change_is_visible() {
 
 /// A pipeline that no longer reports its stars has not improved.
 #[test]
-fn a_figure_that_vanishes_is_gone_and_shuts_the_gate() {
+fn a_figure_that_vanishes_fails_the_gate() {
     let mut frames = Synthetic { stretches: 30, frames: 30 }.run(1);
     let baseline = baseline_of(sample_of(1, &frames));
     frames.iter_mut().for_each(|frame| frame.n_stars = None);
@@ -124,7 +124,7 @@ fn a_change_below_the_tolerance_is_no_worsening() {
 }
 
 #[test]
-fn what_limits_the_trust_in_a_comparison_is_noted() {
+fn limitations_of_a_comparison_are_noted() {
     let run = |seed: u64| Synthetic { stretches: 4, frames: 200 }.run(seed);
     let frame_by_frame = gate::Baseline::new(sample_of(1, &run(1)), "too short blocks", Some(1)).unwrap();
     let report = compare(&frame_by_frame, &sample_of(2, &run(2)), &CompareOptions::default()).unwrap();
@@ -346,7 +346,7 @@ fn a_pipeline_with_other_parameters_is_held_against_the_same_frames() {
 }
 
 #[test]
-fn a_baseline_asks_for_a_reason_and_is_not_replaced_by_accident() {
+fn a_baseline_requires_a_reason_and_is_not_replaced_by_accident() {
     let bench = bench();
     let before = bench.tree("base");
     bench
@@ -451,7 +451,7 @@ fn the_gates_fly_the_built_in_scenarios() {
 /// --nocapture`.
 #[test]
 #[ignore = "800 runs of the simulator"]
-fn real_runs_with_other_seeds_are_rejected_as_often_as_alpha_says() {
+fn real_runs_with_other_seeds_are_rejected_at_the_rate_alpha() {
     let runs = real::runs(0..800, 4, 6);
     let blocks = rejected(400, |pair| {
         let [a, b] = [2 * pair, 2 * pair + 1].map(|seed| sample_of(seed, &runs[seed as usize]));
@@ -462,7 +462,7 @@ fn real_runs_with_other_seeds_are_rejected_as_often_as_alpha_says() {
         rejects(&baseline_of(a), &b, Pairing::Frames)
     });
     println!("rejected of 400 pairs: {blocks} with other seeds, {frames} with a harmless change");
-    assert!(blocks <= MOST_OF_400 && frames <= MOST_OF_400, "{blocks}, {frames}");
+    assert!(blocks <= MAX_REJECTIONS_OF_400 && frames <= MAX_REJECTIONS_OF_400, "{blocks}, {frames}");
 }
 
 /// Power with the simulator, at the size of the project's gate: `cargo test --release --test it

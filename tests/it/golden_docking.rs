@@ -23,7 +23,7 @@ use sim::vector::{Drawer, RadianceImage};
 /// Pixels of a profile on either side of its middle; the two outermost pixels at each end are its plateaus.
 const HALF: usize = 4;
 /// Smallest step of a measured edge, as a fraction of full scale: a shadow on the disk has 0.03.
-const LEAST_STEP: f64 = 0.02;
+const MIN_EDGE_STEP: f64 = 0.02;
 /// Largest difference between the two pixels of a plateau, and between the plateaus of both images, as a
 /// fraction of the step: anything else in the profile then contributes at most 0.02 px per pixel.
 const FLAT: f64 = 0.01;
@@ -161,7 +161,7 @@ impl<'a> Pair<'a> {
         let slope =
             |at: usize, step: usize| value(&self.mitsuba, at + step) - value(&self.mitsuba, at - step);
         let (along, aside) = (slope(at, step), slope(at, across));
-        if along.abs() < LEAST_STEP / 4.0 || aside.abs() > along.abs() {
+        if along.abs() < MIN_EDGE_STEP / 4.0 || aside.abs() > along.abs() {
             return None;
         }
         let profile = |image: &RadianceImage| -> [f64; 2 * HALF + 1] {
@@ -178,7 +178,7 @@ impl<'a> Pair<'a> {
         let least = FLAT * step_of_light.abs();
         let flat = (seen[0] - seen[1]).abs() < least && (seen[last] - seen[last - 1]).abs() < least;
         let rises = seen.windows(2).all(|pair| (pair[1] - pair[0]) * step_of_light.signum() > -least);
-        if !(steepest && flat && rises) || step_of_light.abs() < LEAST_STEP {
+        if !(steepest && flat && rises) || step_of_light.abs() < MIN_EDGE_STEP {
             return None;
         }
         let place = place_of_edge(&seen, (low, high));

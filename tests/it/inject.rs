@@ -13,7 +13,7 @@ fn run(bench: &Bench, stage: &str) -> Value {
 }
 
 #[test]
-fn each_stage_takes_its_own_error_away_and_is_reported_in_every_file() {
+fn each_injected_stage_removes_its_error_and_is_reported_in_every_file() {
     let bench = Bench::new();
     let own = run(&bench, "");
     assert!(own.get("inject").is_none());
@@ -53,7 +53,7 @@ fn each_stage_takes_its_own_error_away_and_is_reported_in_every_file() {
 }
 
 #[test]
-fn the_frames_of_an_injected_run_are_those_of_the_honest_one() {
+fn the_frames_of_an_injected_run_are_those_of_the_plain_run() {
     let bench = Bench::new();
     for inject in ["", "--inject attitude"] {
         let out = inject.replace("--inject ", "");
@@ -65,13 +65,13 @@ fn the_frames_of_an_injected_run_are_those_of_the_honest_one() {
 }
 
 #[test]
-fn an_injected_run_says_so_under_its_table() {
+fn an_injected_run_is_marked_under_its_table() {
     let answer = Bench::new().boresight("run argon --frames 0..3 --inject attitude --out run").done();
     assert!(answer.stdout.contains("the truth replaced attitude"), "{}", answer.stdout);
 }
 
 #[test]
-fn what_cannot_be_injected_is_refused_before_anything_is_written() {
+fn an_impossible_injection_is_refused_before_anything_is_written() {
     let bench = Bench::new();
     let refused = |words: &str, parts: &[&str]| {
         bench.boresight(&format!("run {words} --out run")).refused(parts);

@@ -1,7 +1,7 @@
 //! End-to-end tests of the command and its library, one module per suite: `cargo test --test it study_dask::`
 //! runs one suite.
 
-#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+#![allow(clippy::unwrap_used, reason = "tests and their helpers fail by panicking")]
 
 mod support;
 

@@ -109,7 +109,7 @@ fn mitsuba_gets_variant_threads_and_path() {
 }
 
 #[test]
-fn what_was_rendered_is_not_rendered_again_even_when_mitsuba_is_gone() {
+fn a_cached_image_is_reused_even_without_mitsuba() {
     let stage = FakeMitsuba::new(&copies("good.exr"));
     let first = render(&stage.renderer(30.0), 5.0).unwrap();
     stage.script("exit 1");
@@ -164,7 +164,7 @@ fn a_mitsuba_without_the_variant_is_refused() {
 }
 
 #[test]
-fn a_refused_scene_comes_with_mitsuba_s_own_words_without_colours() {
+fn a_refused_scene_is_reported_with_mitsubas_message_without_colours() {
     let script = format!(
         "{HELP}printf '\\033[31mCaught a critical exception:\\033[0m no such plugin\\n' >&2; exit 255"
     );
@@ -222,7 +222,7 @@ fn a_render_that_hangs_is_ended_with_its_children() {
 }
 
 #[test]
-fn a_time_limit_is_more_than_nothing() {
+fn a_time_limit_that_is_not_positive_and_finite_is_refused() {
     for time_limit_s in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let cache = Some(tempfile::tempdir().unwrap().path().join("cache"));
         let error = MitsubaRenderer::new(MitsubaOptions { cache, time_limit_s, ..MitsubaOptions::default() });

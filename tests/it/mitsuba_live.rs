@@ -92,7 +92,7 @@ fn centre_of_light(image: &RadianceImage, polygon: &[PixelPoint]) -> PixelPoint 
 /// px or more.
 #[test]
 #[ignore = "needs Mitsuba 3.9.1"]
-fn squares_at_known_positions_fall_where_the_projection_says() {
+fn squares_at_known_positions_agree_with_the_projection() {
     let renderer = renderer(64);
     let mut facets = Vec::new();
     for (row, y) in [-0.36, 0.0, 0.36].into_iter().enumerate() {

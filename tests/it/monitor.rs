@@ -147,7 +147,7 @@ fn check_parameters(report: &Value, row: &std::collections::BTreeMap<String, Str
 }
 
 #[test]
-fn a_live_docking_run_measures_what_the_run_measures_and_shows_its_pictures() {
+fn a_live_docking_run_has_the_measurements_of_the_run_and_shows_its_pictures() {
     let bench = Bench::new();
     bench.boresight("run docking --frames 24000..24030 --out run").done();
     let monitor = Monitor::docking(24000..24030);
@@ -299,7 +299,7 @@ fn headers_without_end_are_refused_with_their_status() {
 }
 
 #[test]
-fn connections_that_ask_nothing_do_not_keep_others_out() {
+fn idle_connections_do_not_block_others() {
     let monitor = Monitor::docking(24000..24002);
     // Nearly all available connections.
     let idle: Vec<_> = (0..200).map(|_| TcpStream::connect(monitor.address).unwrap()).collect();
@@ -429,7 +429,7 @@ fn a_page_that_is_left_alone_leaves_the_processor_alone() {
 
 /// A build either contains the page or does not; in both cases the answer is helpful.
 #[test]
-fn the_page_is_served_or_the_command_says_how_it_is_built() {
+fn the_page_is_served_or_the_command_explains_how_to_build_it() {
     if is_page_built() {
         let monitor = Monitor::docking(24000..24002);
         for (path, part) in [("/", "src=\"monitor.js\""), ("/monitor.js", "api/"), ("/monitor.css", "{")] {
@@ -484,7 +484,7 @@ fn of_the_true_positions_that_of_the_target_has_a_name() {
 }
 
 #[test]
-fn the_page_knows_where_a_day_begins() {
+fn the_page_marks_the_beginning_of_each_day() {
     let monitor = Monitor::start(|| live("argon", 0..1));
     let session = monitor.json("/api/session.json");
     let begins: Vec<u64> =

@@ -32,7 +32,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 }
 
 #[test]
-fn every_test_file_that_is_named_is_there() {
+fn every_named_test_file_exists() {
     let (mut named, mut missing) = (0, Vec::new());
     for (name, text) in texts() {
         let is_test_file = |word: &&str| {

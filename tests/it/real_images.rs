@@ -173,7 +173,7 @@ fn a_program_may_measure_them_too() {
 }
 
 #[test]
-fn nothing_is_written_into_the_dataset_when_the_measurements_go_elsewhere() {
+fn nothing_is_written_into_the_dataset_if_the_measurements_are_written_elsewhere() {
     let bench = dataset(12, |_, image| TIFF_16(image));
     let before = bench.tree("real");
     bench.write("out/notes.txt", "");

@@ -158,7 +158,7 @@ fn check_points(words: &str, chart: &Value) {
 }
 
 #[test]
-fn the_points_of_a_long_run_lie_as_all_of_its_errors_do() {
+fn the_drawn_points_of_a_long_run_are_distributed_as_all_its_errors() {
     let bench = Bench::new();
     bench.boresight("run argon --frames 40..60 --out run --no-report").done();
     let mut run = FarRangeRun::read(&bench.path("run")).unwrap();
@@ -281,14 +281,14 @@ fn a_report_is_the_same_bytes_from_the_same_directory_wherever_it_is_written() {
 }
 
 #[test]
-fn no_report_leaves_none() {
+fn no_report_writes_no_report() {
     let bench = Bench::new();
     bench.boresight("run starting-point --frames 0..3 --out run --no-report").done();
     assert!(!bench.path("run/report.html").exists());
 }
 
 #[test]
-fn a_run_with_injected_truth_says_so() {
+fn a_run_with_injected_truth_is_marked() {
     let bench = Bench::new();
     bench.boresight("run argon --frames 300..303 --inject roi --out run").done();
     let page = PageText::read(&bench, "run/report.html");
@@ -434,7 +434,7 @@ fn the_page_of_requirements_has_table_curves_and_sky() {
 }
 
 #[test]
-fn the_page_of_a_gate_shows_what_flipped() {
+fn the_page_of_a_gate_lists_the_flipped_units() {
     let bench = Bench::new();
     bench.boresight("run argon --frames 0..60 --out run --no-report").done();
     bench.boresight("gate baseline run --out base --reason first --block-length 6").done();

@@ -34,17 +34,17 @@ fn check_round_trip(format: &str) {
 }
 
 #[test]
-fn a_fits_dataset_processed_and_scored_gives_what_the_run_gives() {
+fn a_fits_dataset_processed_and_scored_gives_the_score_of_the_run() {
     check_round_trip("fits");
 }
 
 #[test]
-fn a_png_dataset_processed_and_scored_gives_what_the_run_gives() {
+fn a_png_dataset_processed_and_scored_gives_the_score_of_the_run() {
     check_round_trip("png");
 }
 
 #[test]
-fn an_exr_dataset_processed_and_scored_gives_what_the_run_gives() {
+fn an_exr_dataset_processed_and_scored_gives_the_score_of_the_run() {
     check_round_trip("exr");
 }
 
@@ -282,7 +282,7 @@ fn wrong_positions_are_detected_and_wrong() {
 }
 
 #[test]
-fn a_position_on_a_hot_pixel_is_wrong_and_says_what_was_taken() {
+fn a_position_on_a_hot_pixel_is_wrong_and_names_the_hot_pixel() {
     let bench = with_run();
     let objects = bench.objects("run");
     let hot_pixel = |frame: u64| {

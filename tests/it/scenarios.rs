@@ -33,7 +33,7 @@ fn every_built_in_scenario_passes_its_check() {
 /// A check prints the quantities that follow from the numbers of a scenario, and the built-in scenarios cause
 /// no warning.
 #[test]
-fn a_check_reports_what_follows_from_the_numbers() {
+fn a_check_reports_derived_quantities() {
     let bench = Bench::new();
     for scenario in BUILT_IN {
         let check = bench.boresight(&format!("scenario check {} --json", scenario.name)).done().json();
@@ -77,7 +77,7 @@ fn a_check_reports_what_follows_from_the_numbers() {
 
 /// A scenario that a run would reject does not pass a check.
 #[test]
-fn a_check_asks_the_pipeline_too() {
+fn a_check_includes_the_pipeline() {
     let bench = Bench::new();
     let suppressed = format!("zero_suppression_dn = 67\n{STARTING_POINT}");
     bench.write("suppressed.toml", &suppressed);

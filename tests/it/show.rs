@@ -274,7 +274,7 @@ fn stored_frames_and_frames_drawn_again_are_the_same_picture_but_for_their_capti
 }
 
 #[test]
-fn docking_features_lie_where_the_table_has_them() {
+fn docking_features_are_drawn_at_their_positions_in_the_table() {
     let bench = Bench::new();
     bench.boresight("run docking --frames 21170..21180 --out run --no-report").done();
     let (image, document) = draw(&bench, "show run 21179");

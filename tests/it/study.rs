@@ -44,7 +44,7 @@ fn rows_do_not_depend_on_shards_threads_or_order() {
 }
 
 #[test]
-fn what_is_there_is_kept_and_what_is_missing_or_damaged_is_made_again() {
+fn complete_shards_are_kept_and_missing_or_damaged_ones_are_repeated() {
     let bench = bench();
     bench.boresight("study run study.toml --out out --shards 3").done();
     let before = bench.tree("out");
@@ -66,7 +66,7 @@ fn what_is_there_is_kept_and_what_is_missing_or_damaged_is_made_again() {
 }
 
 #[test]
-fn a_run_that_is_killed_leaves_nothing_half_written_and_is_gone_on_with() {
+fn a_killed_run_leaves_nothing_half_written_and_is_continued() {
     let bench = bench();
     bench.write("long.toml", STUDY.replace("cases = 6", "cases = 24").replace("2002", "2010"));
     let mut child = Command::new(assert_cmd::cargo::cargo_bin!("boresight"))
@@ -220,7 +220,7 @@ fn replications_of_a_design_are_its_independent_draws() {
 }
 
 #[test]
-fn a_study_stops_when_its_figure_is_known_well_enough() {
+fn a_study_stops_when_its_interval_is_narrow_enough() {
     let bench = bench();
     let until = |figure: &str, half_width: &str| {
         let until = format!("cases = 24\nuntil = {{ figure = \"{figure}\", half_width = {half_width} }}");
@@ -396,7 +396,7 @@ fn whole_images_are_drawn_above_a_floor_by_one_word_and_never_read_below() {
 
 /// Every error message names the file, the field, the value and the expected value.
 #[test]
-fn a_study_that_is_wrong_says_where() {
+fn an_invalid_study_is_reported_with_the_position() {
     let bench = Bench::new();
     let refused = |old: &str, new: &str, parts: &[&str]| {
         assert_eq!(STUDY.matches(old).count(), 1, "`{old}`");

@@ -126,7 +126,7 @@ fn worker(address: &str, bench: &Bench) -> Killed {
 
 #[test]
 #[ignore = "needs Python with Dask; continuous integration runs it"]
-fn a_killed_worker_costs_its_shard_and_no_other() {
+fn a_killed_worker_loses_only_its_shard() {
     let bench = Bench::new();
     bench.write("study.toml", STUDY);
     bench.boresight("study run study.toml --out whole --shards 20").done();
@@ -163,7 +163,7 @@ fn a_killed_worker_costs_its_shard_and_no_other() {
 
 #[test]
 #[ignore = "needs Python with Dask; continuous integration runs it"]
-fn a_killed_driver_is_started_again_and_makes_what_is_missing() {
+fn a_restarted_driver_makes_the_missing_cases() {
     let bench = Bench::new();
     bench.write("study.toml", STUDY);
     let mut driver = on_dask(&bench, "dask");

@@ -138,7 +138,7 @@ fn every_requirement_of_python_names_one_version() {
 /// `pip install` accepts lists, the project's own package or wheel with constraints, or `name==version`;
 /// cargo installs locked versions.
 #[test]
-fn what_continuous_integration_installs_is_pinned() {
+fn packages_of_continuous_integration_are_pinned() {
     let (mut packages, mut tools, mut pages) = (0, 0, 0);
     let is_script = |path: &PathBuf| path.starts_with(".ci") || path.starts_with(".github");
     for file in kept().into_iter().filter(is_script) {

@@ -279,7 +279,7 @@ find = { parameter = "focal_length_mm", want = "largest", from = 10.0, to = 60.0
 }
 
 #[test]
-fn what_cannot_be_met_names_what_binds() {
+fn an_impossible_requirement_names_the_binding_constraint() {
     let (report, status) = answer(
         r#"
 sky.pointings = 500
@@ -486,7 +486,7 @@ fn chances_between_levels_of_the_background_are_those_of_the_level() {
 }
 
 #[test]
-fn a_demand_takes_the_probability_of_the_file_unless_it_has_its_own() {
+fn a_requirement_uses_the_probability_of_the_file_unless_it_has_its_own() {
     let own = Demand::LimitingMagnitude { magnitude: 5.0, probability: Some(0.7), exposure_s: None };
     let none = Demand::LimitingMagnitude { magnitude: 5.0, probability: None, exposure_s: None };
     assert_eq!((own.probability(0.9), none.probability(0.9)), (0.7, 0.9));

@@ -13,7 +13,7 @@ import sys
 WHAT = ("range, %", "place, mm", "angles, degrees")
 FIGURES = slice(3, 6)  # their root mean squares, after row, method and answered
 OVER_BOUND = slice(2, 5)  # in the line best/3, which has no number of answers
-MOST_OVER_BOUND = 2.5
+MAX_OVER_BOUND = 2.5
 
 
 def main():
@@ -37,8 +37,8 @@ def main():
             if theirs != "-" and not float(ours) < float(theirs):
                 sys.exit(f"{name}: error of {what}: {ours}, expected below OpenCV's {theirs}")
         for what, over in zip(WHAT, methods["best/3"]):
-            if not float(over) < MOST_OVER_BOUND:
-                sys.exit(f"{name}: error of {what}: {over} times the bound, expected below {MOST_OVER_BOUND}")
+            if not float(over) < MAX_OVER_BOUND:
+                sys.exit(f"{name}: error of {what}: {over} times the bound, expected below {MAX_OVER_BOUND}")
 
 
 main()

@@ -136,7 +136,7 @@ mod tests {
 
     /// A target may have no marks; each pipeline decides whether it works without them.
     #[test]
-    fn a_target_without_marks_is_one() {
+    fn a_target_without_marks_is_valid() {
         TargetModel { marks: Vec::new(), ..target() }.check().unwrap();
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn unit(number: u64, verdict: &str, cause: Option<&str>) -> UnitVerdi
 
 /// A figure in which every unit has at most one value.
 pub(super) fn figure(name: &str, reduction: Reduction, values: &[Option<f64>]) -> FigureTerms {
-    let term = |value: &Option<f64>| value.map_or(Term::default(), |sum| Term { sum, of: 1 });
+    let term = |value: &Option<f64>| value.map_or(Term::default(), |sum| Term { sum, count: 1 });
     FigureTerms::from_terms(name, reduction, values.iter().map(term).collect())
 }
 

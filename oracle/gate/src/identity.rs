@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_is_named_with_both_values() {
+    fn differences_are_named_with_both_values() {
         for (change, parts) in [
             (("sigma_px = 0.8", "sigma_px = 0.9"), ["scenario.psf.sigma_px", "0.8", "0.9"]),
             (("sigma_px = 0.8", "kind = 1"), ["scenario.psf.kind", "none", "1"]),
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_run_must_be_the_same_in_all_but_pipeline_and_noise() {
+    fn runs_may_differ_only_in_pipeline_and_noise() {
         let text = |text: &str| Some(text.to_owned());
         let base = identity(SCENARIO);
         for (other, parts) in [
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn units_are_called_by_what_they_are() {
+    fn units_are_called_frames_fields_or_cases() {
         assert_eq!(SourceKind::Run.units("far_range"), "frames");
         assert_eq!(SourceKind::Run.units("docking"), "fields");
         assert_eq!(["far_range", "docking"].map(|world| SourceKind::Study.units(world)), ["cases"; 2]);

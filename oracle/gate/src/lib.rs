@@ -38,7 +38,7 @@ pub use baseline::{Baseline, BaselineFigure, BaselineHeader, BlockRule, Replacem
 pub use comparison::compare::compare;
 pub use comparison::flips::{Flip, FlipKind, Flips};
 pub use comparison::options::CompareOptions;
-pub use dependence::blocks::{Blocks, LEAST_BLOCKS};
+pub use dependence::blocks::{Blocks, MIN_BLOCKS};
 pub use dependence::runs::LossRun;
 pub use identity::{Identity, Pairing, SourceKind};
 pub use read::read_result;

@@ -158,8 +158,8 @@ fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
         let figure = figure_by_name(name);
         let is_rate = figure.is_rate();
         let term = |figure: CaseFigure| match figure.value {
-            _ if is_rate => Term { sum: figure.count as f64, of: figure.of as u32 },
-            Some(sum) => Term { sum, of: 1 },
+            _ if is_rate => Term { sum: figure.count as f64, count: figure.of as u32 },
+            Some(sum) => Term { sum, count: 1 },
             None => Term::default(),
         };
         let reduction = if is_rate { Reduction::Rate } else { Reduction::Mean };
@@ -233,8 +233,8 @@ mod tests {
         let units = units_of_cases(&table, Some(&"own".to_owned()));
         assert_eq!(units.units[0].verdict, "30 of 40");
         assert_eq!([0, 1].map(|unit| &*units.units[unit].group), ["draw 0", "draw 1"]);
-        assert_eq!(units.figures[0].terms, [Term { sum: 30.0, of: 40 }, Term { sum: 0.0, of: 40 }]);
-        assert_eq!(units.figures[1].terms, [Term { sum: 0.5, of: 1 }, Term::default()]);
+        assert_eq!(units.figures[0].terms, [Term { sum: 30.0, count: 40 }, Term { sum: 0.0, count: 40 }]);
+        assert_eq!(units.figures[1].terms, [Term { sum: 0.5, count: 1 }, Term::default()]);
         assert_eq!(units.figures[0].attitude, None);
         assert_eq!(units.figures[1].attitude.as_deref(), Some("own"));
         assert_eq!(table.attitude(Some("true")), None, "the figure is not recorded");

@@ -45,7 +45,7 @@ mod tests {
 
     /// For numbers from 1 to 2 the last kept digit is 2⁻¹¹.
     #[test]
-    fn rounding_goes_to_the_nearest_number_that_is_kept() {
+    fn rounding_is_to_the_nearest_stored_number() {
         let digit = 1.0 / 2048.0_f32;
         for (digits, kept) in
             [(0.0, 0.0), (0.25, 0.0), (0.75, 1.0), (1.25, 1.0), (1.75, 2.0), (2047.75, 2048.0)]

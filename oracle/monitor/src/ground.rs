@@ -127,7 +127,7 @@ mod tests {
     use run::{DockingMission, ScenarioSource};
 
     #[test]
-    fn the_sun_stands_over_the_station_where_the_scene_has_it() {
+    fn the_sun_direction_agrees_with_the_scene() {
         let source = ScenarioSource::read("docking").unwrap();
         let prepared = DockingMission::new(&source, DockingRenderer::Fast).unwrap();
         let simulator = prepared.simulator();

@@ -16,7 +16,7 @@ const MARGIN: f64 = 0.2;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Plan {
     range_unit: &'static str,
-    /// Points in order of time: frame, range and range rate, m/s.
+    /// Points in order of time: frame, range (m or km, see `range_unit`) and range rate, m/s.
     points: Vec<(u64, f64, f64)>,
     /// Corridor in order of range: range, smallest and largest permitted rate.
     corridor: Vec<[f64; 3]>,
@@ -74,7 +74,7 @@ mod tests {
 
     /// From 100 m to 1 m at 1 m/s, one frame per metre.
     #[test]
-    fn the_corridor_is_as_wide_as_it_says_about_a_steady_approach() {
+    fn the_corridor_has_its_stated_width_about_a_steady_approach() {
         let plan = Plan::new("m", &(0..100), 0.05, |frame| Some([100.0 - frame as f64, -1.0]));
         assert_eq!(plan.points.len(), 101);
         assert!(plan.corridor.windows(2).all(|pair| pair[0][0] < pair[1][0]));

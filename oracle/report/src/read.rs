@@ -9,7 +9,7 @@ use scenario::FarRangeScenario;
 use serde::de::DeserializeOwned;
 
 /// Maximum size of a JSON file, bytes.
-const LONGEST_JSON: u64 = 1 << 28;
+const MAX_JSON_BYTES: u64 = 1 << 28;
 
 /// Kind of a directory of results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +85,7 @@ pub(super) fn rows_of_each<R: Row + Clone>(
 
 /// Reads a JSON document.
 pub(super) fn read_json<T: DeserializeOwned>(path: &Path, format: &'static str) -> Result<T, Failure> {
-    let text = sim::regular_file::read_text(path, LONGEST_JSON).map_err(|source| FileError::Io {
+    let text = sim::regular_file::read_text(path, MAX_JSON_BYTES).map_err(|source| FileError::Io {
         path: path.to_owned(),
         doing: "read",
         source,

@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_failure_ends_it_and_nothing_after_it_is_taken() {
+    fn processing_ends_at_the_first_failure() {
         for jobs in [1, 3] {
             let mut taken = 0;
             let make =

@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 /// Maximum size of a score file, bytes.
-const LONGEST_JSON: u64 = 1 << 28;
+const MAX_JSON_BYTES: u64 = 1 << 28;
 
 /// Result of a run.
 #[derive(Debug)]
@@ -68,7 +68,7 @@ impl IncompleteRun {
         if !path.is_file() {
             return Ok(None);
         }
-        let text = sim::regular_file::read_text(&path, LONGEST_JSON)
+        let text = sim::regular_file::read_text(&path, MAX_JSON_BYTES)
             .map_err(|source| FileError::io(&path, "read", source))?;
         let document: ScoreDocument =
             serde_json::from_str(&text).map_err(|error| FileError::format(&path, "score", error))?;

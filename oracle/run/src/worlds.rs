@@ -62,7 +62,8 @@ pub fn world_by_name(word: &str) -> Result<&'static dyn AnyWorld, String> {
     })
 }
 
-/// Returns the JSON Schema of scenario files, from the types that read them: of one world, or of all.
+/// Returns the JSON Schema of the scenario files of one world, or of all worlds without one, derived from the
+/// types that read them.
 pub fn json_schema(world: Option<&dyn AnyWorld>) -> Schema {
     let mut generator = SchemaGenerator::default();
     match world {

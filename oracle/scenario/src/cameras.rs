@@ -32,7 +32,7 @@ mod tests {
     }
 
     #[test]
-    fn every_camera_is_one_that_a_scenario_takes() {
+    fn every_camera_is_valid_in_a_scenario() {
         assert!(fragments().count() >= 3);
         for (name, fragment) in fragments() {
             fragment.camera.check().unwrap();

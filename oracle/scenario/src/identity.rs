@@ -78,7 +78,7 @@ mod tests {
     const SCENARIO: &str = "title = \"a\"\nseed = 1\n[psf]\nsigma_px = 0.8\n[far_range]\nthreshold = 4\n[[schedule]]\ncount = 3\n";
 
     #[test]
-    fn what_differs_first_is_named_down_to_its_position() {
+    fn the_first_difference_is_named_with_its_position() {
         let value = |text: &str| Value::Table(text.parse().unwrap());
         for (a, b, at, of_a, of_b) in [
             // Each table lacks a key of the other; keys are compared by name, not by position.

@@ -374,14 +374,14 @@ mod tests {
     }
 
     #[test]
-    fn what_no_pipeline_could_help_comes_before_the_pipelines_reason() {
+    fn causes_beyond_any_pipeline_precede_the_pipelines_reason() {
         let truth = FrameTruth { target_visibility: Visibility::Invisible, ..frame(0) };
         let failed = Outcome::none(NoSolution::Failed("no light".into()));
         assert_eq!(cause(&truth, &[target_with(1.0)], Some(&failed), DETECTOR), Cause::TooFaint);
     }
 
     #[test]
-    fn codes_come_back_and_the_list_is_complete_and_ordered() {
+    fn codes_round_trip_and_the_list_is_complete_and_ordered() {
         for cause in Cause::ALL {
             assert_eq!(Cause::parse(cause.code()), Some(cause));
         }

@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn what_regions_cut_away_entirely_belongs_to_no_cluster() {
+    fn an_object_outside_all_regions_belongs_to_no_cluster() {
         let cut = ObjectTruth { cut: 1.0, ..star_at(1, CENTRE, 1000.0) };
         assert_eq!(brightest_member(CENTRE, std::slice::from_ref(&cut)), None);
         assert_eq!(merged_with(&target_with(100.0), &[cut]), None);
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_beside_a_long_column_does_not_belong_to_it() {
+    fn an_object_beside_a_long_column_does_not_belong_to_it() {
         for (x_px, y_px, belongs) in
             [(0.0, 19.9, true), (2.9, -17.0, true), (0.0, 20.1, false), (3.1, 0.0, false), (8.0, 10.0, false)]
         {
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_touches_what_stands_above_it_and_not_what_stands_beside_it() {
+    fn a_column_touches_objects_above_it_and_none_beside_it() {
         let at = |x_px: f64, y_px: f64| ObjectTruth { position: beside(x_px, y_px), ..target_with(500.0) };
         assert!(touch(&at(0.0, 41.4), &bleeding()) && !touch(&at(0.0, 41.6), &bleeding()));
         assert!(touch(&at(-7.4, 30.0), &bleeding()) && !touch(&at(8.0, 30.0), &bleeding()));

@@ -137,7 +137,7 @@ impl<'a, U> Definition<'a, U> {
     pub fn term(&self, unit: &U) -> Term {
         let mut values = Vec::new();
         (self.values)(unit, &mut values);
-        Term { sum: values.iter().sum(), of: values.len() as u32 }
+        Term { sum: values.iter().sum(), count: values.len() as u32 }
     }
 }
 
@@ -147,7 +147,7 @@ pub struct Term {
     /// Sum of the unit's values; 0 without values.
     pub sum: f64,
     /// Number of the unit's values.
-    pub of: u32,
+    pub count: u32,
 }
 
 /// Contributions of all units to one figure.
@@ -224,7 +224,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_reduction_comes_back_from_its_word() {
+    fn a_reduction_round_trips_from_its_word() {
         assert_eq!(Reduction::ALL.map(Reduction::code), ["rate", "mean", "rms", "median"]);
         assert_eq!(
             Reduction::ALL.map(|reduction| Reduction::parse(reduction.code())),
@@ -247,7 +247,7 @@ mod tests {
     fn a_unit_adds_the_sum_of_its_values_and_their_number() {
         let definition =
             Definition::pooled("held", "held", |unit: &u32, values| values.extend((0..*unit).map(f64::from)));
-        assert_eq!(definition.term(&4), Term { sum: 6.0, of: 4 });
-        assert_eq!(definition.term(&0), Term { sum: 0.0, of: 0 });
+        assert_eq!(definition.term(&4), Term { sum: 6.0, count: 4 });
+        assert_eq!(definition.term(&0), Term { sum: 0.0, count: 0 });
     }
 }

@@ -116,7 +116,7 @@ mod tests {
 
     /// The declared kind and unit agree with those that the key implies.
     #[test]
-    fn no_figure_is_shown_by_its_key_or_says_another_unit_than_its_key() {
+    fn every_figure_has_a_label_and_the_unit_of_its_key() {
         const UNITS: [(&str, &str); 5] =
             [("_m_s", "m/s"), ("_deg", "°"), ("_percent", "%"), ("_m", "m"), ("_px", "px")];
         for figure in all() {

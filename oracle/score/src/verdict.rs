@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_taken_is_named() {
+    fn the_object_measured_instead_is_named() {
         let far = right_of_target(50.0);
         for (object, expected, merged) in [
             (star_at(7, far, 500.0), MistakenObject::Star(7), false),
@@ -426,7 +426,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_granted_changes_no_verdict() {
+    fn injected_knowledge_changes_no_verdict() {
         let objects = [target_with(1000.0)];
         for (px, code) in [(1.0, "correct"), (30.0, "wrong")] {
             let answer = detected_at(right_of_target(px));
@@ -438,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_regions_cut_away_entirely_was_not_taken() {
+    fn an_object_outside_all_regions_was_not_measured() {
         let far = right_of_target(50.0);
         let cut = ObjectTruth { cut: 1.0, ..star_at(7, far, 500.0) };
         let taken = |objects: &[ObjectTruth]| match verdict(objects, &detected_at(far)) {
@@ -452,7 +452,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_taken_has_a_word_and_a_number_in_files() {
+    fn the_object_measured_instead_has_a_name_and_a_number_in_files() {
         let taken = [
             MistakenObject::Star(7),
             MistakenObject::Planet(5),
@@ -488,7 +488,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_names_everything_and_leaves_empty_what_there_is_not() {
+    fn a_row_has_every_column_and_leaves_absent_values_empty() {
         let frame_verdict = |verdict| FrameVerdict {
             frame: 3,
             group: "day 1".into(),

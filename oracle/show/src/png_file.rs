@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn few_colours_come_back_and_many_come_near() {
+    fn few_colours_are_exact_and_many_are_approximated() {
         let few: Vec<Rgb> = (0..240_u8).map(|i| [i, 255 - i, i / 2]).collect();
         assert_eq!(decoded(&encode(&picture(few.clone(), 24), "few").unwrap()), few);
         let mut many: Vec<Rgb> = (0..=255_u8).map(|i| [i; 3]).collect();
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_says_what_made_it_and_is_the_same_bytes_twice() {
+    fn a_picture_names_its_program_and_is_reproducible() {
         let drawn = picture(vec![[1, 2, 3]; 12], 4);
         let bytes = encode(&drawn, "argon, frame 12 – σ").unwrap();
         assert_eq!(bytes, encode(&drawn, "argon, frame 12 – σ").unwrap());

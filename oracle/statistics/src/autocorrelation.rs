@@ -122,7 +122,7 @@ mod tests {
 
     /// A first-order autoregression has τ = (1 + ρ)/(1 − ρ) in closed form.
     #[test]
-    fn an_autoregression_counts_as_its_closed_form_says() {
+    fn the_effective_number_of_an_autoregression_follows_its_closed_form() {
         for rho in [0.3, 0.6, 0.9] {
             let expected = 100_000.0 * (1.0 - rho) / (1.0 + rho);
             let mut random = stream(77);
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn degenerate_series_are_worth_what_they_hold() {
+    fn degenerate_series_have_their_exact_effective_number() {
         assert_eq!(effective_size(&[]), 0.0);
         assert_eq!(effective_size(&[vec![]]), 0.0);
         assert_eq!(effective_size(&[vec![0.3]]), 1.0);

@@ -5,7 +5,7 @@
 
 use statrs::function::beta::beta_reg;
 
-use super::clusters::{ClusterSum, LEAST_CLUSTERS, Ratio, independent_trials, non_empty, t_quantile};
+use super::clusters::{ClusterSum, MIN_CLUSTERS, Ratio, independent_trials, non_empty, t_quantile};
 use super::quantile::{ClusterValue, independent_values};
 
 /// Two one-sided bounds: the value is at least `low` with the requested confidence, and at most `high` with
@@ -32,10 +32,10 @@ pub fn cluster_rate_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) 
 }
 
 /// Computes the bounds of a mean over clusters, Σ sum / Σ of, by Student's t. `None` for fewer than
-/// [`LEAST_CLUSTERS`].
+/// [`MIN_CLUSTERS`].
 pub fn cluster_mean_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
     let counted = non_empty(clusters);
-    if counted.len() < LEAST_CLUSTERS {
+    if counted.len() < MIN_CLUSTERS {
         return None;
     }
     let ratio = Ratio::new(&counted)?;
@@ -100,7 +100,7 @@ mod tests {
             (0, 50, 0.0, 0.058_155_079_116_972_25),
         ] {
             let trials: Vec<ClusterSum> =
-                (0..n).map(|i| ClusterSum { sum: f64::from(u8::from(i < count)), of: 1.0 }).collect();
+                (0..n).map(|i| ClusterSum { sum: f64::from(u8::from(i < count)), count: 1.0 }).collect();
             let got = cluster_rate_bounds(&trials, 0.95, 1.0).unwrap();
             assert!((got.low.unwrap() - low).abs() < 1e-9, "{count} of {n}: {got:?}");
             assert!((got.high.unwrap() - high).abs() < 1e-9, "{count} of {n}: {got:?}");
@@ -139,16 +139,16 @@ mod tests {
 
     /// 5 % are allowed; the standard deviation of the fraction in 2,000 studies is 0.5 %.
     #[test]
-    fn bounds_are_wrong_as_seldom_as_they_say() {
+    fn bounds_fail_at_their_stated_rate() {
         let rate = wrong(0.95, |random| {
             let mut draw = || {
                 let of_draw = 0.9 + 0.1 * uniform(random);
-                ClusterSum { sum: (0..50).filter(|_| uniform(random) < of_draw).count() as f64, of: 50.0 }
+                ClusterSum { sum: (0..50).filter(|_| uniform(random) < of_draw).count() as f64, count: 50.0 }
             };
             cluster_rate_bounds(&(0..40).map(|_| draw()).collect::<Vec<_>>(), 0.95, 1.0)
         });
         let mean = wrong(0.0, |random| {
-            let sums: Vec<_> = (0..12).map(|_| ClusterSum { sum: normal(random), of: 1.0 }).collect();
+            let sums: Vec<_> = (0..12).map(|_| ClusterSum { sum: normal(random), count: 1.0 }).collect();
             cluster_mean_bounds(&sums, 0.95, 1.0)
         });
         let quantile = wrong(1.644_853_626_951_472_2, |random| {

@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_happen_and_what_must_has_no_tail() {
+    fn impossible_and_certain_outcomes_have_no_tail() {
         assert_eq!(binomial_at_least(0, 10, 0.0), 1.0);
         assert_eq!(binomial_at_least(1, 10, 0.0), 0.0);
         assert_eq!(binomial_at_least(11, 10, 0.5), 0.0);

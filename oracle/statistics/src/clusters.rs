@@ -10,17 +10,17 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use super::{Interval, Z_95, normal_quantile, wilson};
 
 /// Smallest number of clusters for which an interval is computed.
-pub const LEAST_CLUSTERS: usize = 5;
+pub const MIN_CLUSTERS: usize = 5;
 /// Probability outside a two-sided interval.
 pub(super) const OUTSIDE: f64 = 0.05;
 
-/// Contribution of a cluster to a ratio Σ `sum` / Σ `of`.
+/// Contribution of a cluster to a ratio Σ `sum` / Σ `count`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ClusterSum {
     /// Number of successes of a rate, or sum of the values of a mean.
     pub sum: f64,
     /// Number of trials or values.
-    pub of: f64,
+    pub count: f64,
 }
 
 /// Ratio with the residual of each of its clusters.
@@ -30,12 +30,12 @@ pub(super) struct Ratio {
 }
 
 impl Ratio {
-    /// Computes the ratio; `None` when the sum of `of` is 0.
+    /// Computes the ratio; `None` if the sum of `count` is 0.
     pub(super) fn new(clusters: &[ClusterSum]) -> Option<Self> {
-        let (sum, of) = clusters.iter().fold((0.0, 0.0), |(s, n), c| (s + c.sum, n + c.of));
+        let (sum, of) = clusters.iter().fold((0.0, 0.0), |(s, n), c| (s + c.sum, n + c.count));
         let value = (of > 0.0).then(|| sum / of)?;
         let mean_of = of / clusters.len() as f64;
-        let residual = |cluster: &ClusterSum| (cluster.sum - value * cluster.of) / mean_of;
+        let residual = |cluster: &ClusterSum| (cluster.sum - value * cluster.count) / mean_of;
         Some(Self { value, residuals: clusters.iter().map(residual).collect() })
     }
 
@@ -61,10 +61,10 @@ pub(super) fn t_quantile(clusters: f64, p: f64) -> f64 {
 }
 
 /// Computes the interval of a mean over clusters, Σ sum / Σ of ± t s. Clusters without a value are left out.
-/// `None` below [`LEAST_CLUSTERS`].
+/// `None` below [`MIN_CLUSTERS`].
 pub fn cluster_mean_interval(clusters: &[ClusterSum]) -> Option<Interval> {
     let counted = non_empty(clusters);
-    if counted.len() < LEAST_CLUSTERS {
+    if counted.len() < MIN_CLUSTERS {
         return None;
     }
     let ratio = Ratio::new(&counted)?;
@@ -87,13 +87,13 @@ pub fn cluster_rate_interval(clusters: &[ClusterSum]) -> Option<Interval> {
 /// [`cluster_rate_interval`].
 pub(super) fn independent_trials(counted: &[ClusterSum], ratio: &Ratio) -> f64 {
     let n = counted.len();
-    let trials: f64 = counted.iter().map(|cluster| cluster.of).sum();
+    let trials: f64 = counted.iter().map(|cluster| cluster.count).sum();
     let of_one_trial = ratio.value * (1.0 - ratio.value);
     if n == 1 {
         return 1.0;
     }
     let variance = ratio.variance();
-    if counted.iter().all(|cluster| cluster.of == 1.0) {
+    if counted.iter().all(|cluster| cluster.count == 1.0) {
         trials
     } else if variance > 0.0 && of_one_trial > 0.0 {
         let shrink = Z_95 / t_95(n);
@@ -106,13 +106,13 @@ pub(super) fn independent_trials(counted: &[ClusterSum], ratio: &Ratio) -> f64 {
 }
 
 pub(super) fn non_empty(clusters: &[ClusterSum]) -> Vec<ClusterSum> {
-    clusters.iter().copied().filter(|cluster| cluster.of > 0.0).collect()
+    clusters.iter().copied().filter(|cluster| cluster.count > 0.0).collect()
 }
 
 /// Computes the interval of the difference of two means, second minus first, over clusters with values of
-/// both. `None` below [`LEAST_CLUSTERS`].
+/// both. `None` below [`MIN_CLUSTERS`].
 pub fn mean_difference_interval(pairs: &[(ClusterSum, ClusterSum)]) -> Option<Interval> {
-    if pairs.len() < LEAST_CLUSTERS {
+    if pairs.len() < MIN_CLUSTERS {
         return None;
     }
     let (first, second) = ratios(pairs)?;
@@ -124,9 +124,9 @@ pub fn mean_difference_interval(pairs: &[(ClusterSum, ClusterSum)]) -> Option<In
 
 /// Computes the interval of the difference of two rates of the same clusters, second minus first, from the
 /// interval of each rate and the correlation of their residuals (Newcombe 1998, Statistics in Medicine 17,
-/// 2635–2650, method 8; for clusters Zou & Donner 2008, 27, 1693–1702). `None` below [`LEAST_CLUSTERS`].
+/// 2635–2650, method 8; for clusters Zou & Donner 2008, 27, 1693–1702). `None` below [`MIN_CLUSTERS`].
 pub fn rate_difference_interval(pairs: &[(ClusterSum, ClusterSum)]) -> Option<Interval> {
-    if pairs.len() < LEAST_CLUSTERS {
+    if pairs.len() < MIN_CLUSTERS {
         return None;
     }
     let (first, second) = ratios(pairs)?;
@@ -187,14 +187,14 @@ pub(super) mod tests {
             let of_draw = 0.6 + 0.4 * uniform(random);
             [0.0, 0.1, 0.2, 0.3].map(|less| {
                 let hits = (0..25).filter(|_| uniform(random) < of_draw - less).count();
-                ClusterSum { sum: hits as f64, of: 25.0 }
+                ClusterSum { sum: hits as f64, count: 25.0 }
             })
         };
         (0..40).map(|_| points()).collect()
     }
 
     fn together(points: &[ClusterSum; 4]) -> ClusterSum {
-        let add = |a: ClusterSum, b: &ClusterSum| ClusterSum { sum: a.sum + b.sum, of: a.of + b.of };
+        let add = |a: ClusterSum, b: &ClusterSum| ClusterSum { sum: a.sum + b.sum, count: a.count + b.count };
         points.iter().fold(ClusterSum::default(), add)
     }
 
@@ -213,7 +213,7 @@ pub(super) mod tests {
             let rate = coverage(2000, seldom, |random| {
                 let mut fails = || f64::from(u8::from(uniform(random) < seldom)) * 50.0;
                 cluster_rate_interval(
-                    &(0..100).map(|_| ClusterSum { sum: fails(), of: 50.0 }).collect::<Vec<_>>(),
+                    &(0..100).map(|_| ClusterSum { sum: fails(), count: 50.0 }).collect::<Vec<_>>(),
                 )
             });
             check_coverage(&format!("seldom {seldom}"), rate);
@@ -230,7 +230,7 @@ pub(super) mod tests {
         let difference = coverage(2000, 0.5, |random| {
             let mut of_draw = || {
                 let of_draw = normal(random);
-                [0.0, 0.5].map(|more| ClusterSum { sum: of_draw + more + 0.3 * normal(random), of: 1.0 })
+                [0.0, 0.5].map(|more| ClusterSum { sum: of_draw + more + 0.3 * normal(random), count: 1.0 })
             };
             let pairs: Vec<_> = (0..12).map(|_| of_draw()).map(|[a, b]| (a, b)).collect();
             mean_difference_interval(&pairs)
@@ -245,7 +245,7 @@ pub(super) mod tests {
                 let mut of_draw = || {
                     let of_draw = normal(random);
                     let sum = (0..4).map(|point| of_draw + f64::from(point) + 0.3 * normal(random)).sum();
-                    ClusterSum { sum, of: 4.0 }
+                    ClusterSum { sum, count: 4.0 }
                 };
                 cluster_mean_interval(&(0..draws).map(|_| of_draw()).collect::<Vec<_>>())
             });

@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn a_statistic_reaches_another_within_a_billionth_of_it() {
+    fn statistics_that_differ_by_a_billionth_count_as_equal() {
         assert!(reaches(3.0 - 3e-9, 3.0) && !reaches(3.0 - 5e-9, 3.0));
         assert!(reaches(-0.9e-9, 0.0) && !reaches(-1.1e-9, 0.0));
     }
@@ -399,7 +399,7 @@ mod tests {
     /// Binomial distribution of 1000 at 0.05: standard deviation 6.9; the limit is three of them above the
     /// mean.
     #[test]
-    fn the_family_has_the_level_that_it_says_with_few_blocks_and_wild_distributions() {
+    fn the_family_has_its_stated_level_with_few_blocks_and_heavy_tails() {
         let correlated = |random: &mut sim::randomness::Stream| {
             let common = normal(random);
             std::array::from_fn(|_| common + 0.5 * normal(random))

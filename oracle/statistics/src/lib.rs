@@ -53,7 +53,7 @@ pub use autocorrelation::effective_size;
 pub use bound::{Bounds, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
 pub use clopper_pearson::{binomial_at_least, clopper_pearson};
 pub use clusters::{
-    ClusterSum, LEAST_CLUSTERS, cluster_mean_interval, cluster_rate_interval, mean_difference_interval,
+    ClusterSum, MIN_CLUSTERS, cluster_mean_interval, cluster_rate_interval, mean_difference_interval,
     rate_difference_interval,
 };
 pub use exchange::{BlockEffects, Exchanges, FigureTest, JointTest, SETS, interval_by_sets, joint_test};

@@ -43,7 +43,7 @@ pub(super) fn independent_values(sorted: &[ClusterValue], p: f64) -> Option<f64>
     let mut sums = vec![ClusterSum::default(); clusters];
     for (cluster, value) in sorted {
         if let Some(sum) = sums.get_mut(*cluster) {
-            sum.of += 1.0;
+            sum.count += 1.0;
             sum.sum += f64::from(u8::from(*value <= limit));
         }
     }

@@ -1,13 +1,13 @@
 //! Spearman's rank correlation of values in clusters.
 
-use super::clusters::{LEAST_CLUSTERS, t_95};
+use super::clusters::{MIN_CLUSTERS, t_95};
 use super::{Interval, Z_95};
 
 /// Computes Spearman's rank correlation of values in clusters, (cluster, x, y), and its interval: Fisher's
 /// transformation with the variance of Bonett & Wright (2000, Psychometrika 65, 23–28) for the number of
 /// independent pairs whose correlation would scatter as much as over the clusters, according to its influence
 /// function. `None` for fewer than four pairs, or if x or y never varies; no interval below
-/// [`LEAST_CLUSTERS`].
+/// [`MIN_CLUSTERS`].
 pub fn cluster_rank_correlation(values: &[(usize, f64, f64)]) -> Option<(f64, Option<Interval>)> {
     let count = values.len() as f64;
     if count < 4.0 {
@@ -43,7 +43,7 @@ pub fn cluster_rank_correlation(values: &[(usize, f64, f64)]) -> Option<(f64, Op
     let mut sizes = vec![0_u32; clusters];
     values.iter().for_each(|(cluster, ..)| sizes[*cluster] += 1);
     let n = sizes.iter().filter(|size| **size > 0).count();
-    if n < LEAST_CLUSTERS {
+    if n < MIN_CLUSTERS {
         return Some((r, None));
     }
     let is_single = sizes.iter().all(|size| *size <= 1);

@@ -150,7 +150,7 @@ impl CaseFile {
 
     /// Reads the drawn values of some cases, formatted for display.
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
-    pub(crate) fn drawn_texts(&self, cases: &[usize]) -> Result<Vec<Vec<String>>, FileError> {
+    pub(crate) fn drawn_value_texts(&self, cases: &[usize]) -> Result<Vec<Vec<String>>, FileError> {
         let mut table =
             CaseTable { figures: Vec::new(), causes: Vec::new(), ..self.empty.with_rows(Vec::new()) };
         let names: Vec<String> = table.columns().iter().map(|column| column.name().to_owned()).collect();

@@ -389,7 +389,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cases_of_a_study_state_what_their_lines_of_sight_rest_on() {
+    fn the_cases_of_a_study_state_the_attitude_of_their_lines_of_sight() {
         let word = |counts: &[(u64, u64)], granted| {
             let row = |&(count, of): &(u64, u64)| CaseRow {
                 case: 0,

@@ -189,7 +189,7 @@ impl<'a> Assessment<'a> {
         let file = &self.requirements.file;
         let demand = &requirement.demand;
         let asked = demand.probability(file.probability);
-        let (parameter, unit) = find.parameter.words();
+        let (parameter, unit) = find.parameter.name_and_unit();
         let verdict = Verdict {
             id: requirement.id.clone(),
             text: requirement.text.clone(),

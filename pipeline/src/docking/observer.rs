@@ -14,7 +14,7 @@ use super::extraction::contour::{self, StationOutline};
 use super::extraction::docking_unit::Side;
 use super::extraction::evidence;
 use super::extraction::orientation::{self, Orientation, Uprightness};
-use super::extraction::outline::{self, OutlineTrack, RESOLVED_CIRCLE_PX, SMALLEST_CIRCLE_PX};
+use super::extraction::outline::{self, MIN_CIRCLE_PX, OutlineTrack, RESOLVED_CIRCLE_PX};
 use super::extraction::range_memory::RangeMemory;
 use super::extraction::recognise::{Recognition, TargetFeatures};
 use super::extraction::self_check;
@@ -57,7 +57,7 @@ pub(crate) struct FieldObservation {
     pub(crate) blur_px: f64,
     /// Range by the station's outline, which is also an input to the motion.
     pub(crate) outline: Option<OutlineRange>,
-    /// Region in which brightness and contrast are judged.
+    /// Region in which brightness and contrast are measured.
     pub(crate) region: Rectangle,
 }
 
@@ -193,7 +193,7 @@ impl Observer {
             return None;
         }
         let mut reason = NoPose::NoTarget;
-        if mark_circle_px >= SMALLEST_CIRCLE_PX {
+        if mark_circle_px >= MIN_CIRCLE_PX {
             let overview = input.view.overview();
             let recognition = self.recognition(input.view, lens);
             let found = recognition.search_within(&overview, &outline.circle, mark_circle_px);

@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_without_a_target_says_why() {
+    fn a_field_without_a_target_has_a_reason() {
         assert_eq!(reason(&synthetic::drawn(Lines::Even, |_, _| 20)), NoPose::EmptyField);
         assert_eq!(reason(&synthetic::drawn(Lines::Even, |_, _| 255)), NoPose::SaturatedField);
         assert_eq!(

@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_is_read_with_its_wish_for_the_digitiser() {
+    fn a_pose_is_read_with_its_requested_digitiser_settings() {
         let got = read(
             r#"{"field": 7, "status": "measured", "d_m": [0.1, 0, 9], "phi_deg": [0, 0, 90], "sigma_d_m": [0.1, 0.1, 0.2],
                "contrast": 2, "brightness": -0.5}"#,

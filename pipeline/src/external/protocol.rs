@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn covariances_that_are_none_are_refused_by_their_key() {
+    fn invalid_covariances_are_refused_by_their_key() {
         let refused = |rest: &str, because: &str| {
             refused(
                 &format!(r#"{{"frame": 7, "status": "detected", "x_px": 1, "y_px": 2, {rest}}}"#),
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reason_is_short_and_orders_nothing_of_a_terminal() {
+    fn a_reason_is_short_and_free_of_control_characters() {
         assert_eq!(shortened("out of\tfilm \u{1b}[2J\r\n"), "out of\tfilm \\u{1b}[2J");
         assert_eq!(shortened(&"ä".repeat(200)), "ä".repeat(200));
         assert_eq!(shortened(&"ä".repeat(201)), "ä".repeat(200) + "…");
@@ -439,7 +439,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_that_is_none_is_refused() {
+    fn an_invalid_answer_is_refused() {
         refused("hello", "its answer `hello` cannot be read");
         refused("", "cannot be read");
         refused(r#"{"frame": 8, "status": "no_target"}"#, "its answer is for frame 8, expected frame 7");

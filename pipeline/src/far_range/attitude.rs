@@ -34,7 +34,7 @@ pub(super) struct StarPair {
 
 /// Smallest gap between the two largest eigenvalues, per unit of weight. Below it, all directions coincide
 /// and the rotation about them is undetermined. Stars one pixel apart (4e-4 rad) give about 1e-7.
-const LEAST_GAP: f64 = 1e-10;
+const MIN_EIGENVALUE_GAP: f64 = 1e-10;
 
 /// Returns the rotation A that minimises J(A) = Σ ω ‖r_cam − A r_icrs‖² (Eq. 14), by Davenport's q-method;
 /// `None` when the stars do not determine it.
@@ -58,7 +58,7 @@ pub(super) fn solve_q_method(stars: &[StarPair]) -> Option<Rotation<CameraFrame,
     let mut order = [0, 1, 2, 3];
     order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
     let gap = eigen.eigenvalues[order[0]] - eigen.eigenvalues[order[1]];
-    if gap.is_nan() || gap <= LEAST_GAP * stars.iter().map(|star| star.weight).sum::<f64>() {
+    if gap.is_nan() || gap <= MIN_EIGENVALUE_GAP * stars.iter().map(|star| star.weight).sum::<f64>() {
         return None;
     }
     let q = eigen.eigenvectors.column(order[0]);
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quaternion_and_its_opposite_are_mixed_alike() {
+    fn a_quaternion_and_its_negative_are_averaged_alike() {
         let new = mounting(0.2);
         let [w, x, y, z] = new.wxyz();
         let opposite = Rotation::from_wxyz([-w, -x, -y, -z]).unwrap();

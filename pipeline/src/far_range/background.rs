@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn level_and_noise_of_a_normal_background_come_back() {
+    fn level_and_noise_of_a_normal_background_are_recovered() {
         for sigma in [0.8, 1.5, 10.0] {
             let got = estimate(normal_dn(10_000, 100.3, sigma), None).unwrap();
             // Linear interpolation within bins of 1 DN, which is coarse when the noise is less than a bin.
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_outside_the_windows_mean_nothing() {
+    fn pixels_outside_the_windows_are_ignored() {
         let mut dn = vec![0; 10_000];
         for y in 20..40 {
             dn[y * 100 + 10..y * 100 + 30].fill(200);

@@ -404,7 +404,7 @@ mod tests {
 
     /// Only the chunks of its windows are examined in a frame with windows; all other pixels are 0.
     #[test]
-    fn windows_and_the_whole_of_what_they_hold_are_the_same() {
+    fn windows_and_a_frame_with_the_same_pixels_give_the_same_clusters() {
         let windows: Vec<Window> =
             [(0, 0, 9, 4), (60, 2, 20, 8), (70, 5, 20, 8), (130, 31, 20, 8), (0, 39, 150, 1)]
                 .map(|(x, y, columns, rows)| Window { x, y, columns, rows })

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn the_pixel_of_a_hotspot_stays_marked_when_asked() {
+    fn the_pixel_of_a_hotspot_stays_marked_on_request() {
         for keep in [true, false] {
             let mut hotspots = automatic(keep);
             hotspots.is_hotspot(&track(6, 0.0));
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_memory_shorter_than_the_history_asked_for_is_refused() {
+    fn a_memory_shorter_than_the_required_history_is_refused() {
         let config =
             |n_max| HotspotConfig::Automatic { n_min: 20, v_min_px_per_s: 0.001, n_max, keep_pixels: true };
         assert!(config(Some(20)).check().is_err());

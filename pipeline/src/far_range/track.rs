@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_star_that_goes_behind_the_camera_is_expected_nowhere() {
+    fn a_star_behind_the_camera_has_no_expected_position() {
         let turned = Rotation::from_rotation_vector(Vector3::new(3.0, 0.0, 0.0));
         assert_eq!(
             expected_position(&track(300.0, 200.0, true), &Rotation::identity(), &turned, &argon()),
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn links_follow_the_expected_places() {
+    fn links_follow_the_expected_positions() {
         let tracks = [track(0.0, 0.0, true), track(20.0, 0.0, false)];
         let expected = [Some(PixelPoint::new(18.0, 0.0)), Some(tracks[1].centre)];
         let blobs = [blob(21.0, 0.0, 1.0), blob(18.0, 0.0, 1.0), blob(100.0, 0.0, 1.0)];

@@ -156,7 +156,7 @@ fn example() -> Bench {
 }
 
 #[test]
-fn the_example_finds_what_stays_among_what_streams() {
+fn the_example_finds_the_fixed_object_among_moving_stars() {
     let bench = example();
     let mut pipeline = bench.build();
     // A target that creeps by 1 px per frame, and a brighter star that moves by 12 px.
@@ -177,7 +177,7 @@ fn the_example_keeps_the_contract() {
 }
 
 #[test]
-fn a_program_that_is_not_there_does_not_start() {
+fn a_missing_program_does_not_start() {
     dies(&Bench::command("/nowhere/pipeline --fast"), "`/nowhere/pipeline` cannot be started");
 }
 
@@ -239,13 +239,13 @@ fn a_program_that_hangs_is_ended_with_its_children() {
 }
 
 #[test]
-fn a_crash_is_told_with_its_status_and_last_words() {
+fn a_crash_is_reported_with_its_status_and_last_output() {
     let bench = Bench::python("hello()\nask()\nsys.stderr.write('no film\\n')\nsys.exit(3)");
     dies(&bench, "at frame 0, it ended with exit status: 3; last error output: no film");
 }
 
 #[test]
-fn a_crash_between_frames_is_told_at_the_next() {
+fn a_crash_between_frames_is_reported_at_the_next() {
     let bench = Bench::python(
         "hello()\nask()\nsay('{\"frame\": 0, \"status\": \"no_target\"}')\nos.kill(os.getpid(), 9)",
     );
@@ -256,7 +256,7 @@ fn a_crash_between_frames_is_told_at_the_next() {
 }
 
 #[test]
-fn an_unusable_answer_costs_its_frame_alone() {
+fn an_unusable_answer_fails_only_its_frame() {
     let bench = Bench::python(
         "hello()\n\
          for answer in ['garbage', '{\"frame\": 99, \"status\": \"no_target\"}', \
@@ -337,7 +337,7 @@ fn error_output_does_not_block_and_is_kept_short() {
 }
 
 #[test]
-fn an_image_that_cannot_be_written_costs_its_frame() {
+fn an_image_that_cannot_be_written_fails_its_frame() {
     let mut bench = Bench::python("hello()\nask()");
     bench.factory.write_image = Arc::new(|_, _, _| Err("disk full".to_owned()));
     let mut pipeline = bench.build();

@@ -240,7 +240,7 @@ fn a_hotspot_wins_until_it_is_old_enough_to_be_known() {
 }
 
 #[test]
-fn an_empty_or_saturated_frame_is_said_and_the_next_is_linked_across_it() {
+fn an_empty_or_saturated_frame_is_reported_and_tracks_continue_across_it() {
     for (level, reason) in
         [(0, NoSolution::EmptyFrame), (300, NoSolution::EmptyFrame), (4095, NoSolution::SaturatedFrame)]
     {
@@ -325,7 +325,7 @@ fn the_far_range_pipeline_keeps_the_contract() {
 }
 
 #[test]
-fn the_best_mode_finds_the_same_targets_and_knows_better_where_they_are() {
+fn the_best_mode_finds_the_same_targets_more_accurately() {
     let (paper, best) = (run(config(), 6), run(best(), 6));
     let worst = |outcomes: &[Outcome]| {
         (1..6).fold(0.0, |most: f64, i| {
@@ -384,7 +384,7 @@ fn a_given_attitude_predicts_tracks_and_points_instead_of_the_mounting() {
 }
 
 #[test]
-fn given_identities_and_centres_stand_for_the_pipelines_own() {
+fn given_identities_and_centres_replace_those_of_the_pipeline() {
     let mut pipeline =
         FarRangePipeline::new(FarRangeConfig { hotspots: HotspotConfig::Off, ..config() }, &setup()).unwrap();
     for i in 0..3 {
@@ -410,7 +410,7 @@ fn given_identities_and_centres_stand_for_the_pipelines_own() {
 }
 
 #[test]
-fn given_apparent_places_are_not_corrected_for_aberration() {
+fn given_apparent_positions_are_not_corrected_for_aberration() {
     let setup = setup();
     let corrected = FarRangeConfig { aberration: AberrationConfig::Correct, ..config() };
     let apparent = |star: &ListedStar| star.direction;

@@ -1,7 +1,7 @@
 //! Tests of the pipelines through their public interface, one module per suite: `cargo test -p
 //! boresight-pipeline --test it external::` runs one suite.
 
-#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+#![allow(clippy::unwrap_used, reason = "tests and their helpers fail by panicking")]
 
 mod table_1;
 

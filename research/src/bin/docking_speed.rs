@@ -6,7 +6,7 @@
 //!
 //! A step cannot be timed from outside: its cost is the difference between a field with and a field without
 //! it. The sum is measured on the whole field; it is not a sum of differences.
-#![allow(clippy::unwrap_used, reason = "it fails by panicking, as a test does")]
+#![allow(clippy::unwrap_used, reason = "fails by panicking, like a test")]
 
 use std::path::Path;
 

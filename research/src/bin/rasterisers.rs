@@ -2,12 +2,12 @@
 //! fast renderer: the figures behind the choice in ARCHITECTURE.md.
 //!
 //! `cargo run --release -p boresight-research --bin rasterisers`
-#![allow(clippy::unwrap_used, reason = "it fails by panicking, as a test does")]
+#![allow(clippy::unwrap_used, reason = "fails by panicking, like a test")]
 
 // The scenes refer to the simulator by the name that its own tests use.
 extern crate sim as boresight_sim;
 
-#[allow(dead_code, reason = "it uses a part of it")]
+#[allow(dead_code, reason = "uses only a part of the module")]
 #[path = "../../../sim/tests/it/vector_scene.rs"]
 mod vector_scene;
 

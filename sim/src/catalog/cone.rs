@@ -282,7 +282,7 @@ mod tests {
 
     /// Tests the definition of a cone against known angles.
     #[test]
-    fn a_cone_holds_what_is_nearer_than_its_radius() {
+    fn a_cone_holds_the_stars_nearer_than_its_radius() {
         for (separation, inside) in [(9.999999, true), (10.000001, false)] {
             for ra in [0.0, 90.0, 359.0] {
                 let (centre, star) = (direction(ra, 85.0), direction(ra + 180.0, 95.0 - separation));
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn half_a_turn_holds_everything_and_a_negative_radius_nothing() {
+    fn a_radius_of_180_deg_holds_all_stars_and_a_negative_one_none() {
         let (stars, index) = sky();
         let centre = direction(12.0, 34.0);
         assert_eq!(index.within(&centre, Angle::from_radians(PI)).len(), stars.len());
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn an_index_of_nothing_finds_nothing() {
+    fn an_empty_index_finds_no_star() {
         assert!(ConeIndex::new(&[]).within(&direction(0.0, 0.0), Angle::from_degrees(180.0)).is_empty());
     }
 

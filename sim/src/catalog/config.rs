@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scenario_may_say_nothing_little_or_all() {
+    fn a_scenario_may_state_none_some_or_all_keys() {
         let read = |text: &str| serde_json::from_str::<CatalogConfig>(text);
         assert_eq!(read("{}").unwrap(), CatalogConfig::default());
         let text = r#"{"source":"mine.csv","magnitude_limit":6.5,"cone":{"ra_deg":1.0,"dec_deg":2.0,"radius_deg":3.0}}"#;

@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_header_says_what_the_decoder_expects() {
+    fn the_header_agrees_with_the_decoder() {
         assert_eq!(&BYTES[..8], b"BSHIP2\0\0");
         assert_eq!(BYTES[8..12], 1_u32.to_le_bytes());
         assert_eq!(BYTES[12..16], 117_955_u32.to_le_bytes());

@@ -57,7 +57,7 @@ mod tests {
     ];
 
     #[test]
-    fn published_v_comes_back_from_hp() {
+    fn published_v_is_recovered_from_hp() {
         let catalog = Catalog::hipparcos2();
         let errors: Vec<f64> = PUBLISHED
             .iter()
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn hp_comes_back_from_v() {
+    fn hp_is_recovered_from_v() {
         for b_v in [None, Some(0.5), Some(3.0)] {
             assert!((hp_mag(v_mag(6.0, b_v), b_v) - 6.0).abs() < 1e-14);
         }

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn every_velocity_matters_and_belongs_to_a_star() {
+    fn every_velocity_is_significant_and_belongs_to_a_star() {
         let catalog = Catalog::hipparcos2();
         for (hip, velocity, source) in TABLE {
             let star = catalog.star(*hip).unwrap();

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn its_image_has_its_light_at_its_place() {
+    fn its_image_has_its_flux_at_its_position() {
         let glint = GlintImage { index: 0, centre: PixelPoint::new(20.3, 14.6), light: 50.0 };
         let mut signal = vec![0.0_f32; 40 * 30];
         add(&glint, 0.7, &mut signal, 40, Lines::All);

@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn the_lamp_goes_with_the_camera() {
+    fn the_lamp_moves_with_the_camera() {
         let lamp = FloodlightConfig { offset_m: [0.2, 0.1, 0.3], ..FloodlightConfig::default() };
         let pose = Pose { position_m: Vector3::new(1.0, 2.0, 8.0), phi_rad: Vector3::zeros() };
         let at = lamp.floodlight_at(&pose);

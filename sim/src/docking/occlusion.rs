@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_meets_no_ray_of_the_region() {
+    fn omitted_facets_meet_no_ray_of_the_region() {
         let frame = framed();
         let region = Region { centre: Vector3::new(4.0, 0.0, 0.0), radius_m: 0.5 };
         let mut met = 0;

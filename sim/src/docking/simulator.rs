@@ -27,7 +27,7 @@ use crate::{exact_toml, regular_file};
 const MAX_TARGET_BYTES: u64 = 4 << 20;
 /// Maximum number of fields whose camera position is checked in advance. In longer approaches the checked
 /// fields are evenly spaced, and the other fields are checked when they are made.
-const PLACES: usize = 100_000;
+const MAX_CHECKED_FIELDS: usize = 100_000;
 /// Maximum number of marks of a target: bits of a mask in the truth table.
 const MAX_MARKS: usize = 64;
 
@@ -144,7 +144,7 @@ impl DockingSimulator {
             field_count: fields as u64 + 1,
         };
         let last = simulator.field_count - 1;
-        let step = (simulator.field_count / PLACES as u64) as usize + 1;
+        let step = (simulator.field_count / MAX_CHECKED_FIELDS as u64) as usize + 1;
         (0..last).step_by(step).chain([last]).try_for_each(|field| simulator.state(field).map(drop))?;
         Ok(simulator)
     }

@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn layers_without_light_are_left_out() {
+    fn layers_without_light_are_omitted() {
         assert_eq!(Layer::from_lighting(&night()).unwrap(), []);
         let sun = Sun { towards: Vector3::z(), irradiance: 1.0 };
         let day = Lighting { sun: Some(sun), fill_radiance: 0.1, ..night() };
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn light_that_is_no_light_is_refused_by_name() {
+    fn an_invalid_light_is_refused_by_name() {
         let sun = Sun { towards: Vector3::zeros(), irradiance: 1.0 };
         let error = Layer::from_lighting(&Lighting { sun: Some(sun), ..night() }).unwrap_err().to_string();
         assert!(error.contains("lighting.sun.towards"), "{error}");

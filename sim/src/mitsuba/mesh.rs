@@ -16,7 +16,7 @@ const BEHIND_CAMERA_M: f64 = 5.0;
 
 /// Least sine of the Sun's elevation over the disk's plane. Below it a shade would have to be moved so far
 /// that Mitsuba's 32-bit numbers blur its shadow, and surfaces that face a camera are hardly lit.
-const LEAST_SUN_HEIGHT: f64 = 0.02;
+const MIN_SUN_ELEVATION_SINE: f64 = 0.02;
 
 /// Facets of a part that have equal reflectance.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +63,7 @@ pub(super) fn meshes(scene: &DockingScene, layer: &Layer, pose: &Pose) -> Result
 /// camera that points at the target does not see the shade. `None` if the Sun is not in front of the disk.
 fn moved_behind(part: &Part, sun: &Sun, pose: &Pose) -> Option<Part> {
     let towards = sun.towards.normalize();
-    if towards.z < LEAST_SUN_HEIGHT {
+    if towards.z < MIN_SUN_ELEVATION_SINE {
         return None;
     }
     let lowest_m = part
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_surface_can_be_is_refused() {
+    fn an_impossible_surface_is_refused() {
         let of = |facet: Facet| {
             let scene = DockingScene { parts: vec![part(vec![facet], true)] };
             meshes(&scene, &FILL, &pose()).unwrap_err().to_string()

@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_in_the_memory_of_another_is_that_in_memory_of_its_own() {
+    fn a_frame_is_the_same_in_reused_and_in_new_memory() {
         let windows = |x, y| {
             Some(vec![Window { x, y, columns: 3, rows: 2 }, Window { x: 7, y: 0, columns: 3, rows: 5 }])
         };

@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn one_frame_leaves_nothing_for_the_next() {
+    fn frames_are_independent_of_earlier_frames() {
         let mut extractor = RoiExtractor::new(&config(), 100, 50).unwrap();
         let first = extractor.extract(&image(&[(30, 20, 3, 9, 200)]));
         assert_eq!(extractor.extract(&image(&[])), []);

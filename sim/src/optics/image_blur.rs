@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_becomes_a_gaussian_of_the_same_light() {
+    fn a_point_becomes_a_gaussian_of_the_same_flux() {
         let (n, centre) = (31_usize, 15_usize);
         let mut image = vec![0.0; n * n];
         image[centre * n + centre] = 1000.0;
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn uniform_light_stays_uniform_and_no_blur_changes_nothing() {
+    fn a_uniform_image_stays_uniform_and_zero_blur_changes_nothing() {
         for value in blurred(0.7, &[0.25; 200], 20, Lines::All) {
             assert!((value - 0.25).abs() < 1e-6);
         }

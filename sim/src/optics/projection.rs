@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn without_distortion_a_direction_falls_where_similar_triangles_say() {
+    fn without_distortion_the_projection_follows_similar_triangles() {
         let camera = Camera {
             focal_length_mm: 10.0,
             pixel_width_um: 10.0,
@@ -456,7 +456,7 @@ mod tests {
 
     /// r − 1e-6 r³ is 384.9 px at most: points beyond have no inverse, however close they are to this limit.
     #[test]
-    fn what_nothing_falls_on_has_no_inverse() {
+    fn a_position_that_no_direction_maps_to_has_no_inverse() {
         let folded = Distortion { radial: [-1e-6, 0.0, 0.0], tangential: [0.0; 2] };
         assert!(folded.undistort(Offset { u: 384.5, v: 0.0 }).is_some());
         assert_eq!(folded.undistort(Offset { u: 385.5, v: 0.0 }), None);
@@ -495,7 +495,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_goes_on_in_proportion_where_the_distortion_ends() {
+    fn an_outline_continues_linearly_beyond_the_distortion() {
         let camera = Camera { radial: [-1e-7, 0.0, 0.0], ..table_1() };
         let projection = Projection::new(&camera).unwrap();
         let (fx, fy) = camera.focal_length_px();

@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn the_truth_of_a_stamp_is_what_its_formulas_say() {
+    fn the_truth_of_a_stamp_follows_its_formulas() {
         let truth = two_by_two().truth(9.0, 4.0, f64::INFINITY);
         assert_eq!(truth.electrons, 150.0);
         assert_eq!(truth.peak_electrons, 100.0);
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_a_pixel_has_room_for_is_signal() {
+    fn only_signal_below_the_full_well_counts() {
         let stamp = two_by_two();
         // The pixels have room for 40 e⁻ above the background of 9.
         let snr = (1600.0 / 65.0 + 900.0 / 55.0 + 400.0 / 45.0_f64).sqrt();

@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_still_is_a_point() {
+    fn an_image_without_motion_is_a_point() {
         let at = PixelPoint::new(3.0, 4.0);
         for end in [at, PixelPoint::new(3.001, 4.0), PixelPoint::new(f64::NAN, 4.0)] {
             let mut points = Vec::new();

@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_word_nothing_is_vignetted() {
+    fn vignetting_is_off_by_default() {
         let vignetting = vignetting(OpticsConfig::default());
         for point in [PixelPoint::new(0.0, 0.0), PixelPoint::new(751.0, 579.0), PixelPoint::new(-30.0, 9.0)] {
             assert_eq!(vignetting.transmission(point), 1.0);
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn a_polynomial_that_lets_no_light_through_or_makes_some_is_refused() {
+    fn a_transmission_outside_0_to_1_is_refused() {
         for bad in [[1.0, 0.0, 0.0], [-0.1, 0.2, 0.0], [2.5, 0.0, -1.6], [f64::NAN, 0.0, 0.0]] {
             let config = OpticsConfig { vignetting: bad, ..OpticsConfig::default() };
             let message = config.check().unwrap_err().to_string();

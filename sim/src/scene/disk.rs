@@ -9,10 +9,10 @@ use crate::optics::ImagePoint;
 /// number of pixels.
 const FINE_CELL_PX: f64 = 0.5;
 /// Minimum number of samples across the lit part of the disk.
-const LIT_SAMPLES: f64 = 4.0;
+const MIN_LIT_SAMPLES: f64 = 4.0;
 /// Minimum and maximum number of samples along each side of a cell, and maximum number over all cells of the
 /// image.
-const LEAST_SAMPLES: f64 = 4.0;
+const MIN_SAMPLES: f64 = 4.0;
 const SAMPLES: f64 = 32.0;
 const ALL_SAMPLES: f64 = (1 << 22) as f64;
 
@@ -109,8 +109,8 @@ impl<P: Fn(Vector2<f64>) -> Option<PixelPoint>> Disk<P> {
         } else {
             (lit_px / limit).sqrt().ceil()
         };
-        let across = self.samples_across.max(LIT_SAMPLES / self.lit);
-        let wanted = (across * cell_px / (2.0 * radius_px)).ceil().clamp(LEAST_SAMPLES, SAMPLES);
+        let across = self.samples_across.max(MIN_LIT_SAMPLES / self.lit);
+        let wanted = (across * cell_px / (2.0 * radius_px)).ceil().clamp(MIN_SAMPLES, SAMPLES);
         let affordable = (ALL_SAMPLES.sqrt() * cell_px / (2.0 * radius_px)).floor().max(1.0);
         (cell_px, wanted.min(affordable) as usize)
     }

@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn behind_the_earth_it_gives_no_light_and_at_its_limb_half() {
+    fn behind_the_earth_its_flux_is_zero_and_at_the_limb_half() {
         let full = seen_from("2020-01-01T00:00:00Z", 90.0);
         assert_eq!(full.visible_fraction(), 1.0);
         assert_eq!(seen_from("2020-01-01T00:00:00Z", 180.0).magnitude(), f64::INFINITY);

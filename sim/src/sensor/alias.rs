@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn the_law_of_the_table_is_the_law_it_was_made_of() {
+    fn the_table_reproduces_its_distribution() {
         for count in [1_usize, 2, 3, 7, 8, 100, 1000] {
             let probabilities: Vec<f64> = (0..count).map(|i| libm::exp(-((i * i) as f64) / 50.0)).collect();
             let total: f64 = probabilities.iter().sum();
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_law_without_probabilities_is_certain() {
+    fn a_distribution_without_probabilities_is_certain() {
         for table in [AliasTable::new(9, &[]), AliasTable::new(9, &[0.0, 0.0]), AliasTable::new(9, &[1.0])] {
             assert!([0, 1 << 31, u32::MAX].iter().all(|&word| table.draw(word) == 9));
         }

@@ -112,7 +112,7 @@ impl CosmicRayConfig {
 }
 
 /// Maximum number of hits in a frame: each hit has a row in the truth table.
-const MOST_HITS: f64 = 1e5;
+const MAX_HITS: f64 = 1e5;
 
 /// Generator of the cosmic-ray hits on a camera's detector.
 #[derive(Debug, Clone, PartialEq)]
@@ -164,7 +164,7 @@ impl CosmicRays {
         let value = format!("{} ({hits:.3e} hits in a frame of {longest_s} s)", self.config.rate_per_cm2_s);
         let expected = "at most 1e5 hits per frame: highest rate × area × (longest exposure + readout_s)";
         let refused = || OutOfRange::new("sensor.cosmic_rays.rate_per_cm2_s", value, expected);
-        if hits <= MOST_HITS { Ok(()) } else { Err(refused()) }
+        if hits <= MAX_HITS { Ok(()) } else { Err(refused()) }
     }
 
     /// Mean number of hits in a frame.
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn charge_follows_moyals_law_and_grows_with_the_path() {
+    fn charge_follows_moyals_distribution_and_grows_with_the_path() {
         let bin = |hit: &CosmicRayHit| {
             let across_um = libm::hypot(hit.across.0 * 8.6, hit.across.1 * 8.3);
             let e_per_um = hit.electrons / libm::hypot(across_um, 20.0);
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn the_anomaly_is_a_bump_at_its_place() {
+    fn the_anomaly_is_a_bump_at_its_position() {
         let bump = SouthAtlanticConfig::default();
         assert_eq!(bump.factor(-26.0, -53.0), 1100.0);
         assert!((bump.factor(-26.0 + 9.0, -53.0) - (1.0 + 1099.0 * libm::exp(-0.5))).abs() < 1e-9);

@@ -50,15 +50,15 @@ impl DarkLimit {
 
 /// Minimum exceedance probability of the limit, for any background: at this value there is one candidate in
 /// two frames of half a million pixels.
-const RAREST: f64 = 1.0 / 1_048_576.0;
+const MIN_EXCEEDANCE: f64 = 1.0 / 1_048_576.0;
 /// Maximum exceedance probability of the limit, for any background: above this value the draw of a pixel
 /// costs less than its candidates.
-const MOST_FREQUENT: f64 = 1.0 / 64.0;
+const MAX_EXCEEDANCE: f64 = 1.0 / 64.0;
 /// Upper end of the means of the limit, in quarters of an electron.
 const END: u32 = 4 * 1024;
 /// Number of extra electrons from which on they are neglected: a remainder of less than a quarter of an
 /// electron gives eight or more with a probability below 3.1e-10.
-const MOST_MORE: u32 = 8;
+const NEGLECTED_EXTRA_E: u32 = 8;
 
 impl Exceedance {
     /// Creates the distribution from a pixel's distribution with shot noise.
@@ -70,7 +70,8 @@ impl Exceedance {
             last_limit: None,
             tails: BTreeMap::new(),
         };
-        new.limits = new.last_below(MOST_FREQUENT).map(|high| (new.last_below(RAREST).unwrap_or(0), high));
+        new.limits =
+            new.last_below(MAX_EXCEEDANCE).map(|high| (new.last_below(MIN_EXCEEDANCE).unwrap_or(0), high));
         new
     }
 
@@ -125,7 +126,7 @@ impl Exceedance {
             return None;
         }
         let rest_e = mean_e - 0.25 * f64::from(quarters);
-        let mut weights = [0.0; MOST_MORE as usize];
+        let mut weights = [0.0; NEGLECTED_EXTRA_E as usize];
         let (mut poisson, mut probability) = (libm::exp(-rest_e), 0.0);
         for (n, weight) in (0..).zip(&mut weights) {
             *weight = poisson * self.tail(quarters, n).probability();
@@ -205,13 +206,16 @@ mod tests {
         for bound_e in [0.0, 3.1, 8.2, 9.0, 12.0, 14.1, 40.0, 1e9] {
             let limit = exceedance.dark_limit(bound_e);
             assert!((limit.probability - above(&distribution, limit.mean_e, floor_dn)).abs() < 1e-12);
-            assert!(limit.probability <= MOST_FREQUENT);
+            assert!(limit.probability <= MAX_EXCEEDANCE);
             let follows = limit.mean_e >= bound_e && limit.mean_e < bound_e + 0.25;
-            let rarest =
-                limit.mean_e > bound_e && above(&distribution, limit.mean_e + 0.25, floor_dn) > RAREST;
-            let most =
-                limit.mean_e < bound_e && above(&distribution, limit.mean_e + 0.25, floor_dn) > MOST_FREQUENT;
-            assert!(follows || (rarest && limit.probability <= RAREST) || most, "{bound_e}: {limit:?}");
+            let rarest = limit.mean_e > bound_e
+                && above(&distribution, limit.mean_e + 0.25, floor_dn) > MIN_EXCEEDANCE;
+            let most = limit.mean_e < bound_e
+                && above(&distribution, limit.mean_e + 0.25, floor_dn) > MAX_EXCEEDANCE;
+            assert!(
+                follows || (rarest && limit.probability <= MIN_EXCEEDANCE) || most,
+                "{bound_e}: {limit:?}"
+            );
         }
         // The bias exceeds this floor, so no pixel is dark.
         assert_eq!(Exceedance::new(&distribution, 40).dark_limit(0.0), DarkLimit::NOWHERE);
@@ -220,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_of_the_candidates_follows_the_law_above_the_floor() {
+    fn accepted_candidates_follow_the_distribution_above_the_floor() {
         let distribution = distribution();
         for (frame, (mean_e, floor_dn)) in
             [(0.0, 53), (0.13, 54), (7.37, 65), (7.49, 67), (30.01, 95)].into_iter().enumerate()
@@ -244,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_changes_nothing() {
+    fn caching_changes_nothing() {
         let mut kept = Exceedance::new(&distribution(), 65);
         let limit = kept.dark_limit(9.0);
         let levels = |i: u32| [0.03 * f64::from(i % 31), 0.07 * f64::from(i % 13), 0.2 * f64::from(i % 5)];

@@ -69,7 +69,7 @@ pub(super) struct FixedPattern {
 /// its pattern takes longer to compute than many frames.
 static LAST: Mutex<Option<(FixedPatternConfig, [usize; 2], FixedPattern)>> = Mutex::new(None);
 /// Maximum number of pixels of a cached pattern.
-const MOST_PIXELS: usize = 1 << 22;
+const MAX_CACHED_PIXELS: usize = 1 << 22;
 
 impl FixedPattern {
     /// Returns the pattern of a detector; reuses the most recent pattern if it matches.
@@ -89,7 +89,7 @@ impl FixedPattern {
             return Ok(pattern.clone());
         }
         let pattern = Self::new(config, columns, rows)?;
-        if columns * rows <= MOST_PIXELS {
+        if columns * rows <= MAX_CACHED_PIXELS {
             *last() = Some((config.clone(), size, pattern.clone()));
         }
         Ok(pattern)
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn each_pattern_follows_its_law() {
+    fn each_pattern_follows_its_distribution() {
         let config = FixedPatternConfig {
             seed: 4,
             prnu_fraction: 0.02,
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_are_dead_as_were_asked_for_and_a_higher_count_keeps_the_others() {
+    fn the_requested_number_is_dead_and_a_higher_count_keeps_the_others() {
         let pattern = |dead_pixels, dead_columns| {
             let config = FixedPatternConfig { seed: 1, dead_pixels, dead_columns, ..Default::default() };
             FixedPattern::new(&config, 40, 30)

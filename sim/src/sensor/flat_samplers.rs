@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn flat_draws_follow_the_law_of_the_direct_sampler() {
+    fn flat_draws_follow_the_distribution_of_the_direct_sampler() {
         for (index, mean_e) in [0.1, 1.0, 20.0, 150.0, 1000.0].into_iter().enumerate() {
             let distribution = distribution(2.0);
             let mut stream = Seed { seed: 21, case: 0 }.stream(0, Effect::PixelNoise, index as u64);
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_little_signal_superposes_to_the_law_of_the_sum() {
+    fn a_small_signal_superposes_to_the_distribution_of_the_sum() {
         // A gain of 1 e⁻/DN and a low read noise, so single electrons are distinguishable.
         let distribution =
             PixelDistribution::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() });
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_changes_nothing() {
+    fn caching_changes_nothing() {
         let word = |i: u32| i.wrapping_mul(0x9e37_79b9);
         let mut kept = FlatSamplers::new();
         for i in 0..200 {

@@ -65,12 +65,12 @@ pub(super) fn hot_pixels(
 /// Draws a dark current at the reference temperature, electrons per second.
 fn current(config: &HotPixelConfig, stream: &mut Stream) -> f64 {
     // A tail without a mean needs an upper limit.
-    const MOST_E_PER_S: f64 = 1e9;
+    const MAX_E_PER_S: f64 = 1e9;
     let factor = match config.law {
         HotPixelDistribution::LogNormal => libm::exp(config.spread * normal(stream)),
         HotPixelDistribution::Pareto { index } => libm::pow(2.0 * uniform(stream), -1.0 / index),
     };
-    (config.median_e_per_s * factor).min(MOST_E_PER_S)
+    (config.median_e_per_s * factor).min(MAX_E_PER_S)
 }
 
 #[cfg(test)]
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn their_currents_follow_their_law() {
+    fn their_currents_follow_their_distribution() {
         use statrs::distribution::{LogNormal, Pareto};
         follow(&config(10_000), &LogNormal::new(libm::log(100.0), 1.5).unwrap());
         let pareto = HotPixelConfig { law: HotPixelDistribution::Pareto { index: 1.2 }, ..config(10_000) };
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn as_many_switch_as_are_asked_for_and_nothing_else_changes() {
+    fn the_requested_number_switches_and_nothing_else_changes() {
         let telegraph = TelegraphConfig { fraction: 0.3, low_level: 0.1, high_s: 10.0, low_s: 10.0 };
         let with = HotPixelConfig { telegraph: Some(telegraph), ..config(10_000) };
         let (with, without) =

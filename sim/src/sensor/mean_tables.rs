@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_of_their_own_means_follow_the_law_of_the_direct_sampler() {
+    fn pixels_of_different_means_follow_the_distribution_of_the_direct_sampler() {
         let distribution = distribution();
         let mut tables = MeanTables::new(&distribution);
         for (frame, mean_e) in
@@ -430,19 +430,19 @@ mod tests {
     }
 
     #[test]
-    fn midway_between_nodes_the_law_is_exact() {
+    fn midway_between_nodes_the_distribution_is_exact() {
         assert_the_law_midway(1_000_000);
     }
 
     /// Full version: `cargo test --release -p boresight-sim --lib midway -- --ignored`, 15 s of CPU time.
     #[test]
     #[ignore = "2e9 draws: for a scheduled job"]
-    fn midway_between_nodes_the_law_is_exact_in_a_hundred_million_draws() {
+    fn midway_between_nodes_the_distribution_is_exact_in_a_hundred_million_draws() {
         assert_the_law_midway(100_000_000);
     }
 
     #[test]
-    fn what_is_kept_changes_nothing() {
+    fn caching_changes_nothing() {
         let distribution = distribution();
         let mut kept = MeanTables::new(&distribution);
         let streams = Seed { seed: 24, case: 0 }.streams(0, Effect::PixelNoise);

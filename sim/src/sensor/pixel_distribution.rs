@@ -415,7 +415,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_bent_amplifier_has_its_law() {
+    fn a_nonlinear_amplifier_has_its_distribution() {
         let config =
             SensorConfig { non_linearity: 0.2, full_well_e: 2000.0, gain_e_per_dn: 3.0, ..twelve_bit() };
         let distribution = PixelDistribution::new(&config);

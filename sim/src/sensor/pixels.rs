@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_in_parts_and_frames_by_tables_follow_the_law_of_a_pixel() {
+    fn frames_in_parts_and_frames_by_tables_follow_the_distribution_of_a_pixel() {
         let mut samplers = FlatSamplers::new();
         for sky_e in [0.0, 0.4, 20.3, 150.7, 300.0, 5000.0, 70_000.0] {
             for (row_e, prnu_fraction) in [(1e-9, 0.0), (0.0, 1e-9)] {

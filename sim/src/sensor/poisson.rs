@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn no_light_gives_no_electrons() {
+    fn zero_flux_gives_no_electrons() {
         assert_eq!(poisson(0.0, &mut stream(0)), 0.0);
     }
 }

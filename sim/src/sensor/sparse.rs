@@ -414,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_have_the_same_law_with_a_floor_and_without() {
+    fn pixels_have_the_same_distribution_with_a_floor_and_without() {
         assert_the_law_over_floors(60);
     }
 
@@ -422,7 +422,7 @@ mod tests {
     /// time.
     #[test]
     #[ignore = "8e8 draws: for a scheduled job"]
-    fn pixels_have_the_same_law_with_a_floor_and_without_in_a_hundred_million_draws() {
+    fn pixels_have_the_same_distribution_with_a_floor_and_without_in_a_hundred_million_draws() {
         assert_the_law_over_floors(12_208);
     }
 
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn where_no_table_holds_the_law_all_is_drawn() {
+    fn without_a_table_every_pixel_is_drawn_directly() {
         let config =
             SensorConfig { line_noise: LineNoiseConfig { row_e: 2.0, column_e: 0.0 }, ..detector(0.02) };
         let [above, _, all] = frames(&config, 4, 100, &[]);

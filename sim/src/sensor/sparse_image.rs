@@ -179,7 +179,7 @@ mod tests {
 
     /// Rows with more parts than a word has bits, and a short last part.
     #[test]
-    fn what_is_set_is_told_part_by_part_and_cleared() {
+    fn set_pixels_are_listed_part_by_part_and_cleared() {
         let (columns, rows) = (2 * Parts::OF_A_WORD * PART + 5, 3);
         let mut image = SparseImage::new(RawImage::from_dn(columns, rows, 12, vec![0; columns * rows]));
         assert_eq!(image.runs().count(), 0);

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_reaches_an_end_is_lost() {
+    fn charge_that_reaches_an_end_is_lost() {
         // Gambler's ruin: with three full rows, half of the excess of the second leaves at either end.
         assert_eq!(spilt(&[100.0, 1000.0, 100.0], 100.0), [100.0; 3]);
         // Near the upper end more charge is lost at that end than moves down: 660 of 900.

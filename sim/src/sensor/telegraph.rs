@@ -35,7 +35,7 @@ impl TelegraphConfig {
     /// telegraph process, with exponential dwell times. Time is divided into cells; the events of a cell are
     /// drawn at the address of the cell, and the state at any time is that of the last event before it.
     pub(super) fn mean_level(&self, seed: &Seed, pixel: u64, from_s: f64, to_s: f64) -> f64 {
-        let cell_s = EVENTS_A_CELL * self.high_s * self.low_s / (self.high_s + self.low_s);
+        let cell_s = EVENTS_PER_CELL * self.high_s * self.low_s / (self.high_s + self.low_s);
         let first = (from_s / cell_s).floor();
         let events = |cell: f64| {
             // Cells before the epoch have negative numbers; their bit patterns are valid addresses.
@@ -44,7 +44,7 @@ impl TelegraphConfig {
         };
         let before = |cell: f64| events(cell).into_iter().rev().find(|event| event.time_s <= from_s);
         let mut high =
-            (0..MOST_CELLS_BACK).find_map(|back| before(first - f64::from(back))).is_some_and(|e| e.high);
+            (0..MAX_CELLS_BACK).find_map(|back| before(first - f64::from(back))).is_some_and(|e| e.high);
         let level = |high: bool| if high { 1.0 } else { self.low_level };
         if to_s <= from_s {
             return level(high);
@@ -64,7 +64,7 @@ impl TelegraphConfig {
 
     /// Events of a cell, in order of time.
     fn events(&self, start_s: f64, cell_s: f64, stream: &mut Stream) -> Vec<Event> {
-        let count = poisson(EVENTS_A_CELL, stream) as usize;
+        let count = poisson(EVENTS_PER_CELL, stream) as usize;
         let high_share = self.high_s / (self.high_s + self.low_s);
         let mut events: Vec<Event> = (0..count)
             .map(|_| Event { time_s: start_s + cell_s * uniform(stream), high: uniform(stream) < high_share })
@@ -75,11 +75,11 @@ impl TelegraphConfig {
 }
 
 /// Mean number of events in a cell of time. A larger value makes cells fewer and slower to draw.
-const EVENTS_A_CELL: f64 = 4.0;
+const EVENTS_PER_CELL: f64 = 4.0;
 
 /// Maximum number of cells searched backwards for an event: the probability of no event in sixteen cells is
 /// exp(−64).
-const MOST_CELLS_BACK: u32 = 16;
+const MAX_CELLS_BACK: u32 = 16;
 
 /// Time at which the state is drawn anew.
 #[derive(Debug, Clone, Copy)]

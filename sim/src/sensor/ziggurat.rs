@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn its_numbers_follow_the_normal_law_in_fine_bins() {
+    fn its_numbers_follow_the_normal_distribution_in_fine_bins() {
         // −5 to 5 in steps of 1/50, far narrower than most layers.
         let bin = |x: f64| ((x + 5.0) * 50.0).floor().clamp(0.0, 499.0) as usize;
         let counts = histogram(numbers(0, 4_000_000).map(bin));
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn its_tail_is_as_heavy_as_the_normal_law() {
+    fn its_tail_is_that_of_the_normal_distribution() {
         // 2 Φ(−3.6541…) = 2.6e-4: a thousand of four million, in 40 bins of 1/40 and the remainder.
         let n = 4_000_000;
         let beyond: Vec<f64> = numbers(1, n).map(f64::abs).filter(|x| *x > TAIL_FROM).collect();
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn its_moments_are_those_of_the_normal_law() {
+    fn its_moments_are_those_of_the_normal_distribution() {
         let n = 4_000_000;
         let mut moments = [0.0; 4];
         for x in numbers(2, n) {
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_that_decides_asks_for_no_more() {
+    fn a_decisive_word_draws_no_further_one() {
         let ziggurat = Ziggurat::default();
         let mut row = Seed { seed: 31, case: 0 }.stream(3, Effect::PixelNoise, 0);
         let mut extra_words = 0;

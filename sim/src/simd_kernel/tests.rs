@@ -97,7 +97,7 @@ impl SimdKernel for All<'_> {
 }
 
 #[test]
-fn eight_numbers_are_what_each_of_them_is_alone_on_any_registers() {
+fn eight_lanes_agree_with_single_numbers_on_any_registers() {
     let numbers = [0, 1, 2]
         .map(|k| std::array::from_fn(|i| libm::sin((8 * k + i) as f64) * libm::pow(10.0, (i % 3) as f64)));
     let [a, b, c] = numbers;

@@ -9,7 +9,7 @@ use crate::optics::{correlate, gaussian_kernel, pad};
 const CELL_PX: usize = 8;
 /// Maximum excess above white that a pixel contributes to the halo, in units of the white level: the target
 /// of a camera tube, or a well, holds no more.
-const MOST_EXCESS: f32 = 30.0;
+const MAX_EXCESS: f32 = 30.0;
 
 /// Halo around pixels above white: a Gaussian that contains a share of the excess above white.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -54,7 +54,7 @@ impl Bloom {
             self.along.resize(columns, 0.0);
             for row in rows.chunks_exact(columns) {
                 for (sum, s) in self.along.iter_mut().zip(row) {
-                    *sum += (s - 1.0).clamp(0.0, MOST_EXCESS);
+                    *sum += (s - 1.0).clamp(0.0, MAX_EXCESS);
                 }
             }
             self.cells.extend(self.along.chunks(CELL_PX).map(|sums| share * sums.iter().sum::<f32>()));
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_halo_has_its_share_of_the_light_and_its_width() {
+    fn the_halo_has_its_share_of_the_flux_and_its_width() {
         let (columns, rows) = (320, 240);
         let mut signal = vec![0.0_f32; columns * rows];
         for y in 112..120 {

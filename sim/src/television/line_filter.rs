@@ -105,14 +105,14 @@ impl LineFilter {
 }
 
 /// Weight of a filter below which it is dropped: less than the rounding error of the sum in single precision.
-const LEAST_WEIGHT: f64 = 1e-8;
+const MIN_WEIGHT: f64 = 1e-8;
 
 /// exp(−σ²) I_n(σ²) for n from −N to N, with unit sum; less than 1e-7 is truncated.
 fn discrete_gaussian(sigma_px: f64) -> Vec<f64> {
     let variance = sigma_px * sigma_px;
     let most = (6.0 * sigma_px).ceil() as i32 + if sigma_px > 0.0 { 3 } else { 0 };
     let half: Vec<f64> =
-        (0..=most).map(|n| scaled_bessel(n, variance)).take_while(|weight| *weight > LEAST_WEIGHT).collect();
+        (0..=most).map(|n| scaled_bessel(n, variance)).take_while(|weight| *weight > MIN_WEIGHT).collect();
     let reach = half.len() as i32 - 1;
     let weights = (-reach..=reach).map(|n| half[n.unsigned_abs() as usize]);
     let sum: f64 = weights.clone().sum();

@@ -10,7 +10,7 @@ use crate::simd_kernel::arch;
 
 /// Margin on each side of a line, px, and largest shift, px: eight times the largest standard deviation.
 const MARGIN: usize = 10;
-const MOST_PX: f64 = 8.0;
+const MAX_SHIFT_PX: f64 = 8.0;
 
 /// Shift of each line along itself by a normal random number.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -31,7 +31,7 @@ impl LineJitterConfig {
     /// Shift of a camera row in a field, px, positive to the right.
     pub(super) fn shift_px(&self, seed: &Seed, field: u64, row: usize) -> f64 {
         let mut stream = seed.stream(field, Effect::LineJitter, row as u64);
-        (self.sigma_px * normal(&mut stream)).clamp(-MOST_PX, MOST_PX)
+        (self.sigma_px * normal(&mut stream)).clamp(-MAX_SHIFT_PX, MAX_SHIFT_PX)
     }
 
     /// Shifts the lines of a field.

@@ -59,7 +59,7 @@ mod tests {
     const SEED: Seed = Seed { seed: 9, case: 0 };
 
     #[test]
-    fn lines_are_lost_as_often_as_said_and_half_of_them_to_snow() {
+    fn lines_are_lost_at_their_rate_and_half_of_them_to_snow() {
         let config = LostLinesConfig { probability: 0.1 };
         let (columns, rows) = (8, 288);
         let (mut lost, mut snow) = (0_u32, 0_u32);

@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_noise_is_normal_white_and_as_large_as_said() {
+    fn the_noise_is_normal_and_white_and_has_its_standard_deviation() {
         let (columns, rows) = (768, 288);
         let mut signal = vec![0.0_f32; columns * rows];
         let seed = Seed { seed: 4, case: 0 };
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn its_tails_are_those_of_the_normal_law() {
+    fn its_tails_are_those_of_the_normal_distribution() {
         let (columns, rows) = (768, 576);
         let seed = Seed { seed: 4, case: 0 };
         let mut counts = [0_u32; 4];

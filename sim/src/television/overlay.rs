@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn text_says_what_it_is_told_and_only_that_changes() {
+    fn only_the_pixels_of_the_text_change() {
         let (a, b) =
             (drawn(Lines::Even, &CAPTION), drawn(Lines::Even, &Caption { range_m: 19.9, ..CAPTION }));
         let changed: Vec<usize> = (0..a.len()).filter(|i| a[*i] != b[*i]).collect();

@@ -155,7 +155,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn without_errors_the_nominal_camera_is_where_guidance_wants_it() {
+    fn without_errors_the_nominal_camera_has_the_commanded_attitude() {
         let attitude = Attitude::new(&quiet(), &mounting(), SEED).unwrap();
         let states = trajectory().states_at_seconds(4321.0);
         let camera_from_icrs = mounting().nominal.camera_from_body() * attitude.truth(&states, 0);
@@ -194,7 +194,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn jitter_has_the_standard_deviation_asked_for() {
+    fn jitter_has_its_configured_standard_deviation() {
         let mut config = restless();
         config.control.drift = DriftConfig::default();
         let attitude = Attitude::new(&config, &MountingConfig::default(), SEED).unwrap();

@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_leap_second_lasts_one_second_and_comes_back_as_second_60() {
+    fn a_leap_second_lasts_one_second_and_is_printed_as_second_60() {
         let before = parse_utc("2012-06-30T23:59:59.25Z").unwrap();
         let inside = parse_utc("2012-06-30T23:59:60.25Z").unwrap();
         let after = parse_utc("2012-07-01T00:00:00.25Z").unwrap();
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn every_text_comes_back_over_a_leap_second() {
+    fn every_text_round_trips_over_a_leap_second() {
         let start = parse_utc("2012-06-30T23:59:00.000000001Z").unwrap();
         for s in 0..120 {
             let time = start + Duration::from_total_nanoseconds(s * NS_PER_S);
@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_utc_time_is_refused() {
+    fn an_invalid_utc_time_is_refused() {
         for text in [
             "",
             "Z",
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn time_in_nanoseconds_comes_back_over_a_leap_second_and_does_not_step_back() {
+    fn time_in_nanoseconds_round_trips_over_a_leap_second_and_does_not_step_back() {
         let start = parse_utc("2016-12-31T23:58:00.5Z").unwrap();
         let mut before = i64::MIN;
         for half_seconds in 0..480 {

@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn over_many_seeds_a_drift_has_the_rms_asked_for() {
+    fn over_many_seeds_a_drift_has_its_configured_rms() {
         let n = 4000;
         let mut sum = Vector3::zeros();
         for case in 0..n {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drift_of_one_period_comes_back() {
+    fn a_drift_of_one_period_repeats() {
         let config = DriftConfig { periods_s: vec![100.0], ..config() };
         let drift = Drift::new(&config, Seed { seed: 1, case: 0 }, Effect::AttitudeControl);
         // Rounding of a phase of about 2π·3: 1e-15 of an amplitude of 1e-4 rad.

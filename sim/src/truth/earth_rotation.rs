@@ -41,7 +41,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_turns_east_with_the_earth() {
+    fn a_point_on_the_ground_turns_east_with_the_earth() {
         let angle = 0.402_283_724_002_815_8;
         let time = parse_utc("2007-10-15T00:00:00Z").unwrap();
         let position = Vector3::new(7000.0 * libm::cos(angle), 7000.0 * libm::sin(angle), 7000.0);

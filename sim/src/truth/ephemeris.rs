@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sun_stands_at_the_equinox_when_the_almanac_says_so() {
+    fn the_sun_is_at_the_equinox_at_the_almanacs_time() {
         // March equinox 2012: 2012-03-20 05:14 UTC (to the minute), apparent longitude of date 0. ICRS axes
         // differ by precession of 12.2 years × 50.3″ = 614″ and by 20.5″ of aberration.
         let time = clock::parse_utc("2012-03-20T05:14:00Z").unwrap();

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn target_pointing_is_a_rotation_even_where_it_means_nothing() {
+    fn target_pointing_is_a_rotation_even_where_it_is_degenerate() {
         let mut states = states(0.0, behind());
         let normal = local_axes(&states).2;
         for position_km in [states.chaser.position_km, states.chaser.position_km + normal] {
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mode_is_read_by_its_name_and_nothing_unknown_is_swallowed() {
+    fn a_mode_is_read_by_its_name_and_unknown_keys_are_refused() {
         let read = |text: &str| toml::from_str::<Guidance>(text);
         assert_eq!(read("mode = 'local_orbital'").unwrap(), LOCAL);
         assert_eq!(read("mode = 'target_pointing'").unwrap(), Guidance::TargetPointing {});

@@ -41,7 +41,7 @@ mod tests {
         /// The mean anomaly is computed from the eccentric anomaly in closed form, so the expected result is
         /// exact.
         #[test]
-        fn the_eccentric_anomaly_comes_back(anomaly in -PI..PI, e in 0.0_f64..=0.9) {
+        fn the_eccentric_anomaly_round_trips(anomaly in -PI..PI, e in 0.0_f64..=0.9) {
             let mean = anomaly - e * libm::sin(anomaly);
             // The function guarantees 1e-14; M itself is accurate to 2e-16·π, which 1/(1 − e) amplifies to
             // 7e-15 at most.

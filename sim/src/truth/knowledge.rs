@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn perfect_knowledge_tells_the_truth() {
+    fn perfect_knowledge_reports_the_true_attitude() {
         let config = KnowledgeConfig::default();
         assert!(error(&config, &attitude(true), 17).norm() < 1e-15);
         let velocity = telemetry_of(&config, &attitude(true), 17).velocity_km_s.unwrap();
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bias_turns_the_told_axes_by_the_right_hand_rule() {
+    fn a_bias_turns_the_reported_axes_by_the_right_hand_rule() {
         let config = KnowledgeConfig { bias_arcsec: [100.0, -40.0, 7.0], ..Default::default() };
         assert!(
             (error(&config, &attitude(true), 3) - radians_from_arcsec([100.0, -40.0, 7.0])).norm() < 1e-15
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_has_the_standard_deviation_asked_for() {
+    fn noise_has_its_configured_standard_deviation() {
         let noise_arcsec = [3.0, 5.0, 30.0];
         let config = KnowledgeConfig { noise_arcsec, velocity_noise_m_s: 0.5, ..Default::default() };
         let (attitude, trajectory) = (attitude(true), trajectory());
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_latency_tells_an_attitude_that_is_old() {
+    fn a_latency_reports_an_earlier_attitude() {
         let config = KnowledgeConfig { latency_s: 2.0, ..Default::default() };
         // The body rotates about −y at 1.0486e-3 rad/s: its attitude two seconds earlier is rotated in the
         // opposite sense.
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_alone_is_told_as_in_the_run() {
+    fn a_single_frame_has_the_same_report_as_in_the_run() {
         let config = KnowledgeConfig {
             noise_arcsec: [10.0; 3],
             drift: DriftConfig { rms_arcsec: [50.0; 3], periods_s: vec![5992.0, 700.0] },

@@ -188,7 +188,7 @@ impl Elements {
         }
     }
 
-    /// Position and Keplerian velocity.
+    /// Returns the position and the Keplerian velocity.
     pub fn state(&self) -> State {
         let (a, e) = (self.semi_major_axis_km, self.eccentricity);
         let (sin_anomaly, cos_anomaly) = libm::sincos(eccentric_anomaly(self.mean_anomaly_rad, e));
@@ -369,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_an_orbit_has_no_elements() {
+    fn an_unusable_state_has_no_elements() {
         let position_km = Vector3::new(7000.0, 0.0, 0.0);
         for velocity_km_s in [
             Vector3::zeros(),                 // falls

@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn before_the_earth_is_light_and_behind_it_is_darkness() {
+    fn in_front_of_the_earth_is_sunlight_and_behind_it_umbra() {
         assert_eq!(fraction(7_100.0, 0.0), 1.0);
         assert_eq!(fraction(0.0, 7_100.0), 1.0);
         assert_eq!(fraction(-7_100.0, 0.0), 0.0);
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn half_the_sun_is_seen_when_its_centre_stands_on_the_limb() {
+    fn half_the_sun_is_visible_when_its_centre_is_on_the_limb() {
         for radius in [6_700.0, 7_100.0, 42_164.0] {
             // The line to the Sun's centre is tangent to the sphere.
             let x = -f64::sqrt(radius * radius - EARTH_RADIUS_KM * EARTH_RADIUS_KM);

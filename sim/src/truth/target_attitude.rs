@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn an_attitude_at_rest_does_not_know_the_time() {
+    fn an_attitude_at_rest_is_independent_of_time() {
         let attitude = TargetAttitudeConfig::Inertial { phi_deg: 90.0, theta_deg: 0.0, psi_deg: 0.0 };
         assert_eq!(attitude.target_from_icrs(&states(0.0)), attitude.target_from_icrs(&states(1e6)));
         let turned = attitude.target_from_icrs(&states(0.0)).rotate(&Vector3::z());
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tumbling_body_turns_by_the_right_hand_rule_and_comes_back() {
+    fn a_tumbling_body_turns_by_the_right_hand_rule_and_returns() {
         let tumbling = TargetAttitudeConfig::Tumbling {
             phi_deg: 10.0,
             theta_deg: 20.0,

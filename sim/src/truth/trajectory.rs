@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn a_manoeuvre_out_of_place_is_refused_by_its_index() {
+    fn a_manoeuvre_out_of_order_is_refused_by_its_index() {
         let with = |k: usize, time: &str| {
             let mut config = config();
             config.manoeuvres[k].time_utc = time.into();

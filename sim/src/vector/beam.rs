@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn a_trimmed_shadow_goes_round_every_place_in_the_window_as_before() {
+    fn a_trimmed_shadow_keeps_its_winding_number_at_every_point_of_the_window() {
         let sources = [
             Source::Parallel(Vector3::new(0.3, -0.4, 0.8).normalize()),
             Source::Parallel(Vector3::z()),

@@ -50,12 +50,12 @@ fn pixel_index(position: f64) -> usize {
 
 impl Coverage {
     /// Smallest shift: blocks of 16 pixels; larger blocks where a row would have more than 64 of them.
-    const LEAST_SHIFT: u32 = 4;
+    const MIN_SHIFT: u32 = 4;
     /// Smallest first sum of a run that is painted; rounding leaves smaller sums behind a closed polygon.
     pub(super) const RESIDUE: f32 = 1e-5;
 
     pub(super) fn new(columns: usize, rows: usize) -> Self {
-        let mut shift = Self::LEAST_SHIFT;
+        let mut shift = Self::MIN_SHIFT;
         while (columns >> shift) >= 64 {
             shift += 1;
         }

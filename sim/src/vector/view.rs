@@ -35,7 +35,7 @@ impl Lens {
     const NEAR_M: f64 = 1e-3;
     /// Largest distance between a curved edge and the chords that approximate it, px.
     const SAGITTA_PX: f64 = 1e-3;
-    const MOST_CHORDS: f64 = 256.0;
+    const MAX_CHORDS: f64 = 256.0;
 
     pub(super) fn new(camera: &Camera) -> Result<Self, SimError> {
         let projection = Projection::new(camera)?;
@@ -321,7 +321,7 @@ fn bend(lens: &Lens, from: [f64; 2], to: [f64; 2], points: &mut Vec<[f64; 2]>) {
         })
         .into_iter()
         .fold(0.0, f64::max);
-    let chords = (sagitta / Lens::SAGITTA_PX).sqrt().ceil().clamp(1.0, Lens::MOST_CHORDS);
+    let chords = (sagitta / Lens::SAGITTA_PX).sqrt().ceil().clamp(1.0, Lens::MAX_CHORDS);
     points.push(start);
     points.extend((1..chords as usize).map(|i| between(i as f64 / chords)));
 }

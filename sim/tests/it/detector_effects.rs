@@ -264,7 +264,7 @@ fn with_the_smear_of_the_truth_the_electrons_are_complete() {
 /// With all other effects that change the signal enabled, the table holds the contribution of each object:
 /// the difference between images with and without it.
 #[test]
-fn with_every_effect_on_the_table_holds_what_each_object_adds() {
+fn with_all_effects_the_table_holds_the_electrons_of_each_object() {
     let mut with = defective(still());
     with.sensor.frame_transfer_s = 0.0;
     let mut without = with.clone();

@@ -132,7 +132,7 @@ const FROZEN: [&str; 4] = [
 
 /// A frozen hash of an empty scene would have no value as a test.
 #[test]
-fn the_frozen_scene_has_everything_in_it() {
+fn the_frozen_scene_contains_every_effect() {
     let exposures = expose(&simulator(&restless()), [0, 1, 2, 7]);
     for exposure in &exposures {
         let count = |kind| exposure.objects.iter().filter(|object| object.kind == kind).count();
@@ -158,7 +158,7 @@ fn a_frame_alone_is_the_frame_of_the_run_in_any_order() {
 }
 
 #[test]
-fn threads_that_share_the_frames_make_what_one_makes() {
+fn several_threads_make_the_same_frames_as_one() {
     let simulator = simulator(&restless());
     let alone = expose(&simulator, 0..12);
     let shared: Vec<Vec<Exposure>> = std::thread::scope(|scope| {

@@ -77,7 +77,7 @@ fn stars_are_seen_above_the_limb_and_none_below_it() {
 }
 
 #[test]
-fn nothing_is_to_be_found_where_the_background_fills_the_pixels() {
+fn no_object_is_detectable_where_the_background_fills_the_pixels() {
     let mut simulation = still();
     let detectable = |exposure: &Exposure| {
         let detectable = |snr| Visibility::from_snr(snr) == Visibility::Detectable;

@@ -41,7 +41,7 @@ fn the_expected_image_holds_the_electrons_of_the_truth_table_and_the_flat_level(
 /// A camera fixed in the orbital frame rotates. The image of a star is smeared along its path, more for a
 /// longer exposure, and its position in the table is the centroid of the signal in the image.
 #[test]
-fn motion_during_the_exposure_smears_stars_about_the_place_of_the_table() {
+fn motion_during_the_exposure_smears_stars_about_their_position_in_the_table() {
     let exposed = |exposure_s: f64, motion_smear: Switch| {
         let mut simulation = Simulation {
             shutter: ShutterConfig::Fixed { exposure_s },

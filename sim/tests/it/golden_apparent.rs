@@ -109,7 +109,7 @@ impl Worst {
 }
 
 #[test]
-fn apparent_places_are_those_of_erfa() {
+fn apparent_positions_are_those_of_erfa() {
     let golden = Apparent::read();
     assert_eq!((golden.stars.len(), golden.observers.len()), (2_000, 4));
     let mut worst = Worst::default();

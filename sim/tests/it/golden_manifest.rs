@@ -85,7 +85,7 @@ fn every_golden_file_is_the_one_in_the_manifest() {
 }
 
 #[test]
-fn every_reference_says_where_it_comes_from_and_what_it_tolerates() {
+fn every_reference_states_its_origin_and_tolerance() {
     let manifest = manifest();
     for script in &manifest.script {
         assert!(!script.reason.trim().is_empty(), "{}: no reason", script.path);

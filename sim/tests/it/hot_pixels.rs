@@ -5,7 +5,7 @@ use boresight_sim::truth::ObjectKind;
 use crate::small_scene::{simulator, still};
 
 #[test]
-fn hot_pixels_are_in_the_same_places_in_frames_seconds_and_minutes_apart() {
+fn hot_pixels_keep_their_positions_in_frames_seconds_and_minutes_apart() {
     let simulator = simulator(&still());
     let mut camera = simulator.camera().unwrap();
     let mut positions = |frame| {

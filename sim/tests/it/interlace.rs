@@ -75,7 +75,7 @@ fn find(objects: &[ObjectTruth], like: &ObjectTruth) -> Option<ObjectTruth> {
 
 /// Definition: each field equals, bit by bit, that of a progressive frame half an interval before or after.
 #[test]
-fn each_field_is_the_progressive_frame_of_its_own_moment() {
+fn each_field_equals_the_progressive_frame_at_its_time() {
     let (before, after) = (expose(&shifted(turning(), -1), 0), expose(&shifted(turning(), 1), 0));
     for (first_field, even, odd) in [(RowParity::Even, &before, &after), (RowParity::Odd, &after, &before)] {
         let (frame, expected) = expose(&interlaced(turning(), INTERVAL_S, first_field), 0);

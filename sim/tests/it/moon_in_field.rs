@@ -164,7 +164,7 @@ fn sun_distance_au(time: Epoch) -> f64 {
 }
 
 #[test]
-fn its_light_is_that_of_allens_table_in_the_table_and_in_the_image() {
+fn its_flux_is_that_of_allens_table_in_the_truth_and_in_the_image() {
     let (mut checked, mut distances_km) = (0, Vec::new());
     for view in views() {
         let simulator = simulator(&view.simulation);
@@ -206,7 +206,7 @@ fn its_light_is_that_of_allens_table_in_the_table_and_in_the_image() {
 }
 
 #[test]
-fn off_there_is_none_and_on_only_the_stars_behind_it_are_missing() {
+fn switched_off_it_is_absent_and_switched_on_it_hides_only_the_stars_behind_it() {
     let stars = |exposure: &Exposure| -> Vec<u32> {
         let star = exposure.objects.iter().filter(|object| object.kind == ObjectKind::Star);
         star.map(|star| star.id).collect()

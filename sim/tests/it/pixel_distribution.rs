@@ -172,7 +172,7 @@ fn frames_follow_the_distribution_between_the_nodes_of_their_tables() {
 /// Full run: `cargo test --release -p boresight-sim --test it pixel_distribution:: -- --ignored --nocapture`.
 #[test]
 #[ignore = "8e9 draws, minutes of a processor: for a scheduled job"]
-fn frames_follow_the_law_in_a_hundred_million_draws_of_each_mean() {
+fn frames_follow_the_distribution_in_a_hundred_million_draws_of_each_mean() {
     assert_distribution(100_000_000);
 }
 

@@ -14,13 +14,13 @@ fn one(simulation: &Simulation, frame: u64) -> Exposure {
     simulator(simulation).camera().unwrap().expose(frame).unwrap()
 }
 
-/// Number, position and electrons of all objects of a kind.
-fn light(exposure: &Exposure, kind: ObjectKind) -> Vec<(u32, [f64; 4])> {
+/// Returns number, position and electrons of all objects of a kind.
+fn positions_and_electrons(exposure: &Exposure, kind: ObjectKind) -> Vec<(u32, [f64; 4])> {
     let of_kind = exposure.objects.iter().filter(|object| object.kind == kind);
     of_kind.map(|o| (o.id, [o.position.x, o.position.y, o.electrons, o.peak_electrons])).collect()
 }
 
-fn places(exposure: &Exposure, kind: ObjectKind) -> BTreeSet<(u32, [u64; 2])> {
+fn positions(exposure: &Exposure, kind: ObjectKind) -> BTreeSet<(u32, [u64; 2])> {
     let of_kind = exposure.objects.iter().filter(|object| object.kind == kind);
     of_kind.map(|o| (o.id, [o.position.x.to_bits(), o.position.y.to_bits()])).collect()
 }
@@ -45,12 +45,16 @@ fn check(all: &Simulation, name: &str, switch: fn(&mut Simulation), touched: &[O
     );
     for kind in [Target, Star, Planet, Moon, HotPixel, CosmicRay] {
         if !touched.contains(&kind) {
-            assert_eq!(light(&other, kind), light(&base, kind), "{name}: {kind:?}");
+            assert_eq!(
+                positions_and_electrons(&other, kind),
+                positions_and_electrons(&base, kind),
+                "{name}: {kind:?}"
+            );
         }
     }
     // Positions are drawn independently of all effects on the charge; a dead pixel hides an object at its
     // position.
-    let kept = |kind| places(&other, kind).is_superset(&places(&base, kind));
+    let kept = |kind| positions(&other, kind).is_superset(&positions(&base, kind));
     assert!(kept(HotPixel), "{name}");
     assert!(kept(CosmicRay) || name == "cosmic rays", "{name}");
 }

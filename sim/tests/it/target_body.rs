@@ -43,7 +43,7 @@ fn the_fragment_of_the_documentation_is_a_target() {
 }
 
 #[test]
-fn a_resolved_body_has_the_light_of_its_magnitude_in_the_image_and_in_the_table() {
+fn a_resolved_body_has_the_flux_of_its_magnitude_in_the_image_and_in_the_table() {
     // The body spans 30 px, 6 px, 0.2 px and 0.06 px.
     for range_m in [60.0, 300.0, 9_000.0, 30_000.0] {
         let simulation = ahead(range_m, tango());
@@ -68,7 +68,7 @@ fn a_resolved_body_has_the_light_of_its_magnitude_in_the_image_and_in_the_table(
 }
 
 #[test]
-fn the_centre_of_brightness_leaves_the_line_of_sight_as_the_range_says() {
+fn the_offset_of_the_centre_of_brightness_is_inverse_to_the_range() {
     let offset = |range_m: f64| {
         let exposure = one(&ahead(range_m, tango()), 0);
         let turn = exposure.truth.target_from_icrs;

@@ -41,7 +41,7 @@ fn pointings() -> Vec<(f64, f64)> {
 /// Reference without a sky index or search cone: every star of the catalogue is moved, aberrated and
 /// projected, and its image drawn. The table must contain exactly the stars with signal on the detector.
 #[test]
-fn every_star_of_the_catalogue_with_light_on_the_detector_is_in_the_table() {
+fn every_star_of_the_catalogue_with_flux_on_the_detector_is_in_the_table() {
     let catalog = Catalog::hipparcos2();
     let motions: Vec<StarMotion> = catalog.stars().iter().map(StarMotion::new).collect();
     for (i, (ra_deg, dec_deg)) in pointings().into_iter().enumerate() {
@@ -89,7 +89,7 @@ fn every_star_of_the_catalogue_with_light_on_the_detector_is_in_the_table() {
 }
 
 #[test]
-fn vignetting_takes_its_part_of_every_object_and_no_more() {
+fn vignetting_dims_every_object_by_its_factor() {
     let mut simulation = Simulation { psf: PsfConfig::Gaussian { sigma_px: 0.8 }, ..still() };
     let open = one(&simulation, 0);
     simulation.optics = OpticsConfig { vignetting: [0.4, 0.0, 0.0], ..OpticsConfig::default() };
@@ -222,7 +222,7 @@ fn another_velocity_moves_the_stars_by_its_aberration_and_the_target_not_at_all(
 }
 
 #[test]
-fn the_columns_of_a_frame_are_what_their_definitions_say() {
+fn the_columns_of_a_frame_follow_their_definitions() {
     let simulation = restless();
     let simulator = simulator(&simulation);
     let trajectory = Trajectory::new(&simulation.orbit).unwrap();
@@ -266,7 +266,7 @@ fn the_columns_of_a_frame_are_what_their_definitions_say() {
 /// With the target as the only object on the detector: its row is computed from the expected image, pixel by
 /// pixel.
 #[test]
-fn the_columns_of_an_object_are_what_their_definitions_say() {
+fn the_columns_of_an_object_follow_their_definitions() {
     let mut simulation = restless();
     simulation.catalog.magnitude_limit = Some(-2.0);
     simulation.sensor.hot_pixels.count = 0;
@@ -315,7 +315,7 @@ fn the_columns_of_an_object_are_what_their_definitions_say() {
 }
 
 #[test]
-fn a_target_behind_the_camera_has_no_place_and_no_row() {
+fn a_target_behind_the_camera_has_no_position_and_no_row() {
     let mut simulation = restless();
     simulation.attitude.guidance = Guidance::LocalOrbital { phi_deg: 180.0, theta_deg: 0.0, psi_deg: 0.0 };
     let exposure = one(&simulation, 2);

@@ -78,7 +78,7 @@ fn centre_and_radius_of_a_circle_are_those_of_its_moments() {
 }
 
 #[test]
-fn the_cross_moves_before_the_plate_as_its_height_says() {
+fn the_parallax_of_the_cross_follows_its_height() {
     let camera = camera(2917.0);
     let (d, b) = ([0.05, -0.03, 5.0], 0.3);
     let image = draw(
@@ -139,7 +139,7 @@ fn nothing_shows_between_parts_that_share_an_edge() {
 }
 
 #[test]
-fn a_hole_shows_what_lies_behind() {
+fn a_hole_shows_the_part_behind_it() {
     let camera = camera(1055.0);
     let mut ring = flat(&circle([0.0, 0.0], 0.6, 64), 0.0, 1.0);
     ring.holes
@@ -152,7 +152,7 @@ fn a_hole_shows_what_lies_behind() {
 }
 
 #[test]
-fn a_line_bends_as_the_camera_model_says() {
+fn a_line_bends_as_in_the_camera_model() {
     let camera = Camera { radial: [-2.5e-7, 0.0, 0.0], tangential: [1e-6, -2e-6], ..camera(1055.0) };
     // A half-plane whose straight edge crosses the field above the middle.
     let corners = [[-8.0, 0.6], [8.0, 0.9], [8.0, 9.0], [-8.0, 9.0]];

@@ -135,7 +135,7 @@ fn nothing_below_a_plane_casts_on_it() {
 }
 
 #[test]
-fn light_falls_with_the_cosine_and_the_fill_is_shaded_by_nothing() {
+fn irradiance_follows_the_cosine_and_the_fill_casts_no_shadow() {
     let camera = camera(1055.0);
     let view = pose([0.0, 0.0, 4.0], [0.0; 3]);
     let mut lighting = sunlit([0.0, 1.0, 1.0]);
@@ -196,7 +196,7 @@ fn a_lamp_lights_by_distance_cosine_and_its_cone() {
 }
 
 #[test]
-fn a_lamp_casts_shadows_from_its_place() {
+fn a_lamp_casts_shadows_from_its_position() {
     let camera = camera(1055.0);
     let half = 0.05;
     let square = flat(&[[-half, -half], [half, -half], [half, half], [-half, half]], 1.0, 1.0);
@@ -213,7 +213,7 @@ fn a_lamp_casts_shadows_from_its_place() {
 
 /// The rim of a cross is a tube: the lamp sees slightly more of its dark side than of its lit side.
 #[test]
-fn a_cross_whose_rim_is_a_part_of_its_own_casts_as_a_whole_one_does() {
+fn a_cross_with_a_separate_rim_casts_the_shadow_of_a_whole_one() {
     let camera = camera(1055.0);
     let mut front = prism(&cross(0.15, 0.03), 0.3, 0.01, 0.8);
     let whole = lost(front.clone(), &camera, &lamp([0.4, 0.3, 4.0]));

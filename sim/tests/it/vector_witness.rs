@@ -82,7 +82,7 @@ fn pictures_agree_with_tiny_skia_at_16_by_16_samples() {
 }
 
 #[test]
-fn nothing_in_view_is_sky() {
+fn an_empty_view_shows_the_sky() {
     let mut lighting = sunlit([0.3, 0.2, 0.9]);
     lighting.sky_radiance = 0.125;
     for (d, phi) in [
@@ -99,7 +99,7 @@ fn nothing_in_view_is_sky() {
 }
 
 #[test]
-fn a_camera_among_the_facets_draws_finite_light() {
+fn a_camera_among_the_facets_draws_finite_radiance() {
     let mut lighting = sunlit([0.3, 0.2, 0.9]);
     for radial in [0.0, -2e-6] {
         let camera = Camera { radial: [radial, 0.0, 0.0], ..small() };
@@ -125,7 +125,7 @@ fn a_camera_among_the_facets_draws_finite_light() {
 }
 
 #[test]
-fn light_is_never_taken_away_below_zero() {
+fn radiance_is_never_negative() {
     // With the Sun in many directions: overlapping shadows remove the light of a facet only once.
     let scene = target();
     let mut drawer = Drawer::new(&camera(1055.0)).unwrap();
@@ -143,7 +143,7 @@ fn light_is_never_taken_away_below_zero() {
 }
 
 #[test]
-fn an_image_does_not_depend_on_what_was_drawn_before() {
+fn an_image_is_independent_of_earlier_images() {
     let (camera, scene) = (small(), target());
     let mut other = scene.clone();
     other.parts.truncate(2);

@@ -21,7 +21,7 @@ use super::source::{Source, rows_of};
 use super::{AnnotatedFrame, PixelSource, display_name};
 
 /// Minimum sides of a close-up, px.
-const LEAST_SIDES: (f64, f64) = (32.0, 24.0);
+const MIN_CLOSE_UP_PX: (f64, f64) = (32.0, 24.0);
 /// Distance to the target within which a region or a measurement is included in the close-up, px.
 const NEAR_PX: f64 = 40.0;
 /// Fraction of electrons outside the regions above which an object is not marked in the picture.
@@ -409,8 +409,8 @@ impl Bounds {
     /// pixels, shifted into the detector.
     pub(super) fn window(&self, columns: usize, rows: usize) -> Window {
         let (wide, high) = (self.high.x - self.low.x + 7.0, self.high.y - self.low.y + 7.0);
-        let width = wide.max(high * 4.0 / 3.0).max(LEAST_SIDES.0);
-        let height = (0.75 * width).max(LEAST_SIDES.1);
+        let width = wide.max(high * 4.0 / 3.0).max(MIN_CLOSE_UP_PX.0);
+        let height = (0.75 * width).max(MIN_CLOSE_UP_PX.1);
         let side = |low: f64, high: f64, length: f64, limit: usize| {
             let length = (length.ceil() as usize).clamp(1, limit.max(1));
             let first = (0.5 * (low + high + 1.0) - 0.5 * length as f64).round().max(0.0) as usize;

@@ -19,7 +19,7 @@ fn check(extension: &str, text: Option<&str>, parts: &[&str]) {
 }
 
 #[test]
-fn a_catalogue_that_is_not_there_is_named() {
+fn a_missing_catalogue_is_named() {
     check("csv", None, &["No such file"]);
     check("dat", None, &["No such file"]);
 }

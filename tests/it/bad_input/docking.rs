@@ -102,7 +102,7 @@ fn options_of_the_other_world_are_refused() {
 
 /// Nothing is written, because the first field is drawn before.
 #[test]
-fn a_mitsuba_that_is_not_there_is_reported() {
+fn a_missing_mitsuba_is_reported() {
     let bench = Bench::new();
     let words = ["render docking", "--frames 0..1 --renderer mitsuba --mitsuba-cache"].join(" ");
     let cache = tempfile::tempdir().unwrap();
@@ -113,7 +113,7 @@ fn a_mitsuba_that_is_not_there_is_reported() {
 }
 
 #[test]
-fn a_sequence_that_is_not_there_or_not_known_is_refused() {
+fn a_missing_or_unknown_sequence_is_refused() {
     let bench = Bench::new();
     check_refused(&bench, "process nowhere.avi --scenario docking", &["nowhere.avi", "No such file"]);
     bench.write("a.avi", "x");
@@ -130,7 +130,7 @@ fn a_sequence_that_is_not_there_or_not_known_is_refused() {
 }
 
 #[test]
-fn a_field_order_a_rate_or_a_size_that_is_none_is_refused() {
+fn an_invalid_field_order_rate_or_size_is_refused() {
     let bench = video();
     for (option, parts) in [
         ("--field-order odd", ["--field-order", "top or bottom"]),
@@ -205,7 +205,7 @@ fn a_setup_with_a_value_that_cannot_be_is_named_with_its_line() {
 }
 
 #[test]
-fn an_avi_that_is_none_cut_short_or_of_another_size_is_refused() {
+fn an_invalid_truncated_or_differently_sized_avi_is_refused() {
     let bench = video();
     let whole = std::fs::read(bench.path("set/fields.avi")).unwrap();
     let scenario = "--scenario docking --camera 1 --out m.csv";

@@ -41,7 +41,7 @@ fn a_fits_file_cut_short_is_refused() {
 }
 
 #[test]
-fn a_fits_header_that_lies_about_the_size_is_refused() {
+fn a_fits_header_with_a_false_size_is_refused() {
     check(
         "fits",
         with_card("NAXIS1", "NAXIS1  =                75200"),
@@ -70,7 +70,7 @@ fn a_fits_header_that_makes_all_pixels_the_same_is_refused() {
 
 /// The checksum of the data is used on its own if the checksum of header and data is missing.
 #[test]
-fn fits_data_that_changed_are_refused_by_their_own_sum() {
+fn changed_fits_data_are_refused_by_their_checksum() {
     let damaged = |bytes: Vec<u8>| {
         let mut bytes = with_card("SEED", "COMMENT")(bytes);
         let last = bytes.len() - 2880;
@@ -115,7 +115,7 @@ fn an_image_that_belongs_to_two_frames_is_refused() {
 }
 
 #[test]
-fn what_is_not_of_its_format_is_refused() {
+fn a_file_that_is_not_of_its_format_is_refused() {
     for format in ["fits", "png", "exr"] {
         check(format, |_| b"GIF89a".repeat(1000), &["not a readable"]);
     }

@@ -29,7 +29,7 @@ fn a_frame_answered_twice_or_out_of_order_is_refused() {
 }
 
 #[test]
-fn a_cell_that_is_none_is_named() {
+fn an_invalid_cell_is_named() {
     check(&["20,detected,NaN,1"], &["line 2", "`x_px` is `NaN`", "finite number"]);
     check(&["20,detected,1,"], &["line 2", "`y_px` is ``", "finite number"]);
     check(&["20,,1,1"], &["line 2", "`status`"]);
@@ -43,7 +43,7 @@ fn a_cell_that_is_none_is_named() {
 }
 
 #[test]
-fn a_table_that_is_not_there_or_lacks_a_column_is_named() {
+fn a_missing_table_or_column_is_named() {
     let bench = dataset();
     check_refused(&bench, "score set nowhere.csv", &["nowhere.csv", "No such file"]);
     bench.write("mine.csv", "frame,status,x_px\n");

@@ -14,7 +14,7 @@ fn a_directory_that_is_not_empty_is_left_as_it_is() {
 }
 
 #[test]
-fn a_file_is_no_directory_and_has_none_below_it() {
+fn a_file_in_place_of_a_directory_is_refused() {
     let bench = Bench::new();
     bench.write("file", "mine");
     check_refused(&bench, "run argon --frames 0..2 --out file", &["file exists and is not a directory"]);
@@ -30,7 +30,7 @@ fn a_path_for_numbered_runs_that_is_a_file_is_refused() {
 }
 
 #[test]
-fn a_report_replaces_nothing_but_a_report() {
+fn a_report_replaces_only_a_report() {
     let bench = Bench::new();
     bench.boresight("run argon --frames 0..40 --out run --no-report").done();
     bench.boresight("gate baseline run --out base --reason x --block-length 2").done();
@@ -79,7 +79,7 @@ fn standard_output_is_refused_where_nothing_is_written_to_it() {
 }
 
 #[test]
-fn a_manual_replaces_nothing_but_its_pages() {
+fn a_manual_replaces_only_its_pages() {
     let bench = Bench::new();
     for _ in 0..2 {
         bench.boresight("man --out man").done();

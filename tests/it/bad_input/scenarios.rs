@@ -29,7 +29,7 @@ fn check_mistake(old: &str, new: &str, parts: &[&str]) {
 }
 
 #[test]
-fn a_file_that_is_not_there_is_named_and_the_built_in_scenarios_are_listed() {
+fn a_missing_file_is_named_and_the_built_in_scenarios_are_listed() {
     let bench = Bench::new();
     check_refused(&bench, "run nowhere.toml", &["`nowhere.toml`", "argon", "starting-point"]);
 }
@@ -137,7 +137,7 @@ fn an_array_of_fixed_length_has_exactly_its_values() {
 }
 
 #[test]
-fn limits_that_are_none_and_attitudes_that_there_are_not_are_refused() {
+fn invalid_limits_and_unknown_attitudes_are_refused() {
     let with = |line: &str| format!("[score]\n{line}\n\n[target]\n");
     for (line, parts) in [
         ("within_deg = [0.0, 1.0]", ["score.within_deg[0]", "1e-6 to 180"]),
@@ -152,7 +152,7 @@ fn limits_that_are_none_and_attitudes_that_there_are_not_are_refused() {
 }
 
 #[test]
-fn a_time_that_is_none_is_refused() {
+fn an_invalid_time_is_refused() {
     check_edited(
         "start_utc = \"2012-04-25T00:10:00Z\"",
         "start_utc = \"yesterday\"",

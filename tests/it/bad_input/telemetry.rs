@@ -48,7 +48,7 @@ fn an_image_outside_the_dataset_is_refused() {
 }
 
 #[test]
-fn a_number_that_is_none_is_named_by_line_and_column() {
+fn an_invalid_number_is_named_by_line_and_column() {
     check_cell(2, "q_sc_j2000_w", "NaN", &["`q_sc_j2000_w` is `NaN`", "finite number"]);
     check_cell(4, "exposure_s", "inf", &["`exposure_s` is `inf`", "finite number"]);
     check_cell(4, "exposure_s", "-0.1", &["`exposure_s` is `-0.1`", "0 or greater"]);

@@ -13,7 +13,7 @@ fn frames_outside_the_scenario_are_refused() {
 }
 
 #[test]
-fn a_range_of_frames_that_is_empty_or_none_is_refused() {
+fn an_empty_or_invalid_range_of_frames_is_refused() {
     for range in ["5..5", "9..3", "5", "..5", "a..b", "-1..3"] {
         let words = format!("run argon --frames={range} --out out");
         check_refused(&Bench::new(), &words, &["--frames", &format!("`{range}`"), "A..B with A < B"]);
@@ -21,7 +21,7 @@ fn a_range_of_frames_that_is_empty_or_none_is_refused() {
 }
 
 #[test]
-fn where_nothing_is_required_nothing_is_met() {
+fn a_file_without_requirements_is_refused() {
     let bench = Bench::new();
     let text = include_str!("../../../scenarios/requirements/uasc-far-range.toml");
     bench.write("none.toml", text.split("[[requirements]]").next().unwrap());
@@ -30,7 +30,7 @@ fn where_nothing_is_required_nothing_is_met() {
 
 /// Names may come from any source; terminal control characters in them are printed as numbers.
 #[test]
-fn a_name_orders_nothing_of_a_terminal() {
+fn a_name_sends_no_control_characters_to_a_terminal() {
     let bench = Bench::new();
     let name = "\u{1b}[2J\u{1b}]0;mine\u{7}day";
     bench.scenario("mine.toml", "argon", |table| table["schedule"][0]["name"] = name.into());
@@ -48,7 +48,7 @@ fn a_pipeline_that_is_unknown_gets_the_nearest() {
 }
 
 #[test]
-fn a_command_that_is_none_is_refused_before_anything_is_written() {
+fn an_invalid_command_is_refused_before_anything_is_written() {
     let bench = dataset();
     for (command, part) in [("exec:", "empty"), ("exec:python3 'a", "quotation")] {
         let run = ["run", "argon", "--frames", "0..2", "--out", "run", "--pipeline", command];
@@ -58,7 +58,7 @@ fn a_command_that_is_none_is_refused_before_anything_is_written() {
 }
 
 #[test]
-fn a_timeout_that_is_none_is_refused_before_anything_is_written() {
+fn an_invalid_timeout_is_refused_before_anything_is_written() {
     for timeout in ["0", "-1", "nan", "inf"] {
         let words = format!("run argon --frames 0..2 --out run --pipeline exec:true --timeout-s={timeout}");
         check_refused(&Bench::new(), &words, &["timeout", "expected above 0"]);

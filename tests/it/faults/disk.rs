@@ -102,7 +102,7 @@ const STUDY: &str = "title = \"two frames\"\nscenario = \"small.toml\"\nseed = 5
                      [[vary]]\npath = \"psf.sigma_px\"\ndistribution = { kind = \"uniform\", min = 0.7, max = 0.9 }\n";
 
 #[test]
-fn a_study_that_has_no_room_is_gone_on_with_when_there_is() {
+fn a_study_on_a_full_disk_continues_when_there_is_space() {
     let bench = Bench::new();
     small(&bench);
     bench.write("study.toml", STUDY);
@@ -134,7 +134,7 @@ fn a_study_that_has_no_room_is_gone_on_with_when_there_is() {
 }
 
 #[test]
-fn measurements_that_have_no_room_are_not_there() {
+fn measurements_on_a_full_disk_leave_no_file() {
     let bench = Bench::new();
     small(&bench);
     bench.boresight("render small.toml --frames 20..40 --format png --out set").done();
@@ -222,7 +222,7 @@ impl Drop for MountedFileSystem {
 /// A disk that is really full, then larger, then read-only.
 #[test]
 #[ignore = "needs root, to mount; continuous integration has it"]
-fn a_study_on_a_full_disk_is_gone_on_with_on_a_larger_one() {
+fn a_study_on_a_full_disk_continues_on_a_larger_one() {
     let bench = Bench::new();
     small(&bench);
     bench.write("study.toml", STUDY);

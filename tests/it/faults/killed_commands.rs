@@ -232,7 +232,7 @@ fn temporary_directories_go_with_their_process() {
 /// An interrupted command reports which results are kept and how to continue.
 #[cfg(unix)]
 #[test]
-fn an_interrupted_command_says_what_it_kept() {
+fn an_interrupted_command_reports_the_kept_files() {
     let bench = small_bench();
     let long =
         std::fs::read_to_string(bench.path("small.toml")).unwrap().replace("count = 400", "count = 1000000");
@@ -285,7 +285,7 @@ fn an_interrupted_command_says_what_it_kept() {
 }
 
 #[test]
-fn an_unfinished_run_says_that_it_is_one() {
+fn an_unfinished_run_is_marked_as_such() {
     let bench = small_bench();
     let places = [bench.path("out/truth")];
     let words = "run small.toml --frames 0..300 --out out";

@@ -111,7 +111,7 @@ fn a_merge_that_is_killed_is_done_again() {
 
 /// Files left by killed processes are removed by a later process, after an hour.
 #[test]
-fn what_a_killed_process_left_is_removed_when_it_is_old() {
+fn old_leftovers_of_killed_processes_are_removed() {
     let (bench, _) = bench();
     bench.write("whole/shards/.partial-old-01-of-12.parquet", "half");
     bench.write("whole/shards/.partial-new-01-of-12.parquet", "half");

@@ -14,7 +14,7 @@ const FULL: &str = "/dev/full";
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_standard_output_is_an_error_and_the_results_are_there() {
+fn a_full_standard_output_is_an_error_and_the_results_are_complete() {
     let bench = Bench::new();
     small(&bench);
     bench.boresight("run small.toml --frames 20..24 --out whole").done();
@@ -48,7 +48,7 @@ fn a_full_standard_output_is_an_error_and_the_results_are_there() {
 /// `| head`: a command completes its results even if its output is not read to the end; a stream without a
 /// reader ends.
 #[test]
-fn a_reader_that_goes_away_ends_a_stream_and_spoils_no_result() {
+fn a_reader_that_closes_the_pipe_ends_the_stream_and_spoils_no_result() {
     let bench = Bench::new();
     small(&bench);
     bench.boresight("run small.toml --frames 20..24 --out whole").done();

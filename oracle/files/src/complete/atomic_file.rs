@@ -201,7 +201,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_there_when_it_is_committed_and_replaces_none_unasked() {
+    fn a_file_appears_on_commit_and_overwrites_only_on_request() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
         drop(AtomicFile::with_text(&path, "lost").unwrap());
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_left_an_hour_ago_is_removed_and_what_is_being_written_is_not() {
+    fn temporary_files_older_than_an_hour_are_removed_and_open_ones_kept() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
         std::fs::write(&path, "whole").unwrap();

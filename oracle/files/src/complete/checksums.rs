@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_changed_is_named_and_one_without_a_line_or_gone_is_not() {
+    fn a_changed_file_is_named_and_an_unlisted_or_deleted_one_is_not() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         let check = || Checksums::check(folder.path(), |_| true);

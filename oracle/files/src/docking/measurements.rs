@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn every_status_comes_back_as_filed() {
+    fn every_status_round_trips_as_filed() {
         let answers: Vec<(u64, DockingOutcome)> = [
             measured_outcome(),
             outcome(DockingSolution::RangeOnly { range_m: 312.5, sigma_m: 2.0 }),

@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_comes_back_with_both_estimators() {
+    fn reports_of_both_estimators_round_trip() {
         let reports = [
             (9, MotionReport { best: Some(motion(5.0)), paper: Some(motion(5.1)) }),
             (19, MotionReport { best: Some(motion(4.9)), paper: None }),
@@ -313,7 +313,7 @@ mod tests {
     const HEADER: &str = "field,time_s,rho_m,u_m_s,alpha_deg,beta_deg,phi1_deg,phi2_deg,phi3_deg";
 
     #[test]
-    fn what_is_shown_is_enough_and_comes_out_again() {
+    fn the_approach_parameters_suffice_and_round_trip() {
         let text = format!(
             "{HEADER},{}\n9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,0.01,0.002,0.1,0.2,0.3,0.4,0.5\n",
             SIGMA.join(",")

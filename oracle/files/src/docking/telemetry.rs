@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_come_back_to_the_bit() {
+    fn rows_round_trip_bit_for_bit() {
         let directory = tempdir().unwrap();
         let path = directory.path().join("telemetry.csv");
         let row = |field: u64, file: Option<&str>| FieldRow {

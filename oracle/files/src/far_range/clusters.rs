@@ -84,7 +84,7 @@ mod tests {
     use crate::{TableReader, TableWriter};
 
     #[test]
-    fn every_label_comes_back() {
+    fn every_label_round_trips() {
         let directory = tempdir().unwrap();
         let path = directory.path().join("clusters.parquet");
         let labels = [Label::Star(7), Label::Hotspot, Label::Unlinked, Label::Candidate, Label::Target];

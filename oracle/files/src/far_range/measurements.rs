@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_covariance_that_is_none_is_refused_by_its_column() {
+    fn an_invalid_covariance_is_refused_by_its_column() {
         let header = "frame,status,x_px,y_px,sigma_x_px,sigma_y_px,correlation_xy,los_j2000_x,los_j2000_y,los_j2000_z,\
                       sigma_ra_deg,sigma_dec_deg,correlation_ra_dec";
         let check = |row: &str, column| check_refused(&format!("{header}\n1,{row}\n"), "line 2", column);
@@ -280,7 +280,7 @@ mod tests {
     /// Same rules as in the protocol of external pipelines: otherwise an unknown status would count as a
     /// miss, and a position off the detector as a detection.
     #[test]
-    fn what_an_external_pipeline_may_not_answer_is_refused() {
+    fn forbidden_answers_of_an_external_pipeline_are_refused() {
         let check = |row: &str, column| {
             check_refused(&format!("frame,status,x_px,y_px\n1,no_target,,\n{row}\n"), "line 3", column)
         };
@@ -346,7 +346,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_bit_comes_back(outcomes in prop::collection::vec(any_outcome(), 0..6)) {
+        fn every_bit_round_trips(outcomes in prop::collection::vec(any_outcome(), 0..6)) {
             let directory = tempdir().unwrap();
             let path = directory.path().join("measurements.csv");
             let mut writer = MeasurementWriter::create(&path).unwrap();

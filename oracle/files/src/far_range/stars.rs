@@ -69,7 +69,7 @@ mod tests {
         StarRow { id: 32349, ra_deg: 101.287_155_33, dec_deg: -16.716_115_86, magnitude: -1.44 };
 
     #[test]
-    fn the_list_comes_back_to_the_bit() {
+    fn the_list_round_trips_bit_for_bit() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("stars.csv");
         let stars = [StarRow { id: 1, ra_deg: 0.1 + 0.2, ..SIRIUS }, SIRIUS];

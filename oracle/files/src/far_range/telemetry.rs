@@ -209,7 +209,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
-        fn every_bit_comes_back(mut rows in prop::collection::vec(any_row(), 1..8)) {
+        fn every_bit_round_trips(mut rows in prop::collection::vec(any_row(), 1..8)) {
             rows.sort_by_key(|row| row.telemetry.time);
             for (number, row) in rows.iter_mut().enumerate() {
                 row.frame = 3 * number as u64;

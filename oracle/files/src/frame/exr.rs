@@ -229,7 +229,7 @@ mod tests {
     use crate::frame::file::tests::{header, ramp};
 
     #[test]
-    fn the_expectation_comes_back_to_the_bit() {
+    fn the_expectation_round_trips_bit_for_bit() {
         let directory = tempdir().unwrap();
         let path = directory.path().join("expected.exr");
         let electrons = (0..12).map(|i| 0.1 * i as f32).collect();
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn radiances_come_back_within_the_precision_of_their_16_bits() {
+    fn radiances_round_trip_within_the_precision_of_their_16_bits() {
         let directory = tempdir().unwrap();
         let path = directory.path().join("radiance.exr");
         let radiance: Vec<f32> = (0..12).map(|i| 0.1 * i as f32).collect();

@@ -145,7 +145,7 @@ pub(crate) mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
         #[test]
-        fn frames_come_back_from_every_format(
+        fn frames_round_trip_in_every_format(
             columns in 1_usize..40, rows in 1_usize..40, bits in 1_u8..=16, seed in any::<u32>(), regions in 0_usize..4,
         ) {
             let full_scale = u32::MAX >> (32 - u32::from(bits));

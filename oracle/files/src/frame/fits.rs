@@ -497,7 +497,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_supported_says_so() {
+    fn unsupported_files_are_reported_as_such() {
         check_refused(read_bytes(b"P5 2 2 255 abcd"), &["not a readable FITS file"]);
         check_refused(read_bytes(&[b'x'; 2880]), &["does not begin with SIMPLE"]);
         check_refused(image(7, &[], &[0, 0]), &["BITPIX", "`7`"]);

@@ -194,7 +194,7 @@ mod tests {
 
     /// A colour profile of a gigabyte of zeros takes a megabyte in a file.
     #[test]
-    fn what_a_png_unpacks_besides_its_pixels_is_bounded() {
+    fn ancillary_data_of_a_png_are_bounded() {
         let directory = tempdir().unwrap();
         let path = directory.path().join("a.png");
         for (length, is_kept) in [(1 << 20, true), (1 << 26, false)] {

@@ -392,7 +392,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn the_flight_camera_is_fitted_well_below_the_promise_everywhere_on_the_sky() {
+    fn the_flight_camera_is_fitted_well_below_the_stated_error_everywhere_on_the_sky() {
         for (ra, dec) in [(0.0, 0.0), (10.0, 80.0), (200.0, -89.999), (359.9999, 45.0), (77.0, 90.0)] {
             let wcs = fit(&camera(), ra, dec).unwrap();
             // A residual of 0.01 px is guaranteed; orders from 5 up are tried until it is 0.001 px.
@@ -444,7 +444,7 @@ pub(crate) mod tests {
     /// A barrel distortion that order 9 no longer follows at the corners, pincushion distortions that are too
     /// steep, and a barrel distortion that folds.
     #[test]
-    fn a_distortion_beyond_sip_leaves_the_plane_and_says_how_far_it_goes() {
+    fn a_distortion_beyond_sip_keeps_the_plane_and_reports_its_size() {
         let reach = |k1: f64| {
             let camera = Camera { radial: [k1, 0.0, 0.0], ..camera() };
             let wcs = fit(&camera, 0.0, 0.0).unwrap();
@@ -467,7 +467,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_cannot_be_fitted_is_an_error() {
+    fn a_mapping_that_cannot_be_fitted_is_an_error() {
         let nowhere = TanSip::fit(9, 9, PixelPoint::default(), Direction::from_unit(Vector3::x()), |_| None);
         assert!(matches!(nowhere, Err(WcsError::NotMapped { .. })));
         let nan = |_: &Direction<Icrs>| Some(PixelPoint::new(f64::NAN, 0.0));

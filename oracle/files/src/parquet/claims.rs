@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_header_of_a_dictionary_says_how_many_values_it_has() {
+    fn a_dictionary_header_states_its_number_of_values() {
         // {1: DICTIONARY_PAGE, 2: 150, 3: 100, 7: {1: 2^31 - 1, 2: PLAIN}}.
         let header = [
             &[0x15, 4, 0x15, 0xac, 2, 0x15, 0xc8, 1, 0x4c, 0x15][..],

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn types_of_tables_are_known_by_logical_and_by_converted_types() {
+    fn column_types_are_read_from_logical_and_converted_types() {
         for (field, expected) in [
             ("required boolean x", "= Boolean"),
             ("optional float x", "= Float32"),

@@ -407,7 +407,7 @@ mod tests {
 
     /// Other readers may use either of the two columns.
     #[test]
-    fn a_column_that_is_there_twice_is_refused() {
+    fn a_duplicate_column_is_refused() {
         let [x, y] = [1.0, 2.0].map(|value| Column::new("x", [value]));
         let (_folder, path) = written(&[x, y]);
         let refused = ParquetFile::open(&path).unwrap().batches(&["x"], 10).err().unwrap().to_string();
@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn every_type_comes_back_in_batches_of_any_size() {
+    fn every_type_round_trips_in_batches_of_any_size() {
         let (_folder, path) = written(&columns(0..100));
         let names = columns(0..0).map(|column| column.name().to_owned());
         let names = names.each_ref().map(String::as_str);
@@ -450,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn pages_have_as_many_rows_as_the_footer_says() {
+    fn pages_have_the_number_of_rows_in_the_footer() {
         for (rows, reason) in
             [(100, None), (99, Some(MORE_ROWS)), (101, Some("column `n` has fewer rows than its row group"))]
         {
@@ -480,7 +480,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_that_are_not_there_or_of_no_known_type_are_named() {
+    fn missing_columns_and_unknown_types_are_named() {
         let (_folder, path) = written(&[Column::new("n", 0..3_u64)]);
         let message = all(&path, &["m"], 10).unwrap_err().to_string();
         assert!(message.contains("it has no column `m`"), "{message}");

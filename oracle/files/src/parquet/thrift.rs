@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_passed_over_ends_where_the_next_begins() {
+    fn a_skipped_field_ends_where_the_next_begins() {
         // {1: true, 2: "ab", 3: [1, 2], 4: {1: 5 (double)}, 5: {7: 8}}, followed by one byte.
         let bytes = [
             0x11, 0x18, 2, b'a', b'b', 0x19, 0x25, 2, 4, 0x1c, 0x17, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x1b, 1,

@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_come_back_in_columns_of_their_names_and_types() {
+    fn rows_round_trip_in_columns_of_their_names_and_types() {
         assert_eq!(read(None).unwrap(), rows());
         let columns = Turn::columns(&[]);
         let found: Vec<_> = columns.iter().map(|column| (column.name(), column.is_nullable())).collect();
@@ -278,13 +278,13 @@ mod tests {
     }
 
     #[test]
-    fn a_position_of_which_a_part_is_null_is_none() {
+    fn a_position_with_a_null_coordinate_is_none() {
         let rows = read(Some(Column::nullable("y_px", [None, None, Some(0.2)]))).unwrap();
         assert!(rows.iter().all(|row| row.place.is_none()), "{rows:?}");
     }
 
     #[test]
-    fn a_declaration_says_what_the_columns_are() {
+    fn a_declaration_defines_the_columns() {
         let [_, turn, _, place, _] = <[FieldDeclaration; 5]>::try_from(Turn::declarations()).unwrap();
         assert_eq!(
             (turn.names, turn.meaning),

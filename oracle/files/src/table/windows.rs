@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn regions_come_back() {
+    fn regions_round_trip() {
         let window = |x| Window { x, y: 2, columns: 64, rows: 32 };
         for windows in [None, Some(vec![]), Some(vec![window(0)]), Some(vec![window(7), window(100)])] {
             assert_eq!(parse(&format(windows.as_deref())), Ok(windows));
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_region_is_refused() {
+    fn an_invalid_region_is_refused() {
         for text in ["1 2 3", "1 2 3 4 5", "1 2 3 -4", "a b c d", "1 2 3 4;", ";", "0 99999999999999999 1 1"]
         {
             assert_eq!(parse(text), Err(EXPECTED), "{text}");

@@ -24,7 +24,7 @@ pub(super) struct VideoStream {
 }
 
 /// Longest header chunk that is read, bytes: a bitmap header with its palette is 1,064 bytes.
-const LONGEST_BYTES: u32 = 4096;
+const MAX_HEADER_CHUNK_BYTES: u32 = 4096;
 
 /// Reads the headers up to the list of frames (`movi`), where it leaves the walker. `size` is the required
 /// size of the video; memory is never allocated for any other size.
@@ -63,10 +63,10 @@ fn read_header_chunk(
     shortest: u32,
     bytes: &mut Vec<u8>,
 ) -> Result<(), FileError> {
-    if (shortest..=LONGEST_BYTES).contains(&chunk.size) {
+    if (shortest..=MAX_HEADER_CHUNK_BYTES).contains(&chunk.size) {
         walker.read(chunk, bytes)
     } else {
-        let reason = format!("{} bytes, expected {shortest} to {LONGEST_BYTES}", chunk.size);
+        let reason = format!("{} bytes, expected {shortest} to {MAX_HEADER_CHUNK_BYTES}", chunk.size);
         Err(walker.error(chunk, reason))
     }
 }

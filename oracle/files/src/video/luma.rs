@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn grey_in_colour_stays_what_it_is() {
+    fn grey_stored_as_colour_keeps_its_value() {
         assert!((0..=255).all(|v| grey_of_bgr(v, v, v) == v));
         assert_eq!(
             [(0, 0, 255), (0, 255, 0), (255, 0, 0)].map(|(b, g, r)| grey_of_bgr(b, g, r)),

@@ -26,7 +26,7 @@ enum Framing {
 
 const Y4M: &str = "Y4M";
 /// Longest line of a header, bytes, as in mjpegtools.
-const LONGEST_LINE: usize = 1024;
+const MAX_HEADER_LINE_BYTES: usize = 1024;
 
 impl StreamReader {
     /// Creates a reader of raw frames: one byte per pixel, row by row, frame after frame.
@@ -142,8 +142,8 @@ fn read_line(input: &mut Input, what: &str) -> Result<Option<String>, FileError>
             (_, b'\n') => break,
             (_, byte) => line.push(byte),
         }
-        if line.len() > LONGEST_LINE {
-            let reason = format!("byte {begin}: {what} is longer than {LONGEST_LINE} bytes");
+        if line.len() > MAX_HEADER_LINE_BYTES {
+            let reason = format!("byte {begin}: {what} is longer than {MAX_HEADER_LINE_BYTES} bytes");
             return Err(input.error(Y4M, reason));
         }
     }

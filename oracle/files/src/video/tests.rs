@@ -160,7 +160,7 @@ fn write_avi(path: &Path, coding: AviCoding, fields: &[Field], size: (usize, usi
 }
 
 #[test]
-fn fields_come_back_from_an_uncompressed_avi_in_every_scan() {
+fn fields_are_read_back_from_an_uncompressed_avi_in_every_scan() {
     let directory = tempdir().unwrap();
     for (i, scan) in [Scan::Progressive, TOP, Scan::Interlaced(FieldOrder::Bottom)].into_iter().enumerate() {
         for (columns, rows) in [(16, 8), (13, 7), (1, 2)] {
@@ -175,7 +175,7 @@ fn fields_come_back_from_an_uncompressed_avi_in_every_scan() {
 }
 
 #[test]
-fn fields_come_back_from_motion_jpeg_to_a_few_grey_values() {
+fn fields_are_read_back_from_motion_jpeg_to_a_few_grey_values() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("a.avi");
     let (columns, rows) = (50, 37);
@@ -294,7 +294,7 @@ impl Read for Pipe {
 }
 
 #[test]
-fn a_live_stream_gives_a_frame_as_soon_as_it_is_there_and_ends_with_the_pipe() {
+fn a_live_stream_yields_each_frame_on_arrival_and_ends_with_the_pipe() {
     let (sender, receiver) = mpsc::channel();
     let send = |bytes: &[u8]| bytes.iter().for_each(|byte| sender.send(*byte).unwrap());
     send(b"YUV4MPEG2 W2 H2 F50:1 It C420jpeg\nFRAME\n\x01\x02\x03\x04uv");
@@ -312,7 +312,7 @@ fn a_live_stream_gives_a_frame_as_soon_as_it_is_there_and_ends_with_the_pipe() {
 }
 
 #[test]
-fn a_header_of_y4m_that_lies_is_refused() {
+fn a_y4m_header_with_false_sizes_is_refused() {
     for (header, part) in [
         ("YUV4MPEG2 W99999999999 H99999999999\n", "99999999999 × 99999999999"),
         ("YUV4MPEG2 W2 H-2\n", "2 × ?"),
@@ -393,7 +393,7 @@ fn an_error_names_the_chunk_and_its_byte() {
 }
 
 #[test]
-fn headers_that_lie_are_refused() {
+fn headers_with_false_sizes_are_refused() {
     let (good, _) = tiny_avi(AviCoding::Grey);
     let at = |what: &[u8]| good.windows(what.len()).position(|w| w == what).unwrap();
     let strf = at(b"strf");
@@ -455,7 +455,7 @@ fn dropped_frames_leave_their_numbers_and_parts_of_a_large_file_are_read_on() {
 }
 
 #[test]
-fn what_cannot_be_opened_says_why() {
+fn a_video_that_cannot_be_opened_is_reported_with_the_reason() {
     let directory = tempdir().unwrap();
     let set = setup(4, 4);
     let message = |path: &Path, setup: &DockingSetup, options: &SequenceOptions| {

@@ -19,7 +19,7 @@ use score::{FigureTerms, Reduction};
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::tolerance::default_tolerance;
-use crate::dependence::blocks::{Blocks, LEAST_BLOCKS, length_for, length_for_other_frames};
+use crate::dependence::blocks::{Blocks, MIN_BLOCKS, length_for, length_for_other_frames};
 use crate::dependence::effects::value;
 use crate::dependence::memory::{Memory, memory};
 use crate::identity::Identity;
@@ -140,9 +140,9 @@ impl Baseline {
         let is_given = length.is_some();
         let length = length.map_or_else(|| length_for(remembered, units), |length| length as usize);
         let blocks = Blocks::cut(kind, world, &sample.table, length);
-        if blocks.count() < LEAST_BLOCKS {
+        if blocks.count() < MIN_BLOCKS {
             return Err(Failure::Usage(format!(
-                "the result has {units} {} in {} blocks, expected at least {LEAST_BLOCKS} blocks for a test; \
+                "the result has {units} {} in {} blocks, expected at least {MIN_BLOCKS} blocks for a test; \
                  make a longer run, or set a shorter --block-length",
                 kind.units(world),
                 blocks.count()
@@ -284,9 +284,9 @@ impl Baseline {
         }
         let blocks = Blocks::from_numbers(numbers);
         let (recorded, count) = (header.blocks.count, blocks.count());
-        if recorded != count as u64 || count < LEAST_BLOCKS {
+        if recorded != count as u64 || count < MIN_BLOCKS {
             let expected =
-                format!("the number of blocks in {} ({count}), at least {LEAST_BLOCKS}", rows_path.display());
+                format!("the number of blocks in {} ({count}), at least {MIN_BLOCKS}", rows_path.display());
             return Err(refuse("blocks.count", format!("is {recorded}, expected {expected}")));
         }
         for figure in &table.figures {
@@ -328,7 +328,7 @@ fn baseline_figure(figure: &FigureTerms) -> BaselineFigure {
     BaselineFigure {
         by: figure.reduction.code().to_owned(),
         value: value(figure.reduction, &figure.terms),
-        of: figure.terms.iter().map(|term| u64::from(term.of)).sum(),
+        of: figure.terms.iter().map(|term| u64::from(term.count)).sum(),
         tolerance: default_tolerance(figure),
         limit_deg: figure.limit_deg,
         attitude: figure.attitude.clone(),
@@ -414,7 +414,7 @@ mod tests {
     /// Intermediate states of a `--replace` that is killed: either the old or the new baseline is always
     /// complete.
     #[test]
-    fn a_replacement_that_is_killed_leaves_one_of_the_two() {
+    fn a_killed_replacement_leaves_one_of_the_two() {
         let [(old, folder), (new, other)] = [written(6), written(7)];
         let at = |name: &str| folder.path().join(name);
         let waiting = waiting_rows(folder.path(), &new.header.rows_sha256);
@@ -432,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn a_baseline_replaces_nothing_else() {
+    fn a_baseline_replaces_only_a_baseline() {
         let (mut baseline, folder) = written(6);
         let parts = |name: &str, text: &str, expected: &str| {
             let other = tempfile::tempdir().unwrap();
@@ -451,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn a_baseline_is_replaced_when_that_is_allowed_and_not_otherwise() {
+    fn a_baseline_is_replaced_only_on_request() {
         let (_, folder) = written(6);
         let mut other = Baseline::new(run(7), "another", Some(1)).unwrap();
         let message = other.write(folder.path(), Replacement::Refuse).unwrap_err().to_string();
@@ -469,7 +469,7 @@ mod tests {
     }
 
     #[test]
-    fn the_header_states_how_the_run_is_cut_and_what_came_of_it() {
+    fn the_header_states_blocks_figures_and_run() {
         let (baseline, _) = written(8);
         let header = &baseline.header;
         assert_eq!((header.format, header.units, header.reason.as_str()), (2, 8, "a test"));

@@ -53,12 +53,12 @@ pub(crate) fn write(
     };
     let mut columns = UnitRow::columns(&units.iter().enumerate().map(row).collect::<Vec<_>>());
     for figure in &table.figures {
-        let sums = figure.terms.iter().map(|term| (term.of > 0).then_some(term.sum as f32));
+        let sums = figure.terms.iter().map(|term| (term.count > 0).then_some(term.sum as f32));
         let sums = Column::nullable(&figure.name, sums);
         // Amounts seldom repeat, and their last bytes are zero, so byte-by-byte coding makes them short.
         columns.push(if figure.reduction == Reduction::Rate { sums } else { sums.byte_stream_split() });
-        if figure.terms.iter().any(|term| term.of > 1) {
-            columns.push(Column::new(count_column(&figure.name), figure.terms.iter().map(|term| term.of)));
+        if figure.terms.iter().any(|term| term.count > 1) {
+            columns.push(Column::new(count_column(&figure.name), figure.terms.iter().map(|term| term.count)));
         }
     }
     write_table(file, path, &columns, TableOptions { has_statistics: false, ..TableOptions::default() })
@@ -167,7 +167,7 @@ fn add(
                 return Err(FileError::value(path, place, &figure.name, sum, "a finite number"));
             }
             let of = ofs.map_or(1, |ofs| ofs.values().get(row).copied().unwrap_or_default());
-            figure.terms.push(Term { sum, of });
+            figure.terms.push(Term { sum, count: of });
         }
     }
     Ok(())
@@ -184,7 +184,7 @@ mod tests {
     /// Returns a rate with several values per unit, a rate with one value, and an amount; each has a unit
     /// without a value.
     fn table() -> UnitTable {
-        let term = |sum, of| Term { sum, of };
+        let term = |sum, of| Term { sum, count: of };
         let pooled = vec![term(2.0, 3), Term::default(), term(0.0, 1), term(0.0, 2)];
         let pooled = FigureTerms::from_terms("held_rate", Reduction::Rate, pooled);
         let rate = figure("hit_rate", Reduction::Rate, &[None, Some(1.0), Some(0.0), Some(1.0)]);
@@ -211,11 +211,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_read_is_what_was_written() {
+    fn rows_round_trip() {
         let table = table();
         assert_eq!(there_and_back(&table, &[0, 0, 1, 2]).unwrap(), (table, vec![0, 0, 1, 2]));
         // Units with two values or none, but none with one.
-        let terms = vec![Term { sum: 1.0, of: 2 }, Term::default()];
+        let terms = vec![Term { sum: 1.0, count: 2 }, Term::default()];
         let pairs = FigureTerms::from_terms("held_rate", Reduction::Rate, terms);
         let table = sample(vec![pairs]).table;
         assert_eq!(there_and_back(&table, &[0, 1]).unwrap().0, table);

@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_must_be_in_both_and_summed_up_alike() {
+    fn a_figure_must_be_in_both_with_the_same_reduction() {
         let mean = |name: &str| figure(name, Reduction::Mean, &BEFORE.map(|bit| Some(f64::from(bit))));
         let both = |first| sample(vec![first, rate("hit_rate", &BEFORE)]);
         let message =

@@ -274,7 +274,7 @@ mod tests {
 
     /// Forty of 400 frames are lost, which lie in two or three blocks of twenty.
     #[test]
-    fn what_is_lost_in_a_row_on_the_same_frames_is_worse_however_few_blocks_have_it() {
+    fn a_run_of_losses_on_the_same_frames_is_worse_in_any_number_of_blocks() {
         let bits = |lost: std::ops::Range<usize>| -> Vec<u8> {
             (0..400).map(|frame| u8::from(frame % 40 != 0 && !lost.contains(&frame))).collect()
         };
@@ -309,7 +309,7 @@ mod tests {
     /// With five blocks, no exchange has a probability below 1/32: a difference can be found at 5 %, but not
     /// at 3 %.
     #[test]
-    fn a_gate_that_cannot_shut_is_an_error() {
+    fn a_gate_that_cannot_fail_is_an_error() {
         let with = |alpha| CompareOptions { alpha, ..CompareOptions::default() };
         let (before, after) = (hits(&[1; 5]), hits(&[0; 5]));
         let report = compare(&baseline(before.clone()), &after, &with(0.05)).unwrap();

@@ -95,7 +95,7 @@ mod tests {
     use crate::hand_made::unit;
 
     #[test]
-    fn flips_are_counted_by_what_became_of_the_unit() {
+    fn flips_are_counted_by_the_new_verdict_of_the_unit() {
         let baseline = [
             unit(0, "correct", None),
             unit(1, "correct", None),
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn right_is_what_the_words_of_either_world_and_of_a_study_say() {
+    fn verdict_words_of_both_worlds_and_of_studies_map_to_success() {
         for (verdict, expected) in [
             ("correct", 1),
             ("success", 1),

@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn worse_is_what_is_improbable_and_beyond_the_tolerance() {
+    fn worse_means_improbable_and_beyond_the_tolerance() {
         use FigureVerdict::{Better, NoWorse, Worse};
         let verdict = |result: f64, probabilities| judged(&effect(result), probabilities, 2.0, 1).verdict;
         // A probability of at most alpha, and a worsening of more than 0.5.
@@ -193,7 +193,7 @@ mod tests {
 
     /// Ten blocks with equal differences have a statistic of √10.
     #[test]
-    fn what_cannot_exceed_the_critical_value_has_too_little_data() {
+    fn a_figure_that_cannot_exceed_the_critical_value_has_too_little_data() {
         let report = |critical: f64| judged(&effect(2.75), [0.01, 1.0], critical, 1);
         for critical in [10f64.sqrt(), 10f64.sqrt() - 1e-10, 4.0] {
             let found = report(critical);
@@ -209,7 +209,7 @@ mod tests {
     /// The probability that all of ten blocks lose a figure by chance is 2⁻¹⁰, less than a thousandth; for
     /// nine blocks, or for two figures, it is larger.
     #[test]
-    fn a_figure_that_the_result_lacks_is_gone_when_that_is_no_chance() {
+    fn a_figure_missing_from_the_result_is_gone_if_that_is_significant() {
         let verdict = |baseline, result, blocks, figures| {
             let effect = FigureEffect { baseline, result, blocks, ..effect(0.0) };
             let found = judged(&effect, [1.0, 1.0], 2.0, figures);
@@ -262,7 +262,7 @@ mod tests {
 
     /// A loss of δ of n has a scatter of √(δ/n) in addition to the standard error e: δ = z √(e² + δ/n).
     #[test]
-    fn the_smallest_visible_loss_of_a_rate_brings_its_own_scatter() {
+    fn the_smallest_visible_loss_of_a_rate_includes_its_scatter() {
         for (standard_error, result_of) in [(0.25, 50), (0.01, 7), (0.0, 400)] {
             let effect = FigureEffect {
                 sense: figure_by_name("hit_rate").sense,

@@ -7,7 +7,7 @@ use score::{UnitTable, UnitVerdict};
 use crate::identity::SourceKind;
 
 /// Smallest number of blocks that can show a change at a level of 5 %: 2⁻⁵ = 3 %.
-pub const LEAST_BLOCKS: usize = 5;
+pub const MIN_BLOCKS: usize = 5;
 /// Length of the shortest block, units: in a shorter sequence a correlation is not visible, and the sequence
 /// is one block.
 const SHORTEST_BLOCK: usize = 30;

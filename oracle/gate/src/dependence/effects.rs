@@ -61,8 +61,13 @@ impl FigureEffect {
         let [a, b] = [baseline, result].map(|run| Sums::from_terms(&run.terms, reduction, centre));
         let [of_baseline, of_result] = [baseline, result].map(|run| value(reduction, &run.terms));
 
-        let together = Sums { units: Vec::new(), sum: a.sum + b.sum, of: a.of + b.of }.ratio().unwrap_or(0.0);
-        let count = if a.of > 0.0 && b.of > 0.0 { 2.0 * a.of * b.of / (a.of + b.of) } else { f64::INFINITY };
+        let together =
+            Sums { units: Vec::new(), sum: a.sum + b.sum, count: a.count + b.count }.ratio().unwrap_or(0.0);
+        let count = if a.count > 0.0 && b.count > 0.0 {
+            2.0 * a.count * b.count / (a.count + b.count)
+        } else {
+            f64::INFINITY
+        };
         let scale = match reduction {
             Reduction::Rate | Reduction::Mean => 1.0,
             Reduction::Rms => match (of_baseline, of_result) {
@@ -87,8 +92,8 @@ impl FigureEffect {
             sense,
             baseline: of_baseline,
             result: of_result,
-            baseline_of: a.of as u64,
-            result_of: b.of as u64,
+            baseline_of: a.count as u64,
+            result_of: b.count as u64,
             blocks: has_data.into_iter().filter(|has| *has).count(),
             standard_error: standard_error(&effects),
             worse: BlockEffects { effects },
@@ -182,7 +187,7 @@ enum Side {
 impl Side {
     fn from_run(reduction: Reduction, terms: &[Term], blocks: &Blocks) -> Self {
         if reduction == Reduction::Median {
-            let with_value = terms.iter().enumerate().filter(|(_, term)| term.of > 0);
+            let with_value = terms.iter().enumerate().filter(|(_, term)| term.count > 0);
             let mut sorted: Vec<(f64, u32)> =
                 with_value.map(|(unit, term)| (term.sum, blocks.block_of(unit) as u32)).collect();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -287,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn the_blocks_of_a_rate_are_what_was_lost_less_what_was_won() {
+    fn the_block_effects_of_a_rate_are_losses_minus_gains() {
         let rate = |bits: [u8; 6]| bits.map(|bit| Some(f64::from(bit)));
         let effect =
             effect("hit_rate", Reduction::Rate, &rate([1, 1, 1, 0, 1, 1]), &rate([0, 0, 1, 1, 1, 1]));
@@ -346,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_that_is_counted_over_nothing_has_no_effect() {
+    fn a_figure_without_terms_has_no_effect() {
         for (a, b, blocks) in [(&A, &[None; 8], 4), (&[None; 8], &A, 4), (&[None; 8], &[None; 8], 0)] {
             for (name, reduction) in [
                 ("ra_rms_deg", Reduction::Rms),
@@ -382,7 +387,7 @@ mod tests {
 
     /// Above the best value, below it or across it, the test uses the difference itself.
     #[test]
-    fn what_is_best_near_a_value_is_tested_by_its_difference() {
+    fn a_figure_that_is_best_near_a_value_is_tested_by_its_distance_from_it() {
         for (reduction, a, b) in [
             (Reduction::Mean, 1.5, 2.0),
             (Reduction::Mean, 0.25, 0.5),
@@ -446,14 +451,14 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_sums_up_what_units_have_as_its_reduction_says() {
+    fn a_figure_combines_its_units_by_its_reduction() {
         let values = [Some(1.0), None, Some(2.0), Some(-6.0)];
         let of = |reduction| value(reduction, &terms("any", reduction, &values).terms);
         assert_eq!(of(Reduction::Mean), Some(-1.0));
         // (1 + 4 + 36)/3.
         assert_eq!(of(Reduction::Rms), Some((41.0f64 / 3.0).sqrt()));
         assert_eq!(of(Reduction::Median), Some(1.0));
-        let pooled = [Term { sum: 2.0, of: 3 }, Term::default(), Term { sum: 1.0, of: 1 }];
+        let pooled = [Term { sum: 2.0, count: 3 }, Term::default(), Term { sum: 1.0, count: 1 }];
         assert_eq!(value(Reduction::Rate, &pooled), Some(0.75));
         for reduction in Reduction::ALL {
             assert_eq!(value(reduction, &[Term::default(); 2]), None, "{reduction:?} of nothing");
@@ -461,7 +466,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_worse_depends_on_which_way_is_better() {
+    fn worse_depends_on_the_better_direction() {
         let worsening = |name: &str, reduction, a: f64, b: f64| {
             effect(name, reduction, &[Some(a)], &[Some(b)]).worsening().unwrap()
         };

@@ -8,7 +8,7 @@ pub(crate) struct Sums {
     /// Linearised sum and count of each unit.
     pub(crate) units: Vec<(f64, f64)>,
     pub(crate) sum: f64,
-    pub(crate) of: f64,
+    pub(crate) count: f64,
 }
 
 impl Sums {
@@ -16,22 +16,22 @@ impl Sums {
         let linear = |term: &Term| match reduction {
             Reduction::Rate | Reduction::Mean => term.sum,
             Reduction::Rms => term.sum * term.sum,
-            Reduction::Median if term.of == 0 => 0.0,
+            Reduction::Median if term.count == 0 => 0.0,
             Reduction::Median => f64::from(i8::from(term.sum > centre) - i8::from(term.sum < centre)),
         };
-        let units: Vec<(f64, f64)> = terms.iter().map(|term| (linear(term), f64::from(term.of))).collect();
+        let units: Vec<(f64, f64)> = terms.iter().map(|term| (linear(term), f64::from(term.count))).collect();
         let (sum, of) = units.iter().fold((0.0, 0.0), |(sum, of), unit| (sum + unit.0, of + unit.1));
-        Self { units, sum, of }
+        Self { units, sum, count: of }
     }
 
     pub(crate) fn ratio(&self) -> Option<f64> {
-        (self.of > 0.0).then(|| self.sum / self.of)
+        (self.count > 0.0).then(|| self.sum / self.count)
     }
 }
 
 /// Returns the values of a figure that has at most one value per unit.
 pub(crate) fn values(terms: &[Term]) -> Vec<f64> {
-    terms.iter().filter(|term| term.of > 0).map(|term| term.sum).collect()
+    terms.iter().filter(|term| term.count > 0).map(|term| term.sum).collect()
 }
 
 /// Returns the contribution of each unit of one run to a figure, relative to the figure's value.
@@ -49,7 +49,7 @@ mod tests {
     use crate::hand_made::figure as terms;
 
     #[test]
-    fn the_influence_of_a_unit_is_what_it_adds_about_the_value() {
+    fn the_influence_of_a_unit_is_its_contribution_about_the_value() {
         let of = |reduction, values: &[Option<f64>]| influence(&terms("any", reduction, values));
         // Relative to the mean of 4, and to the mean square of 9.
         let values = [Some(1.0), None, Some(4.0), Some(7.0)];
@@ -59,7 +59,7 @@ mod tests {
         assert_eq!(of(Reduction::Median, &[Some(1.0), Some(5.0), Some(2.0), None]), [-1.0, 1.0, 0.0, 0.0]);
         assert_eq!(of(Reduction::Mean, &[None; 2]), [0.0, 0.0]);
         // Three of four are held: 2 − 3 · 3/4, 1 − 1 · 3/4.
-        let pooled = vec![Term { sum: 2.0, of: 3 }, Term { sum: 1.0, of: 1 }];
+        let pooled = vec![Term { sum: 2.0, count: 3 }, Term { sum: 1.0, count: 1 }];
         let pooled = FigureTerms::from_terms("held", Reduction::Rate, pooled);
         assert_eq!(influence(&pooled), [-0.25, 0.25]);
     }

@@ -107,7 +107,7 @@ mod tests {
         let mut figure = |name: &str, rho: f64| {
             let mut term = || {
                 slow = rho * slow + (1.0 - rho * rho).sqrt() * normal(random);
-                Term { sum: slow, of: 1 }
+                Term { sum: slow, count: 1 }
             };
             let terms = (0..20_000).map(|_| term()).collect();
             FigureTerms::from_terms(name, Reduction::Mean, terms)
@@ -122,10 +122,10 @@ mod tests {
 
     /// Alternating values count as much as independent ones, and so do constant values.
     #[test]
-    fn of_figures_that_remember_nothing_none_has_the_memory() {
+    fn uncorrelated_figures_have_no_memory() {
         let mut table = table(&[("day 1", 100)]);
         let figure = |name: &str, value: fn(u8) -> f64| {
-            let terms = (0..100).map(|i| Term { sum: value(i), of: 1 }).collect();
+            let terms = (0..100).map(|i| Term { sum: value(i), count: 1 }).collect();
             FigureTerms::from_terms(name, Reduction::Mean, terms)
         };
         table.figures = vec![figure("constant", |_| 0.3), figure("alternating", |i| f64::from(i % 2))];
@@ -137,7 +137,7 @@ mod tests {
     /// Differences that are white, that drift for half the run, and that last because of a fault while the
     /// baseline is white.
     #[test]
-    fn what_drifts_through_the_blocks_of_both_runs_is_remembered() {
+    fn a_drift_common_to_both_runs_is_detected_as_memory() {
         let random = &mut Seed { seed: 9, case: 0 }.stream(0, Effect::PixelNoise, 0);
         let table = table(&[("day 1", 400)]);
         let blocks = Blocks::cut(SourceKind::Run, "far_range", &table, 50);
@@ -146,7 +146,7 @@ mod tests {
         let mut figure = |drift: f64, phase: f64| {
             let mut term = |unit: u32| {
                 let slow = drift * libm::sin(std::f64::consts::TAU * f64::from(unit) / 400.0 + phase);
-                Term { sum: slow + normal(random), of: 1 }
+                Term { sum: slow + normal(random), count: 1 }
             };
             FigureTerms::from_terms("ra_mean_deg", Reduction::Mean, (0..400).map(&mut term).collect())
         };

@@ -58,9 +58,10 @@ impl Series {
             _ => return None,
         };
         let units = before.terms.iter().zip(&after.terms).enumerate();
-        let flips = units.filter(|(_, (before, after))| before.of > 0 && after.of > 0).filter_map(
+        let flips = units.filter(|(_, (before, after))| before.count > 0 && after.count > 0).filter_map(
             |(unit, (before, after))| {
-                let change = sign * (after.sum / f64::from(after.of) - before.sum / f64::from(before.of));
+                let change =
+                    sign * (after.sum / f64::from(after.count) - before.sum / f64::from(before.count));
                 (change != 0.0).then_some((unit, change < 0.0))
             },
         );
@@ -165,7 +166,7 @@ mod tests {
 
     /// Six lost, three won, six lost. By count: 4 of 5 throws, 6/32. By run: 2⁻² (1 + (5 − 2)/2).
     #[test]
-    fn what_was_won_parts_a_run() {
+    fn a_gain_interrupts_a_run_of_losses() {
         let before = [1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 1, 0, 1, 0, 1];
         let after = [0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 1];
         let run = run_of(&before, &after);

@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_says_in_a_sentence_what_became_of_the_figure() {
+    fn a_failure_describes_the_change_in_a_sentence() {
         let report = report(&[("hit_rate", FigureVerdict::Worse)]);
         let expected = "hit_rate: worse; 0.75 in the baseline, 0.5 in the result, difference -0.25 (95 %: -0.375 to -0.125), \
                         adjusted p 0.03125, smallest visible nothing";

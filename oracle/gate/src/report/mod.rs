@@ -160,7 +160,7 @@ mod tests {
     use crate::hand_made::report;
 
     #[test]
-    fn the_gate_is_shut_by_what_is_worse_or_gone() {
+    fn the_gate_fails_on_worse_or_missing_figures() {
         let all = [
             (FigureVerdict::Worse, "worse", true),
             (FigureVerdict::Gone, "gone", true),

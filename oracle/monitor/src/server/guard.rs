@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn what_another_page_embeds_is_refused_and_a_link_is_not() {
+    fn embedding_by_another_page_is_refused_and_a_link_is_not() {
         let check = |path, site, mode, expected| {
             let headers = [(header::HOST, "127.0.0.1:8080"), (FETCH_SITE, site), (FETCH_MODE, mode)];
             assert_eq!(admission(path, &headers), expected, "{path} {site} {mode}");

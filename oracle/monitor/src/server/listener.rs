@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_connection_that_asks_nothing_or_byte_by_byte_is_given_up() {
+    fn an_idle_or_very_slow_connection_is_closed() {
         with_listener(1, async |mut listener, address| {
             let idle = std::net::TcpStream::connect(address).unwrap();
             let (mut connection, _) = listener.accept().await;

@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_are_bounded_and_the_oldest_goes_first() {
+    fn the_number_of_pictures_is_bounded_and_the_oldest_is_dropped() {
         let session = Session::new(0..10);
         let large = Bytes::from(vec![0; PICTURE_BYTES / 3]);
         for frame in 0..4 {

@@ -27,8 +27,8 @@ impl Attributes {
 /// Returns a number as JSON; a number that is not finite becomes null, which leaves a gap.
 fn number(value: f64) -> Value {
     /// Limit (2⁵³) above which not every integer is representable as a float.
-    const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
-    if value.fract() == 0.0 && value.abs() <= LARGEST_WHOLE {
+    const MAX_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
+    if value.fract() == 0.0 && value.abs() <= MAX_EXACT_INTEGER {
         return Value::from(value as i64);
     }
     // The formatted text always parses as a float, and a number that is not finite has no JSON.
@@ -202,7 +202,7 @@ pub(crate) struct Trace(Attributes);
 impl Trace {
     /// All trace types that a report draws; the embedded plotly.js bundle must support them.
     #[cfg(test)]
-    pub(crate) const TYPES: [&str; 3] = ["scatter", "bar", "heatmap"];
+    pub(crate) const TRACE_TYPES: [&str; 3] = ["scatter", "bar", "heatmap"];
 
     fn new(kind: &str, x: impl Into<Values>, y: impl Into<Values>) -> Self {
         Self(Attributes::default().with("type", kind).with("x", x.into().0).with("y", y.into().0))
@@ -462,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn a_trace_has_what_was_set_and_nothing_else() {
+    fn a_trace_has_only_the_attributes_that_were_set() {
         let trace = Trace::scatter(Mode::Lines, vec![1.0, 2.0], vec![0.5, f64::NAN]);
         let trace = trace.line(Line::new(1.2).colour("#123456").dashed()).not_in_legend().y_axis("y2");
         let json = serde_json::json!({

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn extremes_are_those_of_what_is_not_drawn_whole() {
+    fn extremes_include_the_points_that_are_not_drawn() {
         let value = |i: usize| if i == 7_321 { 99.0 } else { (i % 13) as f64 };
         assert!(extremes(CLOUD, &value).is_empty());
         let kept = extremes(20_000, &value);
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_caption_says_how_many_of_how_many_are_drawn() {
+    fn a_caption_states_the_drawn_and_the_total_number() {
         assert_eq!(thinning_caption(&[(12, "right"), (0, "wrong")], true), "Drawn: 12 of 12 right.");
         let text = thinning_caption(&[(CLOUD + 1, "right"), (3, "wrong")], true);
         assert!(

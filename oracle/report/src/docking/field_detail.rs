@@ -17,7 +17,7 @@ use crate::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
 use crate::read::rows_of_each;
 
 /// Smallest width of a picture, px.
-const LEAST_COLUMNS: f64 = 160.0;
+const MIN_PICTURE_WIDTH_PX: f64 = 160.0;
 
 /// The simulator of a run, and the file of the recognised features.
 pub struct FieldDetail {
@@ -116,7 +116,7 @@ fn window(
         let start = (middle - length as f64 / 2.0).round().max(0.0) as usize;
         (start.min(limit - length), length)
     };
-    let width = (4.2 * radius).max(LEAST_COLUMNS);
+    let width = (4.2 * radius).max(MIN_PICTURE_WIDTH_PX);
     let (x, columns) = side(x, width, columns);
     let (y, rows) = side(row, 0.75 * width / lines.pitch, rows);
     Window { x, y, columns, rows }

@@ -110,7 +110,7 @@ impl FarRangeRun {
     /// Returns the times of the given rows in the unit of the time axis.
     #[expect(
         clippy::indexing_slicing,
-        reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+        reason = "every row of a run has a truth and a verdict, and there is at least one row"
     )]
     pub(super) fn times(&self, rows: &[usize]) -> Vec<f64> {
         rows.iter().map(|&row| axis_time(self.truths[row].time)).collect()
@@ -131,7 +131,7 @@ fn check_files(directory: &Path) -> Result<(), Failure> {
 /// are not contiguous.
 #[expect(
     clippy::indexing_slicing,
-    reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+    reason = "every row of a run has a truth and a verdict, and there is at least one row"
 )]
 pub(super) fn broken(run: &FarRangeRun, rows: impl Iterator<Item = (usize, f64)>) -> (Vec<f64>, Vec<f64>) {
     let (mut times, mut values) = (Vec::new(), Vec::new());
@@ -171,7 +171,7 @@ pub(super) fn axis_time(time: Epoch) -> f64 {
 /// below another.
 #[expect(
     clippy::indexing_slicing,
-    reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+    reason = "every row of a run has a truth and a verdict, and there is at least one row"
 )]
 pub(super) fn time_axis(run: &FarRangeRun) -> Axis {
     let (first, last) = (run.truths[0].time, run.truths[run.truths.len() - 1].time);
@@ -185,7 +185,7 @@ pub(super) type BinColumn<'a> = (&'a str, &'a dyn Fn(usize) -> f64, usize);
 /// Summarises long series by stretches of frames: count, minimum, mean and maximum of each.
 #[expect(
     clippy::indexing_slicing,
-    reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+    reason = "every row of a run has a truth and a verdict, and there is at least one row"
 )]
 pub(super) fn by_bins(run: &FarRangeRun, columns: &[BinColumn<'_>]) -> DataTable {
     let mut head = vec!["from (UTC)".to_owned(), "frames".to_owned()];

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_probability_is_certain_only_where_it_is() {
+    fn only_0_and_1_are_printed_as_certain_probabilities() {
         let shown = [0.0, 0.000_02, 0.9, 0.999_9, 1.0].map(|p| probability(p).replace('\u{a0}', " "));
         assert_eq!(shown, ["0.0 %", "< 0.1 %", "90.0 %", "> 99.9 %", "100.0 %"]);
     }

@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn the_bundle_draws_every_trace_type_of_the_charts() {
-        for kind in Trace::TYPES {
+        for kind in Trace::TRACE_TYPES {
             let module = format!("moduleType:\"trace\",name:\"{kind}\"");
             assert!(PLOTLY_JS.contains(&module), "the bundle has no trace type {kind}");
         }

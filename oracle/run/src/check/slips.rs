@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slip_of_a_thousand_is_reported_and_nothing_else() {
+    fn only_a_factor_of_a_thousand_is_reported() {
         let scenario = json!({
             "camera": { "focal_length_mm": 0.020187, "pixel_width_um": 8.6 },
             "shutter": { "max_s": 250.0, "min_s": 0.001 },

@@ -64,7 +64,7 @@ fn frames_of_the_warm_up_count_in_their_own_group_alone() {
     let table = UnitTable::from_frames(&judgement.verdicts, &judgement.limits);
     assert_eq!((table.units[9].group.as_str(), table.units[9].cause.is_some()), (WARM_UP, false));
     for figure in &table.figures {
-        let counted: u32 = figure.terms.iter().map(|term| term.of).sum();
+        let counted: u32 = figure.terms.iter().map(|term| term.count).sum();
         assert_eq!(u64::from(counted), score.figures[&figure.name].of, "{}", figure.name);
     }
     // Missing frames count towards the warm-up by their numbers.
@@ -90,7 +90,7 @@ fn counts_of(score: &Score, name: &str) -> (u64, u64) {
 
 /// Figures could still be computed from impossible values.
 #[test]
-fn what_no_frame_has_is_refused() {
+fn impossible_truth_is_refused() {
     let refused = |truth: FrameTruth, objects: &[ObjectTruth], parts: [&str; 2]| {
         let mut scorer = scorer();
         let refusal = scorer.add(&truth, objects, None, GrantedAttitude::None);
@@ -355,7 +355,7 @@ fn a_frame_twice_or_out_of_order_is_refused_and_not_counted() {
 }
 
 #[test]
-fn the_json_has_the_documented_shape_and_comes_back() {
+fn the_json_has_the_documented_shape_and_round_trips() {
     let score = score(&day());
     let text = serde_json::to_string(&score).unwrap();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -378,7 +378,7 @@ fn groups_keep_the_order_of_their_frames() {
 }
 
 #[test]
-fn a_run_of_nothing_but_missing_rows_has_no_nan() {
+fn a_run_of_missing_rows_has_no_nan() {
     let text = serde_json::to_string(&score(&[None, None])).unwrap();
     // serde_json writes null for a NaN: read the score back and search for a figure with a denominator but no
     // value.

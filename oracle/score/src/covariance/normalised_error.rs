@@ -4,10 +4,10 @@ use contract::Covariance2;
 
 /// Upper limit of NEES: a larger value counts as this one, so that extreme errors are counted and the mean
 /// remains finite.
-const LARGEST_NEES: f64 = 1e12;
+const MAX_NEES: f64 = 1e12;
 
 /// Upper limit of an error over its standard deviation.
-const LARGEST_OVER_SIGMA: f64 = 1e6;
+const MAX_OVER_SIGMA: f64 = 1e6;
 
 /// Error of two components in units of its covariance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,11 +24,11 @@ impl NormalisedError {
     pub fn from_error(error: [f64; 2], covariance: &Covariance2) -> Self {
         let sigmas = [covariance.sigma_x(), covariance.sigma_y()];
         let over = |i: usize| match (error.get(i), sigmas.get(i)) {
-            (Some(error), Some(sigma)) => (error / sigma).clamp(-LARGEST_OVER_SIGMA, LARGEST_OVER_SIGMA),
+            (Some(error), Some(sigma)) => (error / sigma).clamp(-MAX_OVER_SIGMA, MAX_OVER_SIGMA),
             _ => 0.0,
         };
         // `min` replaces the NaN of errors so large that their squares are infinite.
-        let nees = (covariance.mahalanobis_squared(error) / 2.0).min(LARGEST_NEES);
+        let nees = (covariance.mahalanobis_squared(error) / 2.0).min(MAX_NEES);
         Self { over_sigma: [over(0), over(1)], nees }
     }
 }
@@ -55,7 +55,7 @@ mod tests {
     fn an_error_beyond_all_proportion_is_a_number() {
         for sigma in [1e-9, 1e-200, 1e-310] {
             let error = NormalisedError::from_error([1.0, -1.0], &sigmas(sigma, sigma, 0.5));
-            assert_eq!((error.over_sigma, error.nees), ([1e6, -1e6], LARGEST_NEES), "{sigma}");
+            assert_eq!((error.over_sigma, error.nees), ([1e6, -1e6], MAX_NEES), "{sigma}");
         }
         assert_eq!(NormalisedError::from_error([0.0; 2], &sigmas(1e-310, 1e-310, 0.0)).nees, 0.0);
     }

@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lens_goes_by_its_field_of_view() {
+    fn a_lens_is_named_by_its_field_of_view() {
         let (narrow, wide) = (camera(2917.0), camera(1055.0));
         assert_eq!(lens_names(&[narrow.clone(), wide.clone()]), ["15.0°", "40.0°"]);
         assert_eq!(lens_names(&[narrow.clone(), narrow.clone()]), ["15.0° (0)", "15.0° (1)"]);

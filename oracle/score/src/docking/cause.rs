@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_truth_comes_before_what_the_pipeline_says() {
+    fn the_truth_precedes_the_pipelines_reason() {
         let reason = || Some(NoPose::NoTarget);
         assert_eq!(cause(|_, is_resolved| *is_resolved = false, reason()), "too_far");
         assert_eq!(cause(|truth, _| truth.visibility = TargetVisibility::Outside, reason()), "outside_field");
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn a_target_partly_outside_is_the_cause_when_the_pipeline_says_so() {
+    fn a_target_partly_outside_is_the_cause_if_the_pipeline_reports_it() {
         let partly = |truth: &mut TrueField, _: &mut bool| truth.visibility = TargetVisibility::Partial;
         assert_eq!(cause(partly, Some(NoPose::OutOfField)), "outside_field");
         assert_eq!(cause(partly, Some(NoPose::TooFewFeatures)), "too_few_features");

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 /// Smallest pivot of a correlation matrix that is distinguished from rounding. Lateral position and attitude
 /// of a pose are correlated to 1 − 1e-6 at most (a direction known to 0.1 px, a tilt to a degree); rounding
 /// is at 1e-16.
-const SMALLEST_PIVOT: f64 = 1e-10;
+const MIN_PIVOT: f64 = 1e-10;
 
 /// Upper limit of NEES: a larger value counts as this one.
 const LARGEST: f64 = 1e12;
@@ -41,7 +41,7 @@ pub fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N
             pivot -= lower[(i, k)] * lower[(i, k)];
             rest -= lower[(i, k)] * solved[k];
         }
-        if pivot.is_nan() || pivot <= SMALLEST_PIVOT {
+        if pivot.is_nan() || pivot <= MIN_PIVOT {
             return None;
         }
         lower[(i, i)] = pivot.sqrt();
@@ -93,7 +93,7 @@ mod tests {
 
     /// Closed form for the correlation c: (x² − 2 c x y + y²)/(1 − c²)/2.
     #[test]
-    fn a_correlation_counts_as_its_closed_form_says() {
+    fn the_effective_number_under_correlation_follows_its_closed_form() {
         let (c, x, y) = (0.9, 1.5, -0.5);
         let value = nees(&Vector2::new(2.0 * x, y), &Matrix2::new(4.0, 2.0 * c, 2.0 * c, 1.0)).unwrap();
         assert!((value - (x * x - 2.0 * c * x * y + y * y) / (1.0 - c * c) / 2.0).abs() < 1e-13);
@@ -120,7 +120,7 @@ mod tests {
 
     /// Errors are drawn from the distribution that the covariance states.
     #[test]
-    fn honest_errors_have_a_mean_of_one_and_lie_within_three_sigma() {
+    fn errors_that_follow_their_covariance_have_a_mean_nees_of_one() {
         let root = Matrix6::from_fn(|i, j| match i.cmp(&j) {
             std::cmp::Ordering::Less => 0.0,
             std::cmp::Ordering::Equal => 0.1 + i as f64,

@@ -100,7 +100,7 @@ mod tests {
     /// A motion reported for a time 0.1 s earlier, when the camera was 20 mm farther away, is equally
     /// correct.
     #[test]
-    fn a_motion_is_held_against_the_truth_of_its_own_time() {
+    fn a_motion_is_compared_with_the_truth_at_its_time() {
         let truth = TrueField {
             time_s: 5.0,
             velocity_m_s: Vector3::new(0.0, 0.0, -0.2),

@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn an_upside_down_target_is_wrong_and_a_whole_turn_is_none() {
+    fn a_half_turn_is_wrong_and_a_whole_turn_is_no_error() {
         assert_eq!(gross_of(10.0, |pose| pose.phi_rad.z = 0.09), Some(GrossError::Roll));
         assert_eq!(gross_of(10.0, |pose| pose.phi_rad.z = std::f64::consts::PI), Some(GrossError::Roll));
         assert_eq!(gross_of(10.0, |pose| pose.phi_rad.z = 0.08), None);
@@ -226,7 +226,7 @@ mod tests {
     /// The target's direction is kept: at 10 m the limit is 5°, at 100 m one pixel of parallax, 100/(2917 ×
     /// 0.3) = 6.55°.
     #[test]
-    fn a_tilt_is_wrong_beyond_what_the_image_shows() {
+    fn a_tilt_beyond_the_resolution_of_the_image_is_wrong() {
         let tilted = |range_m: f64, degrees: f64| {
             gross_of(range_m, |pose| {
                 let turn = degrees.to_radians();

@@ -12,7 +12,7 @@ const MOST: usize = 24;
 const GAP: f64 = 3.0;
 
 /// Largest side of a region that frames a single mark, px of the picture.
-const LARGEST_REGION: f64 = 80.0;
+const MAX_FRAMED_SIDE_PX: f64 = 80.0;
 
 /// Returns the area of a mark in a panel.
 pub(crate) fn bounds(mark: &Mark, placement: &Placement) -> Area {
@@ -31,7 +31,7 @@ pub(crate) fn write(
     regions: &[Area],
     taken: &[Area],
 ) {
-    let small = |region: &&Area| region.width.max(region.height) < LARGEST_REGION;
+    let small = |region: &&Area| region.width.max(region.height) < MAX_FRAMED_SIDE_PX;
     let shown = || marks.iter().filter(|mark| placement.shows(mark.at));
     let areas = shown().map(|mark| bounds(mark, placement));
     let mut taken: Vec<Area> =

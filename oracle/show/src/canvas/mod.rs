@@ -237,7 +237,7 @@ mod tests {
     use crate::canvas::colour::{ORANGE, WHITE};
 
     #[test]
-    fn what_lies_beyond_the_edge_is_cut_and_no_harm() {
+    fn drawing_beyond_the_edge_is_clipped() {
         let mut canvas = Canvas::new(20, 10, BLACK).unwrap();
         canvas.text(15, 3, "too long", Font::Body, WHITE);
         canvas.text(0, 30, "below", Font::Body, WHITE);

@@ -473,7 +473,7 @@ mod tests {
 
     /// The close-up covers neither the target nor the measurement if a corner without them exists.
     #[test]
-    fn a_close_up_stands_where_it_hides_least() {
+    fn a_close_up_is_placed_where_it_hides_least() {
         let mut panel = panel(752, 580);
         panel.close_up = Some(Window { x: 200, y: 200, columns: 32, rows: 24 });
         for (x, y) in [(60.0, 60.0), (700.0, 60.0), (60.0, 500.0)] {

@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_transmitted_has_a_separate_colour_and_no_part_in_the_stretch() {
+    fn untransmitted_pixels_have_a_separate_colour_and_no_part_in_the_stretch() {
         let regions = Some(vec![Window { x: 1, y: 0, columns: 2, rows: 1 }]);
         let mut panel = Panel { regions, ..panel(4, 1, vec![0, 50, 60, 255], Reduction::Brightest) };
         panel.stretch = Stretch::Linear;

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn words_of_stretches_come_back() {
+    fn words_of_stretches_round_trip() {
         assert!(Stretch::ALL.into_iter().all(|stretch| stretch.code().parse() == Ok(stretch)));
         assert!("log".parse::<Stretch>().is_err_and(|message| message.contains("asinh, linear or full")));
     }

@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn an_impossible_design_says_what_is_possible() {
+    fn an_impossible_design_is_reported_with_the_possible_ones() {
         assert!(Design::new(DesignKind::Saltelli, 3, 12, 0).is_err());
         assert!(Design::new(DesignKind::Sobol, 101, 12, 0).is_err());
     }

@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_put_where_the_path_leads() {
+    fn a_value_is_written_at_its_path() {
         assert_eq!(set("a.b", json!(2.5)).unwrap()["a"]["b"], json!(2.5));
         assert_eq!(set("list[1][0]", json!(9.0)).unwrap()["list"], json!([[1.0, 2.0], [9.0, 4.0]]));
         assert_eq!(set("a.new", json!("x")).unwrap()["a"]["new"], json!("x"));

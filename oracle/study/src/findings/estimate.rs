@@ -52,7 +52,7 @@ pub(crate) fn share(cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
 }
 
 pub(crate) fn ratio(sums: &[ClusterSum]) -> Option<f64> {
-    let (sum, of) = sums.iter().fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.of));
+    let (sum, of) = sums.iter().fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.count));
     (of > 0.0).then(|| sum / of)
 }
 
@@ -64,10 +64,10 @@ pub(crate) fn sums(is_rate: bool, cases: &[CaseFigure], draws: &[usize]) -> Vec<
         let sum = &mut sums[*draw];
         if is_rate {
             sum.sum += case.count as f64;
-            sum.of += case.of as f64;
+            sum.count += case.of as f64;
         } else if let Some(value) = case.value {
             sum.sum += value;
-            sum.of += 1.0;
+            sum.count += 1.0;
         }
     }
     sums

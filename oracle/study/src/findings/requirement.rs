@@ -323,7 +323,7 @@ mod tests {
     /// The textbook's success-run table: 59 trials without a failure show 95 % at a confidence of 95 %, 58 do
     /// not (0.95⁵⁸ = 0.051); 93 with one failure.
     #[test]
-    fn as_many_trials_are_needed_as_the_textbook_says() {
+    fn the_number_of_trials_agrees_with_the_textbook() {
         let at_least = || required("correct_rate", Limit::AtLeast(0.95), RequiredStatistic::All);
         assert_eq!(decided(at_least(), frames(59, 59)).verdict, RequirementVerdict::Met);
         let short = decided(at_least(), frames(30, 30));

@@ -13,7 +13,7 @@ const STEP: u64 = 16;
 const PARTS: u64 = 16;
 /// Smallest number of draws with a value other than the most frequent one; with fewer, the scatter is
 /// unknown.
-const LEAST_OTHERS: usize = 8;
+const MIN_OTHER_VALUES: usize = 8;
 
 /// State of the figure of a stopping rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,7 +86,7 @@ pub(crate) fn stopping_status(until: &Until, figures: &[CaseFigure], draws: &[us
     let others = figures.len() - most_frequent(figures.iter().filter_map(|figure| figure.value));
     // Equal cases of a draw count as one.
     let points = figures.len() / draws.iter().max().map_or(1, |last| last + 1);
-    if others / points.max(1) < LEAST_OTHERS {
+    if others / points.max(1) < MIN_OTHER_VALUES {
         StoppingStatus::NearlyConstant
     } else {
         StoppingStatus::NarrowEnough
@@ -134,7 +134,7 @@ mod tests {
 
     /// Returns the standard deviation, over 400 studies, of the figure at the stop, relative to the one that
     /// the interval implies.
-    fn promise(
+    fn scatter_over_requested(
         rule: (&str, f64),
         points: u64,
         case: impl Fn(&mut Stream, &mut dyn FnMut(CaseFigure)),
@@ -149,20 +149,27 @@ mod tests {
 
     /// A standard deviation from 400 values has a relative standard deviation of 3.5 %.
     #[test]
-    fn a_study_stops_with_the_scatter_that_it_promises() {
+    fn the_scatter_of_stopped_studies_has_the_requested_width() {
         for half_width in [0.03, 0.015] {
-            let (rate, draws) = promise(("correct_rate", half_width), 4, |random, add| {
+            let (rate, draws) = scatter_over_requested(("correct_rate", half_width), 4, |random, add| {
                 let of_draw = 0.6 + 0.4 * uniform(random);
                 for less in [0.0, 0.1, 0.2, 0.3] {
                     let count = (0..25).filter(|_| uniform(random) < of_draw - less).count() as u64;
                     add(CaseFigure { value: Some(count as f64 / 25.0), count, of: 25 });
                 }
             });
-            assert!((0.85..1.15).contains(&rate), "{half_width}: {rate} of the promise after {draws} cases");
-            let (mean, draws) = promise(("ra_rms_deg", half_width * 10.0), 1, |random, add| {
-                add(CaseFigure { value: Some(5.0 + normal(random)), count: 1, of: 1 });
-            });
-            assert!((0.85..1.15).contains(&mean), "{half_width}: {mean} of the promise after {draws} cases");
+            assert!(
+                (0.85..1.15).contains(&rate),
+                "{half_width}: {rate} of the requested scatter after {draws} cases"
+            );
+            let (mean, draws) =
+                scatter_over_requested(("ra_rms_deg", half_width * 10.0), 1, |random, add| {
+                    add(CaseFigure { value: Some(5.0 + normal(random)), count: 1, of: 1 });
+                });
+            assert!(
+                (0.85..1.15).contains(&mean),
+                "{half_width}: {mean} of the requested scatter after {draws} cases"
+            );
         }
     }
 

@@ -8,7 +8,7 @@ use score::Better;
 use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed};
 use statistics::{
-    ClusterSum, LEAST_CLUSTERS, cluster_rank_correlation, mean_difference_interval, rate_difference_interval,
+    ClusterSum, MIN_CLUSTERS, cluster_rank_correlation, mean_difference_interval, rate_difference_interval,
 };
 
 use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, share, sorted_quantile, stream, sums};
@@ -341,7 +341,7 @@ impl Points {
         let mut points: IndexMap<Vec<String>, Vec<usize>> = IndexMap::new();
         if swept > 0 {
             let first: Vec<usize> = rows.iter().copied().take(together).collect();
-            for (place, drawn) in cases.drawn_texts(&first)?.into_iter().enumerate() {
+            for (place, drawn) in cases.drawn_value_texts(&first)?.into_iter().enumerate() {
                 points.entry(drawn.into_iter().take(swept).collect()).or_default().push(place);
             }
         }
@@ -380,11 +380,14 @@ impl Points {
 fn difference(name: &str, points: [&(Vec<CaseFigure>, Vec<usize>); 2]) -> Option<(Estimate, u64)> {
     let is_rate = figure_by_name(name).is_rate();
     let [first, second] = points.map(|(cases, draws)| sums(is_rate, cases, draws));
-    let pairs: Vec<(ClusterSum, ClusterSum)> =
-        first.into_iter().zip(second).filter(|(first, second)| first.of > 0.0 && second.of > 0.0).collect();
+    let pairs: Vec<(ClusterSum, ClusterSum)> = first
+        .into_iter()
+        .zip(second)
+        .filter(|(first, second)| first.count > 0.0 && second.count > 0.0)
+        .collect();
     let ratio = |pick: fn(&(ClusterSum, ClusterSum)) -> ClusterSum| {
         let (sum, of) =
-            pairs.iter().map(pick).fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.of));
+            pairs.iter().map(pick).fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.count));
         (of > 0.0).then(|| sum / of)
     };
     let value = ratio(|pair| pair.1)? - ratio(|pair| pair.0)?;
@@ -433,7 +436,7 @@ fn indices_of(
         .filter_map(|cases| cases.iter().map(|case| case.value).collect())
         .collect();
     let mut all = Vec::new();
-    if blocks.len() >= LEAST_CLUSTERS {
+    if blocks.len() >= MIN_CLUSTERS {
         for (i, parameter) in parameters.iter().enumerate() {
             let index = |picked: &dyn Fn(usize) -> usize| {
                 let column = |member: usize| -> Vec<f64> {
@@ -501,5 +504,5 @@ fn worst(
         drawn: cases.drawn_columns().cloned().zip(shown).collect(),
         replay: replay(case as u64),
     };
-    Ok((bad.into_iter().zip(cases.drawn_texts(&numbers)?).map(named).collect(), count as u64))
+    Ok((bad.into_iter().zip(cases.drawn_value_texts(&numbers)?).map(named).collect(), count as u64))
 }

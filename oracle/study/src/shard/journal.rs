@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_come_back_to_the_bit_but_for_damaged_lines() {
+    fn rows_round_trip_bit_for_bit_but_for_damaged_lines() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("journal");
         let open = |hash: &str| Journal::open(path.clone(), hash).unwrap();

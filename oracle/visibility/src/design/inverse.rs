@@ -179,7 +179,7 @@ mod tests {
     /// these counts have a probability of 95 % in binomial distributions of 0.9507 and 0.8371
     /// (scipy.stats.binom, brentq).
     #[test]
-    fn what_frames_can_resolve_follows_the_binomial_distribution() {
+    fn the_resolution_of_frames_follows_the_binomial_distribution() {
         let (above, below) = resolvable(0.9, 300, 0.95);
         let (above, below) = (above.unwrap(), below.unwrap());
         assert!((binomial_at_least(279, 300, above) - 0.95).abs() < 1e-6, "{above}");

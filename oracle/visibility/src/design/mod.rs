@@ -25,7 +25,7 @@ use crate::target::{Aspect, TargetModel, TargetObservation, longest_exposures_s,
 /// Number of ranges that are evaluated within an interval, both ends included.
 const RANGES: usize = 7;
 /// Smallest detection probability at the longest exposure of a star that the sky includes.
-const LEAST_CHANCE: f64 = 1e-4;
+const MIN_PROBABILITY: f64 = 1e-4;
 /// Factor that lowers the smallest flux of the stars in the sky, for backgrounds that raise a pixel towards a
 /// threshold in digital numbers.
 const FAINTER: f64 = 0.5;
@@ -137,7 +137,7 @@ impl<'a> Design<'a> {
             let faintest = |exposure_s: f64| {
                 let trail_px = star_trail_px(&self.camera, &self.motion, exposure_s);
                 let curve = DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, 0.0);
-                curve.electrons_for(LEAST_CHANCE).map_or(1e12, |electrons| electrons / exposure_s)
+                curve.electrons_for(MIN_PROBABILITY).map_or(1e12, |electrons| electrons / exposure_s)
             };
             let exposures = between(file.exposure.min_s, self.longest_s, 9);
             let least_e_per_s = FAINTER * exposures.map(faintest).fold(1e12, f64::min);

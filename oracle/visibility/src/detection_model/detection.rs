@@ -15,12 +15,12 @@ use crate::camera::{CameraModel, moving_point};
 use crate::requirement::DetectionRule;
 
 /// Number of positions within a pixel along each axis.
-const PLACES: usize = 4;
+const POSITIONS_PER_AXIS: usize = 4;
 /// Smallest fraction of the brightest pixel's signal at which a pixel is included: when the brightest pixel
 /// is at the threshold, fainter pixels add nothing to the probability of the background.
-const LEAST_PART: f64 = 4e-3;
-/// Smallest fraction of the total signal at which a pixel is computed at all.
-const LEAST_SHARE: f64 = 1e-6;
+const MIN_FRACTION_OF_PEAK: f64 = 4e-3;
+/// Smallest fraction of the total signal for which a pixel is evaluated.
+const MIN_FRACTION_OF_TOTAL: f64 = 1e-6;
 /// Fraction of empty pixels above I1 at which they form an unbounded cluster: the threshold of site
 /// percolation on a square lattice with eight neighbours (Malarz & Galam 2005, Phys. Rev. E 71, 016125).
 const PERCOLATION: f64 = 0.407;
@@ -94,15 +94,15 @@ impl ImageShares {
         let mut moved = points.to_vec();
         let detector = camera.projection.detector();
         let mut places = Vec::new();
-        for place in 0..PLACES * PLACES {
-            let offset = |i: usize| (i as f64 + 0.5) / PLACES as f64 - 0.5;
-            let (dx, dy) = (offset(place % PLACES), offset(place / PLACES));
+        for place in 0..POSITIONS_PER_AXIS * POSITIONS_PER_AXIS {
+            let offset = |i: usize| (i as f64 + 0.5) / POSITIONS_PER_AXIS as f64 - 0.5;
+            let (dx, dy) = (offset(place % POSITIONS_PER_AXIS), offset(place / POSITIONS_PER_AXIS));
             for (moved, point) in moved.iter_mut().zip(points) {
                 moved.position = PixelPoint::new(point.position.x + dx, point.position.y + dy);
             }
-            psf.stamp_extended(&moved, 1.0, LEAST_SHARE, detector, &mut stamp);
+            psf.stamp_extended(&moved, 1.0, MIN_FRACTION_OF_TOTAL, detector, &mut stamp);
             let shares = || stamp.rows().flat_map(|(_, _, row)| row.iter().copied());
-            let least = LEAST_PART * shares().fold(0.0, f64::max);
+            let least = MIN_FRACTION_OF_PEAK * shares().fold(0.0, f64::max);
             places.push(shares().filter(|share| *share > least).collect());
         }
         Self { places }

@@ -382,7 +382,7 @@ pub enum Parameter {
 
 impl Parameter {
     /// Returns name and unit of the parameter.
-    pub fn words(self) -> (&'static str, &'static str) {
+    pub fn name_and_unit(self) -> (&'static str, &'static str) {
         match self {
             Self::ExposureS => ("exposure", "s"),
             Self::ApertureDiameterMm => ("aperture", "mm"),

@@ -10,7 +10,7 @@ use crate::requirement::{DetectionRule, MotionGuidance, MotionTable, SkyStatisti
 use crate::sky::{Field, Sky};
 
 /// Smallest detection probability that is included in sums over stars.
-const LEAST_CHANCE: f64 = 1e-9;
+const MIN_PROBABILITY: f64 = 1e-9;
 /// Step between two levels of the background, in standard deviations of an empty pixel: a detection
 /// probability that is a normal distribution function of the background is then interpolated to 0.002.
 const LEVEL_STEP: f64 = 0.25;
@@ -89,7 +89,7 @@ impl Curves {
         let mut expected = 0.0;
         let chances =
             field.stars.iter().map(|star| self.between(below, part, star.ln_e_per_s + self.ln_exposure));
-        let chances = chances.take_while(|p| *p > LEAST_CHANCE).inspect(|p| expected += p);
+        let chances = chances.take_while(|p| *p > MIN_PROBABILITY).inspect(|p| expected += p);
         let chance = at_least(n_min, chances, distribution);
         StarCount { expected, chance }
     }

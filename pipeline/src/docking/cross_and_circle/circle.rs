@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_off_the_circle_is_left_out() {
+    fn points_off_the_circle_are_omitted() {
         let mut points = arc((100.0, 100.0), 40.0, 0.0, 6.0, 30);
         for i in [3, 4, 17, 25] {
             points[i] += Vector2::new(9.0, -6.0);

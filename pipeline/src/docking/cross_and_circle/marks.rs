@@ -413,7 +413,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn exact_places_give_their_plane(
+        fn exact_positions_give_their_plane(
             x in -300.0..300.0f64, y in -300.0..300.0f64, scale in 10.0..1000.0f64, roll in -3.0..3.0f64,
         ) {
             let plane = Plane { centre: Vector2::new(x, y), scale_px_m: scale, roll_rad: roll };

@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn two_regions_have_their_places_and_areas() {
+    fn two_regions_have_their_positions_and_areas() {
         let binary = GrayImage::from_fn(20, 10, |x, y| {
             let first = (2..5).contains(&x) && (1..3).contains(&y);
             let second = (10..20).contains(&x) && y == 8;

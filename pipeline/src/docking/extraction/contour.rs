@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_cut_by_the_border_is_measured_on_what_is_left() {
+    fn a_body_cut_by_the_border_is_measured_on_its_visible_part() {
         let field =
             synthetic::drawn(Lines::Odd, |x, y| if disk(x, y, (380.0, 400.0), 220.0) { 140 } else { 8 });
         let found = find_outline(&field).unwrap();

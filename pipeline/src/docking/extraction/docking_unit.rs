@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_behind_the_plane_moves_towards_the_vanishing_point() {
+    fn a_point_behind_the_plane_moves_towards_the_vanishing_point() {
         // Camera 1 m to the right of the target's axis at 10 m, without rotation: pinhole projection by hand.
         let (f, d3, d1) = (1000.0, 10.0, 1.0);
         let model = synthetic::target();

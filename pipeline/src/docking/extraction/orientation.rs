@@ -93,7 +93,7 @@ mod tests {
     use Uprightness::{Turned, Unknown, Upright};
 
     #[test]
-    fn what_was_seen_farther_away_holds_where_nothing_can_be_seen() {
+    fn an_orientation_measured_earlier_holds_where_none_can_be_measured() {
         let mut orientation = Orientation::default();
         assert!(orientation.is_turned(0.0, Turned) && orientation.is_turned(0.02, Turned));
         assert!((2..200).all(|i| orientation.is_turned(0.02 * f64::from(i), Unknown)));

@@ -18,7 +18,7 @@ pub(crate) const RESOLVED_CIRCLE_PX: f64 = 15.0;
 
 /// Radius of the circle of the marks, px, from which on a target is searched for within an outline. A bar of
 /// the cross is then 1.5 px wide, less than a line of a field; in fewer pixels a pose would be that of noise.
-pub(crate) const SMALLEST_CIRCLE_PX: f64 = 12.0;
+pub(crate) const MIN_CIRCLE_PX: f64 = 12.0;
 
 /// Time after which a tracked outline is searched for again in the whole field, s. Limits how long another
 /// object can be mistaken for the outline.

@@ -45,7 +45,7 @@ impl PaperPortionConfig {
 
 /// Smallest number of fields in a portion that determines a motion: two define a line but leave no residuals
 /// to judge it by.
-const LEAST_FIELDS: usize = 3;
+const MIN_FIELDS: usize = 3;
 
 const MAX_STEPS: usize = 30;
 
@@ -100,7 +100,7 @@ impl PaperPortions {
     /// when the fields do not determine a motion; the previous prior is then kept.
     pub fn end(&mut self, fields: &[(f64, PaperMeasurement)]) -> Option<Motion> {
         let time_s = fields.last()?.0;
-        if fields.len() < LEAST_FIELDS {
+        if fields.len() < MIN_FIELDS {
             return None;
         }
         let prior = self.last.as_ref().map(|last| propagated(last, time_s));
@@ -401,7 +401,7 @@ mod tests {
     }
 
     #[test]
-    fn too_few_fields_or_one_moment_say_nothing() {
+    fn too_few_fields_or_a_single_time_determine_no_motion() {
         assert!(portions(0.8).end(&[]).is_none());
         assert!(portions(0.8).end(&fields(0, 2, 0, 0.0)).is_none());
         let mut same = fields(0, 5, 0, 0.0);

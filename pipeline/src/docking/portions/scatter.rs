@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn honest_covariances_are_left_as_they_are() {
+    fn consistent_covariances_are_unchanged() {
         let changed = (0..50).filter(|seed| factor(1.0, *seed) != 1.0).count();
         assert!(changed <= 5, "{changed} of 50");
     }

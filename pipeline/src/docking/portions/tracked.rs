@@ -23,7 +23,7 @@ const OUTLINE_GATE: f64 = 25.0;
 const ESTABLISHED: u32 = 4;
 
 /// Smallest number of fields in a reported motion.
-const LEAST_FIELDS: u32 = 3;
+const MIN_FIELDS: u32 = 3;
 
 /// Motion of the camera, field by field.
 #[derive(Debug, Clone)]
@@ -180,7 +180,7 @@ impl MotionTracker {
     /// the last report, or when the speed is beyond that of any approach.
     pub fn report(&mut self) -> Option<Motion> {
         let fields = std::mem::take(&mut self.fields);
-        if fields < LEAST_FIELDS || self.all_fields < LEAST_FIELDS {
+        if fields < MIN_FIELDS || self.all_fields < MIN_FIELDS {
             return None;
         }
         let motion = self.track.as_ref()?.motion(fields);
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_glide_and_a_braking_ship_are_within_what_is_told() {
+    fn the_motion_of_steady_and_braking_approaches_is_within_its_covariance() {
         // 10 sequences of 15 and 45 reports; 99.7 % of the reports are expected within 3 σ.
         let (position, rate) = share_within_3_sigma(approach, 3);
         assert!(position >= 0.98 && rate >= 0.98, "{position} {rate}");
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_makes_the_range_rate_known_before_a_pose_is() {
+    fn an_outline_gives_the_range_rate_before_the_first_pose() {
         let mut tracker = MotionTracker::new(MotionConfig::default()).unwrap();
         let range = |k: u32| 60.0 - 1.2 * f64::from(k) * 0.02;
         for k in 0..160 {
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steady_glide_makes_the_rate_known_better() {
+    fn a_steady_approach_improves_the_range_rate() {
         let mut tracker = MotionTracker::new(MotionConfig::default()).unwrap();
         let mut sigmas = Vec::new();
         for k in 0..200 {
@@ -341,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fields_have_in_common_is_added_and_not_averaged() {
+    fn errors_common_to_all_fields_are_added_and_not_averaged() {
         let common = Matrix6::from_diagonal(&Vector6::new(1e-4, 1e-4, 1e-4, 1e-6, 1e-6, 1e-6));
         let mut tracker = MotionTracker::new(MotionConfig::default()).unwrap();
         for k in 0..100 {

@@ -262,7 +262,7 @@ mod tests {
     /// Errors of the approximations: all of 3.1 on exact images, narrow lens, 5 m. The figures are those of
     /// `docs/docking-method.md`.
     #[test]
-    fn the_approximations_cost_what_is_documented() {
+    fn the_approximations_have_their_documented_errors() {
         let model = camera([0.0; 3], 10.0);
         // (d1, m; φ2, °; worst lateral error, mm; worst range error, %; worst attitude error, °)
         for (d1, phi2_deg, lateral_mm, range_percent, attitude_deg) in

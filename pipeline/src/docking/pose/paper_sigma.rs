@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn off_the_axis_what_the_formulas_neglect_is_told() {
+    fn off_the_axis_the_neglected_terms_are_reported() {
         let (near, off) = (at([0.0, 0.0, 2.0]), at([0.3, 0.0, 2.0]));
         // f tan(tilt) (r/d3)² = 1000 · 0.15 · 0.0156 = 2.3 px against 0.4 px of noise.
         assert!(off.covariance[(0, 0)] > 4.0 * near.covariance[(0, 0)]);

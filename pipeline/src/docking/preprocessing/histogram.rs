@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn the_loop_settles_where_the_levels_are_wanted() {
+    fn the_loop_settles_at_the_requested_levels() {
         let config = AutoContrastConfig::default();
         for (low, high) in [(0.02, 0.25), (0.1, 0.95), (0.3, 1.3), (0.5, 0.9), (0.0, 0.15)] {
             let (settings, dark, bright) = settle(low, high);
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_asked_for_in_a_flat_field_or_when_told_to_leave_it() {
+    fn no_setting_is_requested_in_a_flat_field_or_if_disabled() {
         let flat = ramp(0.3, 0.3, &Digitiser::default());
         let histogram = Histogram::from_region(&View::new(&flat), &Rectangle::ALL);
         assert_eq!(AutoContrastConfig::default().recommend(&histogram, &Digitiser::default()), None);

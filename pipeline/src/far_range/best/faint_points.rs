@@ -27,7 +27,7 @@ pub(super) struct FaintPoints {
 
 /// Smallest signal-to-noise ratio of a point's flux: noise alone exceeds it about ten times in half a million
 /// pixels.
-const LEAST_SNR: f64 = 4.0;
+const MIN_SNR: f64 = 4.0;
 
 /// Largest number of points of a frame, brightest first.
 const MAX_POINTS: usize = 24;
@@ -74,7 +74,7 @@ impl FaintPoints {
         // pixels' σ.
         let power: f32 = kernel.iter().map(|k| k * k).sum();
         let power = f64::from(power * power);
-        let limit = LEAST_SNR * context.model.pixel_sigma_e * power.sqrt();
+        let limit = MIN_SNR * context.model.pixel_sigma_e * power.sqrt();
         let sigma2 = image.sigma_px * image.sigma_px;
         let apart_px = APART_PX + reach as f64;
         for y in reach..rows - reach {

@@ -10,7 +10,7 @@ use super::stars::{
     matches_by_offset, solve_attitude,
 };
 use super::start::AttitudeStart;
-use super::state::{BestPipeline, ScaleKnowledge};
+use super::state::{BestPipeline, ScaleSource};
 use crate::far_range::aberration::apparent_direction;
 use crate::far_range::config::AberrationConfig;
 use crate::far_range::overrides::{Identity, Overrides};
@@ -42,7 +42,7 @@ impl FrameAttitude {
     pub(super) fn unknown(sources: &[Source]) -> Self {
         let source = match sources.iter().filter(|source| source.spike.is_none()).count() {
             0 => AttitudeSource::NoStars,
-            count if count < lost_in_space::LEAST_MATCHED => AttitudeSource::TooFewStars,
+            count if count < lost_in_space::MIN_MATCHED => AttitudeSource::TooFewStars,
             _ => AttitudeSource::NoMatch,
         };
         let any = nalgebra::Matrix3::identity() * (std::f64::consts::PI * std::f64::consts::PI);
@@ -239,7 +239,7 @@ impl BestPipeline {
     }
 
     /// Determines the attitude with given identities of the clusters.
-    #[allow(clippy::too_many_arguments, reason = "the state of one frame, half way")]
+    #[allow(clippy::too_many_arguments, reason = "intermediate results of one frame")]
     fn given_attitude(
         &mut self,
         context: PhotometryContext<'_>,
@@ -303,7 +303,7 @@ impl BestPipeline {
                     }
                 };
                 let position = self.model.project_vector(&camera_from_icrs.rotate(&apparent))?;
-                let flux_e = (self.brightness.knowledge != ScaleKnowledge::Nowhere)
+                let flux_e = (self.brightness.source != ScaleSource::Unknown)
                     .then(|| scale * self.unscaled_flux_e(star.magnitude, telemetry.exposure_s));
                 Some(ExpectedStar { star, apparent, position, flux_e })
             })
@@ -360,13 +360,13 @@ impl BestPipeline {
         if log_ratios.len() >= 3 {
             log_ratios.sort_by(f64::total_cmp);
             let median = log_ratios[log_ratios.len() / 2];
-            let gain = match self.brightness.knowledge {
-                ScaleKnowledge::Nowhere => 1.0,
-                ScaleKnowledge::Calibration => 0.5,
-                ScaleKnowledge::Stars => 0.1,
+            let gain = match self.brightness.source {
+                ScaleSource::Unknown => 1.0,
+                ScaleSource::Calibration => 0.5,
+                ScaleSource::Stars => 0.1,
             };
             self.brightness.log_ratio += gain * (median - self.brightness.log_ratio);
-            self.brightness.knowledge = ScaleKnowledge::Stars;
+            self.brightness.source = ScaleSource::Stars;
         }
     }
 }

@@ -179,14 +179,14 @@ const DECREMENT: f64 = 1e-3;
 
 /// Initial damping (Levenberg's λ, relative to the diagonal), and the damping at which the fit gives up.
 const FIRST_DAMPING: f64 = 1e-3;
-const LARGEST_DAMPING: f64 = 1e6;
+const MAX_DAMPING: f64 = 1e6;
 
 /// Largest damping at which a small decrement counts as that of undamped Fisher scoring.
 const UNDAMPED: f64 = 1e-2;
 
 /// Largest steps of the position, px, and of the logarithm of the width.
-const LONGEST_STEP_PX: f64 = 0.7;
-const LARGEST_LOG_STEP: f64 = 0.2;
+const MAX_STEP_PX: f64 = 0.7;
+const MAX_LOG_STEP: f64 = 0.2;
 
 /// Largest distance of the centre of a truncated image outside the window, px.
 const BEYOND_PX: f64 = 8.0;
@@ -270,7 +270,7 @@ impl ImageFitter {
                 damping = (damping * 0.1).max(1e-9);
             } else {
                 damping *= 10.0;
-                if damping.is_nan() || damping > LARGEST_DAMPING {
+                if damping.is_nan() || damping > MAX_DAMPING {
                     return None;
                 }
             }
@@ -406,8 +406,8 @@ impl ImageModel<'_> {
 /// Returns the first `n` parameters after one step, shortened to the largest allowed step.
 fn moved(at: &Vector, step: &Vector, n: usize) -> Vector {
     let longest_of = |parameter: usize| match parameter {
-        X | Y => LONGEST_STEP_PX,
-        LOG_WIDTH | ELONGATION => LARGEST_LOG_STEP,
+        X | Y => MAX_STEP_PX,
+        LOG_WIDTH | ELONGATION => MAX_LOG_STEP,
         _ => f64::INFINITY,
     };
     let steps = || step.iter().take(n).enumerate();

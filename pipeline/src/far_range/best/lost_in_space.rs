@@ -76,7 +76,7 @@ const MIN_LOG_ODDS: f64 = 20.7;
 const MAX_REFINEMENTS: usize = 20;
 
 /// Smallest number of stars of a final attitude, including the three of the triangle.
-pub(super) const LEAST_MATCHED: usize = 4;
+pub(super) const MIN_MATCHED: usize = 4;
 
 impl LostInSpace {
     /// Creates a solver with the stars of `stars` up to the V magnitude `max_magnitude`, limited to the
@@ -158,7 +158,7 @@ impl LostInSpace {
                 break;
             }
         }
-        (is_settled && matched.len() >= LEAST_MATCHED).then(|| FoundAttitude {
+        (is_settled && matched.len() >= MIN_MATCHED).then(|| FoundAttitude {
             camera_from_icrs: hypothesis.camera_from_icrs,
             covariance: hypothesis.covariance,
             matched: matched.into_iter().map(|pair| (pair.source.index, pair.star)).collect(),

@@ -12,7 +12,7 @@ use crate::far_range::overrides::Overrides;
 /// Standard deviation of the logarithm of the width of the target's image without a calibration of the
 /// target's size, and its lower limit with one.
 const UNKNOWN_BODY_LOG_WIDTH: f64 = 0.03;
-const LEAST_BODY_LOG_WIDTH: f64 = 0.001;
+const MIN_BODY_LOG_WIDTH: f64 = 0.001;
 
 /// Standard deviation of the distance between the centre of brightness of a sunlit body and its centre, along
 /// an axis, relative to half its size. The distance is up to 0.6 for a Lambert sphere at a phase of 90°, and
@@ -47,19 +47,19 @@ impl BestPipeline {
         let Some(radius) = self.angular_radius(flux_e, exposure_s) else { return UNKNOWN_BODY_LOG_WIDTH };
         let (fx, fy) = self.model.focal_px();
         let size_px = radius * fx.max(fy) / self.psf.image([0.0; 2]).sigma_px;
-        (size_px * size_px / 6.0).clamp(LEAST_BODY_LOG_WIDTH, 0.5)
+        (size_px * size_px / 6.0).clamp(MIN_BODY_LOG_WIDTH, 0.5)
     }
 
     /// Returns the measurement: position and line of sight of the target with their covariances.
     pub(super) fn measurement(
         &self,
         image: &CandidateImage,
-        of: TargetContext<'_>,
+        inputs: TargetContext<'_>,
         overrides: &Overrides<'_>,
     ) -> Measurement {
-        let TargetContext { attitude, exposure_s, .. } = of;
+        let TargetContext { attitude, exposure_s, .. } = inputs;
         let (candidate, fit) = (&image.candidate, image.fit.as_ref());
-        let frame = of.context.frame;
+        let frame = inputs.context.frame;
         let given = overrides.centroid.and_then(|centroid| centroid(candidate.position));
         let (columns, rows) = (frame.columns() as f64, frame.rows() as f64);
         let fitted = given.unwrap_or(candidate.position);

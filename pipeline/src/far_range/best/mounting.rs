@@ -25,7 +25,7 @@ const UNKNOWN: AttitudeKnowledge = AttitudeKnowledge {
 };
 
 /// Smallest standard deviation of any part, arcsec. Keeps covariances invertible.
-const LEAST_ARCSEC: f64 = 0.1;
+const MIN_SIGMA_ARCSEC: f64 = 0.1;
 
 /// Filter of the constant and the slow error.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ impl MountingFilter {
         let knowledge = knowledge.unwrap_or(UNKNOWN);
         let variance = |arcsec: [f64; 3]| {
             Vector3::from(arcsec).map(|arcsec| {
-                let rad = (arcsec.max(LEAST_ARCSEC) / 3600.0).to_radians();
+                let rad = (arcsec.max(MIN_SIGMA_ARCSEC) / 3600.0).to_radians();
                 rad * rad
             })
         };

@@ -129,8 +129,8 @@ impl BestPipeline {
         };
         let known = self.known_sources(&attitude, trail_px);
         let exposure_s = telemetry.exposure_s;
-        let of = TargetContext { context, sources, attitude: &attitude, known: &known, exposure_s };
-        let mut images = self.candidates(of, overrides);
+        let inputs = TargetContext { context, sources, attitude: &attitude, known: &known, exposure_s };
+        let mut images = self.candidates(inputs, overrides);
         let candidates: Vec<TargetCandidate> = images.iter().map(|image| image.candidate).collect();
         let track_model = TrackModel {
             max_speed_px_per_s: self.config.best.max_speed_px_per_s,
@@ -151,8 +151,8 @@ impl BestPipeline {
             .find_map(|track| track.candidate.filter(|_| track.log_odds >= self.config.best.min_log_odds));
         let solution = match chosen.and_then(|c| images.get_mut(c)) {
             Some(image) => {
-                self.fit_candidate(of, image);
-                Solution::Detected(self.measurement(image, of, overrides))
+                self.fit_candidate(inputs, image);
+                Solution::Detected(self.measurement(image, inputs, overrides))
             }
             None if sources.is_empty() => Solution::NoSolution(NoSolution::EmptyFrame),
             None => Solution::NoSolution(NoSolution::NoTarget),

@@ -12,11 +12,11 @@ const UNKNOWN_LOG_WIDTH: f64 = 0.5;
 
 /// Scatter of the logarithm of the stars' widths over the field and with colour: lower limit of the
 /// estimate's standard deviation.
-const LEAST_LOG_WIDTH: f64 = 0.01;
+const MIN_LOG_WIDTH: f64 = 0.01;
 
 /// Smallest signal-to-noise ratio, and largest misfit, of a star whose width is used.
-const LEAST_SNR: f64 = 30.0;
-const LARGEST_MISFIT: f64 = 2.0;
+const MIN_SNR: f64 = 30.0;
+const MAX_MISFIT: f64 = 2.0;
 
 /// Core and halo of the image of a point. The logarithm of the width relative to the calibrated one is a
 /// normal variable.
@@ -49,22 +49,22 @@ impl PointImageEstimate {
 
     /// Returns the standard deviation of the logarithm of the width.
     pub(super) fn log_width_sigma(&self) -> f64 {
-        self.variance.sqrt().max(LEAST_LOG_WIDTH)
+        self.variance.sqrt().max(MIN_LOG_WIDTH)
     }
 
     /// Updates the estimate with the width of a star that was fitted with this image and with a width prior
     /// of this estimate's standard deviation.
     pub(super) fn update_from_star(&mut self, star: &FittedImage) {
         let snr = star.flux_e / star.flux_sigma_e;
-        if snr < LEAST_SNR || star.misfit() > LARGEST_MISFIT {
+        if snr < MIN_SNR || star.misfit() > MAX_MISFIT {
             return;
         }
         // The width of a Gaussian is accurate to about 1/snr; pixels of half a width and the background
         // double this.
-        let measured = (2.0 / snr).max(3.0 * LEAST_LOG_WIDTH);
+        let measured = (2.0 / snr).max(3.0 * MIN_LOG_WIDTH);
         let gain = self.variance / (self.variance + measured * measured);
         // The prior already reduced the fitted change, so it includes a part of the gain.
         self.log_width += gain * libm::log(star.width);
-        self.variance = (self.variance * (1.0 - gain)).max(LEAST_LOG_WIDTH * LEAST_LOG_WIDTH);
+        self.variance = (self.variance * (1.0 - gain)).max(MIN_LOG_WIDTH * MIN_LOG_WIDTH);
     }
 }

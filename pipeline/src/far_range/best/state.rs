@@ -56,13 +56,13 @@ pub(super) struct Brightness {
     /// Natural logarithm of the ratio of measured flux to that by the calibration, or by
     /// [`UNKNOWN_ZERO_MAGNITUDE`].
     pub(super) log_ratio: f64,
-    pub(super) knowledge: ScaleKnowledge,
+    pub(super) source: ScaleSource,
 }
 
 /// Source of a brightness scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ScaleKnowledge {
-    Nowhere,
+pub(super) enum ScaleSource {
+    Unknown,
     Calibration,
     Stars,
 }
@@ -112,9 +112,9 @@ impl BestPipeline {
             brightness: Brightness {
                 log_ratio: 0.0,
                 // Without a readout, fluxes are in digital numbers.
-                knowledge: match (setup.readout, calibration.zero_magnitude_e_per_s) {
-                    (Some(_), Some(_)) => ScaleKnowledge::Calibration,
-                    _ => ScaleKnowledge::Nowhere,
+                source: match (setup.readout, calibration.zero_magnitude_e_per_s) {
+                    (Some(_), Some(_)) => ScaleSource::Calibration,
+                    _ => ScaleSource::Unknown,
                 },
             },
             hot_pixels: HotPixels::default(),

@@ -60,39 +60,39 @@ impl BestPipeline {
     /// while no track is settled; and the target at the position predicted by the best track.
     pub(super) fn candidates(
         &mut self,
-        of: TargetContext<'_>,
+        inputs: TargetContext<'_>,
         overrides: &Overrides<'_>,
     ) -> Vec<CandidateImage> {
         let mut images: Vec<CandidateImage> = Vec::new();
         let max_fitted = if self.tracks.is_settled() { 0 } else { MAX_FITTED };
-        for i in target_clusters(of, overrides) {
-            let source = &of.sources[i];
+        for i in target_clusters(inputs, overrides) {
+            let source = &inputs.sources[i];
             let is_fitted = images.len() < max_fitted || self.tracks.is_expected(source.centre);
-            let fit = is_fitted.then(|| self.fit_cluster(of, i)).flatten();
-            let log_odds = log_odds(source, fit.as_ref(), of.context.threshold_e);
-            let candidate = self.cluster_candidate(of, source, fit.as_ref(), log_odds);
+            let fit = is_fitted.then(|| self.fit_cluster(inputs, i)).flatten();
+            let log_odds = log_odds(source, fit.as_ref(), inputs.context.threshold_e);
+            let candidate = self.cluster_candidate(inputs, source, fit.as_ref(), log_odds);
             images.push(CandidateImage { candidate, fit, cluster: Some(i) });
         }
         if !self.tracks.is_settled() && overrides.identity.is_none() {
-            images.extend(self.faint_candidates(of));
+            images.extend(self.faint_candidates(inputs));
         }
-        images.extend(self.predicted_candidate(of, &images));
+        images.extend(self.predicted_candidate(inputs, &images));
         images
     }
 
     /// Returns the points below the threshold of clusters that are not at listed stars.
-    fn faint_candidates(&mut self, of: TargetContext<'_>) -> Vec<CandidateImage> {
+    fn faint_candidates(&mut self, inputs: TargetContext<'_>) -> Vec<CandidateImage> {
         let image = self.psf.image([0.0; 2]);
-        let stars: Vec<PixelPoint> = of.attitude.expected.iter().map(|star| star.position).collect();
-        let points = self.faint_points.find(of.context, &image, &stars);
+        let stars: Vec<PixelPoint> = inputs.attitude.expected.iter().map(|star| star.position).collect();
+        let points = self.faint_points.find(inputs.context, &image, &stars);
         let candidate = |point: &FaintPoint| TargetCandidate {
             position: point.position,
             variance_px2: point.variance_px2,
-            flux_e_per_s: point.flux_e / of.exposure_s,
+            flux_e_per_s: point.flux_e / inputs.exposure_s,
             is_flux_bounded: false,
             log_odds: FAINT_LOG_ODDS,
             evidence: None,
-            direction: self.direction(point.position, of.attitude),
+            direction: self.direction(point.position, inputs.attitude),
         };
         points
             .iter()
@@ -101,16 +101,19 @@ impl BestPipeline {
     }
 
     /// Fits the image of a candidate that has not been fitted yet, if possible.
-    pub(super) fn fit_candidate(&mut self, of: TargetContext<'_>, image: &mut CandidateImage) {
+    pub(super) fn fit_candidate(&mut self, inputs: TargetContext<'_>, image: &mut CandidateImage) {
         if image.fit.is_some() {
             return;
         }
         let candidate = &mut image.candidate;
         image.fit = match image.cluster {
-            Some(i) => self.fit_cluster(of, i),
-            None => {
-                self.fit_point(of, candidate.position, f64::INFINITY, candidate.flux_e_per_s * of.exposure_s)
-            }
+            Some(i) => self.fit_cluster(inputs, i),
+            None => self.fit_point(
+                inputs,
+                candidate.position,
+                f64::INFINITY,
+                candidate.flux_e_per_s * inputs.exposure_s,
+            ),
         };
         if let Some(fit) = &image.fit {
             candidate.position = fit.position;
@@ -118,24 +121,24 @@ impl BestPipeline {
     }
 
     /// Fits the image of a cluster as the target's.
-    fn fit_cluster(&mut self, of: TargetContext<'_>, cluster: usize) -> Option<FittedSource> {
-        let source = &of.sources[cluster];
+    fn fit_cluster(&mut self, inputs: TargetContext<'_>, cluster: usize) -> Option<FittedSource> {
+        let source = &inputs.sources[cluster];
         let start = TargetStart {
             position: source.centre,
             position_sigma_px: f64::INFINITY,
             flux_e: source.flux_e,
-            body_log_width: self.body_log_width(source.flux_e, of.exposure_s),
-            members: of.context.detector.members(cluster),
+            body_log_width: self.body_log_width(source.flux_e, inputs.exposure_s),
+            members: inputs.context.detector.members(cluster),
             is_saturated: source.saturated > 0,
             is_cut: source.is_cut,
         };
-        self.fit_target(of, &start)
+        self.fit_target(inputs, &start)
     }
 
     /// Fits the image of the target at a position without a cluster.
     fn fit_point(
         &mut self,
-        of: TargetContext<'_>,
+        inputs: TargetContext<'_>,
         position: PixelPoint,
         position_sigma_px: f64,
         flux_e: f64,
@@ -144,25 +147,25 @@ impl BestPipeline {
             position,
             position_sigma_px,
             flux_e,
-            body_log_width: self.body_log_width(flux_e, of.exposure_s),
+            body_log_width: self.body_log_width(flux_e, inputs.exposure_s),
             members: &[],
             is_saturated: false,
             is_cut: false,
         };
-        self.fit_target(of, &start)
+        self.fit_target(inputs, &start)
     }
 
-    fn fit_target(&mut self, of: TargetContext<'_>, start: &TargetStart<'_>) -> Option<FittedSource> {
+    fn fit_target(&mut self, inputs: TargetContext<'_>, start: &TargetStart<'_>) -> Option<FittedSource> {
         let is_near = |star: &&KnownSource| {
             star.position.distance(start.position) <= KNOWN_REACH_PX && star.flux_e > 1e-3 * start.flux_e
         };
-        let near: Vec<KnownSource> = of.known.iter().filter(is_near).copied().collect();
-        self.fitter.target(of.context, start, &self.psf, &near)
+        let near: Vec<KnownSource> = inputs.known.iter().filter(is_near).copied().collect();
+        self.fitter.target(inputs.context, start, &self.psf, &near)
     }
 
     fn cluster_candidate(
         &self,
-        of: TargetContext<'_>,
+        inputs: TargetContext<'_>,
         source: &Source,
         fit: Option<&FittedSource>,
         log_odds: f64,
@@ -176,11 +179,11 @@ impl BestPipeline {
         TargetCandidate {
             position,
             variance_px2,
-            flux_e_per_s: fitted_flux_e.unwrap_or(source.flux_e) / of.exposure_s,
+            flux_e_per_s: fitted_flux_e.unwrap_or(source.flux_e) / inputs.exposure_s,
             is_flux_bounded: fitted_flux_e.is_none() && (source.saturated > 0 || source.is_cut),
             log_odds,
             evidence: None,
-            direction: self.direction(position, of.attitude),
+            direction: self.direction(position, inputs.attitude),
         }
     }
 
@@ -198,7 +201,7 @@ impl BestPipeline {
     /// motion.
     fn predicted_candidate(
         &mut self,
-        of: TargetContext<'_>,
+        inputs: TargetContext<'_>,
         others: &[CandidateImage],
     ) -> Option<CandidateImage> {
         let track = *self.tracks.by_odds().next()?;
@@ -211,8 +214,8 @@ impl BestPipeline {
             return None;
         }
         let (rate, rate_sigma) = track.flux_e_per_s();
-        let expected_e = rate * of.exposure_s;
-        let fit = self.fit_point(of, track.position, sigma_px, expected_e)?;
+        let expected_e = rate * inputs.exposure_s;
+        let fit = self.fit_point(inputs, track.position, sigma_px, expected_e)?;
         let (flux_e, sigma_e) = (fit.image.flux_e, fit.image.flux_sigma_e);
         let log_flux = libm::log((flux_e / expected_e).max(1e-9));
         let evidence = evidence(flux_e, sigma_e, expected_e, rate_sigma * expected_e);
@@ -225,11 +228,11 @@ impl BestPipeline {
             candidate: TargetCandidate {
                 position: fit.position,
                 variance_px2: xx.max(yy),
-                flux_e_per_s: flux_e / of.exposure_s,
+                flux_e_per_s: flux_e / inputs.exposure_s,
                 is_flux_bounded: false,
                 log_odds: THRESHOLD_LOG_ODDS,
                 evidence: Some(evidence),
-                direction: self.direction(fit.position, of.attitude),
+                direction: self.direction(fit.position, inputs.attitude),
             },
             fit: Some(fit),
             cluster: None,
@@ -246,23 +249,26 @@ fn evidence(flux: f64, sigma: f64, expected: f64, expected_sigma: f64) -> f64 {
 }
 
 /// Returns the clusters that may be the target, brightest first.
-fn target_clusters(of: TargetContext<'_>, overrides: &Overrides<'_>) -> Vec<usize> {
+fn target_clusters(inputs: TargetContext<'_>, overrides: &Overrides<'_>) -> Vec<usize> {
     let is_hot = |source: &Source| {
         source.spike.is_some() || {
             let (x, y) = (source.centre.x.round(), source.centre.y.round());
             source.blob.pixels <= 2
                 && x >= 0.0
                 && y >= 0.0
-                && of.context.hot_pixels.contains(y as usize * of.context.frame.columns() + x as usize)
+                && inputs
+                    .context
+                    .hot_pixels
+                    .contains(y as usize * inputs.context.frame.columns() + x as usize)
         }
     };
-    let mut clusters: Vec<usize> = (0..of.sources.len())
+    let mut clusters: Vec<usize> = (0..inputs.sources.len())
         .filter(|&i| match overrides.identity {
-            Some(identity) => identity(of.sources[i].centre) == Identity::Neither,
-            None => of.attitude.star_of[i].is_none() && !is_hot(&of.sources[i]),
+            Some(identity) => identity(inputs.sources[i].centre) == Identity::Neither,
+            None => inputs.attitude.star_of[i].is_none() && !is_hot(&inputs.sources[i]),
         })
         .collect();
-    clusters.sort_by(|&a, &b| of.sources[b].flux_e.total_cmp(&of.sources[a].flux_e).then(a.cmp(&b)));
+    clusters.sort_by(|&a, &b| inputs.sources[b].flux_e.total_cmp(&inputs.sources[a].flux_e).then(a.cmp(&b)));
     clusters
 }
 

@@ -71,7 +71,7 @@ const LOG_FLUX_STEP: f64 = 0.25;
 const LOG_FLUX_PER_ROOT_S: f64 = 0.03;
 
 /// Natural logarithm of the largest ratio of the total flux to that of the visible part of an image.
-const LARGEST_HIDDEN: f64 = 1.2;
+const MAX_LOG_TOTAL_OVER_VISIBLE: f64 = 1.2;
 
 /// Detection probability of the target's image, and that of an image less than twice as bright as the
 /// threshold.
@@ -79,7 +79,7 @@ const DETECTED: f64 = 0.95;
 const DETECTED_FAINT: f64 = 0.6;
 
 /// Largest likelihood ratio of one frame, natural logarithm: the error model is not valid beyond it.
-const MOST_EVIDENCE: f64 = 8.0;
+const MAX_LOG_LIKELIHOOD_RATIO: f64 = 8.0;
 
 /// Limits of the logarithm of the odds. Odds beyond the limits carry no further information, and a track must
 /// remain able to lose.
@@ -105,7 +105,7 @@ const GATE: f64 = 20.0;
 const SETTLED: f64 = 12.0;
 
 /// Largest distance at which a track expects a cluster, px.
-const LARGEST_REACH_PX: f64 = 10.0;
+const MAX_REACH_PX: f64 = 10.0;
 
 /// Largest number of tracks, and number of frames without a cluster after which a track ends.
 const MAX_TRACKS: usize = 64;
@@ -162,7 +162,8 @@ impl Track {
         let log_flux = libm::log(c.flux_e_per_s.max(1e-9)) - self.log_flux;
         let flux_variance = self.log_flux_variance + LOG_FLUX_STEP * LOG_FLUX_STEP;
         // Truncation by a region and saturation hide at most some two thirds of the flux.
-        let log_flux = if c.is_flux_bounded { (log_flux + LARGEST_HIDDEN).min(0.0) } else { log_flux };
+        let log_flux =
+            if c.is_flux_bounded { (log_flux + MAX_LOG_TOTAL_OVER_VISIBLE).min(0.0) } else { log_flux };
         let flux_distance = log_flux * log_flux / flux_variance;
         if distance + flux_distance > GATE {
             return None;
@@ -172,7 +173,7 @@ impl Track {
         // The fluxes of clutter cover some four units of the natural logarithm.
         let by_flux =
             -0.5 * flux_distance - 0.5 * libm::log(std::f64::consts::TAU * flux_variance) + libm::log(4.0);
-        Some(libm::log(DETECTED) + by_position.min(MOST_EVIDENCE) + by_flux)
+        Some(libm::log(DETECTED) + by_position.min(MAX_LOG_LIKELIHOOD_RATIO) + by_flux)
     }
 
     /// Returns the change of the logarithm of the odds by the motion since the last cluster. `position_of`
@@ -254,7 +255,7 @@ impl Tracks {
     pub(super) fn is_expected(&self, position: PixelPoint) -> bool {
         self.tracks.first().is_some_and(|track| {
             let reach_px = GATE.sqrt() * track.variance_px2().sqrt();
-            track.position.distance(position) <= reach_px.min(LARGEST_REACH_PX)
+            track.position.distance(position) <= reach_px.min(MAX_REACH_PX)
         })
     }
 
@@ -275,7 +276,7 @@ impl Tracks {
         for (t, track) in self.tracks.iter().enumerate() {
             for (c, candidate) in candidates.iter().enumerate() {
                 let gain = match candidate.evidence {
-                    Some(evidence) => (t == 0).then_some(evidence.min(MOST_EVIDENCE)),
+                    Some(evidence) => (t == 0).then_some(evidence.min(MAX_LOG_LIKELIHOOD_RATIO)),
                     None => track.likelihood(candidate, model),
                 };
                 if let Some(gain) = gain {

@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_column_is_told_its_neighbour() {
+    fn an_unknown_column_is_reported_with_the_nearest_name() {
         refused("id,ra_dge,dec_deg,hp_mag\n", "unknown column `ra_dge`, did you mean `ra_deg`?");
         refused("id,ra_deg,dec_deg,hp_mag,pm_ra\n", "did you mean `pm_ra_mas_per_yr`?");
     }
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_field_is_told_with_its_place() {
+    fn a_bad_field_is_reported_with_its_position() {
         let refuse = |row: &str, expected: &str| {
             refused(&format!("id,ra_deg,dec_deg,hp_mag,b_v\n1,2,3,4,\n{row}\n"), expected);
         };

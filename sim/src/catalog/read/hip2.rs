@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_field_is_told_with_its_place() {
+    fn a_bad_field_is_reported_with_its_position() {
         let refused = |from: &str, to: &str, expected: &str| {
             let message = message("hip2.dat", LINES.replace(from, to).as_bytes());
             assert!(message.contains(expected), "`{message}` does not say `{expected}`");

@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn a_star_left_out_is_told_with_its_reason() {
+    fn an_excluded_star_is_reported_with_the_reason() {
         let text = HIP_1.to_owned() + &line_with_field(8, "            ") + &line_with_field(44, "       ");
         let (stars, exclusions) = parse(Path::new("hip_main.dat"), &text).unwrap();
         assert_eq!(stars.len(), 1);
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_field_is_told_with_its_place() {
+    fn a_bad_field_is_reported_with_its_position() {
         let refused = |content: String, expected: &str| {
             let message = message("hip_main.dat", content.as_bytes());
             assert!(message.contains(expected), "`{message}` does not say `{expected}`");

@@ -39,7 +39,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_no_known_format_says_what_is_known() {
+    fn a_file_of_unknown_format_is_reported_with_the_known_ones() {
         for content in ["", "hello", "T|1|2"] {
             let message = message("stars.txt", content.as_bytes());
             assert!(message.contains("stars.txt") && message.contains("hip_main.dat"), "{message}");

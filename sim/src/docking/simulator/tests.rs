@@ -87,7 +87,7 @@ fn a_field_alone_is_the_field_of_the_run() {
 }
 
 #[test]
-fn each_field_holds_its_rows_at_its_own_moment() {
+fn each_field_shows_its_rows_at_its_own_time() {
     let mut interlaced = simulation();
     interlaced.television.noise = VideoNoiseConfig { sigma_dn8: 0.0 };
     let mut progressive = interlaced.clone();
@@ -139,7 +139,7 @@ fn projected_centres_are_those_of_the_geometry() {
 }
 
 #[test]
-fn the_image_shows_the_target_where_the_truth_says() {
+fn the_target_is_drawn_at_its_true_position() {
     let mut simulation = DockingSimulation {
         approach: at_rest([0.0, 0.0, 3.5], [0.0, 0.0, 0.0]),
         lighting: LightingConfig { sun: sun(0.0, 0.0), ..LightingConfig::default() },
@@ -167,7 +167,7 @@ fn the_image_shows_the_target_where_the_truth_says() {
 /// The bars' shadows are shifted by −b (s1, s2)/s3. With a shift of 0.2 m along y1, the horizontal bar's
 /// shadow falls on the mark at 0° and the vertical bar's shadow on the marks at ±30°, and on no other.
 #[test]
-fn marks_in_the_shadow_of_the_cross_are_told() {
+fn marks_in_the_shadow_of_the_cross_are_reported() {
     let azimuth = libm::atan(-0.2 / 0.30).to_degrees();
     let lighting = LightingConfig { sun: sun(azimuth, 0.0), ..LightingConfig::default() };
     let simulation = DockingSimulation { lighting, ..simulation() };
@@ -221,7 +221,7 @@ fn at_night_the_lamp_lights_the_target() {
 }
 
 #[test]
-fn the_sun_in_the_field_is_told_and_the_station_hides_it() {
+fn the_sun_in_the_field_is_reported_unless_the_station_hides_it() {
     let with = |azimuth, elevation, d| {
         let mut simulation = DockingSimulation {
             approach: at_rest([0.0, 0.0, d], [0.0; 3]),
@@ -247,7 +247,7 @@ fn the_sun_in_the_field_is_told_and_the_station_hides_it() {
 }
 
 #[test]
-fn a_glint_is_seen_where_the_truth_says_and_blooms() {
+fn a_glint_is_drawn_at_its_true_position_and_blooms() {
     let glint = GlintConfig {
         position_m: [0.1, 0.1, 0.0],
         normal: [0.0, 0.0, 1.0],
@@ -339,7 +339,7 @@ fn built_in() -> DockingSimulation {
 
 /// With the lamp no mark is dark; without Sun and lamp all marks are dark.
 #[test]
-fn at_night_the_lamp_says_which_marks_are_dark() {
+fn at_night_the_lamp_determines_the_dark_marks() {
     let truth = |floodlight| {
         let lighting = LightingConfig { floodlight, ..LightingConfig::default() };
         exposed(&DockingSimulation { lighting, ..simulation() }, 0).truth

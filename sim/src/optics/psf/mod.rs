@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_fainter_than_the_floor_leaves_no_stamp_worth_drawing() {
+    fn objects_below_the_floor_have_no_stamp() {
         let stamp = stamp_of(&gaussian(0.8), PixelPoint::new(100.0, 100.0), 0.01, 0.01);
         assert_eq!(sum(&stamp), 0.0);
     }

@@ -15,9 +15,9 @@ const TERMS: usize = 6;
 /// largest value of |He₅(u) φ(u)|.
 const PHASES_PER_SIGMA: f64 = 25.0;
 /// Smallest width with a table, px: narrower Gaussians need too many phases.
-const NARROWEST_PX: f64 = 0.1;
+const MIN_WIDTH_PX: f64 = 0.1;
 /// Largest width with a table, px: wider Gaussians need too many pixels.
-const WIDEST_PX: f64 = 100.0;
+const MAX_WIDTH_PX: f64 = 100.0;
 /// Half width of the table, in units of σ; beyond it a fraction is below 2e-17.
 const REACH_SIGMAS: f64 = 8.5;
 
@@ -38,7 +38,7 @@ impl ShareTable {
     /// Creates the table of a Gaussian of width `sigma_px`; `None` if the width is too small or too large for
     /// a table.
     pub(super) fn new(sigma_px: f64) -> Option<Self> {
-        if !(NARROWEST_PX..=WIDEST_PX).contains(&sigma_px) {
+        if !(MIN_WIDTH_PX..=MAX_WIDTH_PX).contains(&sigma_px) {
             return None;
         }
         let reach = (REACH_SIGMAS * sigma_px).ceil() as usize + LANES;
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_far_away_has_no_share() {
+    fn distant_pixels_have_no_share() {
         let table = ShareTable::new(0.8).unwrap();
         for (centre, first) in [(1e300, 0), (-1e300, 0), (5.0, 4000), (4000.0, 5), (5.0, usize::MAX)] {
             let mut shares = [9.0; LANES];

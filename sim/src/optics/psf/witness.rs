@@ -179,7 +179,7 @@ fn an_airy_image_is_the_integral_of_its_pattern_over_each_pixel() {
 /// The flux within r is 1 − J₀²(v) − J₁²(v) (Lord Rayleigh 1881; Born & Wolf 1999, Eq. 8.5.18): 83.8 % within
 /// the first dark ring, where pixels cut by the circle do not matter.
 #[test]
-fn the_light_within_the_dark_rings_of_an_airy_image_is_rayleighs() {
+fn the_flux_within_the_dark_rings_of_an_airy_image_is_rayleighs() {
     let mut psf = Psf::new(&PsfConfig::Airy { lambda_n_px: [8.0, 8.0], obscuration: 0.0 }).unwrap();
     let pixels = image(&mut psf, PixelPoint::new(MIDDLE, MIDDLE));
     // The first two zeros of J₁.
@@ -240,7 +240,7 @@ fn gaussian_file(folder: &tempfile::TempDir, oversampling: f64) -> PsfConfig {
 }
 
 #[test]
-fn a_sampled_gaussian_is_the_gaussian_wherever_it_stands_in_its_file() {
+fn a_sampled_gaussian_is_the_gaussian_wherever_it_is_centred_in_its_file() {
     let folder = tempfile::tempdir().unwrap();
     let mut gaussian = Psf::new(&PsfConfig::Gaussian { sigma_px: 0.9 }).unwrap();
     let witness = std::cell::RefCell::new(&mut gaussian);
@@ -249,7 +249,7 @@ fn a_sampled_gaussian_is_the_gaussian_wherever_it_stands_in_its_file() {
 }
 
 #[test]
-fn a_file_that_is_no_matrix_of_light_is_refused_with_its_place() {
+fn a_file_that_is_no_flux_matrix_is_refused_with_the_position() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("psf.csv");
     for (text, expected) in [
@@ -286,7 +286,7 @@ fn camera() -> Camera {
 
 /// A shape widened in its coordinates and integrated over unchanged pixels equals a shape of larger sizes.
 #[test]
-fn an_image_away_from_the_centre_is_that_of_a_wider_shape_with_the_same_light() {
+fn an_image_off_the_centre_is_wider_with_the_same_flux() {
     let folder = tempfile::tempdir().unwrap();
     let file = gaussian_file(&folder, 4.0);
     let PsfConfig::Sampled { path, .. } = &file else { unreachable!("a file was asked for") };

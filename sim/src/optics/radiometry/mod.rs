@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn one_zero_point_knows_no_colour_and_five_magnitudes_are_a_factor_of_a_hundred() {
+    fn a_single_zero_point_ignores_colour_and_five_magnitudes_are_a_factor_of_100() {
         let one = Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 2e6 }).unwrap();
         assert_eq!(one.star(0.0, Some(1.5), Some(2.7)), 2e6);
         assert_eq!(one.star(0.0, None, None), one.sunlit(0.0));
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn a_radiometry_that_sees_nothing_is_refused() {
+    fn a_radiometry_without_signal_is_refused() {
         let zero = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 0.0 };
         assert!(zero.check().is_err());
         assert!(RadiometryConfig::ZeroPoint { zero_point_e_per_s: f64::NAN }.check().is_err());

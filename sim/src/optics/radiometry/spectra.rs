@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn every_star_has_v_zero_and_the_b_v_that_it_says() {
+    fn every_spectrum_has_v_zero_and_its_stated_b_v() {
         for number in 0..STARS {
             let spectrum = star(number);
             let v = magnitude(in_band(&spectrum, 470.0, &V), 363.1);
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_star_of_the_sequence_is_at_its_own_place() {
+    fn a_star_of_the_sequence_has_its_own_position() {
         for number in 0..STARS {
             let (before, part) = sequence_position(Some(0.5), Some(v_i(number)));
             assert!((before as f64 + part - number as f64).abs() < 1e-9, "{number}: {before} + {part}");

@@ -19,10 +19,10 @@ pub struct StrayLightConfig {
     /// Point source transmittance at the exclusion angle, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub transmittance: f64,
-    /// Exponent of its decrease beyond the exclusion angle, 0 to 20.
+    /// Exponent of the decrease of the transmittance beyond the exclusion angle, 0 to 20.
     #[schemars(range(min = 0, max = 20))]
     pub power: f64,
-    /// Exponent of its increase inside the exclusion angle, 0 to 20.
+    /// Exponent of the increase of the transmittance inside the exclusion angle, 0 to 20.
     #[schemars(range(min = 0, max = 20))]
     pub power_inside: f64,
 }

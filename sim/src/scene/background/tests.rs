@@ -71,7 +71,7 @@ const LAW: StrayLightConfig =
     StrayLightConfig { exclusion_deg: 40.0, transmittance: 1e-7, power: 2.0, power_inside: 4.0 };
 
 #[test]
-fn what_is_off_costs_nothing_and_stray_light_asks_for_an_aperture() {
+fn effects_are_off_by_default_and_stray_light_requires_an_aperture() {
     let projection = Projection::new(&camera()).unwrap();
     let new = |config: &BackgroundConfig| {
         Background::new(config, &camera(), &projection, &one_zero_point())
@@ -87,7 +87,7 @@ fn what_is_off_costs_nothing_and_stray_light_asks_for_an_aperture() {
 /// 1 S10 is one star of V = 10 per square degree: zero point · 10⁻⁴ · the pixel's solid angle, which
 /// decreases as cos³ of the angle to the boresight in a pinhole camera.
 #[test]
-fn faint_stars_give_the_light_of_their_number() {
+fn faint_stars_have_the_flux_of_their_number() {
     let config = BackgroundConfig { faint_stars_s10: 100.0, ..BackgroundConfig::default() };
     let (_, pixels) = field(&config, &one_zero_point(), Vector3::z());
     let square_degrees = 10.0 * 8.0 * 1e-6 / 400.0 * SQUARE_DEGREES_PER_SR;

@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_is_the_law() {
+    fn the_table_agrees_with_the_power_law() {
         for (power, power_inside) in [(3.0, 6.0), (0.0, 20.0), (20.0, 1.5), (0.0, 0.0)] {
             let config = StrayLightConfig { exclusion_deg: 40.0, transmittance: 1e-40, power, power_inside };
             let table = TransmittanceTable::new(&config);

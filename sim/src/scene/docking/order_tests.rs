@@ -58,7 +58,7 @@ fn ray(scene: &DockingScene, stream: &mut Stream) -> (Vector3<f64>, Vector3<f64>
 /// Painted back to front, the nearest facet is on top, and no facet of a part covers another facet of that
 /// part.
 #[test]
-fn what_is_painted_last_is_nearest() {
+fn the_nearest_part_is_painted_last() {
     for name in TargetFile::built_in_names() {
         let scene = TargetFile::built_in(name).unwrap().scene();
         let mut stream = Seed { seed: 1, case: 0 }.stream(0, Effect::PixelNoise, 0);

@@ -206,7 +206,7 @@ fn the_layout_of_the_blankets_is_its_seeds() {
 }
 
 #[test]
-fn a_pipeline_is_told_what_the_file_says() {
+fn a_pipeline_receives_the_values_of_the_file() {
     let target = progress();
     let model = target.model();
     assert_eq!(

@@ -173,7 +173,7 @@ fn a_panel_flashes_at_the_angle_of_a_mirror() {
 }
 
 #[test]
-fn a_shadow_takes_its_own_area() {
+fn a_shadow_removes_its_own_area() {
     // A black screen of 1 m by 1 m stands 1 m above a plate of 4 m: the Sun at 45° towards x casts its shadow
     // 1 m to the side.
     let black = SurfaceConfig { diffuse: 0.0, specular: 0.0, roughness: 0.1 };
@@ -377,7 +377,7 @@ fn a_camera_in_the_midst_of_the_body_is_no_failure() {
 }
 
 #[test]
-fn numbers_out_of_range_are_told_with_their_place() {
+fn numbers_out_of_range_are_reported_with_their_path() {
     let message = |text: &str| {
         let config: TargetConfig = toml::from_str(text).unwrap();
         config.check().unwrap_err().to_string()

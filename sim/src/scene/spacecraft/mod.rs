@@ -325,12 +325,12 @@ mod tests {
     }
 
     #[test]
-    fn in_umbra_no_light_comes() {
+    fn in_umbra_the_flux_is_zero() {
         assert_eq!(magnitude(&SPHERE, 3.0, AU_KM, 1.0, 0.0), f64::INFINITY);
     }
 
     #[test]
-    fn a_beacon_fades_with_distance_and_knows_no_sun() {
+    fn a_beacon_fades_with_distance_and_ignores_the_sun() {
         let beacon = TargetConfig::Beacon { magnitude_at_1_km: 2.0 };
         assert_eq!(magnitude(&beacon, 1.0, AU_KM, 0.0, 1.0), 2.0);
         assert_eq!(magnitude(&beacon, 10.0, AU_KM, 3.0, 0.0), 7.0);
@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn a_black_sphere_and_a_new_one_give_no_light() {
+    fn a_black_sphere_and_one_at_new_phase_have_no_flux() {
         let black = TargetConfig::LambertSphere { radius_m: 1.0, albedo: 0.0 };
         assert_eq!(magnitude(&black, 1.0, AU_KM, 0.0, 1.0), f64::INFINITY);
         // Φ(π) evaluates to 4e-17 instead of 0, which is still too faint to matter.

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_takes_its_own_area_whatever_its_sense() {
+    fn a_hole_removes_its_area_in_either_orientation() {
         for reversed in [false, true] {
             let mut pieces = vec![rectangle((0.0, 3.0), (0.0, 3.0))];
             let mut hole = rectangle((1.0, 2.0), (1.0, 2.0));
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_elsewhere_takes_nothing_and_one_over_all_takes_all() {
+    fn a_hole_elsewhere_removes_nothing_and_one_over_all_removes_all() {
         let mut pieces = vec![rectangle((0.0, 1.0), (0.0, 1.0))];
         subtract(&mut pieces, &mut rectangle((1.0, 2.0), (0.0, 1.0)), 1e-12);
         assert_eq!(pieces, [rectangle((0.0, 1.0), (0.0, 1.0))]);

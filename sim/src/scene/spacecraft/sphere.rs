@@ -209,7 +209,7 @@ mod tests {
     /// The flux of the disk relative to a sphere at full phase, (2/3) π R² from afar, equals Russell's phase
     /// function.
     #[test]
-    fn the_light_of_the_disk_is_that_of_the_phase_law() {
+    fn the_flux_of_the_disk_follows_the_phase_law() {
         for phase_deg in [0.0, 45.0, 90.0, 135.0] {
             let (sphere, _) = seen(phase_deg, 1e4, 1.0);
             let n = 800;
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn the_brightest_pixel_of_a_resolved_sphere_is_that_of_its_brightest_place() {
+    fn the_brightest_pixel_of_a_resolved_sphere_is_at_its_brightest_point() {
         for (phase_deg, radius_px) in [(0.0, 15.0), (60.0, 15.0), (120.0, 40.0)] {
             let (sphere, project) = seen(phase_deg, 1e4, radius_px);
             let share = sphere.peak_share(&project, 0.2).unwrap();

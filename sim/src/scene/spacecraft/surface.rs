@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn light_goes_either_way_alike() {
+    fn the_reflectance_is_reciprocal() {
         let surface = SurfaceConfig { diffuse: 0.1, specular: 0.5, roughness: 0.3 };
         let (a, b) = (Vector3::new(0.6, 0.0, 0.8), Vector3::new(-0.48, 0.36, 0.8));
         let [there, back] = [(a, b), (b, a)].map(|(sun, eye)| surface.reflectance(&sun, &eye, &Vector3::z()));

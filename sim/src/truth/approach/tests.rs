@@ -68,7 +68,7 @@ fn neither_position_nor_velocity_jumps() {
 }
 
 #[test]
-fn segments_end_where_they_say() {
+fn segments_end_at_their_stated_end() {
     let mut config = segments();
     config.limit_cycle = OscillationConfig::default();
     let approach = approach(config);

@@ -83,7 +83,7 @@ const PIXEL_GATE: f64 = 4.5;
 const PATCH_GATE: f64 = 5.0;
 
 /// Share of rejected pixels above which a patch is rejected.
-const MOST_REJECTED: f64 = 0.15;
+const MAX_REJECTED_SHARE: f64 = 0.15;
 
 /// Model error that is tolerated before rejection, relative to the feature's level.
 const MODEL_ERROR: f64 = 0.005;
@@ -111,7 +111,7 @@ const ROUNDS: usize = 3;
 
 /// Largest σ of range and of lateral position, relative to the range, and of an angle, rad. Beyond these
 /// limits, the features in the field do not determine a pose.
-const LARGEST_SIGMA: (f64, f64, f64) = (0.05, 0.15, 0.15);
+const MAX_SIGMA: (f64, f64, f64) = (0.05, 0.15, 0.15);
 
 /// Result of the fit to a field.
 #[derive(Debug, Clone, PartialEq)]
@@ -365,7 +365,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
         }
         let variance = squares / freedom(used);
         let is_like_the_others = variance <= tolerated * (1.0 + PATCH_GATE * (2.0 / all as f64).sqrt())
-            && used as f64 >= (1.0 - MOST_REJECTED) * all as f64;
+            && used as f64 >= (1.0 - MAX_REJECTED_SHARE) * all as f64;
         let is_seen = match patch.feature {
             Feature::Mark(_) => {
                 let sigma = (typical * patch.levels_inverse[(LOCALS - 1, LOCALS - 1)]).sqrt();
@@ -410,9 +410,9 @@ fn judge(
     let pose = to_pose(&(globals + known.change));
     let range = pose.position_m.norm();
     let sigma = covariance.diagonal().map(f64::sqrt);
-    let is_determined = sigma[2] <= LARGEST_SIGMA.0 * range
-        && sigma[0].max(sigma[1]) <= LARGEST_SIGMA.1 * range
-        && sigma[3].max(sigma[4]).max(sigma[5]) <= LARGEST_SIGMA.2;
+    let is_determined = sigma[2] <= MAX_SIGMA.0 * range
+        && sigma[0].max(sigma[1]) <= MAX_SIGMA.1 * range
+        && sigma[3].max(sigma[4]).max(sigma[5]) <= MAX_SIGMA.2;
     if !is_determined {
         return Err(too_few(samples));
     }

@@ -12,7 +12,7 @@ use crate::docking::pose::geometry::project;
 const BESIDE_PX: f64 = 1.5;
 
 /// Correlation below which the target counts as not found.
-const LEAST_CORRELATION: f64 = 0.3;
+const MIN_CORRELATION: f64 = 0.3;
 
 /// Point of the target in the image at the rough pose: column, camera row, and brightness class.
 struct Point {
@@ -31,7 +31,7 @@ pub(super) fn shift(
 ) -> Option<[f64; 2]> {
     let points = points(camera, target, rough);
     let reach = reach_px.ceil() as i32;
-    let mut best = (LEAST_CORRELATION, None);
+    let mut best = (MIN_CORRELATION, None);
     for down in -reach..=reach {
         for across in -reach..=reach {
             let by = [f64::from(across), f64::from(down)];

@@ -31,7 +31,7 @@ const SAME_BLUR_PX2: f64 = 0.015;
 const SERVES: f64 = 6.0;
 
 /// Largest number of tables kept: a target has a few directions of edges, each of which turns slowly.
-const MOST_TABLES: usize = 24;
+const MAX_TABLES: usize = 24;
 
 /// Sampled minus continuous step at distances from 0 on. Odd in the distance.
 #[derive(Debug, Clone)]
@@ -100,11 +100,11 @@ impl SampledProfiles {
             return false;
         }
         let table = Table::new(gaussian, (normal.0.abs(), normal.1.abs()), blur);
-        if self.tables.len() < MOST_TABLES {
+        if self.tables.len() < MAX_TABLES {
             self.tables.push(table);
         } else {
             self.tables[self.oldest] = table;
-            self.oldest = (self.oldest + 1) % MOST_TABLES;
+            self.oldest = (self.oldest + 1) % MAX_TABLES;
         }
         true
     }

@@ -23,7 +23,7 @@ const REACH: usize = TAPS - 1;
 
 /// Smallest width of a mark for a correction, px. For narrower marks, the share of the blur that acts on
 /// pixels is too uncertain.
-const NARROWEST_PX: f64 = 1.0;
+const MIN_WIDTH_PX: f64 = 1.0;
 
 /// Exact shares of pixels, with reusable buffers.
 #[derive(Debug, Default)]
@@ -66,7 +66,7 @@ impl SampledMarks {
                 // sides.
                 sides[k].2 + sides[k + 2].2
             };
-            if across(0).min(across(1)) < NARROWEST_PX {
+            if across(0).min(across(1)) < MIN_WIDTH_PX {
                 continue;
             }
             let pixels = &mut pixels[patch.first..patch.end];

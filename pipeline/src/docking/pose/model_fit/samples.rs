@@ -84,7 +84,7 @@ impl Patch {
 }
 
 /// Number of pixels below which a patch determines no more than its levels.
-const LEAST_SAMPLES: usize = 10;
+const MIN_SAMPLES: usize = 10;
 
 /// Distance from an edge, in σ of its blur, beyond which pixels determine only the levels. Where there are
 /// many such pixels, only some of them are used.
@@ -155,7 +155,7 @@ struct Search<'a> {
 impl Samples {
     /// Collects about `most` of the pixels within `slack_px` + the blur's reach of an edge, for a given pose.
     /// Returns `None` when the features are not in front of the camera.
-    #[allow(clippy::too_many_arguments, reason = "the scene, and how closely to look at it")]
+    #[allow(clippy::too_many_arguments, reason = "the parts of the scene and the resolution")]
     pub(super) fn collect(
         &mut self,
         field: &Field,
@@ -285,7 +285,7 @@ impl Samples {
                     kept += 1;
                 }
             }
-            if kept - first < LEAST_SAMPLES {
+            if kept - first < MIN_SAMPLES {
                 kept = first;
             }
             (patch.first, patch.end) = (first, kept);
@@ -357,7 +357,7 @@ impl Samples {
     /// Makes a patch of the pixels from `first` on, or drops them when they are too few.
     fn close_patch(&mut self, feature: Feature, first: usize) -> bool {
         let pixels = &self.pixels[first..];
-        if pixels.len() < LEAST_SAMPLES {
+        if pixels.len() < MIN_SAMPLES {
             self.pixels.truncate(first);
             return false;
         }
@@ -456,7 +456,7 @@ fn narrow(span: &mut (f64, f64), slope: f64, offset: f64, low: f64, high: f64) {
 }
 
 impl<'a> Search<'a> {
-    #[allow(clippy::too_many_arguments, reason = "the scene, and how closely to look at it")]
+    #[allow(clippy::too_many_arguments, reason = "the parts of the scene and the resolution")]
     fn new(
         field: &'a Field,
         camera: &'a CameraModel,

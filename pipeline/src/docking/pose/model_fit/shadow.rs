@@ -29,7 +29,7 @@ const EDGE_PIXELS: usize = 1200;
 
 /// Smallest gain of a shadow, in variances of a pixel. By chance, the best of all positions has a gain of 2
 /// ln(positions) ≈ 17.
-const LEAST_GAIN: f64 = 40.0;
+const MIN_GAIN: f64 = 40.0;
 
 /// Share of the evidence kept from field to field. The Sun's direction is constant over seconds, and a shadow
 /// with few visible pixels is not distinct from chance in a single field.
@@ -40,11 +40,11 @@ const RETENTION: f64 = 0.9;
 const AS_GOOD: f64 = 0.8;
 
 /// Smallest number of pixels in shadow, and in light, with which a position is evaluated.
-const LEAST_PIXELS: f64 = 4.0;
+const MIN_PIXELS_PER_SIDE: f64 = 4.0;
 
 /// Smallest depth of a shadow, relative to the cross's level. A shallower shadow shifts no edge, and is more
 /// likely an error of the cross's blurred signal.
-const LEAST_DEPTH: f64 = 0.01;
+const MIN_DEPTH: f64 = 0.01;
 
 /// Standard deviation of the direction, tangent, assumed in the damping of refinement steps. A shadow whose
 /// bars are not on the plate determines only the azimuth.
@@ -208,7 +208,7 @@ impl ShadowFinder {
     /// Returns the shadow on the plate, if one is found. `lit_dn` returns the brightening of the bare plate
     /// by the cross's blurred edge at a point (image and plate), DN, or `None` where the point is not bare
     /// plate.
-    #[allow(clippy::too_many_arguments, reason = "the scene, and which pixels of it are bare")]
+    #[allow(clippy::too_many_arguments, reason = "the parts of the scene and the unshadowed pixels")]
     pub(super) fn find(
         &mut self,
         field: &Field,
@@ -244,12 +244,12 @@ impl ShadowFinder {
             Some(SunEstimate { tangents, information: (before.information + seen) * RETENTION });
         let mut shadow = Shadow::new(target, view, blur, tables, tangents)?;
         shadow.depth_dn = depth_dn;
-        (depth_dn > LEAST_DEPTH * cross_dn).then_some(shadow)
+        (depth_dn > MIN_DEPTH * cross_dn).then_some(shadow)
     }
 
     /// Determines the Sun's direction by the Gauss–Newton method, starting from `tangents`. Returns the
     /// direction, the information on it in this field, and the shadow's depth, DN.
-    #[allow(clippy::too_many_arguments, reason = "the scene, and where to begin")]
+    #[allow(clippy::too_many_arguments, reason = "the parts of the scene and the start")]
     fn refine(
         &self,
         target: &TargetModel,
@@ -422,7 +422,7 @@ impl ShadowFinder {
                 let inside = (v.0 + h.0 - both.0 + post.0, v.1 + h.1 - both.1 + post.1);
                 let outside = (n - inside.0, sum - inside.1);
                 let mut here = Evidence::default();
-                if inside.0 >= LEAST_PIXELS && outside.0 >= LEAST_PIXELS {
+                if inside.0 >= MIN_PIXELS_PER_SIDE && outside.0 >= MIN_PIXELS_PER_SIDE {
                     here.weight = inside.0 * outside.0 / n;
                     here.step = (outside.1 / outside.0 - inside.1 / inside.0) * here.weight;
                     best_of_field = best_of_field.max(here.explained_variance());
@@ -441,7 +441,7 @@ impl ShadowFinder {
                 best = (sum.explained_variance(), place);
             }
         }
-        if best.0 < LEAST_GAIN {
+        if best.0 < MIN_GAIN {
             return None;
         }
         let height = target.cross.height_m - 0.5 * target.cross.thickness_m;

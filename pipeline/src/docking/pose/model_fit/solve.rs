@@ -27,10 +27,10 @@ const BLUR_RANGE_PX2: (f64, f64) = (0.02, 25.0);
 const SHARE_RANGE: (f64, f64) = (-0.5, 2.0);
 
 /// Largest displacement of an edge in one step, px.
-const LONGEST_STEP_PX: f64 = 1.5;
+const MAX_STEP_PX: f64 = 1.5;
 
 /// Smallest number of pixels of a patch that remain after thinning.
-const LEAST_OF_PATCH: usize = 3 * LOCALS;
+const MIN_PATCH_PIXELS: usize = 3 * LOCALS;
 
 /// Predicted reduction, relative to the noise's variance, below which a step that fails to reduce the
 /// objective is the last.
@@ -146,8 +146,8 @@ pub(super) fn solve(
         if !shift.is_finite() {
             return None;
         }
-        if shift > LONGEST_STEP_PX {
-            step *= LONGEST_STEP_PX / shift;
+        if shift > MAX_STEP_PX {
+            step *= MAX_STEP_PX / shift;
         }
         let trial = bounded(&(*globals + step));
         let trial_images = Images::new(scene, &trial, search.extra_blur_px2)?;
@@ -199,7 +199,7 @@ const SIDEWAYS: f64 = 0.5;
 
 /// Smallest share of a pixel's variance that is independent noise. Variance explained by both lines and
 /// patches is subtracted twice.
-const LEAST_NOISE: f64 = 0.25;
+const MIN_NOISE_SHARE: f64 = 0.25;
 
 /// Computes the uncertainty of the globals at a solution, due to noise that is independent from pixel to
 /// pixel and to errors common to lines and patches.
@@ -283,7 +283,7 @@ pub(super) fn uncertainty(
     let crosses = used().filter(|(_, patch)| patch.feature == Feature::Cross).map(|(index, _)| index);
     let aside_px = SIDEWAYS * swelling.weighted / swelling.weight;
     by_patches += of_patches.common_covariance(crosses) * (aside_px * aside_px);
-    let noise = (variance - explained_by_lines - explained_by_patches).max(LEAST_NOISE * variance);
+    let noise = (variance - explained_by_lines - explained_by_patches).max(MIN_NOISE_SHARE * variance);
     let common = inverse * by_patches * inverse + by_swelling;
     Some(Uncertainty {
         change,
@@ -354,7 +354,7 @@ fn evaluate(
             share: globals[GRID],
         };
         // A small patch keeps enough pixels to determine its levels.
-        let stride = search.stride.min((patch.end - patch.first) / LEAST_OF_PATCH).max(1);
+        let stride = search.stride.min((patch.end - patch.first) / MIN_PATCH_PIXELS).max(1);
         let pixels = &mut pixels[patch.first..patch.end];
         let (centre, level) = (patch.centre, patch.levels[LOCALS - 1]);
         let equations =

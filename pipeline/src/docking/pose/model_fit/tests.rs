@@ -331,7 +331,7 @@ fn the_lens_distortion_is_undone() {
 }
 
 #[test]
-fn what_is_not_the_target_is_no_pose() {
+fn an_image_without_the_target_gives_no_pose() {
     let camera = camera(NARROW_PX, [0.0; 3]);
     let model = CameraModel::new(&camera).unwrap();
     let flat = vec![100.0; camera.columns * camera.rows];

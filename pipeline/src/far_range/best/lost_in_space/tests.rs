@@ -95,7 +95,7 @@ fn camera(columns: usize, rows: usize, field_deg: f64, k1: f64) -> CameraModel {
 }
 
 /// Largest number of detectable stars of a field, as passed on by the pipeline.
-const MOST_DETECTABLE: usize = 60;
+const MAX_DETECTABLE: usize = 60;
 
 /// Returns the sources of a field with its `detectable` brightest stars: 0.3 px of noise, 0.3 mag of scatter,
 /// 30 % of the stars missing, 30 % of the sources false.
@@ -200,12 +200,12 @@ fn check(sky: &[ListedStar], model: &CameraModel, most_detectable: usize, least:
 
 #[test]
 fn fields_of_an_even_sky_are_solved() {
-    check(&even_sky(26_000, 7.5), &argon(), MOST_DETECTABLE, 297);
+    check(&even_sky(26_000, 7.5), &argon(), MAX_DETECTABLE, 297);
 }
 
 #[test]
 fn fields_of_the_real_sky_are_solved() {
-    check(&real_sky(), &argon(), MOST_DETECTABLE, 297);
+    check(&real_sky(), &argon(), MAX_DETECTABLE, 297);
 }
 
 #[test]
@@ -215,12 +215,12 @@ fn ten_detectable_stars_are_enough() {
 
 #[test]
 fn a_field_of_60_degrees_is_solved() {
-    check(&real_sky(), &camera(1024, 1024, 60.0, -1e-8), MOST_DETECTABLE, 297);
+    check(&real_sky(), &camera(1024, 1024, 60.0, -1e-8), MAX_DETECTABLE, 297);
 }
 
 #[test]
 fn a_field_of_2_degrees_is_solved_where_the_list_is_deep_enough() {
-    check(&even_sky(118_000, 9.0), &camera(1024, 1024, 2.0, 0.0), MOST_DETECTABLE, 297);
+    check(&even_sky(118_000, 9.0), &camera(1024, 1024, 2.0, 0.0), MAX_DETECTABLE, 297);
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn a_field_of_2_degrees_has_too_few_stars_of_a_shallow_list() {
 fn a_mirrored_image_is_not_solved() {
     let model = argon();
     let mirror = |p: PixelPoint| PixelPoint::new(751.0 - p.x, p.y);
-    assert_eq!(tally(&real_sky(), &model, 100, 5, MOST_DETECTABLE, mirror), Tally::default());
+    assert_eq!(tally(&real_sky(), &model, 100, 5, MAX_DETECTABLE, mirror), Tally::default());
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::CameraModel;
 const SEPARATION_TOLERANCE_PX: f64 = 3.0 * std::f64::consts::SQRT_2 * SOURCE_SIGMA_PX;
 
 /// Smallest height of a triangle, px. Below it, the orientation is uncertain and the attitude imprecise.
-const LEAST_HEIGHT_PX: f64 = 5.0;
+const MIN_HEIGHT_PX: f64 = 5.0;
 
 /// Returns all triples of 0..n in an order that quickly leaves a source that is not a star: neighbours in
 /// brightness first, the first source changing fastest (Mortari et al. 2004, Eq. 20).
@@ -50,7 +50,7 @@ impl<'a> TriangleSearch<'a> {
             stars,
             pairs,
             tolerance: SEPARATION_TOLERANCE_PX / focal_px,
-            least_height: LEAST_HEIGHT_PX / focal_px,
+            least_height: MIN_HEIGHT_PX / focal_px,
             visited: 0,
             last: vec![NONE; stars.len()],
             links: Vec::new(),
