@@ -1,0 +1,4 @@
+//! Tests of the navigators against an independent simulator.
+
+mod batch;
+mod simulator;
