@@ -1,0 +1,15 @@
+//! Messages of CCSDS.
+
+mod aem;
+mod common;
+mod covariance;
+mod oem;
+mod opm;
+mod tdm;
+
+pub use aem::{Aem, AemSegment, AttitudeDirection, AttitudeNode};
+pub use common::Header;
+pub use covariance::{Covariance, CovarianceFrame};
+pub use oem::{Oem, OemSegment, StateNode};
+pub use opm::{Manoeuvre, Opm, SpacecraftParameters};
+pub use tdm::{Observation, Tdm, TdmSegment};

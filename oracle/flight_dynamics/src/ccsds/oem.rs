@@ -1,0 +1,276 @@
+//! Orbit ephemeris messages (CCSDS 502.0-B).
+
+use std::path::Path;
+
+use files::FileError;
+use hifitime::Epoch;
+use nalgebra::Vector3;
+use sim::truth::State;
+
+use super::common::{
+    Header, Times, check_center, check_count, check_order, read_coverage, read_frame, read_interpolation,
+    read_time_system, write_coverage,
+};
+use super::covariance::{Covariance, CovarianceFrame};
+use crate::coverage::Coverage;
+use crate::document::{self, Document, Kind, Notation, Record, Segment, Writer};
+use crate::ephemeris::{OrbitEphemeris, OrbitNodes};
+use crate::frame::ReferenceFrame;
+use crate::interpolation::Interpolation;
+use crate::time::TimeSystem;
+
+/// Keywords of the metadata.
+const METADATA: [&str; 12] = [
+    "OBJECT_NAME",
+    "OBJECT_ID",
+    "CENTER_NAME",
+    "REF_FRAME",
+    "REF_FRAME_EPOCH",
+    "TIME_SYSTEM",
+    "START_TIME",
+    "USEABLE_START_TIME",
+    "USEABLE_STOP_TIME",
+    "STOP_TIME",
+    "INTERPOLATION",
+    "INTERPOLATION_DEGREE",
+];
+
+/// State at an instant, in the axes of its segment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StateNode {
+    /// Time.
+    pub time: Epoch,
+    /// Position relative to the Earth's centre, km.
+    pub position_km: Vector3<f64>,
+    /// Velocity relative to the Earth's centre, km/s.
+    pub velocity_km_s: Vector3<f64>,
+}
+
+impl StateNode {
+    /// Returns the state in ICRS axes.
+    pub(crate) fn to_icrs(self, frame: ReferenceFrame) -> State {
+        frame.icrs_state(self.time, &self.position_km, &self.velocity_km_s)
+    }
+
+    /// Reads position and velocity of a record.
+    pub(crate) fn read(record: &Record<'_>, system: TimeSystem) -> Result<Self, FileError> {
+        Ok(Self {
+            time: record.time(record.require("EPOCH")?, system)?,
+            position_km: record.require_numbers(["X", "Y", "Z"], "km")?.into(),
+            velocity_km_s: record.require_numbers(["X_DOT", "Y_DOT", "Z_DOT"], "km/s")?.into(),
+        })
+    }
+
+    /// Writes position and velocity, keyword by keyword.
+    pub(crate) fn write(&self, writer: &mut Writer, system: TimeSystem) {
+        writer.open("stateVector");
+        writer.value("EPOCH", system.format_time(self.time));
+        for (keyword, value) in ["X", "Y", "Z"].into_iter().zip(&self.position_km) {
+            writer.number(keyword, *value, "km");
+        }
+        for (keyword, value) in ["X_DOT", "Y_DOT", "Z_DOT"].into_iter().zip(&self.velocity_km_s) {
+            writer.number(keyword, *value, "km/s");
+        }
+        writer.close("stateVector");
+    }
+}
+
+/// Ephemeris of one spacecraft within one span.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OemSegment {
+    /// Name of the spacecraft.
+    pub object_name: String,
+    /// International designator, as 2010-028B.
+    pub object_id: String,
+    /// Axes of the states.
+    pub frame: ReferenceFrame,
+    /// Time system of the message.
+    pub time_system: TimeSystem,
+    /// Span within which the states may be used: the usable one if the message states it.
+    pub coverage: Coverage,
+    /// Interpolation; `None` if the message states none.
+    pub interpolation: Option<Interpolation>,
+    /// States in order of time.
+    pub states: Vec<StateNode>,
+    /// Covariances.
+    pub covariances: Vec<Covariance>,
+}
+
+/// Orbit ephemeris message.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Oem {
+    /// Header.
+    pub header: Header,
+    /// Segments in order of time.
+    pub segments: Vec<OemSegment>,
+}
+
+impl Oem {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`FileError`] with line and field for a file that is not an OEM, is truncated, has segments of
+    /// different spacecraft or overlapping spans, or a value that is not supported: a central body other than
+    /// the Earth, a frame outside [`ReferenceFrame`], a time system outside [`TimeSystem`].
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        document::read(path, Kind::Oem, |document| Self::from_document(path, document))
+    }
+
+    /// [`Oem::read`] for text in memory; `path` is for messages.
+    ///
+    /// # Errors
+    /// See [`Oem::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, FileError> {
+        document::parse(path, text, Kind::Oem, |document| Self::from_document(path, document))
+    }
+
+    fn from_document(path: &Path, document: &Document<'_>) -> Result<Self, FileError> {
+        let header = Header::read(&document.header)?;
+        let segments: Vec<OemSegment> = document
+            .segments
+            .iter()
+            .map(|segment| OemSegment::read(path, segment))
+            .collect::<Result<_, _>>()?;
+        for (segment, read) in document.segments.iter().zip(&segments) {
+            let first = segments.first().map_or("", |first| first.object_name.as_str());
+            if !read.object_name.eq_ignore_ascii_case(first) {
+                let entry = segment.metadata.require("OBJECT_NAME")?;
+                return Err(segment.metadata.refuse(entry, format!("{first}, as in the first segment")));
+            }
+        }
+        let lines = document.segments.iter().map(|segment| segment.metadata.line);
+        let spans: Vec<_> = segments.iter().map(|segment| segment.coverage).zip(lines).collect();
+        let system =
+            |index: usize| segments.get(index).map_or(TimeSystem::Utc, |segment| segment.time_system);
+        check_order(path, system, &spans)?;
+        for (segment, line) in segments.iter().zip(spans.iter().map(|(_, line)| *line)) {
+            let interpolation = segment.interpolation.unwrap_or(Interpolation::ORBIT_DEFAULT);
+            check_count(path, line, interpolation, segment.states.len())?;
+        }
+        Ok(Self { header, segments })
+    }
+
+    /// Returns the motion that the message describes, ICRS axes, interpolated as it states; without a
+    /// statement by a Hermite polynomial of degree 7. Each node is turned to ICRS before the interpolation.
+    pub fn ephemeris(&self) -> OrbitEphemeris {
+        let segments = self.segments.iter().map(|segment| {
+            OrbitNodes::new(
+                segment.coverage,
+                segment.interpolation.unwrap_or(Interpolation::ORBIT_DEFAULT),
+                segment.states.iter().map(|node| (node.time, node.to_icrs(segment.frame))),
+            )
+        });
+        OrbitEphemeris::from_nodes(segments.collect())
+    }
+
+    /// Returns the message in keyword-value notation, version 2.0.
+    pub fn to_kvn(&self) -> String {
+        self.to_text(Notation::Kvn)
+    }
+
+    /// Returns the message in XML, version 2.0.
+    pub fn to_xml(&self) -> String {
+        self.to_text(Notation::Xml)
+    }
+
+    /// Returns the message in a notation, version 2.0.
+    pub fn to_text(&self, notation: Notation) -> String {
+        let mut writer = Writer::new(Kind::Oem, notation, "2.0");
+        self.header.write(&mut writer);
+        writer.open("body");
+        for segment in &self.segments {
+            segment.write(&mut writer);
+        }
+        writer.close("body");
+        writer.finish()
+    }
+}
+
+impl OemSegment {
+    fn read(path: &Path, segment: &Segment<'_>) -> Result<Self, FileError> {
+        let metadata = &segment.metadata;
+        metadata.check_keywords(&METADATA)?;
+        let time_system = read_time_system(metadata)?;
+        let frame = read_frame(metadata, "REF_FRAME")?;
+        check_center(metadata, Some(metadata.require("CENTER_NAME")?))?;
+        let coverage = read_coverage(metadata, time_system)?;
+        let mut states = Vec::new();
+        let mut covariances = Vec::new();
+        let mut covariance_frame = CovarianceFrame::Reference(frame);
+        let mut times = Times { path, system: time_system, times: Vec::new(), line: metadata.line };
+        for record in &segment.data {
+            match record.name {
+                "stateVector" => {
+                    let node = StateNode::read(record, time_system)?;
+                    times.times.push((node.time, record.line));
+                    states.push(node);
+                }
+                "covarianceMatrix" => {
+                    let time = record.time(record.require("EPOCH")?, time_system)?;
+                    let covariance = Covariance::read(record, time, covariance_frame)?;
+                    covariance_frame = covariance.frame;
+                    covariances.push(covariance);
+                }
+                other => {
+                    let place = files::FileLocation::Line(record.line);
+                    let expected = "stateVector or covarianceMatrix";
+                    return Err(FileError::value(path, place, "element", other, expected));
+                }
+            }
+        }
+        times.check(&coverage)?;
+        Ok(Self {
+            object_name: metadata.require("OBJECT_NAME")?.value.to_owned(),
+            object_id: metadata.require("OBJECT_ID")?.value.to_owned(),
+            frame,
+            time_system,
+            coverage,
+            interpolation: read_interpolation(metadata, "INTERPOLATION")?,
+            states,
+            covariances,
+        })
+    }
+
+    fn write(&self, writer: &mut Writer) {
+        let system = self.time_system;
+        writer.open("segment");
+        writer.line("META_START");
+        writer.open("metadata");
+        writer.value("OBJECT_NAME", &self.object_name);
+        writer.value("OBJECT_ID", &self.object_id);
+        writer.value("CENTER_NAME", "EARTH");
+        writer.value("REF_FRAME", self.frame.code());
+        writer.value("TIME_SYSTEM", system.code());
+        let ends = self.states.first().zip(self.states.last());
+        let whole = ends.map_or(self.coverage, |(first, last)| Coverage {
+            start: first.time.min(self.coverage.start),
+            stop: last.time.max(self.coverage.stop),
+        });
+        write_coverage(writer, system, &whole, &self.coverage);
+        if let Some(Interpolation { method, degree }) = self.interpolation {
+            writer.value("INTERPOLATION", method.code());
+            writer.value("INTERPOLATION_DEGREE", degree);
+        }
+        writer.close("metadata");
+        writer.line("META_STOP");
+        writer.open("data");
+        for node in &self.states {
+            if writer.notation() == Notation::Xml {
+                node.write(writer, system);
+                continue;
+            }
+            let [x, y, z]: [f64; 3] = node.position_km.into();
+            let [vx, vy, vz]: [f64; 3] = node.velocity_km_s.into();
+            writer.line(&format!("{} {x} {y} {z} {vx} {vy} {vz}", system.format_time(node.time)));
+        }
+        if !self.covariances.is_empty() {
+            writer.line("COVARIANCE_START");
+            for covariance in &self.covariances {
+                covariance.write(writer, Some(system));
+            }
+            writer.line("COVARIANCE_STOP");
+        }
+        writer.close("data");
+        writer.close("segment");
+    }
+}
