@@ -7,7 +7,7 @@ use cargo_metadata::{Metadata, MetadataCommand, Target};
 
 /// Each crate of the project, and the project's crates that it may depend on. The pipelines depend only on
 /// the contract, and therefore cannot share code with the simulator.
-const ARROWS: [(&str, &str); 20] = [
+const ARROWS: [(&str, &str); 21] = [
     ("contract", ""),
     ("navigation", "contract"),
     ("sim", "contract"),
