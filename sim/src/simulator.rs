@@ -18,7 +18,7 @@ use crate::sensor::{CosmicRays, Sensor, SensorConfig};
 use crate::switch::Switch;
 use crate::truth::{
     Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
-    Schedule, Trajectory,
+    Schedule, Trajectory, TrajectorySource,
 };
 
 /// Complete input of the simulator.
@@ -30,6 +30,8 @@ pub struct Simulation {
     pub catalog: CatalogConfig,
     /// Orbits of target and chaser.
     pub orbit: OrbitConfig,
+    /// Origin of the motion of chaser and target.
+    pub trajectory: TrajectorySource,
     /// Times of the images.
     pub schedule: Vec<GroupConfig>,
     /// Pointing of the chaser, and its accuracy.
@@ -214,14 +216,20 @@ fn flight(
     cosmic_rays: Option<&CosmicRays>,
     target: &Spacecraft,
 ) -> Result<(Trajectory, Schedule, Shutter), SimError> {
-    let trajectory = Trajectory::new(&simulation.orbit)?;
     let schedule = Schedule::new(&simulation.schedule)?;
+    let trajectory =
+        Trajectory::from_source(&simulation.orbit, &simulation.trajectory, simulation.seed, &schedule)?;
     let shutter = Shutter::new(&simulation.shutter, sensor.saturation_e())?;
     let half_interval_s = sensor.interlace.map_or(0.0, |interlace| interlace.offsets_s()[1]);
     shutter.check_interval(schedule.shortest_interval_s())?;
     cosmic_rays.map_or(Ok(()), |rays| rays.check_hits(shutter.longest_s()))?;
     check_times(&schedule, &trajectory, shutter.lag_s(), half_interval_s)?;
-    let key = (simulation.orbit.clone(), simulation.schedule.clone(), simulation.target.clone());
+    let key = (
+        simulation.orbit.clone(),
+        simulation.trajectory.clone(),
+        simulation.schedule.clone(),
+        simulation.target.clone(),
+    );
     APART.get(key, |_| check_separation(&schedule, &trajectory, target))?;
     Ok((trajectory, schedule, shutter))
 }
@@ -247,7 +255,7 @@ fn check_times(
 }
 
 /// Cache of flights whose frames passed the check of separation.
-static APART: Memo<(OrbitConfig, Vec<GroupConfig>, TargetConfig), ()> = Memo::new();
+static APART: Memo<(OrbitConfig, TrajectorySource, Vec<GroupConfig>, TargetConfig), ()> = Memo::new();
 
 /// Maximum number of frames of a schedule at which the separation is checked; longer schedules are sampled at
 /// equal steps.

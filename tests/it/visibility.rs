@@ -190,13 +190,13 @@ fn the_density_of_stars_is_that_of_the_literature() {
 #[test]
 fn a_flight_of_a_prepared_simulator_is_that_of_a_new_one() {
     let scenario = argon();
-    let mut other = scenario.simulation();
+    let mut other = scenario.simulation().unwrap();
     other.seed = 99;
     other.orbit.relative.a_dlambda_m = -9000.0;
     other.schedule.truncate(2);
     let made = |simulator: &Simulator| simulator.camera().unwrap().expose(2000).unwrap();
     let fresh = Simulator::new(&other, Path::new("")).unwrap();
-    let mut flown = Simulator::new(&scenario.simulation(), Path::new("")).unwrap();
+    let mut flown = Simulator::new(&scenario.simulation().unwrap(), Path::new("")).unwrap();
     let before = made(&flown);
     other.schedule[0].count = 0;
     assert!(matches!(flown.fly(&other), Err(SimError::OutOfRange(_))));

@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use contract::{
     AttitudeKnowledge, Calibration, Camera, OutOfRange, PsfCalibration, Readout, TargetCalibration, bounds,
 };
+use files::Failure;
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,9 +14,11 @@ use sim::onboard::{RoiConfig, ShutterConfig};
 use sim::optics::{OpticsConfig, PsfConfig, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::{SensorConfig, Switch};
-use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
+use sim::truth::{
+    AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig, Schedule, Trajectory,
+};
 
-use crate::scenario_file;
+use crate::{TrajectoryConfig, scenario_file};
 
 /// A far-range scenario, in the form of its TOML file. Units are in the names; unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,6 +40,11 @@ pub struct FarRangeScenario {
     pub star_list: StarListConfig,
     /// Orbits of target and chaser.
     pub orbit: OrbitConfig,
+    /// Origin of the motion of chaser and target; absent: the mean elements of `[orbit]`.
+    // Not written when it is the default, so that resolved scenarios and their hashes are the same as before
+    // the table existed.
+    #[serde(default, skip_serializing_if = "TrajectoryConfig::is_default")]
+    pub trajectory: TrajectoryConfig,
     /// Times of the images, group by group.
     pub schedule: Vec<GroupConfig>,
     /// Pointing of the chaser, and its accuracy.
@@ -183,12 +191,25 @@ impl FarRangeScenario {
         catalog.into_iter().chain(psf).collect()
     }
 
+    /// Returns the motion of chaser and target.
+    ///
+    /// # Errors
+    /// A [`Failure`] for an invalid orbit or schedule, or a file that cannot be read.
+    pub fn trajectory(&self) -> Result<Trajectory, Failure> {
+        let schedule = Schedule::new(&self.schedule)?;
+        Ok(Trajectory::from_source(&self.orbit, &self.trajectory.source()?, self.seed, &schedule)?)
+    }
+
     /// Returns the input of the simulator.
-    pub fn simulation(&self) -> Simulation {
-        Simulation {
+    ///
+    /// # Errors
+    /// A [`Failure`] for a file of the trajectory that cannot be read.
+    pub fn simulation(&self) -> Result<Simulation, Failure> {
+        Ok(Simulation {
             seed: self.seed,
             catalog: self.catalog.clone(),
             orbit: self.orbit.clone(),
+            trajectory: self.trajectory.source()?,
             schedule: self.schedule.clone(),
             attitude: self.attitude.clone(),
             knowledge: self.knowledge.clone(),
@@ -204,7 +225,7 @@ impl FarRangeScenario {
             zero_suppression_dn: self.zero_suppression_dn,
             target: self.target.clone(),
             solar_system: self.solar_system,
-        }
+        })
     }
 
     /// Returns the calibration given to a pipeline: values derived from optics, detector, radiometry and

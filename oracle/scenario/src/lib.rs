@@ -18,6 +18,7 @@ mod far_range;
 pub mod identity;
 pub mod run_file;
 mod stage;
+mod trajectory;
 mod zero;
 
 pub use builtin::{BUILT_IN, BuiltIn, DOCKING, STARTING_POINT, is_argon};
@@ -25,3 +26,4 @@ pub use cameras::CAMERAS;
 pub use docking::{DockingScenario, DockingWorld};
 pub use far_range::{AttitudeChoice, FarRangeScenario, FarRangeWorld, ScoreConfig, StarListConfig};
 pub use stage::Stage;
+pub use trajectory::TrajectoryConfig;

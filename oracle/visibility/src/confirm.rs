@@ -14,7 +14,7 @@ use sim::sensor::Switch;
 use sim::truth::{
     AttitudeConfig, ControlConfig, Elements, ElementsConfig, GroupConfig, Guidance, KnowledgeConfig,
     MountingConfig, ObjectKind, ObjectTruth, Observer, OrbitConfig, RelativeElements, State,
-    TargetAttitudeConfig, clock,
+    TargetAttitudeConfig, TrajectorySource, clock,
 };
 use sim::{Simulation, Simulator};
 
@@ -281,6 +281,7 @@ impl Bench<'_> {
             seed,
             catalog: camera.catalog.clone(),
             orbit,
+            trajectory: TrajectorySource::MeanElements,
             schedule: vec![GroupConfig { name: "confirm".to_owned(), start_utc, cadence_s: 1.0, count: 1 }],
             attitude: AttitudeConfig {
                 guidance,

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::drift::{Drift, DriftConfig, radians_from_arcsec, turned_by, white};
 use super::guidance::Guidance;
 use super::mounting::MountingConfig;
-use super::trajectory::States;
+use super::states::States;
 use crate::randomness::{Effect, Seed};
 use crate::switch::Switch;
 
@@ -111,7 +111,7 @@ pub(crate) mod tests {
     use crate::truth::Trajectory;
     use crate::truth::orbit::ElementsConfig;
     use crate::truth::relative::RelativeElements;
-    use crate::truth::trajectory::OrbitConfig;
+    use crate::truth::states::OrbitConfig;
     use contract::{Direction, Mounting};
 
     pub(crate) const SEED: Seed = Seed { seed: 42, case: 0 };

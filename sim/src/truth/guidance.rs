@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::trajectory::States;
+use super::states::States;
 
 /// Guidance mode of the chaser's attitude.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

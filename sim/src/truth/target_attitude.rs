@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::Rtn;
-use super::trajectory::States;
+use super::states::States;
 
 /// Attitude of the target's body frame as a function of time. Angles are Euler angles 123 from the stated
 /// axes to the body axes, degrees, −360 to 360.

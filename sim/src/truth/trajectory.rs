@@ -1,35 +1,148 @@
 //! Positions and velocities of chaser and target at any time.
 //!
-//! Between manoeuvres each orbit drifts at its own secular rates. The chaser's orbit is stored as one arc
-//! from each manoeuvre to the next; any instant can therefore be computed independently. Internal time is
-//! seconds (SI, as TT and TAI count them) since the orbit's epoch, exact to 0.1 ns within months of the
-//! epoch.
+//! [`Trajectory`] has one interface for every kind of motion: [mean elements](MeanElements) that drift at
+//! secular rates, and [sampled states](SampledStates), which a file of flight dynamics contains. Internal time
+//! is seconds (SI, as TT and TAI count them) since the trajectory's epoch, exact to 0.1 ns within months of
+//! the epoch.
 
-use contract::{Icrs, OutOfRange, Rotation};
-use hifitime::Epoch;
-use nalgebra::Vector3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
+use std::sync::Arc;
 
-use super::clock::parse_utc_field;
-use super::ephemeris::check_covered;
-use super::manoeuvre::ManoeuvreConfig;
-use super::orbit::{Elements, ElementsConfig, Rtn, State};
+use contract::OutOfRange;
+use hifitime::{Duration, Epoch};
+
+use super::clock::format_utc;
+use super::mean_elements::MeanElements;
+use super::orbit::Elements;
 use super::relative::RelativeElements;
+use super::sampled::SampledStates;
+use super::schedule::Schedule;
+use super::states::{OrbitConfig, States, seconds_between};
 
-/// Orbits of target and chaser.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct OrbitConfig {
-    /// Epoch of the elements, UTC, as in 2012-04-23T00:00:00.
-    pub epoch_utc: String,
-    /// Orbit of the target.
-    pub target: ElementsConfig,
-    /// Orbit of the chaser relative to the target's orbit.
-    pub relative: RelativeElements,
-    /// Manoeuvres of the chaser, in order of time.
-    #[serde(default)]
-    pub manoeuvres: Vec<ManoeuvreConfig>,
+/// Origin of the motion of chaser and target.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum TrajectorySource {
+    /// Mean elements of [`OrbitConfig`] with secular drift.
+    #[default]
+    MeanElements,
+    /// States sampled over time, for example from a file of flight dynamics. [`OrbitConfig`] has no effect.
+    Sampled(Arc<SampledStates>),
+}
+
+/// Motion of chaser and target.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    epoch: Epoch,
+    motion: Motion,
+}
+
+/// Motion of one kind.
+#[derive(Debug, Clone, PartialEq)]
+enum Motion {
+    MeanElements(MeanElements),
+    Sampled(Arc<SampledStates>),
+}
+
+impl Trajectory {
+    /// Creates the trajectory of mean elements.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for an invalid epoch, or an orbit outside the supported range; [`OutOfRange`] for a
+    /// manoeuvre that is out of order, not after the epoch, or results in an unsupported orbit.
+    pub fn new(config: &OrbitConfig) -> Result<Self, OutOfRange> {
+        let motion = MeanElements::new(config)?;
+        Ok(Self { epoch: motion.epoch(), motion: Motion::MeanElements(motion) })
+    }
+
+    /// Creates the trajectory of `source` for the frames of `schedule`. `seed` is that of the scenario.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for an invalid orbit or manoeuvre, see [`Trajectory::new`]; for a schedule with frames
+    /// outside [`Trajectory::coverage_s`].
+    pub fn from_source(
+        orbit: &OrbitConfig,
+        source: &TrajectorySource,
+        seed: u64,
+        schedule: &Schedule,
+    ) -> Result<Self, OutOfRange> {
+        let _ = seed;
+        let trajectory = match source {
+            TrajectorySource::MeanElements => Self::new(orbit)?,
+            TrajectorySource::Sampled(states) => {
+                Self { epoch: states.epoch(), motion: Motion::Sampled(states.clone()) }
+            }
+        };
+        for time in schedule.ends().into_iter().flatten() {
+            trajectory.check_covers("schedule", time)?;
+        }
+        Ok(trajectory)
+    }
+
+    /// Returns the trajectory's epoch.
+    pub fn epoch(&self) -> Epoch {
+        self.epoch
+    }
+
+    /// Returns the interval of time in which the states are defined, seconds since the epoch; unlimited for
+    /// mean elements. Outside it, [`Trajectory::states_at_seconds`] continues the nearest state as a Keplerian
+    /// orbit.
+    pub fn coverage_s(&self) -> RangeInclusive<f64> {
+        match &self.motion {
+            Motion::MeanElements(_) => f64::NEG_INFINITY..=f64::INFINITY,
+            Motion::Sampled(states) => states.coverage_s(),
+        }
+    }
+
+    /// Checks that the states are defined at `time`, a time of the field `path`.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] with the covered interval.
+    pub fn check_covers(&self, path: &str, time: Epoch) -> Result<(), OutOfRange> {
+        let coverage = self.coverage_s();
+        if coverage.contains(&self.seconds(time)) {
+            return Ok(());
+        }
+        let utc = |seconds: f64| format_utc(self.epoch + Duration::from_seconds(seconds));
+        let expected = format!(
+            "times from {} to {}, which the trajectory covers",
+            utc(*coverage.start()),
+            utc(*coverage.end())
+        );
+        Err(OutOfRange::new(path, format_utc(time), expected))
+    }
+
+    /// Returns the seconds from the trajectory's epoch to `time`, including leap seconds.
+    pub fn seconds(&self, time: Epoch) -> f64 {
+        seconds_between(self.epoch, time)
+    }
+
+    /// Returns the states of chaser and target at `time`.
+    pub fn states_at(&self, time: Epoch) -> States {
+        self.states_at_seconds(self.seconds(time))
+    }
+
+    /// Returns the states of chaser and target `time_s` seconds after the trajectory's epoch; at an impulsive
+    /// manoeuvre, the states just after it.
+    pub fn states_at_seconds(&self, time_s: f64) -> States {
+        match &self.motion {
+            Motion::MeanElements(motion) => motion.states_at(time_s),
+            Motion::Sampled(states) => states.states_at(time_s),
+        }
+    }
+
+    /// Returns the relative orbital elements at `time`, m; at an impulsive manoeuvre, the elements just after
+    /// it. They are differences of mean elements if the trajectory has them, otherwise of osculating elements.
+    /// `None` if a state has no supported elements.
+    pub fn relative_elements(&self, time: Epoch) -> Option<RelativeElements> {
+        let time_s = self.seconds(time);
+        if let Motion::MeanElements(motion) = &self.motion {
+            let (chaser, target) = motion.elements(time_s);
+            return Some(RelativeElements::between(&chaser, &target));
+        }
+        let states = self.states_at_seconds(time_s);
+        let (chaser, target) = (Elements::from_state(&states.chaser)?, Elements::from_state(&states.target)?);
+        Some(RelativeElements::between(&chaser, &target))
+    }
 }
 
 impl OrbitConfig {
@@ -42,143 +155,13 @@ impl OrbitConfig {
     }
 }
 
-/// States of chaser and target at an instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct States {
-    /// Seconds since the orbit's epoch.
-    pub time_s: f64,
-    /// State of the chaser.
-    pub chaser: State,
-    /// State of the target.
-    pub target: State,
-}
-
-impl States {
-    /// Returns the vector from the chaser to the target, km, ICRS axes; geometric, without light time.
-    pub fn line_of_sight_km(&self) -> Vector3<f64> {
-        self.target.position_km - self.chaser.position_km
-    }
-
-    /// Returns the distance between chaser and target, km.
-    pub fn range_km(&self) -> f64 {
-        self.line_of_sight_km().norm()
-    }
-
-    /// Returns the position of the chaser relative to the target along the target's R, T, N axes, km.
-    pub fn chaser_rtn_km(&self) -> Vector3<f64> {
-        let rtn_from_icrs: Rotation<Rtn, Icrs> = self.target.rtn_from_icrs();
-        rtn_from_icrs.rotate(&-self.line_of_sight_km())
-    }
-}
-
-/// Motion of chaser and target over all time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Trajectory {
-    epoch: Epoch,
-    target: Elements,
-    /// Arcs in order of time; the first also extends back before the epoch.
-    arcs: Vec<Arc>,
-}
-
-/// Orbit of the chaser from one manoeuvre to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Arc {
-    start_s: f64,
-    chaser: Elements,
-}
-
-impl Arc {
-    fn chaser_at(&self, time_s: f64) -> Elements {
-        self.chaser.propagate(time_s - self.start_s)
-    }
-}
-
-impl Trajectory {
-    /// Computes the arcs.
-    ///
-    /// # Errors
-    /// [`OutOfRange`] for an invalid epoch, or an orbit outside the supported range; [`OutOfRange`] for a
-    /// manoeuvre that is out of order, not after the epoch, or results in an unsupported orbit.
-    pub fn new(config: &OrbitConfig) -> Result<Self, OutOfRange> {
-        let epoch = parse_utc_field("orbit.epoch_utc", &config.epoch_utc)?;
-        check_covered("orbit.epoch_utc", &config.epoch_utc, epoch)?;
-        let target = config.target.elements()?;
-        config.relative.check()?;
-        let chaser = config.relative.chaser(&target);
-        if !chaser.is_supported() {
-            return Err(OutOfRange::new(
-                "orbit.relative",
-                format!("{:?}", config.relative),
-                "a chaser orbit with an eccentricity of at most 0.9, a perigee above 100 km and an \
-                 inclination to the equator",
-            ));
-        }
-        let mut last = Arc { start_s: 0.0, chaser };
-        let mut arcs = vec![last];
-        for (index, manoeuvre) in config.manoeuvres.iter().enumerate() {
-            manoeuvre.check(index)?;
-            let time = manoeuvre.time()?;
-            check_covered(format!("orbit.manoeuvres[{index}].time_utc"), &manoeuvre.time_utc, time)?;
-            let start_s = seconds_between(epoch, time);
-            if start_s <= last.start_s {
-                let expected = "after the orbit's epoch and after the previous manoeuvre";
-                return Err(manoeuvre.refused_time(index, expected));
-            }
-            let chaser = manoeuvre.apply(&last.chaser_at(start_s)).ok_or_else(|| {
-                manoeuvre.refused_impulse(index, "an impulse that results in a supported orbit")
-            })?;
-            last = Arc { start_s, chaser };
-            arcs.push(last);
-        }
-        Ok(Self { epoch, target, arcs })
-    }
-
-    /// Returns the orbit's epoch.
-    pub fn epoch(&self) -> Epoch {
-        self.epoch
-    }
-
-    /// Returns the seconds from the orbit's epoch to `time`, including leap seconds.
-    pub fn seconds(&self, time: Epoch) -> f64 {
-        seconds_between(self.epoch, time)
-    }
-
-    /// Returns the states of chaser and target at `time`.
-    pub fn states_at(&self, time: Epoch) -> States {
-        self.states_at_seconds(self.seconds(time))
-    }
-
-    /// Returns the states of chaser and target `time_s` seconds after the orbit's epoch; at a manoeuvre, the
-    /// states just after it.
-    pub fn states_at_seconds(&self, time_s: f64) -> States {
-        let (chaser, target) = self.elements(time_s);
-        States { time_s, chaser: chaser.state(), target: target.state() }
-    }
-
-    /// Returns the relative orbital elements at `time`, m; at a manoeuvre, the elements just after it.
-    pub fn relative_elements(&self, time: Epoch) -> RelativeElements {
-        let (chaser, target) = self.elements(self.seconds(time));
-        RelativeElements::between(&chaser, &target)
-    }
-
-    /// Returns the elements of (chaser, target).
-    fn elements(&self, time_s: f64) -> (Elements, Elements) {
-        let begun = self.arcs.partition_point(|arc| arc.start_s <= time_s);
-        let arc = &self.arcs[begun.saturating_sub(1)];
-        (arc.chaser_at(time_s), self.target.propagate(time_s))
-    }
-}
-
-/// Returns the seconds from `from` to `to`. Computed in TAI, because a difference of UTC would miss leap
-/// seconds, and in integer nanoseconds, because f64 holds 104 days of them exactly.
-fn seconds_between(from: Epoch, to: Epoch) -> f64 {
-    let nanoseconds = to.to_tai_duration().total_nanoseconds() - from.to_tai_duration().total_nanoseconds();
-    nanoseconds as f64 / 1e9
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::clock::parse_utc_field;
+    use super::super::manoeuvre::ManoeuvreConfig;
+    use super::super::orbit::ElementsConfig;
     use super::*;
+    use nalgebra::Vector3;
 
     fn config() -> OrbitConfig {
         let manoeuvre =
@@ -205,7 +188,7 @@ mod tests {
     fn the_relative_elements_at_the_epoch_are_those_given() {
         let config = config();
         let trajectory = Trajectory::new(&config).unwrap();
-        let got = trajectory.relative_elements(trajectory.epoch());
+        let got = trajectory.relative_elements(trajectory.epoch()).unwrap();
         assert!((got.a_dlambda_m + 30_000.0).abs() < 1e-6);
         assert!((got.a_dey_m - 400.0).abs() < 1e-6);
     }
@@ -260,6 +243,6 @@ mod tests {
         let trajectory = Trajectory::new(&config).unwrap();
         let next_day = parse_utc_field("time", "2012-07-01T00:00:00Z").unwrap();
         assert_eq!(trajectory.seconds(next_day), 86_401.0);
-        assert_eq!(trajectory.seconds(trajectory.epoch() - hifitime::Duration::from_seconds(1.5)), -1.5);
+        assert_eq!(trajectory.seconds(trajectory.epoch() - Duration::from_seconds(1.5)), -1.5);
     }
 }

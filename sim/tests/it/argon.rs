@@ -25,6 +25,7 @@ pub(crate) fn simulation() -> Simulation {
         seed: section(&table, "seed"),
         catalog: section(&table, "catalog"),
         orbit: section(&table, "orbit"),
+        trajectory: Default::default(),
         schedule: section(&table, "schedule"),
         attitude: section(&table, "attitude"),
         knowledge: section(&table, "knowledge"),

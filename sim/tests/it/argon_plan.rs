@@ -61,7 +61,7 @@ fn the_mean_range_at_noon_goes_down_as_planned() {
 #[test]
 fn the_approach_begins_at_30_km_and_ends_at_3_km() {
     let trajectory = Trajectory::new(&fragment().orbit).unwrap();
-    let lambda = |epoch: Epoch| trajectory.relative_elements(epoch).a_dlambda_m;
+    let lambda = |epoch: Epoch| trajectory.relative_elements(epoch).unwrap().a_dlambda_m;
     assert!((lambda(trajectory.epoch()) + 30_000.0).abs() < 1.0);
     let end = Epoch::from_gregorian_utc_hms(2012, 4, 28, 0, 0, 0);
     // Each impulse is rounded to 0.01 mm/s, which is 1.4 m per day; the rounding accumulates over four days

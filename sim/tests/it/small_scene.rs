@@ -12,7 +12,7 @@ use boresight_sim::sensor::{
 };
 use boresight_sim::truth::{
     AttitudeConfig, ControlConfig, DriftConfig, ElementsConfig, GroupConfig, Guidance, KnowledgeConfig,
-    ManoeuvreConfig, MountingConfig, OrbitConfig, RelativeElements, Trajectory, clock,
+    ManoeuvreConfig, MountingConfig, OrbitConfig, RelativeElements, Trajectory, TrajectorySource, clock,
 };
 use boresight_sim::{Simulation, Simulator};
 use contract::{Camera, Direction, Icrs, Mounting};
@@ -34,6 +34,7 @@ pub(crate) fn still() -> Simulation {
         seed: 20120425,
         catalog: CatalogConfig { magnitude_limit: Some(9.5), ..CatalogConfig::default() },
         orbit,
+        trajectory: TrajectorySource::MeanElements,
         schedule: vec![GroupConfig {
             name: "only".into(),
             start_utc: START_UTC.into(),

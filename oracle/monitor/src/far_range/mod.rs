@@ -9,7 +9,7 @@ use files::{Failure, FrameCluster, TableReader, read_measurements};
 use hifitime::Epoch;
 use run::{FarRangeMission, SceneTruth, World};
 use serde_json::{Value, json};
-use sim::truth::{FrameTruth, ObjectTruth, Trajectory};
+use sim::truth::{FrameTruth, ObjectTruth};
 
 use self::report::{FarRangeReporter, range_and_rate};
 use crate::feed::{Measurements, MonitorContext, MonitoredWorld, Serve, frames, optional};
@@ -30,7 +30,7 @@ impl MonitoredWorld for FarRangeMission {
     fn context(&self, measurements: &Measurements) -> Result<MonitorContext, Failure> {
         let scenario = self.scenario();
         Ok(MonitorContext {
-            ground: Some(GroundTrack::Chaser(Box::new(Trajectory::new(&scenario.orbit)?))),
+            ground: Some(GroundTrack::Chaser(Box::new(scenario.trajectory()?))),
             stretch: Stretch::from_sensor(&scenario.sensor),
             frames: frames::<FrameTruth>(measurements, Self::TRUTH_FILE)?,
         })
@@ -43,7 +43,7 @@ impl MonitoredWorld for FarRangeMission {
     fn overview(&self, measurements: &Measurements, context: &MonitorContext) -> Result<[Value; 2], Failure> {
         let scenario = self.scenario();
         let schedule = self.simulator().schedule();
-        let trajectory = Trajectory::new(&scenario.orbit)?;
+        let trajectory = scenario.trajectory()?;
         let frames = &context.frames;
         let at = |frame| schedule.frame(frame).map(|(_, time)| time);
         let plan = Plan::new("km", frames, MARGIN_M_S, |frame| {
@@ -84,7 +84,7 @@ impl MonitoredWorld for FarRangeMission {
     ) -> Result<(), Failure> {
         let Some(ground) = &context.ground else { return Ok(()) };
         let Some(start) = self.time(0) else { return Ok(()) };
-        let trajectory = &Trajectory::new(&self.scenario().orbit)?;
+        let trajectory = &self.scenario().trajectory()?;
         let reporter = FarRangeReporter { camera: &self.scenario().camera, trajectory, ground, start };
         match measurements {
             Measurements::Live { factory, frames, jobs } => {

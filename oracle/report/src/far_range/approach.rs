@@ -1,7 +1,6 @@
 //! Position of the chaser: the relative orbit.
 
 use files::Failure;
-use sim::truth::Trajectory;
 
 use super::run::{FarRangeRun, shown_time};
 use crate::charts::chart::{Chart, MEASURED, Panel, line, rounded, stacked};
@@ -15,7 +14,7 @@ const TABLE_BINS: usize = 60;
 
 /// Returns the section on Fig. 4: the chaser in the orbital frame of the target.
 pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
-    let trajectory = Trajectory::new(&run.run_file.scenario.orbit)?;
+    let trajectory = run.run_file.scenario.trajectory()?;
     let rtn_km: Vec<[f64; 3]> =
         run.truths.iter().map(|truth| trajectory.states_at(truth.time).chaser_rtn_km().into()).collect();
     let rows = evenly(rtn_km.len());

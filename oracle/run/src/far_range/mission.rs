@@ -93,7 +93,7 @@ pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result
     bounds::check(&scenario.star_list, "star_list").map_err(|error| source.out_of_range(&error))?;
     source.check_part("far_range", scenario.far_range.check())?;
     scenario.score.check().map_err(|error| source.out_of_range(&error))?;
-    Simulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
+    Simulator::new(&scenario.simulation()?, &source.folder).map_err(|error| source.explain(error))
 }
 
 /// A star list in the form of its file, and in the form passed to a pipeline.
