@@ -88,7 +88,7 @@ struct Assessment<'a> {
 /// this in one of five hundred results.
 const DISAGREEMENT: f64 = 0.999;
 
-/// Describes the simulated rate where the model predicts `law`, including whether the two disagree.
+/// Describes the simulated rate where the model predicts `model`, including whether the two disagree.
 fn simulation_text(simulated: Option<&SimulatedRate>, model: f64) -> String {
     let Some(s) = simulated else { return "not simulated".to_owned() };
     let (low, high) = clopper_pearson(s.count, s.of, DISAGREEMENT);

@@ -2,7 +2,7 @@
 //! distribution.
 
 /// Returns P(N ≥ `n_min`), exact: the distribution of N, truncated at `n_min`, updated event by event (Chen &
-/// Liu 1997, Statistica Sinica 7, 875, Sec. 2, the direct recursion). `law` is a reusable buffer.
+/// Liu 1997, Statistica Sinica 7, 875, Sec. 2, the direct recursion). `distribution` is a reusable buffer.
 pub fn at_least(
     n_min: usize,
     probabilities: impl IntoIterator<Item = f64>,

@@ -76,7 +76,8 @@ pub enum Status {
     MetSimulated,
     /// Met according to the analytic model only: nothing was simulated, or too few frames to show it even if
     /// all of them met it.
-    #[serde(rename = "met_law")]
+    // `met_law` is the status in reports of earlier versions.
+    #[serde(alias = "met_law")]
     MetModel,
     /// Not met according to the model or to the upper bound of the simulated rate.
     NotMet,
