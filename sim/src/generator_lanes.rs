@@ -50,7 +50,7 @@ impl GeneratorLanes {
         words
     }
 
-    /// Steps every generator `times` times and passes the number of each step and its words to `tell`.
+    /// Steps every generator `times` times and passes the number of each step and its words to `visit`.
     ///
     /// It must be called in a separate function ([`Simd::vectorize`]): inside a larger function the
     /// generators would not stay in registers.

@@ -87,8 +87,8 @@ pub struct Seed {
 }
 
 impl Seed {
-    /// Returns the stream at an address. `place` is the index by which the effect counts, for instance a row,
-    /// a pixel or a component.
+    /// Returns the stream at an address. `index` is that by which the effect counts, for instance of a row, a
+    /// pixel or a component.
     pub fn stream(&self, frame: u64, effect: Effect, index: u64) -> Stream {
         self.streams(frame, effect).stream_at(index)
     }

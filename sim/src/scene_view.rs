@@ -35,7 +35,7 @@ pub(crate) enum FrameViews {
 }
 
 impl SceneView {
-    /// Returns the view about the middle of frame `number`, with positions and attitudes from `moment`, and
+    /// Returns the view at `time`, the middle of frame `number`, with positions and attitudes from `state`, and
     /// the scenes to draw.
     pub(crate) fn for_frame(
         simulator: &Simulator,

@@ -37,7 +37,7 @@ pub enum MarkUse {
     Used,
     /// Seen, and rejected by the self-checking: shadowed, glinting or partly hidden.
     Rejected,
-    /// Not seen.
+    /// Not found in the image.
     Missing,
     /// Predicted position is outside the image.
     OutOfField,

@@ -328,7 +328,7 @@ fn exposure_window(report: &VisibilityReport) -> Section {
     let mut data = DataTable::new([
         "range, km",
         "longest, s",
-        "longest in half, s",
+        "longest in half of the aspects, s",
         "shortest, s",
         "open",
         "stars",

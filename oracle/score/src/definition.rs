@@ -105,7 +105,7 @@ impl<'a, U> Definition<'a, U> {
         self
     }
 
-    /// Sets the limit of a rate of errors below a limit, degrees.
+    /// Sets the error below which a measurement counts for this rate, degrees.
     #[must_use]
     pub fn with_limit_deg(self, limit_deg: f64) -> Self {
         Self { limit_deg: Some(limit_deg), ..self }

@@ -38,7 +38,7 @@ pub(super) struct Detector {
     /// Pixels of all clusters of the frame, one cluster after the other. Also the queue of the fill.
     members: Vec<u32>,
     blobs: Vec<Blob>,
-    /// Index among the members of the first pixel of each cluster.
+    /// Index into `members` of the first pixel of each cluster.
     first_members: Vec<usize>,
     bright: BrightChunks,
 }

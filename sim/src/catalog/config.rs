@@ -16,7 +16,7 @@ pub struct CatalogConfig {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -2, max = 30))]
     pub magnitude_limit: Option<f64>,
-    /// Only the stars in this cone are drawn; without a cone those of the whole sky.
+    /// Cone of the drawn stars; absent: the whole sky.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cone: Option<ConeConfig>,
 }

@@ -40,8 +40,8 @@ impl Objects {
         self.stamps.get_mut(self.count).map(std::mem::take).unwrap_or_default()
     }
 
-    /// Adds the image of the next object; `cover` must have been called before for each part of a row that
-    /// the image covers.
+    /// Adds the image of the next object; [`Self::add_span`] must have been called before for each part of a
+    /// row that the image covers.
     pub(super) fn push(&mut self, stamp: Stamp) -> &Stamp {
         let object = self.count;
         match self.stamps.get_mut(object) {
@@ -64,7 +64,7 @@ impl Objects {
         !self.in_row[y].is_empty()
     }
 
-    /// Passes to `tell` the parts of a row that objects cover, each as its first column and the column after
+    /// Passes to `visit` the parts of a row that objects cover, each as its first column and the column after
     /// its last.
     pub(super) fn for_each_span(&self, y: usize, mut visit: impl FnMut(usize, usize)) {
         self.in_row[y].iter().for_each(|part| visit(part.from, part.to));

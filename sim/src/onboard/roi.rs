@@ -19,10 +19,10 @@ use crate::sensor::RawImage;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ScanOrder {
-    /// By rows from the top, each row from the left.
+    /// Order by rows from the top, each row from the left.
     #[default]
     Rows,
-    /// By columns from the left, each column from the top.
+    /// Order by columns from the left, each column from the top.
     Columns,
 }
 

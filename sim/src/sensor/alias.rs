@@ -15,7 +15,7 @@ pub(super) struct AliasTable {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
-    /// A side below the threshold gives `own`, any other side gives `other`.
+    /// A random word below the threshold gives `primary`, any other word gives `other`.
     threshold: u32,
     primary: u16,
     other: u16,

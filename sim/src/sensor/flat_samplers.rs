@@ -13,7 +13,7 @@ use super::alias::AliasTable;
 use super::exceedance::Exceedance;
 use super::mean_tables::MeanTables;
 use super::pixel_distribution::PixelDistribution;
-use super::poisson_digits::{FEW, PoissonDigits, small_poisson};
+use super::poisson_digits::{MAX_SMALL_E, PoissonDigits, small_poisson};
 use super::ziggurat::Ziggurat;
 use crate::randomness::{Stream, Streams};
 use crate::switch::Switch;
@@ -95,7 +95,7 @@ impl FlatSampler {
 
     fn new(distribution: PixelDistribution, mean_e: f64) -> Self {
         let table = table(&distribution, mean_e, 0);
-        Self { distribution, mean_e, flat: table, more: vec![None; FEW + 1] }
+        Self { distribution, mean_e, flat: table, more: vec![None; MAX_SMALL_E + 1] }
     }
 
     /// Draws pixels without signal, two from each word.
@@ -112,7 +112,7 @@ impl FlatSampler {
         }
     }
 
-    /// Draws a pixel with signal, at the address `place`.
+    /// Draws a pixel with signal, at the address `index`.
     pub(super) fn draw_lit(&mut self, signal_e: f64, streams: &Streams, index: u64) -> u16 {
         // Without shot noise, electrons are not drawn as integers and superposition does not apply. A dead
         // pixel has less than the flat level.

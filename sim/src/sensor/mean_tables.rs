@@ -64,7 +64,7 @@ impl MeanTables {
     }
 
     /// Draws the pixels of a row, each with its mean, electrons (a negative mean counts as 0), from the words
-    /// of `lanes`, one per pixel. `own` returns the stream at a pixel's own address.
+    /// of `lanes`, one per pixel. `pixel_stream` returns the stream at a pixel's own address.
     #[inline(always)]
     pub(super) fn draw_row<S: Simd>(
         &mut self,
@@ -165,8 +165,8 @@ impl MeanTables {
     }
 
     /// Draws the digital number of a pixel with a mean of `mean_e` electrons from a uniform word: its highest
-    /// 24 bits determine n, its lower half the digital number. `own` is the stream at the pixel's own
-    /// address.
+    /// 24 bits determine n, its lower half the digital number. `pixel_stream` returns the stream at
+    /// the pixel's own address.
     fn draw(&mut self, mean_e: f64, word: u64, pixel_stream: impl FnOnce() -> Stream) -> u16 {
         let mean = mean_e.max(0.0) as f32;
         let choice = TableChoice::from_mean(mean, (word >> 32) as u32);

@@ -50,10 +50,10 @@ fn digit(tables: &mut [Option<AliasTable>], digit: u32, unit_e: f64, word: u32) 
 
 /// Maximum number of electrons drawn from a mean of 4 or less: more than 24 have a probability of 1.4e-12,
 /// far below the 2^-32 that a word resolves.
-pub(super) const FEW: usize = 24;
+pub(super) const MAX_SMALL_E: usize = 24;
 
 /// Draws a Poisson number of a mean of at most 4 from a uniform word: the smallest n with P(N ≤ n) ≥ u, at
-/// most [`FEW`].
+/// most [`MAX_SMALL_E`].
 #[inline(always)]
 pub(super) fn small_poisson(mean: f64, word: u32) -> usize {
     let u = (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0);
@@ -70,10 +70,10 @@ pub(super) fn small_poisson(mean: f64, word: u32) -> usize {
     }
 }
 
-/// Draws the number of [`few`] where its bounds are not sufficient.
+/// Draws the number of [`small_poisson`] where its bounds are not sufficient.
 pub(super) fn by_inversion(mean: f64, u: f64) -> usize {
     let (mut n, mut left, mut probability) = (0, u, libm::exp(-mean));
-    while left > probability && n < FEW {
+    while left > probability && n < MAX_SMALL_E {
         left -= probability;
         n += 1;
         probability *= mean / n as f64;
@@ -129,6 +129,6 @@ mod tests {
             }
         }
         assert_eq!((small_poisson(0.0, 0), small_poisson(0.0, u32::MAX)), (0, 0));
-        assert!(small_poisson(4.0, u32::MAX) <= FEW);
+        assert!(small_poisson(4.0, u32::MAX) <= MAX_SMALL_E);
     }
 }

@@ -37,7 +37,7 @@ struct FieldRecord<'a> {
     lens: Option<String>,
     truth: Option<FieldTruth>,
     features: Vec<FeatureRow>,
-    /// `None` if there are no measurements at all.
+    /// Outcome of the field, `None` without a row; the outer `None` without a table of measurements.
     answer: Option<Option<DockingOutcome>>,
     verdict: Option<UnitVerdict>,
 }

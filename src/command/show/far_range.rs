@@ -34,7 +34,7 @@ struct FrameRecord {
     group: Option<String>,
     truth: Option<FrameTruth>,
     objects: Vec<ObjectTruth>,
-    /// `None` if there are no measurements at all.
+    /// Outcome of the frame, `None` without a row; the outer `None` without a table of measurements.
     answer: Option<Option<Outcome>>,
     verdict: Option<Verdict>,
 }

@@ -20,9 +20,9 @@ pub struct Lines<R> {
 enum CellState {
     /// Beginning of a cell.
     Start,
-    /// In a cell without quotation marks, where they are ordinary characters.
+    /// Inside a cell without enclosing quotation marks; quotation marks are ordinary characters.
     Plain,
-    /// Between quotation marks.
+    /// Inside a cell with enclosing quotation marks.
     Quoted,
     /// After a quotation mark that ends a cell unless it is doubled.
     Closed,

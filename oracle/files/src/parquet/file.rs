@@ -297,16 +297,16 @@ fn read(
     })
 }
 
-/// Reads cells; `meant` converts stored values to those of the table. Only nullable columns have levels.
+/// Reads cells; `convert` maps stored values to those of the table. Only nullable columns have levels.
 fn read_cells<T: DataType, V: Copy + Default>(
     reader: &mut ColumnReaderImpl<T>,
     rows: usize,
     levels: Option<&mut Vec<i16>>,
-    meant: impl Fn(Vec<T::T>) -> Vec<V>,
+    convert: impl Fn(Vec<T::T>) -> Vec<V>,
 ) -> Result<Cells<V>, Reason> {
     let mut values = Vec::with_capacity(rows);
     let is_valid = read_values(reader, rows, levels, &mut values)?;
-    let values = meant(values);
+    let values = convert(values);
     match is_valid {
         None => Ok(Cells::new(values)),
         Some(flags) => Cells::spread(values, flags).ok_or_else(|| DISAGREE.into()),

@@ -17,7 +17,7 @@ pub enum FigureVerdict {
     Worse,
     /// Present in the baseline and absent from the result, in more blocks than by chance: counts as worse.
     Gone,
-    /// Without evidence that the figure is worse.
+    /// There is no evidence that the figure is worse.
     NoWorse,
     /// Better, beyond chance and beyond the tolerance.
     Better,

@@ -119,9 +119,9 @@ impl TextPosition {
 /// Colour scale of a heat map, from its smallest to its largest value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ColourScale {
-    /// From dark blue to yellow.
+    /// Colours from dark blue to yellow.
     Viridis,
-    /// From blue through grey to red.
+    /// Colours from blue through grey to red.
     BlueToRed,
 }
 

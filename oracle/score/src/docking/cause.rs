@@ -47,7 +47,7 @@ impl MissCause {
         "inconsistent",
     ];
 
-    /// Returns the cause of a field without a pose; `said` is the reason stated by the pipeline, `None`
+    /// Returns the cause of a field without a pose; `reason` is that of the pipeline, `None`
     /// without an outcome.
     pub(super) fn from_truth(truth: &TrueField, is_resolved: bool, reason: Option<&NoPose>) -> Self {
         let Some(reason) = reason else { return Self::NotReported };

@@ -72,7 +72,7 @@ pub struct Dispersion {
     /// Path of the parameter in the scenario, as in `psf.sigma_px`, `attitude.control.jitter_arcsec[2]` or
     /// `cameras[0].camera.focal_length_mm`.
     pub path: String,
-    /// Its distribution.
+    /// Distribution of the parameter.
     pub distribution: Distribution,
 }
 
