@@ -102,8 +102,8 @@ impl Orbit {
     }
 
     /// Secular rates of first order in J2 (Brouwer 1959, AJ 64, 378; Vallado, *Fundamentals of Astrodynamics
-    /// and Applications*, 4th ed., 9.6): Ω' = −γ cos i, ω' = γ (2 − 5/2 sin² i), M' = n + γ η (1 − 3/2 sin² i)
-    /// with η² = 1 − e².
+    /// and Applications*, 4th ed., 9.6): Ω' = −γ cos i, ω' = γ (2 − 5/2 sin² i), M' = n + γ η
+    /// (1 − 3/2 sin² i) with η² = 1 − e².
     pub fn secular_rates(&self) -> SecularRates {
         let gamma = self.gamma();
         let (sin_i, cos_i) = libm::sincos(self.i);

@@ -85,8 +85,8 @@ impl DriftPartials {
         let eta = eta2.sqrt();
         let (perigee_rate, node_rate) = (gamma * (2.0 - 2.5 * sin2), -gamma * cos_i);
         let anomaly_j2 = gamma * eta * (1.0 - 1.5 * sin2);
-        // By δa: γ ∝ a^(−7/2) and n ∝ a^(−3/2). By δe, with η dη = −(ex δex + ey δey): γ ∝ η^(−4) for Ω and ω,
-        // γ η ∝ η^(−3) for M.
+        // By δa: γ ∝ a^(−7/2) and n ∝ a^(−3/2). By δe, with η dη = −(ex δex + ey δey): γ ∝ η^(−4) for Ω and
+        // ω, γ η ∝ η^(−3) for M.
         let by_e = |rate: f64, power: f64| rate * power / eta2;
         let node = |factor: f64| node_rate * factor;
         let of_node =

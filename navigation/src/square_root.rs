@@ -1,8 +1,9 @@
 //! Least squares in square-root information form.
 //!
 //! Rows [A | b] are triangularised by Householder reflections in blocks (Bierman, *Factorization Methods for
-//! Discrete Sequential Estimation*, 1977, chapter IV): R x = z minimises |A x − b|² without forming AᵀA, which
-//! would square the condition number. The range of an angles-only orbit is weakly determined; this matters.
+//! Discrete Sequential Estimation*, 1977, chapter IV): R x = z minimises |A x − b|² without forming AᵀA,
+//! which would square the condition number. The range of an angles-only orbit is weakly determined; this
+//! matters.
 
 use nalgebra::{DMatrix, DVector};
 

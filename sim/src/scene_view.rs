@@ -35,8 +35,8 @@ pub(crate) enum FrameViews {
 }
 
 impl SceneView {
-    /// Returns the view at `time`, the middle of frame `number`, with positions and attitudes from `state`, and
-    /// the scenes to draw.
+    /// Returns the view at `time`, the middle of frame `number`, with positions and attitudes from `state`,
+    /// and the scenes to draw.
     pub(crate) fn for_frame(
         simulator: &Simulator,
         psf: &Psf,

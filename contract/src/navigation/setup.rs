@@ -172,8 +172,8 @@ pub struct AngleErrors {
     #[serde(default)]
     #[schemars(length(max = 8))]
     pub slow: Vec<SlowError>,
-    /// Standard deviation of the constant error (mounting, centre of brightness, alignment) about the camera's
-    /// x, y, z axes, arcsec, each 0 to 36000.
+    /// Standard deviation of the constant error (mounting, centre of brightness, alignment) about the
+    /// camera's x, y, z axes, arcsec, each 0 to 36000.
     #[schemars(inner(range(min = 0, max = 36000)))]
     pub constant_arcsec: [f64; 3],
 }

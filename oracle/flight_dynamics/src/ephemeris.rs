@@ -88,8 +88,8 @@ impl OrbitEphemeris {
         }
     }
 
-    /// Returns the state at `time`, relative to the Earth's centre, ICRS axes. At an instant that two segments
-    /// share, the later one counts.
+    /// Returns the state at `time`, relative to the Earth's centre, ICRS axes. At an instant that two
+    /// segments share, the later one counts.
     ///
     /// # Errors
     /// [`Uncovered`] outside the coverage, and in a gap.

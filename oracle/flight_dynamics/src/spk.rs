@@ -35,8 +35,8 @@ const TYPES: [i32; 8] = [1, 2, 3, 8, 9, 12, 13, 21];
 
 /// Motion of one body relative to the Earth, from a kernel.
 ///
-/// Times are TDB in seconds since J2000.0, which a 64-bit number resolves to 0.06 µs: 0.5 mm along a low orbit,
-/// the same for all spacecraft.
+/// Times are TDB in seconds since J2000.0, which a 64-bit number resolves to 0.06 µs: 0.5 mm along a low
+/// orbit, the same for all spacecraft.
 #[derive(Clone)]
 pub struct Spk {
     kernel: Arc<SPK>,

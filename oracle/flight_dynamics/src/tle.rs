@@ -66,8 +66,8 @@ impl Tle {
     /// Reads a file with one element set: two lines, or three with the name first.
     ///
     /// # Errors
-    /// [`FileError`] with line and field for other content, a wrong checksum, or elements outside the range of
-    /// SGP4.
+    /// [`FileError`] with line and field for other content, a wrong checksum, or elements outside the range
+    /// of SGP4.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         let text = sim::regular_file::read_text(path, MAX_BYTES)
             .map_err(|source| FileError::io(path, "read", source))?;

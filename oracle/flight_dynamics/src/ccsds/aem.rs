@@ -119,9 +119,9 @@ impl Aem {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`FileError`] with line and field for a file that is not an AEM, is truncated, has segments of different
-    /// spacecraft or overlapping spans, or a value that is not supported: an attitude without a quaternion, or
-    /// a frame outside [`ReferenceFrame`].
+    /// [`FileError`] with line and field for a file that is not an AEM, is truncated, has segments of
+    /// different spacecraft or overlapping spans, or a value that is not supported: an attitude without a
+    /// quaternion, or a frame outside [`ReferenceFrame`].
     pub fn read(path: &Path) -> Result<Self, FileError> {
         document::read(path, Kind::Aem, |document| Self::from_document(path, document))
     }

@@ -57,7 +57,8 @@ fn unit_of(keyword: &str) -> &'static str {
 }
 
 impl Covariance {
-    /// Reads a covariance. Without a frame of its own it has the frame before it, at first that of the states.
+    /// Reads a covariance. Without a frame of its own it has the frame before it, at first that of the
+    /// states.
     pub(crate) fn read(
         record: &Record<'_>,
         time: Epoch,

@@ -1,12 +1,12 @@
-//! True equator, mean equinox of date: precession of 1976 and nutation of 1980 (Lieske et al. 1977; Seidelmann
-//! 1982; both in Vallado et al., AIAA 2006-6753).
+//! True equator, mean equinox of date: precession of 1976 and nutation of 1980 (Lieske et al. 1977;
+//! Seidelmann 1982; both in Vallado et al., AIAA 2006-6753).
 
 use nalgebra::Matrix3;
 
 use super::turn::{ARCSEC, turn};
 
-/// A term of the nutation of 1980: multiples of l, l', F, D, Ω; coefficients of Δψ and its rate, of Δε and its
-/// rate, 0.1 mas and 0.1 mas per century.
+/// A term of the nutation of 1980: multiples of l, l', F, D, Ω; coefficients of Δψ and its rate, of Δε and
+/// its rate, 0.1 mas and 0.1 mas per century.
 type Term = ([f64; 5], [f64; 4]);
 
 /// The 31 terms with Δψ of 1.5 mas or more. The other 75 add up to less than 20 mas.

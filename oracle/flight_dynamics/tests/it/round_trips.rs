@@ -99,7 +99,8 @@ fn interpolation_meets_the_motion_also_over_a_leap_second() {
     for tenth in 100..2100 {
         let seconds = f64::from(tenth) * 0.1;
         let (state, expected) = (ephemeris.state_at(time(seconds)).unwrap(), node(seconds));
-        // The remainder of degree 7: (ωh)^8/8! with nodes every 10 s is 1e-21 of the radius; rounding is left.
+        // The remainder of degree 7: (ωh)^8/8! with nodes every 10 s is 1e-21 of the radius; rounding is
+        // left.
         assert!(
             (state.position_km - expected.position_km).norm() < 1e-11,
             "{seconds} {}",
