@@ -25,7 +25,7 @@ mod command;
 mod errors;
 mod frame;
 mod json;
-mod prepared;
+mod prepared_scenario;
 mod python_pipeline;
 mod run;
 mod scenario;

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 
 use crate::errors::refused;
-use crate::prepared::PreparedScenario;
+use crate::prepared_scenario::PreparedScenario;
 use crate::scenario::setup;
 use crate::wait::Interruption;
 use crate::worlds::{PythonFactory, PythonInterface};

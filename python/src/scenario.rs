@@ -13,7 +13,7 @@ use serde_json::Value;
 use crate::arguments;
 use crate::errors::{BoresightError, raised, refused};
 use crate::json;
-use crate::prepared::PreparedScenario;
+use crate::prepared_scenario::PreparedScenario;
 use crate::simulated_frame::SimulatedFrame;
 use crate::stream::FrameStream;
 use crate::worlds::PendingFrame;

@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::{raised, refused};
 use crate::frame::Frame;
-use crate::prepared::PreparedScenario;
+use crate::prepared_scenario::PreparedScenario;
 use crate::table::{Table, row};
 use crate::worlds::{FrameParts, PendingFrame};
 

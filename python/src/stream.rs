@@ -9,7 +9,7 @@ use boresight::failure::Failure;
 use pyo3::prelude::*;
 
 use crate::errors::{BoresightError, raised};
-use crate::prepared::PreparedScenario;
+use crate::prepared_scenario::PreparedScenario;
 use crate::simulated_frame::SimulatedFrame;
 use crate::worlds::PendingFrame;
 

@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_has_the_values_of_its_pixels_whatever_the_size() {
+    fn a_row_has_the_values_of_its_pixels_at_any_size() {
         for (columns, rows) in [(752, 580), (17, 17), (16, 5), (2, 1), (1, 1), (300, 200)] {
             let field = field(columns, rows);
             let mut row = vec![f64::NAN; columns];

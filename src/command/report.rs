@@ -42,7 +42,7 @@ pub(super) struct ReportArguments {
 /// # Errors
 /// [`Failure::Usage`] that names the missing feature; a [`Failure`] that names the file.
 pub(super) fn check_option(report: Option<&PathBuf>) -> Result<(), Failure> {
-    report.map_or(Ok(()), |path| pages::check_place(path))
+    report.map_or(Ok(()), |path| pages::check_path(path))
 }
 
 pub(super) fn report(arguments: &ReportArguments, output: &Output) -> Result<Answer, Failure> {

@@ -29,7 +29,7 @@ const FRAMES: &str = "100..105";
 
 /// Checks that the measured positions agree with the true positions of the target, except for the first
 /// frame, which has no previous frame.
-fn check_places(bench: &Bench, measurements: &str, run: &str, tolerance_px: [f64; 2]) {
+fn check_positions(bench: &Bench, measurements: &str, run: &str, tolerance_px: [f64; 2]) {
     let rows = bench.csv(measurements);
     assert_eq!(rows.len(), bench.frames(run).len());
     for (row, truth) in rows.iter().zip(bench.frames(run)) {
@@ -61,7 +61,7 @@ fn the_example_finds_the_target_in_whole_images() {
     // A bright, complete image: its centroid has an error of some thousandths of a pixel, and the sunlit side
     // of the sphere is up to 0.06 px from its middle. A pixel convention that differs by half a pixel, or
     // exchanged axes, cannot pass.
-    check_places(&bench, "run/measurements.csv", "run", [0.1, 0.1]);
+    check_positions(&bench, "run/measurements.csv", "run", [0.1, 0.1]);
     assert_eq!(figure(&bench.json("run/score.json"), "correct_rate"), 4.0 / 5.0);
 }
 
@@ -72,7 +72,7 @@ fn the_example_finds_the_target_in_regions_of_interest() {
     bench.boresight_words(&words).done();
     // At 3 km from the target its image is saturated and truncated at the bottom: the centroid moves up by
     // some pixels, as in Fig. 6 of the paper.
-    check_places(&bench, "run/measurements.csv", "run", [0.8, 5.0]);
+    check_positions(&bench, "run/measurements.csv", "run", [0.8, 5.0]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! `boresight gate` finds changes for the worse, and reports nothing where there are none.
 
 mod cases;
-mod real;
+mod simulator_runs;
 
 use boresight::gate::{CompareOptions, FigureVerdict, Pairing, compare};
 use cases::{FAULTS, Fault, Synthetic, baseline_of, harmless, harmless_in_episodes, rejects, sample_of};
@@ -452,7 +452,7 @@ fn the_gates_fly_the_built_in_scenarios() {
 #[test]
 #[ignore = "800 runs of the simulator"]
 fn real_runs_with_other_seeds_are_rejected_at_the_rate_alpha() {
-    let runs = real::runs(0..800, 4, 6);
+    let runs = simulator_runs::runs(0..800, 4, 6);
     let blocks = rejected(400, |pair| {
         let [a, b] = [2 * pair, 2 * pair + 1].map(|seed| sample_of(seed, &runs[seed as usize]));
         rejects(&baseline_of(a), &b, Pairing::Blocks)
@@ -470,7 +470,7 @@ fn real_runs_with_other_seeds_are_rejected_at_the_rate_alpha() {
 #[test]
 #[ignore = "100 runs of the simulator"]
 fn planted_faults_in_real_runs_are_caught_at_their_stated_size() {
-    let runs = real::runs(0..100, 6, 30);
+    let runs = simulator_runs::runs(0..100, 6, 30);
     let mut missed = Vec::new();
     for fault in FAULTS {
         let paired = rejected(100, |seed| {
@@ -496,7 +496,7 @@ fn planted_faults_in_real_runs_are_caught_at_their_stated_size() {
 #[test]
 #[ignore = "200 runs of the docking simulator"]
 fn a_docking_range_scale_is_caught_in_real_runs() {
-    let runs = real::docking_runs(0..100, 700..900);
+    let runs = simulator_runs::docking_runs(0..100, 700..900);
     let scaled = rejected(100, |seed| {
         let (table, scaled) = &runs[seed as usize];
         let samples = [table, scaled].map(|table| cases::docking_sample(seed, table.clone()));

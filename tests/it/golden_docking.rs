@@ -181,12 +181,12 @@ impl<'a> Pair<'a> {
         if !(steepest && flat && rises) || step_of_light.abs() < MIN_EDGE_STEP {
             return None;
         }
-        let place = place_of_edge(&seen, (low, high));
+        let place = edge_position(&seen, (low, high));
         let drawn = profile(&self.fast);
         let (fast_low, fast_high) = plateaus(&drawn);
         let same = (fast_low - low).abs() < least && (fast_high - high).abs() < least;
         let cosine = along.abs() / libm::hypot(along, aside);
-        let shift_px = same.then(|| (place_of_edge(&drawn, (fast_low, fast_high)) - place) * cosine);
+        let shift_px = same.then(|| (edge_position(&drawn, (fast_low, fast_high)) - place) * cosine);
         let off = place - HALF as f64;
         let point = if step == 1 { PixelPoint::new(x + off, y) } else { PixelPoint::new(x, y + off) };
         let kind = self.kind(point);
@@ -267,7 +267,7 @@ fn plateaus(profile: &[f64; 2 * HALF + 1]) -> (f64, f64) {
 
 /// Returns the position of the step, px from the first pixel of the profile: the area under the step equals
 /// that under the profile.
-fn place_of_edge(profile: &[f64; 2 * HALF + 1], (low, high): (f64, f64)) -> f64 {
+fn edge_position(profile: &[f64; 2 * HALF + 1], (low, high): (f64, f64)) -> f64 {
     let area: f64 = profile.iter().map(|v| (v - low) / (high - low)).sum();
     2.0 * HALF as f64 + 0.5 - area
 }

@@ -56,13 +56,13 @@ impl Monitor {
         answer
     }
 
-    fn ask(&self, method: &str, path: &str, headers: &str) -> Answer {
+    fn request(&self, method: &str, path: &str, headers: &str) -> Answer {
         let request = format!("{method} {path} HTTP/1.1\r\nConnection: close\r\n{headers}\r\n");
         Answer::parse(&self.raw(request.as_bytes()))
     }
 
     fn get(&self, path: &str) -> Answer {
-        self.ask("GET", path, &format!("Host: {}\r\n", self.address))
+        self.request("GET", path, &format!("Host: {}\r\n", self.address))
     }
 
     /// Returns the body of a successful answer.
@@ -226,7 +226,7 @@ fn a_docking_replay_draws_the_fields_as_they_were_digitised() {
 fn only_requests_to_the_own_address_from_the_own_page_are_answered() {
     let monitor = Monitor::docking(24000..24002);
     let own = monitor.address;
-    let status = |headers: String| monitor.ask("GET", "/api/progress.json", &headers).status;
+    let status = |headers: String| monitor.request("GET", "/api/progress.json", &headers).status;
     assert_eq!(status(format!("Host: {own}\r\nOrigin: http://{own}\r\n")), 200);
     assert_eq!(status(format!("Host: localhost:{}\r\n", own.port())), 200);
     assert_eq!(status(format!("Host: evil.example:{}\r\n", own.port())), 421);
@@ -256,7 +256,7 @@ fn only_requests_to_the_own_address_from_the_own_page_are_answered() {
 #[test]
 fn every_answer_forbids_other_pages_to_read_frame_or_guess_it() {
     let monitor = Monitor::docking(24000..24002);
-    let refused = monitor.ask("GET", "/", "Host: evil.example\r\n");
+    let refused = monitor.request("GET", "/", "Host: evil.example\r\n");
     assert_eq!(refused.status, 421);
     let frame = monitor.get("/api/frames/24000.gray");
     for answer in
@@ -341,7 +341,7 @@ fn no_path_reaches_the_file_system() {
     for method in ["POST", "PUT", "DELETE", "OPTIONS", "BREW"] {
         let headers = format!("Host: {}\r\nContent-Length: 0\r\n", monitor.address);
         for path in ["/", "/api/progress.json"] {
-            assert_eq!(monitor.ask(method, path, &headers).status, 405, "{method} {path}");
+            assert_eq!(monitor.request(method, path, &headers).status, 405, "{method} {path}");
         }
     }
 }

@@ -52,7 +52,7 @@ impl PageText {
         for section in sections {
             assert!(self.html.contains(&format!("<section id=\"{section}\">")), "no section {section}");
         }
-        self.check_asks_nothing();
+        self.check_makes_no_request();
         self.check_shows_no_keys();
         assert!(self.html.contains("prefers-color-scheme: dark") && self.html.contains("@media print"));
         let charts = self.charts();
@@ -63,7 +63,7 @@ impl PageText {
         for chart in charts {
             assert!(!chart["data"].as_array().unwrap().is_empty() && chart["layout"].is_object());
         }
-        self.check_what_is_drawn();
+        self.check_drawn_charts();
     }
 
     /// Checks that figures and causes appear in words, never as the keys used in files. Settings and names of
@@ -108,7 +108,7 @@ impl PageText {
     }
 
     /// Checks that no chart omits a point that its caption describes as drawn.
-    fn check_what_is_drawn(&self) {
+    fn check_drawn_charts(&self) {
         for (caption, chart) in self.captioned() {
             let Some((_, words)) = caption.split_once("Drawn: ") else { continue };
             check_points(words.split('.').next().unwrap(), &chart);
@@ -117,7 +117,7 @@ impl PageText {
 
     /// Checks that no attribute or style refers to anything outside the page, and that the page instructs the
     /// browser to refuse external content.
-    fn check_asks_nothing(&self) {
+    fn check_makes_no_request(&self) {
         assert!(self.html.contains(
             "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:;"
         ));

@@ -137,13 +137,13 @@ fn score_of(bench: &Bench, row: impl Fn(&FrameTruth, PixelPoint) -> String) -> V
 }
 
 /// Score of the true positions, shifted.
-fn score_of_places(bench: &Bench, dx: f64, dy: f64) -> Value {
+fn score_of_positions(bench: &Bench, dx: f64, dy: f64) -> Value {
     score_of(bench, |truth, place| format!("{},detected,{},{}", truth.frame, place.x + dx, place.y + dy))
 }
 
 #[test]
 fn the_true_positions_are_all_correct_and_without_error() {
-    let score = score_of_places(&with_run(), 0.0, 0.0);
+    let score = score_of_positions(&with_run(), 0.0, 0.0);
     assert_eq!((figure(&score, "hit_rate"), figure(&score, "correct_rate")), (1.0, 1.0));
     for name in ["ra_within_1px", "ra_within_2px", "dec_within_1px", "dec_within_2px"] {
         assert_eq!(figure(&score, name), 1.0, "{name}");
@@ -175,7 +175,7 @@ fn a_shift_of_half_a_pixel_is_the_bias_and_nothing_else() {
     let ra_deg = half_pixel_deg(&bench, width, |place| (place.x - 395.0) * width);
     let dec_deg = half_pixel_deg(&bench, height, |place| (place.y - 288.0) * height);
     for (dx, dy, bias) in [(0.5, 0.0, [ra_deg, 0.0]), (0.0, 0.5, [0.0, dec_deg])] {
-        let score = score_of_places(&bench, dx, dy);
+        let score = score_of_positions(&bench, dx, dy);
         assert_eq!(figure(&score, "correct_rate"), 1.0);
         // The distortion missing from the pinhole changes the scale by less than 3 k1 r² = 0.2 % for r < 150
         // px.
@@ -193,7 +193,7 @@ fn a_shift_of_half_a_pixel_is_the_bias_and_nothing_else() {
 #[test]
 fn centroids_have_lines_of_sight_by_the_attitude_that_is_requested_alone() {
     let bench = with_run();
-    let granted = score_of_places(&bench, 0.5, 0.0);
+    let granted = score_of_positions(&bench, 0.5, 0.0);
     let none = bench.boresight("score run outside.csv --json").done().json();
     let telemetry = bench.boresight("score run outside.csv --attitude telemetry --json").done().json();
     for (score, word) in [(&none, "none"), (&granted, "true"), (&telemetry, "telemetry")] {
@@ -273,7 +273,7 @@ fn within_a_pixel_means_the_pixel_of_the_scenarios_own_camera() {
 
 #[test]
 fn wrong_positions_are_detected_and_wrong() {
-    let score = score_of_places(&with_run(), 60.0, -40.0);
+    let score = score_of_positions(&with_run(), 60.0, -40.0);
     assert_eq!(figure(&score, "hit_rate"), 1.0);
     assert_eq!((figure(&score, "correct_rate"), figure(&score, "wrong_rate")), (0.0, 1.0));
     assert_eq!(figure(&score, "ra_within_2px"), 0.0);

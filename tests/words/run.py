@@ -2,8 +2,8 @@
 
 A block is a comment (consecutive lines of one kind) in Rust, Python, TypeScript or TOML, a docstring, or a
 paragraph, list entry or table row in Markdown. Fails if 1 % or more of the blocks of any of these kinds match
-a pattern, or if a comment or paragraph is wider than 110 columns. Exempt from the width are tables, code, and
-words that cannot be broken (links, addresses).
+a pattern, if a comment or paragraph is wider than 110 columns, or if a Rust function or limit has a name in
+excluded words. Exempt from the width are tables, code, and words that cannot be broken (links, addresses).
 
     python3 tests/words/run.py                 # counts by kind and pattern
     python3 tests/words/run.py --list [PATH]   # every match, and every wide line, below PATH
@@ -42,6 +42,12 @@ PATTERNS = {
     "as it is": re.compile(r"\bas (?:it|they) (?:is|are|was|were|stands?|comes?)\b"),
 }
 
+# Names of Rust items: limits that begin with neither MIN_ nor MAX_, and functions in words of people.
+NAMES = re.compile(
+    r"\b(?:const|static) ((?:LEAST|MOST|FEWEST|LARGEST|SMALLEST|LONGEST|WIDEST)_\w+)"
+    r"|\bfn (\w*?(?:\b|_)(?:told|tells?|says?|said|asks?|asked|knows?|wants?|wanted|what|whatever|nobody|somebody)(?:_\w*)?)\b"
+)
+
 EXAMPLES = {
     "What this table holds.": "opening word",
     "The reader is told where the rows are.": "personified",
@@ -53,6 +59,14 @@ EXAMPLES = {
     "Relative illumination by the cos⁴ law.": None,
     "Number of electrons in a pixel.": None,
     "Sorts the rows in place.": None,
+}
+
+NAME_EXAMPLES = {
+    "const MOST_HITS: f64 = 1e5;": True,
+    "fn a_range_is_told_in_few_words() {": True,
+    "fn what_is_written_comes_back() {": True,
+    "const MAX_HITS: f64 = 1e5;": False,
+    "fn somewhat_knowledgeable_task() {": False,
 }
 
 
@@ -153,10 +167,12 @@ def main() -> int:
     for text, expected in EXAMPLES.items():
         found = matches(text)
         assert found == ([expected] if expected else []), f"{text!r}: {found}, expected {expected}"
+    for code, expected in NAME_EXAMPLES.items():
+        assert bool(NAMES.search(code)) == expected, f"{code!r}, expected {expected}"
 
     names = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
     suffixes = (".rs", ".py", ".pyi", ".ts", ".toml", ".md")
-    totals, faulty, patterns, wide = Counter(), Counter(), Counter(), 0
+    totals, faulty, patterns, wide, wrong_names = Counter(), Counter(), Counter(), 0, 0
     for name in names:
         path = ROOT / name
         if not name.endswith(suffixes) or name.startswith(EXCLUDED) or not path.is_file():
@@ -171,6 +187,12 @@ def main() -> int:
             patterns.update(found)
             if found and show:
                 print(f"{name}:{line}: {', '.join(found)}: {' '.join(block.split())[:160]}")
+        if kind == "Rust":
+            for line, code in enumerate(text.split("\n"), 1):
+                for found in NAMES.finditer(code.split("//")[0]):
+                    wrong_names += 1
+                    if show:
+                        print(f"{name}:{line}: name {found[1] or found[2]}")
         for line in [] if name in GENERATED else wide_lines(path, text.split("\n")):
             wide += 1
             if show:
@@ -179,8 +201,8 @@ def main() -> int:
     for kind, total in sorted(totals.items()):
         print(f"{kind}: {faulty[kind]} of {total} blocks match a pattern ({100 * faulty[kind] / total:.2f} %)")
     print(", ".join(f"{name} {count}" for name, count in patterns.most_common()) or "no pattern matches")
-    print(f"{wide} lines wider than {WIDTH} columns")
-    failed = wide > 0 or any(faulty[kind] >= LIMIT * total for kind, total in totals.items())
+    print(f"{wide} lines wider than {WIDTH} columns, {wrong_names} names in excluded words")
+    failed = wide > 0 or wrong_names > 0 or any(faulty[kind] >= LIMIT * total for kind, total in totals.items())
     if failed:
         print("`--list` prints every match; CONVENTIONS.md (Words) has the rules", file=sys.stderr)
     return int(failed)

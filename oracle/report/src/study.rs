@@ -14,7 +14,7 @@ use crate::charts::chart::{
     points, rounded,
 };
 use crate::charts::plotly::{Axis, ColourScale, Layout, Mode, Trace};
-use crate::charts::thin::{bins, summary as summed, thinning_caption};
+use crate::charts::thinning::{bins, summary as summed, thinning_caption};
 use crate::figures::significant;
 use crate::figures::words::capital;
 use crate::page::data_table::DataTable;
@@ -23,7 +23,7 @@ use crate::read::read_json;
 
 /// Upper limit on the number of rows of the tables behind the charts. Each row summarises the cases in a
 /// range of the drawn value; cases.parquet has every case.
-const TABLE_BINS: usize = 60;
+const TABLE_BINS: usize = 12;
 /// Maximum number of drawn values with a separate chart.
 const MAX_SCATTERS: usize = 24;
 /// Maximum number of figures with a curve over the sweep.
@@ -495,7 +495,7 @@ fn scatter(study: &StudyResult) -> Section {
         sorted.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b]).then(a.cmp(&b)));
         let mut data = DataTable::new(["from", "to", "cases", "smallest", "mean", "largest"])
             .caption("By interval of the drawn value; cases.parquet has every case.");
-        for bin in bins(sorted.len(), TABLE_BINS.min(12)) {
+        for bin in bins(sorted.len(), TABLE_BINS) {
             let (first, last) = (sorted[bin.start], sorted[bin.end - 1]);
             let mut cells = vec![significant(numbers[first]), significant(numbers[last])];
             cells.extend(summed(bin.map(|i| value(sorted[i])), 4));

@@ -11,7 +11,7 @@ use crate::charts::chart::{
 };
 use crate::charts::plotly::{Axis, Layout, Marker, Mode, Symbol};
 use crate::charts::sky_map::sky_map;
-use crate::charts::thin::{bins, summary};
+use crate::charts::thinning::{bins, summary};
 use crate::figures::{cell, probability, significant};
 use crate::page::data_table::DataTable;
 use crate::page::{Page, Section};

@@ -24,7 +24,7 @@ mod run_result;
 pub mod world;
 pub mod worlds;
 
-pub use any_world::erased::ErasedWorld;
+pub use any_world::erasure::ErasedWorld;
 pub use any_world::source::world_of_run;
 pub use any_world::{AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, Options, ScenarioSource};
 pub use choice::pipeline_choice;

@@ -8,7 +8,7 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use score::FigureSpec;
 
 use crate::any_world::AnyWorld;
-use crate::any_world::erased::ErasedWorld;
+use crate::any_world::erasure::ErasedWorld;
 use crate::{DockingMission, FarRangeMission};
 
 /// World of a scenario that names none.

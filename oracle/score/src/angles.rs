@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn the_true_line_of_sight_has_no_error_whatever_the_attitude() {
+    fn the_true_line_of_sight_has_no_error_at_any_attitude() {
         for truth in [frame(0), tilted(0)] {
             let error = own(truth.line_of_sight, &truth);
             assert!(error.ra.radians().abs() < 1e-12 && error.dec.radians().abs() < 1e-12, "{error:?}");

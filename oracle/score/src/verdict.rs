@@ -469,7 +469,7 @@ mod tests {
     /// A target in the cluster with fewer electrons than another object is outshone, regardless of the
     /// pipeline's label of the cluster.
     #[test]
-    fn a_target_outshone_by_a_star_is_merged_whatever_its_cluster_is_called() {
+    fn a_target_outshone_by_a_star_is_merged_with_any_label_of_its_cluster() {
         let place = right_of_target(0.5);
         let answer = Outcome { clusters: vec![cluster(place, Label::Candidate)], ..detected_at(place) };
         let cause = |target| match verdict(&[target, star_at(7, right_of_target(1.0), 3000.0)], &answer) {

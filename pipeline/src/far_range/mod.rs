@@ -21,7 +21,7 @@ mod overrides;
 mod pipeline;
 mod threshold;
 mod track;
-mod usable;
+mod unusable_frame;
 
 pub use aberration::aberration_correction;
 pub use attitude::AttitudeConfig;

@@ -17,7 +17,7 @@ use super::line_of_sight::line_of_sight;
 use super::motion::{ClusterMotion, select_target};
 use super::overrides::{Identity, Overrides};
 use super::track::{Track, expected_position, link};
-use super::usable::unusable;
+use super::unusable_frame::unusable_reason;
 use crate::{CameraModel, PipelineError};
 
 /// Far-range method for one sequence of frames.
@@ -220,7 +220,7 @@ impl PaperPipeline {
         telemetry: &Telemetry,
         overrides: &Overrides<'_>,
     ) -> Outcome {
-        if let Some(reason) = unusable(frame, telemetry, &self.model) {
+        if let Some(reason) = unusable_reason(frame, telemetry, &self.model) {
             return Outcome::none(NoSolution::Failed(reason));
         }
         let attitude = |mounting: &MountingFilter| {

@@ -259,7 +259,7 @@ mod tests {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(512) })]
 
         #[test]
-        fn the_index_finds_what_brute_force_finds(
+        fn the_index_agrees_with_brute_force(
             stars in prop::collection::vec(directions(), 0..60),
             centre in directions(),
             radius in radii(),

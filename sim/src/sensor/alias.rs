@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     /// Exact probability of each number in a table, in multiples of 2^-32.
-    fn law_of(table: &AliasTable, numbers: usize) -> Vec<u64> {
+    fn exact_probabilities(table: &AliasTable, numbers: usize) -> Vec<u64> {
         let mut distribution = vec![0; numbers];
         for cell in &table.cells {
             distribution[usize::from(cell.primary)] += u64::from(cell.threshold);
@@ -124,7 +124,7 @@ mod tests {
             let probabilities: Vec<f64> = (0..count).map(|i| libm::exp(-((i * i) as f64) / 50.0)).collect();
             let total: f64 = probabilities.iter().sum();
             let table = AliasTable::new(5, &probabilities);
-            let distribution = law_of(&table, 5 + count.next_power_of_two().max(2));
+            let distribution = exact_probabilities(&table, 5 + count.next_power_of_two().max(2));
             assert_eq!(distribution.iter().sum::<u64>(), 1 << 32);
             for (i, probability) in probabilities.iter().enumerate() {
                 let expected = probability / total * libm::pow(2.0, 32.0);

@@ -399,7 +399,7 @@ mod tests {
 
     /// Checks means half-way between the nodes of the grid, where n is least certain. Pearson's test against
     /// the exact distribution, its tails merged to an expected count of ten; one row of draws at a time.
-    fn assert_the_law_midway(draws: usize) {
+    fn assert_the_distribution_midway(draws: usize) {
         let distribution = distribution();
         let mut tables = MeanTables::new(&distribution);
         let mut row = vec![0; 1000];
@@ -431,14 +431,14 @@ mod tests {
 
     #[test]
     fn midway_between_nodes_the_distribution_is_exact() {
-        assert_the_law_midway(1_000_000);
+        assert_the_distribution_midway(1_000_000);
     }
 
     /// Full version: `cargo test --release -p boresight-sim --lib midway -- --ignored`, 15 s of CPU time.
     #[test]
     #[ignore = "2e9 draws: for a scheduled job"]
     fn midway_between_nodes_the_distribution_is_exact_in_a_hundred_million_draws() {
-        assert_the_law_midway(100_000_000);
+        assert_the_distribution_midway(100_000_000);
     }
 
     #[test]

@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_star_changes_no_pixel_but_its_own_whatever_the_detector() {
+    fn a_star_changes_only_its_own_pixels_on_any_detector() {
         for config in [even(20.0, 5.0, 0.0), even(20.0, 0.0, 0.02), even(2000.0, 0.0, 0.02)] {
             let mut samplers = FlatSamplers::new();
             let without = frame(&config, 1, &mut samplers, &[]);

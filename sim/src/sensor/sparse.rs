@@ -384,7 +384,7 @@ mod tests {
 
     /// Checks that a floor does not change the distribution of any pixel, for this number of frames and for
     /// floors that are exceeded with probabilities from 1 in 3 to 1 in 10^4.
-    fn assert_the_law_over_floors(frames: u64) {
+    fn assert_the_distribution_over_floors(frames: u64) {
         for (config, means) in [(detector(0.0), [20.0, 28.0]), (detector(1e-9), [20.0, 28.0])] {
             let sensor = Sensor::new(&config, 128, 64).unwrap();
             let (mut samplers, mut image, mut sparse) =
@@ -415,7 +415,7 @@ mod tests {
 
     #[test]
     fn pixels_have_the_same_distribution_with_a_floor_and_without() {
-        assert_the_law_over_floors(60);
+        assert_the_distribution_over_floors(60);
     }
 
     /// Full version: `cargo test --release -p boresight-sim --lib floor -- --ignored`, half a minute of CPU
@@ -423,7 +423,7 @@ mod tests {
     #[test]
     #[ignore = "8e8 draws: for a scheduled job"]
     fn pixels_have_the_same_distribution_with_a_floor_and_without_in_a_hundred_million_draws() {
-        assert_the_law_over_floors(12_208);
+        assert_the_distribution_over_floors(12_208);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! States of chaser and target sampled over time, and their interpolation.
 //!
 //! A reader of files converts frames, units and time systems beforehand: samples are geocentric, along ICRS
-//! axes, in seconds since a common epoch. Interpolation is that of CCSDS 502.0-B-3 (Orbit Data Messages, 2023,
-//! Sec. 5.2.4): a polynomial of a given degree through the nearest samples.
+//! axes, in seconds since a common epoch. Interpolation is that of CCSDS 502.0-B-3 (Orbit Data Messages,
+//! 2023, Sec. 5.2.4): a polynomial of a given degree through the nearest samples.
 
 use std::ops::RangeInclusive;
 
@@ -36,7 +36,8 @@ pub enum Interpolation {
     Hermite,
 }
 
-/// Samples that one sequence of polynomials interpolates, for example a segment of an Orbit Ephemeris Message.
+/// Samples that one sequence of polynomials interpolates, for example a segment of an Orbit Ephemeris
+/// Message.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledSegment {
     /// Kind of the polynomial.
@@ -172,10 +173,9 @@ pub struct SampledOrbit {
 impl SampledOrbit {
     /// Creates the orbit from segments in order of time. Where segments overlap, the later one applies.
     ///
-    /// # Errors
-    /// [`OutOfRange`] for a segment with too few samples, samples out of order, numbers that are not finite, or
-    /// a usable interval outside its samples; for segments out of order or with a gap between them. Paths
-    /// begin with `segments[index]`.
+    /// # Errors [`OutOfRange`] for a segment with too few samples, samples out of order, numbers that are not
+    /// finite, or a usable interval outside its samples; for segments out of order or with a gap between
+    /// them. Paths begin with `segments[index]`.
     pub fn new(segments: Vec<SampledSegment>) -> Result<Self, OutOfRange> {
         if segments.is_empty() {
             return Err(OutOfRange::new("segments", "empty", "at least one segment"));
@@ -258,8 +258,8 @@ impl SampledStates {
         chaser_start.max(start)..=chaser_end.min(end)
     }
 
-    /// States `time_s` seconds after the epoch; outside the coverage the nearest state continues as a Keplerian
-    /// orbit.
+    /// States `time_s` seconds after the epoch; outside the coverage the nearest state continues as a
+    /// Keplerian orbit.
     pub(super) fn states_at(&self, time_s: f64) -> States {
         States { time_s, chaser: self.chaser.state_at(time_s), target: self.target.state_at(time_s) }
     }
@@ -297,8 +297,8 @@ mod tests {
     #[test]
     fn samples_are_met_and_the_motion_between_them_follows() {
         for (interpolation, degree, position_km, velocity_km_s) in [
-            // Lagrange's error is |r⁽ⁿ⁺¹⁾| Π|t − tᵢ|/(n + 1)!: n = 7 inside, 60 s: 7130 (0.063)⁸ 6.5/40320 = 3e-7
-            // km, at the ends of a segment 50 times that. Hermite's of degree 7 has four nodes, squared.
+            // Lagrange's error is |r⁽ⁿ⁺¹⁾| Π|t − tᵢ|/(n + 1)!: n = 7 inside, 60 s: 7130 (0.063)⁸ 6.5/40320 =
+            // 3e-7 km, at the ends of a segment 50 times that. Hermite's of degree 7 has four nodes, squared.
             (Interpolation::Lagrange, 7, 2e-5, 2e-8),
             (Interpolation::Hermite, 7, 1e-6, 2e-7),
             (Interpolation::Hermite, 3, 1e-3, 1e-4),

@@ -1,9 +1,9 @@
 //! Positions and velocities of chaser and target at any time.
 //!
 //! [`Trajectory`] has one interface for every kind of motion: [mean elements](MeanElements) that drift at
-//! secular rates, and [sampled states](SampledStates), which a file of flight dynamics contains. Internal time
-//! is seconds (SI, as TT and TAI count them) since the trajectory's epoch, exact to 0.1 ns within months of
-//! the epoch.
+//! secular rates, and [sampled states](SampledStates), which a file of flight dynamics contains. Internal
+//! time is seconds (SI, as TT and TAI count them) since the trajectory's epoch, exact to 0.1 ns within months
+//! of the epoch.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -84,8 +84,8 @@ impl Trajectory {
     }
 
     /// Returns the interval of time in which the states are defined, seconds since the epoch; unlimited for
-    /// mean elements. Outside it, [`Trajectory::states_at_seconds`] continues the nearest state as a Keplerian
-    /// orbit.
+    /// mean elements. Outside it, [`Trajectory::states_at_seconds`] continues the nearest state as a
+    /// Keplerian orbit.
     pub fn coverage_s(&self) -> RangeInclusive<f64> {
         match &self.motion {
             Motion::MeanElements(_) => f64::NEG_INFINITY..=f64::INFINITY,
@@ -131,8 +131,8 @@ impl Trajectory {
     }
 
     /// Returns the relative orbital elements at `time`, m; at an impulsive manoeuvre, the elements just after
-    /// it. They are differences of mean elements if the trajectory has them, otherwise of osculating elements.
-    /// `None` if a state has no supported elements.
+    /// it. They are differences of mean elements if the trajectory has them, otherwise of osculating
+    /// elements. `None` if a state has no supported elements.
     pub fn relative_elements(&self, time: Epoch) -> Option<RelativeElements> {
         let time_s = self.seconds(time);
         if let Motion::MeanElements(motion) = &self.motion {

@@ -55,7 +55,7 @@ fn quiet() -> SensorConfig {
 }
 
 #[test]
-fn variance_over_mean_of_frame_differences_is_the_gain_whatever_the_prnu() {
+fn variance_over_mean_of_frame_differences_is_the_gain_at_any_prnu() {
     let config = SensorConfig {
         gain_e_per_dn: 4.0,
         read_noise_e: 8.0,

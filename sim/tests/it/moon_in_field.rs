@@ -57,7 +57,7 @@ fn the_moon(exposure: &Exposure) -> Option<&ObjectTruth> {
 }
 
 /// Pixel position of a direction in the image.
-fn place(view: &MoonView, exposure: &Exposure, direction: Vector3<f64>) -> PixelPoint {
+fn pixel_position(view: &MoonView, exposure: &Exposure, direction: Vector3<f64>) -> PixelPoint {
     let direction: Direction<Icrs> = Direction::from_vector(direction).unwrap();
     let projection = Projection::new(&view.simulation.camera).unwrap();
     projection.project(&(exposure.truth.camera_from_icrs * direction)).unwrap()
@@ -89,11 +89,11 @@ fn the_disk_is_where_de421_has_it_as_large_as_it_is_and_lit_from_the_sun() {
         let towards: Direction<Icrs> = Direction::from_vector(view.from_chaser_km).unwrap();
         let error = moon.astrometric.unwrap().separation(&towards).degrees();
         assert!(error < 0.032, "{error}°");
-        let centre = place(view, &exposure, view.from_chaser_km);
+        let centre = pixel_position(view, &exposure, view.from_chaser_km);
 
         // The lit pixels around the centre: none outside the disk, and the bright half towards the Sun.
         let sun_side = view.from_chaser_km + exposure.truth.sun.vector() * 300.0;
-        let to_sun = place(view, &exposure, sun_side);
+        let to_sun = pixel_position(view, &exposure, sun_side);
         let (dx, dy) = (to_sun.x - centre.x, to_sun.y - centre.y);
         let (bx, by) = (moon.position.x - centre.x, moon.position.y - centre.y);
         let along = (bx * dx + by * dy) / libm::hypot(dx, dy);

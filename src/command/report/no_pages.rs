@@ -13,7 +13,7 @@ pub(super) fn write_report(_: &Path, _: &[PathBuf], _: &Path, _: &Output) -> Res
     Err(missing_feature("report"))
 }
 
-pub(super) fn check_place(_: &Path) -> Result<(), Failure> {
+pub(super) fn check_path(_: &Path) -> Result<(), Failure> {
     Err(missing_feature("report"))
 }
 

@@ -81,7 +81,7 @@ pub(in crate::command) fn write_gate(report: &GateReport, result: &Path, path: &
 ///
 /// # Errors
 /// A [`Failure`] that names the path.
-pub(super) fn check_place(path: &Path) -> Result<(), Failure> {
+pub(super) fn check_path(path: &Path) -> Result<(), Failure> {
     Ok(REPORTS.check(path)?)
 }
 

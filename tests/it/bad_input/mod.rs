@@ -5,12 +5,12 @@ mod catalogues;
 #[cfg(unix)]
 mod devices;
 mod docking;
-mod further;
 mod images;
 mod measurements;
 mod output;
 mod physics;
 mod scenarios;
+mod second_round;
 mod telemetry;
 mod usage;
 

@@ -1,13 +1,13 @@
 //! Faults of the environment: killed processes, full disks, damaged files, two processes at the same path.
 //! Each causes a clear error or no problem at all; nothing is lost, and nothing is silently wrong.
 
+mod concurrent_processes;
 mod damage;
 mod disk;
 mod kill;
 mod killed_commands;
 mod killed_study;
 mod streams;
-mod together;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

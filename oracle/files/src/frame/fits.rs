@@ -274,13 +274,13 @@ impl Header<'_> {
     }
 }
 
-/// Checks header and data, at `place` in the file, against the keyword CHECKSUM (FITS standard 4.0, 4.4.2.7
+/// Checks header and data, at `span` in the file, against the keyword CHECKSUM (FITS standard 4.0, 4.4.2.7
 /// and appendix J: their sum in ones' complement is minus zero), and the data, from `data_at` on, against
 /// DATASUM, if these keywords are present.
 fn check_sums(
     header: &Header<'_>,
     reader: &mut (impl Read + Seek),
-    place: Range<u64>,
+    span: Range<u64>,
     data_at: u64,
 ) -> Result<(), FileError> {
     // The standard uses an empty string for an unknown sum.
@@ -289,13 +289,13 @@ fn check_sums(
         _ => None,
     };
     let (sum, data_sum) = (recorded("CHECKSUM"), recorded("DATASUM"));
-    if (sum.is_none() && data_sum.is_none()) || place.is_empty() {
+    if (sum.is_none() && data_sum.is_none()) || span.is_empty() {
         return Ok(());
     }
     let io = |source| FileError::io(header.path, "read", source);
-    reader.seek(SeekFrom::Start(place.start)).map_err(io)?;
+    reader.seek(SeekFrom::Start(span.start)).map_err(io)?;
     let mut unit = Vec::new();
-    let length = (place.end - place.start).next_multiple_of(BLOCK_SIZE as u64);
+    let length = (span.end - span.start).next_multiple_of(BLOCK_SIZE as u64);
     reader.take(length).read_to_end(&mut unit).map_err(io)?;
     // A truncated last block differs from the written file, even if only zeros are missing.
     let is_whole = unit.len() as u64 == length;
@@ -308,7 +308,7 @@ fn check_sums(
     if let Some(recorded) = sum.filter(|_| !is_whole || !matches!(checksum_blocks(&unit), 0 | u32::MAX)) {
         return refused("CHECKSUM", recorded, "header and data");
     }
-    let data = unit.get((data_at - place.start) as usize..).unwrap_or_default();
+    let data = unit.get((data_at - span.start) as usize..).unwrap_or_default();
     // Zero and minus zero are equal.
     let is_sum = |text: &str| {
         text.trim()

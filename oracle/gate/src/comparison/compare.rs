@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_report_states_what_was_compared_and_the_frames_that_changed() {
+    fn a_report_states_the_compared_runs_and_the_changed_frames() {
         let mut after = hits(&AFTER);
         after.identity.version = "0.2.0".to_owned();
         after.table.units[3] = unit(3, "missed", Some("not_linked"));

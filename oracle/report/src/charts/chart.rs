@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::plotly::{Axis, ErrorBars, Layout, Line, Marker, Mode, Symbol, Trace, Values};
-use super::thin::{extremes, sampled};
+use super::thinning::{extremes, sampled};
 use crate::page::data_table::DataTable;
 use crate::page::script_safe::script_safe;
 

@@ -5,4 +5,4 @@ pub(crate) mod chart;
 pub(crate) mod plotly;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 pub(crate) mod sky_map;
-pub(crate) mod thin;
+pub(crate) mod thinning;

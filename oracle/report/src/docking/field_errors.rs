@@ -6,7 +6,7 @@ use super::limits::{limits, note_outside, outside};
 use super::run::DockingRun;
 use crate::charts::chart::{Chart, MEASURED, Panel, WRONG, cloud, crosses, points, rounded, stacked};
 use crate::charts::plotly::Axis;
-use crate::charts::thin::{bins, sampled, summary, thinning_caption};
+use crate::charts::thinning::{bins, sampled, summary, thinning_caption};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 

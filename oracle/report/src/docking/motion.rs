@@ -10,7 +10,7 @@ use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, band, cloud, line, points, rounded, stacked,
 };
 use crate::charts::plotly::{Axis, Trace};
-use crate::charts::thin::{bins, summary, thinned, thinning_caption};
+use crate::charts::thinning::{bins, summary, thinned, thinning_caption};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 

@@ -5,7 +5,7 @@ use files::Failure;
 use super::run::{FarRangeRun, shown_time};
 use crate::charts::chart::{Chart, MEASURED, Panel, line, rounded, stacked};
 use crate::charts::plotly::Axis;
-use crate::charts::thin::{bins, evenly};
+use crate::charts::thinning::{bins, evenly};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 

@@ -8,7 +8,7 @@ use super::run::{FarRangeRun, broken, by_bins, shown_time_ms, time_axis};
 use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, cloud, line, points, rounded, stacked,
 };
-use crate::charts::thin::{bins, thinned, thinning_caption};
+use crate::charts::thinning::{bins, thinned, thinning_caption};
 use crate::page::Section;
 use crate::page::data_table::DataTable;
 

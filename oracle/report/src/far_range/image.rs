@@ -12,7 +12,7 @@ use super::FrameDetail;
 use super::run::{FarRangeRun, by_bins};
 use crate::charts::chart::{Chart, MEASURED, TRUTH, WRONG, cloud, crosses, line, points, rounded};
 use crate::charts::plotly::{Axis, Layout, Trace};
-use crate::charts::thin::{bins, evenly, sampled, thinning_caption};
+use crate::charts::thinning::{bins, evenly, sampled, thinning_caption};
 use crate::page::Section;
 
 /// Margin around the detector, so that a mark at its edge is drawn completely, px.

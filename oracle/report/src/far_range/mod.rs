@@ -4,9 +4,9 @@ mod approach;
 mod attitude;
 mod budget;
 mod covariances;
+mod error_budget;
 mod frame_detail;
 mod image;
-mod injected;
 mod run;
 mod series;
 
@@ -14,8 +14,8 @@ use std::path::Path;
 
 use indexmap::IndexMap;
 
+pub use error_budget::{InjectedRun, kept_budget};
 pub use frame_detail::FrameDetail;
-pub use injected::{InjectedRun, kept_budget};
 pub use run::FarRangeRun;
 
 use self::run::shown_time;

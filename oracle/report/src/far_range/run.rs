@@ -22,9 +22,9 @@ use scenario::run_file::RunFile;
 use score::{FrameVerdict, Score};
 use sim::truth::{FrameTruth, clock};
 
-use super::injected::InjectedRun;
+use super::error_budget::InjectedRun;
 use crate::charts::plotly::Axis;
-use crate::charts::thin::{bins, summary};
+use crate::charts::thinning::{bins, summary};
 use crate::page::data_table::DataTable;
 use crate::read::{missing, read_json};
 

@@ -7,7 +7,7 @@ use super::run::{FarRangeRun, axis_time, broken, by_bins, time_axis};
 use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, cloud, crosses, dashed, line, points, rounded, stacked,
 };
-use crate::charts::thin::{sampled, thinned, thinning_caption};
+use crate::charts::thinning::{sampled, thinned, thinning_caption};
 use crate::page::Section;
 
 /// Number of images in the moving mean of Fig. 7.

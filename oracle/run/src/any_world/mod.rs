@@ -1,6 +1,6 @@
 //! Common interface of all worlds, for commands, studies and gates.
 
-pub(crate) mod erased;
+pub(crate) mod erasure;
 mod provenance;
 pub(crate) mod source;
 

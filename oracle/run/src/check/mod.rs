@@ -1,4 +1,4 @@
 //! Results of a scenario check in addition to its errors.
 
-pub(crate) mod derived;
-pub(crate) mod slips;
+pub(crate) mod derived_quantities;
+pub(crate) mod unit_mistakes;

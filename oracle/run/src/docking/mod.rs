@@ -34,7 +34,7 @@ use self::answers::{FieldAnswers, answer_as_filed};
 use self::dataset::{FieldDataset, FieldImages};
 use self::renderer::DockingRenderer;
 use crate::any_world::{Options, ScenarioSource};
-use crate::check::derived::{FieldOfView, size};
+use crate::check::derived_quantities::{FieldOfView, size};
 use crate::frame_jobs::{Expectation, FrameJobs, process_in_order};
 use crate::rows_by_number::RowsByNumber;
 use crate::world::{self, OpenDataset, World, refuse_attitude, unscorable};

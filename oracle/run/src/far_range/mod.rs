@@ -38,7 +38,7 @@ use self::dataset::{FrameDataset, save_image};
 use self::inject::InjectedPipeline;
 use self::star_list::star_list;
 use crate::any_world::{Options, ScenarioSource};
-use crate::check::derived::{FieldOfView, size};
+use crate::check::derived_quantities::{FieldOfView, size};
 use crate::frame_jobs::{Expectation, FrameJobs};
 use crate::rows_by_number::RowsByNumber;
 use crate::world::{self, InformedPipeline, OpenDataset, World, unscorable};

@@ -275,7 +275,7 @@ fn the_covariance_of_a_line_of_sight_is_in_the_axes_of_the_true_camera() {
 /// The start includes the warm-up: it is counted from the first frame, regardless of the frames that figures
 /// exclude.
 #[test]
-fn a_start_is_counted_from_the_first_frame_whatever_the_warm_up() {
+fn a_start_is_counted_from_the_first_frame_with_any_warm_up() {
     let lost = || Some(Outcome::none(NoSolution::NoTarget));
     let day: Vec<_> = (0..4).map(|_| lost()).chain((0..26).map(|_| Some(right_of_target(0.0)))).collect();
     let until = |warm_up_frames| {

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_of_the_pipeline_is_one_cause_whatever_its_text() {
+    fn a_failure_of_the_pipeline_is_one_cause_regardless_of_its_text() {
         assert_eq!(cause(|_, _| (), Some(NoPose::Failed("out of film".to_owned()))), "pipeline_failed");
     }
 }

@@ -240,7 +240,7 @@ mod tests {
 
     /// A doubtful pose is neither a success nor wrong, but its error is still tested for being gross.
     #[test]
-    fn a_doubtful_pose_is_doubtful_whatever_its_error() {
+    fn a_doubtful_pose_is_doubtful_regardless_of_its_error() {
         let at = |d3_m| verdict(10.0, &doubtful_outcome(ahead(d3_m), FailedCheck::Motion));
         assert_eq!(at(10.0), Verdict::Doubtful { doubt: FailedCheck::Motion, gross: None });
         assert_eq!(

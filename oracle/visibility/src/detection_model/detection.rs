@@ -66,7 +66,7 @@ pub fn is_flooded(camera: &CameraModel, rule: &DetectionRule, background_e: f64)
 /// Fractions of an image's signal in its pixels, at several positions within a pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImageShares {
-    places: Vec<Vec<f64>>,
+    positions: Vec<Vec<f64>>,
 }
 
 impl ImageShares {
@@ -78,13 +78,13 @@ impl ImageShares {
         // Fractions of the distance to the corner: the midpoints of three rings of equal area.
         let radii: &[f64] = if growth == 0.0 { &[0.0] } else { &[0.408, 0.707, 0.913] };
         let middle = PixelPoint::new((columns as f64 - 1.0) / 2.0, (rows as f64 - 1.0) / 2.0);
-        let mut places = Vec::new();
+        let mut positions = Vec::new();
         for radius in radii {
             let ring = PixelPoint::new(middle.x * (1.0 + 0.9 * radius), middle.y * (1.0 + 0.9 * radius));
             let points = moving_point(PixelPoint::new(ring.x.floor(), ring.y.floor()), trail_px);
-            places.extend(Self::from_points(camera, &points).places);
+            positions.extend(Self::from_points(camera, &points).positions);
         }
-        Self { places }
+        Self { positions }
     }
 
     /// Computes the fractions of an image composed of `points`, shifted over the positions within a pixel.
@@ -93,7 +93,7 @@ impl ImageShares {
         let mut stamp = Stamp::new();
         let mut moved = points.to_vec();
         let detector = camera.projection.detector();
-        let mut places = Vec::new();
+        let mut positions = Vec::new();
         for place in 0..POSITIONS_PER_AXIS * POSITIONS_PER_AXIS {
             let offset = |i: usize| (i as f64 + 0.5) / POSITIONS_PER_AXIS as f64 - 0.5;
             let (dx, dy) = (offset(place % POSITIONS_PER_AXIS), offset(place / POSITIONS_PER_AXIS));
@@ -103,9 +103,9 @@ impl ImageShares {
             psf.stamp_extended(&moved, 1.0, MIN_FRACTION_OF_TOTAL, detector, &mut stamp);
             let shares = || stamp.rows().flat_map(|(_, _, row)| row.iter().copied());
             let least = MIN_FRACTION_OF_PEAK * shares().fold(0.0, f64::max);
-            places.push(shares().filter(|share| *share > least).collect());
+            positions.push(shares().filter(|share| *share > least).collect());
         }
-        Self { places }
+        Self { positions }
     }
 
     /// Returns the probability that an image of `electrons` over a background of `background_e` per pixel is
@@ -113,7 +113,7 @@ impl ImageShares {
     pub fn chance(&self, threshold: &PixelThreshold, electrons: f64, background_e: f64) -> f64 {
         let dark = threshold.ln_below(background_e);
         let gained: f64 = self
-            .places
+            .positions
             .iter()
             .map(|shares| {
                 let lit: f64 =
@@ -121,7 +121,7 @@ impl ImageShares {
                 libm::exp(shares.len() as f64 * dark) - libm::exp(lit)
             })
             .sum();
-        (gained / self.places.len().max(1) as f64).max(0.0)
+        (gained / self.positions.len().max(1) as f64).max(0.0)
     }
 }
 

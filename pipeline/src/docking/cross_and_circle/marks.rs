@@ -276,7 +276,7 @@ impl MarkSearch<'_> {
             }
         }
         reject_by_height(&mut marks, &heights);
-        let plane = self.reject_by_place(&mut marks)?;
+        let plane = self.reject_by_position(&mut marks)?;
         Some(MarksFit { plane, marks })
     }
 
@@ -342,7 +342,7 @@ impl MarkSearch<'_> {
 
     /// Rejects marks whose position contradicts the other marks, worst first, and fits the plane to the
     /// remaining ones.
-    fn reject_by_place(&self, marks: &mut [MarkObservation]) -> Option<Plane> {
+    fn reject_by_position(&self, marks: &mut [MarkObservation]) -> Option<Plane> {
         loop {
             let pairs: Vec<_> = marks
                 .iter()

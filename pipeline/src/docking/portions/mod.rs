@@ -10,13 +10,13 @@ mod filters;
 mod inverse;
 mod paper;
 mod scatter;
-mod tracked;
+mod tracker;
 
 pub use filters::MotionConfig;
 pub(in crate::docking) use filters::OutlineRange;
 pub(in crate::docking) use inverse::inverse;
 pub use paper::{PaperPortionConfig, PaperPortions};
-pub use tracked::{Continuity, MotionTracker};
+pub use tracker::{Continuity, MotionTracker};
 
 #[cfg(test)]
 pub(in crate::docking) mod tests {

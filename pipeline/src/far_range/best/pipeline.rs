@@ -14,7 +14,7 @@ use super::tracks::{TargetCandidate, TrackModel};
 use crate::far_range::background::Background;
 use crate::far_range::detect::{Blob, transmitted_pixels};
 use crate::far_range::overrides::Overrides;
-use crate::far_range::usable::unusable;
+use crate::far_range::unusable_frame::unusable_reason;
 
 /// Relative standard deviation of a star's flux for a known brightness scale: colours and variability.
 const STAR_FLUX_SIGMA: f64 = 0.4;
@@ -27,7 +27,7 @@ impl BestPipeline {
         telemetry: &Telemetry,
         overrides: &Overrides<'_>,
     ) -> Outcome {
-        if let Some(reason) = unusable(frame, telemetry, &self.model) {
+        if let Some(reason) = unusable_reason(frame, telemetry, &self.model) {
             return Outcome::none(NoSolution::Failed(reason));
         }
         let elapsed_s = self.advance(telemetry);

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use super::tabulated::Tabulated;
+use super::cumulative_flux::CumulativeFlux;
 
 /// Radius to which the rings are tabulated, px, limited by `REACH_LAMBDA_N`.
 const REACH_PX: f64 = 32.0;
@@ -17,7 +17,7 @@ const REACH_LAMBDA_N: (f64, f64) = (12.0, 50.0);
 const NODES: f64 = 10.0;
 
 /// Creates the shape for λN over the pixel's width and height, px.
-pub(super) fn airy(lambda_n_px: [f64; 2], obscuration: f64) -> Tabulated {
+pub(super) fn airy(lambda_n_px: [f64; 2], obscuration: f64) -> CumulativeFlux {
     let open = 1.0 - obscuration * obscuration;
     // 2 J₁(v)/v, replaced by its series where it would be 0/0.
     let jinc = |v: f64| if v < 1e-4 { 1.0 - v * v / 8.0 } else { 2.0 * libm::j1(v) / v };
@@ -28,5 +28,5 @@ pub(super) fn airy(lambda_n_px: [f64; 2], obscuration: f64) -> Tabulated {
     };
     let [x, y] = lambda_n_px;
     let radius = (REACH_PX / x.min(y)).clamp(REACH_LAMBDA_N.0, REACH_LAMBDA_N.1);
-    Tabulated::radial(density, 1.0 / NODES, radius, lambda_n_px)
+    CumulativeFlux::radial(density, 1.0 / NODES, radius, lambda_n_px)
 }

@@ -8,7 +8,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use super::tabulated::Tabulated;
+use super::cumulative_flux::CumulativeFlux;
 
 /// Extent of the table beyond the edge, in standard deviations of the Gaussian.
 const REACH_SIGMAS: f64 = 7.0;
@@ -16,7 +16,7 @@ const REACH_SIGMAS: f64 = 7.0;
 const NODES: f64 = 4.0;
 
 /// Creates the shape for a disk of `radius_px` and a Gaussian of `sigma_px`.
-pub(super) fn defocus(radius_px: f64, sigma_px: f64) -> Tabulated {
+pub(super) fn defocus(radius_px: f64, sigma_px: f64) -> CumulativeFlux {
     // A sixth of a standard deviation along the line, and at least 32 points for small disks.
     let points = (6.0 * PI * radius_px / sigma_px).ceil().max(32.0) as usize;
     let step = PI / points as f64;
@@ -39,5 +39,5 @@ pub(super) fn defocus(radius_px: f64, sigma_px: f64) -> Tabulated {
             .sum();
         norm * sum
     };
-    Tabulated::radial(density, sigma_px / NODES, radius_px + REACH_SIGMAS * sigma_px, [1.0, 1.0])
+    CumulativeFlux::radial(density, sigma_px / NODES, radius_px + REACH_SIGMAS * sigma_px, [1.0, 1.0])
 }

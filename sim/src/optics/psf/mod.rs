@@ -3,6 +3,7 @@
 mod airy;
 mod condense;
 mod config;
+mod cumulative_flux;
 mod defocus;
 mod error_function;
 mod gaussians;
@@ -10,7 +11,6 @@ mod moffat;
 mod pixels_within;
 mod sampled;
 mod share_table;
-mod tabulated;
 #[cfg(test)]
 mod witness;
 
@@ -25,9 +25,9 @@ use super::field::FieldRadius;
 use super::{ImagePoint, Stamp};
 use crate::SimError;
 use crate::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
+use cumulative_flux::{CumulativeFlux, Edges};
 use gaussians::{Gaussians, Profiles};
 use pixels_within::pixels_within;
-use tabulated::{Edges, Tabulated};
 
 /// Point-spread function, prepared for drawing: distributes the flux of a point over pixels, each of which
 /// integrates the incident light. The flux over the whole plane is 1.
@@ -53,7 +53,7 @@ pub struct Psf {
 #[derive(Debug, Clone, PartialEq)]
 enum Shape {
     Gaussians(Gaussians),
-    Tabulated(Tabulated),
+    CumulativeFlux(CumulativeFlux),
 }
 
 /// Growth of the width over the field: by the factor 1 + aρ².
@@ -91,13 +91,13 @@ impl Psf {
             }
             &PsfConfig::Moffat { fwhm_px, beta } => Shape::Gaussians(moffat::moffat(fwhm_px, beta)),
             &PsfConfig::Airy { lambda_n_px, obscuration } => {
-                Shape::Tabulated(airy::airy(lambda_n_px, obscuration))
+                Shape::CumulativeFlux(airy::airy(lambda_n_px, obscuration))
             }
             &PsfConfig::Defocus { radius_px, sigma_px } => {
-                Shape::Tabulated(defocus::defocus(radius_px, sigma_px))
+                Shape::CumulativeFlux(defocus::defocus(radius_px, sigma_px))
             }
             PsfConfig::Sampled { path, oversampling } => {
-                Shape::Tabulated(sampled::sampled(&folder.join(path), *oversampling)?)
+                Shape::CumulativeFlux(sampled::sampled(&folder.join(path), *oversampling)?)
             }
         };
         Ok(Self { shape, growth: None, profiles: Profiles::default(), edges: Edges::default() })
@@ -157,7 +157,7 @@ impl Psf {
             Shape::Gaussians(shape) => {
                 shape.draw(points, electrons, floor_e, scale, &mut self.profiles, stamp);
             }
-            Shape::Tabulated(shape) => {
+            Shape::CumulativeFlux(shape) => {
                 shape.draw(points, electrons, reach_px, scale, &mut self.edges, stamp);
             }
         }
@@ -185,7 +185,7 @@ impl Psf {
     pub fn peak_share(&self) -> f64 {
         match &self.shape {
             Shape::Gaussians(shape) => shape.peak_share(),
-            Shape::Tabulated(shape) => shape.peak_share(),
+            Shape::CumulativeFlux(shape) => shape.peak_share(),
         }
     }
 }
@@ -196,7 +196,7 @@ impl Shape {
     fn reach_px(&self, electrons: f64, floor_e: f64, scale: f64) -> f64 {
         match self {
             Self::Gaussians(shape) => shape.reach_px(electrons, floor_e, scale),
-            Self::Tabulated(shape) => shape.reach_px(electrons, floor_e, scale),
+            Self::CumulativeFlux(shape) => shape.reach_px(electrons, floor_e, scale),
         }
     }
 }

@@ -17,7 +17,7 @@
 
 use std::path::Path;
 
-use super::tabulated::Tabulated;
+use super::cumulative_flux::CumulativeFlux;
 use crate::{SimError, regular_file};
 
 /// Maximum size of a file that is read, bytes: 2048 × 2048 cells of sixteen characters.
@@ -29,7 +29,7 @@ const CELLS: std::ops::RangeInclusive<usize> = 3..=2048;
 ///
 /// # Errors
 /// [`SimError::PsfFile`] if the file cannot be read or does not hold a matrix of numbers that are 0 or more.
-pub(super) fn sampled(path: &Path, oversampling: f64) -> Result<Tabulated, SimError> {
+pub(super) fn sampled(path: &Path, oversampling: f64) -> Result<CumulativeFlux, SimError> {
     let fail = |problem: String| SimError::PsfFile { path: path.to_path_buf(), problem };
     let text = regular_file::read_text(path, MAX_BYTES).map_err(|error| fail(error.to_string()))?;
     let (mut light, columns) = matrix(&text).map_err(fail)?;
@@ -48,7 +48,7 @@ pub(super) fn sampled(path: &Path, oversampling: f64) -> Result<Tabulated, SimEr
         *cell /= flux;
     }
     let step_px = 1.0 / oversampling;
-    Ok(Tabulated::cells(
+    Ok(CumulativeFlux::cells(
         &light,
         columns,
         step_px,

@@ -1,4 +1,4 @@
-//! Tabulated normal distribution: the profile of a blurred edge.
+//! CumulativeFlux normal distribution: the profile of a blurred edge.
 
 /// Limit of |z| beyond which the integral is 0 or 1 to 4e-8.
 pub(super) const LIMIT: f64 = 5.4;
@@ -12,7 +12,7 @@ const TABLE: usize = 512;
 /// Number whose addition to a number below 2^51 leaves the nearest integer in the last bits.
 pub(super) const WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// Tabulated Φ and φ.
+/// CumulativeFlux Φ and φ.
 #[derive(Debug, Clone)]
 pub(super) struct Gaussian {
     nodes: Box<[(f64, f64); TABLE]>,

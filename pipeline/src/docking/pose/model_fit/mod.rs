@@ -17,9 +17,9 @@ mod chunk;
 mod coverage;
 mod edge;
 mod equations;
+mod first_guess;
 mod gaussian;
 mod groups;
-mod near;
 mod sampled;
 mod sampled_marks;
 mod samples;
@@ -210,8 +210,8 @@ impl ModelFit {
             return Err(NoPose::Inconsistent);
         }
         let reach_px = NEAR_REACH * camera.focal_px().0 + SLACK_PX;
-        let by = near::shift(field, camera, target, rough, reach_px).ok_or(NoPose::NoTarget)?;
-        let [moved, turned] = near::shifted(camera, rough, by);
+        let by = first_guess::shift(field, camera, target, rough, reach_px).ok_or(NoPose::NoTarget)?;
+        let [moved, turned] = first_guess::shifted(camera, rough, by);
         let moved = self.fit_from(field, camera, target, &moved, NEAR_SLACK_PX, &NEAR_COARSE);
         let turned = self.fit_from(field, camera, target, &turned, NEAR_SLACK_PX, &NEAR_COARSE);
         match (moved, turned) {

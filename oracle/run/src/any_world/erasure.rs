@@ -22,7 +22,7 @@ use crate::any_world::{
     AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, DatasetAnswers, Options, ProcessingOrder,
     ScenarioSource,
 };
-use crate::check::slips::slips;
+use crate::check::unit_mistakes::unit_mistakes;
 use crate::choice::pipeline_choice::PipelineChoice;
 use crate::frame_jobs::FrameJobs;
 use crate::run_result::RunResult;
@@ -252,7 +252,7 @@ impl<W: World> AnyMission for W {
 
     fn warnings(&self) -> Vec<String> {
         let scenario = self.scenario().to_json().unwrap_or_default();
-        World::warnings(self).into_iter().chain(slips(&scenario)).collect()
+        World::warnings(self).into_iter().chain(unit_mistakes(&scenario)).collect()
     }
 
     fn factory(&self, choice: &PipelineChoice, scratch: &Path) -> Result<AnyFactory, Failure> {

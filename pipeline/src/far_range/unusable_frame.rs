@@ -5,7 +5,7 @@ use contract::{Frame, Telemetry};
 use crate::CameraModel;
 
 /// Returns the reason why a frame and its telemetry cannot be processed; `None` if they can.
-pub(super) fn unusable(frame: &Frame, telemetry: &Telemetry, model: &CameraModel) -> Option<String> {
+pub(super) fn unusable_reason(frame: &Frame, telemetry: &Telemetry, model: &CameraModel) -> Option<String> {
     let (columns, rows) = model.size_px();
     if (frame.columns(), frame.rows()) != (columns, rows) {
         return Some(format!(

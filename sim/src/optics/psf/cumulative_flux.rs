@@ -10,9 +10,9 @@ use std::sync::Arc;
 use super::pixels_within::pixels_within;
 use crate::optics::{ImagePoint, Stamp};
 
-/// Tabulated shape, centred on the origin.
+/// CumulativeFlux shape, centred on the origin.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tabulated {
+pub(super) struct CumulativeFlux {
     table: Arc<Table>,
     /// Pixels per unit of the table, along columns and along rows.
     unit_px: [f64; 2],
@@ -67,7 +67,7 @@ pub(super) struct Edges {
     below: Vec<f64>,
 }
 
-impl Tabulated {
+impl CumulativeFlux {
     /// Creates a circularly symmetric shape in the table's units. `density` is the flux per unit of area at a
     /// radius; the table extends to `radius` along each axis. `step` is a tenth of the finest structure or
     /// less.

@@ -20,7 +20,7 @@ const USUAL: [(&str, f64, f64); 12] = [
 
 /// Returns remarks on the unusual values of a scenario that would be usual if they were a thousand times
 /// larger or smaller.
-pub(crate) fn slips(scenario: &Value) -> Vec<String> {
+pub(crate) fn unit_mistakes(scenario: &Value) -> Vec<String> {
     let mut remarks = Vec::new();
     collect(scenario, "", &mut remarks);
     remarks
@@ -65,7 +65,7 @@ mod tests {
             "cameras": [{ "camera": { "focal_length_mm": 1e8 } }, { "camera": { "focal_length_mm": 24211.1 } }],
             "sensor": { "cosmic_rays": { "readout_s": 0.0 } },
         });
-        let remarks = slips(&scenario);
+        let remarks = unit_mistakes(&scenario);
         assert_eq!(remarks.len(), 3, "{remarks:?}");
         assert_eq!(remarks[0], "camera.focal_length_mm is 0.020187, usually 1 to 20000; was 20.187 meant?");
         assert!(remarks[1].starts_with("cameras[1].camera.focal_length_mm is 24211.1"), "{remarks:?}");
