@@ -2,7 +2,6 @@
 use std::collections::HashMap;
 
 use comfy_table::{Attribute, Cell};
-use pipeline::external::protocol::harmless;
 use run::figure_by_name;
 use score::{attitude_note, warm_up_note};
 use study::{
@@ -44,27 +43,8 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     };
     let draws = if summary.sweep.is_empty() { String::new() } else { format!(" ({} draws)", summary.draws) };
     let mut text = format!("{}: {} cases of {}{draws}{stopped}\n", summary.study, summary.cases, summary.of);
-    if summary.waited == Some(StoppingStatus::NearlyConstant) {
-        text.push_str(
-            "The figure of `until` is equal in nearly every draw: its scatter is unknown, and the study did \
-             not stop by it. Choose a figure that varies.\n",
-        );
-    }
-    if summary.failed_cases > 0 {
-        let cases = summary.failed_cases;
-        text.push_str(&format!(
-            "The pipeline failed in {cases} cases: it crashed, timed out, or returned an unreadable \
-             outcome.\n"
-        ));
-    }
-    if let Some(first) = summary.errors.first() {
-        text.push_str(&format!(
-            "{} cases cannot be run: their values give no valid scenario (`error` in cases.parquet). The \
-             first is case {}: {}\n",
-            summary.error_cases,
-            first.case,
-            harmless(&first.error)
-        ));
+    for note in summary.notes() {
+        text.push_str(&format!("{note}\n"));
     }
     text.push_str(&finish(table));
     text.push_str(

@@ -282,6 +282,57 @@ fn a_case_that_makes_no_scenario_is_a_row_with_its_error() {
     assert!(!bench.path("none").exists());
 }
 
+/// A swept value without a result is named in table, report and summary, and its requirement is not decided;
+/// all other points keep their figures. A stop by a figure ends all points after the same number of draws.
+#[test]
+fn a_swept_value_without_a_result_is_named() {
+    let bench = bench();
+    let sweep = "\n[[sweep]]\npath = \"sensor.read_noise_e\"\nvalues = [5.0, -1.0]\n";
+    let required = "\n[[require]]\nfigure = \"hit_rate\"\nat_least = 0.1\n";
+    bench.write("study.toml", format!("{STUDY}{sweep}{required}"));
+    let shown = bench.boresight("study run study.toml --out out --shards 2");
+    assert_eq!(shown.status, Some(1), "{}", shown.stderr);
+    let note = "1 of 2 sweep points without a result, because none of their cases can be run: differences and \
+                curves leave them out. sensor.read_noise_e = -1.";
+    assert!(shown.stdout.contains(note), "{}", shown.stdout);
+    assert!(shown.stdout.contains("not decided: no case can be run"), "{}", shown.stdout);
+    assert!(bench.read("out/report.html").contains(note));
+    let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    let [valid, invalid] = [&summary["sweep"][0], &summary["sweep"][1]];
+    assert_eq!((&valid["cases"], &valid["error_cases"]), (&3.into(), &Value::Null));
+    assert_eq!((&invalid["cases"], &invalid["error_cases"]), (&3.into(), &3.into()));
+    assert_eq!(valid["figures"]["hit_rate"]["cases"], 3);
+    assert_eq!(summary["requirements"][0]["verdict"], "met");
+    assert_eq!(
+        (&summary["requirements"][1]["verdict"], &summary["requirements"][1]["cases"]),
+        (&"not_decided".into(), &0.into())
+    );
+    bench.boresight("study check study.toml").refused(&["sensor.read_noise_e", "is -1"]);
+
+    // A program that fails at one of the values.
+    let program = "import json, sys\n\
+                   camera = json.loads(sys.stdin.readline())\n\
+                   sys.exit('it needs a quiet detector')\n";
+    bench.write("fails.py", program);
+    bench.write("fails.toml", format!("{STUDY}{}", sweep.replace("-1.0", "9.0")));
+    let words = ["study", "run", "fails.toml", "--out", "fails", "--pipeline", "exec:python3 fails.py"];
+    let shown = bench.boresight_words(&words);
+    assert!(
+        shown.stdout.contains("2 of 2 sweep points at which the pipeline failed in every case"),
+        "{}",
+        shown.stdout
+    );
+
+    let until = "cases = 40\nuntil = { figure = \"stars_mean\", half_width = 100.0 }";
+    let sweep = sweep.replace("-1.0", "30.0");
+    bench.write("until.toml", format!("{}{sweep}", STUDY.replace("cases = 6", until)));
+    let summary = bench.boresight("study run until.toml --out until --shards 7 --json").done().json();
+    assert_eq!(summary["waited"], "narrow_enough");
+    let cases: Vec<u64> =
+        summary["sweep"].as_array().unwrap().iter().map(|point| point["cases"].as_u64().unwrap()).collect();
+    assert_eq!(cases, [16, 16]);
+}
+
 #[test]
 fn a_damaged_plan_is_reported_as_such() {
     let bench = bench();
@@ -428,6 +479,11 @@ fn an_invalid_study_is_reported_with_the_position() {
     );
     refused("max = 40", "max = -1", &["max"]);
     refused("cases = 6", "cases = 0", &["stop.cases", "is 0"]);
+    refused(
+        "cases = 6",
+        "cases = 6\nuntil = { figure = \"hit_rate\", half_width = 5 }",
+        &["stop.until.half_width", "is 5, expected a fraction from 0 to 0.5", "write 0.05 for 5 %"],
+    );
     refused("frames = \"2000..2002\"", "frames = \"2..1\"", &["frames", "2..1", "A < B"]);
     refused("seed = 5", "seed = 5\ndesign = \"sobel\"", &["design", "sobel", "did you mean `sobol`"]);
     refused("seed = 5", "seed = 5\ndesign = \"saltelli\"", &["stop.cases", "multiple of 4"]);
@@ -492,6 +548,25 @@ fn requirements_are_decided_with_their_confidence() {
             ["require[0].figure", "did you mean `hit_rate`"],
         ),
         ("[[require]]\nfigure = \"hit_rate\"\nat_least = 0.5\nconfidence = 1.0", ["confidence", "0.9999"]),
+        (
+            "[[require]]\nfigure = \"hit_rate\"\nat_least = 95",
+            [
+                "require[0].at_least",
+                "is 95, expected a fraction from 0 to 1, because hit_rate is a rate; write 0.95 for 95 %",
+            ],
+        ),
+        (
+            "[[require]]\nfigure = \"hit_rate\"\nat_most = 99.9",
+            ["require[0].at_most", "write 0.999 for 99.9 %"],
+        ),
+        (
+            "[[require]]\nfigure = \"hit_rate\"\nat_least = -0.5",
+            ["require[0].at_least", "is -0.5, expected a fraction"],
+        ),
+        (
+            "[[require]]\nfigure = \"x_rms_px\"\nat_most = 95\nconfidence = 2.0",
+            ["require[0].confidence", "is 2"],
+        ),
     ] {
         with(required);
         bench.boresight("study check study.toml").refused(&words);

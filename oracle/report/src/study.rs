@@ -108,7 +108,7 @@ pub fn study_page(study: &StudyResult) -> Page {
             .chain(warm_up_note(summary.warm_up_frames, "frames of every case"))
             .chain(attitude_note(summary.attitude.as_deref()))
             .collect(),
-        warnings: Vec::new(),
+        warnings: summary.notes(),
         facts: vec![
             ("Study", summary.study.clone()),
             ("Cases", format!("{} of {} at most", summary.cases, summary.of)),

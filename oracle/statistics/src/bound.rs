@@ -157,6 +157,11 @@ mod tests {
             cluster_quantile_bounds(&values, 0.95, 0.95, 1.0)
         });
         for (name, wrong) in [("rate", rate), ("mean", mean), ("quantile", quantile)] {
+            println!(
+                "{name}: low bound wrong in {:.1} %, high in {:.1} %",
+                100.0 * wrong[0],
+                100.0 * wrong[1]
+            );
             assert!(wrong.iter().all(|&wrong| wrong <= 0.065), "{name}: {wrong:?}");
             assert!(wrong.iter().any(|&wrong| wrong > 0.01), "{name}: {wrong:?}");
         }

@@ -177,6 +177,7 @@ pub(super) mod tests {
     /// The coverage in 2,000 studies at 95 % has a standard deviation of 0.5 %: the required 93 to 97 % allow
     /// four times this deviation.
     pub(in super::super) fn check_coverage(name: &str, coverage: f64) {
+        println!("{name}: {:.1} % held", 100.0 * coverage);
         assert!((0.93..=0.97).contains(&coverage), "{name}: {coverage}");
     }
 
@@ -203,11 +204,11 @@ pub(super) mod tests {
         let rate = coverage(2000, 0.65, |random| {
             cluster_rate_interval(&swept_rates(random).iter().map(together).collect::<Vec<_>>())
         });
-        check_coverage("over all points", rate);
+        check_coverage("rate, four sweep points together", rate);
         let rate = coverage(2000, 0.8, |random| {
             cluster_rate_interval(&swept_rates(random).iter().map(|points| points[0]).collect::<Vec<_>>())
         });
-        check_coverage("at one point", rate);
+        check_coverage("rate, one sweep point", rate);
         for seldom in [0.03, 0.1] {
             // Either all frames of a case fail, or none.
             let rate = coverage(2000, seldom, |random| {
@@ -216,7 +217,7 @@ pub(super) mod tests {
                     &(0..100).map(|_| ClusterSum { sum: fails(), count: 50.0 }).collect::<Vec<_>>(),
                 )
             });
-            check_coverage(&format!("seldom {seldom}"), rate);
+            check_coverage(&format!("rate of cases that fail as a whole, {seldom}"), rate);
         }
     }
 
@@ -226,7 +227,7 @@ pub(super) mod tests {
             let pairs: Vec<_> = swept_rates(random).iter().map(|points| (points[0], points[3])).collect();
             rate_difference_interval(&pairs)
         });
-        check_coverage("of rates", difference);
+        check_coverage("difference of rates", difference);
         let difference = coverage(2000, 0.5, |random| {
             let mut of_draw = || {
                 let of_draw = normal(random);
@@ -235,21 +236,23 @@ pub(super) mod tests {
             let pairs: Vec<_> = (0..12).map(|_| of_draw()).map(|[a, b]| (a, b)).collect();
             mean_difference_interval(&pairs)
         });
-        check_coverage("of means", difference);
+        check_coverage("difference of means, 12 draws", difference);
     }
 
     #[test]
     fn means_over_draws_hold_their_truth() {
-        for draws in [5, 12, 40] {
-            let mean = coverage(2000, 1.5, |random| {
+        for (draws, points) in [(5, 1), (12, 1), (40, 1), (5, 4), (12, 4), (40, 4)] {
+            let truth = 0.5 * f64::from(points - 1);
+            let mean = coverage(2000, truth, |random| {
                 let mut of_draw = || {
                     let of_draw = normal(random);
-                    let sum = (0..4).map(|point| of_draw + f64::from(point) + 0.3 * normal(random)).sum();
-                    ClusterSum { sum, count: 4.0 }
+                    let sum =
+                        (0..points).map(|point| of_draw + f64::from(point) + 0.3 * normal(random)).sum();
+                    ClusterSum { sum, count: f64::from(points) }
                 };
                 cluster_mean_interval(&(0..draws).map(|_| of_draw()).collect::<Vec<_>>())
             });
-            check_coverage(&format!("{draws} draws"), mean);
+            check_coverage(&format!("mean, {draws} draws at {points} points"), mean);
         }
     }
 }

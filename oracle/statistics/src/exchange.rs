@@ -446,6 +446,7 @@ mod tests {
                     (interval.low..=interval.high).contains(&0.3)
                 })
                 .count();
+            println!("{blocks} blocks, heavy {heavy}: {covered} of 1000");
             assert!((928..=972).contains(&covered), "{blocks} blocks, heavy {heavy}: {covered} of 1000");
         }
     }

@@ -77,7 +77,7 @@ mod tests {
                 let held = coverage(2000, truth, |random| {
                     cluster_quantile_interval(&values(random, draws, points), p)
                 });
-                check_coverage(&format!("{p} of {draws} draws at {points} points"), held);
+                check_coverage(&format!("quantile {p} of {draws} draws at {points} points"), held);
             }
         }
     }

@@ -142,7 +142,7 @@ mod tests {
         let all = &mut Seed { seed: 23, case: 0 }.stream(0, Effect::StudyParameter, 0);
         let (truth, _) = cluster_rank_correlation(&triples(all, 200_000)).unwrap();
         let held = coverage(2000, truth, |random| cluster_rank_correlation(&triples(random, 40))?.1);
-        check_coverage("a swept value", held);
+        check_coverage("correlation with the swept value, 40 draws", held);
     }
 
     /// For a normal distribution with Pearson's correlation ρ, Spearman's is 6/π asin(ρ/2).
@@ -159,7 +159,7 @@ mod tests {
                 }
                 cluster_rank_correlation(&triples)?.1
             });
-            check_coverage(&format!("{draws} draws at {points} points, noise {noise}"), held);
+            check_coverage(&format!("correlation, {draws} draws at {points} points, noise {noise}"), held);
         }
     }
 }

@@ -52,21 +52,20 @@ pub struct CaseFile {
     pub(crate) has_error: Vec<bool>,
     /// Numbers of the first cases that cannot be run, each with the reason.
     pub(crate) errors: Vec<(u64, String)>,
-    /// Number of cases in which the pipeline failed.
-    pub(crate) failed_cases: u64,
+    /// True for each case in which the pipeline failed.
+    pub(crate) has_failed: Vec<bool>,
 }
 
 impl CaseFile {
     /// Opens a file with the columns of `empty`; every `together` successive cases form one group,
     /// independent of the other groups.
     pub(crate) fn open(path: &Path, empty: CaseTable, together: u64) -> Result<Self, FileError> {
-        let (draws, frames, has_error, errors) = Default::default();
-        let mut cases =
-            Self { path: path.to_owned(), empty, draws, frames, has_error, errors, failed_cases: 0 };
+        let (draws, frames, has_error, errors, has_failed) = Default::default();
+        let mut cases = Self { path: path.to_owned(), empty, draws, frames, has_error, errors, has_failed };
         let mut number = 0;
         for_each_batch(path, &["has_failed", "error", "frames"], |batch| {
             let failed = cells::<bool>(path, batch, "has_failed", ColumnType::Boolean)?.values();
-            cases.failed_cases += failed.iter().filter(|failed| **failed).count() as u64;
+            cases.has_failed.extend_from_slice(failed);
             cases.frames.extend(whole(path, batch, "frames")?);
             for error in texts(path, batch, "error")?.iter() {
                 cases.draws.push((number / together) as usize);

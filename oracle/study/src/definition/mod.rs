@@ -24,9 +24,13 @@ use crate::definition::design::DesignKind;
 use crate::definition::distribution::{Distribution, PreparedDistribution, boresight, euler_123};
 use crate::definition::file::StudyFile;
 use crate::definition::overlay::ValuePath;
+use crate::findings::requirement::fraction_words;
 
 /// Keys of a scenario that cannot be varied.
 const NOT_VARIED: [&str; 4] = ["title", "world", "seed", "score"];
+
+/// Largest half width of a rate's interval in a stopping rule; any interval is narrower than a wider one.
+const MAX_RATE_HALF_WIDTH: f64 = 0.5;
 
 /// Names of the angles of an attitude given as a boresight; [`EULER_123`] has those of one given as Euler
 /// angles.
@@ -551,6 +555,17 @@ impl Study {
             required.map(|(i, r)| (format!("require[{i}].figure"), r.figure.as_str())).collect();
         for (at, name) in &required {
             check(at, name)?;
+        }
+        for (i, requirement) in self.file.require.iter().enumerate() {
+            let has_unit = requirement.check_unit();
+            has_unit.map_err(|(field, message)| self.refuse(&format!("require[{i}].{field}"), message))?;
+        }
+        if let Some(until) = &self.file.stop.until
+            && run::figure_by_name(&until.figure).is_rate()
+            && until.half_width > MAX_RATE_HALF_WIDTH
+        {
+            let message = fraction_words(&until.figure, until.half_width, MAX_RATE_HALF_WIDTH);
+            return Err(self.refuse("stop.until.half_width", message));
         }
         let recorded = self.figures();
         let worst_by = self.worst_by();

@@ -101,6 +101,21 @@ impl StudyRequirement {
             (None, None) => Err(("figure", "has no limit, expected at_least or at_most")),
         }
     }
+
+    /// Checks that the limit of a rate is a fraction: a limit in percent would never be met, or always.
+    ///
+    /// # Errors
+    /// The wrong field, and the expected value.
+    pub(crate) fn check_unit(&self) -> Result<(), (&'static str, String)> {
+        if !figure_by_name(&self.figure).is_rate() {
+            return Ok(());
+        }
+        let limits = [("at_least", self.at_least), ("at_most", self.at_most)];
+        let wrong = limits.iter().find_map(|(field, limit)| {
+            limit.filter(|limit| !(0.0..=1.0).contains(limit)).map(|limit| (*field, limit))
+        });
+        wrong.map_or(Ok(()), |(field, limit)| Err((field, fraction_words(&self.figure, limit, 1.0))))
+    }
 }
 
 /// Verdict on a requirement.
@@ -162,8 +177,7 @@ impl RequirementResult {
     /// Returns the swept values at which the requirement was decided, as in `sensor.read_noise_e = 5`; empty
     /// without a sweep.
     pub fn at_words(&self) -> String {
-        let at: Vec<String> = self.at.iter().map(|(path, value)| format!("{path} = {value}")).collect();
-        at.join(", ")
+        swept_words(&self.at)
     }
 
     /// Returns the verdict in words, with the number of cases that are needed and of those without a value.
@@ -174,6 +188,9 @@ impl RequirementResult {
             (RequirementVerdict::NotDecided, Some(cases)) => {
                 format!("not decided: needs about {cases} cases, has {}", self.cases)
             }
+            (RequirementVerdict::NotDecided, None) if self.cases == 0 => {
+                "not decided: no case can be run".to_owned()
+            }
             (RequirementVerdict::NotDecided, None) => "not decided".to_owned(),
         };
         if self.without_value > 0 {
@@ -181,6 +198,22 @@ impl RequirementResult {
         }
         words
     }
+}
+
+/// Returns the message about a number of a rate that is no fraction from 0 to `most`; percent are converted.
+pub(crate) fn fraction_words(figure: &str, value: f64, most: f64) -> String {
+    let remedy = if value > most && value <= 100.0 * most {
+        // Rounded to the digits of a number that a user writes: 99.9 % is 0.999.
+        format!("; write {} for {value} %", (1e10 * value).round() / 1e12)
+    } else {
+        String::new()
+    };
+    format!("is {value}, expected a fraction from 0 to {most}, because {figure} is a rate{remedy}")
+}
+
+/// Returns swept values in words, as in `sensor.read_noise_e = 5, psf.sigma_px = 0.8`.
+pub(super) fn swept_words(at: &IndexMap<String, String>) -> String {
+    at.iter().map(|(path, value)| format!("{path} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
 /// Decides a requirement over the cases at one point of the sweep: `figures` has the figure of each case that
@@ -274,6 +307,10 @@ impl Sample {
     fn cases_needed(&self, limit: Limit, confidence: f64, cases: u64) -> Option<u64> {
         let decides =
             |size: f64| verdict(limit, self.bounds(confidence, size), true) != RequirementVerdict::NotDecided;
+        // No number resembles cases that do not exist.
+        if cases == 0 {
+            return None;
+        }
         let most = MAX_CASES / cases as f64;
         let mut high = 1.0;
         while !decides(high) {
@@ -338,6 +375,32 @@ mod tests {
         let at_limit =
             decided(required("correct_rate", Limit::AtLeast(0.9), RequiredStatistic::All), frames(90, 100));
         assert_eq!((at_limit.verdict, at_limit.cases_needed), (RequirementVerdict::NotDecided, None));
+    }
+
+    #[test]
+    fn no_cases_decide_nothing() {
+        for (figure, of) in [("correct_rate", RequiredStatistic::All), ("ra_rms_deg", RequiredStatistic::P95)]
+        {
+            let none = decided(required(figure, Limit::AtLeast(0.9), of), std::iter::empty());
+            assert_eq!((none.verdict, none.cases_needed), (RequirementVerdict::NotDecided, None));
+            assert_eq!(none.verdict_words(), "not decided: no case can be run");
+        }
+    }
+
+    #[test]
+    fn limits_of_rates_are_fractions() {
+        let message =
+            |figure: &str, limit| required(figure, limit, RequiredStatistic::All).check_unit().err();
+        assert_eq!(message("correct_rate", Limit::AtLeast(0.0)), None);
+        assert_eq!(message("correct_rate", Limit::AtMost(1.0)), None);
+        assert_eq!(message("ra_rms_deg", Limit::AtMost(95.0)), None);
+        let (field, percent) = message("correct_rate", Limit::AtMost(99.9)).unwrap();
+        assert_eq!(field, "at_most");
+        assert!(percent.ends_with("; write 0.999 for 99.9 %"), "{percent}");
+        let (_, negative) = message("correct_rate", Limit::AtLeast(-0.5)).unwrap();
+        assert!(!negative.contains("write"), "{negative}");
+        let (_, large) = message("correct_rate", Limit::AtLeast(200.0)).unwrap();
+        assert!(!large.contains("write"), "{large}");
     }
 
     #[test]

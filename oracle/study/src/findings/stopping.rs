@@ -158,6 +158,9 @@ mod tests {
                     add(CaseFigure { value: Some(count as f64 / 25.0), count, of: 25 });
                 }
             });
+            println!(
+                "rate, half width {half_width}: {rate:.2} of the requested scatter after {draws:.0} cases"
+            );
             assert!(
                 (0.85..1.15).contains(&rate),
                 "{half_width}: {rate} of the requested scatter after {draws} cases"
@@ -166,6 +169,9 @@ mod tests {
                 scatter_over_requested(("ra_rms_deg", half_width * 10.0), 1, |random, add| {
                     add(CaseFigure { value: Some(5.0 + normal(random)), count: 1, of: 1 });
                 });
+            println!(
+                "mean, half width {half_width}: {mean:.2} of the requested scatter after {draws:.0} cases"
+            );
             assert!(
                 (0.85..1.15).contains(&mean),
                 "{half_width}: {mean} of the requested scatter after {draws} cases"

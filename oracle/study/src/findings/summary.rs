@@ -3,6 +3,7 @@ use std::path::Path;
 
 use files::{Failure, FileError};
 use indexmap::IndexMap;
+use pipeline::external::protocol::harmless;
 use run::figure_by_name;
 use score::Better;
 use serde::{Deserialize, Serialize};
@@ -12,7 +13,7 @@ use statistics::{
 };
 
 use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, share, sorted_quantile, stream, sums};
-use super::requirement::{RequirementResult, RequirementVerdict, decide};
+use super::requirement::{RequirementResult, RequirementVerdict, decide, swept_words};
 use super::sensitivity::{RankCorrelation, SobolIndex, sobol_index};
 use super::stopping::{StoppingStatus, stopping_status};
 use crate::case_file::CaseFile;
@@ -23,6 +24,8 @@ use crate::evaluate::study_pipeline::StudyPipeline;
 
 /// Number of worst cases that are listed.
 const WORST: usize = 10;
+/// Largest number of points of the sweep that a note lists.
+const SHOWN_POINTS: usize = 8;
 
 /// Summary of a figure over the cases.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -69,6 +72,12 @@ pub struct SweepPoint {
     pub at: IndexMap<String, String>,
     /// Number of cases.
     pub cases: u64,
+    /// Number of these cases that cannot be run, because their values do not form a valid scenario.
+    #[serde(default, skip_serializing_if = "score::is_zero")]
+    pub error_cases: u64,
+    /// Number of these cases in which the pipeline failed.
+    #[serde(default, skip_serializing_if = "score::is_zero")]
+    pub failed_cases: u64,
     /// Figures by name.
     pub figures: IndexMap<String, FigureSummary>,
     /// Misses and wrong measurements by cause, as in `missed.cut_by_roi`; causes that did not occur are left
@@ -175,7 +184,66 @@ pub struct Summary {
     pub worst_of: u64,
 }
 
+impl SweepPoint {
+    /// Returns the swept values in words, as in `sensor.read_noise_e = 5`.
+    pub fn at_words(&self) -> String {
+        swept_words(&self.at)
+    }
+}
+
 impl Summary {
+    /// Returns the statements about cases that limit the figures, one sentence or more each: a figure of
+    /// `until` that cannot stop the study, failures of the pipeline, cases that cannot be run, and points of
+    /// the sweep at which no case can be run, or in every case of which the pipeline failed.
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.waited == Some(StoppingStatus::NearlyConstant) {
+            notes.push(
+                "The figure of `until` is equal in nearly every draw: its scatter is unknown, and the study \
+                 did not stop by it. Choose a figure that varies."
+                    .to_owned(),
+            );
+        }
+        if self.failed_cases > 0 {
+            let cases = self.failed_cases;
+            notes.push(format!(
+                "The pipeline failed in {cases} cases: it crashed, timed out, or returned an unreadable \
+                 outcome."
+            ));
+        }
+        if let Some(first) = self.errors.first() {
+            notes.push(format!(
+                "{} cases cannot be run: their values give no valid scenario (`error` in cases.parquet). \
+                 The first is case {}: {}",
+                self.error_cases,
+                first.case,
+                harmless(&first.error)
+            ));
+        }
+        notes.extend(self.points_note(
+            |point| point.error_cases == point.cases,
+            "without a result, because none of their cases can be run: differences and curves leave them out",
+        ));
+        notes.extend(self.points_note(
+            |point| point.failed_cases > 0 && point.failed_cases + point.error_cases == point.cases,
+            "at which the pipeline failed in every case that can be run: their figures describe the failure",
+        ));
+        notes
+    }
+
+    /// Returns the statement about those points of the sweep for which `applies` is true; `None` if there
+    /// are none.
+    fn points_note(&self, applies: impl Fn(&SweepPoint) -> bool, what: &str) -> Option<String> {
+        let points: Vec<&SweepPoint> = self.sweep.iter().filter(|point| applies(point)).collect();
+        let shown: Vec<String> = points.iter().take(SHOWN_POINTS).map(|point| point.at_words()).collect();
+        let more = points.len().saturating_sub(SHOWN_POINTS);
+        let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+        (!points.is_empty()).then(|| {
+            let shown = harmless(&shown.join("; "));
+            format!("{} of {} sweep points {what}. {shown}{more}.", points.len(), self.sweep.len())
+        })
+    }
+
     /// Returns the verdict on all requirements together: not met if one is not met at a point of the sweep,
     /// met if all are met at every point. `None` without requirements.
     pub fn verdict(&self) -> Option<RequirementVerdict> {
@@ -284,11 +352,11 @@ impl Summary {
             warm_up_frames: study.warm_up_frames(),
             cases: cases.count(),
             of: study.cases(),
-            failed_cases: cases.failed_cases,
+            failed_cases: count_true(&cases.has_failed),
             draws: cases.draws.last().map_or(0, |last| *last as u64 + 1),
             is_narrow_enough: waited_for == Some(StoppingStatus::NarrowEnough),
             waited: waited_for,
-            error_cases: cases.has_error.iter().filter(|has_error| **has_error).count() as u64,
+            error_cases: count_true(&cases.has_error),
             errors: cases
                 .errors
                 .iter()
@@ -306,6 +374,10 @@ impl Summary {
             worst_by,
         })
     }
+}
+
+fn count_true(cases: &[bool]) -> u64 {
+    cases.iter().filter(|case| **case).count() as u64
 }
 
 fn figure(name: &str, cases: &[CaseFigure], draws: &[usize]) -> FigureSummary {
@@ -370,8 +442,14 @@ impl Points {
     }
 
     fn summary(&self, point: usize, at: &IndexMap<String, String>, cases: &CaseFile) -> SweepPoint {
-        let count = self.pick(point, &cases.draws).len() as u64;
-        SweepPoint { at: at.clone(), cases: count, figures: IndexMap::new(), causes: IndexMap::new() }
+        SweepPoint {
+            at: at.clone(),
+            cases: self.pick(point, &cases.draws).len() as u64,
+            error_cases: count_true(&self.pick(point, &cases.has_error)),
+            failed_cases: count_true(&self.pick(point, &cases.has_failed)),
+            figures: IndexMap::new(),
+            causes: IndexMap::new(),
+        }
     }
 }
 
