@@ -12,7 +12,11 @@
 
 #[allow(clippy::indexing_slicing, reason = "indices are those of the measurements received")]
 mod batch;
+#[allow(clippy::indexing_slicing, reason = "constant indices of small matrices")]
+mod bound;
 mod config;
+#[allow(clippy::indexing_slicing, reason = "columns are those of the layout of the state")]
+mod filter;
 #[allow(clippy::indexing_slicing, reason = "indices of the grid of distances")]
 mod initial;
 pub mod orbit;
@@ -28,6 +32,8 @@ pub mod reference;
 pub mod relative;
 #[allow(clippy::indexing_slicing, reason = "constant indices of small matrices")]
 mod relative_state;
+#[allow(clippy::indexing_slicing, reason = "indices are those of the events received")]
+mod sequential;
 pub mod short_period;
 #[allow(clippy::indexing_slicing, reason = "two axes")]
 mod sight;
@@ -38,6 +44,8 @@ mod time;
 mod whitener;
 
 pub use batch::{Batch, BatchFactory};
+pub use bound::{Bound, Observability};
 pub use config::{BatchConfig, ModelErrors, SequentialConfig};
 pub use initial::Hypothesis;
+pub use sequential::{Sequential, SequentialFactory};
 pub use short_period::Osculation;

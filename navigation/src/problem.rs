@@ -2,7 +2,8 @@
 //!
 //! Gauss–Newton with Marquardt's damping, in square-root form, over rows whose slow errors are whitened
 //! ([`crate::whitener`]). A coarse stage on a part of the measurements weights large residuals down (Huber
-//! 1964, Ann. Math. Stat. 35, 73, scaled by the median); the fine stage uses all, and edits those whose
+//! 1964, Ann. Math. Stat. 35, 73, scaled by the median) and proceeds from the first hours to the whole campaign;
+//! the fine stage uses all, and edits those whose
 //! innovation is beyond a gate, until the set is stable.
 
 use contract::navigation::{Answer, NavigationSetup, NoEstimate, RelativeElements};
@@ -18,8 +19,11 @@ use crate::square_root::SquareRoot;
 use crate::time::seconds_between;
 use crate::whitener::Whitener;
 
-/// Largest number of measurements of the coarse stage.
-const COARSE: usize = 1500;
+/// Largest number of measurements of a coarse stage.
+const COARSE: usize = 1000;
+
+/// Fractions of the campaign that the coarse stages use, one after the other.
+const PARTS: [f64; 5] = [0.06, 0.15, 0.35, 0.65, 1.0];
 
 /// Largest number of iterations of one stage.
 const ITERATIONS: usize = 25;
@@ -91,9 +95,17 @@ impl Problem<'_> {
         }
         let mut values = vec![0.0; self.parameters.count()];
         values.iter_mut().zip(start.vector().iter()).for_each(|(value, x)| *value = *x);
-        let coarse: Vec<Sight> =
-            self.sights.iter().step_by(self.sights.len().div_ceil(COARSE)).cloned().collect();
-        Problem { sights: &coarse, ..*self }.robust(&mut values)?;
+        // Angles are nonlinear where the predicted chaser passes the target: a wrong orbit is corrected from
+        // its first measurements before later ones are added.
+        let last = self.sights.last().map_or(0.0, |sight| sight.seconds);
+        let first = self.sights.first().map_or(0.0, |sight| sight.seconds);
+        for part in PARTS {
+            let end = self.sights.partition_point(|sight| sight.seconds <= first + part * (last - first));
+            let chosen = &self.sights[..end.max(1)];
+            let stride = chosen.len().div_ceil(COARSE);
+            let coarse: Vec<Sight> = chosen.iter().step_by(stride).cloned().collect();
+            Problem { sights: &coarse, ..*self }.robust(&mut values)?;
+        }
         self.fine(values)
     }
 
@@ -140,6 +152,21 @@ impl Problem<'_> {
         if weights.iter().all(|weight| *weight == 0.0) {
             return Err(NoEstimate::NoMeasurements);
         }
+        self.result(values, weights)
+    }
+
+    /// Returns the covariance at parameters, with all measurements.
+    pub(crate) fn covariance(&self, values: &[f64]) -> Result<DMatrix<f64>, NoEstimate> {
+        let weights = vec![1.0; self.sights.len()];
+        self.equations(values, &weights)?.covariance().ok_or(NoEstimate::NoConvergence)
+    }
+
+    /// Returns the result at given parameters, with all measurements.
+    pub(crate) fn at(&self, values: &[f64]) -> Result<Solution, NoEstimate> {
+        self.result(values.to_vec(), vec![1.0; self.sights.len()])
+    }
+
+    fn result(&self, values: Vec<f64>, weights: Vec<f64>) -> Result<Solution, NoEstimate> {
         let covariance = self.equations(&values, &weights)?.covariance().ok_or(NoEstimate::NoConvergence)?;
         let Residuals { cost, residuals, .. } = self.residuals(&values, &weights)?;
         let path = self.path(&values).ok_or(NoEstimate::NoConvergence)?;
@@ -285,7 +312,8 @@ impl Solution {
         let sensitivity = self.path.sensitivity_at(seconds).ok_or(NoEstimate::NoChaserOrbit)?;
         let product = &sensitivity * &self.covariance * sensitivity.transpose();
         let covariance = Matrix6::from_iterator(product.iter().copied());
-        relative_state::estimate(time, &elements, &covariance, &chaser, reference.osculation())
+        let accuracy = reference.relative_accuracy(seconds);
+        relative_state::estimate(time, &elements, &covariance, &chaser, reference.osculation(), accuracy)
     }
 }
 

@@ -28,6 +28,9 @@ const MARGIN_S: f64 = 3600.0;
 /// Gauss–Newton iterations of a piece.
 const ITERATIONS: usize = 6;
 
+/// Relative size of truncated terms: about J2² of a low orbit.
+const SECOND_ORDER: f64 = 1.0e-6;
+
 /// Parameters of a piece: six elements and the rate of a.
 const PARAMETERS: usize = 7;
 
@@ -50,6 +53,8 @@ struct Piece {
     orbit: Orbit,
     /// Rate of a due to drag, km/s.
     a_rate_km_s: f64,
+    /// Accuracy of the position, relative to a.
+    misfit: f64,
 }
 
 impl Piece {
@@ -105,6 +110,14 @@ impl Reference {
         self.piece(seconds, |from_s| from_s < seconds)
     }
 
+    /// Returns the relative accuracy of a distance between two orbits near this one: truncated terms of
+    /// second order in J2, and the rotation and scale by the misfit of the chaser's states.
+    pub fn relative_accuracy(&self, seconds: f64) -> f64 {
+        let index = self.pieces.partition_point(|piece| piece.from_s <= seconds).saturating_sub(1);
+        let misfit = self.pieces.get(index).map_or(0.0, |piece| piece.misfit);
+        libm::hypot(SECOND_ORDER, misfit)
+    }
+
     /// Relation of mean elements and states.
     pub fn osculation(&self) -> Osculation {
         self.osculation
@@ -145,14 +158,20 @@ pub fn orbit_of(elements: &MeanElements) -> Orbit {
 fn of_elements(elements: &MeanElements, impulses: &[Impulse], osculation: Osculation) -> Option<Vec<Piece>> {
     let orbit = orbit_of(elements);
     orbit.is_supported().then_some(())?;
-    let at_epoch = Piece { from_s: f64::NEG_INFINITY, anchor_s: 0.0, orbit, a_rate_km_s: 0.0 };
+    let at_epoch = Piece { from_s: f64::NEG_INFINITY, anchor_s: 0.0, orbit, a_rate_km_s: 0.0, misfit: 0.0 };
     // The elements apply just after an impulse at the epoch.
     let (earlier, later) = impulses.split_at(impulses.partition_point(|impulse| impulse.seconds <= 0.0));
     let mut pieces = vec![at_epoch];
     for impulse in later {
         let before = pieces.last()?.at(impulse.seconds);
         let orbit = kicked(&before, &impulse.dv_m_s, osculation)?;
-        pieces.push(Piece { from_s: impulse.seconds, anchor_s: impulse.seconds, orbit, a_rate_km_s: 0.0 });
+        pieces.push(Piece {
+            from_s: impulse.seconds,
+            anchor_s: impulse.seconds,
+            orbit,
+            a_rate_km_s: 0.0,
+            misfit: 0.0,
+        });
     }
     for impulse in earlier.iter().rev() {
         let first = pieces.first_mut()?;
@@ -161,7 +180,13 @@ fn of_elements(elements: &MeanElements, impulses: &[Impulse], osculation: Oscula
         let orbit = kicked(&first.at(impulse.seconds), &-impulse.dv_m_s, osculation)?;
         pieces.insert(
             0,
-            Piece { from_s: f64::NEG_INFINITY, anchor_s: impulse.seconds, orbit, a_rate_km_s: 0.0 },
+            Piece {
+                from_s: f64::NEG_INFINITY,
+                anchor_s: impulse.seconds,
+                orbit,
+                a_rate_km_s: 0.0,
+                misfit: 0.0,
+            },
         );
     }
     Some(pieces)
@@ -202,7 +227,10 @@ fn of_states(states: &[TimedState], impulses: &[Impulse], osculation: Osculation
             let start = if k == 0 { *from_s } else { low + length * k as f64 };
             let (from, to) = (low + length * k as f64, low + length * (k + 1) as f64);
             starts.push((start, dv.filter(|_| k == 0)));
-            let within = |state: &&TimedState| (from..=to).contains(&state.seconds);
+            // A state at an impulse is that after it; the last state belongs to the last piece.
+            let within = |state: &&TimedState| {
+                (from..to).contains(&state.seconds) || (to == last && state.seconds == last)
+            };
             let inside: Vec<&TimedState> = states.iter().filter(within).collect();
             pieces.push(fit(&inside, start, osculation));
         }
@@ -248,7 +276,8 @@ fn fit(states: &[&TimedState], from_s: f64, osculation: Osculation) -> Option<Pi
     let used: Vec<&&TimedState> = states.iter().step_by(stride).collect();
     let middle = used.get(used.len() / 2)?;
     let anchor_s = middle.seconds;
-    let mut piece = Piece { from_s, anchor_s, orbit: osculation.mean(&middle.state)?, a_rate_km_s: 0.0 };
+    let mut piece =
+        Piece { from_s, anchor_s, orbit: osculation.mean(&middle.state)?, a_rate_km_s: 0.0, misfit: 0.0 };
     // Steps of the difference quotients, and the scale of the prior of the rate of a: 1 km per day.
     let steps = SVector::<f64, PARAMETERS>::from([1e-4, 1e-8, 1e-8, 1e-8, 1e-8, 1e-8, 1e-10]);
     let rate_sigma_km_s = 1.0 / 86_400.0;
@@ -286,7 +315,18 @@ fn fit(states: &[&TimedState], from_s: f64, osculation: Osculation) -> Option<Pi
             break;
         }
     }
-    Some(piece)
+    // Of the residual's mean square, the share above the noise is an error of the model; of the noise, the
+    // fit keeps the share of its parameters.
+    let mean_square = |value: &dyn Fn(&TimedState) -> f64| {
+        used.iter().map(|timed| value(timed)).sum::<f64>() / used.len() as f64
+    };
+    let residual = mean_square(&|timed| {
+        (osculation.state(&piece.at(timed.seconds)).position_km - timed.state.position_km).norm_squared()
+    });
+    let noise = mean_square(&|timed| 3.0 * timed.position_sigma_km * timed.position_sigma_km);
+    let kept = noise * (PARAMETERS as f64 / (6 * used.len()) as f64);
+    let misfit = ((residual - noise).max(0.0) + kept).sqrt() / piece.orbit.a_km;
+    Some(Piece { misfit, ..piece })
 }
 
 fn moved_by(piece: &Piece, step: &SVector<f64, PARAMETERS>) -> Piece {

@@ -28,13 +28,16 @@ pub(crate) fn relative_state(
     Vector6::new(r, along, n, v_r + rate * along, v_t - rate * r, v_n)
 }
 
-/// Creates the estimate for elements with a covariance, m².
+/// Creates the estimate for elements with a covariance, m². The `accuracy` of the dynamics, relative to the
+/// distance, is added to both covariances as an independent error of each component: angles determine some
+/// combinations of elements to micrometres, but the model is exact only to second order in J2.
 pub(crate) fn estimate(
     time: Epoch,
     elements: &RelativeElements,
     covariance: &Matrix6<f64>,
     chaser: &Orbit,
     osculation: Osculation,
+    accuracy: f64,
 ) -> Answer {
     let at =
         |vector: &Vector6<f64>| relative_state(&RelativeElements::from_vector(vector), chaser, osculation);
@@ -46,7 +49,12 @@ pub(crate) fn estimate(
         step[column] = STEP_M;
         slopes.set_column(column, &((at(&(centre + step)) - at(&(centre - step))) / (2.0 * STEP_M)));
     }
-    let of_state = slopes * covariance * slopes.transpose();
+    let distance_m = centre.norm();
+    let (of_position, of_velocity) = (accuracy * distance_m, accuracy * distance_m * chaser.mean_motion());
+    let floor = Vector6::from_fn(|k, _| if k < 3 { of_position } else { of_velocity });
+    let of_state =
+        slopes * covariance * slopes.transpose() + Matrix6::from_diagonal(&floor.component_mul(&floor));
+    let covariance = covariance + Matrix6::identity() * (of_position * of_position);
     let refused = |_| NoEstimate::NoConvergence;
     let estimate = RelativeEstimate {
         time,
@@ -54,7 +62,7 @@ pub(crate) fn estimate(
         velocity_m_s: state.fixed_rows::<3>(3).into_owned(),
         covariance: Covariance6::from_matrix(of_state).map_err(refused)?,
         elements: *elements,
-        elements_covariance: Covariance6::from_matrix(*covariance).map_err(refused)?,
+        elements_covariance: Covariance6::from_matrix(covariance).map_err(refused)?,
     };
     if state.iter().all(|x| x.is_finite()) { Ok(estimate) } else { Err(NoEstimate::NoConvergence) }
 }

@@ -99,12 +99,12 @@ impl Campaign {
                 raan: 126.4_f64.to_radians(),
             },
             relative: RelativeElements {
-                a_dlambda_m: -30_000.0,
+                a_dlambda_m: -32_000.0,
                 a_dey_m: 400.0,
                 a_diy_m: 400.0,
                 ..RelativeElements::default()
             },
-            prior_sigma_m: Some([5.0, 1000.0, 50.0, 50.0, 50.0, 50.0]),
+            prior_sigma_m: Some([1.0, 500.0, 30.0, 30.0, 30.0, 30.0]),
             manoeuvres,
             manoeuvre_sigma: (0.01, 5e-5),
             schedule: days
@@ -183,6 +183,10 @@ impl Campaign {
                 let camera: Rotation<_, _> = Rotation::from_axes(&-n, &-r, &t);
                 let sight: Vector3<f64> = target.position_km - chaser.position_km;
                 let los = camera.rotate(&sight);
+                // A dispersed chaser may come too near or pass the target, which then leaves the image.
+                if los.z < 0.94 * los.norm() {
+                    continue;
+                }
                 let mut angles = [libm::atan2(los.x, los.z), libm::atan2(los.y, los.z)];
                 for ((_, period), line) in self.slow.iter().zip(&lines) {
                     let (sin, cos) = libm::sincos(TAU * seconds / period);
@@ -229,7 +233,7 @@ impl Campaign {
                 .iter()
                 .map(|(sigma, period)| SlowError {
                     sigma_arcsec: [*sigma; 2],
-                    memory_s: 3e6,
+                    memory_s: 1e8,
                     period_s: Some(*period),
                 })
                 .collect(),
