@@ -13,12 +13,15 @@ impl Pipeline<FarRange> for Brightest {
     fn process(&mut self, frame: &Frame, _: &Telemetry) -> Outcome {
         let brightest = frame.dn().iter().enumerate().max_by_key(|(_, dn)| **dn);
         match brightest.filter(|(_, dn)| **dn > 0) {
-            None => Outcome::none(NoSolution::EmptyFrame),
+            None => Outcome::without_solution(NoSolution::EmptyFrame),
             Some((index, _)) => {
                 let (x, y) = (index % frame.columns(), index / frame.columns());
                 let position = PixelPoint::new(x as f64, y as f64);
                 let measurement = Measurement::new(position, None);
-                Outcome { solution: Solution::Detected(measurement), ..Outcome::none(NoSolution::NoTarget) }
+                Outcome {
+                    solution: Solution::Detected(measurement),
+                    ..Outcome::without_solution(NoSolution::NoTarget)
+                }
             }
         }
     }

@@ -22,7 +22,7 @@ impl Interface for FarRange {
     }
 
     fn failed(reason: String) -> Outcome {
-        Outcome::none(NoSolution::Failed(reason))
+        Outcome::without_solution(NoSolution::Failed(reason))
     }
 
     fn failure(outcome: &Outcome) -> Option<&str> {

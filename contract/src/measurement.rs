@@ -176,7 +176,7 @@ pub struct Outcome {
 
 impl Outcome {
     /// Creates an outcome without a solution, with its reason.
-    pub fn none(reason: NoSolution) -> Self {
+    pub fn without_solution(reason: NoSolution) -> Self {
         Self {
             solution: Solution::NoSolution(reason),
             camera_from_icrs: None,

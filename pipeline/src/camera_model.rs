@@ -54,7 +54,7 @@ impl CameraModel {
         self.project_vector(direction.vector())
     }
 
-    /// [`CameraModel::project`] for a vector of any length.
+    /// Projects a vector of any length, as [`CameraModel::project`] does a direction.
     pub(crate) fn project_vector(&self, r: &Vector3<f64>) -> Option<PixelPoint> {
         if r.z.is_nan() || r.z <= 0.0 {
             return None;

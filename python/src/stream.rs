@@ -14,7 +14,7 @@ use crate::simulated_frame::SimulatedFrame;
 use crate::worlds::PendingFrame;
 
 /// Interval at which a waiting caller checks for Ctrl-C.
-const LOOK: Duration = Duration::from_millis(50);
+const CHECK_INTERVAL: Duration = Duration::from_millis(50);
 /// Number of finished frames that wait for the caller, beside those of the batch in progress.
 const WAITING: usize = 2;
 
@@ -58,7 +58,7 @@ impl FrameStream {
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Py<SimulatedFrame>>> {
-        let next = || self.made.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
+        let next = || self.made.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(CHECK_INTERVAL);
         loop {
             match py.detach(next) {
                 Ok(Ok(made)) => return SimulatedFrame::new(py, made, &self.prepared).map(Some),

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::errors::{BoresightError, raised};
 
 /// Interval at which a waiting caller checks for the end of the work and for Ctrl-C.
-const LOOK: Duration = Duration::from_millis(20);
+const CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Treatment of work whose caller was interrupted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,7 +72,7 @@ pub(crate) fn interruptibly<T: Send + 'static>(
         .spawn(move || work(own.flag()))
         .map_err(|error| BoresightError::new_err(format!("a thread cannot be started: {error}")))?;
     while !worker.is_finished() {
-        py.detach(|| std::thread::sleep(LOOK));
+        py.detach(|| std::thread::sleep(CHECK_INTERVAL));
         if let Err(interrupt) = py.check_signals() {
             ended.is_set.store(true, Ordering::Relaxed);
             if after == AfterCtrlC::Ends {

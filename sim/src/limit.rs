@@ -6,8 +6,8 @@ use crate::Simulator;
 use crate::optics::{Psf, Stamp};
 
 /// Limits of the searched magnitudes.
-const FAINTEST: f64 = 40.0;
-const BRIGHTEST: f64 = -10.0;
+const MAX_MAGNITUDE: f64 = 40.0;
+const MIN_MAGNITUDE: f64 = -10.0;
 /// Number of bisection steps within a magnitude, for an accuracy of 1e-3.
 const HALVINGS: usize = 10;
 
@@ -30,8 +30,8 @@ impl Simulator {
             truth.snr >= snr
         };
         // Searched from the faint side: a bright star fills the detector, and its image takes long to draw.
-        let steps = (FAINTEST - BRIGHTEST) as usize;
-        let mut seen = (0..=steps).map(|step| FAINTEST - step as f64).find(|m| is_seen(*m))?;
+        let steps = (MAX_MAGNITUDE - MIN_MAGNITUDE) as usize;
+        let mut seen = (0..=steps).map(|step| MAX_MAGNITUDE - step as f64).find(|m| is_seen(*m))?;
         let mut step = 1.0;
         for _ in 0..HALVINGS {
             step *= 0.5;

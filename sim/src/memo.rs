@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Number of latest results that are kept: enough for a sweep of a few values, and few enough to limit
 /// memory; a sky is some 20 MB.
-const KEPT: usize = 4;
+const MAX_RESULTS: usize = 4;
 
 /// Latest results of a pure function, shared by all threads of a process. The cases of a study differ in a
 /// few values, so results that depend on other values are computed once.
@@ -29,7 +29,7 @@ impl<K: PartialEq, V> Memo<K, V> {
         }
         let result = Arc::new(make(&key)?);
         let mut kept = kept();
-        if kept.len() >= KEPT {
+        if kept.len() >= MAX_RESULTS {
             kept.remove(0);
         }
         kept.push((key, result.clone()));
@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn the_oldest_result_gives_way() {
         let memo = Memo::new();
-        for key in 0..=KEPT {
+        for key in 0..=MAX_RESULTS {
             memo.get(key, |_| Ok::<_, ()>(())).unwrap();
         }
         assert!(memo.get(0, |_| Err(())).is_err());

@@ -14,7 +14,7 @@ const PREFIX: &str = "boresight-scratch-";
 /// to the user, regardless of its name.
 const MARK: &str = ".boresight-scratch";
 /// Minimum age of a directory before it is removed; a process locks a new directory at once.
-const UNLOCKED: Duration = Duration::from_secs(3600);
+const MIN_AGE: Duration = Duration::from_secs(3600);
 
 /// Temporary directories of this process.
 static DIRECTORIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -78,7 +78,7 @@ fn remove_abandoned(folder: &Path) {
         let age = age.and_then(|modified| SystemTime::now().duration_since(modified).ok());
         let is_old = entry.file_name().to_string_lossy().starts_with(PREFIX)
             && entry.file_type().is_ok_and(|kind| kind.is_dir())
-            && age.is_some_and(|age| age > UNLOCKED);
+            && age.is_some_and(|age| age > MIN_AGE);
         if is_old && File::open(path.join(MARK)).is_ok_and(|file| file.try_lock().is_ok()) {
             let _ = std::fs::remove_dir_all(&path);
         }
@@ -94,7 +94,7 @@ mod tests {
         let path = folder.join(name);
         std::fs::create_dir(&path).unwrap();
         std::fs::write(path.join(file), "kept").unwrap();
-        File::open(&path).unwrap().set_modified(SystemTime::now() - 2 * UNLOCKED).unwrap();
+        File::open(&path).unwrap().set_modified(SystemTime::now() - 2 * MIN_AGE).unwrap();
         path
     }
 

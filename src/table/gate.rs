@@ -7,7 +7,7 @@ use run::figure_by_name;
 use crate::table::far_range::{finish, percent, plain_table};
 
 /// Maximum number of changed units that are printed; the JSON contains all of them.
-const SHOWN: usize = 10;
+const MAX_CHANGED_UNITS: usize = 10;
 
 /// Maximum number of rows of the table, unless more figures are worse or better.
 const MAX_ROWS: usize = 20;
@@ -76,7 +76,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
         if flips.units.is_empty() {
             text.push('\n');
         } else {
-            text.push_str(if flips.units.len() > SHOWN { ", the first ten:\n" } else { ":\n" });
+            text.push_str(if flips.units.len() > MAX_CHANGED_UNITS { ", the first ten:\n" } else { ":\n" });
             text.push_str(&flipped_units(&flips.units, styled));
         }
     }
@@ -111,7 +111,7 @@ fn flipped_units(flips: &[Flip], styled: bool) -> String {
             .as_ref()
             .map_or_else(|| verdict.to_owned(), |cause| format!("{verdict}: {}", cause.replace('_', " ")))
     };
-    for flip in flips.iter().take(SHOWN) {
+    for flip in flips.iter().take(MAX_CHANGED_UNITS) {
         table.add_row([
             flip.number.to_string(),
             flip.group.clone(),

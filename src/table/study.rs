@@ -12,7 +12,7 @@ use study::{
 use crate::table::far_range::{finish, percent, plain_table};
 
 /// Maximum number of parameters in the sensitivity table.
-const SHOWN: usize = 12;
+const MAX_PARAMETERS: usize = 12;
 /// Maximum number of figures with a column in the tables of sweep and sensitivities.
 const SHOWN_FIGURES: usize = 4;
 
@@ -158,7 +158,7 @@ fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String 
     if !varied.is_empty() {
         let mut parameters: Vec<&String> = Vec::new();
         for correlation in varied.iter().flat_map(|name| correlations_with(summary, name)) {
-            if parameters.len() < SHOWN && !parameters.contains(&&correlation.parameter) {
+            if parameters.len() < MAX_PARAMETERS && !parameters.contains(&&correlation.parameter) {
                 parameters.push(&correlation.parameter);
             }
         }
@@ -238,7 +238,7 @@ fn differences(summary: &Summary, styled: bool) -> String {
     let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
     table.set_header([&format!("change of {}", label(by)), "from", "to", "difference", "draws"].map(bold));
     let mut is_empty = true;
-    for step in summary.differences.iter().filter(|step| &step.figure == by).take(SHOWN) {
+    for step in summary.differences.iter().filter(|step| &step.figure == by).take(MAX_PARAMETERS) {
         let changed = step.from.iter().find(|(path, from)| step.to.get(*path) != Some(from));
         let Some((path, from)) = changed else { continue };
         let to = step.to.get(path).map_or("", String::as_str);

@@ -5,7 +5,7 @@ use visibility::{Status, Verdict, VisibilityReport, digits};
 use crate::table::far_range::{finish, plain_table};
 
 /// Approximate number of points of a curve that are shown.
-const SHOWN: usize = 9;
+const CURVE_POINTS: usize = 9;
 
 /// A table with heading, columns and rows.
 struct TextTable {
@@ -225,7 +225,7 @@ fn remarks(report: &VisibilityReport) -> Vec<String> {
 
 /// Returns evenly spaced points of a curve, from its first point on.
 fn thinned<T>(points: &[T]) -> impl Iterator<Item = &T> {
-    let step = points.len().saturating_sub(1).div_ceil(SHOWN - 1).max(1);
+    let step = points.len().saturating_sub(1).div_ceil(CURVE_POINTS - 1).max(1);
     points.iter().step_by(step)
 }
 

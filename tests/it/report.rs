@@ -300,29 +300,29 @@ fn a_run_with_injected_truth_is_marked() {
 #[test]
 fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
     let bench = Bench::new();
-    bench.boresight("run argon --frames 220..240 --out honest --no-report").done();
+    bench.boresight("run argon --frames 220..240 --out plain --no-report").done();
     for stage in ["roi", "attitude"] {
         bench
             .boresight(&format!("run argon --frames 220..240 --inject {stage} --out {stage} --no-report"))
             .done();
     }
-    bench.boresight("report honest --budget roi --budget attitude").done();
-    let page = PageText::read(&bench, "honest/report.html");
+    bench.boresight("report plain --budget roi --budget attitude").done();
+    let page = PageText::read(&bench, "plain/report.html");
     page.check(&["budget"]);
     let chart = page.charts().into_iter().find(|chart| chart.to_string().contains("RMS error")).unwrap();
     assert_eq!(chart["data"][0]["x"], serde_json::json!(["none (unmodified run)", "attitude", "roi"]));
     let own = bench.json("attitude/score.json")["figures"]["ra_rms_deg"]["value"].as_f64().unwrap();
     assert!((chart["data"][0]["y"][1].as_f64().unwrap() - own).abs() < 1e-6);
 
-    bench.boresight("report honest --budget honest").refused(&["honest/run.toml", "`inject` is missing"]);
+    bench.boresight("report plain --budget plain").refused(&["plain/run.toml", "`inject` is missing"]);
     bench.boresight("report roi --budget attitude").refused(&["--budget", "without --inject"]);
     bench.boresight("run argon --frames 220..239 --inject attitude --out short --no-report").done();
-    bench.boresight("report honest --budget short").refused(&["short/run.toml", "the frames differ"]);
+    bench.boresight("report plain --budget short").refused(&["short/run.toml", "the frames differ"]);
     bench.boresight("run argon --seed 5 --frames 220..240 --inject attitude --out seed --no-report").done();
-    bench.boresight("report honest --budget seed").refused(&["seed/run.toml", "`scenario`"]);
-    bench.boresight("report honest --budget nowhere").refused(&["nowhere/run.toml"]);
+    bench.boresight("report plain --budget seed").refused(&["seed/run.toml", "`scenario`"]);
+    bench.boresight("report plain --budget nowhere").refused(&["nowhere/run.toml"]);
     bench.boresight("run docking --frames 24000..24001 --out docking --no-report").done();
-    bench.boresight("report honest --budget docking").refused(&["docking/run.toml", "`scenario.world`"]);
+    bench.boresight("report plain --budget docking").refused(&["docking/run.toml", "`scenario.world`"]);
     bench.boresight("report docking --budget roi").refused(&["--budget", "far-range", "docking"]);
 }
 

@@ -20,7 +20,7 @@ impl Interface for Docking {
     }
 
     fn failed(reason: String) -> DockingOutcome {
-        DockingOutcome::none(NoPose::Failed(reason))
+        DockingOutcome::without_pose(NoPose::Failed(reason))
     }
 
     fn failure(outcome: &DockingOutcome) -> Option<&str> {

@@ -162,7 +162,7 @@ pub struct DockingOutcome {
 
 impl DockingOutcome {
     /// Creates an outcome without a solution, with its reason.
-    pub fn none(reason: NoPose) -> Self {
+    pub fn without_pose(reason: NoPose) -> Self {
         Self {
             solution: DockingSolution::NoSolution(reason),
             features: Features::default(),

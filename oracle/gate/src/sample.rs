@@ -29,11 +29,11 @@ impl Sample {
 /// Rounds to twelve binary digits (four decimal digits). This is forty times finer than the tolerance of an
 /// amount, and takes half the space in a file.
 fn rounded(value: f32) -> f32 {
-    const DROPPED: u32 = 12;
+    const DROPPED_BITS: u32 = 12;
     let bits = value.to_bits();
     // Adds half of the last kept digit and truncates the digits below. A carry into the exponent gives the
     // next power of two.
-    let up = bits.saturating_add(1 << (DROPPED - 1)) >> DROPPED << DROPPED;
+    let up = bits.saturating_add(1 << (DROPPED_BITS - 1)) >> DROPPED_BITS << DROPPED_BITS;
     let rounded = f32::from_bits(up);
     if rounded.is_finite() { rounded } else { value }
 }

@@ -8,7 +8,7 @@ const POINTS: u64 = 1200;
 const PIECES: usize = 80;
 /// Fraction of the range, before and behind a point, over which the corridor takes the planned rates; holds
 /// are not flown to the centimetre.
-const NEAR: f64 = 0.06;
+const NEAR_RANGE_FRACTION: f64 = 0.06;
 /// Margin of the corridor on each side, as a fraction of the planned rate.
 const MARGIN: f64 = 0.2;
 
@@ -58,7 +58,7 @@ fn corridor(points: &[(u64, f64, f64)], least_margin_m_s: f64) -> Vec<[f64; 3]> 
     (0..=PIECES)
         .filter_map(|i| {
             let range = piece(i);
-            let near = points.iter().filter(|(_, r, _)| (r - range).abs() <= NEAR * range);
+            let near = points.iter().filter(|(_, r, _)| (r - range).abs() <= NEAR_RANGE_FRACTION * range);
             let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, _, rate)| {
                 (low.min(*rate), high.max(*rate))
             });

@@ -239,11 +239,11 @@ mod tests {
     }
 
     fn labelled(label: Label) -> Outcome {
-        Outcome { clusters: vec![cluster(CENTRE, label)], ..Outcome::none(NoSolution::NoTarget) }
+        Outcome { clusters: vec![cluster(CENTRE, label)], ..Outcome::without_solution(NoSolution::NoTarget) }
     }
 
     fn no_target() -> Outcome {
-        Outcome::none(NoSolution::NoTarget)
+        Outcome::without_solution(NoSolution::NoTarget)
     }
 
     fn right_of_target(px: f64) -> PixelPoint {
@@ -302,7 +302,7 @@ mod tests {
             (NoSolution::EmptyFrame, Cause::BelowThreshold),
             (NoSolution::NoTarget, Cause::Unexplained),
         ] {
-            assert_eq!(cause_with(&Outcome::none(reason), &[]), expected);
+            assert_eq!(cause_with(&Outcome::without_solution(reason), &[]), expected);
         }
     }
 
@@ -376,7 +376,7 @@ mod tests {
     #[test]
     fn causes_beyond_any_pipeline_precede_the_pipelines_reason() {
         let truth = FrameTruth { target_visibility: Visibility::Invisible, ..frame(0) };
-        let failed = Outcome::none(NoSolution::Failed("no light".into()));
+        let failed = Outcome::without_solution(NoSolution::Failed("no light".into()));
         assert_eq!(cause(&truth, &[target_with(1.0)], Some(&failed), DETECTOR), Cause::TooFaint);
     }
 

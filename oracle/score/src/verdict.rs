@@ -187,11 +187,11 @@ pub struct VerdictRow<'a> {
     pub group: &'a str,
     /// `missed`, `correct` or `wrong`.
     pub verdict: &'static str,
-    /// [`Cause::code`], when missed or wrong.
+    /// Code of the cause ([`Cause::code`]) if missed or wrong.
     pub cause: Option<&'static str>,
-    /// [`MistakenObject::code`], when wrong.
+    /// Code of the object measured instead ([`MistakenObject::code`]) if wrong.
     pub taken: Option<&'static str>,
-    /// [`MistakenObject::id`], when wrong.
+    /// Identifier of the object measured instead ([`MistakenObject::id`]) if wrong.
     pub taken_id: Option<u32>,
     /// Error of the centroid across columns, px, when detected.
     pub centroid_x_error_px: Option<f64>,
@@ -205,9 +205,9 @@ pub struct VerdictRow<'a> {
     pub line_of_sight: Option<&'static str>,
     /// Number of identified stars; empty if there is no outcome for the frame.
     pub n_stars: Option<u32>,
-    /// [`AttitudeSource::code`].
+    /// Code of the source of the attitude ([`AttitudeSource::code`]).
     pub attitude_source: Option<&'static str>,
-    /// [`ImageState::code`], when correct.
+    /// Code of the state of the target's image ([`ImageState::code`]) if correct.
     pub image: Option<&'static str>,
     /// Error of the centroid across columns over its standard deviation, if the measurement states one.
     pub centroid_x_over_sigma: Option<f64>,
@@ -239,7 +239,8 @@ pub(super) fn judge(
     let line_of_sight = LineOfSightError::from_measurement(measurement, truth, unproject, granted);
     let is_on_detector = measurement.position.is_on_detector(detector.columns, detector.rows);
     if !is_on_detector || (measurement.line_of_sight.is_some() && line_of_sight.is_none()) {
-        let no_answer = Outcome::none(NoSolution::Failed("the measurement is not a direction".to_owned()));
+        let no_answer =
+            Outcome::without_solution(NoSolution::Failed("the measurement is not a direction".to_owned()));
         return missed(Some(&no_answer));
     }
     let centre = target(objects).map(|target| target.position).or(truth.target_position);

@@ -15,7 +15,7 @@ use sim::randomness::{Effect, Seed};
 /// Largest number of blocks for which all exchanges are evaluated.
 const MAX_EXHAUSTED: usize = 13;
 /// Number of random exchanges for more blocks, in addition to the identity.
-const DRAWN: usize = 9_999;
+const RANDOM_EXCHANGES: usize = 9_999;
 /// Number of random sets used for an interval: its ends are quantiles with a standard deviation of a
 /// twentieth of its width.
 const FOR_AN_INTERVAL: usize = 1_999;
@@ -41,7 +41,7 @@ impl Exchanges {
         }
         let mut stream = Seed { seed: blocks as u64, case: 0 }.stream(0, Effect::BlockExchange, 0);
         let mut bits = vec![0; words];
-        bits.extend((0..DRAWN * words).map(|_| stream.next_u64()));
+        bits.extend((0..RANDOM_EXCHANGES * words).map(|_| stream.next_u64()));
         Self { blocks, words, bits }
     }
 
@@ -297,7 +297,7 @@ mod tests {
         }
         for blocks in [14, 200] {
             let exchanges = Exchanges::new(blocks);
-            assert_eq!((exchanges.blocks(), exchanges.sets().count()), (blocks, DRAWN + 1));
+            assert_eq!((exchanges.blocks(), exchanges.sets().count()), (blocks, RANDOM_EXCHANGES + 1));
             assert_eq!(exchanges.for_an_interval(), FOR_AN_INTERVAL);
             assert!(exchanges.sets().next().is_some_and(|empty| (0..blocks).all(|block| !empty.has(block))));
         }

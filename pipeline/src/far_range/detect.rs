@@ -141,7 +141,7 @@ const CHUNK: usize = 32;
 
 /// Number of pixels compared at once within a bright chunk. If any of them is above the threshold, they are
 /// tested one by one.
-const FEW: usize = 8;
+const GROUP_PIXELS: usize = 8;
 
 impl Detector {
     /// Scans a frame for the following [`Detector::detect`] with the same thresholds. Returns the number of
@@ -173,7 +173,7 @@ impl Detector {
         self.marked.resize(frame.dn().len().div_ceil(64), 0);
         let bright = std::mem::take(&mut self.bright);
         for (first, chunk) in bright.chunks(frame) {
-            for (first, few) in (first..).step_by(FEW).zip(chunk.chunks(FEW)) {
+            for (first, few) in (first..).step_by(GROUP_PIXELS).zip(chunk.chunks(GROUP_PIXELS)) {
                 if !holds_from(thresholds.high_dn.saturating_add(1), few) {
                     continue;
                 }

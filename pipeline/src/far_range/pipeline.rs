@@ -221,7 +221,7 @@ impl PaperPipeline {
         overrides: &Overrides<'_>,
     ) -> Outcome {
         if let Some(reason) = unusable_reason(frame, telemetry, &self.model) {
-            return Outcome::none(NoSolution::Failed(reason));
+            return Outcome::without_solution(NoSolution::Failed(reason));
         }
         let attitude = |mounting: &MountingFilter| {
             overrides
@@ -234,7 +234,7 @@ impl PaperPipeline {
                 return Outcome {
                     camera_from_icrs: Some(attitude(&self.mounting)),
                     attitude_source: Some(AttitudeSource::NoStars),
-                    ..Outcome::none(reason)
+                    ..Outcome::without_solution(reason)
                 };
             }
         };

@@ -55,7 +55,7 @@ const MIN_EXCEEDANCE: f64 = 1.0 / 1_048_576.0;
 /// costs less than its candidates.
 const MAX_EXCEEDANCE: f64 = 1.0 / 64.0;
 /// Upper end of the means of the limit, in quarters of an electron.
-const END: u32 = 4 * 1024;
+const MEANS_END: u32 = 4 * 1024;
 /// Number of extra electrons from which on they are neglected: a remainder of less than a quarter of an
 /// electron gives eight or more with a probability below 3.1e-10.
 const NEGLECTED_EXTRA_E: u32 = 8;
@@ -78,7 +78,7 @@ impl Exceedance {
     /// Returns the highest mean of the grid whose probability of exceeding the floor is at most `limit`, in
     /// quarters of an electron. The probability grows with the mean.
     fn last_below(&mut self, limit: f64) -> Option<u32> {
-        let (mut from, mut to) = (0, END);
+        let (mut from, mut to) = (0, MEANS_END);
         while from < to {
             let middle = u32::midpoint(from, to);
             if self.tail(middle, 0).probability() <= limit { from = middle + 1 } else { to = middle }

@@ -18,8 +18,8 @@ use crate::draw::{PART, PIECE};
 use crate::generator_lanes::{GeneratorLanes, LANES};
 use crate::randomness::Stream;
 
-/// Tables for the means of the grid, made on first use: 3072 tables of at most [`MeanTables::WIDEST`] digital
-/// numbers, 25 MB.
+/// Tables for the means of the grid, made on first use: 3072 tables of at most
+/// [`MeanTables::MAX_TABLE_WIDTH_DN`] digital numbers, 25 MB.
 #[derive(Debug, Clone)]
 pub(super) struct MeanTables {
     distribution: PixelDistribution,
@@ -43,13 +43,14 @@ const TWO_TO_24: f32 = 16_777_216.0;
 
 impl MeanTables {
     /// Maximum number of digital numbers in a table.
-    const WIDEST: f64 = 1024.0;
+    const MAX_TABLE_WIDTH_DN: f64 = 1024.0;
 
     /// Creates the grid without any tables.
     pub(super) fn new(distribution: &PixelDistribution) -> Self {
         // A distribution covers as many numbers as its width, and one more at each end; n shifts it by up to
         // two electrons without widening it.
-        let cells = (distribution.width_dn(END_E).clamp(0.0, Self::WIDEST) as usize + 3).next_power_of_two();
+        let cells = (distribution.width_dn(END_E).clamp(0.0, Self::MAX_TABLE_WIDTH_DN) as usize + 3)
+            .next_power_of_two();
         Self {
             distribution: *distribution,
             log2_cells: cells.trailing_zeros(),
@@ -60,7 +61,7 @@ impl MeanTables {
     /// Mean from which on pixels are not drawn from the grid, electrons; 0 if the tables of this distribution
     /// would be too wide.
     pub(super) fn end_e(distribution: &PixelDistribution) -> f64 {
-        if distribution.width_dn(END_E) <= Self::WIDEST { END_E } else { 0.0 }
+        if distribution.width_dn(END_E) <= Self::MAX_TABLE_WIDTH_DN { END_E } else { 0.0 }
     }
 
     /// Draws the pixels of a row, each with its mean, electrons (a negative mean counts as 0), from the words
@@ -81,7 +82,7 @@ impl MeanTables {
         }
     }
 
-    /// [`MeanTables::draw_row`] for at most `N` adjacent pixels and their words.
+    /// Draws at most `N` adjacent pixels of a row from their words; see [`MeanTables::draw_row`].
     #[inline(always)]
     pub(super) fn draw_piece<const N: usize>(
         &mut self,
@@ -179,7 +180,7 @@ impl MeanTables {
         self.number(level, pair, word as u32) as u16
     }
 
-    /// [`MeanTables::draw`] for a pixel without a table, or whose table is not made yet.
+    /// Does the work of [`MeanTables::draw`] for a pixel without a table, or whose table is not made yet.
     #[cold]
     fn draw_open(&mut self, mean_e: f64, choice: TableChoice, word: u64, mut pixel_stream: Stream) -> u16 {
         if choice.quarters >= QUARTERS as i32 {

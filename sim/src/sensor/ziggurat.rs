@@ -79,8 +79,8 @@ impl Ziggurat {
         if x.abs() < layer.inner { x } else { self.draw_on(word, &mut more()) }
     }
 
-    /// [`Ziggurat::draw`] from a 32-bit word: the lowest eight bits select the layer, the other bits the
-    /// number, in steps of 2⁻²³ of the layer's width.
+    /// Draws a number, as [`Ziggurat::draw`] does, from a 32-bit word: the lowest eight bits select the
+    /// layer, the other bits the number, in steps of 2⁻²³ of the layer's width.
     #[inline(always)]
     pub(crate) fn draw_short(&self, word: u32, more: impl FnOnce() -> Stream) -> f32 {
         let layer = &self.short[(word % LAYERS as u32) as usize];

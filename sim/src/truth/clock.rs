@@ -51,7 +51,7 @@ pub fn parse_utc(text: &str) -> Result<Epoch, OutOfRange> {
     }
 }
 
-/// [`parse_utc`] with errors that name `path`, the path in the scenario.
+/// Parses a time as [`parse_utc`] does, with errors that name `path`, the path in the scenario.
 ///
 /// # Errors
 /// See [`parse_utc`].
@@ -99,7 +99,7 @@ pub(super) fn jd_utc(time: Epoch) -> f64 {
     Epoch::from_utc_duration(Duration::from_total_nanoseconds(label_ns)).to_jde_utc_days()
 }
 
-/// [`unix_ns`] in integer milliseconds, rounded down: the time of JavaScript's dates.
+/// Returns [`unix_ns`] in integer milliseconds, rounded down: the time of JavaScript's dates.
 pub fn unix_ms(time: Epoch) -> i64 {
     unix_ns(time).div_euclid(1_000_000)
 }

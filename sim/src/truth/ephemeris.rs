@@ -16,7 +16,7 @@ use super::clock;
 /// Interval covered by the table, in s of TDB since J2000.0: 1990-01-01 00:00 to 2050-01-06 00:00 TDB.
 pub const COVERAGE: RangeInclusive<f64> = START_S..=END_S;
 
-/// [`COVERAGE`] in words, for messages.
+/// Text of [`COVERAGE`] for messages.
 pub const COVERAGE_TEXT: &str = "from 1990-01-01 to 2050-01-05";
 
 // Constants of make_earth.py.

@@ -25,7 +25,7 @@ impl Source {
     fn classify(&self, outline: &Silhouette, sphere: &Sphere, plane: &Plane) -> RelativePosition {
         let highest = match self {
             Self::Parallel(_) => f64::INFINITY,
-            Self::Point(position) => Shadows::BELOW_LIGHT * plane.height(position),
+            Self::Point(position) => Shadows::MAX_HEIGHT_FRACTION * plane.height(position),
         };
         // The corners need no test if their sphere lies completely on one side.
         let sure = |sphere: &Sphere| {
@@ -96,12 +96,12 @@ impl Shadows {
     const TOUCHING_M: f64 = 1e-6;
     /// Fraction of a near light's height above a plane, above which a point casts no shadow: its shadow would
     /// extend to infinity.
-    const BELOW_LIGHT: f64 = 0.999;
+    const MAX_HEIGHT_FRACTION: f64 = 0.999;
     /// Ratio of dark side to lit side above which the dark side casts the shadow. A sheet lit from behind has
     /// almost no lit side. A tube, such as the rim of a plate whose faces are separate parts, has both sides,
     /// and a near light sees the dark side slightly larger; but the shadow of that dark side lies within that
     /// of the face towards the light, and the shadow of the lit side lies beside it.
-    const LARGER: f64 = 2.0;
+    const DARK_OVER_LIT: f64 = 2.0;
 
     /// Discards the light and its outlines.
     pub(super) fn forget(&mut self) {
@@ -129,7 +129,7 @@ impl Shadows {
                 };
                 if seen > 0.0 { lit += seen } else { dark -= seen }
             }
-            part_shadow.dark_side = dark > lit * Self::LARGER;
+            part_shadow.dark_side = dark > lit * Self::DARK_OVER_LIT;
             let casts = |index: usize| source.casts_shadow(&part.facets[index], part_shadow.dark_side);
             part_shadow.silhouette.find(&ready.outlines, casts);
         }
@@ -191,7 +191,7 @@ impl Shadows {
 fn cut_between(polygon: &mut Vec<Vector3<f64>>, plane: &Plane, source: Source, cut: &mut Vec<Vector3<f64>>) {
     keep_above(polygon, cut, |point| plane.height(point) - Shadows::TOUCHING_M);
     if let Source::Point(position) = source {
-        let highest = Shadows::BELOW_LIGHT * plane.height(&position);
+        let highest = Shadows::MAX_HEIGHT_FRACTION * plane.height(&position);
         std::mem::swap(polygon, cut);
         keep_above(polygon, cut, |point| highest - plane.height(point));
     }

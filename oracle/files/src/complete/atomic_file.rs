@@ -14,7 +14,7 @@ pub(crate) const PARTIAL: &str = ".partial-";
 
 /// Age after which a partial file counts as left by a killed process: a file that is still being written
 /// grows.
-const ABANDONED: Duration = Duration::from_secs(3600);
+const MAX_PARTIAL_AGE: Duration = Duration::from_secs(3600);
 
 /// Number of bytes at the beginning of a file that identify its kind.
 const BEGINNING_BYTES: u64 = 1 << 16;
@@ -180,7 +180,7 @@ impl AtomicFile {
         for path in entries.map(|entry| entry.path()).filter(|path| is(path)) {
             let modified = path.symlink_metadata().and_then(|metadata| metadata.modified());
             let age = modified.ok().and_then(|modified| SystemTime::now().duration_since(modified).ok());
-            if age.is_some_and(|age| age > ABANDONED) {
+            if age.is_some_and(|age| age > MAX_PARTIAL_AGE) {
                 let _ = std::fs::remove_file(path);
             }
         }
@@ -242,7 +242,7 @@ mod tests {
         std::fs::write(&path, "whole").unwrap();
         let [old, new] = [(); 2].map(|()| AtomicFile::with_text(&path, "part").unwrap());
         for file in [old.file(), &File::options().append(true).open(&path).unwrap()] {
-            file.set_modified(SystemTime::now() - ABANDONED - Duration::from_secs(1)).unwrap();
+            file.set_modified(SystemTime::now() - MAX_PARTIAL_AGE - Duration::from_secs(1)).unwrap();
         }
         AtomicFile::remove_abandoned(folder.path());
         assert_eq!(

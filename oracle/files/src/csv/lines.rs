@@ -4,7 +4,7 @@
 use std::io::{Error, ErrorKind, Read, Result};
 
 /// Longest record, bytes.
-const LONGEST: usize = 1 << 20;
+const MAX_RECORD_BYTES: usize = 1 << 20;
 
 /// A reader that fails if a record exceeds 1 MiB.
 #[derive(Debug)]
@@ -53,8 +53,8 @@ impl<R: Read> Read for Lines<R> {
         for &byte in buffer.get(..count).unwrap_or_default() {
             self.state = self.state.after(byte);
             self.length += 1;
-            if self.length > LONGEST {
-                let message = format!("a line is longer than {LONGEST} bytes");
+            if self.length > MAX_RECORD_BYTES {
+                let message = format!("a line is longer than {MAX_RECORD_BYTES} bytes");
                 return Err(Error::new(ErrorKind::InvalidData, message));
             }
             if matches!(byte, b'\n' | b'\r') && self.state == CellState::Start {
@@ -76,16 +76,17 @@ mod tests {
 
     #[test]
     fn a_line_that_is_too_long_is_refused_wherever_it_stands() {
-        let longest = "a".repeat(LONGEST - 1) + "\n";
-        assert_eq!(read(&longest.repeat(3)).unwrap(), 3 * LONGEST);
-        for text in [format!("a{longest}"), format!("{longest}a{longest}"), "a".repeat(LONGEST + 1)] {
+        let longest = "a".repeat(MAX_RECORD_BYTES - 1) + "\n";
+        assert_eq!(read(&longest.repeat(3)).unwrap(), 3 * MAX_RECORD_BYTES);
+        for text in [format!("a{longest}"), format!("{longest}a{longest}"), "a".repeat(MAX_RECORD_BYTES + 1)]
+        {
             assert!(read(&text).unwrap_err().to_string().contains("longer than"));
         }
     }
 
     #[test]
     fn a_cell_in_quotation_marks_goes_on_in_the_next_line_and_is_bounded_too() {
-        let lines = "a\n".repeat(LONGEST / 2);
+        let lines = "a\n".repeat(MAX_RECORD_BYTES / 2);
         for begin in ["\"", "1,\"", "1,\"a\"\"b", "\n\""] {
             assert!(
                 read(&format!("{begin}{lines}")).unwrap_err().to_string().contains("longer than"),

@@ -258,10 +258,10 @@ mod tests {
         let answers: Vec<(u64, DockingOutcome)> = [
             measured_outcome(),
             outcome(DockingSolution::RangeOnly { range_m: 312.5, sigma_m: 2.0 }),
-            DockingOutcome::none(NoPose::TooFewFeatures),
+            DockingOutcome::without_pose(NoPose::TooFewFeatures),
             doubtful_outcome(FailedCheck::Residuals),
             doubtful_outcome(FailedCheck::Repeated),
-            DockingOutcome::none(NoPose::Failed("out of film, twice".to_owned())),
+            DockingOutcome::without_pose(NoPose::Failed("out of film, twice".to_owned())),
         ]
         .into_iter()
         .enumerate()
@@ -291,7 +291,7 @@ mod tests {
         let best = &answers[0].1.measurement().unwrap().best;
         assert_eq!(best.pose.phi_rad.z, std::f64::consts::FRAC_PI_2);
         assert_eq!(best.covariance, Matrix6::zeros());
-        assert_eq!(answers[1], (9, DockingOutcome::none(NoPose::NoTarget)));
+        assert_eq!(answers[1], (9, DockingOutcome::without_pose(NoPose::NoTarget)));
     }
 
     #[test]

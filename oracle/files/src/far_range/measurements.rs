@@ -222,7 +222,7 @@ mod tests {
     fn four_columns_are_enough() {
         let outcomes = read("frame,status,x_px,y_px\n3,detected,1.5,2\n9,no_target,,\n").unwrap();
         assert_eq!(outcomes[0].1.measurement().unwrap().position, PixelPoint::new(1.5, 2.0));
-        assert_eq!(outcomes[1], (9, Outcome::none(NoSolution::NoTarget)));
+        assert_eq!(outcomes[1], (9, Outcome::without_solution(NoSolution::NoTarget)));
     }
 
     #[test]

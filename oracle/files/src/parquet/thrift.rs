@@ -4,7 +4,7 @@
 //! sizes are accepted only if the available bytes can contain them.
 
 /// Deepest nesting that is skipped: Parquet's own structures have six levels.
-const DEEPEST: u8 = 16;
+const MAX_DEPTH: u8 = 16;
 
 /// Kinds of a field's value.
 pub(crate) mod kind {
@@ -78,7 +78,7 @@ impl Compact<'_> {
 
     /// Skips the value of a field.
     pub(crate) fn skip(&mut self, kind: u8) -> Option<()> {
-        self.skip_nested(kind, DEEPEST)
+        self.skip_nested(kind, MAX_DEPTH)
     }
 
     fn skip_nested(&mut self, kind: u8, depth: u8) -> Option<()> {

@@ -52,7 +52,7 @@ pub(super) struct Walker {
 
 impl Walker {
     /// Deepest nesting of lists; deeper than in any AVI file.
-    const DEEPEST: usize = 8;
+    const MAX_DEPTH: usize = 8;
 
     pub(super) fn new(input: Input) -> Self {
         Self { input, lists: Vec::new(), next: 0 }
@@ -126,8 +126,8 @@ impl Walker {
                 ),
             ));
         }
-        if self.lists.len() == Self::DEEPEST {
-            return Err(self.error(chunk, format!("lists are nested deeper than {}", Self::DEEPEST)));
+        if self.lists.len() == Self::MAX_DEPTH {
+            return Err(self.error(chunk, format!("lists are nested deeper than {}", Self::MAX_DEPTH)));
         }
         let mut kind = [0; 4];
         if self.input.fill(&mut kind)? < 4 {

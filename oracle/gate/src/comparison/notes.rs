@@ -11,7 +11,7 @@ use crate::report::FigureReport;
 use crate::sample::Sample;
 
 /// Largest number of figures that a note names; for further figures it states only their number.
-const NAMED: usize = 3;
+const MAX_NAMED_FIGURES: usize = 3;
 
 /// Data from which the notes are derived.
 pub(crate) struct NoteInputs<'a> {
@@ -90,8 +90,9 @@ fn loss_note(noted: &NoteInputs<'_>) -> Option<String> {
 
 /// Returns the labels of some figures, and the number of further ones.
 fn labels(names: &[&str]) -> String {
-    let named: Vec<String> = names.iter().take(NAMED).map(|name| figure_by_name(name).words).collect();
-    match names.len().saturating_sub(NAMED) {
+    let named: Vec<String> =
+        names.iter().take(MAX_NAMED_FIGURES).map(|name| figure_by_name(name).words).collect();
+    match names.len().saturating_sub(MAX_NAMED_FIGURES) {
         0 => named.join(", "),
         others => format!("{} and {others} other figures", named.join(", ")),
     }

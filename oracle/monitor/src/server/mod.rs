@@ -34,9 +34,9 @@ use crate::session::{PictureAnswer, Session};
 
 /// Longest time that a request waits for a frame that is not yet processed, before the answer requests a
 /// retry.
-const PATIENCE: Duration = Duration::from_secs(5);
+const MAX_WAIT: Duration = Duration::from_secs(5);
 /// Time allowed for connections to end when the monitor stops.
-const FAREWELL: Duration = Duration::from_secs(1);
+const SHUTDOWN_TIME: Duration = Duration::from_secs(1);
 /// Number of threads that draw pictures again.
 const PAINTERS: usize = 2;
 
@@ -136,10 +136,10 @@ fn answer_requests(
             result = server.into_future() => {
                 result.map_err(|error| Failure::Usage(format!("the server ended: {error}")))
             }
-            () = async { let _ = end.await; tokio::time::sleep(FAREWELL).await } => Ok(()),
+            () = async { let _ = end.await; tokio::time::sleep(SHUTDOWN_TIME).await } => Ok(()),
         }
     });
-    runtime.shutdown_timeout(FAREWELL);
+    runtime.shutdown_timeout(SHUTDOWN_TIME);
     served
 }
 
@@ -259,7 +259,7 @@ async fn picture(session: &Session, frame: u64) -> Response {
     }
     match session.picture(frame) {
         PictureAnswer::Ready(picture) => grey(picture),
-        PictureAnswer::Ordered(promise) => match timeout(PATIENCE, promise).await {
+        PictureAnswer::Ordered(promise) => match timeout(MAX_WAIT, promise).await {
             Ok(Ok(picture)) => grey(picture),
             _ => not_yet(session),
         },
@@ -282,7 +282,7 @@ async fn is_processed(session: &Session, frame: u64) -> bool {
             }
         }
     };
-    timeout(PATIENCE, arrived).await.unwrap_or(false)
+    timeout(MAX_WAIT, arrived).await.unwrap_or(false)
 }
 
 /// Returns the progress of the run with a request to retry, or an error if the run has failed. A frame that

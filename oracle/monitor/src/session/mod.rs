@@ -16,7 +16,7 @@ use tokio::sync::{oneshot, watch};
 use crate::report::{FrameReport, Phase};
 
 /// Number of frames that are processed beyond the last requested frame.
-const AHEAD: u64 = 120;
+const FRAMES_AHEAD: u64 = 120;
 /// Maximum size of the kept pictures, bytes: about 290 far-range frames, about 580 fields.
 const PICTURE_BYTES: usize = 128 << 20;
 /// Maximum number of pictures that wait to be drawn, for all clients together.
@@ -98,7 +98,7 @@ impl Session {
             pictures: VecDeque::new(),
             picture_bytes: 0,
             orders: VecDeque::new(),
-            goal: frames.start.saturating_add(AHEAD),
+            goal: frames.start.saturating_add(FRAMES_AHEAD),
             failure: None,
             is_closed: false,
         };
@@ -155,10 +155,10 @@ impl Session {
         self.processed.send_modify(|_| ());
     }
 
-    /// Requests the processing of frames up to this one and `AHEAD` more.
+    /// Requests the processing of frames up to this one and `FRAMES_AHEAD` more.
     pub(crate) fn request(&self, frame: u64) {
         let mut state = self.state();
-        let goal = frame.saturating_add(AHEAD);
+        let goal = frame.saturating_add(FRAMES_AHEAD);
         if goal > state.goal {
             state.goal = goal;
             self.changed.notify_all();
@@ -323,12 +323,12 @@ mod tests {
     #[test]
     fn processing_stops_soon_after_the_last_requested_frame() {
         let session = Session::new(100..9000);
-        session.wait_for_goal(100 + AHEAD).unwrap();
-        assert_eq!(session.state().goal, 100 + AHEAD);
+        session.wait_for_goal(100 + FRAMES_AHEAD).unwrap();
+        assert_eq!(session.state().goal, 100 + FRAMES_AHEAD);
         session.request(500);
-        session.wait_for_goal(500 + AHEAD).unwrap();
+        session.wait_for_goal(500 + FRAMES_AHEAD).unwrap();
         session.request(200);
-        assert_eq!(session.state().goal, 500 + AHEAD);
+        assert_eq!(session.state().goal, 500 + FRAMES_AHEAD);
         session.close();
         assert!(session.wait_for_goal(8999).is_err() && session.next_order().is_none());
     }

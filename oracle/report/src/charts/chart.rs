@@ -20,7 +20,7 @@ pub(crate) const BESIDE: &str = "#e0752d";
 pub(crate) const REFERENCE: &str = "#7c8792";
 
 /// Number of points below which each point is drawn larger and more opaque.
-const FEW: usize = 300;
+const FEW_POINTS: usize = 300;
 
 /// A chart, its caption and its data table.
 #[derive(Clone)]
@@ -103,7 +103,7 @@ pub(crate) fn cloud(
         make(&rows).mode(Mode::Markers)
     };
     // Few points are seen one by one, many points as a density.
-    let (size, opacity) = if rows.len() < FEW { (5, 0.85) } else { (4, 0.6) };
+    let (size, opacity) = if rows.len() < FEW_POINTS { (5, 0.85) } else { (4, 0.6) };
     let marker = Marker::new().size(size).colour(colour).opacity(opacity);
     let mut traces = vec![of(sampled(rows.len())).name(plain(name)).marker(marker)];
     let rings = value.map_or_else(Vec::new, |value| extremes(rows.len(), &|place| value(rows[place])));

@@ -4,11 +4,11 @@
 
 /// Maximum number of drawn points of a cloud: each is an element of the page, and more would slow a browser
 /// down.
-const CLOUD: usize = 2500;
+const MAX_CLOUD_POINTS: usize = 2500;
 /// Parts of a long cloud whose extremes are drawn beside the sample.
 const PARTS: usize = 50;
 /// Maximum number of points of a curve in a plane.
-const CURVE: usize = 5000;
+const MAX_CURVE_POINTS: usize = 5000;
 /// Number of stretches that a series is cut into. Two points per pixel column of a chart look the same as all
 /// points.
 const STRETCHES: usize = 700;
@@ -17,14 +17,14 @@ const STRETCHES: usize = 700;
 /// stretch of consecutive rows, so that any part of the rows keeps its distribution. The indices ascend, and
 /// depend only on `count`.
 pub(crate) fn sampled(count: usize) -> Vec<usize> {
-    if count <= CLOUD {
+    if count <= MAX_CLOUD_POINTS {
         return (0..count).collect();
     }
     let one_of = |stretch: usize| {
-        let (from, to) = (stretch * count / CLOUD, (stretch + 1) * count / CLOUD);
+        let (from, to) = (stretch * count / MAX_CLOUD_POINTS, (stretch + 1) * count / MAX_CLOUD_POINTS);
         from + (scrambled(stretch as u64) % (to - from) as u64) as usize
     };
-    (0..CLOUD).map(one_of).collect()
+    (0..MAX_CLOUD_POINTS).map(one_of).collect()
 }
 
 /// Returns a pseudo-random number (SplitMix64: Steele, Lea & Flood 2014). Regularly spaced indices would
@@ -40,7 +40,7 @@ fn scrambled(number: u64) -> u64 {
 /// none for a cloud that is drawn completely.
 pub(crate) fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize> {
     let mut kept = Vec::new();
-    if count > CLOUD {
+    if count > MAX_CLOUD_POINTS {
         for part in bins(count, PARTS) {
             let numbers = || part.clone().filter(|&i| value(i).is_finite());
             kept.extend(numbers().min_by(|&a, &b| value(a).total_cmp(&value(b))));
@@ -58,7 +58,7 @@ pub(crate) fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String 
     let of = |&(count, what): &(usize, &str)| format!("{} of {count} {what}", sampled(count).len());
     let parts: Vec<String> = clouds.iter().filter(|(count, _)| *count > 0).map(of).collect();
     let mut text = format!("Drawn: {}.", parts.join(" and "));
-    if clouds.iter().any(|(count, _)| *count > CLOUD) {
+    if clouds.iter().any(|(count, _)| *count > MAX_CLOUD_POINTS) {
         text.push_str(" The sample has one random point per interval and so the distribution of all points.");
         if rings {
             text.push_str(" Rings mark the smallest and the largest point of each fiftieth part.");
@@ -67,10 +67,10 @@ pub(crate) fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String 
     text
 }
 
-/// Returns the indices of the rows, of `count`, that are drawn for a curve in a plane, at even steps. Where
-/// both coordinates turn, the extremes would give only a polygon.
+/// Returns the indices of the rows that are drawn for a curve in a plane, at even steps from 0 to `count`.
+/// The extremes of both coordinates, which are drawn for a line over time, would turn a loop into a polygon.
 pub(crate) fn evenly(count: usize) -> Vec<usize> {
-    let step = count.div_ceil(CURVE).max(1);
+    let step = count.div_ceil(MAX_CURVE_POINTS).max(1);
     let mut kept: Vec<usize> = (0..count).step_by(step).collect();
     if kept.last().is_some_and(|&last| last + 1 < count) {
         kept.push(count - 1);
@@ -158,7 +158,7 @@ mod tests {
             (1.0 + i as f64 / 30_000.0) * 8.0 * uniform * uniform * uniform + 0.1 * libm::sin(i as f64 / 3.0)
         };
         let kept = sampled(30_000);
-        assert_eq!(kept.len(), CLOUD);
+        assert_eq!(kept.len(), MAX_CLOUD_POINTS);
         assert!(kept.is_sorted_by(|a, b| a < b) && kept.iter().all(|&i| i < 30_000));
         for part in [0..30_000, 0..10_000, 20_000..30_000] {
             let all: Vec<f64> = part.clone().map(value).collect();
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn extremes_include_the_points_that_are_not_drawn() {
         let value = |i: usize| if i == 7_321 { 99.0 } else { (i % 13) as f64 };
-        assert!(extremes(CLOUD, &value).is_empty());
+        assert!(extremes(MAX_CLOUD_POINTS, &value).is_empty());
         let kept = extremes(20_000, &value);
         assert!(kept.contains(&7_321) && kept.is_sorted() && kept.len() <= 2 * PARTS);
         assert!(extremes(20_000, &|_| f64::NAN).is_empty());
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn a_caption_states_the_drawn_and_the_total_number() {
         assert_eq!(thinning_caption(&[(12, "right"), (0, "wrong")], true), "Drawn: 12 of 12 right.");
-        let text = thinning_caption(&[(CLOUD + 1, "right"), (3, "wrong")], true);
+        let text = thinning_caption(&[(MAX_CLOUD_POINTS + 1, "right"), (3, "wrong")], true);
         assert!(
             text.starts_with("Drawn: 2500 of 2501 right and 3 of 3 wrong. ") && text.contains("Rings"),
             "{text}"
@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(evenly(4), [0, 1, 2, 3]);
         assert!(evenly(0).is_empty());
         let kept = evenly(16_077);
-        assert!(kept.len() <= CURVE + 1 && kept.last() == Some(&16_076));
+        assert!(kept.len() <= MAX_CURVE_POINTS + 1 && kept.last() == Some(&16_076));
         assert!(kept.windows(2).all(|pair| pair[1] - pair[0] <= 4));
     }
 

@@ -24,9 +24,9 @@ pub(super) fn budget(run: &FarRangeRun) -> Section {
              stage of the built-in pipeline to the error (docs/report.md).",
         );
     }
-    let honest = ("none (unmodified run)".to_owned(), &run.score);
+    let plain = ("none (unmodified run)".to_owned(), &run.score);
     let injected = run.budget.iter().map(|injected| (injected.stage.to_string(), &injected.score));
-    let rows: Vec<(String, &Score)> = [honest].into_iter().chain(injected).collect();
+    let rows: Vec<(String, &Score)> = [plain].into_iter().chain(injected).collect();
     let rates = [
         names::HIT_RATE,
         names::CORRECT_RATE,

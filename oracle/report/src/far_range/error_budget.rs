@@ -23,8 +23,8 @@ impl InjectedRun {
     /// A [`Failure`] for a directory that is not such a run, or has other frames.
     fn read(
         directory: &Path,
-        honest: &RunFile<FarRangeScenario>,
-        honest_score: &Score,
+        plain: &RunFile<FarRangeScenario>,
+        plain_score: &Score,
     ) -> Result<Self, Failure> {
         for name in ["run.toml", "score.json"] {
             if !directory.join(name).is_file() {
@@ -40,7 +40,7 @@ impl InjectedRun {
         let Some(stage) = run_file.inject else {
             return refuse("`inject` is missing, expected a run with --inject STAGE");
         };
-        let (own, mut scenario) = (honest, run_file.identity());
+        let (own, mut scenario) = (plain, run_file.identity());
         if stage == Stage::Roi {
             scenario.roi.clone_from(&own.scenario.roi);
         }
@@ -56,7 +56,7 @@ impl InjectedRun {
         let frames = |score: &Score| {
             score.groups.iter().map(|(name, group)| (name.clone(), group.frames)).collect::<Vec<_>>()
         };
-        if frames(&score) != frames(honest_score) {
+        if frames(&score) != frames(plain_score) {
             return refuse("the frames differ from those of the reported run");
         }
         Ok(Self { stage, score })
@@ -68,11 +68,11 @@ impl InjectedRun {
     /// A [`Failure`] for a directory that is not such a run, or has other frames.
     pub fn read_all(
         directories: &[PathBuf],
-        honest: &RunFile<FarRangeScenario>,
-        honest_score: &Score,
+        plain: &RunFile<FarRangeScenario>,
+        plain_score: &Score,
     ) -> Result<Vec<Self>, Failure> {
         let runs: Result<Vec<Self>, _> =
-            directories.iter().map(|directory| Self::read(directory, honest, honest_score)).collect();
+            directories.iter().map(|directory| Self::read(directory, plain, plain_score)).collect();
         let mut runs = runs?;
         runs.sort_by_key(|run| run.stage as u8);
         Ok(runs)

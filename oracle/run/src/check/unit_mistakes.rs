@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 /// Keys of scenarios with the lower and upper limit of their usual values.
-const USUAL: [(&str, f64, f64); 12] = [
+const USUAL_RANGES: [(&str, f64, f64); 12] = [
     ("aperture_diameter_mm", 0.5, 1e4),
     ("cadence_s", 1e-3, 1e5),
     ("exposure_s", 1e-5, 100.0),
@@ -43,7 +43,7 @@ fn collect(value: &Value, path: &str, remarks: &mut Vec<String>) {
 }
 
 fn remark(key: &str, path: &str, number: f64) -> Option<String> {
-    let &(_, low, high) = USUAL.iter().find(|(usual, ..)| *usual == key)?;
+    let &(_, low, high) = USUAL_RANGES.iter().find(|(usual, ..)| *usual == key)?;
     let is_usual = |number: &f64| (low..=high).contains(number);
     let meant =
         [number * 1000.0, number / 1000.0].into_iter().find(is_usual).filter(|_| !is_usual(&number))?;

@@ -79,7 +79,7 @@ fn frames_of_the_warm_up_count_in_their_own_group_alone() {
 
 /// Ten frames per day: 6 correct (4 of them within a pixel), 1 wrong, 2 without a target, 1 without a row.
 fn day() -> Vec<Option<Outcome>> {
-    let none = || Some(Outcome::none(NoSolution::NoTarget));
+    let none = || Some(Outcome::without_solution(NoSolution::NoTarget));
     let at = |px| Some(right_of_target(px));
     vec![at(0.0), at(0.1), at(-0.5), none(), at(1.2), at(-1.2), at(30.0), none(), None, at(0.3)]
 }
@@ -205,7 +205,7 @@ fn with_covariance([x, y]: [f64; 2], covariance: Option<[f64; 3]>) -> Option<Out
     measurement.position_covariance =
         covariance.map(|[x, y, rho]| Covariance2::from_sigmas(x, y, rho).unwrap());
     let solution = Solution::Detected(measurement);
-    Some(Outcome { solution, ..Outcome::none(NoSolution::NoTarget) })
+    Some(Outcome { solution, ..Outcome::without_solution(NoSolution::NoTarget) })
 }
 
 /// In units of σ the errors are (2, 0) with ρ = 1/2 and (1, 2) with ρ = −1/2: eᵀ C⁻¹ e is 4/0.75 and 7/0.75,
@@ -251,7 +251,7 @@ fn the_covariance_of_a_line_of_sight_is_in_the_axes_of_the_true_camera() {
     let outcome = Outcome {
         solution: Solution::Detected(measurement),
         attitude_source: Some(AttitudeSource::NoMatch),
-        ..Outcome::none(NoSolution::NoTarget)
+        ..Outcome::without_solution(NoSolution::NoTarget)
     };
     let mut scorer = scorer();
     let objects = [ObjectTruth { cut: 0.4, ..target_with(1000.0) }];
@@ -276,7 +276,7 @@ fn the_covariance_of_a_line_of_sight_is_in_the_axes_of_the_true_camera() {
 /// exclude.
 #[test]
 fn a_start_is_counted_from_the_first_frame_with_any_warm_up() {
-    let lost = || Some(Outcome::none(NoSolution::NoTarget));
+    let lost = || Some(Outcome::without_solution(NoSolution::NoTarget));
     let day: Vec<_> = (0..4).map(|_| lost()).chain((0..26).map(|_| Some(right_of_target(0.0)))).collect();
     let until = |warm_up_frames| {
         let mut scorer = scorer();

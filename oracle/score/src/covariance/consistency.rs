@@ -11,7 +11,7 @@ use crate::report::{ConsistencyRow, names};
 use crate::verdict::{FrameVerdict, Verdict};
 
 /// Fractions of normally distributed errors within one and three standard deviations.
-const HONEST: [(&str, f64, f64); 2] = [("1", 1.0, 0.6827), ("3", 3.0, 0.9973)];
+const NORMAL_SHARES: [(&str, f64, f64); 2] = [("1", 1.0, 0.6827), ("3", 3.0, 0.9973)];
 
 /// Name for outcomes that state no source of their attitude.
 const UNSTATED: &str = "unstated";
@@ -40,7 +40,7 @@ fn error_figures(
         nees,
     );
     let mut list = vec![mean.with_direction(Better::Near(1.0))];
-    for (number, sigmas, honest) in HONEST {
+    for (number, sigmas, share) in NORMAL_SHARES {
         let within = move |frame: &FrameVerdict, values: &mut Vec<f64>| {
             let components = pick(frame).into_iter().flat_map(|error| error.over_sigma);
             values.extend(components.map(|error| f64::from(u8::from(error.abs() <= sigmas))));
@@ -50,7 +50,7 @@ fn error_figures(
             format!("{words} within {number} σ"),
             within,
         );
-        list.push(rate.with_direction(Better::Near(honest)));
+        list.push(rate.with_direction(Better::Near(share)));
     }
     list
 }

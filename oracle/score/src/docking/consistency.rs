@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, SVector};
 const MIN_PIVOT: f64 = 1e-10;
 
 /// Upper limit of NEES: a larger value counts as this one.
-const LARGEST: f64 = 1e12;
+const MAX_NEES: f64 = 1e12;
 
 /// Returns the normalised estimation error squared, eᵀ P⁻¹ e / N: 1 in the mean for a correct covariance P (N
 /// times this value follows a χ² distribution with N degrees of freedom). At most 1e12. Returns `None` if P
@@ -49,7 +49,7 @@ pub fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N
         sum += solved[i] * solved[i];
     }
     // Extreme errors are counted, and the mean remains finite.
-    if sum.is_nan() { None } else { Some((sum / N as f64).min(LARGEST)) }
+    if sum.is_nan() { None } else { Some((sum / N as f64).min(MAX_NEES)) }
 }
 
 /// Fraction of normally distributed errors within three standard deviations.
@@ -113,7 +113,7 @@ mod tests {
             assert_eq!(nees(&error, &covariance), None, "{covariance}");
         }
         let absurd = Matrix2::from_diagonal_element(1e-300);
-        assert_eq!(nees(&error, &absurd), Some(LARGEST), "sure beyond all reason");
+        assert_eq!(nees(&error, &absurd), Some(MAX_NEES), "sure beyond all reason");
         assert_eq!(within_3_sigma(0.0, 0.0), None);
         assert_eq!(within_3_sigma(1.0, f64::NAN), None);
     }

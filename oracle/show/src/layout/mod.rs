@@ -22,7 +22,7 @@ use crate::{MAX_PANELS, ShowError};
 /// Border of the sheet and gap between two panels, px.
 const MARGIN: usize = 16;
 /// Largest frame that is drawn without reduction, px; larger frames are reduced to this size.
-const LARGEST: (usize, usize) = (1280, 1024);
+const MAX_FRAME_PX: (usize, usize) = (1280, 1024);
 /// Number of columns towards which a narrower frame is enlarged.
 const WANTED_COLUMNS: usize = 768;
 /// Width of the column beside a single frame, px.
@@ -81,7 +81,7 @@ pub fn picture(panels: &[Panel]) -> Result<Picture, ShowError> {
 /// Draws a frame with its close-up, table and legend.
 fn single(panel: &Panel) -> Result<Picture, ShowError> {
     let most = (WANTED_COLUMNS / panel.view.columns.max(1)).max(1);
-    let frame = Placement::fit(panel.view, LARGEST, most).moved_to(MARGIN, MARGIN);
+    let frame = Placement::fit(panel.view, MAX_FRAME_PX, most).moved_to(MARGIN, MARGIN);
     let left = frame.left + frame.width + MARGIN;
     let verdict = panel
         .verdict

@@ -27,7 +27,7 @@ use crate::shard::record::StudyRecord;
 const CASES_PER_SHARD: u64 = 32;
 /// Extension of the journal of an incomplete shard.
 const JOURNAL: &str = "journal";
-/// Largest number of shards of a study, when their number is not given.
+/// Maximum number of shards of a study if the user states no number.
 const MAX_SHARDS: u64 = 1000;
 
 /// Division of a study into shards.

@@ -28,7 +28,7 @@ const RANGES: usize = 7;
 const MIN_PROBABILITY: f64 = 1e-4;
 /// Factor that lowers the smallest flux of the stars in the sky, for backgrounds that raise a pixel towards a
 /// threshold in digital numbers.
-const FAINTER: f64 = 0.5;
+const FAINT_FLUX_FACTOR: f64 = 0.5;
 
 /// A camera, its motion, and the sky that it observes.
 pub struct Design<'a> {
@@ -140,7 +140,7 @@ impl<'a> Design<'a> {
                 curve.electrons_for(MIN_PROBABILITY).map_or(1e12, |electrons| electrons / exposure_s)
             };
             let exposures = between(file.exposure.min_s, self.longest_s, 9);
-            let least_e_per_s = FAINTER * exposures.map(faintest).fold(1e12, f64::min);
+            let least_e_per_s = FAINT_FLUX_FACTOR * exposures.map(faintest).fold(1e12, f64::min);
             let sky = Sky::new(&self.camera, &file.motion, &file.sky, self.pointings, least_e_per_s)?;
             // No other thread can have set the sky: the design is not shared.
             let _ = self.sky.set(sky);

@@ -38,7 +38,7 @@ impl StationOutline {
 }
 
 /// Number of proposed circles that are measured.
-const MEASURED: usize = 16;
+const MEASURED_CIRCLES: usize = 16;
 
 /// Number of rays from a circle's centre along which its edge is searched for.
 const RAYS: usize = 72;
@@ -81,7 +81,7 @@ pub(crate) fn find(view: &View<'_>, overview: &Overview, lens: &Lens) -> Option<
             libm::hypot(other.x - proposal.x, other.y - proposal.y) < 0.15 * other.radius
                 && (proposal.radius / other.radius - 1.0).abs() < 0.1
         };
-        if kept.len() < MEASURED && !kept.iter().any(repeats) {
+        if kept.len() < MEASURED_CIRCLES && !kept.iter().any(repeats) {
             kept.push(proposal);
         }
     }

@@ -21,10 +21,10 @@ pub(crate) enum Uprightness {
 }
 
 /// Smallest share of directions in which the docking unit's edge must be seen on its nominal side.
-const SEEN: f64 = 0.4;
+const MIN_EDGE_SHARE: f64 = 0.4;
 
 /// Smallest share of directions in which the docking unit's edge must be seen on another side. Higher than
-/// [`SEEN`], because other structures on the station have edges too.
+/// [`MIN_EDGE_SHARE`], because other structures on the station have edges too.
 const SEEN_ELSEWHERE: f64 = 0.7;
 
 /// Smallest share of directions for an arc on another side, whose edge the unit's shadow may cover.
@@ -43,7 +43,7 @@ pub(crate) fn assess(
     plane: &Plane,
     nominal: &DiskEdge,
 ) -> Uprightness {
-    if nominal.share > SEEN {
+    if nominal.share > MIN_EDGE_SHARE {
         return Uprightness::Upright;
     }
     let is_elsewhere = Side::OTHERS
@@ -57,7 +57,7 @@ pub(crate) fn assess(
 }
 
 /// Number of votes that outweighs any number of contrary fields.
-const ENOUGH: i32 = 10;
+const DECISIVE_VOTES: i32 = 10;
 
 /// Longest time for which an orientation remains valid without new evidence, s.
 const MEMORY_S: f64 = 10.0;
@@ -65,7 +65,7 @@ const MEMORY_S: f64 = 10.0;
 /// Orientation by the fields so far. Kept because the docking unit is outside the image near the target.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Orientation {
-    /// Number of upright fields minus number of turned fields, −[`ENOUGH`] to [`ENOUGH`].
+    /// Number of upright fields minus number of turned fields, −[`DECISIVE_VOTES`] to [`DECISIVE_VOTES`].
     votes: i32,
     time_s: Option<f64>,
 }
@@ -82,7 +82,7 @@ impl Orientation {
             Uprightness::Turned => -1,
             Uprightness::Unknown => 0,
         };
-        self.votes = (self.votes + vote).clamp(-ENOUGH, ENOUGH);
+        self.votes = (self.votes + vote).clamp(-DECISIVE_VOTES, DECISIVE_VOTES);
         self.votes < 0
     }
 }

@@ -7,14 +7,14 @@ const MAX_SPEED_M_S: f64 = 10.0;
 const MAX_STEP: f64 = 0.2;
 
 /// Number of measurements in agreement that outweighs any memory.
-const ENOUGH: u32 = 10;
+const DECISIVE_VOTES: u32 = 10;
 
 /// Range on which measurements agree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct RangeHypothesis {
     time_s: f64,
     range_m: f64,
-    /// Number of measurements in agreement, up to [`ENOUGH`].
+    /// Number of measurements in agreement, up to [`DECISIVE_VOTES`].
     support: u32,
 }
 
@@ -29,7 +29,7 @@ impl RangeHypothesis {
     }
 
     fn agree(&mut self, time_s: f64, range_m: f64) {
-        *self = Self { time_s, range_m, support: (self.support + 1).min(ENOUGH) };
+        *self = Self { time_s, range_m, support: (self.support + 1).min(DECISIVE_VOTES) };
     }
 }
 

@@ -50,7 +50,7 @@ const MIN_FIELDS: usize = 3;
 const MAX_STEPS: usize = 30;
 
 /// Step relative to the range below which Gauss–Newton has converged.
-const CONVERGED: f64 = 1e-12;
+const CONVERGED_STEP: f64 = 1e-12;
 
 /// Motion at the end of a portion, with time counted from there, and the normal matrices passed to the next
 /// portion.
@@ -153,7 +153,7 @@ impl PaperPortions {
             if !(z.iter().all(|value| value.is_finite()) && z[2] > self.target.height_m) {
                 return None;
             }
-            if step.amax() <= CONVERGED * z[2] {
+            if step.amax() <= CONVERGED_STEP * z[2] {
                 break;
             }
         }

@@ -20,7 +20,7 @@ const TRUST: f64 = 5.0;
 const CHANCE: f64 = 0.35;
 
 /// Upper limit of a normalised square in the average: a wrong field is not scatter.
-const LARGEST: f64 = 1e4;
+const MAX_NORMALISED_SQUARE: f64 = 1e4;
 
 /// Scatter of the last fields.
 #[derive(Debug, Clone, Default)]
@@ -40,7 +40,7 @@ impl Scatter {
         }
         if let Some(square) = self.square() {
             let kept = 1.0 - 1.0 / MEMORY;
-            self.sum = self.sum * kept + square.min(LARGEST);
+            self.sum = self.sum * kept + square.min(MAX_NORMALISED_SQUARE);
             self.weight = self.weight * kept + 1.0;
         }
         self.factor()

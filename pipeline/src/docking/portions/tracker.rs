@@ -13,14 +13,14 @@ use crate::docking::pose::geometry::to_vector;
 const MAX_GAP_S: f64 = 5.0;
 
 /// Number of successive fields off the motion after which it begins anew.
-const CONTRARY: u32 = 5;
+const CONTRARY_FIELDS: u32 = 5;
 
 /// Largest normalised square of the difference between an outline's range and the motion. Outlines with a
 /// larger one are left out.
 const OUTLINE_GATE: f64 = 25.0;
 
 /// Number of fields after which a motion can confirm a pose that would not be reported without confirmation.
-const ESTABLISHED: u32 = 4;
+const ESTABLISHED_FIELDS: u32 = 4;
 
 /// Smallest number of fields in a reported motion.
 const MIN_FIELDS: u32 = 3;
@@ -69,7 +69,7 @@ impl MotionTracker {
 
     /// Returns true if a pose agrees with a motion that at least four fields have established.
     pub fn confirms(&self, time_s: f64, estimate: &PoseEstimate) -> bool {
-        let Some(track) = self.track.as_ref().filter(|_| self.all_fields >= ESTABLISHED) else {
+        let Some(track) = self.track.as_ref().filter(|_| self.all_fields >= ESTABLISHED_FIELDS) else {
             return false;
         };
         let elapsed_s = time_s - track.time_s;
@@ -132,7 +132,7 @@ impl MotionTracker {
             return;
         }
         self.contrary_outlines += 1;
-        if self.contrary_outlines >= CONTRARY && self.all_fields == 0 {
+        if self.contrary_outlines >= CONTRARY_FIELDS && self.all_fields == 0 {
             self.begin_at_range(time_s, range);
         }
     }
@@ -152,7 +152,7 @@ impl MotionTracker {
         let square = next.least_square(&measured, &(noise + common)).unwrap_or(f64::INFINITY);
         if square > self.config.field_gate {
             self.contrary += 1;
-            if self.contrary >= CONTRARY {
+            if self.contrary >= CONTRARY_FIELDS {
                 self.begin(time_s, estimate, common);
             }
             return Continuity::Breaks;
@@ -337,7 +337,7 @@ mod tests {
             let (t, estimate) = measured(elsewhere, *k, 5);
             tracker.add(t, &estimate, &Matrix6::zeros()).0 == Continuity::Breaks
         });
-        assert_eq!(broken.collect::<Vec<_>>(), (20..20 + CONTRARY).collect::<Vec<_>>());
+        assert_eq!(broken.collect::<Vec<_>>(), (20..20 + CONTRARY_FIELDS).collect::<Vec<_>>());
     }
 
     #[test]

@@ -182,7 +182,7 @@ const FIRST_DAMPING: f64 = 1e-3;
 const MAX_DAMPING: f64 = 1e6;
 
 /// Largest damping at which a small decrement counts as that of undamped Fisher scoring.
-const UNDAMPED: f64 = 1e-2;
+const UNDAMPED_LIMIT: f64 = 1e-2;
 
 /// Largest steps of the position, px, and of the logarithm of the width.
 const MAX_STEP_PX: f64 = 0.7;
@@ -258,7 +258,7 @@ impl ImageFitter {
         for _ in 0..MAX_STEPS {
             let step = here.equations.step(damping)?;
             let decrement: f64 = (0..n).map(|i| step[i] * here.equations.score[i]).sum();
-            if decrement < DECREMENT && damping <= UNDAMPED {
+            if decrement < DECREMENT && damping <= UNDAMPED_LIMIT {
                 break;
             }
             let next = moved(&at, &step, n);
@@ -438,7 +438,7 @@ fn fill(shares: &mut [Share], centre: f64, sigma: f64) {
 }
 
 /// Distance in widths beyond which a Gaussian is negligible, to 1e-9 of its total.
-const FARTHEST: f64 = 6.0;
+const GAUSSIAN_REACH: f64 = 6.0;
 
 /// Distance of an edge in widths, and cumulative distribution and density there.
 struct Edge {
@@ -450,7 +450,7 @@ struct Edge {
 impl Edge {
     fn from_offset(offset: f64, sigma: f64) -> Self {
         let t = offset / sigma;
-        if t.abs() > FARTHEST {
+        if t.abs() > GAUSSIAN_REACH {
             return Self { t, cumulative: 0.5_f64.copysign(t), density: 0.0 };
         }
         Self {

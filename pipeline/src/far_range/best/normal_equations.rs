@@ -4,7 +4,7 @@
 pub(super) const MAX_PARAMETERS: usize = 12;
 
 /// Number of parameters sufficient for most fits.
-const FEW: usize = 8;
+const USUAL_PARAMETERS: usize = 8;
 
 pub(super) type Vector = [f64; MAX_PARAMETERS];
 pub(super) type Matrix = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
@@ -32,8 +32,8 @@ impl NormalEquations {
     pub(super) fn add(&mut self, residual: f64, by: &Vector, weight: f64) {
         // Full rows of a fixed length, including the half above the diagonal: the compiler keeps them in
         // registers.
-        if self.n <= FEW {
-            self.add_first::<FEW>(residual, by, weight);
+        if self.n <= USUAL_PARAMETERS {
+            self.add_first::<USUAL_PARAMETERS>(residual, by, weight);
         } else {
             self.add_first::<MAX_PARAMETERS>(residual, by, weight);
         }

@@ -28,15 +28,15 @@ impl BestPipeline {
         overrides: &Overrides<'_>,
     ) -> Outcome {
         if let Some(reason) = unusable_reason(frame, telemetry, &self.model) {
-            return Outcome::none(NoSolution::Failed(reason));
+            return Outcome::without_solution(NoSolution::Failed(reason));
         }
         let elapsed_s = self.advance(telemetry);
         let Some(background) = self.background.estimate(frame) else {
-            return Outcome::none(NoSolution::EmptyFrame);
+            return Outcome::without_solution(NoSolution::EmptyFrame);
         };
         let thresholds = self.config.thresholds.for_frame(frame, Some(background));
         if 2 * self.detector.find_bright(frame, thresholds) > transmitted_pixels(frame) {
-            return Outcome::none(NoSolution::SaturatedFrame);
+            return Outcome::without_solution(NoSolution::SaturatedFrame);
         }
         let max_clusters = self.config.max_clusters as usize;
         let blobs: Vec<Blob> =

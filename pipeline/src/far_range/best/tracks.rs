@@ -75,8 +75,8 @@ const MAX_LOG_TOTAL_OVER_VISIBLE: f64 = 1.2;
 
 /// Detection probability of the target's image, and that of an image less than twice as bright as the
 /// threshold.
-const DETECTED: f64 = 0.95;
-const DETECTED_FAINT: f64 = 0.6;
+const DETECTION_PROBABILITY: f64 = 0.95;
+const FAINT_DETECTION_PROBABILITY: f64 = 0.6;
 
 /// Largest likelihood ratio of one frame, natural logarithm: the error model is not valid beyond it.
 const MAX_LOG_LIKELIHOOD_RATIO: f64 = 8.0;
@@ -102,7 +102,7 @@ const RECENT_FRAMES: usize = 3;
 const GATE: f64 = 20.0;
 
 /// Natural logarithm of the odds above which a track counts as settled.
-const SETTLED: f64 = 12.0;
+const SETTLED_LOG_ODDS: f64 = 12.0;
 
 /// Largest distance at which a track expects a cluster, px.
 const MAX_REACH_PX: f64 = 10.0;
@@ -173,7 +173,7 @@ impl Track {
         // The fluxes of clutter cover some four units of the natural logarithm.
         let by_flux =
             -0.5 * flux_distance - 0.5 * libm::log(std::f64::consts::TAU * flux_variance) + libm::log(4.0);
-        Some(libm::log(DETECTED) + by_position.min(MAX_LOG_LIKELIHOOD_RATIO) + by_flux)
+        Some(libm::log(DETECTION_PROBABILITY) + by_position.min(MAX_LOG_LIKELIHOOD_RATIO) + by_flux)
     }
 
     /// Returns the change of the logarithm of the odds by the motion since the last cluster. `position_of`
@@ -217,7 +217,7 @@ impl Track {
 
     fn register_miss(&mut self, model: &TrackModel) {
         let is_faint = libm::exp(self.log_flux) < 2.0 * model.threshold_e_per_s;
-        let detected = if is_faint { DETECTED_FAINT } else { DETECTED };
+        let detected = if is_faint { FAINT_DETECTION_PROBABILITY } else { DETECTION_PROBABILITY };
         self.log_odds = (self.log_odds + libm::log(1.0 - detected)).max(LOG_ODDS.0);
         self.misses += 1;
     }
@@ -248,7 +248,7 @@ impl Tracks {
 
     /// Returns true if the odds of the best track suffice to regard its target as found.
     pub(super) fn is_settled(&self) -> bool {
-        self.tracks.first().is_some_and(|track| track.log_odds > SETTLED && track.misses < 2)
+        self.tracks.first().is_some_and(|track| track.log_odds > SETTLED_LOG_ODDS && track.misses < 2)
     }
 
     /// Returns true if the track with the best odds is expected near a position.

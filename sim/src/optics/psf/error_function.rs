@@ -13,7 +13,7 @@ pub(super) struct ErrorFunction {
 /// Number of nodes per unit: the next term is at most (1/128)⁶ · max|erf⁽⁶⁾|/6! = 2.3e-13 · 0.4.
 const NODES_PER_UNIT: f64 = 64.0;
 /// Argument from which erf is 1, to 2e-17.
-const END: f64 = 6.0;
+const ARGUMENT_END: f64 = 6.0;
 /// Number of nodes, a power of two; indices modulo this number never exceed the table.
 const NODES: usize = 512;
 /// In a sum with this number the last bit of a float has the value one.
@@ -48,7 +48,7 @@ impl ErrorFunction {
     /// erf(z).
     #[inline(always)]
     pub(super) fn value_at(&self, z: f64) -> f64 {
-        let size = if z.abs() < END { z.abs() } else { END };
+        let size = if z.abs() < ARGUMENT_END { z.abs() } else { ARGUMENT_END };
         let counted = size * NODES_PER_UNIT + TWO_TO_52;
         let [c0, c1, c2, c3, c4, c5] = self.nodes[counted.to_bits() as usize % NODES];
         let d = size - (counted - TWO_TO_52) / NODES_PER_UNIT;

@@ -18,7 +18,7 @@ use super::gaussians::{Component, Gaussians};
 /// Gaussian.
 const REACH_PX: f64 = 200.0;
 /// Largest fraction of the profile that the components omitted at both ends of the sum would contribute.
-const LEFT_OUT: f64 = 1e-7;
+const MAX_OMITTED_FRACTION: f64 = 1e-7;
 
 /// Creates the mixture for a full width at half maximum 2α (2^(1/β) − 1)^½.
 pub(super) fn moffat(fwhm_px: f64, beta: f64) -> Gaussians {
@@ -32,11 +32,11 @@ pub(super) fn moffat(fwhm_px: f64, beta: f64) -> Gaussians {
     let widening = libm::log(1.0 + (REACH_PX / alpha_px) * (REACH_PX / alpha_px));
     let peak = libm::log(beta);
     let mut last = (peak / step).ceil();
-    while part(last * step) > LEFT_OUT {
+    while part(last * step) > MAX_OMITTED_FRACTION {
         last += 1.0;
     }
     let mut first = ((peak - widening) / step).floor();
-    while part(first * step + widening) > LEFT_OUT {
+    while part(first * step + widening) > MAX_OMITTED_FRACTION {
         first -= 1.0;
     }
     let log_gamma_flux = libm::lgamma(beta - 1.0);

@@ -15,7 +15,7 @@ use crate::optics::ImagePoint;
 use contract::PixelPoint;
 
 /// Sine of the elevation above a plate below which Sun or camera count as lying in the plate's plane.
-const GRAZING: f64 = 1e-6;
+const MIN_ELEVATION_SINE: f64 = 1e-6;
 /// Minimum height above a plate, m, from which a point of another plate counts as above it: a touching plate
 /// casts no shadow.
 const TOUCHING_M: f64 = 1e-9;
@@ -184,7 +184,7 @@ impl LitBody {
 fn facing(plate: &Plate, eye_m: &Vector3<f64>, sun: &Vector3<f64>) -> Option<Plate> {
     let eye = (eye_m - plate.centre).normalize().dot(&plate.normal);
     let sun = sun.dot(&plate.normal);
-    let lit = eye * sun > 0.0 && eye.abs() > GRAZING && sun.abs() > GRAZING;
+    let lit = eye * sun > 0.0 && eye.abs() > MIN_ELEVATION_SINE && sun.abs() > MIN_ELEVATION_SINE;
     let plate = if eye > 0.0 { *plate } else { plate.turned(plate.back?) };
     (lit && plate.front.diffuse + plate.front.specular > 0.0).then_some(plate)
 }

@@ -39,7 +39,7 @@ fn value(score: &DockingScore, name: &str) -> f64 {
 
 /// Ten fields from 10.0 m with different kinds of outcome.
 fn mixed() -> Vec<(TrueField, Option<DockingOutcome>)> {
-    let none = |reason| Some(DockingOutcome::none(reason));
+    let none = |reason| Some(DockingOutcome::without_pose(reason));
     let answers = [
         none(NoPose::NoTarget),
         measured_at([0.0, 0.0, 10.0], [0.0; 3]),

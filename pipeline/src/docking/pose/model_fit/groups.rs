@@ -18,7 +18,7 @@ pub(super) const EFFECTS: usize = 2;
 
 /// Significance of a scatter of groups, in standard deviations of the sum of squares: chance exceeds it once
 /// in 40 fields.
-const SEEN: f64 = 2.0;
+const MIN_SIGNIFICANCE: f64 = 2.0;
 
 /// Sums over the pixels of a group, which is a line or a patch.
 #[derive(Debug, Clone, Copy)]
@@ -156,7 +156,7 @@ impl Groups {
             let (once, twice) = (sum(&|l| l.squares[k]), sum(&|l| l.squares[k] * l.squares[k]));
             let above = sum(&|l| l.seen[k] * l.seen[k]) - variance * once;
             let weight = twice - once * once / self.pixels.max(1.0);
-            if weight <= 0.0 || above <= SEEN * variance * (2.0 * twice).sqrt() {
+            if weight <= 0.0 || above <= MIN_SIGNIFICANCE * variance * (2.0 * twice).sqrt() {
                 continue;
             }
             // The pose has absorbed a part of the groups' scatter: the equivalent number of groups of equal

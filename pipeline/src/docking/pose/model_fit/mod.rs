@@ -67,8 +67,8 @@ const NEAR_REACH: f64 = 0.013;
 
 /// Approximate maximum number of pixels collected, for the coarse stages and for the result. More pixels are
 /// thinned evenly.
-const COLLECTED_COARSE: f64 = 6_000.0;
-const COLLECTED: f64 = 30_000.0;
+const MAX_COLLECTED_COARSE: f64 = 6_000.0;
+const MAX_COLLECTED: f64 = 30_000.0;
 
 /// Approximate number of pixels in the coarse stages, after thinning.
 const COARSE_SAMPLES: usize = 1500;
@@ -104,7 +104,7 @@ const DARKER_MARK: f64 = 4.0;
 const FAINTEST_LEVEL: f64 = 4.0;
 
 /// Reciprocal of the share of changed pixels up to which the effect of a change is invisible.
-const UNSEEN: usize = 2000;
+const INVISIBLE_SHARE_INVERSE: usize = 2000;
 
 /// Largest number of rounds of rejection.
 const ROUNDS: usize = 3;
@@ -242,7 +242,7 @@ impl ModelFit {
         let scene = Scene { camera, target, tables: &self.tables };
         let samples = &mut self.samples;
         let wide = Blur::new(self.blur.x + 0.5, self.blur.y + 0.5);
-        collect(samples, field, &scene, &globals, wide, slack_px, COLLECTED_COARSE)?;
+        collect(samples, field, &scene, &globals, wide, slack_px, MAX_COLLECTED_COARSE)?;
         let stride = samples.pixels.len().div_ceil(COARSE_SAMPLES);
         let mut noise = 4.0;
         for (extra_blur_px2, held) in coarse.iter().copied() {
@@ -256,7 +256,7 @@ impl ModelFit {
         let scene = Scene { camera, target, tables: &self.tables };
         let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
         let cross_dn = samples.cross_dn();
-        collect(samples, field, &scene, &globals, blur, 0.0, COLLECTED)?;
+        collect(samples, field, &scene, &globals, blur, 0.0, MAX_COLLECTED)?;
         samples.shade(&mut self.shadows, field, &scene, &globals, cross_dn);
         let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 2e-2 };
         let stride = samples.pixels.len().div_ceil(MIDDLE_SAMPLES);
@@ -380,7 +380,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
         is_changed |= is_used != patch.is_used;
         patch.is_used = is_used;
     }
-    Ok(is_changed || changed > pixels.len() / UNSEEN)
+    Ok(is_changed || changed > pixels.len() / INVISIBLE_SHARE_INVERSE)
 }
 
 /// Returns the result, if the used patches determine a pose and enough of the patches agree with the target.

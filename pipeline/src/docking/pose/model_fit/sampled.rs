@@ -28,7 +28,7 @@ const SAME_BLUR_PX2: f64 = 0.015;
 
 /// Factor on these differences up to which an existing table is used, so edges keep their tables during the
 /// solution. The profile changes by 0.001 per degree, and by 1 % of itself per 0.01 px².
-const SERVES: f64 = 6.0;
+const REUSE_FACTOR: f64 = 6.0;
 
 /// Largest number of tables kept: a target has a few directions of edges, each of which turns slowly.
 const MAX_TABLES: usize = 24;
@@ -74,7 +74,7 @@ pub(super) struct SampledProfiles {
 impl SampledProfiles {
     /// Returns the index of the table nearest to an edge's normal and blur, if one is near enough.
     pub(super) fn find(&self, normal: (f64, f64), blur: &Blur) -> Option<usize> {
-        self.nearest(normal, blur).filter(|(_, off)| *off < SERVES).map(|(index, _)| index)
+        self.nearest(normal, blur).filter(|(_, off)| *off < REUSE_FACTOR).map(|(index, _)| index)
     }
 
     /// Returns the nearest table and its difference, in units of the largest difference at which no new table

@@ -97,11 +97,11 @@ const FLAT_THIN: usize = 4;
 const SHORT_ARM_PX: f64 = 15.0;
 
 /// Share of a shadow at any point of a mark above which the mark counts as shaded.
-const SHADED: f64 = 0.02;
+const MIN_SHADED_SHARE: f64 = 0.02;
 
 /// Share of a shadow above which a pixel of a mark's patch is dropped. Beside the mark, the shadow reduces
 /// the plate's signal a little; on the mark, it reduces the mark's signal twenty times as much.
-const TOUCHED: f64 = 5e-4;
+const MAX_SHADOW_SHARE: f64 = 5e-4;
 
 /// Range of the shadow's share in which a pixel is at the shadow's edge. Where this edge meets the cross's
 /// edge, the blurred visible part of the shadow is not the product of the two blurred shares: for parallel
@@ -248,7 +248,7 @@ impl Samples {
                         (0..4).map(|k| weight[k] * corners[(k + turn) % 4][axis]).sum()
                     };
                     let seen = view.project_with_derivatives(&Vector3::new(along(0), along(1), 0.0));
-                    seen.is_some_and(|seen| shadow.share_at(tables, seen.u, seen.v) > SHADED)
+                    seen.is_some_and(|seen| shadow.share_at(tables, seen.u, seen.v) > MIN_SHADED_SHARE)
                 })
             });
             patch.is_shaded = is_shaded;
@@ -263,7 +263,7 @@ impl Samples {
         self.leave_out(|patch, pixel, index| {
             let share = shares[index];
             match patch.feature {
-                Feature::Mark(_) => share > TOUCHED,
+                Feature::Mark(_) => share > MAX_SHADOW_SHARE,
                 Feature::Cross => {
                     EDGE_OF_SHADOW.contains(&share)
                         && search.distance_from_cross_px(pixel.u, pixel.v).abs() < edge_px

@@ -37,7 +37,7 @@ const RETENTION: f64 = 0.9;
 
 /// Smallest gain of the previous direction, relative to the best position's gain, for which the previous
 /// direction is kept.
-const AS_GOOD: f64 = 0.8;
+const MIN_RELATIVE_GAIN: f64 = 0.8;
 
 /// Smallest number of pixels in shadow, and in light, with which a position is evaluated.
 const MIN_PIXELS_PER_SIDE: f64 = 4.0;
@@ -48,7 +48,7 @@ const MIN_DEPTH: f64 = 0.01;
 
 /// Standard deviation of the direction, tangent, assumed in the damping of refinement steps. A shadow whose
 /// bars are not on the plate determines only the azimuth.
-const LOOSE: f64 = 0.1;
+const DAMPING_SIGMA: f64 = 0.1;
 
 /// Largest number of refinement steps.
 const STEPS: usize = 4;
@@ -292,7 +292,7 @@ impl ShadowFinder {
                 right += slope * (pixel.dn - light + depth * share);
             }
             seen = normal / variance;
-            let damping = Matrix2::identity() * (variance / (LOOSE * LOOSE));
+            let damping = Matrix2::identity() * (variance / (DAMPING_SIGMA * DAMPING_SIGMA));
             right += before.information * (before.tangents - tangents) * variance;
             normal += before.information * variance + damping;
             let step: Vector2<f64> = normal.try_inverse()? * right;
@@ -451,7 +451,8 @@ impl ShadowFinder {
             let direction =
                 (turns * f64::from(DIRECTIONS)).round().rem_euclid(f64::from(DIRECTIONS)) as usize;
             let distance = ((centre.norm() / cell).round() as usize).min(reach);
-            self.evidence[direction * (reach + 1) + distance].explained_variance() >= AS_GOOD * best.0
+            self.evidence[direction * (reach + 1) + distance].explained_variance()
+                >= MIN_RELATIVE_GAIN * best.0
         };
         let placed = self.sun_estimate.filter(is_as_good).unwrap_or_else(|| {
             let (direction, distance) = (best.1 / (reach + 1), best.1 % (reach + 1));

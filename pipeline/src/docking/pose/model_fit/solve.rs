@@ -195,7 +195,7 @@ const SMALL_MARK_PX: f64 = 0.02;
 
 /// Lateral displacement of the cross relative to the swelling: its edges against a lit side face swell
 /// differently from those against the plate.
-const SIDEWAYS: f64 = 0.5;
+const CROSS_SHIFT_PER_SWELLING: f64 = 0.5;
 
 /// Smallest share of a pixel's variance that is independent noise. Variance explained by both lines and
 /// patches is subtracted twice.
@@ -281,7 +281,7 @@ pub(super) fn uncertainty(
     }
     let (change, by_swelling, swelling) = swellings.estimate_swelling(&inverse, variance, known_swelling)?;
     let crosses = used().filter(|(_, patch)| patch.feature == Feature::Cross).map(|(index, _)| index);
-    let aside_px = SIDEWAYS * swelling.weighted / swelling.weight;
+    let aside_px = CROSS_SHIFT_PER_SWELLING * swelling.weighted / swelling.weight;
     by_patches += of_patches.common_covariance(crosses) * (aside_px * aside_px);
     let noise = (variance - explained_by_lines - explained_by_patches).max(MIN_NOISE_SHARE * variance);
     let common = inverse * by_patches * inverse + by_swelling;
