@@ -40,7 +40,8 @@ TLE = """TEST
 1 25544U 98067A   08264.51782528 -.00002182  00000-0 -11606-4 0  2927
 2 25544  51.6416 247.4627 0006703 130.5360 325.0288 15.72125391563537
 """
-# Molniya orbit: SGP4's deep-space part with its resonance. Elements of Vallado et al. (2006), satellite 09880.
+# Molniya orbit: SGP4's deep-space part with its resonance. Elements of Vallado et al. (2006), satellite
+# 09880.
 TLE_DEEP = """1 09880U 77021A   06176.56157475  .00000421  00000-0  10000-3 0  9814
 2 09880  64.5968 349.3786 7069051 270.0229  16.3320  2.00813614112380
 """
@@ -80,7 +81,8 @@ def write(name, header, rows):
     (HERE / name).write_text(text.getvalue())
 
 
-# --- Orekit ---------------------------------------------------------------------------------------------------
+# --- Orekit
+# ---------------------------------------------------------------------------------------------------
 
 
 def leap_seconds(folder):
@@ -187,8 +189,9 @@ def orekit():
             listed.add(OemSegment(metadata, data, GM * 1e9))
         message = Oem(header(OdmHeader, 2.0), listed, conventions, context, GM * 1e9)
         (HERE / name).write_text(generate(builder.buildOemWriter(), message, notation))
-        # Orekit's interpolation of the same nodes, turned to GCRF; its reader of a message about the Earth, and
-        # so its propagator from a message, need a JPL ephemeris. Its Lagrange polynomial is of the positions.
+        # Orekit's interpolation of the same nodes, turned to GCRF; its reader of a message about the Earth,
+        # and so its propagator from a message, need a JPL ephemeris. Its Lagrange polynomial is of the
+        # positions.
         is_hermite = method == InterpolationMethod.HERMITE
         points = (degree + 1) // 2 if is_hermite else degree + 1
         interpolator = TimeStampedPVCoordinatesHermiteInterpolator(points, CartesianDerivativesFilter.USE_PV if is_hermite else CartesianDerivativesFilter.USE_P)
@@ -240,7 +243,8 @@ def orekit():
         for k in range(31):
             date = START.shiftedBy(10.0 * k)
             rotation = Rotation(Vector3D(0.2, -0.7, 0.4), 0.3 + 0.01 * k, RotationConvention.FRAME_TRANSFORM)
-            # Orekit's data are from the celestial frame to the body; its writer turns them round if A is the body.
+            # Orekit's data are from the celestial frame to the body; its writer turns them round if A is the
+            # body.
             data.addData(TimeStampedAngularCoordinates(date, rotation, Vector3D.ZERO, Vector3D.ZERO))
             if k % 7 == 0:
                 # Along the body from GCRF: Orekit's rotation from GCRF to EME2000, then the attitude.
@@ -279,7 +283,8 @@ def orekit():
     return states
 
 
-# --- oem, SPICE, SGP4 -----------------------------------------------------------------------------------------
+# --- oem, SPICE, SGP4
+# -----------------------------------------------------------------------------------------
 
 
 def oem_states():

@@ -2,9 +2,9 @@
 //!
 //! Gauss–Newton with Marquardt's damping, in square-root form, over rows whose slow errors are whitened
 //! ([`crate::whitener`]). A coarse stage on a part of the measurements weights large residuals down (Huber
-//! 1964, Ann. Math. Stat. 35, 73, scaled by the median) and proceeds from the first hours to the whole campaign;
-//! the fine stage uses all, and edits those whose
-//! innovation is beyond a gate, until the set is stable.
+//! 1964, Ann. Math. Stat. 35, 73, scaled by the median) and proceeds from the first hours to the whole
+//! campaign; the fine stage uses all, and edits those whose innovation is beyond a gate, until the set is
+//! stable.
 
 use contract::navigation::{Answer, NavigationSetup, NoEstimate, RelativeElements};
 use hifitime::Epoch;

@@ -44,8 +44,9 @@ fn worst(name: &str, table: &str, ephemeris: &OrbitEphemeris) -> (f64, f64) {
 
 #[test]
 fn ephemerides_of_orekit_and_oem_are_interpolated_as_they_do() {
-    // Rounding: positions of 7000 km have a resolution of 1e-12 km, times of 0.1 ns (7e-10 km); the frame bias
-    // of SOFA and Orekit differs by 0.2 µas from its rounded angles; Orekit's velocity of LAGRANGE is the derivative of the positions.
+    // Rounding: positions of 7000 km have a resolution of 1e-12 km, times of 0.1 ns (7e-10 km); the frame
+    // bias of SOFA and Orekit differs by 0.2 µas from its rounded angles; Orekit's velocity of LAGRANGE is
+    // the derivative of the positions.
     for (name, position_km, velocity_km_s) in [
         ("orekit-hermite.oem", 1e-8, 3e-11),
         // Three nodes of degree 5: Orekit takes other neighbours, and the remainder is 3e-8 km.
@@ -90,7 +91,8 @@ fn kernels_of_spice_are_evaluated_as_it_does() {
         for target in [None, Some(-200)] {
             let spk = Spk::read(&golden(&name), target).unwrap();
             assert_eq!(spk.target(), -200);
-            // TDB as a 64-bit number of seconds: 0.06 µs, 5e-7 km along the orbit; 5e-10 km/s of its velocity.
+            // TDB as a 64-bit number of seconds: 0.06 µs, 5e-7 km along the orbit; 5e-10 km/s of its
+            // velocity.
             let (position, velocity) = worst(&name, "states.csv", &spk.into());
             println!("{name}: {position:.1e} km, {velocity:.1e} km/s");
             assert!(position < 1e-6 && velocity < 1e-9, "{name}: {position:e} {velocity:e}");
