@@ -31,6 +31,9 @@ fn main() {
         if variant.contains("unbiased") {
             campaign.constant_arcsec = 0.0;
         }
+        if let Ok(x) = std::env::var("BIAS") {
+            campaign.constant_arcsec = x.parse().unwrap();
+        }
         let flight = campaign.fly(1000 + seed as u64);
         let times: Vec<_> = epochs.iter().map(|s| at(*s)).collect();
         let mut batch = Batch::new(&flight.setup, &BatchConfig::default()).unwrap();

@@ -78,7 +78,9 @@ struct Buffered {
 
 #[derive(Debug, Clone)]
 enum Step {
-    Sight(usize, Box<Sight>),
+    /// Index of the disposition, and the measurement: it is prepared when it is processed, with the chaser's
+    /// orbit as known then.
+    Sight(usize, Box<LineOfSightMeasurement>),
     Manoeuvre(ManoeuvreReport),
 }
 
@@ -149,14 +151,15 @@ impl Sequential {
     fn advance(&mut self, reference: &Reference, before: FilterState, step: Step) -> FilterState {
         let mut state = before.clone();
         let seconds = match &step {
-            Step::Sight(_, sight) => sight.seconds,
+            Step::Sight(_, measurement) => self.seconds(measurement.time),
             Step::Manoeuvre(manoeuvre) => self.seconds(manoeuvre.time),
         };
         let moved = state.propagate(&self.layout, reference, seconds);
         let done = moved.and_then(|()| match &step {
-            Step::Sight(index, sight) => {
+            Step::Sight(index, measurement) => {
+                let sight = self.sight(measurement).ok()?;
                 let gate = self.config.outlier_sigma;
-                let (used, innovation) = state.update(&self.layout, reference, sight, gate);
+                let (used, innovation) = state.update(&self.layout, reference, &sight, gate);
                 self.dispositions[*index].used = used;
                 self.dispositions[*index].residual_rad = Some(innovation);
                 Some(())
@@ -206,7 +209,7 @@ impl Sequential {
                     self.start();
                 }
             }
-            Ok(sight) => self.process(sight.seconds, Step::Sight(index, Box::new(sight))),
+            Ok(sight) => self.process(sight.seconds, Step::Sight(index, Box::new(*measurement))),
         }
     }
 

@@ -1,4 +1,5 @@
 //! Tests of the navigators against an independent simulator.
 
 mod batch;
+mod sequential;
 mod simulator;
