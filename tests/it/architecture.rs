@@ -16,7 +16,7 @@ const ARROWS: [(&str, &str); 21] = [
     ("score", "contract sim statistics"),
     ("files", "contract pipeline score sim"),
     ("flight-dynamics", "contract files sim"),
-    ("scenario", "contract files pipeline sim"),
+    ("scenario", "contract files flight-dynamics pipeline sim"),
     ("mitsuba", "contract files sim"),
     ("run", "contract files mitsuba pipeline scenario score sim"),
     ("study", "contract files pipeline run scenario score sim statistics"),

@@ -2,8 +2,8 @@
 
 use nalgebra::SVector;
 
-/// Largest degree that is read.
-pub(crate) const MAX_DEGREE: usize = 31;
+/// Largest degree that is read: that of the simulator's samples.
+pub(crate) use sim::truth::MAX_DEGREE;
 
 /// Method of interpolation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub enum Method {
 pub struct Interpolation {
     /// Method.
     pub method: Method,
-    /// Degree of the polynomial, 1 to 31; 1 for a straight line.
+    /// Degree of the polynomial, 1 to 19; 1 for a straight line.
     pub degree: usize,
 }
 

@@ -188,7 +188,7 @@ impl FarRangeScenario {
             PsfConfig::Sampled { path, .. } => Some(("psf.path", path)),
             _ => None,
         };
-        catalog.into_iter().chain(psf).collect()
+        catalog.into_iter().chain(psf).chain(self.trajectory.paths()).collect()
     }
 
     /// Returns the motion of chaser and target.
@@ -197,7 +197,12 @@ impl FarRangeScenario {
     /// A [`Failure`] for an invalid orbit or schedule, or a file that cannot be read.
     pub fn trajectory(&self) -> Result<Trajectory, Failure> {
         let schedule = Schedule::new(&self.schedule)?;
-        Ok(Trajectory::from_source(&self.orbit, &self.trajectory.source()?, self.seed, &schedule)?)
+        Ok(Trajectory::from_source(
+            &self.orbit,
+            &self.trajectory.source(Some(&schedule))?,
+            self.seed,
+            &schedule,
+        )?)
     }
 
     /// Returns the input of the simulator.
@@ -209,7 +214,8 @@ impl FarRangeScenario {
             seed: self.seed,
             catalog: self.catalog.clone(),
             orbit: self.orbit.clone(),
-            trajectory: self.trajectory.source()?,
+            // An invalid schedule is reported by the simulator, with its location.
+            trajectory: self.trajectory.source(Schedule::new(&self.schedule).ok().as_ref())?,
             schedule: self.schedule.clone(),
             attitude: self.attitude.clone(),
             knowledge: self.knowledge.clone(),

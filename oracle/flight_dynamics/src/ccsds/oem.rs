@@ -157,7 +157,7 @@ impl Oem {
             OrbitNodes::new(
                 segment.coverage,
                 segment.interpolation.unwrap_or(Interpolation::ORBIT_DEFAULT),
-                segment.states.iter().map(|node| (node.time, node.to_icrs(segment.frame))),
+                segment.icrs_states(),
             )
         });
         OrbitEphemeris::from_nodes(segments.collect())
@@ -187,6 +187,11 @@ impl Oem {
 }
 
 impl OemSegment {
+    /// Returns times and states in ICRS axes.
+    pub fn icrs_states(&self) -> impl Iterator<Item = (Epoch, State)> + '_ {
+        self.states.iter().map(|node| (node.time, node.to_icrs(self.frame)))
+    }
+
     fn read(path: &Path, segment: &Segment<'_>) -> Result<Self, FileError> {
         let metadata = &segment.metadata;
         metadata.check_keywords(&METADATA)?;

@@ -208,7 +208,7 @@ fn a_bad_oem_is_refused_by_line_field_and_value() {
             0,
             "DEGREE = 1",
             "DEGREE = 0",
-            ", line 13: `INTERPOLATION_DEGREE` is `0`, expected an integer from 1 to 31 for LAGRANGE",
+            ", line 13: `INTERPOLATION_DEGREE` is `0`, expected an integer from 1 to 19 for LAGRANGE",
         ),
         (
             0,
