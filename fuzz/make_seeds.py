@@ -133,6 +133,13 @@ def make(program, folder):
     keep("baseline_rows", "argon.parquet", ROOT / "golden/baselines/argon/rows.parquet")
     keep("psf", "small.csv", "0,1,0\n1,4,1.5\n0,1e0,0\n")
 
+    for path in sorted((ROOT / "golden/flight_dynamics").iterdir()):
+        target = {"oem": "oem", "aem": "aem", "tdm": "tdm", "tle": "tle", "bsp": "spk"}.get(path.name.removesuffix(".xml").rpartition(".")[2])
+        if target is not None:
+            keep(target, f"small-{path.name}", path)
+    keep("opm", "small.opm", OPM)
+    keep("opm", "small.opm.xml", OPM_XML)
+
     keep("answer", "small-greeting", '{"boresight_pipeline": 1, "name": "mine"}\n')
     keep("answer", "small-detected", ANSWER_FAR)
     keep("answer", "small-none", '{"frame": 7, "status": "failed: no stars"}\n')
@@ -177,6 +184,36 @@ COVARIANCES = (
     "2,detected,12.5,8.25,,,,0.05,0.04,-0.999,,,\n"
     "3,no_target,,,,,,,,,,,\n"
 )
+OPM = """CCSDS_OPM_VERS = 2.0
+CREATION_DATE = 2012-04-20T00:00:00
+ORIGINATOR = A
+OBJECT_NAME = A
+OBJECT_ID = 2010-028B
+CENTER_NAME = EARTH
+REF_FRAME = TEME
+TIME_SYSTEM = TDB
+EPOCH = 2012-114T00:00:00.5
+X = 7130.0 [km]
+Y = 0.0
+Z = -1e1 [km]
+X_DOT = 0.0
+Y_DOT = 1.0 [km/s]
+Z_DOT = 7.4
+MASS = 150 [kg]
+MAN_EPOCH_IGNITION = 2012-04-23T01:00:00
+MAN_DURATION = 2.5 [s]
+MAN_DELTA_MASS = -0.1 [kg]
+MAN_REF_FRAME = RTN
+MAN_DV_1 = 0.0 [km/s]
+MAN_DV_2 = 1e-5
+MAN_DV_3 = 0.0
+"""
+OPM_XML = """<?xml version="1.0" encoding="UTF-8"?>
+<opm id="CCSDS_OPM_VERS" version="2.0"><header><CREATION_DATE>2012-04-20T00:00:00</CREATION_DATE><ORIGINATOR>A</ORIGINATOR></header>
+<body><segment><metadata><OBJECT_NAME>A</OBJECT_NAME><OBJECT_ID>A</OBJECT_ID><CENTER_NAME>EARTH</CENTER_NAME>
+<REF_FRAME>GCRF</REF_FRAME><TIME_SYSTEM>GPS</TIME_SYSTEM></metadata><data><stateVector><EPOCH>2012-04-23T00:00:00</EPOCH>
+<X units="km">7130</X><Y>0</Y><Z>0</Z><X_DOT units="km/s">0</X_DOT><Y_DOT>1</Y_DOT><Z_DOT>7.4</Z_DOT></stateVector></data></segment></body></opm>
+"""
 ANSWER_FAR = (
     '{"frame": 7, "status": "detected", "x_px": 12.5, "y_px": 400.25, "los_j2000": [0, 0.6, 0.8], '
     '"q_cam_j2000": [1, 0, 0, 0], "n_stars": 12, "sigma_x_px": 0.05, "sigma_y_px": 0.04, "correlation_xy": 0.1, '

@@ -139,7 +139,7 @@ def remade(folder, script="make.py", requirements=None, arguments=lambda python:
 
 def references(folder):
     """Names of the committed files that a script makes."""
-    return sorted(path.name for path in (GOLDEN / folder).iterdir() if path.suffix in {".csv", ".bin", ".avi", ".y4m"})
+    return sorted(path.name for path in (GOLDEN / folder).iterdir() if path.suffix in {".csv", ".bin", ".avi", ".y4m", ".oem", ".aem", ".tdm", ".tle", ".xml", ".bsp"})
 
 
 def compared(committed, made, names):
@@ -248,6 +248,21 @@ def fetched(court, python, pin):
     return next(folder.iterdir())
 
 
+def flight_dynamics(court):
+    """Files of other tools, made again, and the reader's tests with them."""
+    if shutil.which("java") is None:
+        raise CannotAsk("java is not there: Orekit needs it")
+    said = remade("flight_dynamics")(court)
+    count = passed(court.run("cargo", "test", "--locked", "-p", "boresight-flight-dynamics", "--test", "it", "--", "other_tools::"), "other_tools::")
+    return f"{said}; {count} tests"
+
+
+def exported(court):
+    """Packages of others read what `boresight export` writes."""
+    python = court.environment("exported", GOLDEN / "witnesses" / "flight_dynamics_requirements.txt")
+    return claims_of(court.run(python, GOLDEN / "witnesses" / "flight_dynamics.py", court.program("boresight")))
+
+
 def docking(court):
     """Mitsuba's images of the docking target, made again; the smallest one alone when it must be fast."""
     python = court.environment("mitsuba", GOLDEN / "docking" / "requirements.txt")
@@ -280,6 +295,8 @@ WITNESSES = {
     "psf": ("GalSim: images of stars", remade("psf", script="make_stamps.py")),
     "radiometry": ("spectra of CALSPEC and of Gunn and Stryker: electrons", remade("radiometry", arguments=photometry)),
     "video": ("FFmpeg: video files", remade("video")),
+    "flight_dynamics": ("Orekit, oem, CSPICE, sgp4, ERFA: OEM, AEM, TDM, SPK, two-line elements", flight_dynamics),
+    "exported": ("oem, ccsds-ndm: exported OEM, AEM, TDM", exported),
     "docking": ("Mitsuba: images of the docking target", docking),
     "references": ("our simulator against all of these", tests("golden_apparent::", "golden_moon::", "golden_psf::", "golden_radiometry::", "golden_manifest::", "planets::")),
     "drawn": ("our facets against Mitsuba's images", tests("golden_docking::")),

@@ -21,6 +21,7 @@ pub use ::monitor;
 #[cfg(feature = "report")]
 pub use ::report;
 pub use files::{self, failure, sha256, toml_file};
+pub use flight_dynamics;
 pub use gate;
 pub use run::{self, frame_jobs, pipeline_choice};
 pub use scenario::{self, run_file};

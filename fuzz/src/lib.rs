@@ -6,6 +6,7 @@
 //! by coverage, on the stable compiler.
 
 mod answers;
+mod flight_dynamics;
 mod images;
 mod runs;
 mod sandbox;
@@ -44,6 +45,7 @@ impl Target {
 
 /// All targets, ordered by name.
 pub const TARGETS: &[Target] = &[
+    Target::new("aem", "attitude ephemeris messages of CCSDS", flight_dynamics::aem),
     Target::new("answer", "a line of output of an external pipeline, both worlds", answers::answer),
     Target::new("avi", "AVI, uncompressed and Motion-JPEG", videos::avi),
     Target::new("baseline", "baseline.toml with matching rows", tables::baseline),
@@ -61,6 +63,8 @@ pub const TARGETS: &[Target] = &[
     Target::new("fits", "FITS", images::fits),
     Target::new("http", "bytes on a connection to the monitor", server::http),
     Target::new("json", "scores, summaries, study records and reports, JSON", texts::json),
+    Target::new("oem", "orbit ephemeris messages of CCSDS", flight_dynamics::oem),
+    Target::new("opm", "orbit parameter messages of CCSDS", flight_dynamics::opm),
     Target::new("parquet", "truth, features, clusters and cases, Parquet", tables::parquet),
     Target::new("png", "PNG with corrected checksums", images::png),
     Target::new("psf", "a sampled point-spread function", texts::psf),
@@ -71,8 +75,11 @@ pub const TARGETS: &[Target] = &[
     Target::new("scenario", "scenarios of both worlds, TOML", texts::scenario),
     Target::new("setup", "setup.toml of a docking dataset", texts::setup),
     Target::new("simulator", "valid scenarios, built into simulators", texts::simulator),
+    Target::new("spk", "SPICE kernels of positions", flight_dynamics::spk),
     Target::new("study", "studies, TOML", texts::study),
     Target::new("target", "docking targets, TOML", texts::target),
+    Target::new("tdm", "tracking data messages of CCSDS", flight_dynamics::tdm),
     Target::new("tiff", "TIFF", images::tiff),
+    Target::new("tle", "two-line elements", flight_dynamics::tle),
     Target::new("y4m", "YUV4MPEG2", videos::y4m),
 ];

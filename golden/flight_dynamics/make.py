@@ -1,4 +1,4 @@
-"""Makes the files of other tools in golden/flight_dynamics/, and what the tools themselves read from them.
+"""Makes the files of other tools in golden/flight_dynamics/, and tables of the states that those tools read.
 
     python3 -m venv .venv && .venv/bin/pip install -r golden/flight_dynamics/requirements.txt
     .venv/bin/python golden/flight_dynamics/make.py --reason "why the old ones are wrong"

@@ -17,8 +17,8 @@ use crate::scene::{Background, BackgroundConfig, Spacecraft, StarField, TargetCo
 use crate::sensor::{CosmicRays, Sensor, SensorConfig};
 use crate::switch::Switch;
 use crate::truth::{
-    Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
-    Schedule, Trajectory, TrajectorySource,
+    Attitude, AttitudeConfig, AttitudeProfile, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig,
+    Observer, OrbitConfig, Schedule, Trajectory, TrajectorySource,
 };
 
 /// Complete input of the simulator.
@@ -36,6 +36,8 @@ pub struct Simulation {
     pub schedule: Vec<GroupConfig>,
     /// Pointing of the chaser, and its accuracy.
     pub attitude: AttitudeConfig,
+    /// Attitude from a file, which replaces guidance; `None`: that of guidance.
+    pub attitude_profile: Option<AttitudeProfile>,
     /// Attitude knowledge in the telemetry.
     pub knowledge: KnowledgeConfig,
     /// Mounting of the camera on the chaser.
@@ -131,9 +133,10 @@ impl Simulator {
             .map(|background| background.vignetted(&vignetting)),
             stars: star_field(simulation, &catalog, &radiometry),
             catalog,
+            attitude: Attitude::new(&simulation.attitude, &simulation.mounting, seed)?
+                .with_profile(simulation.attitude_profile.clone(), trajectory.epoch())?,
             trajectory,
             schedule,
-            attitude: Attitude::new(&simulation.attitude, &simulation.mounting, seed)?,
             knowledge: Knowledge::new(&simulation.knowledge, seed)?,
             camera_from_body: simulation.mounting.actual.camera_from_body(),
             projection,
@@ -163,7 +166,8 @@ impl Simulator {
         let target = Spacecraft::new(&simulation.target)?;
         let (trajectory, schedule, shutter) =
             flight(simulation, self.sensor.config(), self.cosmic_rays.as_ref(), &target)?;
-        let attitude = Attitude::new(&simulation.attitude, &simulation.mounting, seed)?;
+        let attitude = Attitude::new(&simulation.attitude, &simulation.mounting, seed)?
+            .with_profile(simulation.attitude_profile.clone(), trajectory.epoch())?;
         let knowledge = Knowledge::new(&simulation.knowledge, seed)?;
         let camera_from_body = simulation.mounting.actual.camera_from_body();
         (self.seed, self.target, self.camera_from_body) = (seed, target, camera_from_body);

@@ -5,6 +5,7 @@ mod answer;
 mod cluster;
 mod dataset;
 mod execute;
+mod export;
 mod gate;
 mod interrupt;
 #[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
@@ -67,6 +68,8 @@ enum Command {
     Report(report::ReportArguments),
     /// Draw frames of a run or dataset: pixels, truth, answer, regions, scale bar and legend as one PNG
     Show(show::ShowArguments),
+    /// Write truth or measurements of a far-range run as a message of CCSDS: OEM, AEM or TDM
+    Export(export::ExportArguments),
     /// Serve an operator's page on loopback: camera, ground track, phase chart, model and parameters
     #[command(
         after_help = "SCENARIO may be the directory of a run, which is replayed with its pictures rendered \
@@ -116,6 +119,7 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Gate(arguments) => gate::gate(&arguments, &output),
         Command::Report(arguments) => report::report(&arguments, &output),
         Command::Show(arguments) => show::show(&arguments, &output),
+        Command::Export(arguments) => export::export(&arguments, &output),
         Command::Monitor(arguments) => monitor::monitor(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
         Command::Completions(arguments) => shell::completions(&arguments, Arguments::command(), &output),

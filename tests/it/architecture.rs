@@ -27,7 +27,7 @@ const ARROWS: [(&str, &str); 21] = [
     ("monitor", "contract files run scenario score sim"),
     (
         "boresight",
-        "contract files gate mitsuba monitor pipeline report research run scenario score show sim statistics study visibility",
+        "contract files flight-dynamics gate mitsuba monitor pipeline report research run scenario score show sim statistics study visibility",
     ),
     ("python", "boresight contract pipeline sim"),
     ("fuzz", "boresight contract pipeline sim"),

@@ -3,7 +3,7 @@
 use contract::{Body, Icrs, Rotation};
 use hifitime::Epoch;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
-use sim::truth::State;
+use sim::truth::{AttitudeFunction, State};
 
 use crate::coverage::{Coverage, Uncovered, seconds_between};
 use crate::interpolation::{Interpolation, Method, first_node, hermite, lagrange};
@@ -146,6 +146,13 @@ impl AttitudeNodes {
         Self { coverage, times_s, quaternions, interpolation }
     }
 
+    /// Returns the attitude at the nearest covered time, by the turn at a constant rate.
+    fn nearest(&self, time: Epoch) -> Rotation<Body, Icrs> {
+        let linear = Self { interpolation: Interpolation::ATTITUDE_DEFAULT, ..self.clone() };
+        let time = time.max(self.coverage.start).min(self.coverage.stop);
+        linear.rotation_at(time).unwrap_or_else(Rotation::identity)
+    }
+
     fn rotation_at(&self, time: Epoch) -> Option<Rotation<Body, Icrs>> {
         let time_s = seconds_between(self.coverage.start, time);
         let first = first_node(&self.times_s, self.interpolation.nodes(), time_s);
@@ -178,7 +185,7 @@ fn along_great_circle(from: &Vector4<f64>, to: &Vector4<f64>, fraction: f64) -> 
     from * (libm::sin((1.0 - fraction) * angle) / sin) + to * (libm::sin(fraction * angle) / sin)
 }
 
-/// Attitude of one spacecraft, from a file.
+/// Attitude of one spacecraft, from a file. Has at least one segment.
 #[derive(Debug, Clone)]
 pub struct AttitudeEphemeris {
     /// Segments in order of time, without overlap but for common ends.
@@ -205,5 +212,21 @@ impl AttitudeEphemeris {
         segment
             .and_then(|segment| segment.rotation_at(time))
             .ok_or_else(|| Uncovered::new(time, self.coverage().into_iter()))
+    }
+}
+
+impl AttitudeFunction for AttitudeEphemeris {
+    /// In a gap, the end of the nearest segment counts; where nodes are too far apart for the polynomial, the
+    /// turn at a constant rate between the two neighbours.
+    fn body_from_icrs(&self, time: Epoch) -> Rotation<Body, Icrs> {
+        if let Ok(rotation) = self.rotation_at(time) {
+            return rotation;
+        }
+        let distance_s = |segment: &&AttitudeNodes| {
+            let before = seconds_between(time, segment.coverage.start).max(0.0);
+            before.max(seconds_between(segment.coverage.stop, time))
+        };
+        let nearest = self.segments.iter().min_by(|a, b| distance_s(a).total_cmp(&distance_s(b)));
+        nearest.map_or_else(Rotation::identity, |segment| segment.nearest(time))
     }
 }

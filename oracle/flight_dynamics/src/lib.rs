@@ -46,6 +46,8 @@ pub use coverage::{Coverage, Uncovered};
 pub use document::Notation;
 pub use ephemeris::{AttitudeEphemeris, OrbitEphemeris};
 pub use frame::ReferenceFrame;
+/// Instant of a state.
+pub use hifitime::Epoch;
 pub use interpolation::{Interpolation, Method};
 pub use spk::Spk;
 pub use time::TimeSystem;

@@ -48,7 +48,7 @@ pub struct Spk {
 #[derive(Debug, Clone, Copy)]
 struct KernelSegment {
     summary: SPKSummaryRecord,
-    /// Record of summaries, and place in it.
+    /// Record of summaries, and index in it.
     block: Option<usize>,
     index: usize,
     coverage: Coverage,

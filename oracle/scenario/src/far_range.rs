@@ -15,9 +15,10 @@ use sim::optics::{OpticsConfig, PsfConfig, Radiometry, RadiometryConfig, SUN_V_M
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::{SensorConfig, Switch};
 use sim::truth::{
-    AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig, Schedule, Trajectory,
+    AttitudeConfig, GroupConfig, Guidance, KnowledgeConfig, MountingConfig, OrbitConfig, Schedule, Trajectory,
 };
 
+use crate::attitude::attitude_profile;
 use crate::{TrajectoryConfig, scenario_file};
 
 /// A far-range scenario, in the form of its TOML file. Units are in the names; unknown keys are errors.
@@ -188,7 +189,11 @@ impl FarRangeScenario {
             PsfConfig::Sampled { path, .. } => Some(("psf.path", path)),
             _ => None,
         };
-        catalog.into_iter().chain(psf).chain(self.trajectory.paths()).collect()
+        let attitude = match &mut self.attitude.guidance {
+            Guidance::Aem { file } => Some(("attitude.guidance.file", file)),
+            _ => None,
+        };
+        catalog.into_iter().chain(psf).chain(attitude).chain(self.trajectory.paths()).collect()
     }
 
     /// Returns the motion of chaser and target.
@@ -218,6 +223,7 @@ impl FarRangeScenario {
             trajectory: self.trajectory.source(Schedule::new(&self.schedule).ok().as_ref())?,
             schedule: self.schedule.clone(),
             attitude: self.attitude.clone(),
+            attitude_profile: attitude_profile(&self.attitude, Schedule::new(&self.schedule).ok().as_ref())?,
             knowledge: self.knowledge.clone(),
             mounting: self.mounting,
             camera: self.camera.clone(),

@@ -11,8 +11,10 @@
     )
 )]
 
+mod attitude;
 mod builtin;
 mod cameras;
+mod coverage;
 mod docking;
 mod far_range;
 pub mod identity;

@@ -14,6 +14,8 @@ use sim::truth::{
     clock,
 };
 
+use crate::coverage::check_coverage;
+
 /// Origin of the motion of chaser and target.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
@@ -50,8 +52,8 @@ pub enum TrajectoryConfig {
     },
 }
 
-/// Step of the samples of two-line elements and kernels, s. The remainder of a Lagrange polynomial of degree 7
-/// with such nodes is below 1e-9 km on a low orbit.
+/// Step of the samples of two-line elements and kernels, s. The remainder of a Lagrange polynomial of degree
+/// 7 with such nodes is below 1e-9 km on a low orbit.
 const STEP_S: f64 = 10.0;
 
 /// Samples before the first and after the last frame, for the polynomials and for exposures at the ends.
@@ -84,8 +86,8 @@ impl TrajectoryConfig {
         }
     }
 
-    /// Returns the origin of the motion for the simulator; reads the files that it names. Frames of `schedule`
-    /// must lie within the time that the files cover.
+    /// Returns the origin of the motion for the simulator; reads the files that it names. Frames of
+    /// `schedule` must lie within the time that the files cover.
     ///
     /// # Errors
     /// A [`Failure`] for a file that cannot be read, has a gap, or does not cover all frames.
@@ -122,30 +124,6 @@ fn origin(ends: Option<[Epoch; 2]>, coverage: &[Coverage]) -> Epoch {
 fn seconds(from: Epoch, to: Epoch) -> f64 {
     let nanoseconds = to.to_tai_duration().total_nanoseconds() - from.to_tai_duration().total_nanoseconds();
     nanoseconds as f64 / 1e9
-}
-
-/// Checks that one span without gaps covers all frames.
-fn check_coverage(path: &Path, ends: Option<[Epoch; 2]>, coverage: &[Coverage]) -> Result<(), FileError> {
-    let refused = |field: &str, value: String, expected: String| {
-        Err(FileError::value(path, FileLocation::Whole, field, value, expected))
-    };
-    for (index, pair) in coverage.windows(2).enumerate() {
-        if let [earlier, later] = pair
-            && earlier.stop < later.start
-        {
-            let expected = format!("a start at {}: there must be no gap", clock::format_utc(earlier.stop));
-            return refused(&format!("span of segment {}", index + 2), later.to_string(), expected);
-        }
-    }
-    let (Some([first, last]), Some(start), Some(stop)) = (ends, coverage.first(), coverage.last()) else {
-        return Ok(());
-    };
-    let whole = Coverage { start: start.start, stop: stop.stop };
-    if whole.start <= first && last <= whole.stop {
-        return Ok(());
-    }
-    let frames = Coverage { start: first, stop: last };
-    refused("covered time", whole.to_string(), format!("a span that contains all frames, {frames}"))
 }
 
 /// Reads an orbit ephemeris message.

@@ -282,6 +282,7 @@ impl Bench<'_> {
             catalog: camera.catalog.clone(),
             orbit,
             trajectory: TrajectorySource::MeanElements,
+            attitude_profile: None,
             schedule: vec![GroupConfig { name: "confirm".to_owned(), start_utc, cadence_s: 1.0, count: 1 }],
             attitude: AttitudeConfig {
                 guidance,

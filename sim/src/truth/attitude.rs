@@ -3,10 +3,12 @@
 
 use contract::bounds::{self, require};
 use contract::{Body, CameraFrame, Icrs, OutOfRange, Rotation};
+use hifitime::{Duration, Epoch};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::attitude_profile::AttitudeProfile;
 use super::drift::{Drift, DriftConfig, radians_from_arcsec, turned_by, white};
 use super::guidance::Guidance;
 use super::mounting::MountingConfig;
@@ -68,6 +70,8 @@ pub struct Attitude {
     jitter_rad: Vector3<f64>,
     motion_smear: Switch,
     seed: Seed,
+    /// Attitude that replaces guidance, and the origin of the states' times.
+    profile: Option<(AttitudeProfile, Epoch)>,
 }
 
 impl Attitude {
@@ -85,7 +89,23 @@ impl Attitude {
             jitter_rad: radians_from_arcsec(config.control.jitter_arcsec),
             motion_smear: config.motion_smear,
             seed,
+            profile: None,
         })
+    }
+
+    /// Replaces guidance by the attitude of a file; `epoch` is the origin of the states' times.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for [`Guidance::Aem`] without the attitude of its file.
+    pub fn with_profile(self, profile: Option<AttitudeProfile>, epoch: Epoch) -> Result<Self, OutOfRange> {
+        if let (Guidance::Aem { file }, None) = (&self.guidance, &profile) {
+            return Err(OutOfRange::new(
+                "attitude.guidance.file",
+                file,
+                "the content of the file, with its path",
+            ));
+        }
+        Ok(Self { profile: profile.map(|profile| (profile, epoch)), ..self })
     }
 
     /// Switch of the smear of images by motion.
@@ -101,6 +121,10 @@ impl Attitude {
 
     /// Returns the attitude that guidance commands.
     fn guided(&self, states: &States) -> Rotation<Body, Icrs> {
+        if let Some((profile, epoch)) = &self.profile {
+            let nanoseconds = libm::round(states.time_s * 1e9) as i128;
+            return profile.0.body_from_icrs(*epoch + Duration::from_total_nanoseconds(nanoseconds));
+        }
         self.body_from_camera * self.guidance.camera_from_icrs(states)
     }
 }

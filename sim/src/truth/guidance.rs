@@ -43,14 +43,22 @@ pub enum Guidance {
         #[schemars(range(min = -180, max = 180))]
         psi_deg: f64,
     },
+    /// Attitude of the body from an attitude ephemeris message (CCSDS 504.0-B, KVN or XML), interpolated as
+    /// it states; the errors of `control` are added.
+    Aem {
+        /// File of the chaser's attitude, relative to the scenario.
+        file: String,
+    },
     /// Boresight towards the target; y as close as possible to −N (opposite to the orbit normal).
     TargetPointing {},
 }
 
 impl Guidance {
-    /// Returns the camera attitude that guidance commands.
+    /// Returns the camera attitude that guidance commands; ICRS axes for [`Guidance::Aem`], whose attitude is
+    /// not a function of the states.
     pub fn camera_from_icrs(&self, states: &States) -> Rotation<CameraFrame, Icrs> {
         match *self {
+            Self::Aem { .. } => Rotation::identity(),
             Self::Inertial { ra_deg, dec_deg, roll_deg } => {
                 let ra = Angle::from_degrees(ra_deg);
                 let z = *Direction::from_ra_dec(ra, Angle::from_degrees(dec_deg)).vector();

@@ -3,6 +3,7 @@
 mod apparent;
 pub mod approach;
 mod attitude;
+mod attitude_profile;
 pub mod clock;
 mod drift;
 mod earth_rotation;
@@ -28,6 +29,7 @@ mod trajectory;
 
 pub use apparent::{Observer, StarMotion, aberrate, deflect, unaberrate};
 pub use attitude::{Attitude, AttitudeConfig, ControlConfig};
+pub use attitude_profile::{AttitudeFunction, AttitudeProfile};
 pub use drift::DriftConfig;
 pub use earth_rotation::geographic;
 pub use guidance::Guidance;

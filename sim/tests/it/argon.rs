@@ -26,6 +26,7 @@ pub(crate) fn simulation() -> Simulation {
         catalog: section(&table, "catalog"),
         orbit: section(&table, "orbit"),
         trajectory: Default::default(),
+        attitude_profile: None,
         schedule: section(&table, "schedule"),
         attitude: section(&table, "attitude"),
         knowledge: section(&table, "knowledge"),

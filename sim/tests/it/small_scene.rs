@@ -35,6 +35,7 @@ pub(crate) fn still() -> Simulation {
         catalog: CatalogConfig { magnitude_limit: Some(9.5), ..CatalogConfig::default() },
         orbit,
         trajectory: TrajectorySource::MeanElements,
+        attitude_profile: None,
         schedule: vec![GroupConfig {
             name: "only".into(),
             start_utc: START_UTC.into(),

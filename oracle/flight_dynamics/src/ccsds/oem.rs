@@ -4,7 +4,7 @@ use std::path::Path;
 
 use files::FileError;
 use hifitime::Epoch;
-use nalgebra::Vector3;
+use nalgebra::{Matrix6, Vector3};
 use sim::truth::State;
 
 use super::common::{
@@ -16,7 +16,7 @@ use crate::coverage::Coverage;
 use crate::document::{self, Document, Kind, Notation, Record, Segment, Writer};
 use crate::ephemeris::{OrbitEphemeris, OrbitNodes};
 use crate::frame::ReferenceFrame;
-use crate::interpolation::Interpolation;
+use crate::interpolation::{Interpolation, Method};
 use crate::time::TimeSystem;
 
 /// Keywords of the metadata.
@@ -148,6 +148,52 @@ impl Oem {
             check_count(path, line, interpolation, segment.states.len())?;
         }
         Ok(Self { header, segments })
+    }
+
+    /// Creates the message of one segment from states and their covariances, ICRS axes and UTC: for example
+    /// the estimates of a navigator. Covariances are those of position and velocity in km and km/s.
+    ///
+    /// `states` ascend in time and are at least two; fewer than eight have no interpolation of degree 7.
+    /// `None` if they are fewer, or do not ascend.
+    pub fn from_states(
+        header: Header,
+        object_name: &str,
+        object_id: &str,
+        states: &[(Epoch, State, Option<Matrix6<f64>>)],
+    ) -> Option<Self> {
+        let ([(start, ..), ..], [.., (stop, ..)]) = (states, states) else { return None };
+        if !states.is_sorted_by(|(a, ..), (b, ..)| a < b) || start >= stop {
+            return None;
+        }
+        let frame = CovarianceFrame::Reference(ReferenceFrame::Icrf);
+        let covariance = |time: Epoch, matrix: &Matrix6<f64>| {
+            let lower = (0..6).flat_map(|row| (0..=row).map(move |column| (row, column)));
+            let mut lower_triangle = [0.0; 21];
+            for (number, index) in lower_triangle.iter_mut().zip(lower) {
+                *number = matrix.get(index).copied().unwrap_or_default();
+            }
+            Covariance { time, frame, lower_triangle }
+        };
+        let nodes = states.iter().map(|(time, state, _)| StateNode {
+            time: *time,
+            position_km: state.position_km,
+            velocity_km_s: state.velocity_km_s,
+        });
+        let segment = OemSegment {
+            object_name: object_name.to_owned(),
+            object_id: object_id.to_owned(),
+            frame: ReferenceFrame::Icrf,
+            time_system: TimeSystem::Utc,
+            coverage: Coverage { start: *start, stop: *stop },
+            interpolation: (states.len() >= 8)
+                .then_some(Interpolation { method: Method::Lagrange, degree: 7 }),
+            states: nodes.collect(),
+            covariances: states
+                .iter()
+                .filter_map(|(time, _, matrix)| Some(covariance(*time, matrix.as_ref()?)))
+                .collect(),
+        };
+        Some(Self { header, segments: vec![segment] })
     }
 
     /// Returns the motion that the message describes, ICRS axes, interpolated as it states; without a

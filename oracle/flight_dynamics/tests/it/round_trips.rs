@@ -290,3 +290,26 @@ proptest! {
         let _ = (Oem::parse(file, &text), Aem::parse(file, &text), Opm::parse(file, &text), Tdm::parse(file, &text));
     }
 }
+
+#[test]
+fn states_and_covariances_of_a_navigator_become_a_message() {
+    let matrix = nalgebra::Matrix6::from_fn(|row, column| 1.0 / (1.0 + row as f64 + column as f64));
+    let states: Vec<_> = (0..9)
+        .map(|k| {
+            let StateNode { time, position_km, velocity_km_s } = node(20.0 * f64::from(k));
+            (time, sim::truth::State { position_km, velocity_km_s }, (k % 4 == 0).then_some(matrix))
+        })
+        .collect();
+    let oem = Oem::from_states(header(), "CHASER", "UNKNOWN", &states).unwrap();
+    let read = Oem::parse(Path::new("file"), &oem.to_kvn()).unwrap();
+    assert_eq!(read, oem);
+    assert_eq!((read.segments[0].states.len(), read.segments[0].covariances.len()), (9, 3));
+    let lower_triangle = read.segments[0].covariances[1].lower_triangle;
+    assert_eq!(
+        (lower_triangle[2], lower_triangle[13], lower_triangle[20]),
+        (1.0 / 3.0, 1.0 / 8.0, 1.0 / 11.0)
+    );
+    let reversed: Vec<_> = states.iter().rev().cloned().collect();
+    assert!(Oem::from_states(header(), "CHASER", "UNKNOWN", &reversed).is_none());
+    assert!(Oem::from_states(header(), "CHASER", "UNKNOWN", &states[..1]).is_none());
+}
