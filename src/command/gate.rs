@@ -107,12 +107,21 @@ impl std::str::FromStr for Tolerance {
             let size = size.trim().parse().ok().filter(|size: &f64| size.is_finite() && *size >= 0.0)?;
             Some(Self { figure: figure.trim().to_owned(), size })
         });
-        parsed.ok_or_else(|| {
+        let parsed = parsed.ok_or_else(|| {
             format!(
                 "tolerance is `{text}`, expected FIGURE=SIZE with a size of 0 or more, as in \
                  ra_rms_deg=0.001"
             )
-        })
+        })?;
+        // Rates are fractions in files and percent in tables: a larger tolerance would switch the figure off.
+        if parsed.size > 1.0 && run::figure_by_name(&parsed.figure).is_rate() {
+            return Err(format!(
+                "tolerance is `{text}`, expected a fraction from 0 to 1 for a rate, as in {}=0.001 for a \
+                 tenth of a percent",
+                parsed.figure
+            ));
+        }
+        Ok(parsed)
     }
 }
 

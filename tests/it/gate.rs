@@ -381,6 +381,9 @@ fn damaged_and_foreign_files_are_refused_by_name() {
     bench.boresight("gate base run --figures hit_rat").refused(&["hit_rat", "did you mean `hit_rate`?"]);
     bench.boresight("gate base run --alpha 0").refused(&["--alpha is 0"]);
     bench.boresight("gate base run --tolerance hit_rate").refused(&["FIGURE=SIZE"]);
+    bench
+        .boresight("gate base run --tolerance hit_rate=5")
+        .refused(&["hit_rate=5", "a fraction from 0 to 1"]);
     bench.boresight("gate base run --tolerance hit_rat=0.1").refused(&["hit_rat", "hit_rate"]);
 
     let header = bench.read("base/baseline.toml");

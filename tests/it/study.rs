@@ -342,11 +342,9 @@ fn a_damaged_plan_is_reported_as_such() {
     for (old, new) in [("\"cases\": 6", "\"cases\": 7"), ("\"shards\": 2", "\"shards\": 3"), ("{", "[")] {
         assert_ne!(plan.replacen(old, new, 1), plan, "{old}");
         bench.write("out/plan.json", plan.replacen(old, new, 1));
-        bench.boresight("study run study.toml --out out --shard 2/2").refused(&[
-            "plan.json",
-            "is damaged",
-            "delete it",
-        ]);
+        for command in ["study run study.toml --out out --shard 2/2", "study merge study.toml --out out"] {
+            bench.boresight(command).refused(&["plan.json", "is damaged", "delete it"]);
+        }
     }
     // Following the message.
     fs::remove_file(bench.path("out/plan.json")).unwrap();

@@ -101,9 +101,10 @@ impl<'a> Campaign<'a> {
     /// # Errors
     /// The errors of [`Campaign::open`], and [`Failure::Usage`] if there is no plan.
     pub fn reopen(study: &'a Study, pipeline: &'a dyn StudyPipeline, out: &Path) -> Result<Self, Failure> {
-        if ShardStore::planned_shards(out).is_none() {
+        // A damaged plan is reported as such by `open`.
+        if !ShardStore::has_plan(out) {
             return Err(Failure::Usage(format!(
-                "{}: no readable plan.json in it, expected the directory of a study's shards",
+                "{}: no plan.json in it, expected the directory of a study's shards",
                 out.display()
             )));
         }

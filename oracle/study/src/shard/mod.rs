@@ -187,6 +187,11 @@ impl ShardStore {
         &self.plan
     }
 
+    /// Returns true if a directory holds a plan, readable or not.
+    pub(crate) fn has_plan(folder: &Path) -> bool {
+        folder.join("plan.json").exists()
+    }
+
     /// Returns the number of shards in the plan of a directory, if it holds one.
     pub fn planned_shards(folder: &Path) -> Option<u64> {
         Plan::read(&folder.join("plan.json")).ok().map(|plan| plan.shards)
