@@ -3,3 +3,4 @@
 mod batch;
 mod sequential;
 mod simulator;
+mod witness;
