@@ -1,14 +1,18 @@
 //! Consistency of the navigators: dispersed campaigns of an independent simulator.
 //!
-//! `cargo run --release -p boresight-navigation --example consistency -- CAMPAIGNS STRIDE`
+//! `cargo run --release -p boresight-navigation --example consistency -- CAMPAIGNS STRIDE [FIRST]`: every
+//! STRIDE-th measurement of ARGON's schedule, seeds from FIRST. The variable VARIANT contains `sequential` for
+//! the filter instead of the batch, `exact` for exact manoeuvres, `white` without slow errors, `unbiased`
+//! without constant errors.
 
 #[path = "../tests/it/simulator.rs"]
 mod simulator;
 
-use boresight_navigation::{Batch, BatchConfig, Bound};
-use contract::navigation::{Event, Navigator, RelativeEstimate};
+use boresight_navigation::{Batch, BatchConfig, Bound, Sequential, SequentialConfig};
+use contract::navigation::{Answer, Event, Navigator, RelativeEstimate};
+use hifitime::Epoch;
 use nalgebra::Vector6;
-use simulator::{Campaign, at};
+use simulator::{Campaign, Flight, at};
 
 #[allow(clippy::unwrap_used, reason = "a program of ours")]
 fn main() {
@@ -31,15 +35,11 @@ fn main() {
         if variant.contains("unbiased") {
             campaign.constant_arcsec = 0.0;
         }
-        if let Ok(x) = std::env::var("BIAS") {
-            campaign.constant_arcsec = x.parse().unwrap();
-        }
         let flight = campaign.fly(1000 + seed as u64);
         let times: Vec<_> = epochs.iter().map(|s| at(*s)).collect();
-        let mut batch = Batch::new(&flight.setup, &BatchConfig::default()).unwrap();
-        flight.events.iter().for_each(|event| batch.receive(event));
         let start = std::time::Instant::now();
-        let answers = batch.estimates(&times);
+        let answers =
+            if variant.contains("sequential") { filtered(&flight, &times) } else { fitted(&flight, &times) };
         let took = start.elapsed().as_secs_f64();
         slowest = slowest.max(took);
         total += took;
@@ -49,7 +49,8 @@ fn main() {
         true_events.extend(sights.copied());
         let bound =
             Bound::new(&flight.setup, &BatchConfig::default(), &true_events, &flight.true_relative).unwrap();
-        let bounds = bound.of_batch(&times);
+        let bounds =
+            if variant.contains("sequential") { bound.of_filter(&times) } else { bound.of_batch(&times) };
         for ((answer, bound), sum) in answers.iter().zip(&bounds).zip(&mut sums) {
             match (answer, bound) {
                 (Ok(estimate), Ok(bound)) => sum.add(&flight.error(estimate), estimate, bound),
@@ -64,6 +65,28 @@ fn main() {
         println!("{seconds:>8} s: {}", sum.line());
     }
     println!("failed {failed}, mean {:.3} s, slowest {slowest:.3} s", total / campaigns as f64);
+}
+
+#[allow(clippy::unwrap_used, reason = "a program of ours")]
+fn fitted(flight: &Flight, epochs: &[Epoch]) -> Vec<Answer> {
+    let mut batch = Batch::new(&flight.setup, &BatchConfig::default()).unwrap();
+    flight.events.iter().for_each(|event| batch.receive(event));
+    batch.estimates(epochs)
+}
+
+/// Answers each epoch once the events until then are received.
+#[allow(clippy::unwrap_used, reason = "a program of ours")]
+fn filtered(flight: &Flight, epochs: &[Epoch]) -> Vec<Answer> {
+    let mut filter = Sequential::new(&flight.setup, &SequentialConfig::default()).unwrap();
+    let mut events = flight.events.iter().peekable();
+    let mut answers = Vec::new();
+    for epoch in epochs {
+        while let Some(event) = events.next_if(|event| event.time() <= *epoch) {
+            filter.receive(event);
+        }
+        answers.extend(filter.estimates(&[*epoch]));
+    }
+    answers
 }
 
 /// Sums over campaigns at one epoch.

@@ -2,6 +2,7 @@
 
 mod docking;
 mod far_range;
+pub mod navigation;
 
 use crate::{Interface, PipelineFactory};
 
