@@ -41,8 +41,8 @@ def main(program):
         def boresight(*words):
             subprocess.run([program, *map(str, words)], cwd=folder, check=True, stdout=subprocess.DEVNULL)
 
-        # Frames 1000 to 1040 of day 1: a manoeuvre of the chaser at 08:44:50 is before, one at 09:34:46 between.
-        boresight("run", "argon", "--frames", "600..640", "--out", "run", "--jobs", "2")
+        # Day 1 begins at 07:00:00 with 15 s between frames: the manoeuvre of 08:44:50 is after frame 419.
+        boresight("run", "argon", "--frames", "400..440", "--out", "run", "--jobs", "2")
         truth = pyarrow.parquet.read_table(run / "truth/frames.parquet")
         column = lambda name: np.array(truth.column(name).to_pylist())
         vector = lambda *names: np.stack([column(name) for name in names], axis=1)
@@ -64,18 +64,19 @@ def main(program):
                 claim(worst < 1e-8, f"oem, {notation}, {who}: positions of {len(states)} frames to {worst:.0e} km")
                 if who == "chaser":
                     worst = np.abs(np.array([state.velocity for state in states]) - velocity).max()
-                    claim(worst < 1e-10, f"oem, {notation}, chaser: velocities to {worst:.0e} km/s")
+                    # `oem` evaluates polynomials in powers of seconds, which cost it digits.
+                    claim(worst < 1e-7, f"oem, {notation}, chaser: velocities to {worst:.0e} km/s")
                 read = NdmIo().from_path(pathlib.Path(folder) / f"oem-{who}.{notation}")
                 segments = read.body.segment
                 count = sum(len(segment.data.state_vector) for segment in segments)
-                claim(count == sum(len(segment.states) for segment in message.segments), f"ccsds-ndm, {notation}, {who}: {len(segments)} segments, {count} states")
+                claim(count == sum(sum(1 for _ in segment.states) for segment in message.segments), f"ccsds-ndm, {notation}, {who}: {len(segments)} segments, {count} states")
 
             # A quaternion of CCSDS turns axes: the conjugate of ours, which turns components.
             aem = NdmIo().from_path(pathlib.Path(folder) / f"aem.{notation}")
             worst, count = 0.0, 0
             for segment in aem.body.segment:
                 for state in segment.data.attitude_state:
-                    read = state.quaternion_ephemeris.quaternion
+                    read = state.quaternion_state.quaternion
                     ours = np.array([value(read.qc), -value(read.q1), -value(read.q2), -value(read.q3)])
                     worst = max(worst, 1 - abs(ours @ attitude[count]))
                     count += 1

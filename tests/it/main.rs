@@ -27,6 +27,7 @@ mod files_astropy;
 mod files_by_hand;
 mod files_dataset;
 mod files_truth;
+mod flight_dynamics;
 mod formats;
 mod frozen;
 mod gate;

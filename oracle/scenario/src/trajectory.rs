@@ -43,11 +43,15 @@ pub enum TrajectoryConfig {
         chaser: String,
         /// Kernel of the target, relative to the scenario; may be that of the chaser.
         target: String,
-        /// NAIF's number of the chaser; absent: that of the only body in its kernel.
+        /// NAIF's number of the chaser, −2147483648 to 2147483647; absent: that of the only body in its
+        /// kernel.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = i32::MIN, max = i32::MAX))]
         chaser_id: Option<i32>,
-        /// NAIF's number of the target; absent: that of the only body in its kernel.
+        /// NAIF's number of the target, −2147483648 to 2147483647; absent: that of the only body in its
+        /// kernel.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = i32::MIN, max = i32::MAX))]
         target_id: Option<i32>,
     },
 }

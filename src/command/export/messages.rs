@@ -97,10 +97,12 @@ pub(super) fn oem(
         let intervals = (libm::ceil((to_s - from_s) / step_s) as u32).max(MIN_INTERVALS);
         let is_before_manoeuvre = index + 2 < borders_s.len();
         let states = (0..=intervals).map(|k| {
-            let time_s = if k == intervals {
-                to_s
-            } else {
-                from_s + (to_s - from_s) * f64::from(k) / f64::from(intervals)
+            // Whole milliseconds inside the segment: other tools read them without loss.
+            let inside = from_s + (to_s - from_s) * f64::from(k) / f64::from(intervals);
+            let time_s = match k {
+                0 => from_s,
+                k if k == intervals => to_s,
+                _ => libm::round(inside * 1e3) / 1e3,
             };
             let state = if k == intervals && is_before_manoeuvre {
                 just_before(&of_both, to_s)

@@ -175,19 +175,19 @@ impl Aem {
         AttitudeEphemeris::new(segments.collect())
     }
 
-    /// Returns the message in keyword-value notation, version 2.0.
+    /// Returns the message in keyword-value notation, version 1.0.
     pub fn to_kvn(&self) -> String {
         self.to_text(Notation::Kvn)
     }
 
-    /// Returns the message in XML, version 2.0.
+    /// Returns the message in XML, version 1.0.
     pub fn to_xml(&self) -> String {
         self.to_text(Notation::Xml)
     }
 
-    /// Returns the message in a notation, version 2.0.
+    /// Returns the message in a notation, version 1.0, which more tools read than 2.0.
     pub fn to_text(&self, notation: Notation) -> String {
-        let mut writer = Writer::new(Kind::Aem, notation, "2.0");
+        let mut writer = Writer::new(Kind::Aem, notation, "1.0");
         self.header.write(&mut writer);
         writer.open("body");
         for segment in &self.segments {
@@ -315,6 +315,7 @@ impl AemSegment {
         };
         writer.value("REF_FRAME_A", a);
         writer.value("REF_FRAME_B", b);
+        writer.value("ATTITUDE_DIR", "A2B");
         writer.value("TIME_SYSTEM", system.code());
         let ends = self.attitudes.first().zip(self.attitudes.last());
         let whole = ends.map_or(self.coverage, |(first, last)| Coverage {
@@ -323,6 +324,7 @@ impl AemSegment {
         });
         write_coverage(writer, system, &whole, &self.coverage);
         writer.value("ATTITUDE_TYPE", "QUATERNION");
+        writer.value("QUATERNION_TYPE", "LAST");
         if let Some(Interpolation { method, degree }) = self.interpolation {
             writer.value("INTERPOLATION_METHOD", method.code());
             writer.value("INTERPOLATION_DEGREE", degree);
@@ -339,14 +341,14 @@ impl AemSegment {
                 continue;
             }
             writer.open("attitudeState");
-            writer.open("quaternionEphemeris");
+            writer.open("quaternionState");
             writer.value("EPOCH", time);
             writer.open("quaternion");
             for (keyword, value) in ["Q1", "Q2", "Q3", "QC"].into_iter().zip([q1, q2, q3, qc]) {
                 writer.number(keyword, value, "");
             }
             writer.close("quaternion");
-            writer.close("quaternionEphemeris");
+            writer.close("quaternionState");
             writer.close("attitudeState");
         }
         writer.close("data");

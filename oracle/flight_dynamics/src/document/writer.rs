@@ -11,8 +11,8 @@ pub(crate) struct Writer {
     text: String,
 }
 
-/// Location of the schema for XML.
-const SCHEMA: &str = "https://sanaregistry.org/r/ndmxml_unqualified/ndmxml-3.0.0-master-3.0.xsd";
+/// Location of the schema for XML: that of OEM and OPM 2.0, AEM 1.0, TDM 2.0.
+const SCHEMA: &str = "https://sanaregistry.org/r/ndmxml_unqualified/ndmxml-2.0.0-master-2.0.xsd";
 
 impl Writer {
     pub(crate) fn new(kind: Kind, notation: Notation, version: &str) -> Self {
