@@ -23,6 +23,10 @@ pub enum Effect {
     AttitudeControl = 3,
     /// Error of the attitude reported in telemetry.
     AttitudeKnowledge = 4,
+    /// Execution error of a manoeuvre (frame 0; three numbers per manoeuvre).
+    ManoeuvreExecution = 5,
+    /// Error of the report of a manoeuvre (frame 0; three numbers per manoeuvre).
+    ManoeuvreReport = 6,
     /// Sensitivity of each pixel (addressed with the sensor's seed).
     PixelResponse = 20,
     /// Dark current of each pixel (addressed with the sensor's seed).

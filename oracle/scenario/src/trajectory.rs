@@ -10,7 +10,7 @@ use hifitime::{Duration, Epoch};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::truth::{
-    Interpolation, SampledOrbit, SampledSegment, SampledStates, Schedule, StateSample, TrajectorySource,
+    Interpolation, NumericalConfig, SampledOrbit, SampledSegment, SampledStates, Schedule, StateSample, TrajectorySource,
     clock,
 };
 
@@ -22,6 +22,8 @@ use crate::coverage::check_coverage;
 pub enum TrajectoryConfig {
     /// Mean elements of `[orbit]`, which drift at secular rates due to the Earth's oblateness.
     MeanElements {},
+    /// Orbits of `[orbit]`, whose elements are osculating at the epoch, integrated numerically.
+    Numerical(NumericalConfig),
     /// Orbit ephemeris messages (CCSDS 502.0-B, KVN or XML), interpolated as they state. `[orbit]` has no
     /// effect.
     Oem {
@@ -81,7 +83,7 @@ impl TrajectoryConfig {
     /// Returns the paths of the files that the table names, with their roles.
     pub(crate) fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
         match self {
-            Self::MeanElements {} => Vec::new(),
+            Self::MeanElements {} | Self::Numerical(_) => Vec::new(),
             Self::Oem { chaser, target }
             | Self::Tle { chaser, target }
             | Self::Spk { chaser, target, .. } => {
@@ -99,6 +101,7 @@ impl TrajectoryConfig {
         let ends = schedule.and_then(Schedule::ends);
         let [chaser, target] = match self {
             Self::MeanElements {} => return Ok(TrajectorySource::MeanElements),
+            Self::Numerical(config) => return Ok(TrajectorySource::Numerical(config.clone())),
             Self::Oem { chaser, target } => [chaser, target].map(|path| oem(Path::new(path), ends)),
             Self::Tle { chaser, target } => [chaser, target].map(|path| {
                 let path = Path::new(path);

@@ -359,6 +359,8 @@ fn orbit(time: Epoch, target: &ElementsConfig, a_dlambda_m: f64) -> OrbitConfig 
         target: target.clone(),
         relative: RelativeElements { a_dlambda_m, ..RelativeElements::default() },
         manoeuvres: Vec::new(),
+        execution: None,
+        reports: None,
     }
 }
 

@@ -153,6 +153,8 @@ pub(crate) mod tests {
             },
             relative: RelativeElements { a_dlambda_m: -20_000.0, a_dey_m: 300.0, ..Default::default() },
             manoeuvres: vec![],
+            execution: None,
+            reports: None,
         })
         .unwrap()
     }

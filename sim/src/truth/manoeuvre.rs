@@ -1,4 +1,4 @@
-//! Impulsive manoeuvres of the chaser.
+//! Manoeuvres of the chaser: as planned, as executed, as reported.
 
 use contract::{OutOfRange, bounds};
 use hifitime::Epoch;
@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::parse_utc_field;
 use super::orbit::{Elements, State};
+use crate::randomness::{Effect, Seed, normal};
 
-/// Impulse of the chaser.
+/// Planned manoeuvre of the chaser.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ManoeuvreConfig {
@@ -19,6 +20,105 @@ pub struct ManoeuvreConfig {
     /// Change of velocity along the chaser's own radial, transverse and normal axes, m/s, each −100 to 100.
     #[schemars(inner(range(min = -100, max = 100)))]
     pub dv_rtn_m_s: [f64; 3],
+    /// Duration, s, 0 (the default: an impulse) to 36000. The manoeuvre is centred on its time; the acceleration
+    /// is constant along the chaser's axes R, T, N of each instant. Only with a numerical trajectory.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0, max = 36000))]
+    pub duration_s: f64,
+}
+
+/// Returns true for the default, which resolved scenarios omit.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde calls")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+/// Random errors of manoeuvres, each drawn anew for each manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ManoeuvreErrorsConfig {
+    /// Standard deviation of the size, relative to the size, 0 to 1.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 1))]
+    pub size_sigma: f64,
+    /// Standard deviation of the direction about each of two axes perpendicular to it, degrees, 0 to 90.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 90))]
+    pub direction_sigma_deg: f64,
+}
+
+/// Reports of manoeuvres in the telemetry: delay, and errors relative to the manoeuvre as executed.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ManoeuvreReportsConfig {
+    /// Interval from the end of a manoeuvre to its report, s, 0 to 1e6.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 1e6))]
+    pub delay_s: f64,
+    /// Standard deviation of the reported size, relative to the size, 0 to 1.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 1))]
+    pub size_sigma: f64,
+    /// Standard deviation of the reported direction about each of two axes perpendicular to it, degrees, 0 to
+    /// 90.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 90))]
+    pub direction_sigma_deg: f64,
+}
+
+impl ManoeuvreReportsConfig {
+    pub(super) fn errors(&self) -> ManoeuvreErrorsConfig {
+        let Self { size_sigma, direction_sigma_deg, .. } = *self;
+        ManoeuvreErrorsConfig { size_sigma, direction_sigma_deg }
+    }
+}
+
+/// Report of a manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ManoeuvreReport {
+    /// Time from which the report is available.
+    pub reported: Epoch,
+    /// Middle of the manoeuvre.
+    pub time: Epoch,
+    /// Duration, s; 0 for an impulse.
+    pub duration_s: f64,
+    /// Reported change of velocity along the chaser's R, T, N axes, m/s.
+    pub dv_rtn_m_s: [f64; 3],
+}
+
+/// Executed manoeuvre on the time axis of a trajectory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Burn {
+    /// Begin, seconds since the epoch.
+    pub(super) start_s: f64,
+    /// Duration, s; 0 for an impulse.
+    pub(super) duration_s: f64,
+    /// Change of velocity along R, T, N, km/s.
+    pub(super) dv_rtn_km_s: Vector3<f64>,
+}
+
+impl ManoeuvreErrorsConfig {
+    /// Returns a change of velocity with errors. The numbers of manoeuvre `index` depend on seed, effect and
+    /// index only.
+    pub(super) fn disturbed(&self, dv_m_s: [f64; 3], seed: Seed, effect: Effect, index: usize) -> [f64; 3] {
+        if *self == Self::default() {
+            return dv_m_s;
+        }
+        let draw = |number: u64| normal(&mut seed.stream(0, effect, 3 * index as u64 + number));
+        let dv = Vector3::from(dv_m_s);
+        let Some(direction) = dv.try_normalize(0.0) else { return dv_m_s };
+        // The coordinate axis that is farthest from the direction gives the two perpendicular ones.
+        let farthest = Vector3::ith(direction.iamin(), 1.0);
+        let first = direction.cross(&farthest).normalize();
+        let second = direction.cross(&first);
+        let sigma = self.direction_sigma_deg.to_radians();
+        let tilt = first * (sigma * draw(1)) + second * (sigma * draw(2));
+        let angle = tilt.norm();
+        let (sin, cos) = libm::sincos(angle);
+        let aside = if angle > 0.0 { tilt * (sin / angle) } else { Vector3::zeros() };
+        let size = dv.norm() * (1.0 + self.size_sigma * draw(0));
+        ((direction * cos + aside) * size).into()
+    }
 }
 
 impl ManoeuvreConfig {
@@ -72,7 +172,8 @@ mod tests {
     };
 
     fn impulse(dv_rtn_m_s: [f64; 3]) -> RelativeElements {
-        let manoeuvre = ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s };
+        let manoeuvre =
+            ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s, duration_s: 0.0 };
         RelativeElements::between(&manoeuvre.apply(&CIRCULAR).unwrap(), &CIRCULAR)
     }
 
@@ -111,8 +212,11 @@ mod tests {
 
     #[test]
     fn an_impulse_leaves_the_position_where_it_was() {
-        let manoeuvre =
-            ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s: [1.0, -2.0, 3.0] };
+        let manoeuvre = ManoeuvreConfig {
+            time_utc: "2012-04-23T00:00:00Z".into(),
+            dv_rtn_m_s: [1.0, -2.0, 3.0],
+            duration_s: 0.0,
+        };
         let before = Elements { eccentricity: 0.003, ..CIRCULAR };
         let after = manoeuvre.apply(&before).unwrap();
         // Rounding of 7130 km: 1e-12 km, accumulated through several angles.
@@ -123,9 +227,39 @@ mod tests {
 
     #[test]
     fn an_impulse_that_is_not_a_number_is_refused_by_its_index() {
-        let manoeuvre =
-            ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s: [f64::NAN, 0.0, 0.0] };
+        let manoeuvre = ManoeuvreConfig {
+            time_utc: "2012-04-23T00:00:00Z".into(),
+            dv_rtn_m_s: [f64::NAN, 0.0, 0.0],
+            duration_s: 0.0,
+        };
         let message = manoeuvre.check(3).unwrap_err().to_string();
         assert!(message.contains("orbit.manoeuvres[3].dv_rtn_m_s[0] is NaN"), "{message}");
+    }
+
+    /// Sample moments over many manoeuvres: size and direction have the stated standard deviations.
+    #[test]
+    fn errors_have_their_standard_deviations_and_depend_on_their_address_only() {
+        let errors = ManoeuvreErrorsConfig { size_sigma: 0.05, direction_sigma_deg: 2.0 };
+        let seed = Seed { seed: 7, case: 0 };
+        let planned = [0.01, -0.02, 0.005];
+        let draw = |index| errors.disturbed(planned, seed, Effect::ManoeuvreExecution, index);
+        assert_eq!(draw(17), draw(17));
+        assert_ne!(draw(17), errors.disturbed(planned, seed, Effect::ManoeuvreReport, 17));
+        let nominal = Vector3::from(planned);
+        let n = 20_000;
+        let (mut size, mut angle) = (0.0, 0.0);
+        for index in 0..n {
+            let dv = Vector3::from(draw(index));
+            let relative = dv.norm() / nominal.norm() - 1.0;
+            size += relative * relative;
+            let turned = libm::atan2(dv.cross(&nominal).norm(), dv.dot(&nominal)).to_degrees();
+            angle += turned * turned;
+        }
+        // The standard error of a standard deviation is 1/sqrt(2n) = 0.5 %; the limit is four of them.
+        let (size, angle) = ((size / n as f64).sqrt(), (angle / (2 * n) as f64).sqrt());
+        assert!((size / 0.05 - 1.0).abs() < 0.02, "{size}");
+        assert!((angle / 2.0 - 1.0).abs() < 0.02, "{angle}");
+        let none = ManoeuvreErrorsConfig::default();
+        assert_eq!(none.disturbed(planned, seed, Effect::ManoeuvreExecution, 3), planned);
     }
 }

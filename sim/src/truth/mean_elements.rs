@@ -6,10 +6,9 @@
 use contract::OutOfRange;
 use hifitime::Epoch;
 
-use super::clock::parse_utc_field;
-use super::ephemeris::check_covered;
+use super::manoeuvre::ManoeuvreConfig;
 use super::orbit::Elements;
-use super::states::{OrbitConfig, States, seconds_between};
+use super::states::{OrbitConfig, States, burns};
 
 /// Mean elements of both spacecraft over all time.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,36 +33,24 @@ impl Arc {
 }
 
 impl MeanElements {
-    /// Computes the arcs.
+    /// Computes the arcs for the orbits of `config` and `manoeuvres`.
     ///
     /// # Errors
     /// [`OutOfRange`] for an invalid epoch, or an orbit outside the supported range; [`OutOfRange`] for a
     /// manoeuvre that is out of order, not after the epoch, or results in an unsupported orbit.
-    pub(super) fn new(config: &OrbitConfig) -> Result<Self, OutOfRange> {
-        let epoch = parse_utc_field("orbit.epoch_utc", &config.epoch_utc)?;
-        check_covered("orbit.epoch_utc", &config.epoch_utc, epoch)?;
-        let target = config.target.elements()?;
-        config.relative.check()?;
-        let chaser = config.relative.chaser(&target);
-        if !chaser.is_supported() {
-            return Err(OutOfRange::new(
-                "orbit.relative",
-                format!("{:?}", config.relative),
-                "a chaser orbit with an eccentricity of at most 0.9, a perigee above 100 km and an \
-                 inclination to the equator",
-            ));
-        }
+    pub(super) fn new(config: &OrbitConfig, manoeuvres: &[ManoeuvreConfig]) -> Result<Self, OutOfRange> {
+        let (epoch, chaser, target) = config.initial_elements()?;
         let mut last = Arc { start_s: 0.0, chaser };
         let mut arcs = vec![last];
-        for (index, manoeuvre) in config.manoeuvres.iter().enumerate() {
-            manoeuvre.check(index)?;
-            let time = manoeuvre.time()?;
-            check_covered(format!("orbit.manoeuvres[{index}].time_utc"), &manoeuvre.time_utc, time)?;
-            let start_s = seconds_between(epoch, time);
-            if start_s <= last.start_s {
-                let expected = "after the orbit's epoch and after the previous manoeuvre";
-                return Err(manoeuvre.refused_time(index, expected));
+        for (index, (manoeuvre, burn)) in manoeuvres.iter().zip(burns(manoeuvres, epoch)?).enumerate() {
+            if burn.duration_s > 0.0 {
+                return Err(OutOfRange::new(
+                    format!("orbit.manoeuvres[{index}].duration_s"),
+                    burn.duration_s,
+                    "0, an impulse, with mean elements (a numerical trajectory permits a duration)",
+                ));
             }
+            let start_s = burn.start_s;
             let chaser = manoeuvre.apply(&last.chaser_at(start_s)).ok_or_else(|| {
                 manoeuvre.refused_impulse(index, "an impulse that results in a supported orbit")
             })?;

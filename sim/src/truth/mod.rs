@@ -16,6 +16,7 @@ mod manoeuvre;
 mod mean_elements;
 pub mod moon;
 mod mounting;
+mod numerical;
 mod orbit;
 mod planets;
 mod relative;
@@ -34,8 +35,9 @@ pub use drift::DriftConfig;
 pub use earth_rotation::geographic;
 pub use guidance::Guidance;
 pub use knowledge::{Knowledge, KnowledgeConfig};
-pub use manoeuvre::ManoeuvreConfig;
+pub use manoeuvre::{ManoeuvreConfig, ManoeuvreErrorsConfig, ManoeuvreReport, ManoeuvreReportsConfig};
 pub use mounting::MountingConfig;
+pub use numerical::{DragConfig, EarthOrientationConfig, GravityConfig, NumericalConfig, RadiationConfig};
 pub use orbit::{
     EARTH_GM_KM3_S2, EARTH_J2, EGM96_RADIUS_KM, Elements, ElementsConfig, Rtn, SecularRates, State,
 };

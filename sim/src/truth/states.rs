@@ -1,14 +1,19 @@
 //! Configuration of the orbits, and the states of chaser and target at an instant.
 
-use contract::{Icrs, Rotation};
-use hifitime::Epoch;
+use contract::{Icrs, OutOfRange, Rotation, bounds};
+use hifitime::{Duration, Epoch};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::manoeuvre::ManoeuvreConfig;
-use super::orbit::{ElementsConfig, Rtn, State};
+use super::clock::parse_utc_field;
+use super::ephemeris::check_covered;
+use super::manoeuvre::{
+    Burn, ManoeuvreConfig, ManoeuvreErrorsConfig, ManoeuvreReport, ManoeuvreReportsConfig,
+};
+use super::orbit::{Elements, ElementsConfig, Rtn, State};
 use super::relative::RelativeElements;
+use crate::randomness::{Effect, Seed};
 
 /// Orbits of target and chaser.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -23,6 +28,94 @@ pub struct OrbitConfig {
     /// Manoeuvres of the chaser, in order of time.
     #[serde(default)]
     pub manoeuvres: Vec<ManoeuvreConfig>,
+    /// Errors of the executed manoeuvres; absent: they are executed as planned.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub execution: Option<ManoeuvreErrorsConfig>,
+    /// Reports of the manoeuvres in the telemetry; absent: immediate and exact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reports: Option<ManoeuvreReportsConfig>,
+}
+
+impl OrbitConfig {
+    /// Returns the manoeuvres as executed, with the errors drawn from `seed`, the scenario's.
+    pub fn executed_manoeuvres(&self, seed: u64) -> Vec<ManoeuvreConfig> {
+        let errors = self.execution.unwrap_or_default();
+        let seed = Seed { seed, case: 0 };
+        let execute = |(index, planned): (usize, &ManoeuvreConfig)| ManoeuvreConfig {
+            dv_rtn_m_s: errors.disturbed(planned.dv_rtn_m_s, seed, Effect::ManoeuvreExecution, index),
+            ..planned.clone()
+        };
+        self.manoeuvres.iter().enumerate().map(execute).collect()
+    }
+
+    /// Returns the reports of the manoeuvres, in the order of the manoeuvres.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for a time that is not UTC.
+    pub fn manoeuvre_reports(&self, seed: u64) -> Result<Vec<ManoeuvreReport>, OutOfRange> {
+        let reports = self.reports.unwrap_or_default();
+        let executed = self.executed_manoeuvres(seed);
+        let seed = Seed { seed, case: 0 };
+        let report = |(index, manoeuvre): (usize, &ManoeuvreConfig)| {
+            let time = manoeuvre.time().map_err(|error| error.in_entry(index))?;
+            let dv = manoeuvre.dv_rtn_m_s;
+            Ok(ManoeuvreReport {
+                reported: time + Duration::from_seconds(0.5 * manoeuvre.duration_s + reports.delay_s),
+                time,
+                duration_s: manoeuvre.duration_s,
+                dv_rtn_m_s: reports.errors().disturbed(dv, seed, Effect::ManoeuvreReport, index),
+            })
+        };
+        executed.iter().enumerate().map(report).collect()
+    }
+
+    /// Checks the orbits and returns the epoch and the elements of (chaser, target) at it.
+    pub(super) fn initial_elements(&self) -> Result<(Epoch, Elements, Elements), OutOfRange> {
+        let epoch = parse_utc_field("orbit.epoch_utc", &self.epoch_utc)?;
+        check_covered("orbit.epoch_utc", &self.epoch_utc, epoch)?;
+        let target = self.target.elements()?;
+        self.relative.check()?;
+        if let Some(errors) = &self.execution {
+            bounds::check(errors, "orbit.execution")?;
+        }
+        if let Some(reports) = &self.reports {
+            bounds::check(reports, "orbit.reports")?;
+        }
+        let chaser = self.relative.chaser(&target);
+        if !chaser.is_supported() {
+            return Err(OutOfRange::new(
+                "orbit.relative",
+                format!("{:?}", self.relative),
+                "a chaser orbit with an eccentricity of at most 0.9, a perigee above 100 km and an \
+                 inclination to the equator",
+            ));
+        }
+        Ok((epoch, chaser, target))
+    }
+}
+
+/// Checks manoeuvres and places them on the time axis of `epoch`.
+///
+/// # Errors
+/// [`OutOfRange`] for a value outside its range, and for a manoeuvre that begins before the epoch or before the
+/// end of the preceding one.
+pub(super) fn burns(manoeuvres: &[ManoeuvreConfig], epoch: Epoch) -> Result<Vec<Burn>, OutOfRange> {
+    let mut free_from_s = 0.0;
+    let mut burns = Vec::with_capacity(manoeuvres.len());
+    for (index, manoeuvre) in manoeuvres.iter().enumerate() {
+        manoeuvre.check(index)?;
+        let time = manoeuvre.time()?;
+        check_covered(format!("orbit.manoeuvres[{index}].time_utc"), &manoeuvre.time_utc, time)?;
+        let start_s = seconds_between(epoch, time) - 0.5 * manoeuvre.duration_s;
+        if start_s <= free_from_s {
+            let expected = "after the orbit's epoch and after the previous manoeuvre";
+            return Err(manoeuvre.refused_time(index, expected));
+        }
+        let duration_s = manoeuvre.duration_s;
+        free_from_s = start_s + duration_s;
+        burns.push(Burn { start_s, duration_s, dv_rtn_km_s: Vector3::from(manoeuvre.dv_rtn_m_s) * 1e-3 });
+    }
+    Ok(burns)
 }
 
 /// States of chaser and target at an instant.

@@ -1,9 +1,9 @@
 //! Positions and velocities of chaser and target at any time.
 //!
 //! [`Trajectory`] has one interface for every kind of motion: [mean elements](MeanElements) that drift at
-//! secular rates, and [sampled states](SampledStates), which a file of flight dynamics contains. Internal
-//! time is seconds (SI, as TT and TAI count them) since the trajectory's epoch, exact to 0.1 ns within months
-//! of the epoch.
+//! secular rates, [numerically integrated orbits](NumericalConfig), and [sampled states](SampledStates),
+//! which a file of flight dynamics contains. Internal time is seconds (SI, as TT and TAI count them) since the
+//! trajectory's epoch, exact to 0.1 ns within months of the epoch.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -12,12 +12,14 @@ use contract::OutOfRange;
 use hifitime::{Duration, Epoch};
 
 use super::clock::format_utc;
+use super::manoeuvre::ManoeuvreConfig;
 use super::mean_elements::MeanElements;
+use super::numerical::{NumericalConfig, NumericalStates};
 use super::orbit::Elements;
 use super::relative::RelativeElements;
 use super::sampled::SampledStates;
 use super::schedule::Schedule;
-use super::states::{OrbitConfig, States, seconds_between};
+use super::states::{OrbitConfig, States, burns, seconds_between};
 
 /// Origin of the motion of chaser and target.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -25,6 +27,8 @@ pub enum TrajectorySource {
     /// Mean elements of [`OrbitConfig`] with secular drift.
     #[default]
     MeanElements,
+    /// Orbits of [`OrbitConfig`], whose elements are osculating at the epoch, integrated numerically.
+    Numerical(NumericalConfig),
     /// States sampled over time, for example from a file of flight dynamics. [`OrbitConfig`] has no effect.
     Sampled(Arc<SampledStates>),
 }
@@ -40,17 +44,22 @@ pub struct Trajectory {
 #[derive(Debug, Clone, PartialEq)]
 enum Motion {
     MeanElements(MeanElements),
+    Numerical(Arc<NumericalStates>),
     Sampled(Arc<SampledStates>),
 }
 
 impl Trajectory {
-    /// Creates the trajectory of mean elements.
+    /// Creates the trajectory of mean elements with the manoeuvres as planned.
     ///
     /// # Errors
     /// [`OutOfRange`] for an invalid epoch, or an orbit outside the supported range; [`OutOfRange`] for a
     /// manoeuvre that is out of order, not after the epoch, or results in an unsupported orbit.
     pub fn new(config: &OrbitConfig) -> Result<Self, OutOfRange> {
-        let motion = MeanElements::new(config)?;
+        Self::from_mean_elements(config, &config.manoeuvres)
+    }
+
+    fn from_mean_elements(config: &OrbitConfig, manoeuvres: &[ManoeuvreConfig]) -> Result<Self, OutOfRange> {
+        let motion = MeanElements::new(config, manoeuvres)?;
         Ok(Self { epoch: motion.epoch(), motion: Motion::MeanElements(motion) })
     }
 
@@ -65,9 +74,17 @@ impl Trajectory {
         seed: u64,
         schedule: &Schedule,
     ) -> Result<Self, OutOfRange> {
-        let _ = seed;
         let trajectory = match source {
-            TrajectorySource::MeanElements => Self::new(orbit)?,
+            TrajectorySource::MeanElements => {
+                Self::from_mean_elements(orbit, &orbit.executed_manoeuvres(seed))?
+            }
+            TrajectorySource::Numerical(config) => {
+                let (epoch, ..) = orbit.initial_elements()?;
+                let burns = burns(&orbit.executed_manoeuvres(seed), epoch)?;
+                let ends = schedule.ends().unwrap_or([epoch; 2]);
+                let states = NumericalStates::compute(orbit, config, burns, ends)?;
+                Self { epoch: states.epoch(), motion: Motion::Numerical(states) }
+            }
             TrajectorySource::Sampled(states) => {
                 Self { epoch: states.epoch(), motion: Motion::Sampled(states.clone()) }
             }
@@ -89,6 +106,7 @@ impl Trajectory {
     pub fn coverage_s(&self) -> RangeInclusive<f64> {
         match &self.motion {
             Motion::MeanElements(_) => f64::NEG_INFINITY..=f64::INFINITY,
+            Motion::Numerical(states) => states.coverage_s(),
             Motion::Sampled(states) => states.coverage_s(),
         }
     }
@@ -126,6 +144,7 @@ impl Trajectory {
     pub fn states_at_seconds(&self, time_s: f64) -> States {
         match &self.motion {
             Motion::MeanElements(motion) => motion.states_at(time_s),
+            Motion::Numerical(states) => states.states_at(time_s),
             Motion::Sampled(states) => states.states_at(time_s),
         }
     }
@@ -158,14 +177,16 @@ impl OrbitConfig {
 #[cfg(test)]
 mod tests {
     use super::super::clock::parse_utc_field;
-    use super::super::manoeuvre::ManoeuvreConfig;
     use super::super::orbit::ElementsConfig;
     use super::*;
     use nalgebra::Vector3;
 
     fn config() -> OrbitConfig {
-        let manoeuvre =
-            |time_utc: &str, dv_rtn_m_s| ManoeuvreConfig { time_utc: time_utc.into(), dv_rtn_m_s };
+        let manoeuvre = |time_utc: &str, dv_rtn_m_s| ManoeuvreConfig {
+            time_utc: time_utc.into(),
+            dv_rtn_m_s,
+            duration_s: 0.0,
+        };
         OrbitConfig {
             epoch_utc: "2012-04-23T00:00:00Z".into(),
             target: ElementsConfig {
@@ -181,6 +202,8 @@ mod tests {
                 manoeuvre("2012-04-23T06:00:00Z", [0.0, -0.02, 0.01]),
                 manoeuvre("2012-04-23T06:50:00Z", [0.001, 0.01, 0.0]),
             ],
+            execution: None,
+            reports: None,
         }
     }
 

@@ -15,6 +15,7 @@ mod expectation;
 mod golden_apparent;
 mod golden_manifest;
 mod golden_moon;
+mod golden_orbits;
 mod golden_psf;
 mod golden_radiometry;
 mod hot_pixels;

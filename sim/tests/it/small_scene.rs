@@ -92,8 +92,11 @@ pub(crate) fn restless() -> Simulation {
     let nominal = Mounting { phi_deg: -90.0, theta_deg: 1.0, psi_deg: 5.0 };
     let slow = |rms: f64| DriftConfig { rms_arcsec: [rms; 3], periods_s: vec![5930.0, 910.0, 173.0] };
     let mut simulation = still();
-    simulation.orbit.manoeuvres =
-        vec![ManoeuvreConfig { time_utc: "2012-04-25T12:00:31Z".into(), dv_rtn_m_s: [0.01, -0.02, 0.03] }];
+    simulation.orbit.manoeuvres = vec![ManoeuvreConfig {
+        time_utc: "2012-04-25T12:00:31Z".into(),
+        dv_rtn_m_s: [0.01, -0.02, 0.03],
+        duration_s: 0.0,
+    }];
     simulation.schedule[0].cadence_s = 15.0;
     simulation.attitude = AttitudeConfig {
         guidance: Guidance::LocalOrbital { phi_deg: 0.1, theta_deg: -0.2, psi_deg: 3.0 },
@@ -193,5 +196,7 @@ fn orbit() -> OrbitConfig {
             ..RelativeElements::default()
         },
         manoeuvres: vec![],
+        execution: None,
+        reports: None,
     }
 }
