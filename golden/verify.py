@@ -291,6 +291,7 @@ TYCHO2 = ["/usr/share/astrometry/index-tycho2-10.littleendian.fits"]
 WITNESSES = {
     "apparent": ("astropy, ERFA, DE421: time, Earth, Sun, apparent places", remade("apparent", arguments=star_list)),
     "moon": ("DE421: the Moon", remade("moon")),
+    "orbits": ("Orekit: numerical trajectories", remade("orbits")),
     "planets": ("DE421: the planets", remade("planets", requirements="apparent")),
     "psf": ("GalSim: images of stars", remade("psf", script="make_stamps.py")),
     "radiometry": ("spectra of CALSPEC and of Gunn and Stryker: electrons", remade("radiometry", arguments=photometry)),
@@ -298,7 +299,7 @@ WITNESSES = {
     "flight_dynamics": ("Orekit, oem, CSPICE, sgp4, ERFA: OEM, AEM, TDM, SPK, two-line elements", flight_dynamics),
     "exported": ("oem, ccsds-ndm: exported OEM, AEM, TDM", exported),
     "docking": ("Mitsuba: images of the docking target", docking),
-    "references": ("our simulator against all of these", tests("golden_apparent::", "golden_moon::", "golden_psf::", "golden_radiometry::", "golden_manifest::", "planets::")),
+    "references": ("our simulator against all of these", tests("golden_apparent::", "golden_moon::", "golden_orbits::", "golden_psf::", "golden_radiometry::", "golden_manifest::", "planets::")),
     "drawn": ("our facets against Mitsuba's images", tests("golden_docking::")),
     "sky": ("Tycho-2, Liebe, published counts: stars in circular fields", looks("sky.py", [], needs=TYCHO2)),
     "projection": ("OpenCV: places of stars, with distortion", looks("projection.py", ["--pointings", "6"])),

@@ -23,7 +23,8 @@ import manifest  # noqa: E402
 
 DAYS = 5
 STEP_S = 21600.0
-# The orbit of sim/tests/it/golden_orbits.rs: elements of the target, and relative elements of the chaser in m.
+# The orbit of sim/tests/it/golden_orbits.rs: elements of the target, and of the chaser relative to it,
+# m.
 A_KM, ECC, INC, RAAN, ARGP, MEAN = 7130.0, 0.003, 98.28, 40.0, 90.0, 270.0
 RELATIVE_M = dict(dlambda=-10000.0, dey=400.0, diy=300.0)
 DRAG_M2_KG = {"target": 0.025, "chaser": 0.02}
@@ -118,8 +119,8 @@ def positions(case, craft):
     itrf = FramesFactory.getTIRF(IERSConventions.IERS_2010)
     epoch = AbsoluteDate(2012, 4, 23, 0, 0, 0.0, TimeScalesFactory.getUTC())
     orbit = KeplerianOrbit(*elements()[craft], PositionAngleType.MEAN, gcrf, epoch, GM)
-    # Short steps where the shadow has edges: with steps of 60 s Orekit's own orbit moves by a metre. Tolerances per
-    # step are in m and m/s.
+    # Short steps where the shadow has edges: with steps of 60 s Orekit's own orbit moves by a metre.
+    # Tolerances per step are in m and m/s.
     longest_s = 1.0 if case in ("radiation", "all") else 60.0
     integrator = DormandPrince853Integrator(1e-4, longest_s, [1e-6] * 3 + [1e-9] * 3 + [1e-6], [1e-14] * 7)
     propagator = NumericalPropagator(integrator)

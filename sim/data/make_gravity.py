@@ -17,7 +17,8 @@ import sys
 
 DEGREE = 36
 SHA256 = "5247a9e9c316dd2c8f8fd491d53be0e163cb5cb3676b021754240cc9e44cb43b"
-# J2, J3, J4 of EGM96 as printed by Vallado (Fundamentals of Astrodynamics and Applications, 4th edition, Table D-1).
+# J2, J3, J4 of EGM96 as printed by Vallado (Fundamentals of Astrodynamics and Applications, 4th edition,
+# Table D-1).
 KNOWN = {2: 1.0826266835e-3, 3: -2.5326564853e-6, 4: -1.6196215914e-6}
 
 

@@ -10,8 +10,8 @@ use hifitime::{Duration, Epoch};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::truth::{
-    Interpolation, NumericalConfig, SampledOrbit, SampledSegment, SampledStates, Schedule, StateSample, TrajectorySource,
-    clock,
+    Interpolation, NumericalConfig, SampledOrbit, SampledSegment, SampledStates, Schedule, StateSample,
+    TrajectorySource, clock,
 };
 
 use crate::coverage::check_coverage;

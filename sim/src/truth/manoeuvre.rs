@@ -20,8 +20,9 @@ pub struct ManoeuvreConfig {
     /// Change of velocity along the chaser's own radial, transverse and normal axes, m/s, each −100 to 100.
     #[schemars(inner(range(min = -100, max = 100)))]
     pub dv_rtn_m_s: [f64; 3],
-    /// Duration, s, 0 (the default: an impulse) to 36000. The manoeuvre is centred on its time; the acceleration
-    /// is constant along the chaser's axes R, T, N of each instant. Only with a numerical trajectory.
+    /// Duration, s, 0 (the default: an impulse) to 36000. The manoeuvre is centred on its time; the
+    /// acceleration is constant along the chaser's axes R, T, N of each instant. Only with a numerical
+    /// trajectory.
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0, max = 36000))]
     pub duration_s: f64,

@@ -94,11 +94,11 @@ impl OrbitConfig {
     }
 }
 
-/// Checks manoeuvres and places them on the time axis of `epoch`.
+/// Checks manoeuvres and converts their times to seconds since `epoch`.
 ///
 /// # Errors
-/// [`OutOfRange`] for a value outside its range, and for a manoeuvre that begins before the epoch or before the
-/// end of the preceding one.
+/// [`OutOfRange`] for a value outside its range, and for a manoeuvre that begins before the epoch or before
+/// the end of the preceding one.
 pub(super) fn burns(manoeuvres: &[ManoeuvreConfig], epoch: Epoch) -> Result<Vec<Burn>, OutOfRange> {
     let mut free_from_s = 0.0;
     let mut burns = Vec::with_capacity(manoeuvres.len());

@@ -2,8 +2,8 @@
 //!
 //! [`Trajectory`] has one interface for every kind of motion: [mean elements](MeanElements) that drift at
 //! secular rates, [numerically integrated orbits](NumericalConfig), and [sampled states](SampledStates),
-//! which a file of flight dynamics contains. Internal time is seconds (SI, as TT and TAI count them) since the
-//! trajectory's epoch, exact to 0.1 ns within months of the epoch.
+//! which a file of flight dynamics contains. Internal time is seconds (SI, as TT and TAI count them) since
+//! the trajectory's epoch, exact to 0.1 ns within months of the epoch.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;

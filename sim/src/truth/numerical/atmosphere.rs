@@ -1,8 +1,8 @@
 //! Density of the atmosphere after Harris and Priester.
 //!
 //! Montenbruck & Gill, *Satellite Orbits* (2000), Sec. 3.5.2, Eq. 3.109–3.113 and Table 3.8: mean solar
-//! activity, with a diurnal bulge that follows the Sun by 30° of right ascension. Solar and geomagnetic activity
-//! have no effect.
+//! activity, with a diurnal bulge that follows the Sun by 30° of right ascension. Solar and geomagnetic
+//! activity have no effect.
 
 use nalgebra::Vector3;
 
@@ -68,8 +68,8 @@ const TABLE: [[f64; 3]; 50] = [
 ];
 
 /// Density, kg/m³, at an Earth-fixed position, km, with the Sun in the direction `sun` (of any length, same
-/// axes). `exponent` is n of cosⁿ(ψ/2), from 2 (low inclination) to 6 (polar orbit). 0 above 1000 km; below 100
-/// km the value at 100 km.
+/// axes). `exponent` is n of cosⁿ(ψ/2), from 2 (low inclination) to 6 (polar orbit). 0 above 1000 km; below
+/// 100 km the value at 100 km.
 pub(super) fn density_kg_m3(position_km: &Vector3<f64>, sun: &Vector3<f64>, exponent: f64) -> f64 {
     let height_km = height_km(position_km).max(TABLE[0][0]);
     let next = TABLE.partition_point(|row| row[0] <= height_km);
@@ -89,14 +89,13 @@ pub(super) fn density_kg_m3(position_km: &Vector3<f64>, sun: &Vector3<f64>, expo
     (minimum + (maximum - minimum) * libm::pow(square, 0.5 * exponent)) * 1e-12
 }
 
-/// Height above the ellipsoid, km, along the line to the Earth's centre. It exceeds the height along the normal by
-/// at most 5 m at 1000 km: 1e-4 of the density.
+/// Height above the ellipsoid, km, along the line to the Earth's centre. It exceeds the height along the
+/// normal by at most 5 m at 1000 km: 1e-4 of the density.
 fn height_km(position_km: &Vector3<f64>) -> f64 {
     let distance_km = position_km.norm();
     let sine = position_km.z / distance_km;
     let eccentricity2 = FLATTENING * (2.0 - FLATTENING);
-    let surface_km =
-        RADIUS_KM * ((1.0 - eccentricity2) / (1.0 - eccentricity2 * (1.0 - sine * sine))).sqrt();
+    let surface_km = RADIUS_KM * ((1.0 - eccentricity2) / (1.0 - eccentricity2 * (1.0 - sine * sine))).sqrt();
     distance_km - surface_km
 }
 

@@ -33,8 +33,8 @@ pub(super) struct GravityField {
 }
 
 impl GravityField {
-    /// Prepares the expansion to `degree` and `order`, both at most [`MAX_DEGREE`] (larger values are reduced).
-    /// Degree 0 or 1 is a point mass.
+    /// Prepares the expansion to `degree` and `order`, both at most [`MAX_DEGREE`] (larger values are
+    /// reduced). Degree 0 or 1 is a point mass.
     pub(super) fn new(degree: usize, order: usize) -> Self {
         let degree = degree.min(MAX_DEGREE);
         let order = order.min(degree);
@@ -62,8 +62,8 @@ impl GravityField {
         Self { degree, coefficients, order, factors, solids }
     }
 
-    /// Acceleration, km/s², at a position in the Earth-fixed frame, km (Montenbruck & Gill, *Satellite Orbits*,
-    /// 2000, Eq. 3.29–3.33, after Cunningham 1970).
+    /// Acceleration, km/s², at a position in the Earth-fixed frame, km (Montenbruck & Gill, *Satellite
+    /// Orbits*, 2000, Eq. 3.29–3.33, after Cunningham 1970).
     pub(super) fn acceleration(&mut self, position_km: &Vector3<f64>) -> Vector3<f64> {
         let square = position_km.norm_squared();
         let scaled = position_km * (EGM96_RADIUS_KM / square);

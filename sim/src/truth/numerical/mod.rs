@@ -1,14 +1,14 @@
 //! Numerically integrated orbits of chaser and target.
 //!
 //! Forces: the Earth's gravity field to degree and order 36 at most, Sun and Moon as point masses, drag,
-//! radiation pressure of the Sun, thrust of the chaser. Not modelled: tides of the solid Earth and the oceans,
-//! relativity, light of the Earth, attitude-dependent areas, solar and geomagnetic activity.
+//! radiation pressure of the Sun, thrust of the chaser. Not modelled: tides of the solid Earth and the
+//! oceans, relativity, light of the Earth, attitude-dependent areas, solar and geomagnetic activity.
 //!
 //! The elements of the configuration are osculating at the epoch. Steps are multiples of a constant from the
 //! epoch, divided at manoeuvres and where the Earth's shadow begins and ends; they do not depend on the last
 //! time that is needed, so a state is the same in every run of the same orbit. States between the steps are
-//! quintic Hermite polynomials through position, velocity and acceleration at both ends: at 45 s in a low orbit
-//! within 1e-5 m of the motion.
+//! quintic Hermite polynomials through position, velocity and acceleration at both ends: at 45 s in a low
+//! orbit within 1e-5 m of the motion.
 
 mod atmosphere;
 mod forces;
@@ -39,7 +39,7 @@ use crate::switch::Switch;
 /// Interval beyond the schedule that is integrated too, s: for times of telemetry and shutter control.
 const MARGIN_S: f64 = 3_600.0;
 /// Longest interval from the epoch, s: 100 days.
-const LONGEST_S: f64 = 100.0 * 86_400.0;
+const MAX_SPAN_S: f64 = 100.0 * 86_400.0;
 /// Number of parts of a step in which the Earth's shadow begins or ends.
 const SHADOW_PARTS: u32 = 32;
 /// Smallest distance from the Earth's centre, km: 100 km above the equator.
@@ -134,8 +134,8 @@ fn default_exponent() -> f64 {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RadiationConfig {
-    /// Radiation pressure coefficient (1 for an absorbing sphere) times area over mass of the chaser, m²/kg, 0
-    /// to 10.
+    /// Radiation pressure coefficient (1 for an absorbing sphere) times area over mass of the chaser, m²/kg,
+    /// 0 to 10.
     #[schemars(range(min = 0, max = 10))]
     pub chaser_m2_kg: f64,
     /// Radiation pressure coefficient times area over mass of the target, m²/kg, 0 to 10.
@@ -192,7 +192,7 @@ struct Knot {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NumericalStates {
     epoch: Epoch,
-    /// Interval that was asked for, seconds since the epoch.
+    /// Covered interval, seconds since the epoch.
     span_s: [f64; 2],
     /// In order of time; at a discontinuity two knots at the same time.
     chaser: Vec<Knot>,
@@ -207,8 +207,8 @@ impl NumericalStates {
     /// arguments. `burns` are the manoeuvres of the chaser as executed, in order of time.
     ///
     /// # Errors
-    /// [`OutOfRange`] for an invalid configuration, for a time that the ephemerides do not cover, or for an orbit
-    /// that comes below 100 km.
+    /// [`OutOfRange`] for an invalid configuration, for a time that the ephemerides do not cover, or for an
+    /// orbit that comes below 100 km.
     pub(super) fn compute(
         orbit: &OrbitConfig,
         config: &NumericalConfig,
@@ -219,7 +219,7 @@ impl NumericalStates {
         let epoch = parse_utc_field("orbit.epoch_utc", &orbit.epoch_utc)?;
         let (first_s, last_s) = (seconds_between(epoch, first), seconds_between(epoch, last));
         let span_s = [first_s.min(0.0) - MARGIN_S, last_s.max(0.0) + MARGIN_S];
-        if span_s.iter().any(|time_s| time_s.abs() > LONGEST_S) {
+        if span_s.iter().any(|time_s| time_s.abs() > MAX_SPAN_S) {
             return Err(OutOfRange::new(
                 "schedule",
                 format!("{} to {}", format_utc(first), format_utc(last)),

@@ -138,9 +138,9 @@ mod tests {
     use super::*;
     use crate::truth::clock::parse_utc;
 
-    /// SOFA's example of the IAU 2006/2000A chain (*SOFA Tools for Earth Attitude*, 2021, Sec. 5.5): 2007 April 5,
-    /// 12h UTC, with UT1 − UTC = −0.072 073 685 s and the pole at 0.034 928 2″, 0.483 316 3″; the corrections
-    /// dX = 0.1750 mas, dY = −0.2259 mas are left out here.
+    /// SOFA's example of the IAU 2006/2000A chain (*SOFA Tools for Earth Attitude*, 2021, Sec. 5.5): 2007
+    /// April 5, 12h UTC, with UT1 − UTC = −0.072 073 685 s and the pole at 0.034 928 2″, 0.483 316 3″; the
+    /// corrections dX = 0.1750 mas, dY = −0.2259 mas are left out here.
     #[test]
     fn the_matrix_is_that_of_sofas_example() {
         let epoch = parse_utc("2007-04-05T12:00:00Z").unwrap();

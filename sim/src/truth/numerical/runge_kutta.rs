@@ -1,8 +1,8 @@
 //! Steps of the explicit Runge–Kutta method of order 8 by Dormand and Prince.
 //!
 //! Coefficients of DOP853 (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd edition
-//! 1993, Sec. II.5 and II.10) without its error estimate: steps have a fixed size. All sums have a fixed order,
-//! so the bits depend on the arguments only.
+//! 1993, Sec. II.5 and II.10) without its error estimate: steps have a fixed size. All sums have a fixed
+//! order, so the bits depend on the arguments only.
 
 use nalgebra::Vector3;
 
@@ -128,7 +128,8 @@ pub(super) fn step(
 mod tests {
     use super::*;
 
-    /// Order conditions of the quadrature up to order 8: Σ bᵢ cᵢᵏ = 1/(k + 1); and of the stages: Σⱼ aᵢⱼ = cᵢ.
+    /// Order conditions of the quadrature up to order 8: Σ bᵢ cᵢᵏ = 1/(k + 1); and of the stages: Σⱼ aᵢⱼ =
+    /// cᵢ.
     #[test]
     fn the_coefficients_satisfy_the_order_conditions() {
         for k in 0..8_u8 {

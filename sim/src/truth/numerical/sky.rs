@@ -33,8 +33,8 @@ pub(super) struct Bodies {
     pub(super) moon_km: Vector3<f64>,
 }
 
-/// Table of positions. Its points are multiples of [`KNOT_S`] from the epoch, so a position does not depend on
-/// the interval that the table covers.
+/// Table of positions. Its points are multiples of [`KNOT_S`] from the epoch, so a position does not depend
+/// on the interval that the table covers.
 #[derive(Debug, Clone)]
 pub(super) struct Sky {
     first: i64,

@@ -92,7 +92,8 @@ fn the_velocity_is_the_derivative_of_the_position() {
         let time_s = 31.7 * f64::from(k);
         let at = |offset_s: f64| states.states_at(time_s + offset_s).target;
         let slope = (at(0.5).position_km - at(-0.5).position_km) / 1.0;
-        // The difference quotient has an error of ω² v h²/24 = 3e-7 of 1e-6 km/s, and the polynomial 1e-9 km/s.
+        // The difference quotient has an error of ω² v h²/24 = 3e-7 of 1e-6 km/s, and the polynomial 1e-9
+        // km/s.
         let error = (slope - at(0.0).velocity_km_s).norm();
         assert!(error < 1e-6, "{time_s}: {error}");
     }
