@@ -75,6 +75,16 @@ pub(crate) struct Solution {
     pub(crate) path: Path,
 }
 
+/// Step of an iteration.
+struct Step {
+    /// Largest component in standard deviations.
+    length: f64,
+    /// Sum of squares after the step.
+    cost: f64,
+    /// Covariance at the parameters before the step.
+    covariance: DMatrix<f64>,
+}
+
 /// Residuals at parameters.
 struct Residuals {
     /// Sum of squares of whitened, weighted residuals and prior.
@@ -116,9 +126,9 @@ impl Problem<'_> {
         let mut cost = f64::INFINITY;
         for iteration in 0..ITERATIONS {
             let weights = huber(&self.residuals(values, &all)?.lengths);
-            let (step, new_cost) = self.iterate(values, &weights, &mut damping)?;
-            cost = new_cost;
-            if step < CONVERGED && iteration > 0 {
+            let step = self.iterate(values, &weights, &mut damping, None)?;
+            cost = step.cost;
+            if step.length < CONVERGED && iteration > 0 {
                 break;
             }
         }
@@ -126,33 +136,40 @@ impl Problem<'_> {
     }
 
     fn fine(&self, mut values: Vec<f64>) -> Result<Solution, NoEstimate> {
-        let mut weights = vec![1.0; self.sights.len()];
-        for _ in 0..EDITINGS {
-            let lengths = self.residuals(&values, &weights)?.lengths;
-            let edited: Vec<f64> =
-                lengths.iter().map(|length| f64::from(*length <= self.outlier_sigma)).collect();
-            let is_stable = edited == weights;
-            weights = edited;
-            let mut damping = 0.0;
-            let mut converged = false;
-            for _ in 0..ITERATIONS {
-                let (step, _) = self.iterate(&mut values, &weights, &mut damping)?;
-                converged = step < CONVERGED;
-                if converged {
-                    break;
-                }
+        let all = vec![1.0; self.sights.len()];
+        let mut edited = self.edited(&values, &all)?;
+        for editing in 1..=EDITINGS {
+            if edited.iter().all(|weight| *weight == 0.0) {
+                return Err(NoEstimate::NoMeasurements);
             }
-            if !converged {
-                return Err(NoEstimate::NoConvergence);
+            let covariance = self.converge(&mut values, &edited)?;
+            let again = self.edited(&values, &edited)?;
+            if again == edited || editing == EDITINGS {
+                return self.result(values, edited, covariance);
             }
-            if is_stable {
-                break;
-            }
+            edited = again;
         }
-        if weights.iter().all(|weight| *weight == 0.0) {
-            return Err(NoEstimate::NoMeasurements);
+        Err(NoEstimate::NoConvergence)
+    }
+
+    /// Returns weight 1 for each measurement within the gate, 0 for others.
+    fn edited(&self, values: &[f64], weights: &[f64]) -> Result<Vec<f64>, NoEstimate> {
+        let lengths = self.residuals(values, weights)?.lengths;
+        Ok(lengths.iter().map(|length| f64::from(*length <= self.outlier_sigma)).collect())
+    }
+
+    /// Iterates to the minimum; returns the covariance there.
+    fn converge(&self, values: &mut Vec<f64>, weights: &[f64]) -> Result<DMatrix<f64>, NoEstimate> {
+        let mut damping = 0.0;
+        let mut cost = None;
+        for _ in 0..ITERATIONS {
+            let step = self.iterate(values, weights, &mut damping, cost)?;
+            if step.length < CONVERGED {
+                return Ok(step.covariance);
+            }
+            cost = Some(step.cost);
         }
-        self.result(values, weights)
+        Err(NoEstimate::NoConvergence)
     }
 
     /// Returns the covariance at parameters, with all measurements.
@@ -163,25 +180,34 @@ impl Problem<'_> {
 
     /// Returns the result at given parameters, with all measurements.
     pub(crate) fn at(&self, values: &[f64]) -> Result<Solution, NoEstimate> {
-        self.result(values.to_vec(), vec![1.0; self.sights.len()])
+        let covariance = self.covariance(values)?;
+        self.result(values.to_vec(), vec![1.0; self.sights.len()], covariance)
     }
 
-    fn result(&self, values: Vec<f64>, weights: Vec<f64>) -> Result<Solution, NoEstimate> {
-        let covariance = self.equations(&values, &weights)?.covariance().ok_or(NoEstimate::NoConvergence)?;
+    fn result(
+        &self,
+        values: Vec<f64>,
+        weights: Vec<f64>,
+        covariance: DMatrix<f64>,
+    ) -> Result<Solution, NoEstimate> {
         let Residuals { cost, residuals, .. } = self.residuals(&values, &weights)?;
         let path = self.path(&values).ok_or(NoEstimate::NoConvergence)?;
         Ok(Solution { values, covariance, cost, weights, residuals, path })
     }
 
-    /// Makes one step; returns its largest component in standard deviations and the new sum of squares.
+    /// Makes one step from `values`, where the sum of squares is `cost` if known.
     fn iterate(
         &self,
         values: &mut Vec<f64>,
         weights: &[f64],
         damping: &mut f64,
-    ) -> Result<(f64, f64), NoEstimate> {
+        cost: Option<f64>,
+    ) -> Result<Step, NoEstimate> {
         let mut root = self.equations(values, weights)?;
-        let old = self.residuals(values, weights)?.cost;
+        let old = match cost {
+            Some(cost) => cost,
+            None => self.residuals(values, weights)?.cost,
+        };
         let covariance = root.covariance().ok_or(NoEstimate::NoConvergence)?;
         let sigmas = covariance.diagonal().map(f64::sqrt);
         loop {
@@ -193,7 +219,7 @@ impl Problem<'_> {
             if new <= old || (length < CONVERGED && new.is_finite()) {
                 *values = moved;
                 *damping = if *damping < 1e-6 { 0.0 } else { *damping * 0.1 };
-                return Ok((length, new));
+                return Ok(Step { length, cost: new, covariance });
             }
             *damping = (*damping * 10.0).max(1e-4);
             if *damping > MAX_DAMPING {
