@@ -111,11 +111,10 @@ def main():
         return np.concatenate([((observed - model) / WHITE).ravel(), x[6:] / CONSTANT])
 
     def slopes_at(x):
-        # Central differences with steps of 2 cm and 0.02 mm/s, which move the target by 5 m in a day. The range
-        # is a small difference of large derivatives: with steps of a metre their third order would bias it.
+        # Central differences with steps of 2 cm and 0.02 mm/s, which move the target by 5 m in a day. The
+        # range is a small difference of large derivatives: steps of a metre would bias it by half its sigma.
         return np.array([(residuals(x + d) - residuals(x - d)) / 4e-3 for d in 2e-3 * np.eye(9)]).T
 
-    # Gauss and Newton: scipy.optimize.least_squares stops early in the flat valley along the range.
     x = np.zeros(9)
     for iteration in range(12):
         jacobian, right = slopes_at(x), -residuals(x)

@@ -1,8 +1,8 @@
 //! Consistency of the navigators: dispersed campaigns of an independent simulator.
 //!
 //! `cargo run --release -p boresight-navigation --example consistency -- CAMPAIGNS STRIDE [FIRST]`: every
-//! STRIDE-th measurement of ARGON's schedule, seeds from FIRST. The variable VARIANT contains `sequential` for
-//! the filter instead of the batch, `exact` for exact manoeuvres, `white` without slow errors, `unbiased`
+//! STRIDE-th measurement of ARGON's schedule, seeds from FIRST. The variable VARIANT contains `sequential`
+//! for the filter instead of the batch, `exact` for exact manoeuvres, `white` without slow errors, `unbiased`
 //! without constant errors.
 
 #[path = "../tests/it/simulator.rs"]

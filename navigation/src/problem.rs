@@ -215,7 +215,7 @@ impl Problem<'_> {
             let length = step.component_div(&sigmas).abs().max();
             let moved: Vec<f64> = values.iter().zip(step.iter()).map(|(value, step)| value + step).collect();
             let new = self.residuals(&moved, weights).map_or(f64::INFINITY, |residuals| residuals.cost);
-            // A step below the tolerance is accepted whatever rounding does to the sum of squares.
+            // Rounding may raise the sum of squares by a step below the tolerance.
             if new <= old || (length < CONVERGED && new.is_finite()) {
                 *values = moved;
                 *damping = if *damping < 1e-6 { 0.0 } else { *damping * 0.1 };

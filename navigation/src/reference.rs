@@ -315,8 +315,8 @@ fn fit(states: &[&TimedState], from_s: f64, osculation: Osculation) -> Option<Pi
             break;
         }
     }
-    // Of the residual's mean square, the share above the noise is an error of the model; of the noise, the
-    // fit keeps the share of its parameters.
+    // The mean square residual above the noise is an error of the model. The fit keeps that share of the
+    // noise which its parameters absorb.
     let mean_square = |value: &dyn Fn(&TimedState) -> f64| {
         used.iter().map(|timed| value(timed)).sum::<f64>() / used.len() as f64
     };

@@ -128,7 +128,7 @@ impl Sequential {
                 Step::Sight(index, _) => self.dispositions[index].used = Use::TooLate,
                 Step::Manoeuvre(manoeuvre) => {
                     if let Some(state) = self.states.last_mut() {
-                        // Where the orbit is unknown, nothing can be done.
+                        // Without a known orbit the state keeps its value.
                         let _ = state.late_manoeuvre(&reference, &manoeuvre, seconds);
                         let state = state.clone();
                         self.buffer.clear();

@@ -11,6 +11,7 @@
 mod covariance6;
 mod estimate;
 mod event;
+pub mod lines;
 mod navigator;
 mod setup;
 

@@ -1,6 +1,7 @@
 //! Traits that a navigator implements.
 
 use hifitime::Epoch;
+use serde::{Deserialize, Serialize};
 
 use super::{Answer, Disposition, Event, NavigationSetup};
 use crate::ContractError;
@@ -26,7 +27,8 @@ pub trait Navigator: Send {
 }
 
 /// Mode of a navigator, which determines how it is driven.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Mode {
     /// All events are received before the first epoch is answered; each answer depends on all events.
     Batch,

@@ -89,7 +89,7 @@ fn one_measurement_leaves_the_prior_and_none_leaves_nothing() {
 
 /// Without a prior and without manoeuvres the scale of the orbit comes from its curvature alone.
 #[test]
-fn without_manoeuvres_the_range_is_uncertain_and_its_sigma_says_so() {
+fn without_manoeuvres_the_range_is_uncertain_and_sigma_covers_it() {
     let flight = Campaign { prior_sigma_m: None, manoeuvres: Vec::new(), ..Campaign::argon(32) }.fly(9);
     let day: Vec<Event> =
         flight.events.iter().filter(|event| event.time() < at(100_000.0)).copied().collect();
