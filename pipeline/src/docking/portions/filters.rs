@@ -1,9 +1,8 @@
-//! Motion by three filters of one state that differ in the camera's acceleration, with a probability for
-//! each.
+//! Motion by four filters of one state that differ in the camera's acceleration, with a probability for each.
 //!
 //! State: (d, φ), its rates and accelerations, and the relative scale error of the station's outline. An
 //! acceleration is a random function of time with a standard deviation σ and a memory τ (Singer 1970). The
-//! filters have σ, 0.2 σ and 0.03 σ, and exchange their estimates according to the probabilities of a change
+//! filters have σ, 0.2 σ, 0.03 σ, and 0.3 σ along the axis of the approach with 0.03 σ otherwise, and exchange their estimates according to the probabilities of a change
 //! between them (interacting multiple models: Blom & Bar-Shalom 1988). A hold or a glide is followed with a
 //! small σ, a braking ship with a large one, and the covariance includes the uncertainty about which filter
 //! applies.
@@ -75,8 +74,14 @@ impl MotionConfig {
     }
 }
 
-/// Accelerations of the filters, relative to the configured one.
-const MODES: [f64; 3] = [1.0, 0.2, 0.03];
+/// Accelerations of the filters along the axes of the pose, relative to the configured one. In the last, the
+/// ship brakes along the axis of the approach and holds everything else.
+const MODES: [[f64; 6]; 4] = [[1.0; 6], [0.2; 6], [0.03; 6], [0.03, 0.03, 0.3, 0.03, 0.03, 0.03]];
+
+/// Time between exchanges of the filters' estimates, s. A change of acceleration shows in many fields, and the
+/// filters' probabilities need as many from each filter alone; with an exchange at every field, all filters
+/// would be that of the most probable one.
+const MIXING_S: f64 = 1.0;
 
 /// Mean time between changes from one filter's motion to another's, s.
 const CHANGE_S: f64 = 5.0;
@@ -108,6 +113,8 @@ const STEP_S: f64 = 0.5;
 #[derive(Debug, Clone)]
 pub(super) struct Track {
     pub(super) time_s: f64,
+    /// Time at which the filters last exchanged their estimates, s.
+    mixed_s: f64,
     modes: [Mode; MODES.len()],
     /// Covariance of the errors common to the fields of several seconds, added to that of the filters.
     pub(super) common: Matrix6<f64>,
@@ -133,7 +140,7 @@ impl Track {
             state.fixed_rows_mut::<6>(0).copy_from(&to_vector(&estimate.pose));
             let mut covariance = Square::zeros();
             covariance.fixed_view_mut::<6, 6>(0, 0).copy_from(&estimate.covariance);
-            for axis in 0..6 {
+            for (axis, part) in part.into_iter().enumerate() {
                 let (rate, acceleration) = spread(config, axis);
                 covariance[(6 + axis, 6 + axis)] = rate * rate;
                 covariance[(12 + axis, 12 + axis)] = (part * acceleration) * (part * acceleration);
@@ -141,14 +148,18 @@ impl Track {
             covariance[(SCALE, SCALE)] = OUTLINE_SCALE * OUTLINE_SCALE;
             Mode { probability: 1.0 / MODES.len() as f64, state, covariance }
         });
-        Self { time_s, modes, common: *common }
+        Self { time_s, mixed_s: time_s, modes, common: *common }
     }
 
     pub(super) fn predict(&mut self, time_s: f64, config: &MotionConfig) {
         while self.time_s < time_s {
             let step_s = (time_s - self.time_s).min(STEP_S);
-            self.mix(step_s, config);
-            for (mode, part) in self.modes.iter_mut().zip(MODES) {
+            let apart_s = self.time_s + step_s - self.mixed_s;
+            if apart_s >= MIXING_S {
+                self.mix(apart_s, config);
+                self.mixed_s = self.time_s + step_s;
+            }
+            for (mode, part) in self.modes.iter_mut().zip(&MODES) {
                 mode.predict(step_s, part, config);
             }
             self.time_s = if step_s < STEP_S { time_s } else { self.time_s + step_s };
@@ -179,7 +190,7 @@ impl Track {
             };
             let total: f64 = (0..MODES.len()).map(weight).sum();
             let from: [Mode; MODES.len()] = std::array::from_fn(|j| {
-                if j == k { before[j].clone() } else { before[j].switched(MODES[k], config) }
+                if j == k { before[j].clone() } else { before[j].switched(&MODES[k], config) }
             });
             mode.probability = total;
             mode.state = from.iter().enumerate().map(|(j, one)| one.state * (weight(j) / total)).sum();
@@ -319,9 +330,9 @@ pub(super) fn unknown_rates(config: &MotionConfig) -> Matrix6<f64> {
 
 impl Mode {
     /// Returns the filter with its accelerations reset to zero mean and their standard deviation.
-    fn switched(&self, part: f64, config: &MotionConfig) -> Self {
+    fn switched(&self, part: &[f64; 6], config: &MotionConfig) -> Self {
         let mut switched = self.clone();
-        for axis in 0..6 {
+        for (axis, part) in part.iter().enumerate() {
             let (_, acceleration) = spread(config, axis);
             let i = 12 + axis;
             switched.state[i] = 0.0;
@@ -332,7 +343,7 @@ impl Mode {
         switched
     }
 
-    fn predict(&mut self, step_s: f64, part: f64, config: &MotionConfig) {
+    fn predict(&mut self, step_s: f64, part: &[f64; 6], config: &MotionConfig) {
         let tau_s = config.memory_s;
         // Effect of an acceleration `s` earlier on position, rate and acceleration now.
         let effect = |s: f64| {
@@ -367,7 +378,7 @@ impl Mode {
                 }
             }
         }
-        for axis in 0..6 {
+        for (axis, part) in part.iter().enumerate() {
             let (_, acceleration) = spread(config, axis);
             let density = 2.0 * (part * acceleration) * (part * acceleration) / tau_s;
             for (i, row) in grown.iter().enumerate() {

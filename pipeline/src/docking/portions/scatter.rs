@@ -1,12 +1,10 @@
-//! Scatter of the poses of neighbouring fields, relative to their covariances.
+//! Scatter of the measurements of neighbouring fields, relative to their covariances.
 
 use std::collections::VecDeque;
 
-use contract::docking::PoseEstimate;
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Const, DimMin, SMatrix, SVector};
 
 use super::inverse;
-use crate::docking::pose::geometry::to_vector;
 
 /// Weights of four successive fields that cancel a motion with constant acceleration.
 const THIRD_DIFFERENCE: [f64; 4] = [1.0, -3.0, 3.0, -1.0];
@@ -15,26 +13,35 @@ const THIRD_DIFFERENCE: [f64; 4] = [1.0, -3.0, 3.0, -1.0];
 const MEMORY: f64 = 25.0;
 const TRUST: f64 = 5.0;
 
-/// Standard deviation of the average by chance. Covariances remain unchanged while the average exceeds 1 by
-/// less than this.
-const CHANCE: f64 = 0.35;
+/// Excess of the average over 1 that is attributed to chance, for a measurement of one component; it
+/// decreases with the root of their number. It is 2.8 standard deviations: successive third differences are
+/// correlated, so 49 of them count as 21.
+const CHANCE: f64 = 0.86;
 
 /// Upper limit of a normalised square in the average: a wrong field is not scatter.
 const MAX_NORMALISED_SQUARE: f64 = 1e4;
 
-/// Scatter of the last fields.
+/// Scatter of the last fields' measurements, of N components each.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Scatter {
-    last: VecDeque<(f64, Vector6<f64>, Matrix6<f64>)>,
+pub(crate) struct Scatter<const N: usize> {
+    last: VecDeque<(f64, SVector<f64, N>, SMatrix<f64, N, N>)>,
     sum: f64,
     weight: f64,
 }
 
-impl Scatter {
-    /// Adds a field. Returns the factor by which the covariances of this field and its neighbours are too
-    /// small, 1 or more.
-    pub(crate) fn add(&mut self, time_s: f64, estimate: &PoseEstimate) -> f64 {
-        self.last.push_back((time_s, to_vector(&estimate.pose), estimate.covariance));
+impl<const N: usize> Scatter<N>
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
+    /// Adds the measurement of a field. Returns the factor by which the covariances of this field and its
+    /// neighbours are too small, 1 or more.
+    pub(crate) fn add(
+        &mut self,
+        time_s: f64,
+        measured: &SVector<f64, N>,
+        covariance: &SMatrix<f64, N, N>,
+    ) -> f64 {
+        self.last.push_back((time_s, *measured, *covariance));
         if self.last.len() > THIRD_DIFFERENCE.len() {
             self.last.pop_front();
         }
@@ -49,7 +56,7 @@ impl Scatter {
     /// Returns the factor by which the covariances are too small, 1 or more.
     pub(crate) fn factor(&self) -> f64 {
         let mean = (self.sum + TRUST) / (self.weight + TRUST);
-        if mean > 1.0 + CHANCE { mean } else { 1.0 }
+        if mean > 1.0 + CHANCE / (N as f64).sqrt() { mean } else { 1.0 }
     }
 
     /// Returns the normalised square of the third difference, divided by its dimension. Returns `None` unless
@@ -63,12 +70,12 @@ impl Scatter {
         if !(first > 0.0 && first < 0.1 && times.all(|step| (step / first - 1.0).abs() < 0.1)) {
             return None;
         }
-        let (mut difference, mut covariance) = (Vector6::zeros(), Matrix6::zeros());
-        for (weight, (_, pose, of_pose)) in THIRD_DIFFERENCE.iter().zip(&self.last) {
-            difference += pose * *weight;
-            covariance += of_pose * (weight * weight);
+        let (mut difference, mut covariance) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros());
+        for (weight, (_, measured, of_measured)) in THIRD_DIFFERENCE.iter().zip(&self.last) {
+            difference += measured * *weight;
+            covariance += of_measured * (weight * weight);
         }
-        Some(difference.dot(&(inverse(&covariance)? * difference)) / 6.0)
+        Some(difference.dot(&(inverse(&covariance)? * difference)) / N as f64)
     }
 }
 
@@ -76,7 +83,8 @@ impl Scatter {
 mod tests {
     use super::super::tests::{approach, normal};
     use super::*;
-    use crate::docking::pose::geometry::to_pose;
+    use crate::docking::pose::geometry::to_vector;
+    use nalgebra::{Matrix6, Vector6};
 
     /// Returns the factor after 200 fields whose errors are `times` as large as their covariances state.
     fn factor(times: f64, seed: u64) -> f64 {
@@ -85,9 +93,8 @@ mod tests {
         for k in 0..200 {
             let t = f64::from(k) * 0.02;
             let draw = Vector6::from_fn(|i, _| normal(seed * 7_919 + k as u64 * 8 + i as u64));
-            let pose = to_pose(&(to_vector(&approach(t)) + sigma.component_mul(&draw) * times));
-            let covariance = Matrix6::from_diagonal(&sigma.component_mul(&sigma));
-            scatter.add(t, &PoseEstimate { pose, covariance });
+            let measured = to_vector(&approach(t)) + sigma.component_mul(&draw) * times;
+            scatter.add(t, &measured, &Matrix6::from_diagonal(&sigma.component_mul(&sigma)));
         }
         scatter.factor()
     }
@@ -117,7 +124,7 @@ mod tests {
             if k == 100 {
                 pose.position_m.z += 5.0;
             }
-            scatter.add(f64::from(k) * 0.02, &PoseEstimate { pose, covariance });
+            scatter.add(f64::from(k) * 0.02, &to_vector(&pose), &covariance);
         }
         assert_eq!(scatter.factor(), 1.0);
     }

@@ -2,7 +2,7 @@
 //! reports.
 
 use contract::docking::{Motion, PoseEstimate};
-use nalgebra::Matrix6;
+use nalgebra::{Matrix1, Matrix6, Vector1};
 
 use super::filters::{MotionConfig, OutlineRange, Track, unknown_rates};
 use super::scatter::Scatter;
@@ -30,7 +30,8 @@ const MIN_FIELDS: u32 = 3;
 pub struct MotionTracker {
     config: MotionConfig,
     track: Option<Track>,
-    scatter: Scatter,
+    scatter: Scatter<6>,
+    outline_scatter: Scatter<1>,
     /// Number of successive fields that were left out.
     contrary: u32,
     /// Number of successive outlines that were left out.
@@ -60,6 +61,7 @@ impl MotionTracker {
             config,
             track: None,
             scatter: Scatter::default(),
+            outline_scatter: Scatter::default(),
             contrary: 0,
             contrary_outlines: 0,
             fields: 0,
@@ -104,11 +106,11 @@ impl MotionTracker {
         });
         if !is_kept {
             self.scatter = Scatter::default();
-            self.scatter.add(time_s, estimate);
+            self.scatter.add(time_s, &to_vector(&estimate.pose), &estimate.covariance);
             self.begin(time_s, estimate, common);
             return (Continuity::Continues, 1.0);
         }
-        let factor = self.scatter.add(time_s, estimate);
+        let factor = self.scatter.add(time_s, &to_vector(&estimate.pose), &estimate.covariance);
         let noise = PoseEstimate { covariance: estimate.covariance * factor, ..*estimate };
         (self.follow(time_s, &noise, common), factor)
     }
@@ -118,6 +120,9 @@ impl MotionTracker {
         if !time_s.is_finite() {
             return;
         }
+        let variance = range.sigma_m * range.sigma_m;
+        let factor = self.outline_scatter.add(time_s, &Vector1::new(range.range_m), &Matrix1::new(variance));
+        let range = &OutlineRange { sigma_m: range.sigma_m * factor.sqrt(), ..*range };
         let elapsed_s = self.track.as_ref().map(|track| time_s - track.time_s);
         if !elapsed_s.is_some_and(|elapsed_s| (0.0..=MAX_GAP_S).contains(&elapsed_s)) {
             self.begin_at_range(time_s, range);

@@ -20,6 +20,7 @@ mod equations;
 mod first_guess;
 mod gaussian;
 mod groups;
+mod line_response;
 mod sampled;
 mod sampled_marks;
 mod samples;
@@ -32,19 +33,17 @@ mod unknowns;
 #[cfg(test)]
 mod tests;
 
-use contract::PixelPoint;
 use contract::docking::{Field, Mark, MarkUse, NoPose, Pose, PoseEstimate, TargetModel};
+use contract::{Frame, PixelPoint};
 use nalgebra::{Matrix6, Vector3};
 
 use self::blur::Blur;
-use self::groups::Groups;
 use self::sampled::Tables;
 use self::sampled_marks::SampledMarks;
 use self::samples::{Feature, Samples};
 use self::scene::Scene;
 use self::shadow::ShadowFinder;
-use self::solve::{Evaluation, Search, normals, residual, solve, uncertainty};
-use self::swelling::Swelling;
+use self::solve::{Evaluation, Search, SharedErrors, VideoKnowledge, normals, residual, solve, uncertainty};
 use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
 use crate::CameraModel;
 use crate::docking::pose::geometry::{PoseProjection, project, to_pose, to_vector};
@@ -143,10 +142,8 @@ pub struct ModelFit {
     samples: Samples,
     shadows: ShadowFinder,
     marks: SampledMarks,
-    lines: Groups,
-    patches: Groups,
-    swellings: Groups,
-    swelling: Swelling,
+    shared: SharedErrors,
+    video: VideoKnowledge,
     variances: Vec<f64>,
     blur: Blur,
 }
@@ -165,10 +162,8 @@ impl ModelFit {
             samples: Samples::default(),
             shadows: ShadowFinder::default(),
             marks: SampledMarks::default(),
-            lines: Groups::default(),
-            patches: Groups::default(),
-            swellings: Groups::default(),
-            swelling: Swelling::default(),
+            shared: SharedErrors::default(),
+            video: VideoKnowledge::default(),
             variances: Vec::new(),
             blur: Blur::new(FIRST_BLUR_PX2, FIRST_BLUR_PX2),
         }
@@ -285,14 +280,8 @@ impl ModelFit {
             evaluation = solve(&scene, samples, &mut globals, &search, evaluation.variance())
                 .ok_or(NoPose::TooFewFeatures)?;
         }
-        let fitted = judge(
-            samples,
-            [&mut self.lines, &mut self.patches, &mut self.swellings],
-            &mut self.swelling,
-            &scene,
-            &globals,
-            &evaluation,
-        )?;
+        let fitted =
+            judge(samples, field.image(), &mut self.shared, &mut self.video, &scene, &globals, &evaluation)?;
         self.blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
         Ok(fitted)
     }
@@ -386,8 +375,9 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
 /// Returns the result, if the used patches determine a pose and enough of the patches agree with the target.
 fn judge(
     samples: &Samples,
-    groups: [&mut Groups; 3],
-    swelling: &mut Swelling,
+    image: &Frame,
+    shared: &mut SharedErrors,
+    video: &mut VideoKnowledge,
     scene: &Scene,
     globals: &Globals,
     evaluation: &Evaluation,
@@ -403,8 +393,8 @@ fn judge(
     if median(&mut levels).is_none_or(|level| level < FAINTEST_LEVEL * variance.sqrt()) {
         return Err(too_few(samples));
     }
-    let known =
-        uncertainty(scene, samples, groups, swelling, globals, evaluation).ok_or_else(|| too_few(samples))?;
+    let known = uncertainty(scene, samples, image, shared, video, globals, evaluation)
+        .ok_or_else(|| too_few(samples))?;
     let covariance: Matrix6<f64> = known.covariance.fixed_view::<POSE, POSE>(0, 0).into();
     let common: Matrix6<f64> = known.common.fixed_view::<POSE, POSE>(0, 0).into();
     let pose = to_pose(&(globals + known.change));
@@ -416,7 +406,7 @@ fn judge(
     if !is_determined {
         return Err(too_few(samples));
     }
-    *swelling = known.swelling.decayed();
+    *video = known.video.decayed();
     let see = |point: Vector3<f64>| project(scene.camera, &pose, &point).ok_or(NoPose::Inconsistent);
     Ok(FitResult {
         estimate: PoseEstimate { pose, covariance },

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use contract::Frame;
 use nalgebra::{SMatrix, SVector, Vector2, Vector3};
 use pulp::Arch;
 
@@ -10,6 +11,7 @@ use super::chunk::{CHUNK, FIRST_GLOBAL, Gram};
 use super::coverage::{CrossImage, MarkImage};
 use super::equations::{ChunkBuffers, CoverageKernel, FeatureModel, Image, NormalEquations, regressors};
 use super::groups::{GroupedPixel, Groups, turns};
+use super::line_response::{LineResponse, LineResponseSums};
 use super::samples::{Feature, Patch, Sample, Samples};
 use super::scene::Scene;
 use super::swelling::{self, Swelling};
@@ -175,19 +177,42 @@ pub(super) fn solve(
 
 /// Uncertainty of the globals at a solution, and corrections to them.
 pub(super) struct Uncertainty {
-    /// Change of the globals by the swelling of the features.
+    /// Change of the globals by the swelling of the features and by the response of the lines.
     pub(super) change: Globals,
     pub(super) covariance: GlobalMatrix,
     /// Part of the covariance that is due to scene and video, and therefore common to the fields of several
     /// seconds.
     pub(super) common: GlobalMatrix,
-    /// Knowledge of the swelling after this field.
+    /// Knowledge of the video after this field.
+    pub(super) video: VideoKnowledge,
+}
+
+/// Knowledge of the video from previous fields.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct VideoKnowledge {
     pub(super) swelling: Swelling,
+    pub(super) response: LineResponse,
+}
+
+impl VideoKnowledge {
+    /// Returns the knowledge that remains for the next field.
+    pub(super) fn decayed(&self) -> Self {
+        Self { swelling: self.swelling.decayed(), response: self.response.decayed() }
+    }
+}
+
+/// Sums over the pixels of a field for the errors that they share, with reusable buffers.
+#[derive(Debug, Default)]
+pub(super) struct SharedErrors {
+    lines: Groups,
+    patches: Groups,
+    swellings: Groups,
+    responses: LineResponseSums,
 }
 
 /// Position error of a cross of a few pixels, which is a single patch, px, one standard deviation. Lines of a
 /// field are 2 px apart, and there is no other patch whose scatter shows the video's effect on the cross.
-const SMALL_CROSS_PX: f64 = 0.04;
+const SMALL_CROSS_PX: f64 = 0.035;
 
 /// Position error of a mark narrower than a pixel, px, one standard deviation. For wider marks it decreases
 /// with the fourth power of the width.
@@ -202,33 +227,35 @@ const CROSS_SHIFT_PER_SWELLING: f64 = 0.5;
 const MIN_NOISE_SHARE: f64 = 0.25;
 
 /// Computes the uncertainty of the globals at a solution, due to noise that is independent from pixel to
-/// pixel and to errors common to lines and patches.
+/// pixel and to errors common to lines and patches. `image` is the image of the field.
 ///
 /// The error of the estimate is H⁻¹ Jᵀ n, H being the information. With noise of σ² its covariance is σ² H⁻¹.
-/// With additional line errors s_l e_l of variance τ² it is H⁻¹ (σ² H + τ² Σ_l (Jᵀ e_l)(Jᵀ e_l)ᵀ) H⁻¹. A
-/// swelling of all features is an additional unknown with information from previous fields. Returns `None`
-/// when nothing is determined.
+/// With additional line errors s_l e_l of variance τ² it is H⁻¹ (σ² H + τ² Σ_l (Jᵀ e_l)(Jᵀ e_l)ᵀ) H⁻¹. The
+/// swelling of all features and the response of the lines are additional unknowns with information from
+/// previous fields. Returns `None` when nothing is determined.
 pub(super) fn uncertainty(
     scene: &Scene,
     samples: &Samples,
-    [lines, of_patches, swellings]: [&mut Groups; 3],
-    known_swelling: &Swelling,
+    image: &Frame,
+    shared: &mut SharedErrors,
+    known: &VideoKnowledge,
     globals: &Globals,
     evaluation: &Evaluation,
 ) -> Option<Uncertainty> {
     let inverse = inverse(&evaluation.information)?;
     let variance = evaluation.variance();
+    let noise_dn = variance.sqrt();
     let images = Images::new(scene, globals, 0.0)?;
     let pose = to_pose(globals);
     let swollen = swelling::enlarged_target(scene.target, scene.camera.focal_px().0 / pose.position_m.z);
     let swollen = Images::new(&Scene { target: &swollen, ..*scene }, globals, 0.0)?;
     let centre = PoseProjection::new(scene.camera, &pose).project_with_derivatives(&Vector3::zeros())?;
     let [along, across] = turns(&centre.by_pose)?;
-    let groups = [lines, of_patches, swellings];
-    let [lines, of_patches, swellings] = groups.map(|groups| {
+    let SharedErrors { lines, patches: of_patches, swellings, responses } = shared;
+    for groups in [&mut *lines, &mut *of_patches, &mut *swellings] {
         groups.clear();
-        groups
-    });
+    }
+    responses.clear();
     let mut work = ChunkBuffers::NEW;
     for (index, patch) in samples.patches.iter().filter(|patch| patch.is_used).enumerate() {
         let level = patch.levels[LOCALS - 1];
@@ -254,6 +281,7 @@ pub(super) fn uncertainty(
                     levels,
                 };
                 lines.add(&of_line);
+                responses.add(image, pixel, &of_line, noise_dn);
                 of_patches.add(&GroupedPixel { group: index, effects: shift, ..of_line });
                 let swell = level * (wider[l] - coverage.value[l]) / swelling::STEP_PX;
                 swellings.add(&GroupedPixel { group: 0, effects: [swell, 0.0], ..of_line });
@@ -262,6 +290,7 @@ pub(super) fn uncertainty(
         lines.close(patch);
         of_patches.close(patch);
         swellings.close(patch);
+        responses.close(patch);
     }
     let (by_lines, explained_by_lines) = lines.scatter(variance);
     let (mut by_patches, explained_by_patches) = of_patches.scatter(variance);
@@ -279,17 +308,18 @@ pub(super) fn uncertainty(
         };
         by_patches += of_patches.group_covariance(index) * (off_px * off_px);
     }
-    let (change, by_swelling, swelling) = swellings.estimate_swelling(&inverse, variance, known_swelling)?;
+    let (change, by_swelling, swelling) = swellings.estimate_swelling(&inverse, variance, &known.swelling)?;
+    let by_response = responses.estimate(&inverse, variance, &known.response)?;
     let crosses = used().filter(|(_, patch)| patch.feature == Feature::Cross).map(|(index, _)| index);
     let aside_px = CROSS_SHIFT_PER_SWELLING * swelling.weighted / swelling.weight;
     by_patches += of_patches.common_covariance(crosses) * (aside_px * aside_px);
     let noise = (variance - explained_by_lines - explained_by_patches).max(MIN_NOISE_SHARE * variance);
-    let common = inverse * by_patches * inverse + by_swelling;
+    let common = inverse * by_patches * inverse + by_swelling + by_response.covariance;
     Some(Uncertainty {
-        change,
+        change: change + by_response.change,
         covariance: inverse * noise + inverse * by_lines * inverse + common,
         common,
-        swelling,
+        video: VideoKnowledge { swelling, response: by_response.response },
     })
 }
 
