@@ -133,9 +133,10 @@ pub(super) fn oem(
     Ok(Oem { header: header(run), segments })
 }
 
-/// State just before a manoeuvre: that of a microsecond earlier, moved along its velocity.
+/// State just before a manoeuvre: that of a nanosecond earlier, moved along its velocity. Gravity changes the
+/// velocity by 8e-12 km/s in that time.
 fn just_before(state_at: &impl Fn(f64) -> State, time_s: f64) -> State {
-    const EARLIER_S: f64 = 1e-6;
+    const EARLIER_S: f64 = 1e-9;
     let state = state_at(time_s - EARLIER_S);
     State { position_km: state.position_km + state.velocity_km_s * EARLIER_S, ..state }
 }
