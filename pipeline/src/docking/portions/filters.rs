@@ -2,7 +2,8 @@
 //!
 //! State: (d, φ), its rates and accelerations, and the relative scale error of the station's outline. An
 //! acceleration is a random function of time with a standard deviation σ and a memory τ (Singer 1970). The
-//! filters have σ, 0.2 σ, 0.03 σ, and 0.3 σ along the axis of the approach with 0.03 σ otherwise, and exchange their estimates according to the probabilities of a change
+//! filters have σ, 0.2 σ and 0.03 σ on all axes; the fourth has 0.3 σ along the axis of the approach and 0.03 σ
+//! on the others. They exchange their estimates once a second according to the probabilities of a change
 //! between them (interacting multiple models: Blom & Bar-Shalom 1988). A hold or a glide is followed with a
 //! small σ, a braking ship with a large one, and the covariance includes the uncertainty about which filter
 //! applies.
@@ -78,9 +79,9 @@ impl MotionConfig {
 /// ship brakes along the axis of the approach and holds everything else.
 const MODES: [[f64; 6]; 4] = [[1.0; 6], [0.2; 6], [0.03; 6], [0.03, 0.03, 0.3, 0.03, 0.03, 0.03]];
 
-/// Time between exchanges of the filters' estimates, s. A change of acceleration shows in many fields, and the
-/// filters' probabilities need as many from each filter alone; with an exchange at every field, all filters
-/// would be that of the most probable one.
+/// Time between exchanges of the filters' estimates, s. A change of acceleration shows in many fields, and
+/// the filters' probabilities need as many from each filter alone. An exchange at every field would make all
+/// filters that of the most probable one.
 const MIXING_S: f64 = 1.0;
 
 /// Mean time between changes from one filter's motion to another's, s.
