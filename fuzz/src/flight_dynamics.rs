@@ -1,5 +1,5 @@
-//! Fuzz targets for files of flight dynamics. A file that is read is also evaluated and, if it can be, written
-//! and read again.
+//! Fuzz targets for files of flight dynamics. A file that is read is also evaluated and, if it can be,
+//! written and read again.
 
 use std::path::Path;
 

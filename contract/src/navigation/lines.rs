@@ -489,7 +489,7 @@ mod tests {
     }
 
     #[test]
-    fn unusable_lines_state_what_is_wrong() {
+    fn unusable_lines_state_their_fault() {
         let refused = |change: fn(&mut LineOfSightLine)| {
             let Line::LineOfSight(mut line) = Line::from_event(&Event::LineOfSight(measurement()), &write)
             else {

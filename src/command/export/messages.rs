@@ -52,8 +52,9 @@ fn header(run: &RunFile<FarRangeScenario>) -> Header {
 }
 
 /// Returns the true motion of a spacecraft from a step before the first to a step after the last frame. Each
-/// impulsive manoeuvre ends a segment: it has the state just before, and the next segment the state just after.
-/// The velocities of mean elements are no exact derivatives of the positions, so the interpolation is LAGRANGE.
+/// impulsive manoeuvre ends a segment: it has the state just before, and the next segment the state just
+/// after. The velocities of mean elements are no exact derivatives of the positions, so the interpolation is
+/// LAGRANGE.
 pub(super) fn oem(
     run: &RunFile<FarRangeScenario>,
     spacecraft: Spacecraft,

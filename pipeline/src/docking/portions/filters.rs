@@ -2,8 +2,8 @@
 //!
 //! State: (d, φ), its rates and accelerations, and the relative scale error of the station's outline. An
 //! acceleration is a random function of time with a standard deviation σ and a memory τ (Singer 1970). The
-//! filters have σ, 0.2 σ and 0.03 σ on all axes; the fourth has 0.3 σ along the axis of the approach and 0.03 σ
-//! on the others. They exchange their estimates once a second according to the probabilities of a change
+//! filters have σ, 0.2 σ and 0.03 σ on all axes; the fourth has 0.3 σ along the axis of the approach and 0.03
+//! σ on the others. They exchange their estimates once a second according to the probabilities of a change
 //! between them (interacting multiple models: Blom & Bar-Shalom 1988). A hold or a glide is followed with a
 //! small σ, a braking ship with a large one, and the covariance includes the uncertainty about which filter
 //! applies.

@@ -1,12 +1,12 @@
 //! Response of the video line after an edge: ringing, smear and echoes.
 //!
 //! A channel of limited bandwidth repeats a part of each pixel in the pixels after it: v(x) = s(x) + Σ_k c_k
-//! (s(x − k) − s(x)), with k = 1 … [`LAGS`] pixels along the line. Such a response shifts edges along the line,
-//! and by different amounts the edges of wide and of narrow features: at near range a ringing of 5 % shifts
-//! the cross against the marks by 0.01 px, several σ of the noise. The coefficients c are therefore unknowns of
-//! the fit, with information from previous fields. Terms b_k (s(x − k) + s(x + k) − 2 s(x)), which are
-//! symmetric, are unknowns beside them: a blur of another shape than the model's would otherwise be taken for a
-//! response.
+//! (s(x − k) − s(x)), with k = 1 … [`LAGS`] pixels along the line. Such a response shifts edges along the
+//! line, and by different amounts the edges of wide and of narrow features: at near range a ringing of 5 %
+//! shifts the cross against the marks by 0.01 px, several σ of the noise. The coefficients c are therefore
+//! unknowns of the fit, with information from previous fields. Terms b_k (s(x − k) + s(x + k) − 2 s(x)),
+//! which are symmetric, are unknowns beside them: a blur of another shape than the model's would otherwise be
+//! taken for a response.
 //!
 //! The size of the coefficients is unknown too. Its distribution is estimated from the same sums (empirical
 //! Bayes; Carlin and Louis, *Bayes and Empirical Bayes Methods*, 2000), so a video without ringing keeps the
@@ -204,9 +204,9 @@ impl LineResponseSums {
         let mut response = *known;
         let alone = of_lines + self.squares - self.scores.transpose() * by_globals;
         if let Some(spread) = self.dispersion(&of_lines, &seen, variance) {
-            // The noise of the pixels in e adds to the squares and explains no residual: with A = Σ e eᵀ and A'
-            // without noise, the estimate A'⁻¹ Σ e r has the covariance σ² A'⁻¹ A A'⁻¹ (Fuller, *Measurement
-            // Error Models*, 1987, chapter 1).
+            // The noise of the pixels in e adds to the squares and explains no residual: with A = Σ e eᵀ and
+            // A' without noise, the estimate A'⁻¹ Σ e r has the covariance σ² A'⁻¹ A A'⁻¹ (Fuller,
+            // *Measurement Error Models*, 1987, chapter 1).
             let signal = positive(&(alone - noise_squares() * (variance * self.pixels)));
             let gain = signal * inverse(&(positive(&alone) + ridge(&of_lines)))?;
             let variance = variance * spread.max(1.0);
