@@ -1,14 +1,17 @@
-//! Plans the approach of the scenario `argon-numerical`: prints its tables `[orbit]` and `[trajectory]` as TOML.
+//! Plans the approach of the scenario `argon-numerical`: prints its tables `[orbit]` and `[trajectory]` as
+//! TOML.
 //!
 //! ```text
 //! cargo run --release -p boresight-sim --example argon_numerical_plan
 //! ```
 //!
-//! Events, waypoints and sizes of the relative ellipse are those of `scenarios/argon_plan.py`. The plan is flown
-//! ground-in-the-loop in the numerical truth, execution errors included: at each event a pair of impulses half an
-//! orbit apart follows from linear theory (D'Amico 2010, Ch. 2), and their sum is corrected until the along-track
-//! separation at the next event is that of the waypoint. Relative elements are osculating ones, fitted by a line
-//! over two revolutions, which removes their short-period terms.
+//! Events, waypoints and sizes of the relative ellipse are those of `scenarios/argon_plan.py`. The plan is
+//! flown ground-in-the-loop in the numerical truth, execution errors included: at each event a pair of
+//! impulses half an orbit apart follows from linear theory (D'Amico 2010, Ch. 2), and their sum is corrected
+//! until the along-track separation at the next event is that of the waypoint. Relative elements are
+//! osculating ones, fitted by a line over two revolutions, which removes their short-period terms.
+
+#![allow(clippy::unwrap_used, reason = "a refused plan stops the program with its message")]
 
 use boresight_sim::truth::{
     DragConfig, EarthOrientationConfig, Elements, ElementsConfig, GravityConfig, GroupConfig,
@@ -35,7 +38,14 @@ const END_S: f64 = 5.0 * DAY_S;
 #[derive(Serialize)]
 struct Tables<'a> {
     orbit: &'a OrbitConfig,
-    trajectory: &'a NumericalConfig,
+    trajectory: TrajectoryTable<'a>,
+}
+
+#[derive(Serialize)]
+struct TrajectoryTable<'a> {
+    kind: &'static str,
+    #[serde(flatten)]
+    forces: &'a NumericalConfig,
 }
 
 fn forces() -> NumericalConfig {
@@ -43,7 +53,8 @@ fn forces() -> NumericalConfig {
         gravity: GravityConfig { degree: 36, order: 36 },
         // 2012 April 25 (IERS 14 C04, as in Celestrak's EOP-All.csv).
         earth: EarthOrientationConfig { ut1_minus_utc_s: -0.5394, pole_arcsec: [0.0013, 0.3618] },
-        // Assumed: 150 kg and 0.8 m², 40 kg and 0.5 m², drag coefficient 2.3, radiation pressure coefficient 1.3.
+        // Assumed: 150 kg and 0.8 m², 40 kg and 0.5 m², drag coefficient 2.3, radiation pressure coefficient
+        // 1.3.
         drag: Some(DragConfig { chaser_m2_kg: 0.012, target_m2_kg: 0.029, exponent: 6.0 }),
         radiation: Some(RadiationConfig { chaser_m2_kg: 0.007, target_m2_kg: 0.016 }),
         ..NumericalConfig::default()
@@ -98,8 +109,7 @@ impl Flight {
         Elements::from_state(&self.trajectory.states_at_seconds(time_s).target).unwrap()
     }
 
-    /// Mean relative elements at the end (`at_end`) or the begin of an interval of two revolutions: aδa, aδλ,
-    /// aδex, aδey, aδix, aδiy.
+    /// Mean relative elements over an interval, m: aδa, aδλ (at `at_s`), aδex, aδey, aδix, aδiy.
     fn mean(&self, from_s: f64, to_s: f64, at_s: f64) -> [f64; 6] {
         let n = 240;
         let rows: Vec<(f64, [f64; 6])> = (0..n)
@@ -187,5 +197,6 @@ fn main() {
         let mean = flight.mean(from_s, from_s + period_s, time_s).map(|x| x.round());
         eprintln!("{hours:3} h {:9.1} m {mean:?}", states.range_km() * 1000.0);
     }
-    println!("{}", toml::to_string(&Tables { orbit: &orbit, trajectory: &forces() }).unwrap());
+    let trajectory = TrajectoryTable { kind: "numerical", forces: &forces() };
+    println!("{}", toml::to_string(&Tables { orbit: &orbit, trajectory }).unwrap());
 }

@@ -7,6 +7,7 @@ mod argon;
 mod small_scene;
 mod vector_scene;
 
+mod argon_numerical;
 mod argon_plan;
 mod detector_effects;
 mod determinism;

@@ -1,0 +1,105 @@
+//! Approach planned for the scenario `argon-numerical`, as the numerical truth flies it.
+
+use boresight_sim::truth::{
+    GroupConfig, NumericalConfig, OrbitConfig, Schedule, Trajectory, TrajectorySource,
+};
+use hifitime::Duration;
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Fragment {
+    seed: u64,
+    orbit: OrbitConfig,
+    trajectory: toml::Table,
+    schedule: Vec<GroupConfig>,
+}
+
+fn fragment() -> (Fragment, NumericalConfig, Schedule) {
+    let mut fragment: Fragment =
+        toml::from_str(include_str!("../../../scenarios/argon-numerical.toml")).unwrap();
+    assert_eq!(fragment.trajectory.remove("kind").unwrap().as_str(), Some("numerical"));
+    let forces = fragment.trajectory.clone().try_into().unwrap();
+    let schedule = Schedule::new(&fragment.schedule).unwrap();
+    (fragment, forces, schedule)
+}
+
+fn trajectory() -> (Trajectory, Schedule) {
+    let (fragment, forces, schedule) = fragment();
+    let source = TrajectorySource::Numerical(forces);
+    let trajectory = Trajectory::from_source(&fragment.orbit, &source, fragment.seed, &schedule).unwrap();
+    (trajectory, schedule)
+}
+
+/// From 30 km to 3 km; the separation across the flight direction keeps the size of the relative ellipse.
+#[test]
+fn the_chaser_follows_the_waypoints_on_a_relative_ellipse() {
+    let (trajectory, _) = trajectory();
+    let period_s = 5_980.0;
+    for (hours, along_m, eccentricity_m) in [
+        (6.0, -30_000.0, 400.0),
+        (23.0, -27_000.0, 385.0),
+        (47.0, -20_000.0, 350.0),
+        (69.0, -13_600.0, 310.0),
+        (95.0, -7_000.0, 265.0),
+        (118.0, -3_200.0, 225.0),
+    ] {
+        let rows: Vec<_> = (0..100)
+            .map(|k| trajectory.states_at_seconds(hours * 3600.0 + period_s * f64::from(k) / 100.0))
+            .map(|states| states.chaser_rtn_km() * 1000.0)
+            .collect();
+        let mean_m = rows.iter().map(|rtn| rtn.y).sum::<f64>() / 100.0;
+        // The revolution lies up to an hour and a half beside the waypoint, at 300 m an hour.
+        assert!((mean_m - along_m).abs() < 700.0, "{hours} h: {mean_m}");
+        let radial_m = rows.iter().map(|rtn| rtn.x).fold(f64::NEG_INFINITY, f64::max)
+            - rows.iter().map(|rtn| rtn.x).fold(f64::INFINITY, f64::min);
+        // R swings by aδe to both sides; δe turns with the perigee, which adds up to 10 % in the end.
+        assert!((radial_m / (2.0 * eccentricity_m) - 1.0).abs() < 0.2, "{hours} h: {radial_m}");
+        let across_m = rows.iter().map(|rtn| libm::hypot(rtn.x, rtn.z)).fold(f64::INFINITY, f64::min);
+        assert!(across_m > 0.5 * eccentricity_m, "{hours} h: {across_m}");
+    }
+}
+
+/// The field of ±6.8° by ±9.1° is centred on T: see argon_plan.rs.
+#[test]
+fn the_target_is_in_the_field_of_view_in_every_frame() {
+    let (trajectory, schedule) = trajectory();
+    for frame in (0..schedule.frame_count()).step_by(7) {
+        let (_, time) = schedule.frame(frame).unwrap();
+        let states = trajectory.states_at(time);
+        let seen = states.chaser.rtn_from_icrs().rotate(&states.line_of_sight_km());
+        let angles = [seen.x, seen.z].map(|x| libm::atan2(x, seen.y).to_degrees().abs());
+        assert!(angles[0] < 9.1 && angles[1] < 6.8, "frame {frame}: {angles:?}");
+    }
+}
+
+/// Frame N alone: the trajectory of a schedule that ends with it has the same states.
+#[test]
+fn a_frame_alone_has_the_states_of_the_run() {
+    let (fragment, forces, _) = fragment();
+    let (run, schedule) = trajectory();
+    let source = TrajectorySource::Numerical(forces);
+    let first_day = Schedule::new(&fragment.schedule[..1]).unwrap();
+    let alone = Trajectory::from_source(&fragment.orbit, &source, fragment.seed, &first_day).unwrap();
+    for frame in [0, 700, 1633] {
+        let (_, time) = schedule.frame(frame).unwrap();
+        assert_eq!(alone.states_at(time), run.states_at(time));
+    }
+}
+
+#[test]
+fn reports_are_late_and_differ_from_the_executed_manoeuvres() {
+    let (fragment, ..) = fragment();
+    let executed = fragment.orbit.executed_manoeuvres(fragment.seed);
+    let reports = fragment.orbit.manoeuvre_reports(fragment.seed).unwrap();
+    assert_eq!(reports.len(), fragment.orbit.manoeuvres.len());
+    for ((planned, executed), report) in fragment.orbit.manoeuvres.iter().zip(&executed).zip(&reports) {
+        assert_eq!(report.reported - report.time, Duration::from_seconds(605.0));
+        let norm = |dv: [f64; 3]| (dv[0] * dv[0] + dv[1] * dv[1] + dv[2] * dv[2]).sqrt();
+        let sizes = [planned.dv_rtn_m_s, executed.dv_rtn_m_s, report.dv_rtn_m_s].map(norm);
+        // Five standard deviations of 1 % and 2 %.
+        assert!(sizes[0] != sizes[1] && (sizes[1] / sizes[0] - 1.0).abs() < 0.05, "{sizes:?}");
+        assert!(sizes[1] != sizes[2] && (sizes[2] / sizes[1] - 1.0).abs() < 0.10, "{sizes:?}");
+    }
+    // Another seed, other errors.
+    assert_ne!(executed, fragment.orbit.executed_manoeuvres(fragment.seed + 1));
+}
