@@ -76,6 +76,11 @@ pub enum Effect {
     /// Choice among equally bad cases of a study that are listed (addressed with the study's seed and the
     /// case).
     WorstCases = 65,
+    /// Error of the states of its own orbit that the chaser reports to a navigator (frame: number of the
+    /// state; six numbers).
+    ReportedOrbit = 80,
+    /// Error of the relative orbit that a navigator receives as its prior (frame 0; six numbers).
+    RelativePrior = 81,
 }
 
 /// Generator of every draw.

@@ -1,0 +1,195 @@
+//! Knowledge of the chaser besides its measurements: its orbit, a prior, errors of its instruments.
+
+use contract::navigation::{
+    AngleErrors, ChaserOrbit, Covariance6, DifferentialDrag, LineOfSightErrors, NavigationSetup, PriorOrbit,
+    RelativeElements, ReportedState, SlowError,
+};
+use contract::{AttitudeKnowledge, ContractError};
+use files::Failure;
+use hifitime::{Duration, Epoch};
+use nalgebra::{Vector3, Vector6};
+use scenario::FarRangeScenario;
+use sim::randomness::{Effect, Seed, Stream, normal};
+use sim::truth::Trajectory;
+
+use crate::truth::Truth;
+
+/// Standard deviation of the centre of brightness about the centre of the target, relative to its radius:
+/// that of a sphere at a phase angle of 90° is 0.4 to 0.6, that of a plate seen face on 0.
+const BRIGHTNESS_OFFSET: f64 = 0.3;
+
+/// Memory of that error, s: the side of the target that is seen and lit turns with the orbit.
+const BRIGHTNESS_MEMORY_S: f64 = 5900.0;
+
+/// Constant error of a line of sight with an attitude from stars, arcsec: distortion and alignment that the
+/// stars do not remove.
+const STARS_CONSTANT_ARCSEC: f64 = 1.0;
+
+/// Standard deviation of a centre that has no covariance of its own, px.
+const CENTRE_SIGMA_PX: f64 = 0.1;
+
+/// Largest number of reported states.
+const MAX_STATES: f64 = 1e6;
+
+/// Knowledge of the chaser about its orbit and the relative orbit.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct KnowledgeConfig {
+    /// Interval of the reported states of the chaser, s.
+    pub state_interval_s: f64,
+    /// Standard deviation of each component of a reported position, m.
+    pub state_position_sigma_m: f64,
+    /// Standard deviation of each component of a reported velocity, m/s.
+    pub state_velocity_sigma_m_s: f64,
+    /// Standard deviations of the relative elements of the prior, in order, m; `None`: no prior.
+    pub prior_sigma_m: Option<[f64; 6]>,
+}
+
+impl Default for KnowledgeConfig {
+    /// Values of a receiver of satellite navigation, and of a relative orbit from two-line elements.
+    fn default() -> Self {
+        Self {
+            state_interval_s: 120.0,
+            state_position_sigma_m: 10.0,
+            state_velocity_sigma_m_s: 0.05,
+            prior_sigma_m: Some([50.0, 2000.0, 200.0, 200.0, 200.0, 200.0]),
+        }
+    }
+}
+
+impl KnowledgeConfig {
+    /// Builds the setup of a navigator for measurements at `times`, in order. States and prior are those of
+    /// the truth with errors drawn from the scenario's seed.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] if the true orbits have no elements at the first time.
+    pub(crate) fn setup(
+        &self,
+        scenario: &FarRangeScenario,
+        truth: &Truth,
+        epoch: Epoch,
+        times: &[Epoch],
+    ) -> Result<NavigationSetup, Failure> {
+        let seed = Seed { seed: scenario.seed, case: 0 };
+        let last = times.last().copied().unwrap_or(epoch);
+        let prior = match self.prior_sigma_m {
+            None => None,
+            Some(sigmas) => Some(prior(sigmas, &truth.elements(epoch)?, seed)?),
+        };
+        Ok(NavigationSetup {
+            epoch,
+            chaser_orbit: ChaserOrbit::States(self.states(truth.trajectory(), seed, [epoch, last])?),
+            camera_from_body: scenario.mounting.nominal.camera_from_body(),
+            prior,
+            errors: errors(scenario, truth, times),
+            drag: DifferentialDrag::default(),
+        })
+    }
+
+    fn states(
+        &self,
+        trajectory: &Trajectory,
+        seed: Seed,
+        [first, last]: [Epoch; 2],
+    ) -> Result<Vec<ReportedState>, Failure> {
+        let coverage = trajectory.coverage_s();
+        let interval_s = self.state_interval_s;
+        let intervals = ((last - first).to_seconds() / interval_s).ceil().max(1.0) + 1.0;
+        if !intervals.is_finite() || intervals > MAX_STATES {
+            return Err(Failure::Usage(format!(
+                "the chaser reports {intervals:.0} states, expected at most {MAX_STATES:.0}"
+            )));
+        }
+        let (position_sigma_m, velocity_sigma_m_s) =
+            (self.state_position_sigma_m, self.state_velocity_sigma_m_s);
+        let report = |number: u64| {
+            let time = first + Duration::from_seconds(interval_s * number as f64);
+            if !coverage.contains(&trajectory.seconds(time)) {
+                return None;
+            }
+            let state = trajectory.states_at(time).chaser;
+            let streams = seed.streams(number, Effect::ReportedOrbit);
+            let draw = |index: u64| normal(&mut streams.stream_at(index));
+            let error = |from: u64| Vector3::new(draw(from), draw(from + 1), draw(from + 2));
+            Some(ReportedState {
+                time,
+                position_km: state.position_km + error(0) * (position_sigma_m * 1e-3),
+                velocity_km_s: state.velocity_km_s + error(3) * (velocity_sigma_m_s * 1e-3),
+                position_sigma_m,
+                velocity_sigma_m_s,
+            })
+        };
+        Ok((0..=intervals as u64).filter_map(report).collect())
+    }
+}
+
+fn prior(sigmas: [f64; 6], truth: &RelativeElements, seed: Seed) -> Result<PriorOrbit, Failure> {
+    let draw = |index: u64| -> f64 {
+        let mut stream: Stream = seed.stream(0, Effect::RelativePrior, index);
+        normal(&mut stream)
+    };
+    let errors = Vector6::from_fn(|index, _| draw(index as u64));
+    let elements =
+        RelativeElements::from_vector(&(truth.vector() + errors.component_mul(&Vector6::from(sigmas))));
+    let covariance = Covariance6::from_sigmas(sigmas).map_err(ContractError::OutOfRange)?;
+    Ok(PriorOrbit { elements, covariance })
+}
+
+/// Returns the errors of the lines of sight: of the attitude in telemetry those of the scenario's
+/// calibration, of an attitude from stars those of the target's centre of brightness. The distances are
+/// those of the planned approach.
+fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch]) -> LineOfSightErrors {
+    let calibration = scenario.calibration();
+    let radius_m = calibration.target.map_or(0.0, |target| target.radius_m);
+    let inverse_squares = times.iter().map(|time| {
+        let range_m = truth.trajectory().states_at(*time).range_km() * 1000.0;
+        1.0 / (range_m * range_m)
+    });
+    let mean = inverse_squares.sum::<f64>() / times.len().max(1) as f64;
+    let arcsec = (BRIGHTNESS_OFFSET * radius_m * mean.sqrt()).to_degrees() * 3600.0;
+    let brightness = (arcsec > 0.0).then_some(SlowError {
+        sigma_arcsec: [arcsec.min(36_000.0); 2],
+        memory_s: BRIGHTNESS_MEMORY_S,
+        period_s: None,
+    });
+    let pixel_arcsec =
+        (scenario.camera.pixel_width_um * 1e-3 / scenario.camera.focal_length_mm).to_degrees() * 3600.0;
+    let centre_arcsec = (CENTRE_SIGMA_PX * pixel_arcsec).min(36_000.0);
+    let with_stars = AngleErrors {
+        white_arcsec: [centre_arcsec; 2],
+        slow: brightness.into_iter().collect(),
+        constant_arcsec: [STARS_CONSTANT_ARCSEC; 3],
+    };
+    let without_stars = match calibration.attitude {
+        None => with_stars.clone(),
+        Some(attitude) => of_telemetry(scenario, &attitude, centre_arcsec, brightness),
+    };
+    LineOfSightErrors { with_stars, without_stars }
+}
+
+fn of_telemetry(
+    scenario: &FarRangeScenario,
+    attitude: &AttitudeKnowledge,
+    centre_arcsec: f64,
+    brightness: Option<SlowError>,
+) -> AngleErrors {
+    let camera_from_body = scenario.mounting.nominal.camera_from_body().matrix();
+    // Variances about the body's axes become variances about the camera's. A rotation about x moves the
+    // direction along rows, one about y along columns.
+    let in_camera = |sigmas: [f64; 3]| {
+        let variances = Vector3::from(sigmas).map(|sigma| sigma * sigma);
+        (camera_from_body.component_mul(&camera_from_body) * variances).map(f64::sqrt)
+    };
+    let (white, slow) = (in_camera(attitude.white_arcsec), in_camera(attitude.slow_arcsec));
+    let constant = in_camera(attitude.constant_arcsec).map(|sigma| sigma.min(36_000.0));
+    let with_centre = |sigma: f64| libm::hypot(sigma, centre_arcsec).min(36_000.0);
+    let drift = (slow.x.max(slow.y) > 0.0).then_some(SlowError {
+        sigma_arcsec: [slow.y.min(36_000.0), slow.x.min(36_000.0)],
+        memory_s: attitude.slow_period_s,
+        period_s: None,
+    });
+    AngleErrors {
+        white_arcsec: [with_centre(white.y), with_centre(white.x)],
+        slow: drift.into_iter().chain(brightness).collect(),
+        constant_arcsec: constant.into(),
+    }
+}

@@ -1,0 +1,33 @@
+//! Relative navigation on a far-range run.
+//!
+//! A [`Campaign`] has what a navigator receives: measured lines of sight, reported manoeuvres, the chaser's
+//! reported orbit, a prior. [`navigate`] runs a built-in navigator on it and compares its answers with the
+//! truth of the simulator; [`bound_of`] computes what the measurements can determine at all.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+mod bound;
+mod campaign;
+mod estimator;
+mod knowledge;
+mod result;
+mod row;
+mod score;
+mod truth;
+
+pub use bound::{BoundAt, BoundReport, bound_of};
+pub use campaign::Campaign;
+pub use estimator::{Estimator, navigate};
+pub use knowledge::KnowledgeConfig;
+pub use result::{FIGURES_FILE, NavigationResult, TABLE_FILE};
+pub use row::{NavigationRow, read_navigation, tables};
+pub use score::{Axis, MeasurementUse, NavigationScore};

@@ -1,0 +1,82 @@
+//! `navigation.csv`: estimated and true relative orbit at each requested time.
+
+use std::path::Path;
+
+use files::{FieldDeclaration, FileError, Table, read_csv, table};
+use hifitime::Epoch;
+
+table! {
+    /// A row of `navigation.csv`. Axes are those of the target; the orbit is that of the chaser with respect
+    /// to the target; errors are estimated minus true.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct NavigationRow: csv {
+        /// time of the estimate, UTC; ascending
+        time_utc: Epoch,
+        /// `estimated`; or the reason for no estimate, in which case only the truth is stated:
+        /// `no_measurements`, `no_initial_orbit`, `no_chaser_orbit`, `no_convergence`, `failed: ` and a reason
+        status: String,
+        /// true position along R, T, N, m
+        true_position_m: [f64; 3] = ["true_r_m", "true_t_m", "true_n_m"],
+        /// error of the position along R, T, N, m
+        position_error_m: Option<[f64; 3]> = ["error_r_m", "error_t_m", "error_n_m"],
+        /// standard deviation of the position along R, T, N, m
+        position_sigma_m: Option<[f64; 3]> = ["sigma_r_m", "sigma_t_m", "sigma_n_m"],
+        /// error of the velocity in the rotating frame along R, T, N, m/s
+        velocity_error_m_s: Option<[f64; 3]> = ["error_v_r_m_s", "error_v_t_m_s", "error_v_n_m_s"],
+        /// standard deviation of the velocity along R, T, N, m/s
+        velocity_sigma_m_s: Option<[f64; 3]> = ["sigma_v_r_m_s", "sigma_v_t_m_s", "sigma_v_n_m_s"],
+        /// true mean relative elements, m
+        true_elements_m: [f64; 6] =
+            ["true_a_da_m", "true_a_dlambda_m", "true_a_dex_m", "true_a_dey_m", "true_a_dix_m", "true_a_diy_m"],
+        /// error of the mean relative elements, m
+        elements_error_m: Option<[f64; 6]> = [
+            "error_a_da_m", "error_a_dlambda_m", "error_a_dex_m", "error_a_dey_m", "error_a_dix_m", "error_a_diy_m"
+        ],
+        /// standard deviation of the mean relative elements, m
+        elements_sigma_m: Option<[f64; 6]> = [
+            "sigma_a_da_m", "sigma_a_dlambda_m", "sigma_a_dex_m", "sigma_a_dey_m", "sigma_a_dix_m", "sigma_a_diy_m"
+        ],
+        /// squared error of position and velocity, normalised by their covariance (NEES, six dimensions)
+        nees_state: Option<f64>,
+        /// squared error of the position, normalised by its covariance (NEES, three dimensions)
+        nees_position: Option<f64>,
+        /// squared error of the elements, normalised by their covariance (NEES, six dimensions)
+        nees_elements: Option<f64>,
+    }
+}
+
+impl NavigationRow {
+    /// Status of a row with an estimate.
+    pub const ESTIMATED: &'static str = "estimated";
+
+    /// Returns the true distance between chaser and target, m.
+    pub fn true_range_m(&self) -> f64 {
+        let [r, t, n] = self.true_position_m;
+        (r * r + t * t + n * n).sqrt()
+    }
+
+    /// Returns the estimated minus the true distance, m; `None` without an estimate.
+    pub fn range_error_m(&self) -> Option<f64> {
+        let errors = self.position_error_m?;
+        let sum: f64 = self
+            .true_position_m
+            .iter()
+            .zip(errors)
+            .map(|(truth, error)| (truth + error) * (truth + error))
+            .sum();
+        Some(sum.sqrt() - self.true_range_m())
+    }
+}
+
+/// Reads a `navigation.csv`.
+///
+/// # Errors
+/// [`FileError`] with line and column of the first invalid cell.
+pub fn read_navigation(path: &Path) -> Result<Vec<NavigationRow>, FileError> {
+    read_csv(path)
+}
+
+/// Returns the columns of the table of this crate, by file name.
+pub fn tables() -> [(&'static str, Vec<FieldDeclaration>); 1] {
+    [("navigation.csv", NavigationRow::declarations())]
+}

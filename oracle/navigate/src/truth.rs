@@ -1,0 +1,72 @@
+//! True relative orbit.
+
+use contract::navigation::RelativeElements;
+use files::Failure;
+use hifitime::Epoch;
+use nalgebra::{Vector3, Vector6};
+use navigation::Osculation;
+use navigation::orbit::State;
+use navigation::relative::between;
+use scenario::{FarRangeScenario, TrajectoryConfig};
+use sim::truth::{Trajectory, clock};
+
+/// True relative orbit of a run.
+#[derive(Debug, Clone)]
+pub(crate) struct Truth {
+    trajectory: Trajectory,
+    osculation: Osculation,
+}
+
+impl Truth {
+    pub(crate) fn new(scenario: &FarRangeScenario) -> Result<Self, Failure> {
+        let osculation = match scenario.trajectory {
+            TrajectoryConfig::MeanElements {} => Osculation::None,
+            _ => Osculation::FirstOrder,
+        };
+        Ok(Self { trajectory: scenario.trajectory()?, osculation })
+    }
+
+    pub(crate) fn trajectory(&self) -> &Trajectory {
+        &self.trajectory
+    }
+
+    /// Relation of mean elements and states in the simulator's trajectory.
+    pub(crate) fn osculation(&self) -> Osculation {
+        self.osculation
+    }
+
+    /// Returns position, m, and velocity in the rotating frame, m/s, of the chaser in the target's R, T, N.
+    pub(crate) fn state(&self, time: Epoch) -> Vector6<f64> {
+        let states = self.trajectory.states_at(time);
+        let rtn_from_icrs = states.target.rtn_from_icrs();
+        let position: Vector3<f64> =
+            rtn_from_icrs.rotate(&(states.chaser.position_km - states.target.position_km)) * 1000.0;
+        let inertial =
+            rtn_from_icrs.rotate(&(states.chaser.velocity_km_s - states.target.velocity_km_s)) * 1000.0;
+        let (r, v) = (&states.target.position_km, &states.target.velocity_km_s);
+        let rate = Vector3::new(0.0, 0.0, r.cross(v).norm() / r.norm_squared());
+        let velocity = inertial - rate.cross(&position);
+        Vector6::new(position.x, position.y, position.z, velocity.x, velocity.y, velocity.z)
+    }
+
+    /// Returns the mean relative elements: those of the trajectory if it has mean elements, otherwise those
+    /// of the true states without their short-period variations of first order in J2.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a state without supported elements.
+    pub(crate) fn elements(&self, time: Epoch) -> Result<RelativeElements, Failure> {
+        let unsupported =
+            || Failure::Usage(format!("the true orbits have no elements at {}", clock::format_utc(time)));
+        if self.osculation == Osculation::None {
+            let sim::truth::RelativeElements { a_da_m, a_dlambda_m, a_dex_m, a_dey_m, a_dix_m, a_diy_m } =
+                self.trajectory.relative_elements(time).ok_or_else(unsupported)?;
+            return Ok(RelativeElements { a_da_m, a_dlambda_m, a_dex_m, a_dey_m, a_dix_m, a_diy_m });
+        }
+        let states = self.trajectory.states_at(time);
+        let mean = |state: sim::truth::State| {
+            let sim::truth::State { position_km, velocity_km_s } = state;
+            self.osculation.mean(&State { position_km, velocity_km_s }).ok_or_else(unsupported)
+        };
+        Ok(between(&mean(states.chaser)?, &mean(states.target)?))
+    }
+}
