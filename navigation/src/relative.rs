@@ -168,3 +168,86 @@ pub(crate) fn control_matrix(orbit: &Orbit) -> Matrix6x3<f64> {
         sin,
     ) * per_n
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::Drift;
+    use crate::reference::kicked;
+    use crate::short_period::Osculation;
+    use nalgebra::Vector3;
+
+    const CHASER: Orbit = Orbit { a_km: 7130.0, u: 0.7, ex: 0.001, ey: 0.0028, i: 1.7153, raan: 2.2 };
+
+    fn elements() -> Vector6<f64> {
+        Vector6::new(30.0, -20_000.0, 120.0, 350.0, -80.0, 300.0)
+    }
+
+    #[test]
+    fn the_target_of_relative_elements_has_them() {
+        let relative = RelativeElements::from_vector(&elements());
+        let back = between(&CHASER, &target(&CHASER, &relative)).vector();
+        // Angles of a rad are rounded to 4e-16 rad; times 7e6 m, these are 3 nm, several times.
+        assert!((back - elements()).abs().max() < 1e-7, "{back}");
+    }
+
+    /// The drift of relative elements is the difference of two secular drifts, `Orbit::propagate`.
+    #[test]
+    fn the_drift_is_that_of_the_two_orbits() {
+        let relative = RelativeElements::from_vector(&elements());
+        let of_target = target(&CHASER, &relative);
+        let drift = Drift::new(0.0, relative, CHASER).unwrap();
+        for seconds in [-50_000.0, 3000.0, 432_000.0] {
+            let expected = between(&CHASER.propagate(seconds), &of_target.propagate(seconds)).vector();
+            let got = drift.at(seconds, 0.0).vector();
+            // Rates of 1e-3 rad/s over 4e5 s are rounded to 1e-13 rad, 1 µm.
+            assert!((got - expected).abs().max() < 1e-5, "{seconds}: {got} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_transition_matrix_is_the_slope_of_the_drift() {
+        let of_target = target(&CHASER, &RelativeElements::from_vector(&elements()));
+        let seconds = 200_000.0;
+        let phi = DriftPartials::new(&of_target).transition(seconds);
+        for column in 0..6 {
+            let at = |sign: f64| {
+                let mut moved = elements();
+                moved[column] += sign;
+                let drift = Drift::new(0.0, RelativeElements::from_vector(&moved), CHASER).unwrap();
+                drift.at(seconds, 0.0).vector()
+            };
+            let slope = (at(1.0) - at(-1.0)) / 2.0;
+            // The scale of the elements, the target's a, varies with aδa: 1e-3 of the drifts at 20 km.
+            let error = (phi.column(column) - slope).abs().max() / slope.abs().max();
+            assert!(error < 2e-3, "{column}: {error}");
+        }
+    }
+
+    #[test]
+    fn the_control_matrix_is_the_slope_of_an_impulse() {
+        let of_target = target(&CHASER, &RelativeElements::from_vector(&elements()));
+        let control = control_matrix(&CHASER);
+        for axis in 0..3 {
+            let mut dv = Vector3::zeros();
+            dv[axis] = 0.01;
+            let at = |dv: &Vector3<f64>| {
+                between(&kicked(&CHASER, dv, Osculation::None).unwrap(), &of_target).vector()
+            };
+            let slope = (at(&dv) - at(&-dv)) / 0.02;
+            // Omitted terms are of the order of e = 0.003; the largest factor of e is 2, of e cot i less.
+            let error = (control.column(axis) - slope).abs().max() / slope.abs().max();
+            assert!(error < 0.008, "{axis}: {error}");
+        }
+    }
+
+    /// A constant rate of aδa changes aδλ by half its product with the drift per aδa and the time squared.
+    #[test]
+    fn drag_moves_the_chaser_quadratically() {
+        let (rate, day) = (1e-4, 86_400.0);
+        let moved = DriftPartials::new(&CHASER).drag(day) * rate;
+        assert!((moved[0] - rate * day).abs() < 1e-12);
+        let expected = -0.75 * CHASER.mean_motion() * rate * day * day;
+        assert!((moved[1] / expected - 1.0).abs() < 0.01, "{moved}");
+    }
+}
