@@ -23,6 +23,7 @@ pub use ::report;
 pub use files::{self, failure, sha256, toml_file};
 pub use flight_dynamics;
 pub use gate;
+pub use navigate;
 pub use run::{self, frame_jobs, pipeline_choice};
 pub use scenario::{self, run_file};
 pub use score;

@@ -11,6 +11,7 @@ mod interrupt;
 #[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 mod missing_feature;
 mod monitor;
+mod navigate;
 mod options;
 mod output;
 mod report;
@@ -70,6 +71,8 @@ enum Command {
     Show(show::ShowArguments),
     /// Write truth or measurements of a far-range run as a message of CCSDS: OEM, AEM or TDM
     Export(export::ExportArguments),
+    /// Determine the relative orbit from the lines of sight of a far-range run, and compare it with the truth
+    Navigate(navigate::NavigateArguments),
     /// Serve an operator's page on loopback: camera, ground track, phase chart, model and parameters
     #[command(
         after_help = "SCENARIO may be the directory of a run, which is replayed with its pictures rendered \
@@ -120,6 +123,7 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Report(arguments) => report::report(&arguments, &output),
         Command::Show(arguments) => show::show(&arguments, &output),
         Command::Export(arguments) => export::export(&arguments, &output),
+        Command::Navigate(arguments) => navigate::navigate(&arguments, &output),
         Command::Monitor(arguments) => monitor::monitor(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
         Command::Completions(arguments) => shell::completions(&arguments, Arguments::command(), &output),

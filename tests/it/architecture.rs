@@ -24,11 +24,11 @@ const ARROWS: [(&str, &str); 22] = [
     ("gate", "files run scenario score sim statistics study"),
     ("visibility", "contract files pipeline run scenario sim statistics"),
     ("show", "contract"),
-    ("report", "contract files gate run scenario score sim study visibility"),
+    ("report", "contract files gate navigate run scenario score sim study visibility"),
     ("monitor", "contract files run scenario score sim"),
     (
         "boresight",
-        "contract files flight-dynamics gate mitsuba monitor pipeline report research run scenario score show sim statistics study visibility",
+        "contract files flight-dynamics gate mitsuba monitor navigate pipeline report research run scenario score show sim statistics study visibility",
     ),
     ("python", "boresight contract pipeline sim"),
     ("fuzz", "boresight contract pipeline sim"),

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use boresight::files::{ColumnType, FieldDeclaration, csv_tables, parquet_tables};
 use boresight::gate::row_columns;
+use boresight::navigate;
 use boresight::study::case_columns;
 use boresight::visibility;
 
@@ -34,7 +35,11 @@ fn line(field: &FieldDeclaration, is_csv: bool) -> String {
 
 /// Page with the declared tables inserted between its marks.
 fn page(old: &str) -> String {
-    let csv = csv_tables().into_iter().chain(visibility::tables()).map(|(name, fields)| (name, fields, true));
+    let csv = csv_tables()
+        .into_iter()
+        .chain(visibility::tables())
+        .chain(navigate::tables())
+        .map(|(name, fields)| (name, fields, true));
     let others = [("rows.parquet", row_columns()), ("cases.parquet", case_columns())];
     let parquet = parquet_tables().into_iter().chain(others).map(|(name, fields)| (name, fields, false));
     let mut page = old.to_owned();

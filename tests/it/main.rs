@@ -40,6 +40,7 @@ mod mitsuba;
 mod mitsuba_live;
 mod monitor;
 mod named_suites;
+mod navigation;
 mod real_images;
 mod reference_pages;
 mod report;

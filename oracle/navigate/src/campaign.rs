@@ -11,7 +11,7 @@ use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use sim::truth::Schedule;
 
-use crate::knowledge::KnowledgeConfig;
+use crate::knowledge::{KnowledgeConfig, Method};
 use crate::truth::Truth;
 
 /// Largest angle between a line of sight and the reported boresight beyond the corner of the image, degrees.
@@ -67,7 +67,10 @@ impl Campaign {
             let expected = "a detected target with a line of sight in at least one row";
             return Err(FileError::value(&path, FileLocation::Whole, "los_j2000_x", "", expected).into());
         };
-        let setup = knowledge.setup(scenario, &truth, epoch, &times)?;
+        // Only a pipeline that solves the attitude in each image states the error of a line of sight.
+        let has_covariance = measurements.iter().any(|measurement| measurement.covariance.is_some());
+        let method = if has_covariance { Method::StarAttitude } else { Method::StarMounting };
+        let setup = knowledge.setup(scenario, &truth, &times, method)?;
         let mut arrivals: Vec<Arrival> = measurements
             .into_iter()
             .map(|measurement| Arrival { arrives: measurement.time, event: Event::LineOfSight(measurement) })
@@ -90,7 +93,7 @@ impl Campaign {
     }
 
     /// Creates the campaign of a scenario that has not been flown: every frame has a line of sight, with the
-    /// white error of a typical centre and an attitude from stars. Above 20000 frames, each line of sight
+    /// errors of an attitude from telemetry and a mounting from stars. Above 20000 frames, each line of sight
     /// stands for several, with a smaller error.
     ///
     /// # Errors
@@ -111,7 +114,7 @@ impl Campaign {
         let (Some(epoch), Some(last)) = (times.first().copied(), times.last().copied()) else {
             return Err(Failure::Usage(format!("scenario `{name}` has no frames")));
         };
-        let setup = knowledge.setup(scenario, &truth, epoch, &times)?;
+        let setup = knowledge.setup(scenario, &truth, &times, Method::StarMounting)?;
         let [across, along] = setup
             .errors
             .with_stars

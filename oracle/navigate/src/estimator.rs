@@ -133,11 +133,11 @@ fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N, N>
     squared.is_finite().then_some(squared)
 }
 
-fn row(truth: &Truth, time_utc: Epoch, answer: Answer) -> Result<NavigationRow, Failure> {
-    let (state, elements) = (truth.state(time_utc), truth.elements(time_utc)?.vector());
+fn row(truth: &Truth, time: Epoch, answer: Answer) -> Result<NavigationRow, Failure> {
+    let (state, elements) = (truth.state(time), truth.elements(time)?.vector());
     let three = |v: &Vector6<f64>, from: usize| -> [f64; 3] { v.fixed_rows::<3>(from).into_owned().into() };
     let mut row = NavigationRow {
-        time_utc,
+        time_utc: files::format_utc(time),
         status: NavigationRow::ESTIMATED.to_owned(),
         true_position_m: three(&state, 0),
         position_error_m: None,

@@ -28,8 +28,29 @@ const STARS_CONSTANT_ARCSEC: f64 = 1.0;
 /// Standard deviation of a centre that has no covariance of its own, px.
 const CENTRE_SIGMA_PX: f64 = 0.1;
 
+/// Shortest time over which states are reported, s: a navigator fits an orbit to them.
+const MIN_STATES_S: f64 = 900.0;
+
 /// Largest number of reported states.
 const MAX_STATES: f64 = 1e6;
+
+/// Constant error of a line of sight with the attitude of telemetry and a mounting from stars, arcsec.
+const MOUNTING_CONSTANT_ARCSEC: f64 = 5.0;
+
+/// Largest number of periods of the drift of the attitude in telemetry.
+const MAX_PERIODS: usize = 6;
+
+/// Memory of that drift, in periods.
+const DRIFT_MEMORY_PERIODS: f64 = 10.0;
+
+/// Use of stars by the pipeline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Method {
+    /// The attitude of the camera in each image.
+    StarAttitude,
+    /// The mounting of the camera, filtered over images; the attitude is that of telemetry.
+    StarMounting,
+}
 
 /// Knowledge of the chaser about its orbit and the relative orbit.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -45,20 +66,20 @@ pub struct KnowledgeConfig {
 }
 
 impl Default for KnowledgeConfig {
-    /// Values of a receiver of satellite navigation, and of a relative orbit from two-line elements.
+    /// Values of a receiver of satellite navigation, and of a relative orbit from radar on the ground.
     fn default() -> Self {
         Self {
             state_interval_s: 120.0,
             state_position_sigma_m: 10.0,
             state_velocity_sigma_m_s: 0.05,
-            prior_sigma_m: Some([50.0, 2000.0, 200.0, 200.0, 200.0, 200.0]),
+            prior_sigma_m: Some([2.0, 500.0, 30.0, 30.0, 30.0, 30.0]),
         }
     }
 }
 
 impl KnowledgeConfig {
-    /// Builds the setup of a navigator for measurements at `times`, in order. States and prior are those of
-    /// the truth with errors drawn from the scenario's seed.
+    /// Builds the setup of a navigator for measurements at `times`, in order; the first is the epoch. States
+    /// and prior are those of the truth with errors drawn from the scenario's seed.
     ///
     /// # Errors
     /// [`Failure::Usage`] if the true orbits have no elements at the first time.
@@ -66,10 +87,11 @@ impl KnowledgeConfig {
         &self,
         scenario: &FarRangeScenario,
         truth: &Truth,
-        epoch: Epoch,
         times: &[Epoch],
+        method: Method,
     ) -> Result<NavigationSetup, Failure> {
         let seed = Seed { seed: scenario.seed, case: 0 };
+        let epoch = times.first().copied().unwrap_or_else(|| truth.trajectory().epoch());
         let last = times.last().copied().unwrap_or(epoch);
         let prior = match self.prior_sigma_m {
             None => None,
@@ -80,7 +102,7 @@ impl KnowledgeConfig {
             chaser_orbit: ChaserOrbit::States(self.states(truth.trajectory(), seed, [epoch, last])?),
             camera_from_body: scenario.mounting.nominal.camera_from_body(),
             prior,
-            errors: errors(scenario, truth, times),
+            errors: errors(scenario, truth, times, method),
             drag: DifferentialDrag::default(),
         })
     }
@@ -93,7 +115,8 @@ impl KnowledgeConfig {
     ) -> Result<Vec<ReportedState>, Failure> {
         let coverage = trajectory.coverage_s();
         let interval_s = self.state_interval_s;
-        let intervals = ((last - first).to_seconds() / interval_s).ceil().max(1.0) + 1.0;
+        let span_s = (last - first).to_seconds().max(MIN_STATES_S);
+        let intervals = (span_s / interval_s).ceil() + 1.0;
         if !intervals.is_finite() || intervals > MAX_STATES {
             return Err(Failure::Usage(format!(
                 "the chaser reports {intervals:.0} states, expected at most {MAX_STATES:.0}"
@@ -135,17 +158,16 @@ fn prior(sigmas: [f64; 6], truth: &RelativeElements, seed: Seed) -> Result<Prior
 }
 
 /// Returns the errors of the lines of sight: of the attitude in telemetry those of the scenario's
-/// calibration, of an attitude from stars those of the target's centre of brightness. The distances are
-/// those of the planned approach.
-fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch]) -> LineOfSightErrors {
+/// calibration, of an attitude from stars those of the target's centre of brightness, as an angle at the
+/// smallest distance.
+fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch], method: Method) -> LineOfSightErrors {
     let calibration = scenario.calibration();
     let radius_m = calibration.target.map_or(0.0, |target| target.radius_m);
-    let inverse_squares = times.iter().map(|time| {
-        let range_m = truth.trajectory().states_at(*time).range_km() * 1000.0;
-        1.0 / (range_m * range_m)
-    });
-    let mean = inverse_squares.sum::<f64>() / times.len().max(1) as f64;
-    let arcsec = (BRIGHTNESS_OFFSET * radius_m * mean.sqrt()).to_degrees() * 3600.0;
+    let nearest_m = times
+        .iter()
+        .map(|time| truth.trajectory().states_at(*time).range_km() * 1000.0)
+        .fold(f64::INFINITY, f64::min);
+    let arcsec = (BRIGHTNESS_OFFSET * radius_m / nearest_m).to_degrees() * 3600.0;
     let brightness = (arcsec > 0.0).then_some(SlowError {
         sigma_arcsec: [arcsec.min(36_000.0); 2],
         memory_s: BRIGHTNESS_MEMORY_S,
@@ -154,14 +176,20 @@ fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch]) -> LineOf
     let pixel_arcsec =
         (scenario.camera.pixel_width_um * 1e-3 / scenario.camera.focal_length_mm).to_degrees() * 3600.0;
     let centre_arcsec = (CENTRE_SIGMA_PX * pixel_arcsec).min(36_000.0);
-    let with_stars = AngleErrors {
+    let solved = AngleErrors {
         white_arcsec: [centre_arcsec; 2],
         slow: brightness.into_iter().collect(),
         constant_arcsec: [STARS_CONSTANT_ARCSEC; 3],
     };
-    let without_stars = match calibration.attitude {
-        None => with_stars.clone(),
-        Some(attitude) => of_telemetry(scenario, &attitude, centre_arcsec, brightness),
+    let Some(attitude) = calibration.attitude else {
+        return LineOfSightErrors { with_stars: solved.clone(), without_stars: solved };
+    };
+    let without_stars = of_telemetry(scenario, &attitude, centre_arcsec, brightness);
+    let with_stars = match method {
+        Method::StarAttitude => solved,
+        Method::StarMounting => {
+            AngleErrors { constant_arcsec: [MOUNTING_CONSTANT_ARCSEC; 3], ..without_stars.clone() }
+        }
     };
     LineOfSightErrors { with_stars, without_stars }
 }
@@ -182,14 +210,18 @@ fn of_telemetry(
     let (white, slow) = (in_camera(attitude.white_arcsec), in_camera(attitude.slow_arcsec));
     let constant = in_camera(attitude.constant_arcsec).map(|sigma| sigma.min(36_000.0));
     let with_centre = |sigma: f64| libm::hypot(sigma, centre_arcsec).min(36_000.0);
-    let drift = (slow.x.max(slow.y) > 0.0).then_some(SlowError {
-        sigma_arcsec: [slow.y.min(36_000.0), slow.x.min(36_000.0)],
-        memory_s: attitude.slow_period_s,
-        period_s: None,
+    let periods =
+        scenario.knowledge.drift.periods_s.iter().filter(|period| **period >= 1.0).take(MAX_PERIODS);
+    let share = 1.0 / (periods.clone().count().max(1) as f64).sqrt();
+    // Sinusoids of constant amplitude, as far as a few periods are concerned.
+    let drift = periods.filter(|_| slow.x.max(slow.y) > 0.0).map(|period| SlowError {
+        sigma_arcsec: [slow.y, slow.x].map(|sigma| (share * sigma).min(36_000.0)),
+        memory_s: (DRIFT_MEMORY_PERIODS * period).min(1e9),
+        period_s: Some(period.min(1e9)),
     });
     AngleErrors {
         white_arcsec: [with_centre(white.y), with_centre(white.x)],
-        slow: drift.into_iter().chain(brightness).collect(),
+        slow: drift.chain(brightness).collect(),
         constant_arcsec: constant.into(),
     }
 }

@@ -1,8 +1,9 @@
 //! Relative navigation on a far-range run.
 //!
-//! A [`Campaign`] has what a navigator receives: measured lines of sight, reported manoeuvres, the chaser's
+//! A [`Campaign`] is the input of a navigator: measured lines of sight, reported manoeuvres, the chaser's
 //! reported orbit, a prior. [`navigate`] runs a built-in navigator on it and compares its answers with the
-//! truth of the simulator; [`bound_of`] computes what the measurements can determine at all.
+//! truth of the simulator; [`bound_of`] computes the smallest standard deviations that the measurements
+//! allow.
 
 #![cfg_attr(
     not(test),

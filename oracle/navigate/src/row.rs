@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use files::{FieldDeclaration, FileError, Table, read_csv, table};
+use files::{CsvLine, CsvReader, FieldDeclaration, FileError, Table, parse_utc, table};
 use hifitime::Epoch;
 
 table! {
@@ -11,9 +11,10 @@ table! {
     #[derive(Debug, Clone, PartialEq)]
     pub struct NavigationRow: csv {
         /// time of the estimate, UTC; ascending
-        time_utc: Epoch,
+        time_utc: String,
         /// `estimated`; or the reason for no estimate, in which case only the truth is stated:
-        /// `no_measurements`, `no_initial_orbit`, `no_chaser_orbit`, `no_convergence`, `failed: ` and a reason
+        /// `no_measurements`, `no_initial_orbit`, `no_chaser_orbit`, `no_convergence`, `failed: ` and a
+        /// reason
         status: String,
         /// true position along R, T, N, m
         true_position_m: [f64; 3] = ["true_r_m", "true_t_m", "true_n_m"],
@@ -49,6 +50,11 @@ impl NavigationRow {
     /// Status of a row with an estimate.
     pub const ESTIMATED: &'static str = "estimated";
 
+    /// Returns the time of the estimate; `None` for a text that is not UTC, which no read row has.
+    pub fn time(&self) -> Option<Epoch> {
+        parse_utc(&self.time_utc).ok()
+    }
+
     /// Returns the true distance between chaser and target, m.
     pub fn true_range_m(&self) -> f64 {
         let [r, t, n] = self.true_position_m;
@@ -73,7 +79,11 @@ impl NavigationRow {
 /// # Errors
 /// [`FileError`] with line and column of the first invalid cell.
 pub fn read_navigation(path: &Path) -> Result<Vec<NavigationRow>, FileError> {
-    read_csv(path)
+    CsvReader::open::<NavigationRow>(path)?.read_rows(|row, _: Option<&NavigationRow>| {
+        let read = NavigationRow::read(row)?;
+        parse_utc(&read.time_utc).map_err(|expected| row.error("time_utc", expected))?;
+        Ok(read)
+    })
 }
 
 /// Returns the columns of the table of this crate, by file name.

@@ -149,7 +149,7 @@ fn by_day(rows: &[&NavigationRow]) -> IndexMap<String, [f64; 3]> {
     let mut days: IndexMap<String, (f64, [f64; 3])> = IndexMap::new();
     for row in rows {
         let Some(errors) = row.position_error_m else { continue };
-        let day: String = files::format_utc(row.time_utc).chars().take(10).collect();
+        let day: String = row.time_utc.chars().take(10).collect();
         let (count, squares) = days.entry(day).or_insert((0.0, [0.0; 3]));
         *count += 1.0;
         squares.iter_mut().zip(errors).for_each(|(sum, error)| *sum += error * error);
@@ -163,12 +163,12 @@ fn mean(rows: &[&NavigationRow], of: impl Fn(&NavigationRow) -> Option<f64>) -> 
 }
 
 fn convergence_s(rows: &[NavigationRow]) -> Option<f64> {
-    let first = rows.first()?.time_utc;
+    let first = rows.first()?.time()?;
     let is_converged = |row: &NavigationRow| {
         row.range_error_m().is_some_and(|error| error.abs() < CONVERGED * row.true_range_m())
     };
     let from = rows.iter().rposition(|row| !is_converged(row)).map_or(0, |place| place + 1);
-    rows.get(from).map(|row| (row.time_utc - first).to_seconds())
+    Some((rows.get(from)?.time()? - first).to_seconds())
 }
 
 #[cfg(test)]
@@ -178,7 +178,9 @@ mod tests {
 
     fn row(minute: f64, error: Option<[f64; 3]>) -> NavigationRow {
         NavigationRow {
-            time_utc: Epoch::from_gregorian_utc_at_midnight(2012, 4, 26) + Unit::Minute * minute,
+            time_utc: files::format_utc(
+                Epoch::from_gregorian_utc_at_midnight(2012, 4, 26) + Unit::Minute * minute,
+            ),
             status: if error.is_some() { "estimated" } else { "no_initial_orbit" }.to_owned(),
             true_position_m: [0.0, -1000.0, 0.0],
             position_error_m: error,

@@ -7,6 +7,7 @@ mod covariances;
 mod error_budget;
 mod frame_detail;
 mod image;
+mod navigation;
 mod run;
 mod series;
 
@@ -88,6 +89,7 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Fa
         series::stars(run),
         attitude::mounting(run),
         attitude::aberration(run)?,
+        navigation::errors(run),
         covariances::covariances(&run.score),
         causes(run),
         budget::budget(run),

@@ -16,6 +16,7 @@ use std::path::Path;
 use contract::Outcome;
 use files::{Failure, TableReader, TelemetryRow, format_utc, read_measurements, read_telemetry};
 use hifitime::{Epoch, Unit};
+use navigate::{NavigationRow, TABLE_FILE, read_navigation};
 use run::{FarRangeMission, World as _};
 use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
@@ -48,6 +49,8 @@ pub struct FarRangeRun {
     /// Runs on the same frames, each with the truth in place of one stage's result; empty without an error
     /// budget.
     pub budget: Vec<InjectedRun>,
+    /// Content of `navigation.csv`; empty if the run has none.
+    pub navigation: Vec<NavigationRow>,
 }
 
 impl FarRangeRun {
@@ -104,7 +107,9 @@ impl FarRangeRun {
                 truths.len()
             )));
         }
-        Ok(Self { run_file, score, verdicts, truths, outcomes, telemetry, budget: Vec::new() })
+        let table = directory.join(TABLE_FILE);
+        let navigation = if table.is_file() { read_navigation(&table)? } else { Vec::new() };
+        Ok(Self { run_file, score, verdicts, truths, outcomes, telemetry, budget: Vec::new(), navigation })
     }
 
     /// Returns the times of the given rows in the unit of the time axis.
