@@ -373,4 +373,22 @@ mod tests {
         }
         assert_eq!(slow.report(), None, "0.3 m/s is six times the speed that is expected");
     }
+
+    /// Any number of fields of the same time contains no rates; the motion begins with the first later field.
+    #[test]
+    fn fields_of_one_moment_give_no_motion() {
+        let mut tracker = MotionTracker::new(MotionConfig::default()).unwrap();
+        for k in 0..30 {
+            let (_, estimate) = measured(|_| approach(1.0), k, 8);
+            tracker.add(1.0, &estimate, &Matrix6::zeros());
+            assert_eq!(tracker.clone().report(), None, "field {k}");
+        }
+        for k in 1..MIN_FIELDS {
+            assert_eq!(tracker.clone().report(), None, "{k} moments");
+            let time_s = 1.0 + 0.02 * f64::from(k);
+            let (_, estimate) = measured(|_| approach(time_s), 30 + k, 8);
+            tracker.add(time_s, &estimate, &Matrix6::zeros());
+        }
+        assert_eq!(tracker.report().unwrap().fields, MIN_FIELDS);
+    }
 }

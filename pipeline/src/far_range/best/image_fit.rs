@@ -477,3 +477,130 @@ impl Share {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::lost_in_space::tests::Random;
+    use super::*;
+
+    const SIDE: usize = 25;
+
+    fn noise() -> PixelNoise {
+        PixelNoise { readout_e2: 225.0, response: 0.0 }
+    }
+
+    /// Returns a model with free position, flux and background, and a Gaussian image of known width.
+    fn model(x_px: f64, y_px: f64, flux_e: f64, background_e: f64, sigma_px: f64) -> ImageModel<'static> {
+        ImageModel {
+            x_px: Prior::free(x_px),
+            y_px: Prior::free(y_px),
+            flux_e: Prior::free(flux_e),
+            background_e: Prior::free(background_e),
+            log_width: Prior::fixed(0.0),
+            log_elongation: Prior::fixed(0.0),
+            halo_fraction: Prior::fixed(0.0),
+            image: PointImage { sigma_px, halo_sigma_px: 4.0, halo_fraction: 0.0, trail_px: [0.0; 2] },
+            neighbours: &[],
+        }
+    }
+
+    /// Returns the expected pixels of a Gaussian source on a background.
+    fn expected(x_px: f64, y_px: f64, flux_e: f64, background_e: f64, sigma_px: f64) -> Vec<Pixel> {
+        let share = |pixel: usize, centre: f64| {
+            let cumulative =
+                |edge: f64| 0.5 * libm::erf((edge - centre) / (sigma_px * std::f64::consts::SQRT_2));
+            cumulative(pixel as f64 + 0.5) - cumulative(pixel as f64 - 0.5)
+        };
+        let electrons = |column, row| background_e + flux_e * share(column, x_px) * share(row, y_px);
+        (0..SIDE * SIDE)
+            .map(|i| (i % SIDE, i / SIDE))
+            .map(|(column, row)| Pixel { column, row, electrons: electrons(column, row) })
+            .collect()
+    }
+
+    fn fit(pixels: &[Pixel], model: &ImageModel<'_>) -> Option<FittedImage> {
+        ImageFitter::default().fit(pixels, (SIDE, SIDE), noise(), model)
+    }
+
+    #[test]
+    fn fewer_than_four_pixels_are_no_fit() {
+        let pixels = expected(12.2, 11.9, 9000.0, 50.0, 0.8);
+        let core = [(12, 12), (13, 12), (12, 11), (11, 12)].map(|(column, row)| pixels[row * SIDE + column]);
+        let free = model(12.0, 12.0, 8000.0, 50.0, 0.8);
+        let with_priors = ImageModel {
+            x_px: Prior::normal(12.0, 1.0),
+            y_px: Prior::normal(12.0, 1.0),
+            background_e: Prior::normal(50.0, 5.0),
+            ..free
+        };
+        for model in [free, with_priors] {
+            assert!(fit(&core, &model).is_some());
+            for count in 0..4 {
+                assert_eq!(fit(&core[..count], &model), None, "{count} pixels");
+            }
+        }
+    }
+
+    /// A model without flux has no derivative by the position. From an initial flux, the fit may end at a
+    /// flux near 0, with a position that is uncertain by more than the window.
+    #[test]
+    fn no_light_gives_no_position() {
+        let dark = expected(12.0, 12.0, 0.0, 50.0, 0.8);
+        assert_eq!(fit(&dark, &model(12.0, 12.0, 0.0, 50.0, 0.8)), None);
+        for flux_e in [1.0, 300.0, 8000.0] {
+            if let Some(found) = fit(&dark, &model(12.3, 11.8, flux_e, 50.0, 0.8)) {
+                let [xx, _, yy] = found.covariance_px2;
+                assert!(xx.min(yy).sqrt() > SIDE as f64, "from {flux_e} e: {found:?}");
+                assert!(found.flux_e.abs() < 0.1 * found.flux_sigma_e, "from {flux_e} e: {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_centre_over_eight_pixels_outside_the_window_is_no_fit() {
+        let found =
+            |x_px: f64| fit(&expected(x_px, 12.0, 1e6, 50.0, 4.0), &model(x_px, 12.0, 1e6, 50.0, 4.0));
+        assert!(found(-8.3).is_some_and(|found| (found.x_px + 8.3).abs() < 1e-6));
+        assert_eq!(found(-8.7), None);
+    }
+
+    /// Where the background dominates, the variance v of a pixel is uniform. For a well-sampled Gaussian
+    /// G = exp(−r²/2σ²)/(2πσ²), the Fisher information of the centre along x is
+    /// (F²/v) ∫ (x/σ²)² G² dx dy = (F²/v) (1/4π²σ⁸) (πσ⁴/2) = F²/(8πσ⁴v), so σ_x = √(8π) σ² √v/F (King 1983,
+    /// PASP 95, 163). Integration over pixels widens the image: σ² + 1/12 px² replaces σ².
+    #[test]
+    fn the_sigma_of_a_centre_in_background_noise_is_that_of_king_1983() {
+        const DRAWS: u32 = 1000;
+        let background_e = 1e6;
+        let mut random = Random(1983);
+        for (sigma_px, x_px, y_px) in [(1.2, 12.0, 12.0), (1.2, 12.3, 11.6), (2.0, 12.4, 12.1)] {
+            // The brightest pixel is 0.7 % above the background, and σ_x is 0.12 px: the fit is linear.
+            let flux_e = 42_000.0 * sigma_px * sigma_px;
+            let variance = background_e + noise().readout_e2;
+            let closed =
+                (8.0 * std::f64::consts::PI * variance).sqrt() * (sigma_px * sigma_px + 1.0 / 12.0) / flux_e;
+            let model = model(x_px, y_px, flux_e, background_e, sigma_px);
+            let pixels = expected(x_px, y_px, flux_e, background_e, sigma_px);
+            let [xx, xy, yy] = fit(&pixels, &model).unwrap().covariance_px2;
+            // Tolerance: the source's own noise, at most 0.35 % of σ, and higher orders of the pixel's size.
+            for sigma in [xx.sqrt(), yy.sqrt()] {
+                assert!((sigma / closed - 1.0).abs() < 0.01, "{sigma_px} px: {sigma} {closed}");
+            }
+            assert!(xy.abs() < 0.01 * xx, "{xy} {xx}");
+            let mut squares = 0.0;
+            for _ in 0..DRAWS {
+                let drawn: Vec<Pixel> = pixels
+                    .iter()
+                    .map(|p| Pixel { electrons: p.electrons + variance.sqrt() * random.normal(), ..*p })
+                    .collect();
+                let found = fit(&drawn, &model).unwrap();
+                squares +=
+                    (found.x_px - x_px) * (found.x_px - x_px) + (found.y_px - y_px) * (found.y_px - y_px);
+            }
+            // The RMS of 2,000 errors is uncertain by 1.6 %.
+            let rms = (squares / f64::from(2 * DRAWS)).sqrt();
+            println!("{sigma_px} px: {} {}", xx.sqrt() / closed, rms / closed);
+            assert!((rms / closed - 1.0).abs() < 0.05, "{sigma_px} px: {rms} {closed}");
+        }
+    }
+}

@@ -14,7 +14,7 @@ mod selection;
 mod separations;
 mod source;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 mod triangles;
 
 use contract::{CameraFrame, Icrs, ListedStar, PixelPoint, Rotation};

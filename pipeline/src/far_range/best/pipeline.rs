@@ -193,3 +193,127 @@ impl BestPipeline {
         attitude.expected.iter().filter_map(known).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use contract::{Calibration, Camera, ListedStar, PsfCalibration, Rotation, Setup};
+    use hifitime::Epoch;
+    use nalgebra::Vector3;
+
+    use super::super::lost_in_space::tests::Random;
+    use super::*;
+    use crate::far_range::config::{AberrationConfig, FarRangeConfig};
+
+    const SIDE: usize = 64;
+    const FOCAL_PX: f64 = 2000.0;
+    const SIGMA_PX: f64 = 0.8;
+    const EXPOSURE_S: f64 = 0.25;
+    const ZERO_MAGNITUDE_E_PER_S: f64 = 1.5e6;
+    const READOUT: Readout =
+        Readout { gain_e_per_dn: 10.0, bias_dn: 40.3, read_noise_e: 15.0, saturation_dn: 4095 };
+
+    /// Positions and fluxes, px and electrons. The last star has its core at the left edge of the image.
+    const STARS: [(PixelPoint, f64); 5] = [
+        (PixelPoint { x: 20.3, y: 14.2 }, 80_000.0),
+        (PixelPoint { x: 45.7, y: 18.4 }, 60_000.0),
+        (PixelPoint { x: 17.4, y: 47.8 }, 90_000.0),
+        (PixelPoint { x: 50.2, y: 50.3 }, 70_000.0),
+        (PixelPoint { x: 0.1, y: 32.6 }, 75_000.0),
+    ];
+
+    /// Returns a frame of the stars on a background of 20 e, with noise.
+    fn frame() -> Frame {
+        let mut random = Random(45);
+        let share = |pixel: usize, centre: f64| {
+            let cumulative =
+                |edge: f64| 0.5 * libm::erf((edge - centre) / (SIGMA_PX * std::f64::consts::SQRT_2));
+            cumulative(pixel as f64 + 0.5) - cumulative(pixel as f64 - 0.5)
+        };
+        let dn = (0..SIDE * SIDE).map(|i| {
+            let (column, row) = (i % SIDE, i / SIDE);
+            let of = |(at, flux_e): &(PixelPoint, f64)| flux_e * share(column, at.x) * share(row, at.y);
+            let expected_e = 20.0 + STARS.iter().map(of).sum::<f64>();
+            let sigma_e = (expected_e + READOUT.read_noise_e * READOUT.read_noise_e).sqrt();
+            let electrons = expected_e + sigma_e * random.normal();
+            (electrons / READOUT.gain_e_per_dn + READOUT.bias_dn).round() as u16
+        });
+        Frame::new(0, SIDE, SIDE, 12, dn.collect(), None).unwrap()
+    }
+
+    fn pipeline() -> BestPipeline {
+        let centre_px = 0.5 * (SIDE as f64 - 1.0);
+        let stars = STARS.iter().zip(1..).map(|((at, flux_e), id)| ListedStar {
+            id,
+            direction: Direction::from_vector(Vector3::new(
+                (at.x - centre_px) / FOCAL_PX,
+                (at.y - centre_px) / FOCAL_PX,
+                1.0,
+            ))
+            .unwrap(),
+            magnitude: -2.5 * libm::log10(flux_e / (ZERO_MAGNITUDE_E_PER_S * EXPOSURE_S)),
+        });
+        let setup = Setup {
+            camera: Camera {
+                columns: SIDE,
+                rows: SIDE,
+                focal_length_mm: FOCAL_PX / 100.0,
+                pixel_width_um: 10.0,
+                pixel_height_um: 10.0,
+                principal_x_px: centre_px,
+                principal_y_px: centre_px,
+                radial: [0.0; 3],
+                tangential: [0.0; 2],
+            },
+            camera_from_body: Rotation::identity(),
+            bit_depth: 12,
+            readout: Some(READOUT),
+            calibration: Calibration {
+                psf: Some(PsfCalibration { sigma_px: SIGMA_PX, halo_sigma_px: 4.0, halo_fraction: 0.0 }),
+                full_well_e: Some(60_000.0),
+                spill_fraction: Some(0.0),
+                response_sigma: Some(0.0),
+                zero_magnitude_e_per_s: Some(ZERO_MAGNITUDE_E_PER_S),
+                target: None,
+                attitude: None,
+            },
+            zero_suppression_dn: None,
+            stars: stars.collect(),
+        };
+        let config = FarRangeConfig { aberration: AberrationConfig::Ignore, ..FarRangeConfig::default() };
+        BestPipeline::new(config, &setup).unwrap()
+    }
+
+    /// The noise of the fits is below 0.01 px. The centre of brightness of the star at the edge is off by
+    /// more than ten times the tolerance.
+    #[test]
+    fn the_clusters_of_stars_are_at_their_fitted_positions() {
+        let (mut pipeline, frame) = (pipeline(), frame());
+        let telemetry = Telemetry {
+            time: Epoch::from_gregorian_utc_at_midnight(2012, 4, 25),
+            exposure_s: EXPOSURE_S,
+            body_from_icrs: Rotation::identity(),
+            velocity_km_s: None,
+        };
+        let outcome = pipeline.process_with(&frame, &telemetry, &Overrides::default());
+        let background = pipeline.background.estimate(&frame).unwrap();
+        let photometry = pipeline.photometry(&frame, background);
+        let thresholds = pipeline.config.thresholds.for_frame(&frame, Some(background));
+        let mut detector = std::mem::take(&mut pipeline.detector);
+        detector.find_bright(&frame, thresholds);
+        let blobs = detector.detect(&frame, thresholds, background.median_dn, 100).to_vec();
+        let centres: Vec<PixelPoint> = blobs
+            .iter()
+            .enumerate()
+            .map(|(i, blob)| {
+                photometry.source(&frame, blob, detector.members(i), &pipeline.psf.image([0.0; 2])).centre
+            })
+            .collect();
+        for ((truth, _), id) in STARS.iter().zip(1..) {
+            let is_this = |cluster: &&Cluster| cluster.label == Label::Star(id);
+            let cluster = outcome.clusters.iter().find(is_this).unwrap();
+            let nearest = centres.iter().map(|centre| centre.distance(*truth)).fold(f64::INFINITY, f64::min);
+            assert!(cluster.position.distance(*truth) < 0.02, "star {id} at {truth:?}: {cluster:?}");
+            assert!(id < 5 || nearest > 0.2, "centre of brightness at the edge: {nearest} px");
+        }
+    }
+}

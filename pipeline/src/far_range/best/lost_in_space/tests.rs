@@ -7,7 +7,7 @@ use super::*;
 use crate::camera_model::tests::argon;
 
 /// Random number generator: SplitMix64 (Steele, Lea & Flood 2014).
-struct Random(u64);
+pub(in super::super) struct Random(pub(in super::super) u64);
 
 impl Random {
     /// Returns a uniform number in (0, 1).
@@ -20,7 +20,7 @@ impl Random {
     }
 
     /// Returns a standard normal number (Box & Muller).
-    fn normal(&mut self) -> f64 {
+    pub(in super::super) fn normal(&mut self) -> f64 {
         let (u, v) = (self.uniform(), self.uniform());
         (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v)
     }
