@@ -55,7 +55,7 @@ pub const TARGETS: &[Target] = &[
     Target::new("catalogue_dat", "a star catalogue, hip2.dat or hip_main.dat", texts::catalogue_dat),
     Target::new(
         "csv",
-        "measurements, telemetry, stars, motion, dispersions and maps of the sky, CSV",
+        "measurements, telemetry, stars, motion, dispersions, maps of the sky, navigation, CSV",
         tables::csv,
     ),
     Target::new("dataset", "telemetry.csv that names images", tables::dataset),

@@ -8,6 +8,7 @@ use boresight::files::{
     read_measurements, read_parquet_table, read_stars, read_telemetry,
 };
 use boresight::gate::Baseline;
+use boresight::navigate::read_navigation;
 use boresight::study::CaseTable;
 use boresight::visibility::read_sky;
 use contract::Camera;
@@ -44,6 +45,7 @@ pub(crate) fn csv(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = read_motion(&path);
     let _ = read_stars(&path);
     let _ = read_sky(&path);
+    let _ = read_navigation(&path);
     let _ = read_column(&path, "value");
     let _ = read_csv_table(&path);
 }
