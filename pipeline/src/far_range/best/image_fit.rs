@@ -564,7 +564,7 @@ mod tests {
         assert_eq!(found(-8.7), None);
     }
 
-    /// Where the background dominates, the variance v of a pixel is uniform. For a well-sampled Gaussian
+    /// The variance v of a pixel is uniform if the background dominates. For a well-sampled Gaussian
     /// G = exp(−r²/2σ²)/(2πσ²), the Fisher information of the centre along x is
     /// (F²/v) ∫ (x/σ²)² G² dx dy = (F²/v) (1/4π²σ⁸) (πσ⁴/2) = F²/(8πσ⁴v), so σ_x = √(8π) σ² √v/F (King 1983,
     /// PASP 95, 163). Integration over pixels widens the image: σ² + 1/12 px² replaces σ².
