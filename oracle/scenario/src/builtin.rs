@@ -17,6 +17,7 @@ pub struct BuiltIn {
 /// Built-in scenarios, by name.
 pub const BUILT_IN: &[BuiltIn] = &[
     BuiltIn { name: "argon", text: include_str!("../../../scenarios/argon.toml") },
+    BuiltIn { name: "argon-numerical", text: include_str!("../../../scenarios/argon-numerical.toml") },
     BuiltIn { name: "docking", text: DOCKING },
     BuiltIn { name: "starting-point", text: STARTING_POINT },
 ];
