@@ -257,7 +257,9 @@ pub(super) fn uncertainty(
     }
     responses.clear();
     let mut work = ChunkBuffers::NEW;
-    for (index, patch) in samples.patches.iter().filter(|patch| patch.is_used).enumerate() {
+    let used = || samples.patches.iter().filter(|patch| patch.is_used).enumerate();
+    let is_small = used().filter(|(_, patch)| patch.feature == Feature::Cross).count() == 1;
+    for (index, patch) in used() {
         let level = patch.levels[LOCALS - 1];
         let feature_model = FeatureModel {
             image: images.feature_image(patch.feature)?,
@@ -281,7 +283,10 @@ pub(super) fn uncertainty(
                     levels,
                 };
                 lines.add(&of_line);
-                responses.add(image, pixel, &of_line, noise_dn);
+                // The edges of a small target are all blurred into each other: its pixels show no response.
+                if !is_small {
+                    responses.add(image, pixel, &of_line, noise_dn);
+                }
                 of_patches.add(&GroupedPixel { group: index, effects: shift, ..of_line });
                 let swell = level * (wider[l] - coverage.value[l]) / swelling::STEP_PX;
                 swellings.add(&GroupedPixel { group: 0, effects: [swell, 0.0], ..of_line });
@@ -294,8 +299,6 @@ pub(super) fn uncertainty(
     }
     let (by_lines, explained_by_lines) = lines.scatter(variance);
     let (mut by_patches, explained_by_patches) = of_patches.scatter(variance);
-    let used = || samples.patches.iter().filter(|patch| patch.is_used).enumerate();
-    let is_small = used().filter(|(_, patch)| patch.feature == Feature::Cross).count() == 1;
     let scale = scene.camera.focal_px().0 / pose.position_m.z;
     for (index, patch) in used() {
         let off_px = match patch.feature {
