@@ -11,12 +11,12 @@ import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-HEAD = """# ARGON with numerically integrated orbits: gravity to degree and order 36, Sun, Moon, drag, radiation pressure;
-# finite burns with errors of execution and late, inexact reports.
+HEAD = """# ARGON with numerically integrated orbits: gravity to degree and order 36, Sun, Moon, drag, radiation
+# pressure; finite burns with errors of execution and late, inexact reports.
 #
-# Written by scenarios/make_argon_numerical.py. Orbit, manoeuvres and forces: sim/examples/argon_numerical_plan.rs
-# (assumed, not ARGON's own). All other tables are those of scenarios/argon.toml, whose comments state their
-# origin; they were fitted to Table 2 with the orbits of `argon`, not with these.
+# Written by scenarios/make_argon_numerical.py. Orbit, manoeuvres and forces are assumed, not ARGON's own:
+# sim/examples/argon_numerical_plan.rs. All other tables are those of scenarios/argon.toml, whose comments
+# state their origin; they were fitted to Table 2 with the orbits of `argon`, not with these.
 """
 
 

@@ -38,7 +38,7 @@ const UNIT_TOLERANCE: f64 = 1e-5;
 /// Writer of an instant as text, `Z` at its end.
 pub type WriteTime<'a> = &'a dyn Fn(Epoch) -> String;
 
-/// Reader of the text of an instant; the error states what is wrong.
+/// Reader of the text of an instant; the error states the fault.
 pub type ReadTime<'a> = &'a dyn Fn(&str) -> Result<Epoch, String>;
 
 /// A line to a navigator, as JSON.
@@ -334,7 +334,7 @@ impl EstimatesLine {
     /// Converts back to the answers for `epochs`.
     ///
     /// # Errors
-    /// The entry and what is wrong with it, or a wrong number of entries.
+    /// The entry and its fault, or a wrong number of entries.
     pub fn answers(&self, epochs: &[Epoch]) -> Result<Vec<Answer>, String> {
         if self.estimates.len() != epochs.len() {
             return Err(format!("{} estimates, expected {}", self.estimates.len(), epochs.len()));

@@ -102,7 +102,7 @@ fn radial_and_normal_errors_are_smaller_than_along_the_track() {
         assert!(result.score.convergence_s.is_some(), "{all}");
         let within = [r, t, n].iter().map(|axis| axis.within_3_sigma).fold(1.0, f64::min);
         assert!(within > 0.9, "{all}");
-        // The table reads back as it was written.
+        // The table reads back unchanged.
         let out = folder.path().join(estimator.code());
         result.write(&out).unwrap();
         assert_eq!(read_navigation(&out.join("navigation.csv")).unwrap(), result.rows);
