@@ -6,7 +6,7 @@ use contract::navigation::{Answer, Mode, Navigator, NavigatorFactory};
 use files::Failure;
 use hifitime::{Duration, Epoch};
 use nalgebra::{SMatrix, SVector, Vector6};
-use navigation::{BatchConfig, BatchFactory, SequentialConfig, SequentialFactory};
+use navigation::{BatchConfig, BatchFactory, ModelErrors, SequentialConfig, SequentialFactory};
 
 use crate::campaign::Campaign;
 use crate::result::NavigationResult;
@@ -27,6 +27,12 @@ pub enum Estimator {
     Sequential,
 }
 
+/// Relative accelerations that secular J2 with a constant differential drag omits, as impulses of the batch
+/// and as noise of the filter: the density of the air varies along the orbit and with the Sun, and radiation
+/// pressure differs between the satellites by 1e-8 m/s², which adds up to 5e-5 m/s within an orbit.
+const MODEL_ERRORS: ModelErrors = ModelErrors { interval_s: 5_400.0, sigma_rtn_m_s: [5e-5; 3] };
+const VELOCITY_NOISE_M_S: [f64; 3] = [4e-5; 3];
+
 impl Estimator {
     /// Returns the name used in files.
     pub fn code(self) -> &'static str {
@@ -38,13 +44,22 @@ impl Estimator {
 
     fn factory(self, truth: &Truth) -> Box<dyn NavigatorFactory> {
         let osculation = truth.osculation();
+        let is_exact = truth.has_mean_elements();
         match self {
             Self::Batch => {
-                Box::new(BatchFactory { config: BatchConfig { osculation, ..BatchConfig::default() } })
+                let model_errors = (!is_exact).then_some(MODEL_ERRORS);
+                let config = BatchConfig { osculation, model_errors, ..BatchConfig::default() };
+                Box::new(BatchFactory { config })
             }
-            Self::Sequential => Box::new(SequentialFactory {
-                config: SequentialConfig { osculation, ..SequentialConfig::default() },
-            }),
+            Self::Sequential => {
+                let velocity_noise_m_s_per_hour = if is_exact { [0.0; 3] } else { VELOCITY_NOISE_M_S };
+                let config = SequentialConfig {
+                    osculation,
+                    velocity_noise_m_s_per_hour,
+                    ..SequentialConfig::default()
+                };
+                Box::new(SequentialFactory { config })
+            }
         }
     }
 }

@@ -35,6 +35,11 @@ impl Truth {
         self.osculation
     }
 
+    /// Returns true if the orbits are mean elements: the navigator's dynamics are then exact.
+    pub(crate) fn has_mean_elements(&self) -> bool {
+        self.osculation == Osculation::None
+    }
+
     /// Returns position, m, and velocity in the rotating frame, m/s, of the chaser in the target's R, T, N.
     pub(crate) fn state(&self, time: Epoch) -> Vector6<f64> {
         let states = self.trajectory.states_at(time);
@@ -57,7 +62,7 @@ impl Truth {
     pub(crate) fn elements(&self, time: Epoch) -> Result<RelativeElements, Failure> {
         let unsupported =
             || Failure::Usage(format!("the true orbits have no elements at {}", clock::format_utc(time)));
-        if self.osculation == Osculation::None {
+        if self.has_mean_elements() {
             let sim::truth::RelativeElements { a_da_m, a_dlambda_m, a_dex_m, a_dey_m, a_dix_m, a_diy_m } =
                 self.trajectory.relative_elements(time).ok_or_else(unsupported)?;
             return Ok(RelativeElements { a_da_m, a_dlambda_m, a_dex_m, a_dey_m, a_dix_m, a_diy_m });
