@@ -1,5 +1,7 @@
 //! Knowledge of the chaser besides its measurements: its orbit, a prior, errors of its instruments.
 
+use std::f64::consts::TAU;
+
 use contract::navigation::{
     AngleErrors, ChaserOrbit, Covariance6, DifferentialDrag, LineOfSightErrors, NavigationSetup, PriorOrbit,
     RelativeElements, ReportedState, SlowError,
@@ -10,7 +12,7 @@ use hifitime::{Duration, Epoch};
 use nalgebra::{Vector3, Vector6};
 use scenario::FarRangeScenario;
 use sim::randomness::{Effect, Seed, Stream, normal};
-use sim::truth::Trajectory;
+use sim::truth::{EARTH_GM_KM3_S2, State, Trajectory};
 
 use crate::truth::Truth;
 
@@ -20,6 +22,11 @@ const BRIGHTNESS_OFFSET: f64 = 0.3;
 
 /// Memory of that error, s: the side of the target that is seen and lit turns with the orbit.
 const BRIGHTNESS_MEMORY_S: f64 = 5900.0;
+
+/// Part of that error that repeats with every orbit, relative to the whole, and its memory, s: the Sun and
+/// the attitude in the orbital frame change within weeks. A navigator takes it for a relative eccentricity.
+const PERIODIC_SHARE: f64 = 0.3;
+const PERIODIC_MEMORY_S: f64 = 1e6;
 
 /// Parts of the relative orbit that secular J2 and its first-order short-period terms omit (other zonal and
 /// tesseral terms, J2², Sun and Moon), as an angle from the target, arcsec, and their memories, s. They move
@@ -197,7 +204,12 @@ fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch], method: M
         period_s: None,
     });
     let omitted = omitted.into_iter().filter(|_| !truth.has_mean_elements());
-    let slow: Vec<SlowError> = brightness.into_iter().chain(omitted).collect();
+    let periodic = brightness.zip(times.first()).map(|(irregular, first)| SlowError {
+        sigma_arcsec: irregular.sigma_arcsec.map(|sigma| PERIODIC_SHARE * sigma),
+        memory_s: PERIODIC_MEMORY_S,
+        period_s: Some(orbital_period_s(&truth.trajectory().states_at(*first).target).clamp(1.0, 1e9)),
+    });
+    let slow: Vec<SlowError> = brightness.into_iter().chain(periodic).chain(omitted).collect();
     let solved = AngleErrors {
         white_arcsec: [centre_arcsec; 2],
         slow: slow.clone(),
@@ -214,6 +226,12 @@ fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch], method: M
         }
     };
     LineOfSightErrors { with_stars, without_stars }
+}
+
+/// Returns the period of the osculating orbit of a state, s (vis-viva equation).
+fn orbital_period_s(state: &State) -> f64 {
+    let inverse_axis = 2.0 / state.position_km.norm() - state.velocity_km_s.norm_squared() / EARTH_GM_KM3_S2;
+    TAU / (EARTH_GM_KM3_S2 * inverse_axis * inverse_axis * inverse_axis).sqrt()
 }
 
 fn of_telemetry(
