@@ -216,7 +216,7 @@ fn sampled(
     }
     let ends_s = [samples.first(), samples.last()].map(|sample| sample.map_or(0.0, |sample| sample.time_s));
     let segment =
-        SampledSegment { interpolation: Interpolation::Hermite, degree: 7, usable_s: ends_s, samples };
+        SampledSegment { interpolation: Interpolation::Lagrange, degree: 7, usable_s: ends_s, samples };
     let orbit = SampledOrbit::new(vec![segment]).map_err(|error| in_file(path, &error))?;
     Ok((epoch, orbit))
 }
