@@ -8,7 +8,7 @@ use hifitime::Epoch;
 
 use super::common::{
     Header, Times, check_center, check_count, check_order, read_coverage, read_interpolation,
-    read_time_system, write_coverage,
+    read_time_system, write_coverage, write_message,
 };
 use crate::coverage::Coverage;
 use crate::document::{self, Document, Kind, Notation, Record, Segment, Writer};
@@ -187,14 +187,8 @@ impl Aem {
 
     /// Returns the message in a notation, version 1.0, which more tools read than 2.0.
     pub fn to_text(&self, notation: Notation) -> String {
-        let mut writer = Writer::new(Kind::Aem, notation, "1.0");
-        self.header.write(&mut writer);
-        writer.open("body");
-        for segment in &self.segments {
-            segment.write(&mut writer);
-        }
-        writer.close("body");
-        writer.finish()
+        let writer = Writer::new(Kind::Aem, notation, "1.0");
+        write_message(writer, &self.header, &self.segments, AemSegment::write)
     }
 }
 

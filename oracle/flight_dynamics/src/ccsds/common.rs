@@ -226,3 +226,19 @@ pub(crate) fn write_coverage(writer: &mut Writer, system: TimeSystem, whole: &Co
     }
     writer.value("STOP_TIME", system.format_time(whole.stop));
 }
+
+/// Returns the text of a message: header, and its segments within the body.
+pub(super) fn write_message<S>(
+    mut writer: Writer,
+    header: &Header,
+    segments: &[S],
+    write: impl Fn(&S, &mut Writer),
+) -> String {
+    header.write(&mut writer);
+    writer.open("body");
+    for segment in segments {
+        write(segment, &mut writer);
+    }
+    writer.close("body");
+    writer.finish()
+}

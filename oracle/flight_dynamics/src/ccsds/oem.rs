@@ -9,7 +9,7 @@ use sim::truth::State;
 
 use super::common::{
     Header, Times, check_center, check_count, check_order, read_coverage, read_frame, read_interpolation,
-    read_time_system, write_coverage,
+    read_time_system, write_coverage, write_message,
 };
 use super::covariance::{Covariance, CovarianceFrame};
 use crate::coverage::Coverage;
@@ -221,14 +221,8 @@ impl Oem {
 
     /// Returns the message in a notation, version 2.0.
     pub fn to_text(&self, notation: Notation) -> String {
-        let mut writer = Writer::new(Kind::Oem, notation, "2.0");
-        self.header.write(&mut writer);
-        writer.open("body");
-        for segment in &self.segments {
-            segment.write(&mut writer);
-        }
-        writer.close("body");
-        writer.finish()
+        let writer = Writer::new(Kind::Oem, notation, "2.0");
+        write_message(writer, &self.header, &self.segments, OemSegment::write)
     }
 }
 

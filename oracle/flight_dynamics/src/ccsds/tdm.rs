@@ -6,7 +6,7 @@ use contract::{Angle, Direction, Icrs};
 use files::{FileError, FileLocation};
 use hifitime::Epoch;
 
-use super::common::{Header, read_frame, read_time_system};
+use super::common::{Header, read_frame, read_time_system, write_message};
 use crate::document::{self, Document, Entry, Kind, Notation, Segment, Writer};
 use crate::frame::{FileAxes, ReferenceFrame};
 use crate::time::TimeSystem;
@@ -101,14 +101,8 @@ impl Tdm {
 
     /// Returns the message in a notation, version 2.0.
     pub fn to_text(&self, notation: Notation) -> String {
-        let mut writer = Writer::new(Kind::Tdm, notation, "2.0");
-        self.header.write(&mut writer);
-        writer.open("body");
-        for segment in &self.segments {
-            segment.write(&mut writer);
-        }
-        writer.close("body");
-        writer.finish()
+        let writer = Writer::new(Kind::Tdm, notation, "2.0");
+        write_message(writer, &self.header, &self.segments, TdmSegment::write)
     }
 }
 
