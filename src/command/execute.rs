@@ -1,13 +1,15 @@
 //! Steps shared by `run` and `study replay`: run, report, show.
 
 use files::{Failure, FileError, RunDirectory, toml_file};
+use navigate::NavigationResult;
 use run::{AnyFactory, AnyMission, FrameJobs};
 
 use super::Answer;
 use super::interrupt::report_interruption;
+use super::navigate::EstimatorName;
 use super::output::Output;
 use super::report::write_beside_run;
-use crate::table::score_table;
+use crate::table::{navigation_table, score_table};
 
 /// Options for presenting a run.
 pub(super) struct Presentation<'a> {
@@ -17,6 +19,8 @@ pub(super) struct Presentation<'a> {
     pub(super) has_report: bool,
     /// Remark below the score.
     pub(super) note: Option<String>,
+    /// Navigator that determines the relative orbit from the measurements of the run.
+    pub(super) navigate: Option<EstimatorName>,
 }
 
 /// Makes an interrupt report the unfinished run directory.
@@ -50,7 +54,11 @@ pub(super) fn execute(
     progress.finish_and_clear();
     let mut ran = ran?;
     output.first_failure(ran.first_failure.as_ref());
-    let table = score_table(ran.scored.as_ref(), output.is_terminal());
+    let mut table = score_table(ran.scored.as_ref(), output.is_terminal());
+    let navigated = shown.navigate.map(|navigator| navigator.navigate_run(directory.path())).transpose();
+    if let Ok(Some(result)) = &navigated {
+        table = format!("{}\n\n{}", table.trim_end(), navigation_table(result, output.is_terminal()));
+    }
     let notes: String = shown.note.into_iter().map(|note| format!("\n\n{note}")).collect();
     let text = format!("{}{notes}\n\nresults in {}", table.trim_end(), directory.path().display());
     let file = directory.score();
@@ -58,12 +66,26 @@ pub(super) fn execute(
     if shown.has_report {
         write_beside_run(directory.path(), ran.scored.as_mut(), output);
     }
-    output.answer_json(json.trim_end(), text)?;
-    Ok(match ran.incomplete {
-        None => Answer::Yes,
-        Some(incomplete) => {
-            output.note(format!("error: {incomplete}"));
-            Answer::Part
-        }
-    })
+    output.answer_json(
+        &with_navigation(json.trim_end(), navigated.as_ref().ok().and_then(Option::as_ref))?,
+        text,
+    )?;
+    let incomplete = ran.incomplete.map(|incomplete| incomplete.to_string());
+    // The run is complete without its navigation, whose failure follows the score.
+    let failed = navigated.err().map(|failure| format!("no relative navigation: {failure}"));
+    let faults: Vec<String> = incomplete.into_iter().chain(failed).collect();
+    faults.iter().for_each(|fault| output.note(format!("error: {fault}")));
+    Ok(if faults.is_empty() { Answer::Yes } else { Answer::Part })
+}
+
+/// Returns the score of a run with the figures of its navigation, if there are any, under the key
+/// `navigation`.
+fn with_navigation(score: &str, navigation: Option<&NavigationResult>) -> Result<String, Failure> {
+    let Some(navigation) = navigation else { return Ok(score.to_owned()) };
+    let unwritable =
+        |error: serde_json::Error| Failure::Usage(format!("the output cannot be written as JSON: {error}"));
+    let mut document: serde_json::Map<String, serde_json::Value> =
+        serde_json::from_str(score).map_err(unwritable)?;
+    document.insert("navigation".to_owned(), serde_json::to_value(navigation).map_err(unwritable)?);
+    serde_json::to_string_pretty(&document).map_err(unwritable)
 }

@@ -4,18 +4,25 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use files::{Checksums, Failure, refuse_unfinished};
-use navigate::{Campaign, Estimator, KnowledgeConfig, TABLE_FILE, bound_of};
-use run::{ScenarioSource, world_of_run};
+use navigate::{Campaign, Estimator, KnowledgeConfig, NavigationResult, TABLE_FILE, bound_of};
+use run::{AnyWorld, ScenarioSource, world_of_run};
 use scenario::FarRangeScenario;
 use scenario::run_file::{RunFile, ScenarioFile};
 
 use super::Answer;
 use super::options::output_path;
 use super::output::Output;
+use super::report::write_beside_results;
 use crate::table::{bound_table, navigation_table};
 
 /// Number of intervals of a bound's table.
 const BOUND_INTERVALS: u32 = 12;
+
+/// Interval of the estimates, s, if none is given.
+const EVERY_S: f64 = 600.0;
+
+/// Name of a run's report.
+const REPORT: &str = "report.html";
 
 /// Files of a run that the command reads.
 const READ: [&str; 3] = ["run.toml", "measurements.csv", "telemetry.csv"];
@@ -29,7 +36,7 @@ pub(super) struct NavigateArguments {
     #[arg(long, value_name = "NAME", value_enum, default_value_t)]
     estimator: EstimatorName,
     /// Interval of the estimates, s
-    #[arg(long, value_name = "S", default_value_t = 600.0)]
+    #[arg(long, value_name = "S", default_value_t = EVERY_S)]
     every: f64,
     /// Without a prior of the relative orbit
     #[arg(long)]
@@ -44,12 +51,48 @@ pub(super) struct NavigateArguments {
 
 /// Name of a built-in navigator.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-enum EstimatorName {
+pub(super) enum EstimatorName {
     /// Least squares over all measurements
     #[default]
     Batch,
     /// Filter: each estimate from the measurements until then
     Sequential,
+}
+
+impl EstimatorName {
+    fn estimator(self) -> Estimator {
+        match self {
+            Self::Batch => Estimator::Batch,
+            Self::Sequential => Estimator::Sequential,
+        }
+    }
+
+    /// Refuses the navigation of another world, before the run.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] that names the world.
+    pub(super) fn check_world(world: &dyn AnyWorld) -> Result<(), Failure> {
+        if world.code() == FarRangeScenario::WORLD {
+            return Ok(());
+        }
+        Err(Failure::Usage(format!(
+            "--navigate applies only to the world {}: the scenario is of the world {}",
+            FarRangeScenario::WORLD,
+            world.code()
+        )))
+    }
+
+    /// Navigates on a run that has just been written, with the defaults of the command `navigate`, and
+    /// writes the files of that command into its directory.
+    ///
+    /// # Errors
+    /// The errors of the command `navigate`.
+    pub(super) fn navigate_run(self, directory: &Path) -> Result<NavigationResult, Failure> {
+        let campaign = campaign(directory, &KnowledgeConfig::default())?;
+        let result = navigate::navigate(&campaign, self.estimator(), EVERY_S)?;
+        result.write(directory)?;
+        Ok(result)
+    }
 }
 
 /// Runs the command; exit status 1 if there is no estimate at any time.
@@ -64,14 +107,14 @@ pub(super) fn navigate(arguments: &NavigateArguments, output: &Output) -> Result
         output.answer(&report, bound_table(&report, output.is_terminal()).trim_end())?;
         return Ok(Answer::Yes);
     }
-    let estimator = match arguments.estimator {
-        EstimatorName::Batch => Estimator::Batch,
-        EstimatorName::Sequential => Estimator::Sequential,
-    };
     let campaign = campaign(input, &knowledge)?;
-    let result = navigate::navigate(&campaign, estimator, arguments.every)?;
+    let result = navigate::navigate(&campaign, arguments.estimator.estimator(), arguments.every)?;
     let directory = arguments.out.as_deref().unwrap_or(input);
     result.write(directory)?;
+    // An existing report of the run lacks the new figure.
+    if directory == input && input.join(REPORT).is_file() {
+        write_beside_results(input, output);
+    }
     let text = navigation_table(&result, output.is_terminal());
     let path = directory.join(TABLE_FILE);
     output.answer(&result, format!("{text}Each estimate is in {}", path.display()))?;

@@ -9,6 +9,7 @@ use scenario::Stage;
 
 use super::Answer;
 use super::execute::{Presentation, execute};
+use super::navigate::EstimatorName;
 use super::options::{AttitudeOption, PipelineOptions, RendererOptions, Selection, output_path};
 use super::output::Output;
 
@@ -33,6 +34,17 @@ pub(super) struct RunArguments {
     /// Also keep the images: fits, png or exr (about 1 MB per frame); docking: png, avi, mjpeg (AVI) or y4m
     #[arg(long, value_name = "FORMAT")]
     save_frames: Option<String>,
+    /// Far range: then determine the relative orbit, as `boresight navigate` does with its defaults; the
+    /// report then has its errors
+    #[arg(
+        long,
+        value_name = "NAVIGATOR",
+        value_enum,
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "batch"
+    )]
+    navigate: Option<EstimatorName>,
     /// Write no report.html
     #[arg(long)]
     no_report: bool,
@@ -50,6 +62,7 @@ impl RunArguments {
             attitude: AttitudeOption::default(),
             inject: None,
             save_frames: None,
+            navigate: None,
             no_report: false,
             renderer: RendererOptions::default(),
         }
@@ -73,6 +86,9 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
             world.code()
         )));
     }
+    if arguments.navigate.is_some() {
+        EstimatorName::check_world(world)?;
+    }
     let options = Options {
         inject: arguments.inject,
         attitude: arguments.attitude.choice,
@@ -95,6 +111,11 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
     let note = arguments
         .inject
         .map(|stage| format!("the truth replaced {stage}: this is not a result of the whole pipeline"));
-    let shown = Presentation { name: &source.name, has_report: !arguments.no_report, note };
+    let shown = Presentation {
+        name: &source.name,
+        has_report: !arguments.no_report,
+        note,
+        navigate: arguments.navigate,
+    };
     execute(prepared.as_ref(), &frame_jobs, &factory, &directory, shown, output)
 }

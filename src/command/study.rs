@@ -439,7 +439,7 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
         Some(path) => RunDirectory::create(path)?,
         None => RunDirectory::create_numbered(Path::new(super::run::RUNS), &name)?,
     };
-    let shown = Presentation { name: &name, has_report: !arguments.no_report, note: None };
+    let shown = Presentation { name: &name, has_report: !arguments.no_report, note: None, navigate: None };
     execute(prepared.as_ref(), &frame_jobs, &factory, &directory, shown, output)
 }
 

@@ -1,6 +1,6 @@
 //! `boresight navigate`: end to end on a slice of ARGON, and input that it refuses.
 
-use crate::support::Bench;
+use crate::support::{Bench, check_same_files};
 
 #[test]
 fn a_slice_of_argon_gives_estimates_figures_and_a_chart() {
@@ -35,6 +35,53 @@ fn a_slice_of_argon_gives_estimates_figures_and_a_chart() {
         "{table}"
     );
 }
+
+#[test]
+fn run_with_navigate_writes_the_files_of_both_commands_and_its_report_has_the_chart() {
+    let bench = Bench::new();
+    bench.scenario("slice.toml", "argon", |scenario| {
+        let mode = "mode = 'best'".parse::<toml::Table>().unwrap();
+        scenario.insert("far_range".into(), mode.into());
+    });
+    let json =
+        bench.boresight("run slice.toml --frames 4000..4020 --navigate --out both --json").done().json();
+    bench.boresight("run slice.toml --frames 4000..4020 --out run").done();
+    // The report of a run has no Fig. 10 before its navigation, and has it afterwards.
+    assert!(!bench.read("run/report.html").contains("eR, m"));
+    let navigation = bench.boresight("navigate run --json").done().json();
+    assert_eq!(json["navigation"], navigation);
+    assert_eq!(json["figures"], bench.json("run/score.json")["figures"]);
+    check_same_files(&bench.tree("both"), &bench.tree("run"));
+    assert!(bench.read("both/report.html").contains("eR, m"));
+    // Without a report none is written; a report elsewhere is the caller's.
+    bench.boresight("run slice.toml --frames 4000..4004 --no-report --navigate=sequential --out bare").done();
+    assert_eq!(bench.json("bare/navigation.json")["estimator"], "sequential");
+    bench.boresight("navigate bare --out other").done();
+    assert!(!bench.path("bare/report.html").exists() && !bench.path("other/report.html").exists());
+}
+
+#[test]
+fn a_failed_navigation_leaves_a_complete_run_and_a_reason() {
+    let bench = Bench::new();
+    bench.boresight("run docking --navigate --frames 0..2 --out a").refused(&["--navigate", "docking"]);
+    assert!(!bench.path("a").exists());
+    bench.write("blind.py", BLIND);
+    let words = ["run", "argon", "--frames", "4000..4003", "--navigate", "--out", "b", "--pipeline"];
+    let words = [&words[..], &["exec:python3 blind.py"]].concat();
+    bench.boresight_words(&words).refused(&["no relative navigation", "measurements.csv", "los_j2000_x"]);
+    assert!(bench.path("b/score.json").exists() && bench.path("b/report.html").exists());
+}
+
+/// A pipeline that detects nothing.
+const BLIND: &str = r#"
+import json, sys
+for line in sys.stdin:
+    request = json.loads(line)
+    if "frame" in request:
+        print(json.dumps({"frame": request["frame"], "status": "no_target"}), flush=True)
+    else:
+        print('{"boresight_pipeline": 1, "name": "blind"}', flush=True)
+"#;
 
 #[test]
 fn the_bound_of_a_scenario_needs_no_run() {
