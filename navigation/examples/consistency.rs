@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release -p boresight-navigation --example consistency -- CAMPAIGNS STRIDE [FIRST]`: every
 //! STRIDE-th measurement of ARGON's schedule, seeds from FIRST. The variable VARIANT contains `sequential`
-//! for the filter instead of the batch, `exact` for exact manoeuvres, `white` without slow errors, `unbiased`
-//! without constant errors.
+//! for the filter instead of the batch, `precise` for the errors of best mode, `exact` for exact manoeuvres,
+//! `white` without slow errors, `unbiased` without constant errors.
 
 #[path = "../tests/it/simulator.rs"]
 mod simulator;
@@ -24,8 +24,9 @@ fn main() {
     let mut failed = 0;
     let (mut slowest, mut total) = (0.0_f64, 0.0);
     for seed in first..first + campaigns {
-        let mut campaign = Campaign::argon(stride);
         let variant = std::env::var("VARIANT").unwrap_or_default();
+        let mut campaign =
+            if variant.contains("precise") { Campaign::precise(stride) } else { Campaign::argon(stride) };
         if variant.contains("exact") {
             campaign.manoeuvre_sigma = (0.0, 1e-7);
         }

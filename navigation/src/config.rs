@@ -63,9 +63,13 @@ pub struct SequentialConfig {
     /// of velocity in an hour, m/s, each 0 to 1: errors of the dynamics.
     #[schemars(inner(range(min = 0, max = 1)))]
     pub velocity_noise_m_s_per_hour: [f64; 3],
-    /// Time for which measurements are kept to insert a late one, s, 0 to 1e6; later ones are not used.
+    /// Time for which late measurements are inserted, s, 0 to 1e6; later ones are not used.
     #[schemars(range(min = 0, max = 1e6))]
     pub buffer_s: f64,
+    /// Number of events that are linearised again when the estimate has moved, 0 to 1000000; older ones keep
+    /// their linearisation.
+    #[schemars(range(min = 0, max = 1_000_000))]
+    pub history: usize,
     /// Number of measurements between two attempts to find an initial orbit without a prior, 4 to 10000.
     #[schemars(range(min = 4, max = 10000))]
     pub initial_measurements: usize,
@@ -78,6 +82,7 @@ impl Default for SequentialConfig {
             outlier_sigma: 5.0,
             velocity_noise_m_s_per_hour: [0.0; 3],
             buffer_s: 3600.0,
+            history: 20_000,
             initial_measurements: 100,
         }
     }

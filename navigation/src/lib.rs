@@ -17,8 +17,13 @@ mod bound;
 mod config;
 #[allow(clippy::indexing_slicing, reason = "columns are those of the layout of the state")]
 mod filter;
+#[allow(clippy::indexing_slicing, reason = "indices are those of the entries")]
+mod history;
 #[allow(clippy::indexing_slicing, reason = "indices of the grid of distances")]
 mod initial;
+#[allow(clippy::indexing_slicing, reason = "columns are those of the layout of the state")]
+mod layout;
+mod linearisation;
 pub mod orbit;
 #[allow(clippy::indexing_slicing, reason = "columns are those of the parameters")]
 mod parameters;
@@ -37,9 +42,13 @@ mod sequential;
 pub mod short_period;
 #[allow(clippy::indexing_slicing, reason = "two axes")]
 mod sight;
+#[allow(clippy::indexing_slicing, reason = "sizes are those of the layout of the state")]
+mod smoother;
 #[allow(clippy::indexing_slicing, reason = "sizes are those of the matrix")]
 mod square_root;
 mod time;
+#[allow(clippy::indexing_slicing, reason = "columns are those of the layout of the state")]
+mod transition;
 #[allow(clippy::indexing_slicing, reason = "sizes are those of the filter")]
 mod whitener;
 

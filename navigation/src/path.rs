@@ -7,6 +7,7 @@ use nalgebra::{Matrix6xX, Vector3};
 use crate::orbit::Orbit;
 use crate::reference::{Reference, kicked};
 use crate::relative::{self, DriftPartials, between, control_matrix};
+use crate::short_period::Osculation;
 
 /// Impulse of the chaser in an estimation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -151,7 +152,7 @@ impl Path {
             (reference.orbit(*seconds)?, reference.orbit_before(*seconds)?)
         };
         let elements = leg.drift.at(*seconds, self.drag_m_s);
-        let elements = applied(&elements, &near, &(dv_m_s * sign), reference)?;
+        let elements = applied(&elements, &near, &(dv_m_s * sign), reference.osculation())?;
         let control = control_matrix(&near) * sign;
         for (axis, column) in columns.iter().enumerate() {
             if let Some(column) = column {
@@ -213,8 +214,8 @@ pub(crate) fn applied(
     elements: &RelativeElements,
     chaser: &Orbit,
     dv_m_s: &Vector3<f64>,
-    reference: &Reference,
+    osculation: Osculation,
 ) -> Option<RelativeElements> {
     let target = relative::target(chaser, elements);
-    Some(between(&kicked(chaser, dv_m_s, reference.osculation())?, &target))
+    Some(between(&kicked(chaser, dv_m_s, osculation)?, &target))
 }

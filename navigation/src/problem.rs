@@ -260,7 +260,7 @@ impl Problem<'_> {
             }
             let elements = path.at(sight.seconds).ok_or(NoEstimate::NoConvergence)?;
             let prediction = sight.predict(&elements, osculation);
-            let by_elements = sight.by_elements(&elements, &prediction);
+            let by_elements = sight.by_elements(&elements, &prediction, osculation);
             let by_rotation = prediction.by_rotation();
             let bias = self.parameters.bias(sight.class);
             let residual = sight.residual(&prediction);

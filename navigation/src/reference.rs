@@ -22,6 +22,9 @@ const MIN_SPAN_S: f64 = 600.0;
 /// Largest number of states used in one piece.
 const MAX_STATES: usize = 200;
 
+/// Time after the first reported state until which states are used from the beginning, s.
+const FIRST_S: f64 = 3600.0;
+
 /// Time by which the orbit extends beyond the first and the last reported state, s.
 const MARGIN_S: f64 = 3600.0;
 
@@ -98,6 +101,27 @@ impl Reference {
             }
         };
         Some(Self { pieces, known_s, osculation })
+    }
+
+    /// Builds the orbit of a time span from the states within it, and at least those of the first hour that
+    /// is reported. States after an impulse that is not known yet would bend the orbit before it.
+    pub(crate) fn within(
+        chaser: &ChaserOrbit,
+        epoch: Epoch,
+        impulses: &[Impulse],
+        osculation: Osculation,
+        (from_s, to_s): (f64, f64),
+    ) -> Option<Self> {
+        let ChaserOrbit::States(states) = chaser else {
+            return Self::new(chaser, epoch, impulses, osculation);
+        };
+        let seconds = |state: &ReportedState| seconds_between(epoch, state.time);
+        let to_s = to_s.max(seconds(states.first()?) + FIRST_S);
+        let begin = states.partition_point(|state| seconds(state) < from_s).min(states.len() - 1);
+        let end = states.partition_point(|state| seconds(state) <= to_s).max(begin + 1);
+        let inside = impulses.iter().filter(|impulse| (from_s..=to_s).contains(&impulse.seconds));
+        let inside: Vec<Impulse> = inside.copied().collect();
+        Self::new(&ChaserOrbit::States(states[begin..end].to_vec()), epoch, &inside, osculation)
     }
 
     /// Returns the mean orbit at a time; at an impulse, that after it. `None` where it is unknown.

@@ -4,6 +4,7 @@ use contract::navigation::RelativeElements;
 use nalgebra::{Matrix3x6, Matrix6, Matrix6x3, Vector6};
 
 use crate::orbit::{Orbit, wrap};
+use crate::short_period::Osculation;
 
 /// Metres per kilometre.
 const M_PER_KM: f64 = 1000.0;
@@ -41,14 +42,27 @@ pub fn target(chaser: &Orbit, relative: &RelativeElements) -> Orbit {
     }
 }
 
+/// Step of u in the difference quotient of the short-period variations, rad: rounding is 1e-8 km/rad.
+const U_STEP: f64 = 1e-4;
+
 /// Returns the partial derivatives of the target's position, km, with respect to the relative elements, m,
-/// for a known chaser: the chain rule through [`target`].
-pub(crate) fn position_partials(target: &Orbit, relative: &RelativeElements) -> Matrix3x6<f64> {
+/// for a known chaser: the chain rule through [`target`]. The derivative by u includes the short-period
+/// variations: aδλ moves the target almost along the line of sight, so that its transverse motion, a
+/// thousandth, is the information about the range.
+pub(crate) fn position_partials(
+    target: &Orbit,
+    relative: &RelativeElements,
+    osculation: Osculation,
+) -> Matrix3x6<f64> {
     let by_orbit = target.position_partials();
     let per_m = -1.0 / (target.a_km * M_PER_KM);
     let (sin_i, cos_i) = libm::sincos(target.i);
-    let [by_a, by_u, by_ex, by_ey, by_i, by_raan] =
+    let [by_a, mut by_u, by_ex, by_ey, by_i, by_raan] =
         [0, 1, 2, 3, 4, 5].map(|column| by_orbit.column(column).into_owned());
+    if osculation != Osculation::None {
+        let at = |step: f64| osculation.state(&Orbit { u: target.u + step, ..*target }).position_km;
+        by_u = (at(U_STEP) - at(-U_STEP)) / (2.0 * U_STEP);
+    }
     Matrix3x6::from_columns(&[
         by_a * (-1.0 / M_PER_KM) + by_u * (relative.a_dlambda_m * per_m * -per_m),
         by_u * per_m,
@@ -174,7 +188,6 @@ mod tests {
     use super::*;
     use crate::path::Drift;
     use crate::reference::kicked;
-    use crate::short_period::Osculation;
     use nalgebra::Vector3;
 
     const CHASER: Orbit = Orbit { a_km: 7130.0, u: 0.7, ex: 0.001, ey: 0.0028, i: 1.7153, raan: 2.2 };
@@ -202,6 +215,25 @@ mod tests {
             let got = drift.at(seconds, 0.0).vector();
             // Rates of 1e-3 rad/s over 4e5 s are rounded to 1e-13 rad, 1 µm.
             assert!((got - expected).abs().max() < 1e-5, "{seconds}: {got} {expected}");
+        }
+    }
+
+    /// Of the derivative by aδλ, the part across the orbit counts: a thousandth of the part along it.
+    #[test]
+    fn position_partials_by_the_distance_include_short_period_variations() {
+        for osculation in [Osculation::None, Osculation::FirstOrder] {
+            let position = |step: f64| {
+                let mut moved = elements();
+                moved[1] += step;
+                let of_target = target(&CHASER, &RelativeElements::from_vector(&moved));
+                osculation.state(&of_target).position_km
+            };
+            let slope = (position(10.0) - position(-10.0)) / 20.0;
+            let relative = RelativeElements::from_vector(&elements());
+            let partials = position_partials(&target(&CHASER, &relative), &relative, osculation);
+            // 1e-3 km/m along the orbit; the part without short-period variations errs by 2e-6.
+            let error = (partials.column(1) - slope).norm();
+            assert!(error < 1e-9, "{osculation:?}: {error}");
         }
     }
 

@@ -1,11 +1,13 @@
-//! Sequential navigator: an unscented Kalman filter over events in order of time, with a buffer in which late
-//! events are inserted and the following ones repeated.
+//! Sequential navigator: a Kalman filter over events in order of time, which linearises its past again
+//! ([`crate::history`]) and inserts late events.
 //!
 //! - An event later than all before is processed at once.
-//! - An earlier event within the buffer is inserted at its time, and all later events are processed again:
-//!   the result is that of the events in order.
-//! - A measurement before the buffer is not used. A manoeuvre before the buffer changes the state by its
+//! - An earlier measurement within the buffer is inserted at its time, and all later events are processed
+//!   again: the result is that of the events in order. So is a manoeuvre anywhere in the history.
+//! - A measurement before the buffer is not used. A manoeuvre before the history changes the state by its
 //!   linear effect.
+//! - The chaser's orbit at an event is fitted to states until then, because those after an impulse that is
+//!   not reported yet would bend it.
 //! - Without a prior, measurements wait until a batch over them determines the range to 30 %; the filter then
 //!   starts from this batch.
 
@@ -20,7 +22,9 @@ use hifitime::Epoch;
 
 use crate::batch::Batch;
 use crate::config::{BatchConfig, SequentialConfig};
-use crate::filter::{FilterState, Layout};
+use crate::filter::FilterState;
+use crate::history::{Entry, Happening, History};
+use crate::layout::Layout;
 use crate::reference::{Impulse, Reference};
 use crate::relative_state;
 use crate::sight::Sight;
@@ -50,37 +54,47 @@ impl NavigatorFactory for SequentialFactory {
     }
 }
 
+/// Time before an event from which the chaser's states are used, s.
+const STATES_S: f64 = 6.0 * 3600.0;
+
+/// Time after the last state of a fit until which the chaser's orbit is extrapolated, s.
+const REFRESH_S: f64 = 1800.0;
+
 /// Sequential navigator.
 #[derive(Debug, Clone)]
 pub struct Sequential {
     setup: NavigationSetup,
     config: SequentialConfig,
     layout: Layout,
-    reference: Option<Reference>,
     manoeuvres: Vec<ManoeuvreReport>,
     received: BTreeSet<(Epoch, u64)>,
+    /// Measurements and their dispositions in order of arrival.
+    measurements: Vec<LineOfSightMeasurement>,
     dispositions: Vec<Disposition>,
-    /// States after the processed events, in order of time; the first is the start. Old ones are thinned.
-    states: Vec<FilterState>,
-    /// Processed events within the buffer with the index of the state after each.
-    buffer: Vec<Buffered>,
-    /// Measurements that wait for an initial orbit, with the index of their disposition.
-    waiting: Vec<(usize, LineOfSightMeasurement)>,
+    /// States before the history, in order of time.
+    old: Vec<FilterState>,
+    /// `None` until the filter starts.
+    history: Option<History>,
+    /// Measurements that wait for an initial orbit.
+    waiting: Vec<usize>,
+    /// Chaser's orbit at the last event and at the last answer.
+    at_event: Option<LocalReference>,
+    at_answer: Option<LocalReference>,
 }
 
+/// Chaser's orbit near a time.
 #[derive(Debug, Clone)]
-struct Buffered {
-    seconds: f64,
-    step: Step,
-    /// State after the event.
-    after: FilterState,
+struct LocalReference {
+    span_s: (f64, f64),
+    /// Number of manoeuvres known at its fit.
+    manoeuvres: usize,
+    reference: Reference,
 }
 
-#[derive(Debug, Clone)]
+/// Event by the number of its measurement.
+#[derive(Debug, Clone, Copy)]
 enum Step {
-    /// Index of the disposition, and the measurement: it is prepared when it is processed, with the chaser's
-    /// orbit as known then.
-    Sight(usize, Box<LineOfSightMeasurement>),
+    Sight(usize),
     Manoeuvre(ManoeuvreReport),
 }
 
@@ -93,19 +107,20 @@ impl Sequential {
         setup.check()?;
         config.check()?;
         let layout = Layout::new(setup, config.velocity_noise_m_s_per_hour);
-        let states = setup.prior.iter().map(|prior| FilterState::new(&layout, 0.0, prior)).collect();
-        let reference = Reference::new(&setup.chaser_orbit, setup.epoch, &[], config.osculation);
+        let start = setup.prior.as_ref().map(|prior| FilterState::new(&layout, 0.0, prior));
         Ok(Self {
             setup: setup.clone(),
             config: config.clone(),
             layout,
-            reference,
             manoeuvres: Vec::new(),
             received: BTreeSet::new(),
+            measurements: Vec::new(),
             dispositions: Vec::new(),
-            states,
-            buffer: Vec::new(),
+            old: Vec::new(),
+            history: start.map(|start| History::new(start, config.outlier_sigma, config.osculation)),
             waiting: Vec::new(),
+            at_event: None,
+            at_answer: None,
         })
     }
 
@@ -113,80 +128,124 @@ impl Sequential {
         seconds_between(self.setup.epoch, time)
     }
 
-    /// Inserts a step and processes it and the later ones.
-    fn process(&mut self, seconds: f64, step: Step) {
-        let Some(reference) = self.reference.clone() else { return };
-        let Some(newest) = self.states.last().map(|state| state.seconds) else { return };
-        let position = self.buffer.partition_point(|buffered| buffered.seconds <= seconds);
-        let before = match position.checked_sub(1) {
-            Some(index) => self.buffer[index].after.clone(),
-            // The state before the first buffered event.
-            None => self.states[self.states.len() - 1 - self.buffer.len()].clone(),
+    /// Returns the chaser's orbit that covers a span, from a cache if it has states of the hours before its
+    /// end.
+    fn reference(&self, cache: Option<LocalReference>, (from_s, to_s): (f64, f64)) -> Option<LocalReference> {
+        let is_recent = |local: &LocalReference| {
+            local.manoeuvres == self.manoeuvres.len()
+                && local.span_s.0 <= from_s
+                && to_s <= local.span_s.1 + REFRESH_S
         };
-        if seconds < before.seconds || seconds < newest - self.config.buffer_s {
-            match step {
-                Step::Sight(index, _) => self.dispositions[index].used = Use::TooLate,
-                Step::Manoeuvre(manoeuvre) => {
-                    if let Some(state) = self.states.last_mut() {
-                        // Without a known orbit the state keeps its value.
-                        let _ = state.late_manoeuvre(&reference, &manoeuvre, seconds);
-                        let state = state.clone();
-                        self.buffer.clear();
-                        self.states.push(state);
-                    }
-                }
-            }
-            return;
+        if let Some(local) = cache.filter(is_recent) {
+            return Some(local);
         }
-        let later: Vec<Step> = self.buffer.drain(position..).map(|buffered| buffered.step).collect();
-        self.states.truncate(self.states.len() - later.len());
-        let mut state = before;
-        for step in std::iter::once(step).chain(later) {
-            state = self.advance(&reference, state, step);
-        }
-        self.thin();
+        let span_s = (from_s.min(to_s - STATES_S), to_s);
+        let reference = Reference::within(
+            &self.setup.chaser_orbit,
+            self.setup.epoch,
+            &self.impulses(),
+            self.config.osculation,
+            span_s,
+        )?;
+        Some(LocalReference { span_s, manoeuvres: self.manoeuvres.len(), reference })
     }
 
-    /// Processes one step from a state and stores the state after it.
-    fn advance(&mut self, reference: &Reference, before: FilterState, step: Step) -> FilterState {
-        let mut state = before.clone();
+    /// Processes an event at its time, and the later ones again.
+    fn process(&mut self, step: Step) {
         let seconds = match &step {
-            Step::Sight(_, measurement) => self.seconds(measurement.time),
+            Step::Sight(index) => self.seconds(self.measurements[*index].time),
             Step::Manoeuvre(manoeuvre) => self.seconds(manoeuvre.time),
         };
-        let moved = state.propagate(&self.layout, reference, seconds);
-        let done = moved.and_then(|()| match &step {
-            Step::Sight(index, measurement) => {
-                let sight = self.sight(measurement).ok()?;
-                let gate = self.config.outlier_sigma;
-                let (used, innovation) = state.update(&self.layout, reference, &sight, gate);
-                self.dispositions[*index].used = used;
-                self.dispositions[*index].residual_rad = Some(innovation);
-                Some(())
+        let Some(mut history) = self.history.take() else { return };
+        let oldest = history.state_before(0).seconds;
+        let newest = history.last().seconds;
+        let is_late = match &step {
+            Step::Sight(_) => seconds < newest - self.config.buffer_s,
+            Step::Manoeuvre(_) => false,
+        };
+        if seconds < oldest || is_late {
+            match step {
+                Step::Sight(index) => self.dispositions[index].used = Use::TooLate,
+                Step::Manoeuvre(manoeuvre) => history = self.late_manoeuvre(history, &manoeuvre, seconds),
             }
-            Step::Manoeuvre(manoeuvre) => state.manoeuvre(reference, manoeuvre),
+            self.history = Some(history);
+            return;
+        }
+        let later = history.split_off(history.position(seconds));
+        self.append(&mut history, step);
+        for entry in later {
+            let step = match &entry.happening {
+                Happening::Sight(_) => Step::Sight(entry.id),
+                Happening::Manoeuvre(manoeuvre, _) => Step::Manoeuvre(*manoeuvre),
+            };
+            self.append(&mut history, step);
+        }
+        history.linearise(&self.layout);
+        if history.entries().len() > self.config.history {
+            self.note(&history);
+            self.old.extend(history.thin(self.config.history));
+        }
+        self.history = Some(history);
+    }
+
+    /// Appends an event that is later than the history.
+    fn append(&mut self, history: &mut History, step: Step) {
+        let seconds = match &step {
+            Step::Sight(index) => self.seconds(self.measurements[*index].time),
+            Step::Manoeuvre(manoeuvre) => self.seconds(manoeuvre.time),
+        };
+        let before_s = history.last().seconds;
+        let cache = self.at_event.take();
+        let local = self.reference(cache, (before_s, seconds));
+        let reference = local.as_ref().map(|local| &local.reference);
+        let departure = reference.and_then(|reference| reference.orbit(before_s));
+        let prepared = reference.zip(departure).and_then(|(reference, departure)| {
+            let (id, happening) = match &step {
+                Step::Sight(index) => {
+                    let measurement = &self.measurements[*index];
+                    let sight = Sight::new(measurement, self.setup.epoch, &self.setup.errors, reference);
+                    (*index, Happening::Sight(Box::new(sight.ok()?)))
+                }
+                Step::Manoeuvre(manoeuvre) => {
+                    (usize::MAX, Happening::Manoeuvre(*manoeuvre, reference.orbit_before(seconds)?))
+                }
+            };
+            Some(Entry::new(id, seconds, happening, departure))
         });
-        if done.is_none() {
-            state = before;
-            if let Step::Sight(index, _) = &step {
-                self.dispositions[*index].used = Use::NoChaserOrbit;
+        self.at_event = local;
+        match (prepared, step) {
+            (Some(entry), _) => history.push(&self.layout, entry),
+            (None, Step::Sight(index)) => self.dispositions[index].used = Use::NoChaserOrbit,
+            (None, Step::Manoeuvre(_)) => (),
+        }
+    }
+
+    /// Applies a manoeuvre before the history to its last state, from which a new history begins.
+    fn late_manoeuvre(&mut self, history: History, manoeuvre: &ManoeuvreReport, seconds: f64) -> History {
+        let mut state = history.last().clone();
+        let local = self.reference(None, (seconds, seconds));
+        let chaser = local.and_then(|local| local.reference.orbit_before(seconds));
+        // Without a known orbit the state keeps its value.
+        let Some(chaser) = chaser else { return history };
+        state.late_manoeuvre(&chaser, manoeuvre, seconds);
+        let after = history.entries().iter().filter_map(|entry| Some(entry.result()?.after.clone()));
+        self.old.extend(after);
+        History::new(state, self.config.outlier_sigma, self.config.osculation)
+    }
+
+    /// Stores the dispositions of the measurements in the history.
+    fn note(&mut self, history: &History) {
+        for entry in history.entries() {
+            let Some(disposition) = self.dispositions.get_mut(entry.id) else { continue };
+            match entry.result().map(|result| result.disposition) {
+                Some(Some((used, innovation))) => {
+                    disposition.used = used;
+                    disposition.residual_rad = Some(innovation.into());
+                }
+                Some(None) => (),
+                None => disposition.used = Use::NoChaserOrbit,
             }
         }
-        self.buffer.push(Buffered { seconds, step, after: state.clone() });
-        self.states.push(state.clone());
-        state
-    }
-
-    /// Removes events before the buffer.
-    fn thin(&mut self) {
-        let newest = self.buffer.last().map_or(0.0, |buffered| buffered.seconds);
-        let old = self.buffer.partition_point(|buffered| buffered.seconds < newest - self.config.buffer_s);
-        self.buffer.drain(..old);
-    }
-
-    fn sight(&self, measurement: &LineOfSightMeasurement) -> Result<Sight, Use> {
-        let reference = self.reference.as_ref().ok_or(Use::NoChaserOrbit)?;
-        Sight::new(measurement, self.setup.epoch, &self.setup.errors, reference)
     }
 
     fn measure(&mut self, measurement: &LineOfSightMeasurement) {
@@ -197,19 +256,27 @@ impl Sequential {
             used: Use::Waiting,
             residual_rad: None,
         });
+        self.measurements.push(*measurement);
         if !self.received.insert((measurement.time, measurement.frame)) {
             self.dispositions[index].used = Use::Duplicate;
             return;
         }
-        match self.sight(measurement) {
+        let seconds = self.seconds(measurement.time);
+        let cache = self.at_event.take();
+        let local = self.reference(cache, (seconds, seconds));
+        let sight = local.as_ref().map_or(Err(Use::NoChaserOrbit), |local| {
+            Sight::new(measurement, self.setup.epoch, &self.setup.errors, &local.reference)
+        });
+        self.at_event = local;
+        match sight {
             Err(used) => self.dispositions[index].used = used,
-            Ok(_) if self.states.is_empty() => {
-                self.waiting.push((index, *measurement));
+            Ok(_) if self.history.is_none() => {
+                self.waiting.push(index);
                 if self.waiting.len().is_multiple_of(self.config.initial_measurements) {
                     self.start();
                 }
             }
-            Ok(sight) => self.process(sight.seconds, Step::Sight(index, Box::new(*measurement))),
+            Ok(_) => self.process(Step::Sight(index)),
         }
     }
 
@@ -221,17 +288,20 @@ impl Sequential {
             model_errors: None,
         };
         let Ok(mut batch) = Batch::new(&self.setup, &config) else { return };
+        let waiting: Vec<LineOfSightMeasurement> =
+            self.waiting.iter().map(|index| self.measurements[*index]).collect();
         self.manoeuvres.iter().for_each(|manoeuvre| batch.receive(&Event::Manoeuvre(*manoeuvre)));
-        self.waiting.iter().for_each(|(_, measurement)| batch.receive(&Event::LineOfSight(*measurement)));
-        let Some(last) = self.waiting.iter().map(|(_, measurement)| measurement.time).max() else { return };
+        waiting.iter().for_each(|measurement| batch.receive(&Event::LineOfSight(*measurement)));
+        let Some(last) = waiting.iter().map(|measurement| measurement.time).max() else { return };
         let Some(Ok(estimate)) = batch.estimates(&[last]).pop() else { return };
         let sigma = estimate.elements_covariance.sigmas()[1];
         if sigma > START_SIGMA * estimate.elements.a_dlambda_m.abs() {
             return;
         }
         let prior = PriorOrbit { elements: estimate.elements, covariance: estimate.elements_covariance };
-        self.states.push(FilterState::new(&self.layout, self.seconds(last), &prior));
-        for ((index, _), disposition) in self.waiting.drain(..).zip(batch.dispositions()) {
+        let state = FilterState::new(&self.layout, self.seconds(last), &prior);
+        self.history = Some(History::new(state, self.config.outlier_sigma, self.config.osculation));
+        for (index, disposition) in self.waiting.drain(..).zip(batch.dispositions()) {
             self.dispositions[index] = disposition;
         }
     }
@@ -244,16 +314,26 @@ impl Sequential {
         self.manoeuvres.iter().map(impulse).collect()
     }
 
-    fn answer(&self, time: Epoch) -> Answer {
+    fn answer(&mut self, time: Epoch) -> Answer {
         let seconds = self.seconds(time);
-        let reference = self.reference.as_ref().ok_or(NoEstimate::NoChaserOrbit)?;
-        let index = self.states.partition_point(|state| state.seconds <= seconds).saturating_sub(1);
-        let mut state = self.states.get(index).ok_or(NoEstimate::NoInitialOrbit)?.clone();
-        state.propagate(&self.layout, reference, seconds).ok_or(NoEstimate::NoChaserOrbit)?;
+        let history = self.history.as_ref().ok_or(NoEstimate::NoInitialOrbit)?;
+        let before = self.old.partition_point(|state| state.seconds <= seconds);
+        let old = self.old.get(before.saturating_sub(1));
+        let mut state = match old {
+            Some(old) if seconds < history.state_before(0).seconds => old.clone(),
+            _ => history.state_before(history.position(seconds)).clone(),
+        };
+        let span_s = (state.seconds.min(seconds), state.seconds.max(seconds));
+        let cache = self.at_answer.take();
+        let local = self.reference(cache, span_s).ok_or(NoEstimate::NoChaserOrbit)?;
+        let reference = &local.reference;
+        let departure = reference.orbit(state.seconds).ok_or(NoEstimate::NoChaserOrbit)?;
+        state.propagate(&self.layout, &departure, seconds).ok_or(NoEstimate::NoChaserOrbit)?;
         let chaser = reference.orbit(seconds).ok_or(NoEstimate::NoChaserOrbit)?;
         let accuracy = reference.relative_accuracy(seconds);
         let (elements, covariance) = (state.elements(), state.elements_covariance());
-        relative_state::estimate(time, &elements, &covariance, &chaser, reference.osculation(), accuracy)
+        self.at_answer = Some(local);
+        relative_state::estimate(time, &elements, &covariance, &chaser, self.config.osculation, accuracy)
     }
 }
 
@@ -267,25 +347,17 @@ impl Navigator for Sequential {
                 }
                 self.manoeuvres.push(*manoeuvre);
                 self.manoeuvres.sort_by_key(|manoeuvre| manoeuvre.time);
-                let setup = &self.setup;
-                self.reference = Reference::new(
-                    &setup.chaser_orbit,
-                    setup.epoch,
-                    &self.impulses(),
-                    self.config.osculation,
-                );
-                let seconds = self.seconds(manoeuvre.time);
                 // Until the filter starts, manoeuvres are part of the batch from which it starts. One before
                 // the epoch is part of the prior.
-                if !self.states.is_empty() && seconds > 0.0 {
-                    self.process(seconds, Step::Manoeuvre(*manoeuvre));
+                if self.history.is_some() && self.seconds(manoeuvre.time) > 0.0 {
+                    self.process(Step::Manoeuvre(*manoeuvre));
                 }
             }
         }
     }
 
     fn estimates(&mut self, epochs: &[Epoch]) -> Vec<Answer> {
-        if self.states.is_empty() {
+        if self.history.is_none() {
             let reason = if self.received.is_empty() {
                 NoEstimate::NoMeasurements
             } else {
@@ -297,6 +369,10 @@ impl Navigator for Sequential {
     }
 
     fn dispositions(&mut self) -> Vec<Disposition> {
+        if let Some(history) = self.history.take() {
+            self.note(&history);
+            self.history = Some(history);
+        }
         self.dispositions.clone()
     }
 }

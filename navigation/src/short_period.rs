@@ -4,8 +4,9 @@
 //! expanded in e, their mean over the mean argument of latitude u is the secular drift, and the integral of
 //! the remainder, with zero mean over u, is the variation (Brouwer 1959, AJ 64, 378, in the nonsingular
 //! variables of Lyddane 1963, AJ 68, 555). `golden/navigation/short_period.py` derives the coefficients.
-//! Omitted: terms of relative size e² J2 and J2², for e = 0.003 a few metres of the absolute position, and a
-//! few millimetres of a relative position at 30 km.
+//! Omitted: terms of relative size e² J2 and J2², for e = 0.003 five metres of the absolute position with
+//! half and four metres with a quarter of the period of the orbit, 0.1 to 0.2 m of a relative position at
+//! 30 km, which is 1″.
 
 use crate::orbit::{J2, Orbit, RADIUS_KM, State, wrap};
 

@@ -111,8 +111,13 @@ impl Sight {
     }
 
     /// Returns the derivatives of the predicted angles with respect to the elements, rad/m.
-    pub(crate) fn by_elements(&self, elements: &RelativeElements, prediction: &Prediction) -> Matrix2x6<f64> {
-        let position = relative::position_partials(&prediction.target, elements);
+    pub(crate) fn by_elements(
+        &self,
+        elements: &RelativeElements,
+        prediction: &Prediction,
+        osculation: Osculation,
+    ) -> Matrix2x6<f64> {
+        let position = relative::position_partials(&prediction.target, elements, osculation);
         angle_partials(&prediction.direction) * self.camera_from_icrs * position
     }
 

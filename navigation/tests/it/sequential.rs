@@ -3,12 +3,20 @@
 use boresight_navigation::{Batch, BatchConfig, Sequential, SequentialConfig};
 use contract::navigation::{Event, NavigationSetup, Navigator, NoEstimate, RelativeEstimate, Use};
 
+use hifitime::Unit;
+
 use crate::simulator::{Campaign, Flight, at};
 
 fn fed(setup: &NavigationSetup, events: &[Event]) -> Sequential {
     let mut filter = Sequential::new(setup, &SequentialConfig::default()).expect("a sound setup");
     events.iter().for_each(|event| filter.receive(event));
     filter
+}
+
+fn fed_batch(setup: &NavigationSetup, events: &[Event]) -> Batch {
+    let mut batch = Batch::new(setup, &BatchConfig::default()).expect("a sound setup");
+    events.iter().for_each(|event| batch.receive(event));
+    batch
 }
 
 fn squared(flight: &Flight, estimate: &RelativeEstimate) -> f64 {
@@ -55,6 +63,67 @@ fn the_last_estimate_is_that_of_the_batch() {
         assert!(difference < 0.5, "{k}: {difference} sigma");
         assert!((b[k] / a[k] - 1.0).abs() < 0.15, "{k}: {} {}", a[k], b[k]);
     }
+}
+
+/// The slopes of angles of 1″ differ between the ranges of successive estimates. A filter that linearises
+/// each measurement about its latest estimate takes these differences for information about the range.
+#[test]
+fn precise_measurements_are_filtered_as_the_batch_fits_them() {
+    for seed in [1, 2, 3] {
+        let flight = Campaign::precise(16).fly(seed);
+        let (mut batch, mut filter) = (fed_batch(&flight.setup, &[]), fed(&flight.setup, &[]));
+        let mut events = flight.events.iter().peekable();
+        for seconds in [36_000.0, 60_000.0, 140_000.0, 400_000.0] {
+            while let Some(event) = events.next_if(|event| event.time() <= at(seconds)) {
+                batch.receive(event);
+                filter.receive(event);
+            }
+            let [fitted, filtered]: [RelativeEstimate; 2] =
+                [batch.estimates(&[at(seconds)]), filter.estimates(&[at(seconds)])]
+                    .map(|mut answers| answers.remove(0).unwrap());
+            let (a, b) = (fitted.covariance.sigmas(), filtered.covariance.sigmas());
+            let difference = (fitted.position_m - filtered.position_m)[1].abs() / a[1];
+            assert!(difference < 0.2, "{seed}, {seconds} s: {difference} sigma");
+            assert!((b[1] / a[1] - 1.0).abs() < 0.03, "{seed}, {seconds} s: {} {}", a[1], b[1]);
+        }
+    }
+}
+
+/// A manoeuvre reported hours after it, without a buffer for late measurements, is inserted in the history.
+#[test]
+fn a_late_report_of_a_manoeuvre_changes_nothing_in_the_end() {
+    let flight = Campaign::argon(64).fly(13);
+    let mut late = flight.events.clone();
+    let first = late.iter().position(|event| matches!(event, Event::Manoeuvre(_))).unwrap();
+    let report = late.remove(first);
+    let arrival = late.iter().position(|event| event.time() > report.time() + Unit::Hour * 3).unwrap();
+    late.insert(arrival, report);
+    let config = SequentialConfig { buffer_s: 0.0, ..SequentialConfig::default() };
+    let last = |events: &[Event]| {
+        let mut filter = Sequential::new(&flight.setup, &config).unwrap();
+        events.iter().for_each(|event| filter.receive(event));
+        filter.estimates(&[at(430_000.0)]).remove(0).unwrap()
+    };
+    let (prompt, late) = (last(&flight.events), last(&late));
+    let difference = (prompt.position_m - late.position_m).component_div(&prompt.covariance.sigmas().xyz());
+    assert!(difference.abs().max() < 0.02, "{difference}");
+}
+
+/// Events beyond the history keep their linearisation and their states.
+#[test]
+fn a_short_history_answers_old_epochs() {
+    let flight = Campaign::argon(64).fly(14);
+    let config = SequentialConfig { history: 40, ..SequentialConfig::default() };
+    let mut short = Sequential::new(&flight.setup, &config).unwrap();
+    flight.events.iter().for_each(|event| short.receive(event));
+    let epochs = [at(30_000.0), at(140_000.0), at(430_000.0)];
+    let whole = fed(&flight.setup, &flight.events).estimates(&epochs);
+    for (a, b) in short.estimates(&epochs).into_iter().zip(whole) {
+        let (a, b) = (a.unwrap(), b.unwrap());
+        let difference = (a.position_m - b.position_m).component_div(&b.covariance.sigmas().xyz());
+        assert!(difference.abs().max() < 0.5, "{difference}");
+    }
+    assert!(short.dispositions().iter().all(|disposition| disposition.used == Use::Used));
 }
 
 #[test]
