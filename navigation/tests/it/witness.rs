@@ -1,4 +1,5 @@
-//! The batch against SciPy's least squares over numerically integrated states (`golden/navigation`).
+//! The batch against least squares over numerically integrated states by SciPy and by Orekit
+//! (`golden/navigation`).
 
 use boresight_navigation::{Batch, BatchConfig};
 use contract::navigation::{
@@ -22,7 +23,7 @@ fn vector(row: &[f64], first: usize) -> Vector3<f64> {
 }
 
 #[test]
-fn the_estimate_is_that_of_scipy() {
+fn the_estimate_is_that_of_scipy_and_of_orekit() {
     let states = table("chaser.csv");
     let states = states.iter().map(|row| ReportedState {
         time: at(row[0]),
@@ -61,13 +62,15 @@ fn the_estimate_is_that_of_scipy() {
             sigma_rtn_m_s: Vector3::zeros(),
         }));
     }
-    for row in table("estimates.csv") {
+    for row in table("estimates.csv").into_iter().chain(table("orekit.csv")) {
         let estimate = batch.estimates(&[at(row[0])]).remove(0).unwrap();
         let (expected, expected_sigma) = (vector(&row, 1), vector(&row, 4));
         let sigma = estimate.covariance.sigmas().fixed_rows::<3>(0).into_owned();
         let difference = (estimate.position_m - expected).component_div(&expected_sigma);
-        assert!(difference.abs().max() < 0.3, "{} s: {difference} sigma", row[0]);
+        assert!(difference.abs().max() < 0.2, "{} s: {difference} sigma", row[0]);
         let ratio = sigma.component_div(&expected_sigma);
         assert!(ratio.iter().all(|ratio| (0.9..1.1).contains(ratio)), "{} s: {ratio}", row[0]);
+        // R and N include the accuracy of the model, which T, a hundred times larger, does not show.
+        assert!((0.99..1.01).contains(&ratio[1]), "{} s: {ratio}", row[0]);
     }
 }
