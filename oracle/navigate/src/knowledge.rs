@@ -11,6 +11,7 @@ use files::Failure;
 use hifitime::{Duration, Epoch};
 use nalgebra::{Vector3, Vector6};
 use scenario::FarRangeScenario;
+use sim::onboard::ScanOrder;
 use sim::randomness::{Effect, Seed, Stream, normal};
 use sim::truth::{EARTH_GM_KM3_S2, State, Trajectory};
 
@@ -52,6 +53,11 @@ const MIN_STATES_S: f64 = 900.0;
 
 /// Largest number of reported states.
 const MAX_STATES: f64 = 1e6;
+
+/// Memories of the error by regions that cut the target, s, each of a half of its variance: the size of the
+/// target's image follows its illumination, which turns with the orbit, and its distance, which changes
+/// within days.
+const TRUNCATION_MEMORY_S: [f64; 2] = [BRIGHTNESS_MEMORY_S, 86_400.0];
 
 /// Constant error of a line of sight with the attitude of telemetry and a mounting from stars, arcsec.
 const MOUNTING_CONSTANT_ARCSEC: f64 = 5.0;
@@ -218,6 +224,11 @@ fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch], method: M
     let Some(attitude) = calibration.attitude else {
         return LineOfSightErrors { with_stars: solved.clone(), without_stars: solved };
     };
+    let truncation = match method {
+        Method::StarAttitude => Vec::new(),
+        Method::StarMounting => truncation(scenario),
+    };
+    let slow = slow.into_iter().chain(truncation).collect();
     let without_stars = of_telemetry(scenario, &attitude, centre_arcsec, slow);
     let with_stars = match method {
         Method::StarAttitude => solved,
@@ -226,6 +237,29 @@ fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch], method: M
         }
     };
     LineOfSightErrors { with_stars, without_stars }
+}
+
+/// Returns the error of a centroid in a region of interest that cuts the target, for a pipeline that states
+/// no error of its own. A region of n rows below the first bright row keeps the upper n rows of a taller
+/// target, up to twice as tall: then a second region begins. The centroid errs by 0 to n/2 rows, with equal
+/// probability, and the root of the mean square is n/(2√3) (paper, section 4: the truncation by regions
+/// is the largest error of the declination). A scan by columns cuts columns.
+fn truncation(scenario: &FarRangeScenario) -> Vec<SlowError> {
+    let Some(roi) = &scenario.roi else { return Vec::new() };
+    let rms_arcsec = |side: usize, anchor: usize, pitch_um: f64| {
+        let pixel_rad = pitch_um * 1e-3 / scenario.camera.focal_length_mm;
+        let pixels = side.saturating_sub(anchor) as f64 / 12.0_f64.sqrt();
+        ((pixels * pixel_rad).to_degrees() * 3600.0).min(36_000.0)
+    };
+    let sigma_arcsec = match roi.scan {
+        ScanOrder::Rows => [0.0, rms_arcsec(roi.rows, roi.anchor_row, scenario.camera.pixel_height_um)],
+        ScanOrder::Columns => {
+            [rms_arcsec(roi.columns, roi.anchor_column, scenario.camera.pixel_width_um), 0.0]
+        }
+    };
+    let halved = sigma_arcsec.map(|sigma| sigma * 0.5_f64.sqrt());
+    let part = |memory_s| SlowError { sigma_arcsec: halved, memory_s, period_s: None };
+    TRUNCATION_MEMORY_S.map(part).into()
 }
 
 /// Returns the period of the osculating orbit of a state, s (vis-viva equation).
