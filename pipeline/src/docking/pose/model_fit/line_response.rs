@@ -11,6 +11,10 @@
 //! The size of the coefficients is unknown too. Its distribution is estimated from the same sums (empirical
 //! Bayes; Carlin and Louis, *Bayes and Empirical Bayes Methods*, 2000), so a video without ringing keeps the
 //! covariance of its noise.
+//!
+//! The pixels s contain noise, and an estimate that ignores it is biased (errors in variables; Fuller,
+//! *Measurement Error Models*, 1987). Its moments are measured on pixels without an edge nearby: after a blur
+//! or a rotation of the image, the noise is correlated along the line.
 
 use contract::Frame;
 use nalgebra::{SMatrix, SVector};
@@ -41,6 +45,9 @@ const FADING_PX: f64 = 4.0;
 
 /// Share of the information from previous fields that is kept per field.
 const RETENTION: f64 = 0.9;
+
+/// Smallest number of pixels without an edge that determine the noise.
+const MIN_FLAT_PIXELS: f64 = 200.0;
 
 /// Smallest difference between a pixel and one of its predecessors that counts as an edge, in σ of the noise.
 const EDGE_SIGMA: f64 = 4.0;
@@ -102,6 +109,21 @@ impl LineResponse {
     }
 }
 
+/// Returns the change of a pixel by a unit of each coefficient, DN.
+fn effects(line: &[u16], column: usize, expected_dn: f64) -> Coefficients {
+    let off = |column: Option<usize>| {
+        column.and_then(|column| line.get(column)).map_or(0.0, |dn| f64::from(*dn) - expected_dn)
+    };
+    let mut effects = Coefficients::zeros();
+    for k in 0..LAGS {
+        effects[k] = off(column.checked_sub(k + 1));
+    }
+    for k in 0..SYMMETRIC {
+        effects[LAGS + k] = effects[k] + off(column.checked_add(k + 1));
+    }
+    effects
+}
+
 /// Sums over the pixels of one line.
 #[derive(Debug, Clone, Copy)]
 struct Line {
@@ -111,11 +133,20 @@ struct Line {
     squares: CoefficientMatrix,
 }
 
+impl Default for Line {
+    fn default() -> Self {
+        Self { seen: Coefficients::zeros(), squares: CoefficientMatrix::zeros() }
+    }
+}
+
 /// Sums over a field, with reusable buffers.
 #[derive(Debug)]
 pub(super) struct LineResponseSums {
     lines: Vec<Line>,
     pixels: f64,
+    /// Sums over the pixels without an edge nearby, whose residuals and effects are noise alone.
+    flat: Line,
+    flat_pixels: f64,
     /// Σ e eᵀ, minus the part absorbed by the patches' levels.
     squares: CoefficientMatrix,
     /// Σ J eᵀ: change of the gradient by a unit of each coefficient.
@@ -130,6 +161,8 @@ impl Default for LineResponseSums {
         Self {
             lines: Vec::new(),
             pixels: 0.0,
+            flat: Line::default(),
+            flat_pixels: 0.0,
             squares: SMatrix::zeros(),
             scores: SMatrix::zeros(),
             by_levels: SMatrix::zeros(),
@@ -154,24 +187,15 @@ impl LineResponseSums {
     /// Adds a pixel of the current patch. `noise_dn` is the noise of a pixel.
     pub(super) fn add(&mut self, image: &Frame, pixel: &Sample, grouped: &GroupedPixel, noise_dn: f64) {
         let GroupedPixel { residual, slopes, levels, .. } = grouped;
-        let expected_dn = pixel.dn - residual;
-        let line = image.row(pixel.row);
-        let off = |column: Option<usize>| {
-            column.and_then(|column| line.get(column)).map_or(0.0, |dn| f64::from(*dn) - expected_dn)
-        };
-        let mut effects = Coefficients::zeros();
-        for k in 0..LAGS {
-            effects[k] = off(pixel.column.checked_sub(k + 1));
-        }
-        for k in 0..SYMMETRIC {
-            effects[LAGS + k] = effects[k] + off(pixel.column.checked_add(k + 1));
-        }
+        let effects = effects(image.row(pixel.row), pixel.column, pixel.dn - residual);
         if effects.amax() < EDGE_SIGMA * noise_dn {
+            self.flat.seen += effects * *residual;
+            self.flat.squares += effects * effects.transpose();
+            self.flat_pixels += 1.0;
             return;
         }
         if self.lines.len() <= pixel.row {
-            let empty = Line { seen: Coefficients::zeros(), squares: CoefficientMatrix::zeros() };
-            self.lines.resize(pixel.row + 1, empty);
+            self.lines.resize(pixel.row + 1, Line::default());
         }
         let line = &mut self.lines[pixel.row];
         line.seen += effects * *residual;
@@ -191,15 +215,19 @@ impl LineResponseSums {
     }
 
     /// Estimates the response and the change of the globals that it causes. `inverse_information` is the
-    /// inverse of the globals' information, `variance` the variance of a pixel.
+    /// inverse of the globals' information, `variance` the variance of a pixel, `correlated_lines` the number
+    /// of lines with the same noise.
     pub(super) fn estimate(
         &self,
         inverse_information: &GlobalMatrix,
         variance: f64,
+        correlated_lines: f64,
         known: &LineResponse,
     ) -> Option<Correction> {
         let of_lines: CoefficientMatrix = self.lines.iter().map(|line| line.squares).sum();
-        let seen: Coefficients = self.lines.iter().map(|line| line.seen).sum();
+        let noise = self.noise_of_pixel(variance);
+        let seen: Coefficients =
+            self.lines.iter().map(|line| line.seen).sum::<Coefficients>() - noise.seen * self.pixels;
         let by_globals = inverse_information * self.scores;
         let mut response = *known;
         let alone = of_lines + self.squares - self.scores.transpose() * by_globals;
@@ -207,9 +235,9 @@ impl LineResponseSums {
             // The noise of the pixels in e adds to the squares and explains no residual: with A = Σ e eᵀ and
             // A' without noise, the estimate A'⁻¹ Σ e r has the covariance σ² A'⁻¹ A A'⁻¹ (Fuller,
             // *Measurement Error Models*, 1987, chapter 1).
-            let signal = positive(&(alone - noise_squares() * (variance * self.pixels)));
+            let signal = positive(&(alone - noise.squares * self.pixels));
             let gain = signal * inverse(&(positive(&alone) + ridge(&of_lines)))?;
-            let variance = variance * spread.max(1.0);
+            let variance = variance * spread.max(1.0) * correlated_lines;
             response.information += positive(&(gain * signal)) / variance;
             response.weighted += gain * seen / variance;
         }
@@ -221,6 +249,15 @@ impl LineResponseSums {
             covariance,
             response,
         })
+    }
+
+    /// Returns the part of the sums that one pixel's noise adds, for noise of the given variance if there are
+    /// too few pixels without an edge to measure it.
+    fn noise_of_pixel(&self, variance: f64) -> Line {
+        if self.flat_pixels < MIN_FLAT_PIXELS {
+            return Line { seen: Coefficients::zeros(), squares: noise_squares() * variance };
+        }
+        Line { seen: self.flat.seen / self.flat_pixels, squares: self.flat.squares / self.flat_pixels }
     }
 
     /// Returns the ratio of the scatter of lines to that of independent noise. Lines that come a little early

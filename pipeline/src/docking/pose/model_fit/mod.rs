@@ -21,6 +21,7 @@ mod first_guess;
 mod gaussian;
 mod groups;
 mod line_response;
+mod noise_correlation;
 mod sampled;
 mod sampled_marks;
 mod samples;
@@ -28,6 +29,7 @@ mod scene;
 mod shadow;
 mod solve;
 mod swelling;
+mod uncertainty;
 mod unknowns;
 
 #[cfg(test)]
@@ -43,7 +45,8 @@ use self::sampled_marks::SampledMarks;
 use self::samples::{Feature, Samples};
 use self::scene::Scene;
 use self::shadow::ShadowFinder;
-use self::solve::{Evaluation, Search, SharedErrors, VideoKnowledge, normals, residual, solve, uncertainty};
+use self::solve::{Evaluation, Search, normals, residual, solve};
+use self::uncertainty::{SharedErrors, VideoKnowledge, uncertainty};
 use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
 use crate::CameraModel;
 use crate::docking::pose::geometry::{PoseProjection, project, to_pose, to_vector};

@@ -449,3 +449,60 @@ fn ringing_of_the_video_is_in_the_pose_and_in_sigma() {
     let mean = squares.iter().sum::<f64>() / squares.len() as f64;
     assert!((1.0..11.0).contains(&mean), "{mean}: {squares:.2?}");
 }
+
+/// Returns the field after a Gaussian blur of its pixels, as by a digital filter: noise and image alike.
+fn blurred(field: &Field, sigma_px: f64) -> Field {
+    let image = field.image();
+    let (columns, rows) = (image.columns(), image.rows());
+    let taps: Vec<f64> =
+        (0..=8).map(|k| libm::exp(-0.5 * f64::from(k * k) / (sigma_px * sigma_px))).collect();
+    let sum = 2.0 * taps.iter().sum::<f64>() - taps[0];
+    let filtered = |values: &[f64], index: usize, at: usize, length: usize, step: usize| -> f64 {
+        let tap = |offset: i64| {
+            let to = (at as i64 + offset).clamp(0, length as i64 - 1) - at as i64;
+            values[(index as i64 + to * step as i64) as usize] * taps[offset.unsigned_abs() as usize] / sum
+        };
+        (-8..=8).map(tap).sum()
+    };
+    let sharp: Vec<f64> = (0..rows).flat_map(|row| image.row(row)).map(|dn| f64::from(*dn)).collect();
+    let along: Vec<f64> =
+        (0..sharp.len()).map(|index| filtered(&sharp, index, index % columns, columns, 1)).collect();
+    let both = (0..sharp.len()).map(|index| filtered(&along, index, index / columns, rows, columns));
+    let dn = both.map(|dn| dn.round() as u16).collect();
+    Field::new(Frame::new(0, columns, rows, 8, dn, None).unwrap(), field.lines(), 2 * rows).unwrap()
+}
+
+/// Returns the mean NEES over 6 of blurred fields, six of each of eight poses at 5 m, and those of the
+/// fields.
+fn nees_of_blurred_video(has_ringing: bool) -> (f64, Vec<f64>) {
+    let (camera, target) = (camera(NARROW_PX, [0.0; 3]), target());
+    let model = CameraModel::new(&camera).unwrap();
+    let mut ratios = Vec::new();
+    for seed in 0..8 {
+        let truth = pose(5.0, 400 + seed);
+        let sharp = expected(&camera, &target, &FeatureModel::default(), &truth);
+        let image = if has_ringing { ringing(&sharp, camera.columns) } else { sharp };
+        let mut fit = ModelFit::new();
+        for k in 0..6 {
+            let lines = if k % 2 == 0 { Lines::Even } else { Lines::Odd };
+            let field = blurred(&field(&camera, &image, lines, 4.0, 20_000 + 100 * seed + k), 1.5);
+            let fitted = fit.fit(&field, &model, &target, &guess(&camera, &truth, seed)).unwrap();
+            ratios.push(nees(&fitted, &truth) / 6.0);
+        }
+    }
+    (ratios.iter().sum::<f64>() / ratios.len() as f64, ratios)
+}
+
+#[test]
+fn noise_spread_by_a_blur_is_in_sigma() {
+    // 1.5; 15 for noise that is independent between pixels.
+    let (mean, all) = nees_of_blurred_video(false);
+    assert!((0.4..2.1).contains(&mean), "{mean}: {all:.2?}");
+}
+
+#[test]
+fn ringing_of_a_blurred_video_is_in_the_pose_and_in_sigma() {
+    // 1.9; 10 for noise that is independent between pixels.
+    let (mean, all) = nees_of_blurred_video(true);
+    assert!((0.4..2.5).contains(&mean), "{mean}: {all:.2?}");
+}
