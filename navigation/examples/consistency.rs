@@ -3,7 +3,8 @@
 //! `cargo run --release -p boresight-navigation --example consistency -- CAMPAIGNS STRIDE [FIRST]`: every
 //! STRIDE-th measurement of ARGON's schedule, seeds from FIRST. The variable VARIANT contains `sequential`
 //! for the filter instead of the batch, `precise` for the errors of best mode, `exact` for exact manoeuvres,
-//! `white` without slow errors, `unbiased` without constant errors.
+//! `white` without slow errors, `unbiased` without constant errors, `halved` with all drawn errors halved,
+//! `mirrored` with all of the opposite sign, `noiseless` without any.
 
 #[path = "../tests/it/simulator.rs"]
 mod simulator;
@@ -35,6 +36,15 @@ fn main() {
         }
         if variant.contains("unbiased") {
             campaign.constant_arcsec = 0.0;
+        }
+        if variant.contains("halved") {
+            campaign.drawn = 0.5;
+        }
+        if variant.contains("mirrored") {
+            campaign.drawn *= -1.0;
+        }
+        if variant.contains("noiseless") {
+            campaign.drawn = 0.0;
         }
         let flight = campaign.fly(1000 + seed as u64);
         let times: Vec<_> = epochs.iter().map(|s| at(*s)).collect();

@@ -218,7 +218,7 @@ mod tests {
         }
     }
 
-    /// Of the derivative by aδλ, the part across the orbit counts: a thousandth of the part along it.
+    /// The part of the derivative by aδλ across the orbit counts, a thousandth of the part along it.
     #[test]
     fn position_partials_by_the_distance_include_short_period_variations() {
         for osculation in [Osculation::None, Osculation::FirstOrder] {

@@ -50,6 +50,8 @@ pub(crate) struct Campaign {
     pub(crate) state_sigma: (f64, f64),
     /// Rate of aδa, m per day, and its σ in the setup.
     pub(crate) drag_m_per_day: (f64, f64),
+    /// Factor of all drawn errors, not of the stated ones.
+    pub(crate) drawn: f64,
 }
 
 /// Simulated campaign.
@@ -123,11 +125,12 @@ impl Campaign {
             outliers: 0.0,
             state_sigma: (5.0, 0.02),
             drag_m_per_day: (0.0, 0.0),
+            drawn: 1.0,
         }
     }
 
-    /// The same campaign with the errors of the built-in pipeline's best mode: centres of 1″ in axes from
-    /// stars, and a centre of brightness that wanders by 7″ and repeats with the orbit by 2″. At this
+    /// Campaign of [`Campaign::argon`] with the errors of the built-in pipeline's best mode: centres of 1″ in
+    /// axes from stars, and a centre of brightness that wanders by 7″ and repeats with the orbit by 2″. At this
     /// accuracy terms of second order in J2 count, which the navigator omits: 5 m with half and 4 m with a
     /// quarter of the period of the orbit for one satellite, 0.7″ for two.
     pub(crate) fn precise(stride: usize) -> Self {
@@ -144,7 +147,10 @@ impl Campaign {
     /// Flies the campaign with the draws of a seed.
     pub(crate) fn fly(&self, seed: u64) -> Flight {
         let mut stream = Xoshiro256PlusPlus::seed_from_u64(seed);
-        let mut normal = || -> f64 { StandardNormal.sample(&mut stream) };
+        let mut normal = || -> f64 {
+            let drawn: f64 = StandardNormal.sample(&mut stream);
+            self.drawn * drawn
+        };
         // Truth: the relative orbit is drawn from the prior.
         let mut relative = self.relative.vector();
         if let Some(sigmas) = self.prior_sigma_m {
