@@ -130,9 +130,9 @@ impl Campaign {
     }
 
     /// Campaign of [`Campaign::argon`] with the errors of the built-in pipeline's best mode: centres of 1″ in
-    /// axes from stars, and a centre of brightness that wanders by 7″ and repeats with the orbit by 2″. At this
-    /// accuracy terms of second order in J2 count, which the navigator omits: 5 m with half and 4 m with a
-    /// quarter of the period of the orbit for one satellite, 0.7″ for two.
+    /// axes from stars, and a centre of brightness that wanders by 7″ and repeats with the orbit by 2″. At
+    /// this accuracy terms of second order in J2 count, which the navigator omits: 5 m with half and 4 m with
+    /// a quarter of the period of the orbit for one satellite, 0.7″ for two.
     pub(crate) fn precise(stride: usize) -> Self {
         Self {
             white_arcsec: 1.0,
