@@ -3,7 +3,9 @@
 
 use std::path::Path;
 
-use boresight::flight_dynamics::{Aem, Coverage, Epoch, Notation, Oem, Opm, OrbitEphemeris, Spk, Tdm, Tle};
+use boresight::flight_dynamics::{
+    Aem, Coverage, Epoch, InitialState, Notation, Oem, Opm, OrbitEphemeris, Spk, Tdm, Tle,
+};
 
 use crate::Sandbox;
 
@@ -48,6 +50,7 @@ pub(crate) fn opm(_: &Sandbox, bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let Ok(opm) = Opm::parse(Path::new(FILE), text) else { return };
     let _ = opm.icrs_state();
+    let _ = InitialState::parse(Path::new(FILE), text);
     for notation in [Notation::Kvn, Notation::Xml] {
         let _ = Opm::parse(Path::new(FILE), &opm.to_text(notation));
     }

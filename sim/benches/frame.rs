@@ -22,6 +22,7 @@ use boresight_sim::randomness::{Effect, Seed};
 use boresight_sim::sensor::{
     ExposureInterval, FixedPatternConfig, FlatSamplers, LineNoiseConfig, RawImage, Sensor, SensorConfig,
 };
+use boresight_sim::truth::TrajectorySource;
 use boresight_sim::{PixelSelection, Simulation, Simulator};
 use contract::PixelPoint;
 use criterion::{BenchmarkId, Criterion, Throughput};

@@ -97,8 +97,8 @@ impl Flight {
             count: 2,
         };
         let schedule = Schedule::new(&[day]).unwrap();
-        let source = TrajectorySource::Numerical(forces());
-        Self { trajectory: Trajectory::from_source(orbit, &source, SEED, &schedule).unwrap() }
+        let source = TrajectorySource::Numerical(orbit.clone(), forces());
+        Self { trajectory: Trajectory::from_source(&source, SEED, &schedule).unwrap() }
     }
 
     fn at(&self, time_s: f64) -> Epoch {

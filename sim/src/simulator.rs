@@ -18,7 +18,7 @@ use crate::sensor::{CosmicRays, Sensor, SensorConfig};
 use crate::switch::Switch;
 use crate::truth::{
     Attitude, AttitudeConfig, AttitudeProfile, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig,
-    Observer, OrbitConfig, Schedule, Trajectory, TrajectorySource,
+    Observer, Schedule, Trajectory, TrajectorySource,
 };
 
 /// Complete input of the simulator.
@@ -28,8 +28,6 @@ pub struct Simulation {
     pub seed: u64,
     /// Selection of the stars to draw.
     pub catalog: CatalogConfig,
-    /// Orbits of target and chaser.
-    pub orbit: OrbitConfig,
     /// Origin of the motion of chaser and target.
     pub trajectory: TrajectorySource,
     /// Times of the images.
@@ -186,6 +184,11 @@ impl Simulator {
         &self.schedule
     }
 
+    /// The motion of chaser and target.
+    pub fn trajectory(&self) -> &Trajectory {
+        &self.trajectory
+    }
+
     /// Shortest and longest exposure that the shutter control may choose, s.
     pub fn exposures_s(&self) -> [f64; 2] {
         [self.shutter.shortest_s(), self.shutter.longest_s()]
@@ -221,19 +224,13 @@ fn flight(
     target: &Spacecraft,
 ) -> Result<(Trajectory, Schedule, Shutter), SimError> {
     let schedule = Schedule::new(&simulation.schedule)?;
-    let trajectory =
-        Trajectory::from_source(&simulation.orbit, &simulation.trajectory, simulation.seed, &schedule)?;
+    let trajectory = Trajectory::from_source(&simulation.trajectory, simulation.seed, &schedule)?;
     let shutter = Shutter::new(&simulation.shutter, sensor.saturation_e())?;
     let half_interval_s = sensor.interlace.map_or(0.0, |interlace| interlace.offsets_s()[1]);
     shutter.check_interval(schedule.shortest_interval_s())?;
     cosmic_rays.map_or(Ok(()), |rays| rays.check_hits(shutter.longest_s()))?;
     check_times(&schedule, &trajectory, shutter.lag_s(), half_interval_s)?;
-    let key = (
-        simulation.orbit.clone(),
-        simulation.trajectory.clone(),
-        simulation.schedule.clone(),
-        simulation.target.clone(),
-    );
+    let key = (simulation.trajectory.clone(), simulation.schedule.clone(), simulation.target.clone());
     APART.get(key, |_| check_separation(&schedule, &trajectory, target))?;
     Ok((trajectory, schedule, shutter))
 }
@@ -259,7 +256,7 @@ fn check_times(
 }
 
 /// Cache of flights whose frames passed the check of separation.
-static APART: Memo<(OrbitConfig, TrajectorySource, Vec<GroupConfig>, TargetConfig), ()> = Memo::new();
+static APART: Memo<(TrajectorySource, Vec<GroupConfig>, TargetConfig), ()> = Memo::new();
 
 /// Maximum number of frames of a schedule at which the separation is checked; longer schedules are sampled at
 /// equal steps.

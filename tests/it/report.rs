@@ -334,7 +334,7 @@ fn the_runs_of_an_error_budget_are_flown_once_and_kept() {
     let page = PageText::read(&bench, "run/report.html");
     page.check(&["budget"]);
     let chart = page.charts().into_iter().find(|chart| chart.to_string().contains("RMS error")).unwrap();
-    let stages = ["centroids", "identities", "attitude", "roi", "aberration"];
+    let stages = ["centroids", "identities", "attitude", "roi", "aberration", "brightness"];
     let told = chart["data"][0]["x"].as_array().unwrap();
     assert_eq!(told[0], "none (unmodified run)");
     assert!(told[1..].iter().zip(stages).all(|(told, stage)| *told == stage), "{told:?}");

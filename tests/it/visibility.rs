@@ -192,7 +192,7 @@ fn a_flight_of_a_prepared_simulator_is_that_of_a_new_one() {
     let scenario = argon();
     let mut other = scenario.simulation().unwrap();
     other.seed = 99;
-    other.orbit.relative.a_dlambda_m = -9000.0;
+    other.trajectory.orbit_mut().unwrap().relative.a_dlambda_m = -9000.0;
     other.schedule.truncate(2);
     let made = |simulator: &Simulator| simulator.camera().unwrap().expose(2000).unwrap();
     let fresh = Simulator::new(&other, Path::new("")).unwrap();

@@ -46,7 +46,7 @@ pub use docking::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
 pub use error::{Failure, FileError, FileLocation, failure, open_regular};
 pub use far_range::{
     FrameCluster, MeasurementWriter, StarRow, TelemetryRow, TelemetryWriter, outcome_as_filed,
-    read_measurements, read_stars, read_telemetry, write_stars,
+    read_measurements, read_stars, read_telemetry, write_manoeuvres, write_stars,
 };
 pub use frame::{
     ExpectedImage, FrameHeader, ImageFormat, Sip, SipTerm, TanSip, WcsError, read_expected, read_frame,

@@ -39,8 +39,8 @@ mod time;
 mod tle;
 
 pub use ccsds::{
-    Aem, AemSegment, AttitudeDirection, AttitudeNode, Covariance, CovarianceFrame, Header, Manoeuvre,
-    Observation, Oem, OemSegment, Opm, SpacecraftParameters, StateNode, Tdm, TdmSegment,
+    Aem, AemSegment, AttitudeDirection, AttitudeNode, Covariance, CovarianceFrame, Header, InitialState,
+    Manoeuvre, Observation, Oem, OemSegment, Opm, SpacecraftParameters, StateNode, Tdm, TdmSegment,
 };
 pub use coverage::{Coverage, Uncovered};
 pub use document::Notation;

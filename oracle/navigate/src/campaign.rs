@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use contract::navigation::{Event, LineOfSightMeasurement, ManoeuvreReport, NavigationSetup};
-use contract::{AttitudeSource, ContractError, Covariance2, Direction, OutOfRange, Rotation, Solution};
+use contract::{AttitudeSource, ContractError, Covariance2, Direction, Rotation, Solution};
 use files::{Failure, FileError, FileLocation, line_of, read_measurements, read_origins, read_telemetry};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
-use sim::truth::Schedule;
+use sim::truth::{Schedule, Trajectory};
 
 use crate::knowledge::{KnowledgeConfig, Method};
 use crate::truth::Truth;
@@ -76,7 +76,7 @@ impl Campaign {
             .map(|measurement| Arrival { arrives: measurement.time, event: Event::LineOfSight(measurement) })
             .collect();
         let lines_of_sight = arrivals.len() as u64;
-        let manoeuvres = manoeuvres(scenario, epoch, last)?;
+        let manoeuvres = manoeuvres(scenario, truth.trajectory(), epoch, last);
         let count = manoeuvres.len() as u64;
         arrivals.extend(manoeuvres);
         arrivals.sort_by_key(|arrival| arrival.arrives);
@@ -137,7 +137,7 @@ impl Campaign {
             arrivals.push(Arrival { arrives: time, event: Event::LineOfSight(measurement) });
         }
         let lines_of_sight = arrivals.len() as u64;
-        let manoeuvres = manoeuvres(scenario, epoch, last)?;
+        let manoeuvres = manoeuvres(scenario, truth.trajectory(), epoch, last);
         let count = manoeuvres.len() as u64;
         arrivals.extend(manoeuvres);
         arrivals.sort_by_key(|arrival| arrival.arrives);
@@ -215,11 +215,16 @@ fn half_diagonal_deg(scenario: &FarRangeScenario) -> f64 {
 
 /// Returns the reports of the manoeuvres after the epoch, with the standard deviations that the scenario
 /// states for reports.
-fn manoeuvres(scenario: &FarRangeScenario, epoch: Epoch, last: Epoch) -> Result<Vec<Arrival>, OutOfRange> {
-    let errors = scenario.orbit.reports.unwrap_or_default();
+fn manoeuvres(
+    scenario: &FarRangeScenario,
+    trajectory: &Trajectory,
+    epoch: Epoch,
+    last: Epoch,
+) -> Vec<Arrival> {
+    let errors = scenario.manoeuvre_reports();
     let direction_sigma = errors.direction_sigma_deg.to_radians();
-    let reports = scenario.orbit.manoeuvre_reports(scenario.seed)?;
-    let during = reports.into_iter().filter(|report| report.time > epoch && report.time <= last);
+    let reports = trajectory.manoeuvres().iter().map(|manoeuvre| manoeuvre.report);
+    let during = reports.filter(|report| report.time > epoch && report.time <= last);
     let arrival = during.map(|report| {
         let dv = Vector3::from(report.dv_rtn_m_s);
         let size_squared = dv.norm_squared();
@@ -231,5 +236,5 @@ fn manoeuvres(scenario: &FarRangeScenario, epoch: Epoch, last: Epoch) -> Result<
         let manoeuvre = ManoeuvreReport { time: report.time, dv_rtn_m_s: dv, sigma_rtn_m_s: sigma };
         Arrival { arrives: report.reported, event: Event::Manoeuvre(manoeuvre) }
     });
-    Ok(arrival.collect())
+    arrival.collect()
 }

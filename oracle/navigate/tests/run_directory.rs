@@ -120,7 +120,7 @@ fn radial_and_normal_errors_are_smaller_than_along_the_track() {
 #[test]
 fn without_a_manoeuvre_the_distance_keeps_a_large_sigma() {
     let mut scenario = argon();
-    scenario.orbit.manoeuvres.clear();
+    scenario.orbit.as_mut().unwrap().manoeuvres.clear();
     let along_track = |scenario: &FarRangeScenario| {
         let folder = TempDir::new().unwrap();
         write(folder.path(), scenario, u64::MAX);

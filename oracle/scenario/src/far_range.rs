@@ -5,6 +5,8 @@ use contract::{
     AttitudeKnowledge, Calibration, Camera, OutOfRange, PsfCalibration, Readout, TargetCalibration, bounds,
 };
 use files::Failure;
+use flight_dynamics::Coverage;
+use hifitime::Epoch;
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,13 +14,16 @@ use sim::Simulation;
 use sim::catalog::{CatalogConfig, CatalogSource};
 use sim::onboard::{RoiConfig, ShutterConfig};
 use sim::optics::{OpticsConfig, PsfConfig, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};
+use sim::randomness::Seed;
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::{SensorConfig, Switch};
 use sim::truth::{
-    AttitudeConfig, GroupConfig, Guidance, KnowledgeConfig, MountingConfig, OrbitConfig, Schedule, Trajectory,
+    Attitude, AttitudeConfig, GroupConfig, Guidance, KnowledgeConfig, ManoeuvreReportsConfig, MountingConfig,
+    OrbitConfig, Schedule, Trajectory, TrajectorySource,
 };
 
 use crate::attitude::attitude_profile;
+use crate::coverage::{NeededTimes, Reach};
 use crate::{TrajectoryConfig, scenario_file};
 
 /// A far-range scenario, in the form of its TOML file. Units are in the names; unknown keys are errors.
@@ -39,8 +44,9 @@ pub struct FarRangeScenario {
     pub catalog: CatalogConfig,
     /// Stars in the list for the pipeline.
     pub star_list: StarListConfig,
-    /// Orbits of target and chaser.
-    pub orbit: OrbitConfig,
+    /// Orbits of target and chaser; absent when files of `[trajectory]` give the motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orbit: Option<OrbitConfig>,
     /// Origin of the motion of chaser and target; absent: the mean elements of `[orbit]`.
     // Not written when it is the default, so that resolved scenarios and their hashes are the same as before
     // the table existed.
@@ -202,12 +208,49 @@ impl FarRangeScenario {
     /// A [`Failure`] for an invalid orbit or schedule, or a file that cannot be read.
     pub fn trajectory(&self) -> Result<Trajectory, Failure> {
         let schedule = Schedule::new(&self.schedule)?;
-        Ok(Trajectory::from_source(
-            &self.orbit,
-            &self.trajectory.source(Some(&schedule))?,
-            self.seed,
-            &schedule,
-        )?)
+        Ok(Trajectory::from_source(&self.trajectory_source(Some(&schedule))?, self.seed, &schedule)?)
+    }
+
+    /// Returns the errors of the reports of manoeuvres.
+    pub fn manoeuvre_reports(&self) -> ManoeuvreReportsConfig {
+        let reports = match &self.trajectory {
+            TrajectoryConfig::Opm { reports, .. } => *reports,
+            _ => self.orbit.as_ref().and_then(|orbit| orbit.reports),
+        };
+        reports.unwrap_or_default()
+    }
+
+    /// Checks that `[orbit]` is present if and only if it gives the motion.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for the table.
+    pub fn check_orbit(&self) -> Result<(), OutOfRange> {
+        self.trajectory.check_orbit(self.orbit.as_ref())
+    }
+
+    /// Returns the true attitude of the chaser; `epoch` is that of the trajectory.
+    ///
+    /// # Errors
+    /// A [`Failure`] for an invalid attitude or mounting, or a file that cannot be read.
+    pub fn true_attitude(&self, epoch: Epoch) -> Result<Attitude, Failure> {
+        let schedule = Schedule::new(&self.schedule)?;
+        let profile = attitude_profile(&self.attitude, Some(&schedule), self.reach())?;
+        let seed = Seed { seed: self.seed, case: 0 };
+        Ok(Attitude::new(&self.attitude, &self.mounting, seed)?.with_profile(profile, epoch)?)
+    }
+
+    /// Returns the span about the middle of an exposure in which motion and attitude have an effect.
+    pub fn needed_about(&self, time: Epoch) -> Coverage {
+        self.reach().about(time)
+    }
+
+    fn trajectory_source(&self, schedule: Option<&Schedule>) -> Result<TrajectorySource, Failure> {
+        let needed = schedule.and_then(|schedule| NeededTimes::of_schedule(schedule, self.reach()));
+        self.trajectory.source(self.orbit.as_ref(), needed)
+    }
+
+    fn reach(&self) -> Reach {
+        Reach::new(&self.shutter, &self.sensor, &self.knowledge)
     }
 
     /// Returns the input of the simulator.
@@ -218,12 +261,15 @@ impl FarRangeScenario {
         Ok(Simulation {
             seed: self.seed,
             catalog: self.catalog.clone(),
-            orbit: self.orbit.clone(),
             // An invalid schedule is reported by the simulator, with its location.
-            trajectory: self.trajectory.source(Schedule::new(&self.schedule).ok().as_ref())?,
+            trajectory: self.trajectory_source(Schedule::new(&self.schedule).ok().as_ref())?,
             schedule: self.schedule.clone(),
             attitude: self.attitude.clone(),
-            attitude_profile: attitude_profile(&self.attitude, Schedule::new(&self.schedule).ok().as_ref())?,
+            attitude_profile: attitude_profile(
+                &self.attitude,
+                Schedule::new(&self.schedule).ok().as_ref(),
+                self.reach(),
+            )?,
             knowledge: self.knowledge.clone(),
             mounting: self.mounting,
             camera: self.camera.clone(),

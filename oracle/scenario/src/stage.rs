@@ -20,6 +20,8 @@ pub enum Stage {
     /// The listed stars are at their apparent positions, with aberration and deflection, and no correction is
     /// applied
     Aberration,
+    /// The target's centroid is free of the offset of its centre of brightness from its centre of mass
+    Brightness,
 }
 
 impl fmt::Display for Stage {
@@ -31,6 +33,7 @@ impl fmt::Display for Stage {
             Self::Attitude => "attitude",
             Self::Roi => "roi",
             Self::Aberration => "aberration",
+            Self::Brightness => "brightness",
         })
     }
 }

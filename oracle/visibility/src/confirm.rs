@@ -220,17 +220,17 @@ impl Bench<'_> {
         number: u64,
     ) -> Result<Simulation, Failure> {
         let (time, orbit, body) = match (aspect.setting, scenario) {
-            (Setting::Moment { time }, Some(scenario)) => {
-                (time, along_track(&scenario.orbit, range_km), body.clone())
+            (Setting::Moment { time }, Some(FarRangeScenario { orbit: Some(orbit), .. })) => {
+                (time, along_track(orbit, range_km), body.clone())
             }
             (Setting::Phase { turn_deg }, _) => {
                 let time = clock::parse_utc("2012-04-26T12:00:00Z")?;
                 let orbit = self.at_phase(time, aspect.phase_deg, range_km)?;
                 (time, orbit, turned(body, turn_deg))
             }
-            (Setting::Moment { .. }, None) => {
+            (Setting::Moment { .. }, _) => {
                 return Err(Failure::Usage(
-                    "target.light.kind \"orbit\" needs camera.scenario, which defines the orbit".to_owned(),
+                    "target.light.kind \"orbit\" needs camera.scenario with a table [orbit]".to_owned(),
                 ));
             }
         };
@@ -280,8 +280,7 @@ impl Bench<'_> {
         Simulation {
             seed,
             catalog: camera.catalog.clone(),
-            orbit,
-            trajectory: TrajectorySource::MeanElements,
+            trajectory: TrajectorySource::MeanElements(orbit),
             attitude_profile: None,
             schedule: vec![GroupConfig { name: "confirm".to_owned(), start_utc, cadence_s: 1.0, count: 1 }],
             attitude: AttitudeConfig {

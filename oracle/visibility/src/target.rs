@@ -278,7 +278,11 @@ fn along_orbit(
     /// Range at which the geometry is computed, km: the camera and the target are at most a degree of the
     /// orbit apart.
     const RANGE_KM: f64 = 10.0;
-    let trajectory = Trajectory::new(&along_track(&scenario.orbit, RANGE_KM))?;
+    let orbit = scenario.orbit.as_ref().ok_or_else(|| {
+        let expected = "a table [orbit] in camera.scenario for target.light.kind \"orbit\"";
+        OutOfRange::new("orbit", "missing", expected)
+    })?;
+    let trajectory = Trajectory::new(&along_track(orbit, RANGE_KM))?;
     let schedule = Schedule::new(&scenario.schedule)?;
     let frames = schedule.frame_count();
     let mut aspects = Vec::new();

@@ -2,6 +2,7 @@ use std::cell::Cell;
 use std::path::Path;
 
 use super::*;
+use crate::truth::TrajectorySource;
 use crate::{PixelSelection, Simulation, Simulator};
 
 // Simulation that the integration tests use.

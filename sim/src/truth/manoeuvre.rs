@@ -1,13 +1,13 @@
 //! Manoeuvres of the chaser: as planned, as executed, as reported.
 
-use contract::{OutOfRange, bounds};
-use hifitime::Epoch;
+use contract::{Icrs, OutOfRange, Rotation, bounds};
+use hifitime::{Duration, Epoch};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::clock::parse_utc_field;
-use super::orbit::{Elements, State};
+use super::orbit::{Elements, Rtn, State};
 use crate::randomness::{Effect, Seed, normal};
 
 /// Planned manoeuvre of the chaser.
@@ -87,6 +87,132 @@ pub struct ManoeuvreReport {
     pub dv_rtn_m_s: [f64; 3],
 }
 
+/// Manoeuvre of the chaser: as planned, as executed and as reported.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ManoeuvreTruth {
+    /// Middle of the manoeuvre.
+    pub time: Epoch,
+    /// Duration, s; 0 for an impulse.
+    pub duration_s: f64,
+    /// Planned change of velocity along the chaser's R, T, N axes, m/s.
+    pub planned_dv_rtn_m_s: [f64; 3],
+    /// Executed change of velocity along the chaser's R, T, N axes, m/s.
+    pub executed_dv_rtn_m_s: [f64; 3],
+    /// Report in the telemetry.
+    pub report: ManoeuvreReport,
+}
+
+impl ManoeuvreTruth {
+    /// Returns the first and the last instant of the manoeuvre; both are its time for an impulse.
+    pub fn ends(&self) -> [Epoch; 2] {
+        let half = Duration::from_seconds(0.5 * self.duration_s);
+        [self.time - half, self.time + half]
+    }
+}
+
+/// Axes of a change of velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ManoeuvreAxes {
+    /// R along the position, N along the angular momentum, T = N × R, of each instant.
+    Rtn,
+    /// T along the velocity, W along the angular momentum, N = T × W, of each instant; components are T, N,
+    /// W.
+    Tnw,
+    /// Celestial axes.
+    Icrs,
+}
+
+impl ManoeuvreAxes {
+    /// Returns a vector along these axes of a spacecraft as a vector along ICRS axes.
+    pub(super) fn to_icrs(self, state: &State, vector: &Vector3<f64>) -> Vector3<f64> {
+        match self {
+            Self::Rtn => state.rtn_from_icrs().inverse().rotate(vector),
+            Self::Tnw => {
+                let along = state.velocity_km_s.normalize();
+                let normal = state.position_km.cross(&state.velocity_km_s).normalize();
+                along * vector.x + along.cross(&normal) * vector.y + normal * vector.z
+            }
+            Self::Icrs => *vector,
+        }
+    }
+
+    /// Returns a vector along these axes as one along R, T, N; `state` is that of the spacecraft.
+    fn to_rtn(self, state: &State, vector: [f64; 3]) -> [f64; 3] {
+        if self == Self::Rtn {
+            return vector;
+        }
+        let rtn_from_icrs: Rotation<Rtn, Icrs> = state.rtn_from_icrs();
+        rtn_from_icrs.rotate(&self.to_icrs(state, &vector.into())).into()
+    }
+}
+
+/// Manoeuvre as planned, with the axes of its change of velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlannedManoeuvre {
+    /// Middle of the manoeuvre.
+    pub time: Epoch,
+    /// Duration, s; 0 for an impulse. The acceleration is constant along the axes of each instant.
+    pub duration_s: f64,
+    /// Axes of the change of velocity.
+    pub axes: ManoeuvreAxes,
+    /// Change of velocity, m/s.
+    pub dv_m_s: [f64; 3],
+}
+
+/// Errors of a list of manoeuvres, and their seed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ManoeuvreDraws {
+    pub(super) execution: ManoeuvreErrorsConfig,
+    pub(super) reports: ManoeuvreReportsConfig,
+    pub(super) seed: u64,
+}
+
+impl ManoeuvreDraws {
+    /// Returns the executed change of velocity of manoeuvre `index`, m/s, along the axes of the planned one.
+    pub(super) fn executed(&self, dv_m_s: [f64; 3], index: usize) -> [f64; 3] {
+        self.execution.disturbed(dv_m_s, self.seed(), Effect::ManoeuvreExecution, index)
+    }
+
+    /// Returns the reported change of velocity, m/s, from the executed one.
+    fn reported(&self, executed_m_s: [f64; 3], index: usize) -> [f64; 3] {
+        self.reports.errors().disturbed(executed_m_s, self.seed(), Effect::ManoeuvreReport, index)
+    }
+
+    /// Returns plan, execution and report of manoeuvres in their order. `chaser_before` is the chaser's state
+    /// at an instant, before an impulse at that instant.
+    pub(super) fn truth(
+        &self,
+        planned: &[PlannedManoeuvre],
+        chaser_before: impl Fn(Epoch) -> State,
+    ) -> Vec<ManoeuvreTruth> {
+        let truth = |(index, manoeuvre): (usize, &PlannedManoeuvre)| {
+            let PlannedManoeuvre { time, duration_s, axes, dv_m_s } = *manoeuvre;
+            let executed = self.executed(dv_m_s, index);
+            let to_rtn = |dv_m_s| match axes {
+                ManoeuvreAxes::Rtn => dv_m_s,
+                ManoeuvreAxes::Tnw | ManoeuvreAxes::Icrs => axes.to_rtn(&chaser_before(time), dv_m_s),
+            };
+            ManoeuvreTruth {
+                time,
+                duration_s,
+                planned_dv_rtn_m_s: to_rtn(dv_m_s),
+                executed_dv_rtn_m_s: to_rtn(executed),
+                report: ManoeuvreReport {
+                    reported: time + Duration::from_seconds(0.5 * duration_s + self.reports.delay_s),
+                    time,
+                    duration_s,
+                    dv_rtn_m_s: to_rtn(self.reported(executed, index)),
+                },
+            }
+        };
+        planned.iter().enumerate().map(truth).collect()
+    }
+
+    fn seed(&self) -> Seed {
+        Seed { seed: self.seed, case: 0 }
+    }
+}
+
 /// Executed manoeuvre on the time axis of a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Burn {
@@ -94,8 +220,10 @@ pub(super) struct Burn {
     pub(super) start_s: f64,
     /// Duration, s; 0 for an impulse.
     pub(super) duration_s: f64,
-    /// Change of velocity along R, T, N, km/s.
-    pub(super) dv_rtn_km_s: Vector3<f64>,
+    /// Axes of the change of velocity.
+    pub(super) axes: ManoeuvreAxes,
+    /// Change of velocity, km/s.
+    pub(super) dv_km_s: Vector3<f64>,
 }
 
 impl ManoeuvreErrorsConfig {

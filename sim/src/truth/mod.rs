@@ -35,7 +35,10 @@ pub use drift::DriftConfig;
 pub use earth_rotation::geographic;
 pub use guidance::Guidance;
 pub use knowledge::{Knowledge, KnowledgeConfig};
-pub use manoeuvre::{ManoeuvreConfig, ManoeuvreErrorsConfig, ManoeuvreReport, ManoeuvreReportsConfig};
+pub use manoeuvre::{
+    ManoeuvreAxes, ManoeuvreConfig, ManoeuvreErrorsConfig, ManoeuvreReport, ManoeuvreReportsConfig,
+    ManoeuvreTruth, PlannedManoeuvre,
+};
 pub use mounting::MountingConfig;
 pub use numerical::{DragConfig, EarthOrientationConfig, GravityConfig, NumericalConfig, RadiationConfig};
 pub use orbit::{
@@ -48,4 +51,4 @@ pub use schedule::{GroupConfig, MAX_FRAMES, Schedule, Sequence};
 pub use states::{OrbitConfig, States};
 pub use table::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
 pub use target_attitude::TargetAttitudeConfig;
-pub use trajectory::{Trajectory, TrajectorySource};
+pub use trajectory::{PropagatedStates, Trajectory, TrajectorySource};

@@ -203,6 +203,11 @@ impl SampledOrbit {
         [first.map_or(0.0, |segment| segment.usable_s[0]), last.map_or(0.0, |segment| segment.usable_s[1])]
     }
 
+    /// Times at which a segment follows another, seconds since the epoch.
+    fn borders_s(&self) -> Vec<f64> {
+        self.segments.iter().skip(1).map(|segment| segment.usable_s[0]).collect()
+    }
+
     /// State at any instant; outside the coverage the nearest state continues as a Keplerian orbit.
     fn state_at(&self, time_s: f64) -> State {
         let [start, end] = self.coverage_s();
@@ -256,6 +261,16 @@ impl SampledStates {
     pub fn coverage_s(&self) -> RangeInclusive<f64> {
         let ([chaser_start, chaser_end], [start, end]) = (self.chaser.coverage_s(), self.target.coverage_s());
         chaser_start.max(start)..=chaser_end.min(end)
+    }
+
+    /// Times at which segments of the chaser follow each other, seconds since the epoch.
+    pub(super) fn chaser_borders_s(&self) -> Vec<f64> {
+        self.chaser.borders_s()
+    }
+
+    /// Times at which segments of the target follow each other, seconds since the epoch.
+    pub(super) fn target_borders_s(&self) -> Vec<f64> {
+        self.target.borders_s()
     }
 
     /// States `time_s` seconds after the epoch; outside the coverage the nearest state continues as a

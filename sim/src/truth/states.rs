@@ -1,7 +1,7 @@
 //! Configuration of the orbits, and the states of chaser and target at an instant.
 
 use contract::{Icrs, OutOfRange, Rotation, bounds};
-use hifitime::{Duration, Epoch};
+use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 use super::clock::parse_utc_field;
 use super::ephemeris::check_covered;
 use super::manoeuvre::{
-    Burn, ManoeuvreConfig, ManoeuvreErrorsConfig, ManoeuvreReport, ManoeuvreReportsConfig,
+    Burn, ManoeuvreAxes, ManoeuvreConfig, ManoeuvreDraws, ManoeuvreErrorsConfig, ManoeuvreReportsConfig,
+    PlannedManoeuvre,
 };
 use super::orbit::{Elements, ElementsConfig, Rtn, State};
 use super::relative::RelativeElements;
-use crate::randomness::{Effect, Seed};
 
 /// Orbits of target and chaser.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,34 +39,37 @@ pub struct OrbitConfig {
 impl OrbitConfig {
     /// Returns the manoeuvres as executed, with the errors drawn from `seed`, the scenario's.
     pub fn executed_manoeuvres(&self, seed: u64) -> Vec<ManoeuvreConfig> {
-        let errors = self.execution.unwrap_or_default();
-        let seed = Seed { seed, case: 0 };
+        let draws = self.draws(seed);
         let execute = |(index, planned): (usize, &ManoeuvreConfig)| ManoeuvreConfig {
-            dv_rtn_m_s: errors.disturbed(planned.dv_rtn_m_s, seed, Effect::ManoeuvreExecution, index),
+            dv_rtn_m_s: draws.executed(planned.dv_rtn_m_s, index),
             ..planned.clone()
         };
         self.manoeuvres.iter().enumerate().map(execute).collect()
     }
 
-    /// Returns the reports of the manoeuvres, in the order of the manoeuvres.
+    /// Errors of the manoeuvres.
+    pub(super) fn draws(&self, seed: u64) -> ManoeuvreDraws {
+        ManoeuvreDraws {
+            execution: self.execution.unwrap_or_default(),
+            reports: self.reports.unwrap_or_default(),
+            seed,
+        }
+    }
+
+    /// Manoeuvres as planned.
     ///
     /// # Errors
     /// [`OutOfRange`] for a time that is not UTC.
-    pub fn manoeuvre_reports(&self, seed: u64) -> Result<Vec<ManoeuvreReport>, OutOfRange> {
-        let reports = self.reports.unwrap_or_default();
-        let executed = self.executed_manoeuvres(seed);
-        let seed = Seed { seed, case: 0 };
-        let report = |(index, manoeuvre): (usize, &ManoeuvreConfig)| {
-            let time = manoeuvre.time().map_err(|error| error.in_entry(index))?;
-            let dv = manoeuvre.dv_rtn_m_s;
-            Ok(ManoeuvreReport {
-                reported: time + Duration::from_seconds(0.5 * manoeuvre.duration_s + reports.delay_s),
-                time,
+    pub(super) fn planned_manoeuvres(&self) -> Result<Vec<PlannedManoeuvre>, OutOfRange> {
+        let planned = |(index, manoeuvre): (usize, &ManoeuvreConfig)| {
+            Ok(PlannedManoeuvre {
+                time: manoeuvre.time().map_err(|error| error.in_entry(index))?,
                 duration_s: manoeuvre.duration_s,
-                dv_rtn_m_s: reports.errors().disturbed(dv, seed, Effect::ManoeuvreReport, index),
+                axes: ManoeuvreAxes::Rtn,
+                dv_m_s: manoeuvre.dv_rtn_m_s,
             })
         };
-        executed.iter().enumerate().map(report).collect()
+        self.manoeuvres.iter().enumerate().map(planned).collect()
     }
 
     /// Checks the orbits and returns the epoch and the elements of (chaser, target) at it.
@@ -113,7 +116,8 @@ pub(super) fn burns(manoeuvres: &[ManoeuvreConfig], epoch: Epoch) -> Result<Vec<
         }
         let duration_s = manoeuvre.duration_s;
         free_from_s = start_s + duration_s;
-        burns.push(Burn { start_s, duration_s, dv_rtn_km_s: Vector3::from(manoeuvre.dv_rtn_m_s) * 1e-3 });
+        let dv_km_s = Vector3::from(manoeuvre.dv_rtn_m_s) * 1e-3;
+        burns.push(Burn { start_s, duration_s, axes: ManoeuvreAxes::Rtn, dv_km_s });
     }
     Ok(burns)
 }

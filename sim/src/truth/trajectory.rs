@@ -8,29 +8,90 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use contract::OutOfRange;
+use contract::{OutOfRange, bounds};
 use hifitime::{Duration, Epoch};
 
 use super::clock::format_utc;
-use super::manoeuvre::ManoeuvreConfig;
+use super::ephemeris::check_covered;
+use super::manoeuvre::{
+    Burn, ManoeuvreDraws, ManoeuvreErrorsConfig, ManoeuvreReportsConfig, ManoeuvreTruth, PlannedManoeuvre,
+};
 use super::mean_elements::MeanElements;
-use super::numerical::{NumericalConfig, NumericalStates};
-use super::orbit::Elements;
+use super::numerical::{InitialState, InitialStates, NumericalConfig, NumericalStates};
+use super::orbit::{Elements, State};
 use super::relative::RelativeElements;
 use super::sampled::SampledStates;
 use super::schedule::Schedule;
 use super::states::{OrbitConfig, States, burns, seconds_between};
 
 /// Origin of the motion of chaser and target.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum TrajectorySource {
-    /// Mean elements of [`OrbitConfig`] with secular drift.
-    #[default]
-    MeanElements,
-    /// Orbits of [`OrbitConfig`], whose elements are osculating at the epoch, integrated numerically.
-    Numerical(NumericalConfig),
-    /// States sampled over time, for example from a file of flight dynamics. [`OrbitConfig`] has no effect.
+    /// Mean elements with secular drift.
+    MeanElements(OrbitConfig),
+    /// Orbits whose elements are osculating at the epoch, integrated numerically.
+    Numerical(OrbitConfig, NumericalConfig),
+    /// States, for example from files of flight dynamics, from which the orbits are integrated numerically.
+    Propagated(Arc<PropagatedStates>, NumericalConfig),
+    /// States sampled over time, for example from a file of flight dynamics.
     Sampled(Arc<SampledStates>),
+}
+
+impl TrajectorySource {
+    /// Returns the orbits; `None` if the motion is not that of configured orbits.
+    pub fn orbit(&self) -> Option<&OrbitConfig> {
+        match self {
+            Self::MeanElements(orbit) | Self::Numerical(orbit, _) => Some(orbit),
+            Self::Propagated(..) | Self::Sampled(_) => None,
+        }
+    }
+
+    /// [`TrajectorySource::orbit`] for changes.
+    pub fn orbit_mut(&mut self) -> Option<&mut OrbitConfig> {
+        match self {
+            Self::MeanElements(orbit) | Self::Numerical(orbit, _) => Some(orbit),
+            Self::Propagated(..) | Self::Sampled(_) => None,
+        }
+    }
+}
+
+/// Initial states of both spacecraft and the chaser's manoeuvres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PropagatedStates {
+    /// Time and state of the chaser; the time is the trajectory's epoch.
+    pub chaser: (Epoch, State),
+    /// Time and state of the target.
+    pub target: (Epoch, State),
+    /// Manoeuvres of the chaser, in order of time, all after its state and apart from each other.
+    pub manoeuvres: Vec<PlannedManoeuvre>,
+    /// Errors of the executed manoeuvres.
+    pub execution: ManoeuvreErrorsConfig,
+    /// Reports of the manoeuvres in the telemetry.
+    pub reports: ManoeuvreReportsConfig,
+}
+
+impl PropagatedStates {
+    /// Returns the manoeuvres as executed, seconds since the chaser's state.
+    fn burns(&self, draws: &ManoeuvreDraws) -> Result<Vec<Burn>, OutOfRange> {
+        let mut free_from_s = 0.0;
+        let mut burns = Vec::with_capacity(self.manoeuvres.len());
+        for (index, manoeuvre) in self.manoeuvres.iter().enumerate() {
+            let PlannedManoeuvre { time, duration_s, axes, dv_m_s } = *manoeuvre;
+            let start_s = seconds_between(self.chaser.0, time) - 0.5 * duration_s;
+            // The comparison is false for NaN.
+            if !(start_s >= free_from_s && duration_s >= 0.0) {
+                return Err(OutOfRange::new(
+                    format!("manoeuvres[{index}]"),
+                    format!("{} for {duration_s} s", format_utc(time)),
+                    "a manoeuvre after the chaser's state and after the preceding manoeuvre",
+                ));
+            }
+            free_from_s = start_s + duration_s;
+            let dv_km_s = nalgebra::Vector3::from(draws.executed(dv_m_s, index)) * 1e-3;
+            burns.push(Burn { start_s, duration_s, axes, dv_km_s });
+        }
+        Ok(burns)
+    }
 }
 
 /// Motion of chaser and target.
@@ -38,6 +99,7 @@ pub enum TrajectorySource {
 pub struct Trajectory {
     epoch: Epoch,
     motion: Motion,
+    manoeuvres: Vec<ManoeuvreTruth>,
 }
 
 /// Motion of one kind.
@@ -55,12 +117,14 @@ impl Trajectory {
     /// [`OutOfRange`] for an invalid epoch, or an orbit outside the supported range; [`OutOfRange`] for a
     /// manoeuvre that is out of order, not after the epoch, or results in an unsupported orbit.
     pub fn new(config: &OrbitConfig) -> Result<Self, OutOfRange> {
-        Self::from_mean_elements(config, &config.manoeuvres)
+        let planned = OrbitConfig { execution: None, ..config.clone() };
+        Self::from_mean_elements(&planned, 0)
     }
 
-    fn from_mean_elements(config: &OrbitConfig, manoeuvres: &[ManoeuvreConfig]) -> Result<Self, OutOfRange> {
-        let motion = MeanElements::new(config, manoeuvres)?;
-        Ok(Self { epoch: motion.epoch(), motion: Motion::MeanElements(motion) })
+    fn from_mean_elements(orbit: &OrbitConfig, seed: u64) -> Result<Self, OutOfRange> {
+        let motion = MeanElements::new(orbit, &orbit.executed_manoeuvres(seed))?;
+        Ok(Self { epoch: motion.epoch(), motion: Motion::MeanElements(motion), manoeuvres: Vec::new() }
+            .with_manoeuvres(&orbit.draws(seed), &orbit.planned_manoeuvres()?))
     }
 
     /// Creates the trajectory of `source` for the frames of `schedule`. `seed` is that of the scenario.
@@ -69,30 +133,105 @@ impl Trajectory {
     /// [`OutOfRange`] for an invalid orbit or manoeuvre, see [`Trajectory::new`]; for a schedule with frames
     /// outside [`Trajectory::coverage_s`].
     pub fn from_source(
-        orbit: &OrbitConfig,
         source: &TrajectorySource,
         seed: u64,
         schedule: &Schedule,
     ) -> Result<Self, OutOfRange> {
+        let integrate = |initial: &InitialStates, config: &NumericalConfig, burns: Vec<Burn>| {
+            let ends = schedule.ends().unwrap_or([initial.epoch; 2]);
+            NumericalStates::compute(initial, config, burns, ends).map_err(|error| {
+                match error.path.as_str() {
+                    "epoch" => OutOfRange { path: initial.epoch_path.to_owned(), ..error },
+                    _ => error,
+                }
+            })
+        };
         let trajectory = match source {
-            TrajectorySource::MeanElements => {
-                Self::from_mean_elements(orbit, &orbit.executed_manoeuvres(seed))?
-            }
-            TrajectorySource::Numerical(config) => {
-                let (epoch, ..) = orbit.initial_elements()?;
+            TrajectorySource::MeanElements(orbit) => Self::from_mean_elements(orbit, seed)?,
+            TrajectorySource::Numerical(orbit, config) => {
+                config.check("trajectory")?;
+                let (epoch, chaser, target) = orbit.initial_elements()?;
+                let at_epoch =
+                    |elements: Elements, path| InitialState { time_s: 0.0, state: elements.state(), path };
+                let initial = InitialStates {
+                    epoch,
+                    epoch_path: "orbit.epoch_utc",
+                    chaser: at_epoch(chaser, "orbit.relative"),
+                    target: at_epoch(target, "orbit.target"),
+                };
                 let burns = burns(&orbit.executed_manoeuvres(seed), epoch)?;
-                let ends = schedule.ends().unwrap_or([epoch; 2]);
-                let states = NumericalStates::compute(orbit, config, burns, ends)?;
-                Self { epoch: states.epoch(), motion: Motion::Numerical(states) }
+                let states = integrate(&initial, config, burns)?;
+                Self { epoch, motion: Motion::Numerical(states), manoeuvres: Vec::new() }
+                    .with_manoeuvres(&orbit.draws(seed), &orbit.planned_manoeuvres()?)
             }
-            TrajectorySource::Sampled(states) => {
-                Self { epoch: states.epoch(), motion: Motion::Sampled(states.clone()) }
+            TrajectorySource::Propagated(propagated, config) => {
+                config.check("trajectory.forces")?;
+                let PropagatedStates { chaser, target, manoeuvres, execution, reports } = &**propagated;
+                bounds::check(execution, "trajectory.execution")?;
+                bounds::check(reports, "trajectory.reports")?;
+                let epoch = chaser.0;
+                let at = |path: &'static str, (time, state): (Epoch, State)| {
+                    check_covered(path, &format_utc(time), time)?;
+                    Ok::<_, OutOfRange>(InitialState { time_s: seconds_between(epoch, time), state, path })
+                };
+                let initial = InitialStates {
+                    epoch,
+                    epoch_path: "trajectory.chaser",
+                    chaser: at("trajectory.chaser", *chaser)?,
+                    target: at("trajectory.target", *target)?,
+                };
+                let draws = ManoeuvreDraws { execution: *execution, reports: *reports, seed };
+                let states = integrate(&initial, config, propagated.burns(&draws)?)?;
+                Self { epoch, motion: Motion::Numerical(states), manoeuvres: Vec::new() }
+                    .with_manoeuvres(&draws, manoeuvres)
             }
+            TrajectorySource::Sampled(states) => Self {
+                epoch: states.epoch(),
+                motion: Motion::Sampled(states.clone()),
+                manoeuvres: Vec::new(),
+            },
         };
         for time in schedule.ends().into_iter().flatten() {
             trajectory.check_covers("schedule", time)?;
         }
         Ok(trajectory)
+    }
+
+    fn with_manoeuvres(self, draws: &ManoeuvreDraws, planned: &[PlannedManoeuvre]) -> Self {
+        /// Interval that separates the state before an impulse from the impulse, s.
+        const BEFORE_S: f64 = 1e-6;
+        let manoeuvres =
+            draws.truth(planned, |time| self.states_at_seconds(self.seconds(time) - BEFORE_S).chaser);
+        Self { manoeuvres, ..self }
+    }
+
+    /// Returns the manoeuvres of the chaser in order of time; none for sampled states, which contain them.
+    pub fn manoeuvres(&self) -> &[ManoeuvreTruth] {
+        &self.manoeuvres
+    }
+
+    /// Returns the times in ascending order at which the chaser's velocity or acceleration jumps, seconds since
+    /// the epoch: impulses, begins and ends of finite burns; borders of segments for sampled states. No
+    /// polynomial should cross them.
+    pub fn chaser_borders_s(&self) -> Vec<f64> {
+        if let Motion::Sampled(states) = &self.motion {
+            return states.chaser_borders_s();
+        }
+        let mut borders: Vec<f64> = self
+            .manoeuvres
+            .iter()
+            .flat_map(|manoeuvre| manoeuvre.ends().map(|time| self.seconds(time)))
+            .collect();
+        borders.dedup();
+        borders
+    }
+
+    /// [`Trajectory::chaser_borders_s`] of the target.
+    pub fn target_borders_s(&self) -> Vec<f64> {
+        match &self.motion {
+            Motion::Sampled(states) => states.target_borders_s(),
+            Motion::MeanElements(_) | Motion::Numerical(_) => Vec::new(),
+        }
     }
 
     /// Returns the trajectory's epoch.
@@ -177,6 +316,7 @@ impl OrbitConfig {
 #[cfg(test)]
 mod tests {
     use super::super::clock::parse_utc_field;
+    use super::super::manoeuvre::ManoeuvreConfig;
     use super::super::orbit::ElementsConfig;
     use super::*;
     use nalgebra::Vector3;

@@ -3,7 +3,7 @@
 use serde::de::DeserializeOwned;
 
 // Imported from the including program: the library's unit tests refer to the crate by another name.
-use super::Simulation;
+use super::{Simulation, TrajectorySource};
 
 const ARGON: &str = include_str!("../../../scenarios/argon.toml");
 
@@ -24,8 +24,7 @@ pub(crate) fn simulation() -> Simulation {
     Simulation {
         seed: section(&table, "seed"),
         catalog: section(&table, "catalog"),
-        orbit: section(&table, "orbit"),
-        trajectory: Default::default(),
+        trajectory: TrajectorySource::MeanElements(section(&table, "orbit")),
         attitude_profile: None,
         schedule: section(&table, "schedule"),
         attitude: section(&table, "attitude"),

@@ -14,19 +14,19 @@ struct Fragment {
     schedule: Vec<GroupConfig>,
 }
 
-fn fragment() -> (Fragment, NumericalConfig, Schedule) {
+fn fragment() -> (Fragment, TrajectorySource, Schedule) {
     let mut fragment: Fragment =
         toml::from_str(include_str!("../../../scenarios/argon-numerical.toml")).unwrap();
     assert_eq!(fragment.trajectory.remove("kind").unwrap().as_str(), Some("numerical"));
-    let forces = fragment.trajectory.clone().try_into().unwrap();
+    let forces: NumericalConfig = fragment.trajectory.clone().try_into().unwrap();
     let schedule = Schedule::new(&fragment.schedule).unwrap();
-    (fragment, forces, schedule)
+    let source = TrajectorySource::Numerical(fragment.orbit.clone(), forces);
+    (fragment, source, schedule)
 }
 
 fn trajectory() -> (Trajectory, Schedule) {
-    let (fragment, forces, schedule) = fragment();
-    let source = TrajectorySource::Numerical(forces);
-    let trajectory = Trajectory::from_source(&fragment.orbit, &source, fragment.seed, &schedule).unwrap();
+    let (fragment, source, schedule) = fragment();
+    let trajectory = Trajectory::from_source(&source, fragment.seed, &schedule).unwrap();
     (trajectory, schedule)
 }
 
@@ -75,11 +75,10 @@ fn the_target_is_in_the_field_of_view_in_every_frame() {
 /// Frame N alone: the trajectory of a schedule that ends with it has the same states.
 #[test]
 fn a_frame_alone_has_the_states_of_the_run() {
-    let (fragment, forces, _) = fragment();
+    let (fragment, source, _) = fragment();
     let (run, schedule) = trajectory();
-    let source = TrajectorySource::Numerical(forces);
     let first_day = Schedule::new(&fragment.schedule[..1]).unwrap();
-    let alone = Trajectory::from_source(&fragment.orbit, &source, fragment.seed, &first_day).unwrap();
+    let alone = Trajectory::from_source(&source, fragment.seed, &first_day).unwrap();
     for frame in [0, 700, 1633] {
         let (_, time) = schedule.frame(frame).unwrap();
         assert_eq!(alone.states_at(time), run.states_at(time));
@@ -90,10 +89,20 @@ fn a_frame_alone_has_the_states_of_the_run() {
 fn reports_are_late_and_differ_from_the_executed_manoeuvres() {
     let (fragment, ..) = fragment();
     let executed = fragment.orbit.executed_manoeuvres(fragment.seed);
-    let reports = fragment.orbit.manoeuvre_reports(fragment.seed).unwrap();
-    assert_eq!(reports.len(), fragment.orbit.manoeuvres.len());
-    for ((planned, executed), report) in fragment.orbit.manoeuvres.iter().zip(&executed).zip(&reports) {
+    let (trajectory, _) = trajectory();
+    assert_eq!(trajectory.manoeuvres().len(), fragment.orbit.manoeuvres.len());
+    for ((planned, executed), manoeuvre) in
+        fragment.orbit.manoeuvres.iter().zip(&executed).zip(trajectory.manoeuvres())
+    {
+        assert_eq!(manoeuvre.planned_dv_rtn_m_s, planned.dv_rtn_m_s);
+        assert_eq!(manoeuvre.executed_dv_rtn_m_s, executed.dv_rtn_m_s);
+        let report = manoeuvre.report;
         assert_eq!(report.reported - report.time, Duration::from_seconds(605.0));
+        let [begin, end] = manoeuvre.ends();
+        assert_eq!(
+            (end - begin, end + Duration::from_seconds(600.0)),
+            (Duration::from_seconds(10.0), report.reported)
+        );
         let norm = |dv: [f64; 3]| (dv[0] * dv[0] + dv[1] * dv[1] + dv[2] * dv[2]).sqrt();
         let sizes = [planned.dv_rtn_m_s, executed.dv_rtn_m_s, report.dv_rtn_m_s].map(norm);
         // Five standard deviations of 1 % and 2 %.

@@ -8,7 +8,7 @@ use boresight_sim::sensor::{InterlaceConfig, RowParity, Switch, TelegraphConfig}
 use boresight_sim::truth::{ControlConfig, ObjectKind, ObjectTruth};
 use boresight_sim::{Exposure, Simulation};
 
-use crate::small_scene::{START_UTC, restless, simulator, still};
+use crate::small_scene::{START_UTC, orbit_of, restless, simulator, still};
 
 const COLUMNS: usize = 160;
 
@@ -25,7 +25,7 @@ fn interlaced(mut simulation: Simulation, field_interval_s: f64, first_field: Ro
 fn turning() -> Simulation {
     let mut simulation = restless();
     simulation.shutter = ShutterConfig::Fixed { exposure_s: 0.25 };
-    simulation.orbit.manoeuvres.clear();
+    orbit_of(&mut simulation).manoeuvres.clear();
     simulation.roi = None;
     simulation.background.zodiacal = Switch::On;
     simulation

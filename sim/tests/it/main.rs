@@ -35,3 +35,4 @@ mod vector_witness;
 mod whole_sky;
 
 use boresight_sim::Simulation;
+use boresight_sim::truth::TrajectorySource;

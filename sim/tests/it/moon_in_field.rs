@@ -13,7 +13,7 @@ use contract::{Direction, Icrs, PixelPoint};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
-use crate::small_scene::{looking_at, simulator, still};
+use crate::small_scene::{looking_at, orbit_of, simulator, still};
 
 /// Position of DE421's Moon relative to the chaser at one instant, and the scene of a camera that points at
 /// it.
@@ -40,11 +40,11 @@ fn view(line: &str) -> Option<MoonView> {
         Epoch::from_tdb_duration(hifitime::Duration::from_seconds(tdb_j2000_s) + j2000.to_tdb_duration());
     let utc = clock::format_utc(time);
     let mut simulation = still();
-    simulation.orbit.epoch_utc = utc.clone();
+    orbit_of(&mut simulation).epoch_utc = utc.clone();
     simulation.schedule[0].start_utc = utc;
     simulation.solar_system = Switch::On;
     simulation.shutter = ShutterConfig::Fixed { exposure_s: 1e-6 };
-    let states = Trajectory::new(&simulation.orbit).unwrap().states_at(time);
+    let states = Trajectory::new(simulation.trajectory.orbit().unwrap()).unwrap().states_at(time);
     let from_chaser_km = Vector3::new(x, y, z) - states.chaser.position_km;
     let towards: Direction<Icrs> = Direction::from_vector(from_chaser_km).unwrap();
     simulation.attitude = looking_at(towards.ra().degrees() + 0.3, towards.dec().degrees());

@@ -12,7 +12,7 @@ use contract::{Direction, Icrs};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
-use crate::small_scene::{looking_at, simulator, still};
+use crate::small_scene::{looking_at, orbit_of, simulator, still};
 
 struct Reference {
     tdb_j2000_s: f64,
@@ -78,7 +78,7 @@ fn towards(reference: &Reference) -> Simulation {
     let utc = clock::format_utc(epoch(reference.tdb_j2000_s));
     let mut simulation = still();
     simulation.attitude = looking_at(reference.direction.ra().degrees(), reference.direction.dec().degrees());
-    simulation.orbit.epoch_utc = utc.clone();
+    orbit_of(&mut simulation).epoch_utc = utc.clone();
     simulation.schedule[0].start_utc = utc;
     simulation.solar_system = Switch::On;
     simulation

@@ -20,6 +20,11 @@ use contract::{Camera, Direction, Icrs, Mounting};
 /// Middle of the exposure of frame 0.
 pub(crate) const START_UTC: &str = "2012-04-25T12:00:00Z";
 
+/// Returns the orbits of a simulation.
+pub(crate) fn orbit_of(simulation: &mut Simulation) -> &mut OrbitConfig {
+    simulation.trajectory.orbit_mut().unwrap()
+}
+
 pub(crate) fn simulator(simulation: &Simulation) -> Simulator {
     Simulator::new(simulation, Path::new("")).unwrap()
 }
@@ -33,8 +38,7 @@ pub(crate) fn still() -> Simulation {
     Simulation {
         seed: 20120425,
         catalog: CatalogConfig { magnitude_limit: Some(9.5), ..CatalogConfig::default() },
-        orbit,
-        trajectory: TrajectorySource::MeanElements,
+        trajectory: TrajectorySource::MeanElements(orbit),
         attitude_profile: None,
         schedule: vec![GroupConfig {
             name: "only".into(),
@@ -92,7 +96,7 @@ pub(crate) fn restless() -> Simulation {
     let nominal = Mounting { phi_deg: -90.0, theta_deg: 1.0, psi_deg: 5.0 };
     let slow = |rms: f64| DriftConfig { rms_arcsec: [rms; 3], periods_s: vec![5930.0, 910.0, 173.0] };
     let mut simulation = still();
-    simulation.orbit.manoeuvres = vec![ManoeuvreConfig {
+    orbit_of(&mut simulation).manoeuvres = vec![ManoeuvreConfig {
         time_utc: "2012-04-25T12:00:31Z".into(),
         dv_rtn_m_s: [0.01, -0.02, 0.03],
         duration_s: 0.0,

@@ -4,7 +4,7 @@ use boresight_sim::scene::TargetConfig;
 use boresight_sim::truth::{ObjectKind, ObjectTruth, TargetAttitudeConfig};
 use boresight_sim::{Exposure, Simulation};
 
-use crate::small_scene::{simulator, still};
+use crate::small_scene::{orbit_of, simulator, still};
 
 /// The scenario fragment from the documentation.
 fn tango() -> TargetConfig {
@@ -20,9 +20,9 @@ fn tango() -> TargetConfig {
 fn ahead(range_m: f64, target: TargetConfig) -> Simulation {
     let mut simulation = still();
     let scale = range_m / 10_000.0;
-    simulation.orbit.relative.a_dlambda_m *= scale;
-    simulation.orbit.relative.a_dey_m *= scale;
-    simulation.orbit.relative.a_diy_m *= scale;
+    orbit_of(&mut simulation).relative.a_dlambda_m *= scale;
+    orbit_of(&mut simulation).relative.a_dey_m *= scale;
+    orbit_of(&mut simulation).relative.a_diy_m *= scale;
     simulation.catalog.magnitude_limit = Some(-2.0);
     simulation.sensor.hot_pixels.count = 0;
     simulation.target = target;

@@ -9,7 +9,7 @@ use boresight_sim::truth::{ObjectKind, ObjectTruth};
 use boresight_sim::{Exposure, SimError, Simulation, Simulator};
 use contract::PixelPoint;
 
-use crate::small_scene::{START_UTC, simulator, still};
+use crate::small_scene::{START_UTC, orbit_of, simulator, still};
 
 fn first(simulation: &Simulation) -> Exposure {
     simulator(simulation).camera().unwrap().expose(0).unwrap()
@@ -99,8 +99,8 @@ fn no_camera_is_inside_of_it_in_any_frame() {
     // The chaser drifts past below the target, 500 m from the target's centre in the middle, 1.1 km and more
     // at both ends.
     let mut simulation = still();
-    simulation.orbit.epoch_utc = START_UTC.into();
-    let relative = &mut simulation.orbit.relative;
+    orbit_of(&mut simulation).epoch_utc = START_UTC.into();
+    let relative = &mut orbit_of(&mut simulation).relative;
     (relative.a_da_m, relative.a_dlambda_m, relative.a_dey_m, relative.a_diy_m) = (-500.0, -1000.0, 0.0, 0.0);
     (simulation.schedule[0].cadence_s, simulation.schedule[0].count) = (60.0, 60);
     simulation.target = black_sphere(450.0);
@@ -114,7 +114,7 @@ fn no_camera_is_inside_of_it_in_any_frame() {
     assert!(message.ends_with("expected a camera outside the target"), "{message}");
     simulation.target = black_box();
     simulator(&simulation);
-    let relative = &mut simulation.orbit.relative;
+    let relative = &mut orbit_of(&mut simulation).relative;
     (relative.a_da_m, relative.a_dlambda_m) = (-50.0, -140.0);
     assert!(refusal(&simulation).contains("outside the target"));
 }
@@ -146,7 +146,7 @@ fn exposures_hits_and_epochs_that_cannot_be_are_refused() {
 
     for epoch in ["1989-12-31T00:00:00Z", "2051-01-01T00:00:00Z"] {
         let mut simulation = still();
-        simulation.orbit.epoch_utc = epoch.into();
+        orbit_of(&mut simulation).epoch_utc = epoch.into();
         let message = refusal(&simulation);
         assert!(message.contains(epoch) && message.contains("from 1990-01-01 to 2050-01-05"), "{message}");
     }

@@ -13,7 +13,7 @@ use boresight_sim::{Exposure, Simulation};
 use contract::{Angle, Direction, Icrs, PixelPoint};
 use nalgebra::Vector3;
 
-use crate::small_scene::{looking_at, restless, simulator, still};
+use crate::small_scene::{looking_at, orbit_of, restless, simulator, still};
 
 const LIGHT_SPEED_KM_S: f64 = 299_792.458;
 
@@ -56,7 +56,7 @@ fn every_star_of_the_catalogue_with_flux_on_the_detector_is_in_the_table() {
             // With wings, brighter stars contribute from farther off the detector.
             simulation.psf = PsfConfig::Moffat { fwhm_px: 1.8, beta: 2.5 };
         }
-        simulation.orbit.epoch_utc = start_utc.into();
+        orbit_of(&mut simulation).epoch_utc = start_utc.into();
         simulation.schedule[0].start_utc = start_utc.into();
         let exposure = one(&simulation, 0);
         let truth = &exposure.truth;
@@ -185,7 +185,7 @@ fn stars_are_aberrated_and_the_target_is_not() {
 fn another_velocity_moves_the_stars_by_its_aberration_and_the_target_not_at_all() {
     let seen = |date: &str| {
         let mut simulation = straight();
-        simulation.orbit.epoch_utc = format!("{date}T00:00:00Z");
+        orbit_of(&mut simulation).epoch_utc = format!("{date}T00:00:00Z");
         simulation.schedule[0].start_utc = format!("{date}T12:00:00Z");
         one(&simulation, 0)
     };
@@ -225,7 +225,7 @@ fn another_velocity_moves_the_stars_by_its_aberration_and_the_target_not_at_all(
 fn the_columns_of_a_frame_follow_their_definitions() {
     let simulation = restless();
     let simulator = simulator(&simulation);
-    let trajectory = Trajectory::new(&simulation.orbit).unwrap();
+    let trajectory = Trajectory::new(simulation.trajectory.orbit().unwrap()).unwrap();
     let mut camera = simulator.camera().unwrap();
     for frame in [0, 1, 5, 77, 400, 999] {
         let Exposure { truth, telemetry, frame: image, .. } = camera.expose(frame).unwrap();
@@ -358,13 +358,13 @@ fn shadow_of(position_km: &Vector3<f64>, sun_km: &Vector3<f64>) -> Option<Shadow
 #[test]
 fn in_the_earths_shadow_the_target_fades_through_penumbra_and_is_gone_in_umbra() {
     let mut simulation = still();
-    simulation.orbit.target.raan_deg = 33.0;
+    orbit_of(&mut simulation).target.raan_deg = 33.0;
     simulation.attitude.guidance = Guidance::TargetPointing {};
     simulation.catalog.magnitude_limit = Some(0.0);
     simulation.schedule[0].cadence_s = 2.0;
     simulation.schedule[0].count = 3000;
     let simulator = simulator(&simulation);
-    let trajectory = Trajectory::new(&simulation.orbit).unwrap();
+    let trajectory = Trajectory::new(simulation.trajectory.orbit().unwrap()).unwrap();
     let mut camera = simulator.camera().unwrap();
     let (mut umbra, mut penumbra, mut lit, mut changes) = (0, 0, 0, Vec::new());
     let mut before = None;

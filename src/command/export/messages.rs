@@ -9,8 +9,9 @@ use flight_dynamics::{
     Aem, AemSegment, AttitudeDirection, AttitudeNode, Coverage, Header, Interpolation, Method, Observation,
     Oem, OemSegment, ReferenceFrame, StateNode, Tdm, TdmSegment, TimeSystem,
 };
+use hifitime::Epoch;
+use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
-use scenario::{FarRangeScenario, TrajectoryConfig};
 use sim::truth::{FrameTruth, Schedule, State, clock};
 
 /// Names of the spacecraft in messages.
@@ -51,9 +52,9 @@ fn header(run: &RunFile<FarRangeScenario>) -> Header {
     }
 }
 
-/// Returns the true motion of a spacecraft from a step before the first to a step after the last frame. Each
-/// impulsive manoeuvre ends a segment: it has the state just before, and the next segment the state just
-/// after. The velocities of mean elements are no exact derivatives of the positions, so the interpolation is
+/// Returns the true motion of a spacecraft from a step before the first to a step after the last frame. An
+/// impulsive manoeuvre, and the begin and the end of a finite burn, end a segment, as do the segments of a
+/// file: each has the state just before, and the next segment the state just after. The velocities of mean elements are no exact derivatives of the positions, so the interpolation is
 /// LAGRANGE.
 pub(super) fn oem(
     run: &RunFile<FarRangeScenario>,
@@ -70,14 +71,13 @@ pub(super) fn oem(
         )));
     }
     let mut borders_s = vec![start_s];
-    if matches!(run.scenario.trajectory, TrajectoryConfig::MeanElements {})
-        && spacecraft == Spacecraft::Chaser
-    {
-        for manoeuvre in &run.scenario.orbit.manoeuvres {
-            let time_s = trajectory.seconds(clock::parse_utc(&manoeuvre.time_utc)?);
-            if borders_s.last().is_some_and(|border| *border < time_s) && time_s < stop_s {
-                borders_s.push(time_s);
-            }
+    let borders = match spacecraft {
+        Spacecraft::Chaser => trajectory.chaser_borders_s(),
+        Spacecraft::Target => trajectory.target_borders_s(),
+    };
+    for time_s in borders {
+        if borders_s.last().is_some_and(|border| *border < time_s) && time_s < stop_s {
+            borders_s.push(time_s);
         }
     }
     borders_s.push(stop_s);
@@ -142,18 +142,36 @@ fn just_before(state_at: &impl Fn(f64) -> State, time_s: f64) -> State {
     State { position_km: state.position_km + state.velocity_km_s * EARLIER_S, ..state }
 }
 
-/// Returns the true attitude at the frames; each group of frames with two or more is a segment.
+/// Returns the true attitude at the frames, and at the begin of the first and the end of the last exposure of
+/// each group; each group is a segment.
 pub(super) fn aem(directory: &Path, run: &RunFile<FarRangeScenario>) -> Result<Aem, Failure> {
     let path = directory.join("truth/frames.parquet");
+    let trajectory = run.scenario.trajectory()?;
+    let attitude = run.scenario.true_attitude(trajectory.epoch())?;
+    let at = |time: Epoch, frame: u64| {
+        AttitudeNode::from_rotation(time, &attitude.truth(&trajectory.states_at(time), frame))
+    };
     let mut groups: Vec<(String, Vec<AttitudeNode>)> = Vec::new();
+    // Time and number of the frame before.
+    let mut last: Option<(Epoch, u64)> = None;
     for rows in TableReader::<FrameTruth>::open(&path)? {
         for truth in rows?.1 {
             let node = AttitudeNode::from_rotation(truth.time, &truth.body_from_icrs);
             match groups.last_mut() {
                 Some((group, nodes)) if *group == truth.group => nodes.push(node),
-                _ => groups.push((truth.group, vec![node])),
+                before => {
+                    if let (Some((_, nodes)), Some((time, frame))) = (before, last) {
+                        nodes.push(at(run.scenario.needed_about(time).stop, frame));
+                    }
+                    let begin = run.scenario.needed_about(truth.time).start;
+                    groups.push((truth.group, vec![at(begin, truth.frame), node]));
+                }
             }
+            last = Some((truth.time, truth.frame));
         }
+    }
+    if let (Some((_, nodes)), Some((time, frame))) = (groups.last_mut(), last) {
+        nodes.push(at(run.scenario.needed_about(time).stop, frame));
     }
     let segments = groups.into_iter().filter_map(|(_, attitudes)| {
         let ends = attitudes.first().zip(attitudes.last()).filter(|(first, last)| first.time < last.time)?;
@@ -172,7 +190,7 @@ pub(super) fn aem(directory: &Path, run: &RunFile<FarRangeScenario>) -> Result<A
     let segments: Vec<AemSegment> = segments.collect();
     if segments.is_empty() {
         return Err(Failure::Usage(format!(
-            "{}: has no group of two or more frames, which a message of attitudes needs",
+            "{}: has no frames, which a message of attitudes needs",
             path.display()
         )));
     }

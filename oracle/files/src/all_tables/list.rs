@@ -5,17 +5,19 @@ use sim::truth::{FrameTruth, ObjectTruth};
 use crate::docking::telemetry::FieldTelemetryLine;
 use crate::docking::{FeatureRow, FieldMeasurementLine, FieldTruthRow, MotionLine};
 use crate::far_range::clusters::ClusterRow;
+use crate::far_range::manoeuvres::ManoeuvreRow;
 use crate::far_range::measurements::MeasurementLine;
 use crate::far_range::stars::StarRow;
 use crate::far_range::telemetry::TelemetryLine;
 use crate::table::declarations::{FieldDeclaration, Table};
 
 /// Returns the fields of each CSV table with its name in `docs/formats.md`.
-pub fn csv_tables() -> [(&'static str, Vec<FieldDeclaration>); 6] {
+pub fn csv_tables() -> [(&'static str, Vec<FieldDeclaration>); 7] {
     [
         ("stars.csv", StarRow::declarations()),
         ("telemetry.csv", TelemetryLine::declarations()),
         ("measurements.csv", MeasurementLine::declarations()),
+        ("truth/manoeuvres.csv", ManoeuvreRow::declarations()),
         ("telemetry.csv of docking", FieldTelemetryLine::declarations()),
         ("measurements.csv of docking", FieldMeasurementLine::declarations()),
         ("motion.csv", MotionLine::declarations()),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::{AtomicFile, Checksums, Failure, FileError, ImageFormat};
 
 /// Files of a run that have checksums.
-const SEALED: [&str; 13] = [
+const SEALED: [&str; 14] = [
     "run.toml",
     "camera.toml",
     "setup.toml",
@@ -15,6 +15,7 @@ const SEALED: [&str; 13] = [
     "telemetry.csv",
     "truth/frames.parquet",
     "truth/objects.parquet",
+    "truth/manoeuvres.csv",
     "truth/fields.parquet",
     "measurements.csv",
     "clusters.parquet",
@@ -152,6 +153,11 @@ impl RunDirectory {
     /// Path of `truth/objects.parquet`: rows of [`sim::truth::ObjectTruth`].
     pub fn truth_objects(&self) -> PathBuf {
         self.path.join("truth/objects.parquet")
+    }
+
+    /// Path of `truth/manoeuvres.csv`, which exists if the chaser has manoeuvres.
+    pub fn truth_manoeuvres(&self) -> PathBuf {
+        self.path.join("truth/manoeuvres.csv")
     }
 
     /// Creates the directory of the noise-free expectations.

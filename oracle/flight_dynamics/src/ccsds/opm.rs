@@ -72,7 +72,8 @@ pub struct Opm {
 }
 
 impl Opm {
-    /// Reads a file. Keplerian elements, which repeat the state, and user-defined parameters are not read.
+    /// Reads a file. Keplerian elements, which repeat the state (mandatory by the standard), and user-defined
+    /// parameters are not read.
     ///
     /// # Errors
     /// [`FileError`] with line and field for a file that is not an OPM, or a value that is not supported; see
@@ -89,7 +90,7 @@ impl Opm {
         document::parse(path, text, Kind::Opm, |document| Self::from_document(path, document))
     }
 
-    fn from_document(path: &Path, document: &Document<'_>) -> Result<Self, FileError> {
+    pub(super) fn from_document(path: &Path, document: &Document<'_>) -> Result<Self, FileError> {
         let header = Header::read(&document.header)?;
         let [segment] = document.segments.as_slice() else {
             let count = document.segments.len();

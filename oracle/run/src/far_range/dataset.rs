@@ -3,18 +3,18 @@
 use contract::{Camera, CameraFrame, Direction, Frame, Telemetry};
 use files::{
     CameraFile, Failure, FileError, FrameHeader, ImageFormat, RunDirectory, StarRow, TableWriter, TanSip,
-    TelemetryRow, TelemetryWriter, format_utc, write_frame, write_stars,
+    TelemetryRow, TelemetryWriter, format_utc, write_frame, write_manoeuvres, write_stars,
 };
 use hifitime::Epoch;
 use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
-use sim::truth::{FrameTruth, ObjectTruth, Observer};
+use sim::truth::{FrameTruth, ManoeuvreTruth, ObjectTruth, Observer};
 use sim::{Exposure, Simulator};
 
 use super::{FarRangeMission, SceneTruth};
 use crate::world::Dataset;
 
-/// Writes `run.toml`, `camera.toml`, `stars.csv`, then frame by frame `telemetry.csv` and the truth tables.
+/// Writes `run.toml`, `camera.toml`, `stars.csv`, `truth/manoeuvres.csv`, then frame by frame `telemetry.csv` and the truth tables.
 pub struct FrameDataset {
     telemetry: TelemetryWriter,
     frames: TableWriter<FrameTruth>,
@@ -32,6 +32,7 @@ impl FrameDataset {
         run_file: &RunFile,
         stars: &[StarRow],
         star_epoch: Epoch,
+        manoeuvres: &[ManoeuvreTruth],
         images: Option<ImageFormat>,
     ) -> Result<Self, Failure> {
         run_file.write(&directory.run())?;
@@ -49,6 +50,9 @@ impl FrameDataset {
         };
         camera.write(&directory.camera())?;
         write_stars(&directory.stars(), stars)?;
+        if !manoeuvres.is_empty() {
+            write_manoeuvres(&directory.truth_manoeuvres(), manoeuvres)?;
+        }
         Ok(Self {
             telemetry: TelemetryWriter::create(&directory.telemetry())?,
             frames: TableWriter::create(&directory.truth_frames())?,

@@ -44,6 +44,14 @@ impl InformedPipeline<FarRangeMission> for InjectedPipeline {
                 .map(|object| object.position)
                 .filter(|place| place.is_on_detector(frame.columns(), frame.rows()))
         };
+        // The cluster keeps its own error; only the offset of the centre of brightness is taken away.
+        let of_mass = |centre: PixelPoint| {
+            let target =
+                brightest_member(centre, objects).filter(|object| object.kind == ObjectKind::Target)?;
+            let (mass, brightness) = (truth.target_position?, target.position);
+            Some(PixelPoint::new(centre.x + mass.x - brightness.x, centre.y + mass.y - brightness.y))
+                .filter(|place| place.is_on_detector(frame.columns(), frame.rows()))
+        };
         let identity = |centre: PixelPoint| match brightest_member(centre, objects) {
             Some(object) if object.kind == ObjectKind::Star => Identity::Star(object.id),
             Some(object) if object.kind == ObjectKind::HotPixel => Identity::Hotspot,
@@ -56,6 +64,7 @@ impl InformedPipeline<FarRangeMission> for InjectedPipeline {
             Stage::Centroids => Overrides { centroid: Some(&centroid), ..own },
             Stage::Identities => Overrides { identity: Some(&identity), ..own },
             Stage::Attitude => Overrides { camera_from_icrs: Some(truth.camera_from_icrs), ..own },
+            Stage::Brightness => Overrides { centroid: Some(&of_mass), ..own },
             Stage::Aberration => Overrides { apparent: Some(&apparent), ..own },
             // This stage is replaced in the frames themselves.
             Stage::Roi => own,

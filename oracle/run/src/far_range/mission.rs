@@ -93,6 +93,7 @@ pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result
     bounds::check(&scenario.star_list, "star_list").map_err(|error| source.out_of_range(&error))?;
     source.check_part("far_range", scenario.far_range.check())?;
     scenario.score.check().map_err(|error| source.out_of_range(&error))?;
+    scenario.check_orbit().map_err(|error| source.out_of_range(&error))?;
     Simulator::new(&scenario.simulation()?, &source.folder).map_err(|error| source.explain(error))
 }
 

@@ -287,7 +287,14 @@ impl World for FarRangeMission {
         if frame_jobs.expectation == Expectation::Kept {
             directory.create_expected()?;
         }
-        FrameDataset::create(directory, &self.run_file, &self.stars, self.star_epoch, frame_jobs.images)
+        FrameDataset::create(
+            directory,
+            &self.run_file,
+            &self.stars,
+            self.star_epoch,
+            self.simulator.trajectory().manoeuvres(),
+            frame_jobs.images,
+        )
     }
 
     fn scorer(&self) -> Scorer<'_> {

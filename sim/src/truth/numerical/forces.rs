@@ -8,6 +8,7 @@ use super::orientation::{EARTH_RATE_RAD_S, EarthOrientation};
 use super::sky::Sky;
 use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
 use crate::switch::Switch;
+use crate::truth::manoeuvre::ManoeuvreAxes;
 use crate::truth::orbit::State;
 use crate::truth::shadow::sunlit_fraction;
 
@@ -32,8 +33,10 @@ pub(super) struct Surfaces {
 /// Thrust during a burn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Thrust {
-    /// Acceleration along the spacecraft's R, T, N axes, km/s².
-    pub(super) rtn_km_s2: Vector3<f64>,
+    /// Axes of the acceleration.
+    pub(super) axes: ManoeuvreAxes,
+    /// Acceleration, km/s².
+    pub(super) acceleration_km_s2: Vector3<f64>,
 }
 
 /// All forces on one spacecraft.
@@ -86,7 +89,7 @@ impl Forces<'_> {
             sum += from_sun * (lit * at_1_au * AU_KM * AU_KM / (distance * distance * distance));
         }
         if let Some(thrust) = thrust {
-            sum += state.rtn_from_icrs().inverse().rotate(&thrust.rtn_km_s2);
+            sum += thrust.axes.to_icrs(state, &thrust.acceleration_km_s2);
         }
         sum
     }

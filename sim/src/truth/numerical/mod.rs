@@ -4,11 +4,11 @@
 //! radiation pressure of the Sun, thrust of the chaser. Not modelled: tides of the solid Earth and the
 //! oceans, relativity, light of the Earth, attitude-dependent areas, solar and geomagnetic activity.
 //!
-//! The elements of the configuration are osculating at the epoch. Steps are multiples of a constant from the
-//! epoch, divided at manoeuvres and where the Earth's shadow begins and ends; they do not depend on the last
-//! time that is needed, so a state is the same in every run of the same orbit. States between the steps are
-//! quintic Hermite polynomials through position, velocity and acceleration at both ends: at 45 s in a low
-//! orbit within 1e-5 m of the motion.
+//! The initial states are osculating. Steps are multiples of a constant from the initial state, divided at
+//! manoeuvres and where the Earth's shadow begins and ends; they do not depend on the last time that is
+//! needed, so a state is the same in every run of the same orbit. States between the steps are quintic
+//! Hermite polynomials through position, velocity and acceleration at both ends: at 45 s in a low orbit
+//! within 1e-5 m of the motion.
 
 mod atmosphere;
 mod forces;
@@ -28,11 +28,11 @@ use self::gravity::{GravityField, MAX_DEGREE};
 use self::orientation::EarthOrientation;
 pub use self::orientation::EarthOrientationConfig;
 use self::sky::Sky;
-use super::clock::{format_utc, parse_utc_field};
+use super::clock::format_utc;
 use super::manoeuvre::Burn;
 use super::orbit::{EGM96_RADIUS_KM, State};
 use super::sampled::continued;
-use super::states::{OrbitConfig, States, seconds_between};
+use super::states::{States, seconds_between};
 use crate::memo::Memo;
 use crate::switch::Switch;
 
@@ -126,6 +126,13 @@ pub struct DragConfig {
     pub exponent: f64,
 }
 
+impl Default for DragConfig {
+    /// No drag.
+    fn default() -> Self {
+        Self { chaser_m2_kg: 0.0, target_m2_kg: 0.0, exponent: default_exponent() }
+    }
+}
+
 fn default_exponent() -> f64 {
     6.0
 }
@@ -144,16 +151,16 @@ pub struct RadiationConfig {
 }
 
 impl NumericalConfig {
-    /// Checks all values.
+    /// Checks all values; `path` is that of the configuration.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first invalid value.
-    pub fn check(&self) -> Result<(), OutOfRange> {
-        bounds::check(self, "trajectory")?;
+    pub fn check(&self, path: &str) -> Result<(), OutOfRange> {
+        bounds::check(self, path)?;
         let GravityConfig { degree, order } = self.gravity;
         if order > degree {
             let expected = format!("at most the degree, {degree}");
-            return Err(OutOfRange::new("trajectory.gravity.order", order, expected));
+            return Err(OutOfRange::new(format!("{path}.gravity.order"), order, expected));
         }
         Ok(())
     }
@@ -188,10 +195,33 @@ struct Knot {
     acceleration_km_s2: Vector3<f64>,
 }
 
+/// State from which an orbit is integrated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct InitialState {
+    /// Seconds since the epoch.
+    pub(super) time_s: f64,
+    /// State at that time.
+    pub(super) state: State,
+    /// Field of the configuration that gives the orbit, for messages.
+    pub(super) path: &'static str,
+}
+
+/// States from which the orbits of both spacecraft are integrated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct InitialStates {
+    /// Epoch of the trajectory.
+    pub(super) epoch: Epoch,
+    /// Field of the configuration that gives the epoch, for messages.
+    pub(super) epoch_path: &'static str,
+    /// Chaser.
+    pub(super) chaser: InitialState,
+    /// Target.
+    pub(super) target: InitialState,
+}
+
 /// Integrated orbits of both spacecraft.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NumericalStates {
-    epoch: Epoch,
     /// Covered interval, seconds since the epoch.
     span_s: [f64; 2],
     /// In order of time; at a discontinuity two knots at the same time.
@@ -200,48 +230,51 @@ pub(super) struct NumericalStates {
 }
 
 /// Cache of integrated orbits.
-static INTEGRATED: Memo<(OrbitConfig, NumericalConfig, Vec<Burn>, [f64; 2]), NumericalStates> = Memo::new();
+static INTEGRATED: Memo<(InitialStates, NumericalConfig, Vec<Burn>, [f64; 2]), NumericalStates> = Memo::new();
 
 impl NumericalStates {
     /// Integrates the orbits for times from `first` to `last`, or returns the earlier result for equal
-    /// arguments. `burns` are the manoeuvres of the chaser as executed, in order of time.
+    /// arguments. `config` is checked; `burns` are the manoeuvres of the chaser as executed, in order of time,
+    /// after its initial state.
     ///
     /// # Errors
-    /// [`OutOfRange`] for an invalid configuration, for a time that the ephemerides do not cover, or for an
-    /// orbit that comes below 100 km.
+    /// [`OutOfRange`] for a time that the ephemerides do not cover, or for an orbit that comes below 100 km.
     pub(super) fn compute(
-        orbit: &OrbitConfig,
+        initial: &InitialStates,
         config: &NumericalConfig,
         burns: Vec<Burn>,
         [first, last]: [Epoch; 2],
     ) -> Result<std::sync::Arc<Self>, OutOfRange> {
-        config.check()?;
-        let epoch = parse_utc_field("orbit.epoch_utc", &orbit.epoch_utc)?;
-        let (first_s, last_s) = (seconds_between(epoch, first), seconds_between(epoch, last));
-        let span_s = [first_s.min(0.0) - MARGIN_S, last_s.max(0.0) + MARGIN_S];
+        let InitialStates { epoch, chaser, target, .. } = initial;
+        let (first_s, last_s) = (seconds_between(*epoch, first), seconds_between(*epoch, last));
+        let span_s = [
+            first_s.min(chaser.time_s).min(target.time_s) - MARGIN_S,
+            last_s.max(chaser.time_s).max(target.time_s) + MARGIN_S,
+        ];
         if span_s.iter().any(|time_s| time_s.abs() > MAX_SPAN_S) {
             return Err(OutOfRange::new(
                 "schedule",
                 format!("{} to {}", format_utc(first), format_utc(last)),
-                format!("frames within 100 days of orbit.epoch_utc, {}", orbit.epoch_utc),
+                format!("frames within 100 days of the epoch of the orbits, {}", format_utc(*epoch)),
             ));
         }
-        let key = (orbit.clone(), config.clone(), burns, span_s);
-        INTEGRATED.get(key, |(orbit, config, burns, span_s)| Self::integrate(orbit, config, burns, *span_s))
+        let key = (*initial, config.clone(), burns, span_s);
+        INTEGRATED
+            .get(key, |(initial, config, burns, span_s)| Self::integrate(initial, config, burns, *span_s))
     }
 
     fn integrate(
-        orbit: &OrbitConfig,
+        initial: &InitialStates,
         config: &NumericalConfig,
         burns: &[Burn],
         span_s: [f64; 2],
     ) -> Result<Self, OutOfRange> {
-        let (epoch, chaser, target) = orbit.initial_elements()?;
+        let InitialStates { epoch, chaser, target, .. } = *initial;
         let orientation = EarthOrientation::new(&config.earth, epoch);
         orientation.check_covers(span_s)?;
         let sky = Sky::new(epoch, span_s)?;
         let GravityConfig { degree, order } = config.gravity;
-        let arc = |side: Side, state: State, burns: &[Burn]| {
+        let arc = |side: Side, start: InitialState, burns: &[Burn]| {
             let forces = Forces {
                 field: GravityField::new(degree as usize, order as usize),
                 orientation: &orientation,
@@ -250,29 +283,20 @@ impl NumericalStates {
                 moon: config.moon,
                 surfaces: config.surfaces(side),
             };
-            Integration { forces, step_s: config.step_s, knots: Vec::new() }
-                .run(state, burns, span_s)
+            Integration { forces, step_s: config.step_s, origin_s: 0.0, knots: Vec::new() }
+                .run(start, burns, span_s)
                 .map_err(|time_s| {
-                    let path = match side {
-                        Side::Chaser => "orbit.relative",
-                        Side::Target => "orbit.target",
-                    };
                     let value = format!("an orbit that comes below 100 km {time_s:.0} s after the epoch");
-                    OutOfRange::new(path, value, "an orbit above 100 km until the end of the schedule")
+                    OutOfRange::new(start.path, value, "an orbit above 100 km until the end of the schedule")
                 })
         };
         // Two threads: each orbit is a function of its own arguments, so the bits are the same as of one.
         let (chaser_knots, target_knots) = std::thread::scope(|scope| {
-            let other = scope.spawn(|| arc(Side::Chaser, chaser.state(), burns));
-            let target_knots = arc(Side::Target, target.state(), &[]);
+            let other = scope.spawn(|| arc(Side::Chaser, chaser, burns));
+            let target_knots = arc(Side::Target, target, &[]);
             (other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), target_knots)
         });
-        Ok(Self { epoch, span_s, chaser: chaser_knots?, target: target_knots? })
-    }
-
-    /// Epoch of the orbits.
-    pub(super) fn epoch(&self) -> Epoch {
-        self.epoch
+        Ok(Self { span_s, chaser: chaser_knots?, target: target_knots? })
     }
 
     /// Integrated interval, seconds since the epoch.
@@ -298,25 +322,33 @@ impl NumericalStates {
 struct Integration<'a> {
     forces: Forces<'a>,
     step_s: f64,
+    /// Time of the initial state, seconds since the epoch.
+    origin_s: f64,
     knots: Vec<Knot>,
 }
 
 impl Integration<'_> {
-    /// Integrates from the state at the epoch backward and forward; the error is the time at which the orbit
-    /// comes below [`LOWEST_KM`].
-    fn run(mut self, state: State, burns: &[Burn], [start_s, end_s]: [f64; 2]) -> Result<Vec<Knot>, f64> {
-        self.begin(0.0, state, None);
+    /// Integrates from the initial state backward and forward; the error is the time at which the orbit comes
+    /// below [`LOWEST_KM`]. The burns begin after the initial state.
+    fn run(
+        mut self,
+        InitialState { time_s: origin_s, state, .. }: InitialState,
+        burns: &[Burn],
+        [start_s, end_s]: [f64; 2],
+    ) -> Result<Vec<Knot>, f64> {
+        self.origin_s = origin_s;
+        self.begin(origin_s, state, None);
         let mut grid = 0.0;
         while self.last().time_s > start_s {
             grid -= 1.0;
-            self.advance_to(grid * self.step_s, None)?;
+            self.advance_to(self.grid_s(grid), None)?;
         }
         let mut knots = std::mem::take(&mut self.knots);
         knots.reverse();
-        // The knot at the epoch is made again by the forward integration.
+        // The first knot is made again by the forward integration.
         knots.pop();
 
-        self.begin(0.0, state, None);
+        self.begin(origin_s, state, None);
         // Number of the next time of the grid.
         let mut grid = 1.0;
         for burn in burns {
@@ -325,24 +357,29 @@ impl Integration<'_> {
             }
             self.advance_over(&mut grid, burn.start_s, None)?;
             let Knot { time_s, state, .. } = self.last();
-            let icrs_from_rtn = state.rtn_from_icrs().inverse();
             if burn.duration_s > 0.0 {
-                let thrust = Some(Thrust { rtn_km_s2: burn.dv_rtn_km_s / burn.duration_s });
+                let acceleration_km_s2 = burn.dv_km_s / burn.duration_s;
+                let thrust = Some(Thrust { axes: burn.axes, acceleration_km_s2 });
                 self.begin(time_s, state, thrust);
                 self.advance_over(&mut grid, burn.start_s + burn.duration_s, thrust)?;
                 let Knot { time_s, state, .. } = self.last();
                 self.begin(time_s, state, None);
             } else {
-                let velocity_km_s = state.velocity_km_s + icrs_from_rtn.rotate(&burn.dv_rtn_km_s);
+                let velocity_km_s = state.velocity_km_s + burn.axes.to_icrs(&state, &burn.dv_km_s);
                 self.begin(time_s, State { velocity_km_s, ..state }, None);
             }
         }
         while self.last().time_s < end_s {
-            self.advance_to(grid * self.step_s, None)?;
+            self.advance_to(self.grid_s(grid), None)?;
             grid += 1.0;
         }
         knots.append(&mut self.knots);
         Ok(knots)
+    }
+
+    /// Time `number` steps after the initial state, seconds since the epoch.
+    fn grid_s(&self, number: f64) -> f64 {
+        self.origin_s + number * self.step_s
     }
 
     fn last(&self) -> Knot {
@@ -361,14 +398,14 @@ impl Integration<'_> {
 
     /// Steps along the grid to `time_s`, which need not be a time of the grid.
     fn advance_over(&mut self, grid: &mut f64, time_s: f64, thrust: Option<Thrust>) -> Result<(), f64> {
-        while *grid * self.step_s < time_s {
-            self.advance_to(*grid * self.step_s, thrust)?;
+        while self.grid_s(*grid) < time_s {
+            self.advance_to(self.grid_s(*grid), thrust)?;
             *grid += 1.0;
         }
         if self.last().time_s < time_s {
             self.advance_to(time_s, thrust)?;
         }
-        if *grid * self.step_s == time_s {
+        if self.grid_s(*grid) == time_s {
             *grid += 1.0;
         }
         Ok(())

@@ -91,7 +91,7 @@ impl EarthOrientation {
             return Ok(());
         }
         Err(OutOfRange::new(
-            "orbit.epoch_utc",
+            "epoch",
             format!("{} s of TT since J2000.0", self.tt_s),
             "an epoch with a schedule from 1990 to 2049",
         ))

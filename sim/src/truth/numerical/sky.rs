@@ -58,7 +58,7 @@ impl Sky {
         });
         let uncovered = || {
             let expected = format!("an epoch with a schedule {COVERAGE_TEXT}");
-            OutOfRange::new("orbit.epoch_utc", clock::format_utc(epoch), expected)
+            OutOfRange::new("epoch", clock::format_utc(epoch), expected)
         };
         Ok(Self { first, bodies: bodies.collect::<Option<_>>().ok_or_else(uncovered)? })
     }
