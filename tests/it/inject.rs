@@ -1,6 +1,7 @@
 //! `boresight run --inject`: the truth instead of one stage's result.
 
 use serde_json::Value;
+use sim::truth::ObjectKind;
 
 use crate::support::{Bench, figure};
 
@@ -50,6 +51,40 @@ fn each_injected_stage_removes_its_error_and_is_reported_in_every_file() {
     let aberration = injected("aberration");
     let change = figure(&aberration, "ra_rms_deg") - figure(&own, "ra_rms_deg");
     assert!(change != 0.0 && change.abs() < 5e-4, "{change}");
+    injected("brightness");
+}
+
+/// The measured centre changes by the true offset of the centre of brightness, frame by frame, and keeps its
+/// own error.
+#[test]
+fn the_offset_of_the_centre_of_brightness_is_taken_away() {
+    let bench = Bench::new();
+    let slice = "15000..15040";
+    bench.boresight(&format!("run argon --frames {slice} --out own --no-report")).done();
+    bench.boresight(&format!("run argon --frames {slice} --out mass --inject brightness --no-report")).done();
+    let (own, mass) = (bench.csv("own/measurements.csv"), bench.csv("mass/measurements.csv"));
+    let objects = bench.objects("own");
+    let (mut moved, mut largest_px) = (0, 0.0_f64);
+    for frame in bench.frames("own") {
+        let centre = |rows: &[std::collections::BTreeMap<String, String>]| {
+            let row = rows.iter().find(|row| row["frame"] == frame.frame.to_string()).unwrap();
+            Some((row["x_px"].parse::<f64>().ok()?, row["y_px"].parse::<f64>().ok()?))
+        };
+        let target = objects.iter().find(|o| o.frame == frame.frame && o.kind == ObjectKind::Target);
+        let (Some(own), Some(mass), Some(target)) = (centre(&own), centre(&mass), target) else { continue };
+        let offset = frame
+            .target_position
+            .map(|of_mass| (of_mass.x - target.position.x, of_mass.y - target.position.y));
+        let (x, y) = offset.unwrap();
+        if (mass.0 - own.0 - x).abs() < 1e-9 && (mass.1 - own.1 - y).abs() < 1e-9 {
+            moved += 1;
+        }
+        largest_px = largest_px.max(x.hypot(y));
+    }
+    // Wrong answers are other objects, which stay where they are.
+    assert!(moved > 30, "{moved}");
+    // TANGO is 0.8 m long: at most 0.4 m at 3 km, 0.3 px of 0.42 mrad.
+    assert!((0.02..0.4).contains(&largest_px), "{largest_px}");
 }
 
 #[test]
