@@ -101,8 +101,8 @@ def from_unit(unit, low, high, scale):
     return round(value) if scale == "int" else value
 
 
-# Cost of a departure from the first values in `predict`, points² per square of the range: a quarter of the range
-# costs a mean square of one point.
+# Cost of a departure from the first values in `predict`, points² per square of the range: a quarter of the
+# range costs a mean square of one point.
 PRIOR = 16.0
 
 # Frames before each block that are not counted: the pipeline learns which pixels are hot.

@@ -121,11 +121,8 @@ fn a_numerical_run_states_its_manoeuvres_and_its_export_has_a_segment_for_each_p
     assert_eq!(cell(0, "reported_utc"), "2012-04-23T08:55:00.000000000Z");
     assert_eq!((number(0, "duration_s"), number(0, "planned_dv_t_m_s")), (10.0, -0.01352));
     let size = |row: usize, kind: &str| {
-        ["r", "t", "n"]
-            .map(|axis| number(row, &format!("{kind}_dv_{axis}_m_s")).powi(2))
-            .iter()
-            .sum::<f64>()
-            .sqrt()
+        let part = |axis: &str| number(row, &format!("{kind}_dv_{axis}_m_s"));
+        ["r", "t", "n"].map(|axis| part(axis) * part(axis)).iter().sum::<f64>().sqrt()
     };
     for row in 0..10 {
         let error = size(row, "executed") / size(row, "planned") - 1.0;

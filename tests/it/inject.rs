@@ -59,7 +59,8 @@ fn each_injected_stage_removes_its_error_and_is_reported_in_every_file() {
 #[test]
 fn the_offset_of_the_centre_of_brightness_is_taken_away() {
     let bench = Bench::new();
-    let slice = "15000..15040";
+    // The first twenty answers are hot pixels.
+    let slice = "15000..15090";
     bench.boresight(&format!("run argon --frames {slice} --out own --no-report")).done();
     bench.boresight(&format!("run argon --frames {slice} --out mass --inject brightness --no-report")).done();
     let (own, mass) = (bench.csv("own/measurements.csv"), bench.csv("mass/measurements.csv"));
@@ -79,10 +80,10 @@ fn the_offset_of_the_centre_of_brightness_is_taken_away() {
         if (mass.0 - own.0 - x).abs() < 1e-9 && (mass.1 - own.1 - y).abs() < 1e-9 {
             moved += 1;
         }
-        largest_px = largest_px.max(x.hypot(y));
+        largest_px = largest_px.max((x * x + y * y).sqrt());
     }
     // Wrong answers are other objects, which stay where they are.
-    assert!(moved > 30, "{moved}");
+    assert!(moved > 50, "{moved}");
     // TANGO is 0.8 m long: at most 0.4 m at 3 km, 0.3 px of 0.42 mrad.
     assert!((0.02..0.4).contains(&largest_px), "{largest_px}");
 }

@@ -34,6 +34,7 @@ fn a_run_directory_holds_every_file_of_a_run() {
         "stars.csv",
         "telemetry.csv",
         "truth/frames.parquet",
+        "truth/manoeuvres.csv",
         "truth/objects.parquet",
     ];
     assert_eq!(files, expected.map(PathBuf::from).into());

@@ -9,9 +9,9 @@ use sim::truth::{AttitudeConfig, AttitudeProfile, Guidance, Schedule};
 
 use crate::coverage::Reach;
 
-/// Returns the attitude of the file that guidance names; `None` for other guidance. Frames of `schedule`, with
-/// `reach` about each, must lie within the time that the file covers; between its segments there may be gaps
-/// without frames.
+/// Returns the attitude of the file that guidance names; `None` for other guidance. Frames of `schedule`,
+/// with `reach` about each, must lie within the time that the file covers; between its segments there may be
+/// gaps without frames.
 ///
 /// # Errors
 /// A [`Failure`] for a file that cannot be read, or does not cover all frames.

@@ -612,7 +612,7 @@ mod tests {
             let message = source(&config, &schedule).unwrap_err().to_string();
             assert!(parts.iter().all(|part| message.contains(part)), "{parts:?}: {message}");
         }
-        // What the messages lack, the scenario may state.
+        // The scenario may state values that the messages lack.
         let (_, complete) = numerical();
         assert!(source(&messages(&folder, complete, &opm(&state, &whole, ""), &good), &schedule).is_ok());
     }

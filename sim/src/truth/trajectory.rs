@@ -210,8 +210,8 @@ impl Trajectory {
         &self.manoeuvres
     }
 
-    /// Returns the times in ascending order at which the chaser's velocity or acceleration jumps, seconds since
-    /// the epoch: impulses, begins and ends of finite burns; borders of segments for sampled states. No
+    /// Returns the times in ascending order at which the chaser's velocity or acceleration jumps, seconds
+    /// since the epoch: impulses, begins and ends of finite burns; borders of segments for sampled states. No
     /// polynomial should cross them.
     pub fn chaser_borders_s(&self) -> Vec<f64> {
         if let Motion::Sampled(states) = &self.motion {

@@ -54,8 +54,8 @@ fn header(run: &RunFile<FarRangeScenario>) -> Header {
 
 /// Returns the true motion of a spacecraft from a step before the first to a step after the last frame. An
 /// impulsive manoeuvre, and the begin and the end of a finite burn, end a segment, as do the segments of a
-/// file: each has the state just before, and the next segment the state just after. The velocities of mean elements are no exact derivatives of the positions, so the interpolation is
-/// LAGRANGE.
+/// file: each has the state just before, and the next segment the state just after. The velocities of mean
+/// elements are no exact derivatives of the positions, so the interpolation is LAGRANGE.
 pub(super) fn oem(
     run: &RunFile<FarRangeScenario>,
     spacecraft: Spacecraft,

@@ -14,7 +14,8 @@ use sim::{Exposure, Simulator};
 use super::{FarRangeMission, SceneTruth};
 use crate::world::Dataset;
 
-/// Writes `run.toml`, `camera.toml`, `stars.csv`, `truth/manoeuvres.csv`, then frame by frame `telemetry.csv` and the truth tables.
+/// Writes `run.toml`, `camera.toml`, `stars.csv`, `truth/manoeuvres.csv`, then frame by frame `telemetry.csv`
+/// and the truth tables.
 pub struct FrameDataset {
     telemetry: TelemetryWriter,
     frames: TableWriter<FrameTruth>,

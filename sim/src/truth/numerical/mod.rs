@@ -234,8 +234,8 @@ static INTEGRATED: Memo<(InitialStates, NumericalConfig, Vec<Burn>, [f64; 2]), N
 
 impl NumericalStates {
     /// Integrates the orbits for times from `first` to `last`, or returns the earlier result for equal
-    /// arguments. `config` is checked; `burns` are the manoeuvres of the chaser as executed, in order of time,
-    /// after its initial state.
+    /// arguments. `config` is checked; `burns` are the manoeuvres of the chaser as executed, in order of
+    /// time, after its initial state.
     ///
     /// # Errors
     /// [`OutOfRange`] for a time that the ephemerides do not cover, or for an orbit that comes below 100 km.
