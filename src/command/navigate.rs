@@ -3,38 +3,46 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use files::{Checksums, Failure, refuse_unfinished};
-use navigate::{Campaign, Estimator, KnowledgeConfig, NavigationResult, TABLE_FILE, bound_of};
-use run::{AnyWorld, ScenarioSource, world_of_run};
+use contract::conformance::Violation;
+use files::Failure;
+use navigate::{
+    Campaign, EVERY_S, Estimator, KnowledgeConfig, MeasurementSource, NavigationResult, NavigatorChoice,
+    TABLE_FILE, bound_of, navigate_with, navigation_budget,
+};
+use pipeline::external::{DEFAULT_MEMORY_MB, Sandbox};
+use run::{AnyWorld, ScenarioSource};
 use scenario::FarRangeScenario;
-use scenario::run_file::{RunFile, ScenarioFile};
+use scenario::run_file::ScenarioFile;
+use serde_json::json;
 
 use super::Answer;
+use super::interrupt::{clean_up_when_interrupted, scratch_directory};
 use super::options::output_path;
 use super::output::Output;
 use super::report::write_beside_results;
-use crate::table::{bound_table, navigation_table};
+use crate::table::{bound_table, budget_table, navigation_table};
 
 /// Number of intervals of a bound's table.
 const BOUND_INTERVALS: u32 = 12;
 
-/// Interval of the estimates, s, if none is given.
-const EVERY_S: f64 = 600.0;
-
 /// Name of a run's report.
 const REPORT: &str = "report.html";
-
-/// Files of a run that the command reads.
-const READ: [&str; 3] = ["run.toml", "measurements.csv", "telemetry.csv"];
 
 #[derive(Debug, Args)]
 pub(super) struct NavigateArguments {
     /// Directory of a far-range run; with --bound also a built-in scenario or a TOML file
-    #[arg(value_name = "RUN|SCENARIO")]
-    input: PathBuf,
-    /// Navigator
-    #[arg(long, value_name = "NAME", value_enum, default_value_t)]
-    estimator: EstimatorName,
+    #[arg(value_name = "RUN|SCENARIO", required_unless_present = "conformance")]
+    input: Option<PathBuf>,
+    #[command(flatten)]
+    navigator: NavigatorOptions,
+    /// Lines of sight from this file in place of the run's measurements.csv: a table with its columns (.csv),
+    /// or a tracking data message of CCSDS with right ascension and declination (KVN or XML)
+    #[arg(long, value_name = "FILE")]
+    measurements: Option<PathBuf>,
+    /// Standard deviation of each angle of lines of sight without a covariance, arcsec; required for a
+    /// tracking data message, which states none
+    #[arg(long, value_name = "S", requires = "measurements")]
+    sigma_arcsec: Option<f64>,
     /// Interval of the estimates, s
     #[arg(long, value_name = "S", default_value_t = EVERY_S)]
     every: f64,
@@ -45,8 +53,59 @@ pub(super) struct NavigateArguments {
     #[arg(short, long, value_name = "DIR", value_parser = output_path())]
     out: Option<PathBuf>,
     /// Only the smallest standard deviations that the measurements allow, and the condition number
-    #[arg(long, conflicts_with_all = ["estimator", "every", "out"])]
+    #[arg(long, conflicts_with_all = ["navigator", "every", "out"])]
     bound: bool,
+    /// Only the error budget: the navigation is repeated with one input true at a time; shares of the squared
+    /// error along R, T, N; writes no file
+    #[arg(long, conflicts_with_all = ["out", "bound", "measurements"])]
+    budget: bool,
+    /// Without a run: test that the navigator keeps the rules of the contract, on orbits of its own; exit
+    /// status 1 if it does not
+    #[arg(long, conflicts_with_all = ["input", "every", "no_prior", "out", "bound", "budget", "measurements"])]
+    conformance: bool,
+}
+
+/// Choice of the navigator, and limits of an external one.
+#[derive(Debug, Args)]
+struct NavigatorOptions {
+    /// `batch` (least squares over all measurements), `sequential` (filter: each estimate from the
+    /// measurements until then), or `exec:COMMAND` for a program that implements the protocol of
+    /// docs/navigation.md
+    #[arg(long, alias = "estimator", value_name = "NAME|exec:COMMAND", default_value = "batch")]
+    navigator: String,
+    /// Maximum time of an `exec:` navigator per request, s
+    #[arg(long, value_name = "S", default_value_t = 60.0)]
+    timeout_s: f64,
+    /// Maximum memory of an `exec:` navigator, and of each process that it starts, MB; enforced on Linux
+    #[arg(long, value_name = "MB", default_value_t = DEFAULT_MEMORY_MB)]
+    memory_mb: u64,
+    /// Let an `exec:` navigator read the system and the files beside it, write temporary files, and nothing
+    /// else: no truth, no scenario, no run, no network. Rejected if the kernel has no Landlock
+    #[arg(long, requires = "navigator")]
+    sandbox: bool,
+    /// A file or folder that an `exec:` navigator may also read in its sandbox; may be given several times
+    #[arg(long, value_name = "PATH", requires = "sandbox")]
+    sandbox_read: Vec<PathBuf>,
+}
+
+impl NavigatorOptions {
+    /// Returns the chosen navigator. A program is from now on ended together with this process when the
+    /// process is requested to end. A sandbox hides `hidden` from it.
+    fn choice(&self, hidden: &[&Path]) -> NavigatorChoice {
+        let choice = NavigatorChoice {
+            word: self.navigator.clone(),
+            timeout_s: self.timeout_s,
+            memory_mb: self.memory_mb,
+            sandbox: self.sandbox.then(|| Sandbox {
+                readable: self.sandbox_read.clone(),
+                hidden: hidden.iter().map(|path| path.to_path_buf()).collect(),
+            }),
+        };
+        if choice.is_program() {
+            clean_up_when_interrupted();
+        }
+        choice
+    }
 }
 
 /// Name of a built-in navigator.
@@ -88,7 +147,7 @@ impl EstimatorName {
     /// # Errors
     /// The errors of the command `navigate`.
     pub(super) fn navigate_run(self, directory: &Path) -> Result<NavigationResult, Failure> {
-        let campaign = campaign(directory, &KnowledgeConfig::default())?;
+        let campaign = Campaign::open(directory, &KnowledgeConfig::default(), &MeasurementSource::default())?;
         let result = navigate::navigate(&campaign, self.estimator(), EVERY_S)?;
         result.write(directory)?;
         Ok(result)
@@ -101,15 +160,25 @@ pub(super) fn navigate(arguments: &NavigateArguments, output: &Output) -> Result
     if arguments.no_prior {
         knowledge.prior_sigma_m = None;
     }
-    let input = &arguments.input;
+    let Some(input) = &arguments.input else { return conformance(&arguments.navigator, output) };
+    let source =
+        MeasurementSource { file: arguments.measurements.clone(), sigma_arcsec: arguments.sigma_arcsec };
     if arguments.bound {
-        let report = bound_of(&campaign_or_plan(input, &knowledge)?, BOUND_INTERVALS)?;
+        let report = bound_of(&campaign_or_plan(input, &knowledge, &source)?, BOUND_INTERVALS)?;
         output.answer(&report, bound_table(&report, output.is_terminal()).trim_end())?;
         return Ok(Answer::Yes);
     }
-    let campaign = campaign(input, &knowledge)?;
-    let result = navigate::navigate(&campaign, arguments.estimator.estimator(), arguments.every)?;
     let directory = arguments.out.as_deref().unwrap_or(input);
+    let choice = arguments.navigator.choice(&[input, directory]);
+    let campaign = Campaign::open(input, &knowledge, &source)?;
+    let scratch = scratch_directory()?;
+    if arguments.budget {
+        let budget = navigation_budget(input, &campaign, &choice, scratch.path(), arguments.every)?;
+        output.answer(&budget, budget_table(&budget, output.is_terminal()).trim_end())?;
+        return Ok(Answer::Yes);
+    }
+    let factory = choice.factory(&campaign, scratch.path())?;
+    let result = navigate_with(&campaign, factory.as_ref(), &choice.word, arguments.every)?;
     result.write(directory)?;
     // An existing report of the run lacks the new figure.
     if directory == input && input.join(REPORT).is_file() {
@@ -121,29 +190,39 @@ pub(super) fn navigate(arguments: &NavigateArguments, output: &Output) -> Result
     Ok(if result.score.estimates > 0 { Answer::Yes } else { Answer::No })
 }
 
-fn campaign_or_plan(input: &Path, knowledge: &KnowledgeConfig) -> Result<Campaign, Failure> {
+/// Tests a navigator by the conformance checks of the contract.
+fn conformance(options: &NavigatorOptions, output: &Output) -> Result<Answer, Failure> {
+    let choice = options.choice(&[]);
+    let scratch = scratch_directory()?;
+    let shown: Vec<String> = choice
+        .violations(scratch.path())?
+        .iter()
+        .map(|Violation { input, broken }| format!("{input}: {broken}"))
+        .collect();
+    let document = json!({ "navigator": choice.word, "violations": shown });
+    let text = match shown.is_empty() {
+        true => format!("{} keeps the rules of the contract", choice.word),
+        false => shown.join("\n"),
+    };
+    output.answer(&document, text)?;
+    Ok(if shown.is_empty() { Answer::Yes } else { Answer::No })
+}
+
+fn campaign_or_plan(
+    input: &Path,
+    knowledge: &KnowledgeConfig,
+    measurements: &MeasurementSource,
+) -> Result<Campaign, Failure> {
     if input.join("run.toml").is_file() {
-        return campaign(input, knowledge);
+        return Campaign::open(input, knowledge, measurements);
+    }
+    if measurements.file.is_some() {
+        return Err(Failure::Usage(format!(
+            "--measurements applies only to a run: {} has no run.toml",
+            input.display()
+        )));
     }
     let source = ScenarioSource::read(&input.to_string_lossy())?;
     let scenario = source.typed::<FarRangeScenario>("far range")?;
     Campaign::from_plan(&source.name, "", scenario, knowledge)
-}
-
-fn campaign(directory: &Path, knowledge: &KnowledgeConfig) -> Result<Campaign, Failure> {
-    let path = directory.join("run.toml");
-    let world = world_of_run(&path)?;
-    if world.code() != FarRangeScenario::WORLD {
-        return Err(Failure::Usage(format!(
-            "{}: is a run of the world {}, expected {}",
-            directory.display(),
-            world.code(),
-            FarRangeScenario::WORLD
-        )));
-    }
-    refuse_unfinished(directory)?;
-    let run = RunFile::read(&path)?;
-    let campaign = Campaign::read(directory, &run, knowledge)?;
-    Checksums::check(directory, |name| READ.contains(&name))?;
-    Ok(campaign)
 }

@@ -1,6 +1,6 @@
 //! Text output of relative navigation for a user.
 use comfy_table::Cell;
-use navigate::{Axis, BoundReport, NavigationResult};
+use navigate::{Axis, BoundReport, NavigationBudget, NavigationResult};
 
 use crate::table::far_range::{finish, percent, plain_table};
 
@@ -91,6 +91,28 @@ pub fn bound_table(report: &BoundReport, styled: bool) -> String {
         }
         table.add_row(row.into_iter().map(Cell::new));
     }
+    text.push_str(&finish(table));
+    text
+}
+
+/// Returns the error budget of a navigation as text. Ends with a line feed.
+pub fn budget_table(budget: &NavigationBudget, styled: bool) -> String {
+    let mut text = format!(
+        "{}, {}: {} estimates; parts of the error along R, T, N\n",
+        budget.scenario, budget.navigator, budget.estimates
+    );
+    let mut table = plain_table(styled);
+    table.set_header(["cause", "R rms, m", "T", "N", "R share, %", "T", "N"]);
+    for part in &budget.parts {
+        let mut row = vec![part.cause.replace('_', " ")];
+        row.extend(part.rms_m.map(number));
+        row.extend(part.share.map(|share| format!("{:.1}", 100.0 * share)));
+        table.add_row(row.into_iter().map(Cell::new));
+    }
+    let mut row = vec!["error".to_owned()];
+    row.extend(budget.rms_m.map(number));
+    row.extend(["100.0"; 3].map(str::to_owned));
+    table.add_row(row.into_iter().map(Cell::new));
     text.push_str(&finish(table));
     text
 }

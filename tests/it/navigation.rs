@@ -1,6 +1,8 @@
 //! `boresight navigate`: end to end on a slice of ARGON, and input that it refuses.
 
-use crate::support::{Bench, check_same_files};
+use std::collections::BTreeMap;
+
+use crate::support::{Bench, STUDY, check_same_files};
 
 #[test]
 fn a_slice_of_argon_gives_estimates_figures_and_a_chart() {
@@ -58,6 +60,251 @@ fn run_with_navigate_writes_the_files_of_both_commands_and_its_report_has_the_ch
     assert_eq!(bench.json("bare/navigation.json")["estimator"], "sequential");
     bench.boresight("navigate bare --out other").done();
     assert!(!bench.path("bare/report.html").exists() && !bench.path("other/report.html").exists());
+}
+
+/// The navigator of the documentation, as a program: it keeps the rules, and its answers are scored.
+#[test]
+fn a_program_navigates() {
+    let bench = Bench::new();
+    let program = format!("exec:python3 '{}/docs/examples/prior_orbit.py'", env!("CARGO_MANIFEST_DIR"));
+    bench.boresight("run argon --frames 0..30 --no-report --out run").done();
+    let words = ["navigate", "run", "--every", "120", "--json", "--navigator", &program];
+    let json = bench.boresight_words(&words).done().json();
+    assert_eq!(json["estimator"], *program);
+    let score = &json["score"];
+    assert_eq!(score["estimates"], score["requested"], "{score}");
+    // The prior errs by less than 3 σ of 500 m, and its orbit does not spread it within minutes.
+    let along = &score["position_m"]["t"];
+    assert_eq!(along["within_3_sigma"].as_f64(), Some(1.0), "{score}");
+    let sigma = along["sigma_rms"].as_f64().unwrap();
+    assert!((490.0..520.0).contains(&sigma), "{score}");
+    assert!(score["measurements"].as_object().unwrap().is_empty(), "it reports no dispositions");
+    let checked = bench.boresight_words(&["navigate", "--conformance", "--navigator", &program]).done();
+    assert!(checked.stdout.contains("keeps the rules"), "{}", checked.stdout);
+    // A navigator that answers nothing useful is negative, with every reason.
+    bench.write("blind.py", BLIND_NAVIGATOR);
+    let answer =
+        bench.boresight_words(&["navigate", "--conformance", "--navigator", "exec:python3 blind.py"]);
+    assert_eq!(answer.status, Some(1), "{}", answer.stderr);
+    assert!(answer.stdout.contains("hours of measurements: no estimate"), "{}", answer.stdout);
+    let answer = bench.boresight("navigate run --navigator exec:true --out other");
+    answer.refused(&["exec:true", "during the greeting"]);
+    bench.boresight("navigate run --navigator bach").refused(&["bach", "did you mean `batch`"]);
+    bench.boresight("navigate run --navigator exec:nowhere").refused(&["`nowhere` not found"]);
+    bench.boresight("navigate").refused(&["RUN|SCENARIO"]);
+    assert!(!bench.path("other").exists());
+}
+
+/// A navigator without estimates.
+const BLIND_NAVIGATOR: &str = r#"
+import json, sys
+input()
+print('{"boresight_navigator": 1, "name": "blind", "mode": "batch"}', flush=True)
+for line in sys.stdin:
+    request = json.loads(line)
+    if "estimate" in request:
+        print(json.dumps({"estimates": [{"no_estimate": "no_convergence"}] * len(request["estimate"])}), flush=True)
+"#;
+
+/// Another tool's measurements: those of the run itself, as a table and as messages, give its orbit.
+#[test]
+fn measurements_of_another_tool_navigate() {
+    let bench = Bench::new();
+    bench.scenario("slice.toml", "argon", |scenario| {
+        let mode = "mode = 'best'".parse::<toml::Table>().unwrap();
+        scenario.insert("far_range".into(), mode.into());
+    });
+    bench.boresight("run slice.toml --frames 4000..4030 --no-report --out run").done();
+    let sigma = |json: &serde_json::Value| json["score"]["position_m"]["t"]["sigma_rms"].as_f64().unwrap();
+    let rms =
+        |json: &serde_json::Value, axis: &str| json["score"]["position_m"][axis]["rms"].as_f64().unwrap();
+    let own = bench.boresight("navigate run --json --out own").done().json();
+    assert!(own.get("measurements_file").is_none());
+    let table = bench.read("run/measurements.csv");
+    bench.write("theirs.csv", &table);
+    let same = bench.boresight("navigate run --measurements theirs.csv --json --out same").done().json();
+    assert_eq!(same["score"], own["score"]);
+    assert_eq!(same["measurements_file"], "theirs.csv");
+    for (notation, file) in [("kvn", "los.tdm"), ("xml", "los.xml")] {
+        let out = format!("export run --format tdm --notation {notation} --out {file}");
+        bench.boresight(&out).done();
+        let words = format!("navigate run --measurements {file} --sigma-arcsec 2 --json --out of-{notation}");
+        let json = bench.boresight(&words).done().json();
+        assert_eq!(json["lines_of_sight"], own["lines_of_sight"], "{file}");
+        // Directions are the same, and weights about the same.
+        assert!((sigma(&json) / sigma(&own) - 1.0).abs() < 0.1, "{json} {own}");
+        assert!((rms(&json, "t") - rms(&own, "t")).abs() < 0.3 * sigma(&own), "{json} {own}");
+    }
+    let refused = |words: &str, parts: &[&str]| {
+        bench.boresight(&format!("navigate run --out no --measurements {words}")).refused(parts);
+    };
+    refused("los.tdm", &["los.tdm", "--sigma-arcsec"]);
+    for sigma in ["0", "-1", "NaN", "inf", "36001"] {
+        refused(&format!("los.tdm --sigma-arcsec={sigma}"), &["--sigma-arcsec", sigma, "above 0"]);
+    }
+    refused("nowhere.csv", &["nowhere.csv"]);
+    // Another time scale: the same numbers of TAI are 34 s earlier.
+    let message = bench.read("los.tdm");
+    bench.write("tai.tdm", message.replace("TIME_SYSTEM = UTC", "TIME_SYSTEM = TAI"));
+    refused("tai.tdm --sigma-arcsec 2", &["tai.tdm", "EPOCH", "(TAI)", "telemetry.csv"]);
+    // Another run: other times, and a direction behind the camera.
+    bench.boresight("run slice.toml --frames 9000..9003 --no-report --out far").done();
+    bench.boresight("export far --format tdm --out far.tdm").done();
+    refused("far.tdm --sigma-arcsec 2", &["far.tdm", "EPOCH", "telemetry.csv"]);
+    let line = message.lines().find(|line| line.starts_with("ANGLE_2")).unwrap();
+    let angle: f64 = line.split_whitespace().last().unwrap().parse().unwrap();
+    let turned =
+        format!("{} {:.9}", line.rsplit_once(' ').unwrap().0, if angle > 0.0 { -80.0 } else { 80.0 });
+    bench.write("turned.tdm", message.replacen(line, &turned, 1));
+    refused("turned.tdm --sigma-arcsec 2", &["turned.tdm", "ANGLE_1", "from the boresight"]);
+    bench.write("nan.tdm", message.replacen(line, &format!("{} NaN", line.rsplit_once(' ').unwrap().0), 1));
+    refused("nan.tdm --sigma-arcsec 2", &["nan.tdm", "ANGLE_2", "NaN"]);
+    // Times beside a table's rows are compared with those of the run.
+    let columns = bench.csv("run/telemetry.csv");
+    let stated = |shift: usize| -> String {
+        let row = |(place, line): (usize, &str)| match place {
+            0 => format!("{line},time_utc"),
+            _ => format!("{line},{}", columns[(place - 1 + shift) % columns.len()]["time_utc"]),
+        };
+        table.lines().enumerate().map(row).collect::<Vec<_>>().join("\n") + "\n"
+    };
+    bench.write("timed.csv", stated(0));
+    bench.boresight("navigate run --measurements timed.csv --out timed").done();
+    bench.write("late.csv", stated(1));
+    refused("late.csv", &["late.csv", "line 2", "time_utc", "the time of frame 4000"]);
+    // One measurement leaves the prior.
+    let first: Vec<&str> = table.lines().take(2).collect();
+    bench.write("one.csv", first.join("\n") + "\n");
+    let one = bench.boresight("navigate run --measurements one.csv --json --out one").done().json();
+    assert_eq!((one["lines_of_sight"].as_u64(), one["score"]["estimates"].as_u64()), (Some(1), Some(1)));
+    assert!(sigma(&one) > 300.0, "{one}");
+    bench.boresight("navigate argon --bound --measurements one.csv").refused(&["--measurements", "run.toml"]);
+}
+
+/// A study records the figures of the navigation of each case, and a gate compares two studies, and two runs.
+#[test]
+fn studies_record_and_gates_compare_navigations() {
+    let bench = Bench::new();
+    let study = |navigate: &str, figures: &str| {
+        format!(
+            r#"
+title = "navigation on an hour of ARGON"
+scenario = "argon"
+seed = 5
+frames = "4000..4012"
+{navigate}
+[stop]
+cases = 5
+[[sweep]]
+path = "far_range"
+values = [{{ mode = "best" }}]
+[[vary]]
+path = "orbit.relative.a_dlambda_m"
+distribution = {{ kind = "normal", mean = -30000.0, sigma = 300.0 }}
+[record]
+figures = [{figures}]
+"#
+        )
+    };
+    let figures = r#""correct_rate", "navigation_t_rms_m", "navigation_within_3_sigma", "navigation_state_nees_mean", "navigation_t_square_over_bound""#;
+    bench.write("with.toml", study("navigate = \"batch\"", figures));
+    bench.boresight("study run with.toml --out with").done();
+    let summary = bench.json("with/summary.json");
+    let all = |name: &str| summary["figures"][name]["all"]["value"].as_f64();
+    assert_eq!(summary["figures"]["navigation_t_rms_m"]["cases"], 5, "{summary}");
+    assert!((1.0..2000.0).contains(&all("navigation_t_rms_m").unwrap()), "{summary}");
+    assert!((0.5..=1.0).contains(&all("navigation_within_3_sigma").unwrap()), "{summary}");
+    assert!(all("navigation_state_nees_mean").unwrap() > 0.0, "{summary}");
+    assert!(all("navigation_t_square_over_bound").unwrap() > 0.0, "{summary}");
+    bench.boresight("gate baseline with --out base --reason first").done();
+    let report = bench.boresight("gate base with --json");
+    assert_eq!(report.status, Some(0), "{}", report.stderr);
+    assert!(report.json()["figures"]["navigation_t_rms_m"].is_object(), "{}", report.stdout);
+    // Without the key there are no such figures, and the plan of a study is as before.
+    bench.write("without.toml", study("", figures));
+    bench
+        .boresight("study run without.toml --out without")
+        .refused(&["record.figures[1]", "navigation_t_rms_m"]);
+    bench.write(
+        "docking.toml",
+        STUDY.replace("argon", "docking").replace("title", "navigate = 'batch'\ntitle"),
+    );
+    bench.boresight("study run docking.toml --out docking").refused(&["navigate", "far range", "docking"]);
+    // Two runs of the same frames, each with its navigation.
+    bench.scenario("best.toml", "argon", |scenario| {
+        scenario.insert("far_range".into(), "mode = 'best'".parse::<toml::Table>().unwrap().into());
+    });
+    for (name, navigator) in [("a", "batch"), ("b", "sequential")] {
+        bench
+            .boresight(&format!(
+                "run best.toml --frames 4000..4200 --navigate={navigator} --no-report --out {name}"
+            ))
+            .done();
+    }
+    bench.boresight("gate baseline a --out base-a --reason first").done();
+    let figures = "--figures navigation_t_rms_m,navigation_position_nees_mean";
+    let same = bench.boresight(&format!("gate base-a a {figures} --json")).json();
+    assert_eq!(same["figures"]["navigation_t_rms_m"]["difference"].as_f64(), Some(0.0), "{same}");
+    let other = bench.boresight(&format!("gate base-a b {figures} --json")).json();
+    let found = &other["figures"]["navigation_t_rms_m"];
+    let of_run = |name: &str| {
+        bench.json(&format!("{name}/navigation.json"))["score"]["position_m"]["t"]["rms"].as_f64().unwrap()
+    };
+    let (before, after) = (found["baseline"].as_f64().unwrap(), found["result"].as_f64().unwrap());
+    assert!((before / of_run("a") - 1.0).abs() < 0.02 && (after / of_run("b") - 1.0).abs() < 0.02, "{other}");
+    bench.boresight("run best.toml --frames 4000..4200 --no-report --out c").done();
+    bench.boresight("gate base-a c").refused(&["navigation_estimate_rate", "--figures"]);
+}
+
+/// The parts of the error add up to it, and a part is zero where its input is exact.
+#[test]
+fn the_budget_of_a_navigation_adds_up_to_its_error() {
+    let bench = Bench::new();
+    bench.scenario("best.toml", "argon", |scenario| {
+        scenario.insert("far_range".into(), "mode = 'best'".parse::<toml::Table>().unwrap().into());
+    });
+    let parts = |scenario: &str, out: &str| {
+        bench
+            .boresight(&format!("run {scenario} --frames 4000..4060 --no-report --navigate --out {out}"))
+            .done();
+        let json = bench.boresight(&format!("navigate {out} --budget --json")).done().json();
+        let parts: BTreeMap<String, [[f64; 3]; 2]> = json["parts"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|part| {
+                let three = |key: &str| [0, 1, 2].map(|axis| part[key][axis].as_f64().unwrap());
+                (part["cause"].as_str().unwrap().to_owned(), [three("rms_m"), three("share")])
+            })
+            .collect();
+        let score = bench.json(&format!("{out}/navigation.json"))["score"]["position_m"].clone();
+        for (axis, name) in ["r", "t", "n"].into_iter().enumerate() {
+            let sum: f64 = parts.values().map(|[_, share]| share[axis]).sum();
+            assert!((sum - 1.0).abs() < 1e-9, "{parts:?}");
+            assert!(parts["interaction"][1][axis].abs() < 0.05, "{parts:?}");
+            let without = json["share_without_interaction"][axis].as_f64().unwrap();
+            assert!((without + parts["interaction"][1][axis] - 1.0).abs() < 1e-12, "{json}");
+            let rms = json["rms_m"][axis].as_f64().unwrap();
+            assert!((rms / score[name]["rms"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{json} {score}");
+        }
+        parts
+    };
+    let best = parts("best.toml", "best");
+    // No manoeuvre in this quarter of an hour; the attitude is that of each image, without a mounting.
+    for cause in ["manoeuvre_knowledge", "mounting"] {
+        assert_eq!(best[cause][0], [0.0; 3], "{best:?}");
+    }
+    for cause in ["detector", "attitude", "centre_of_brightness", "prior"] {
+        assert!(best[cause][0].iter().all(|rms| *rms > 0.0), "{best:?}");
+    }
+    // The range is that of the prior within minutes.
+    assert!(best["prior"][1][1] > 0.9, "{best:?}");
+    // The paper's mode learns its hot pixels first, and has no usable line of sight yet.
+    bench.boresight("run argon --frames 4000..4020 --no-report --out paper").done();
+    bench.boresight("navigate paper --budget").refused(&["no estimate at 2012-04-24", "no_measurements"]);
+    let table = bench.boresight("navigate best --budget").done().stdout;
+    assert!(table.contains("centre of brightness") && table.contains("interaction"), "{table}");
+    bench.boresight("navigate best --budget --out other").refused(&["--budget", "--out"]);
 }
 
 #[test]

@@ -11,6 +11,49 @@ use crate::ContractError;
 /// A navigator is built afresh for each sequence of events. It receives events in the order of their arrival;
 /// their times may be out of order, repeated, or have gaps of days. It must answer every requested epoch, and
 /// no answer may contain NaN: see [`crate::conformance::navigation`].
+///
+/// ```
+/// use boresight_contract::ContractError;
+/// use boresight_contract::navigation::{
+///     Answer, Event, Mode, NavigationSetup, Navigator, NavigatorFactory, NoEstimate,
+/// };
+/// use hifitime::Epoch;
+///
+/// /// Counts the events and never has an estimate.
+/// struct Counter(usize);
+///
+/// impl Navigator for Counter {
+///     fn receive(&mut self, _: &Event) {
+///         self.0 += 1;
+///     }
+///
+///     fn estimates(&mut self, epochs: &[Epoch]) -> Vec<Answer> {
+///         let reason = NoEstimate::Failed(format!("{} events, and no estimator", self.0));
+///         vec![Err(reason); epochs.len()]
+///     }
+/// }
+///
+/// struct CounterFactory;
+///
+/// impl NavigatorFactory for CounterFactory {
+///     fn name(&self) -> String {
+///         "counter".to_owned()
+///     }
+///
+///     fn mode(&self) -> Mode {
+///         Mode::Batch
+///     }
+///
+///     fn build(&self, setup: &NavigationSetup) -> Result<Box<dyn Navigator>, ContractError> {
+///         setup.check()?;
+///         Ok(Box::new(Counter(0)))
+///     }
+/// }
+///
+/// // The conformance checks find that it has no estimate from a sound campaign.
+/// let violations = boresight_contract::conformance::navigation::check(&CounterFactory).unwrap_err();
+/// assert!(violations.iter().any(|violation| violation.broken.contains("no estimator")));
+/// ```
 pub trait Navigator: Send {
     /// Receives one event. An event that cannot be used is recorded in [`Navigator::dispositions`].
     fn receive(&mut self, event: &Event);
@@ -42,7 +85,8 @@ pub trait NavigatorFactory: Sync {
     /// Returns the name for tables and logs.
     fn name(&self) -> String;
 
-    /// Returns the mode of its navigators.
+    /// Returns the mode of its navigators; for a program, that of its greeting, which follows the first
+    /// [`NavigatorFactory::build`].
     fn mode(&self) -> Mode;
 
     /// Builds a fresh navigator that has received no event.

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use files::sha256::{hex, sha256_hex};
-use files::{Checksums, Failure, FileError, file_sha256, table_sha256, toml_file};
+use files::{Checksums, Failure, FileError, file_sha256, read_telemetry, table_sha256, toml_file};
+use navigate::{TABLE_FILE, navigation_terms, read_navigation};
 use run::{figure_by_name, world_of_run, worlds};
 use scenario::AttitudeChoice;
 use scenario::identity::split;
@@ -93,7 +94,20 @@ fn run(directory: &Path, path: &Path, attitude: Option<AttitudeChoice>) -> Resul
         pipeline: split.pipeline,
         scenario: split.scenario,
     };
-    Ok(Sample::new(identity, scored.units()))
+    let mut units = scored.units();
+    units.figures.extend(navigation(directory)?);
+    Ok(Sample::new(identity, units))
+}
+
+/// Returns the figures of the navigation of a run, per frame; none if the run has no `navigation.csv`.
+fn navigation(directory: &Path) -> Result<Vec<FigureTerms>, Failure> {
+    let table = directory.join(TABLE_FILE);
+    if !table.is_file() {
+        return Ok(Vec::new());
+    }
+    let telemetry = read_telemetry(&directory.join("telemetry.csv"))?;
+    let times: Vec<_> = telemetry.iter().map(|row| row.telemetry.time).collect();
+    Ok(navigation_terms(&read_navigation(&table)?, &times))
 }
 
 /// Returns the sorted names of all truth files, each with the digest of its content.

@@ -1,21 +1,20 @@
 //! Input of a navigator from a run directory.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use contract::navigation::{Event, LineOfSightMeasurement, ManoeuvreReport, NavigationSetup};
-use contract::{AttitudeSource, ContractError, Covariance2, Direction, Rotation, Solution};
-use files::{Failure, FileError, FileLocation, line_of, read_measurements, read_origins, read_telemetry};
+use contract::{AttitudeSource, ContractError, Covariance2, Direction, Rotation};
+use files::{Checksums, Failure, FileError, FileLocation, refuse_unfinished};
 use hifitime::Epoch;
 use nalgebra::Vector3;
+use run::world_of_run;
 use scenario::FarRangeScenario;
-use scenario::run_file::RunFile;
+use scenario::run_file::{RunFile, ScenarioFile};
 use sim::truth::{Schedule, Trajectory};
 
 use crate::knowledge::{KnowledgeConfig, Method};
+use crate::measurements::{MEASUREMENTS, MeasurementSource};
 use crate::truth::Truth;
-
-/// Largest angle between a line of sight and the reported boresight beyond the corner of the image, degrees.
-const POINTING_MARGIN_DEG: f64 = 2.0;
 
 /// Largest number of lines of sight of a planned campaign.
 const MAX_PLANNED: u64 = 20_000;
@@ -40,12 +39,47 @@ pub struct Campaign {
     pub lines_of_sight: u64,
     /// Number of reported manoeuvres within the campaign.
     pub manoeuvres: u64,
+    /// File of the lines of sight; `None`: that of the run.
+    pub measurements_file: Option<PathBuf>,
+    /// True if the attitude of a line of sight is that of its image alone; false if it is that of telemetry
+    /// with a mounting from stars.
+    pub(crate) attitude_of_images: bool,
     pub(crate) arrivals: Vec<Arrival>,
     pub(crate) last: Epoch,
     pub(crate) truth: Truth,
 }
 
+/// Files of a run that a campaign reads.
+const READ: [&str; 3] = ["run.toml", MEASUREMENTS, "telemetry.csv"];
+
 impl Campaign {
+    /// Opens the directory of a complete far-range run, with lines of sight from `source`.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a run of another world; those of [`Campaign::read`]; a [`Failure`] for an
+    /// unfinished run, or a file that differs from its checksum.
+    pub fn open(
+        directory: &Path,
+        knowledge: &KnowledgeConfig,
+        source: &MeasurementSource,
+    ) -> Result<Self, Failure> {
+        let path = directory.join("run.toml");
+        let world = world_of_run(&path)?;
+        if world.code() != FarRangeScenario::WORLD {
+            return Err(Failure::Usage(format!(
+                "{}: is a run of the world {}, expected {}",
+                directory.display(),
+                world.code(),
+                FarRangeScenario::WORLD
+            )));
+        }
+        refuse_unfinished(directory)?;
+        let campaign = Self::read_with(directory, &RunFile::read(&path)?, knowledge, source)?;
+        let is_read = |name: &str| READ.contains(&name) && (source.file.is_none() || name != MEASUREMENTS);
+        Checksums::check(directory, is_read)?;
+        Ok(campaign)
+    }
+
     /// Reads the directory of a far-range run whose `run.toml` was read: `measurements.csv` and
     /// `telemetry.csv`.
     ///
@@ -58,12 +92,26 @@ impl Campaign {
         run: &RunFile<FarRangeScenario>,
         knowledge: &KnowledgeConfig,
     ) -> Result<Self, Failure> {
+        Self::read_with(directory, run, knowledge, &MeasurementSource::default())
+    }
+
+    /// [`Campaign::read`] with lines of sight from `source`.
+    ///
+    /// # Errors
+    /// Those of [`Campaign::read`]; [`Failure::Usage`] for a standard deviation that is not positive, or for
+    /// a file that states none and needs one.
+    pub fn read_with(
+        directory: &Path,
+        run: &RunFile<FarRangeScenario>,
+        knowledge: &KnowledgeConfig,
+        source: &MeasurementSource,
+    ) -> Result<Self, Failure> {
         let scenario = &run.scenario;
-        let measurements = measurements(directory, run)?;
+        let measurements = source.measurements(directory, run)?;
         let truth = Truth::new(scenario)?;
         let times: Vec<Epoch> = measurements.iter().map(|measurement| measurement.time).collect();
         let (Some(epoch), Some(last)) = (times.first().copied(), times.last().copied()) else {
-            let path = directory.join("measurements.csv");
+            let path = source.path(directory);
             let expected = "a detected target with a line of sight in at least one row";
             return Err(FileError::value(&path, FileLocation::Whole, "los_j2000_x", "", expected).into());
         };
@@ -86,6 +134,8 @@ impl Campaign {
             setup,
             lines_of_sight,
             manoeuvres: count,
+            measurements_file: source.file.clone(),
+            attitude_of_images: has_covariance,
             arrivals,
             last,
             truth,
@@ -142,75 +192,25 @@ impl Campaign {
         arrivals.extend(manoeuvres);
         arrivals.sort_by_key(|arrival| arrival.arrives);
         let (name, hash) = (name.to_owned(), hash.to_owned());
-        Ok(Self { name, hash, setup, lines_of_sight, manoeuvres: count, arrivals, last, truth })
+        let measurements_file = None;
+        Ok(Self {
+            name,
+            hash,
+            setup,
+            lines_of_sight,
+            manoeuvres: count,
+            measurements_file,
+            attitude_of_images: false,
+            arrivals,
+            last,
+            truth,
+        })
     }
 
     /// Returns the epoch of the setup, the time of the first line of sight.
     pub fn epoch(&self) -> Epoch {
         self.setup.epoch
     }
-}
-
-/// Returns the lines of sight of a run, in order of time.
-fn measurements(
-    directory: &Path,
-    run: &RunFile<FarRangeScenario>,
-) -> Result<Vec<LineOfSightMeasurement>, Failure> {
-    let scenario = &run.scenario;
-    let path = directory.join("measurements.csv");
-    let telemetry = read_telemetry(&directory.join("telemetry.csv"))?;
-    for origin in read_origins(&path, "frame")? {
-        if let Some(found) = origin.configuration.filter(|found| *found != run.hash) {
-            let expected = format!("{}, the hash in {}", run.hash, directory.join("run.toml").display());
-            let place = FileLocation::Line(origin.line);
-            return Err(FileError::value(&path, place, "configuration", found, expected).into());
-        }
-    }
-    let camera_from_body = scenario.mounting.nominal.camera_from_body();
-    let corner_deg = half_diagonal_deg(scenario) + POINTING_MARGIN_DEG;
-    let mut measurements = Vec::new();
-    for (frame, outcome) in read_measurements(&path, &scenario.camera)? {
-        let refuse = |field: &str, value: String, expected: String| {
-            let place = line_of(&path, "frame", frame).map_or(FileLocation::Whole, FileLocation::Line);
-            Failure::from(FileError::value(&path, place, field, value, expected))
-        };
-        let row = telemetry.binary_search_by_key(&frame, |row| row.frame).ok();
-        let row = row.and_then(|place| telemetry.get(place));
-        let row = row.ok_or_else(|| {
-            refuse("frame", frame.to_string(), "a frame of telemetry.csv beside it".to_owned())
-        })?;
-        let Solution::Detected(measurement) = outcome.solution else { continue };
-        let Some(line_of_sight) = measurement.line_of_sight else { continue };
-        let reported = camera_from_body * row.telemetry.body_from_icrs;
-        let off_deg = (reported * line_of_sight).separation(&Direction::z()).degrees();
-        if off_deg > corner_deg {
-            return Err(refuse(
-                "los_j2000_x",
-                format!("a direction {off_deg:.1}° from the boresight in telemetry.csv"),
-                format!("at most {corner_deg:.1}°: a line of sight of this run"),
-            ));
-        }
-        measurements.push(LineOfSightMeasurement {
-            frame,
-            time: row.telemetry.time,
-            line_of_sight,
-            camera_from_icrs: outcome.camera_from_icrs.unwrap_or(reported),
-            covariance: measurement.line_of_sight_covariance,
-            attitude_source: outcome.attitude_source,
-        });
-    }
-    measurements.sort_by_key(|measurement| (measurement.time, measurement.frame));
-    Ok(measurements)
-}
-
-fn half_diagonal_deg(scenario: &FarRangeScenario) -> f64 {
-    let camera = &scenario.camera;
-    let side = |count: usize, principal: f64, pitch_um: f64| {
-        principal.max(count as f64 - principal) * pitch_um * 1e-3
-    };
-    let across = side(camera.columns, camera.principal_x_px, camera.pixel_width_um);
-    let along = side(camera.rows, camera.principal_y_px, camera.pixel_height_um);
-    libm::atan(libm::hypot(across, along) / camera.focal_length_mm).to_degrees()
 }
 
 /// Returns the reports of the manoeuvres after the epoch, with the standard deviations that the scenario

@@ -14,6 +14,9 @@ use crate::row::NavigationRow;
 use crate::score::NavigationScore;
 use crate::truth::Truth;
 
+/// Interval of the estimates, s, if none is given.
+pub const EVERY_S: f64 = 600.0;
+
 /// Largest number of estimation times.
 const MAX_ESTIMATES: f64 = 1e5;
 
@@ -42,7 +45,14 @@ impl Estimator {
         }
     }
 
-    fn factory(self, truth: &Truth) -> Box<dyn NavigatorFactory> {
+    /// Returns the built-in navigator of this name.
+    pub fn parse(code: &str) -> Option<Self> {
+        [Self::Batch, Self::Sequential].into_iter().find(|estimator| estimator.code() == code)
+    }
+
+    /// Returns the factory of the navigator for a campaign.
+    pub fn factory(self, campaign: &Campaign) -> Box<dyn NavigatorFactory> {
+        let truth = &campaign.truth;
         let osculation = truth.osculation();
         let is_exact = truth.has_mean_elements();
         match self {
@@ -64,19 +74,31 @@ impl Estimator {
     }
 }
 
-/// Runs a navigator on a campaign, and scores its answers from the first to the last line of sight, every
-/// `every_s` seconds and at the last one.
+/// Runs a built-in navigator on a campaign, and scores its answers as [`navigate_with`] does.
 ///
 /// # Errors
-/// [`Failure::Usage`] for an interval that is not positive or results in more than 100000 times;
-/// [`Failure::Contract`] for a setup outside its ranges.
+/// Those of [`navigate_with`].
 pub fn navigate(
     campaign: &Campaign,
     estimator: Estimator,
     every_s: f64,
 ) -> Result<NavigationResult, Failure> {
+    navigate_with(campaign, estimator.factory(campaign).as_ref(), estimator.code(), every_s)
+}
+
+/// Runs a navigator called `name` on a campaign, and scores its answers from the first to the last line of
+/// sight, every `every_s` seconds and at the last one.
+///
+/// # Errors
+/// [`Failure::Usage`] for an interval that is not positive or results in more than 100000 times;
+/// [`Failure::Contract`] for a setup outside its ranges, or a navigator that cannot be built or started.
+pub fn navigate_with(
+    campaign: &Campaign,
+    factory: &dyn NavigatorFactory,
+    name: &str,
+    every_s: f64,
+) -> Result<NavigationResult, Failure> {
     let times = times(campaign, every_s)?;
-    let factory = estimator.factory(&campaign.truth);
     let mut navigator = factory.build(&campaign.setup)?;
     let answers = answers(campaign, navigator.as_mut(), factory.mode(), &times);
     let rows = times
@@ -91,7 +113,8 @@ pub fn navigate(
     Ok(NavigationResult {
         scenario: campaign.name.clone(),
         hash: campaign.hash.clone(),
-        estimator: estimator.code().to_owned(),
+        estimator: name.to_owned(),
+        measurements_file: campaign.measurements_file.as_ref().map(|path| path.display().to_string()),
         every_s,
         lines_of_sight: campaign.lines_of_sight,
         manoeuvres: campaign.manoeuvres,

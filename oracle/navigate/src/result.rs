@@ -24,6 +24,9 @@ pub struct NavigationResult {
     pub hash: String,
     /// Name of the navigator.
     pub estimator: String,
+    /// File of the lines of sight; absent: `measurements.csv` of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measurements_file: Option<String>,
     /// Interval of the estimation times, s.
     pub every_s: f64,
     /// Number of lines of sight.

@@ -5,7 +5,7 @@ use std::sync::{LazyLock, PoisonError, RwLock};
 
 use files::toml_file;
 use schemars::{Schema, SchemaGenerator, json_schema};
-use score::FigureSpec;
+use score::{FigureSpec, navigation_figures};
 
 use crate::any_world::AnyWorld;
 use crate::any_world::erasure::ErasedWorld;
@@ -20,12 +20,17 @@ const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &ErasedWorld::<DockingMission>::NEW
 /// Worlds registered by external code.
 static REGISTERED: RwLock<Vec<&'static dyn AnyWorld>> = RwLock::new(Vec::new());
 
-/// Figures of all worlds, by key.
+/// Figures of all worlds and of the navigation, by key.
 static FIGURES: LazyLock<RwLock<HashMap<String, FigureSpec>>> =
-    LazyLock::new(|| RwLock::new(BUILT_IN.into_iter().flat_map(by_key).collect()));
+    LazyLock::new(|| RwLock::new(BUILT_IN.into_iter().flat_map(by_key).chain(of_navigation()).collect()));
 
 fn by_key(world: &'static dyn AnyWorld) -> impl Iterator<Item = (String, FigureSpec)> {
     world.figures().into_iter().map(|figure| (figure.name.clone(), figure))
+}
+
+/// Figures of the relative navigation, which is a step after a run.
+fn of_navigation() -> impl Iterator<Item = (String, FigureSpec)> {
+    navigation_figures().into_iter().map(|figure| (figure.name.clone(), figure))
 }
 
 /// Registers a world for the rest of the process, as in `register(&Of::<MyWorld>::NEW)`: every command, study

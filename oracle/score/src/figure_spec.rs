@@ -1,6 +1,8 @@
 //! Label, unit, kind and better direction of a figure, for display and for comparisons. Each
 //! [`Definition`](crate::Definition) has one.
 
+pub(crate) mod navigation;
+
 use std::fmt;
 
 /// Kind of a figure.

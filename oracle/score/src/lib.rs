@@ -50,6 +50,7 @@ pub use cluster_members::brightest_member;
 pub use covariance::image_state::ImageState;
 pub use covariance::normalised_error::NormalisedError;
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
+pub use figure_spec::navigation::{figures as navigation_figures, is_of_navigation};
 pub use figure_spec::{Better, FigureSpec, Kind, Sense, angle};
 pub use report::{ConsistencyRow, Figure, GroupScore, Score, is_zero, names, warm_up_note};
 pub use verdict::{FrameVerdict, MistakenObject, Unproject, Verdict, VerdictRow};

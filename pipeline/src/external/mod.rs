@@ -19,31 +19,32 @@
 pub mod docking_protocol;
 mod exchange;
 mod group;
+mod navigator;
+mod plan;
 mod process;
 pub mod protocol;
 mod sandbox;
 
 pub use exchange::{Protocol, WriteTime};
 pub use group::end_all;
+pub use navigator::ExternalNavigatorFactory;
+pub use plan::DEFAULT_MEMORY_MB;
 pub use sandbox::Sandbox;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
 
 use contract::{ContractError, FailedStarts, Interface, Pipeline, PipelineFactory};
 
-use process::{Fault, Process};
+use plan::{ProcessPlan, name};
+use process::Process;
 
 /// Function that writes an image (far range: FITS of 16 bits, BZERO 32768; docking: grey PNG) to a path that
 /// does not exist yet. The error is a text for the outcome.
 pub type WriteImage<I> =
     dyn Fn(&<I as Interface>::Image, &<I as Interface>::Telemetry, &Path) -> Result<(), String> + Send + Sync;
-
-/// Default memory limit of a process, MB (10⁶ bytes).
-pub const DEFAULT_MEMORY_MB: u64 = 4000;
 
 /// Factory of pipelines that run as processes, one process per sequence.
 pub struct ExternalFactory<I: Protocol> {
@@ -87,16 +88,12 @@ impl<I: Protocol> ExternalFactory<I> {
     /// does not exist, a limit outside its range, or a sandbox that the system does not support.
     pub fn check(&self) -> Result<(), ContractError> {
         self.plan()?.check_program()?;
-        let cannot_build = |reason| ContractError::CannotBuild { pipeline: name(&self.command), reason };
-        self.sandbox.as_ref().map_or(Ok(()), |_| Sandbox::check().map_err(cannot_build))
+        plan::check_sandbox(&self.command, self.sandbox.as_ref())
     }
 
     fn plan(&self) -> Result<ProcessPlan, ContractError> {
         let plan = ProcessPlan::new(&self.command, self.start_timeout_s, self.timeout_s, self.memory_mb)?;
-        Ok(ProcessPlan {
-            sandbox: self.sandbox.clone().map(|sandbox| (sandbox, self.scratch_dir.clone())),
-            ..plan
-        })
+        Ok(plan.with_sandbox(self.sandbox.as_ref(), &self.scratch_dir))
     }
 }
 
@@ -113,87 +110,6 @@ impl<I: Protocol> fmt::Debug for ExternalFactory<I> {
     }
 }
 
-/// Command and limits of a factory in checked form.
-struct ProcessPlan {
-    program: String,
-    arguments: Vec<String>,
-    start_limit: Duration,
-    frame_limit: Duration,
-    memory_bytes: u64,
-    /// Sandbox, with the directory of the images.
-    sandbox: Option<(Sandbox, PathBuf)>,
-}
-
-impl ProcessPlan {
-    /// Splits a command and checks the limits.
-    fn new(
-        command: &str,
-        start_timeout_s: f64,
-        timeout_s: f64,
-        memory_mb: u64,
-    ) -> Result<Self, ContractError> {
-        let cannot_build = |reason: String| ContractError::CannotBuild { pipeline: name(command), reason };
-        let limit = |name: &str, seconds: f64| {
-            if seconds > 0.0 && seconds <= 1e6 {
-                Ok(Duration::from_secs_f64(seconds))
-            } else {
-                Err(cannot_build(format!("{name} is {seconds}, expected above 0 to 1e6")))
-            }
-        };
-        if !(1..=1_000_000).contains(&memory_mb) {
-            return Err(cannot_build(format!("memory_mb is {memory_mb}, expected 1 to 1e6")));
-        }
-        let mut words = shlex::split(command)
-            .ok_or_else(|| cannot_build("the command ends inside a quotation".to_owned()))?
-            .into_iter();
-        Ok(Self {
-            program: words.next().ok_or_else(|| cannot_build("the command is empty".to_owned()))?,
-            arguments: words.collect(),
-            start_limit: limit("start_timeout_s", start_timeout_s)?,
-            frame_limit: limit("timeout_s", timeout_s)?,
-            memory_bytes: memory_mb * 1_000_000,
-            sandbox: None,
-        })
-    }
-
-    /// Refuses a program that does not exist.
-    fn check_program(&self) -> Result<(), ContractError> {
-        match which::which(&self.program) {
-            Ok(_) => Ok(()),
-            Err(_) => Err(ContractError::CannotBuild {
-                pipeline: name(
-                    &shlex::try_quote(&self.program).unwrap_or_else(|_| self.program.as_str().into()),
-                ),
-                reason: format!(
-                    "program `{}` not found, expected a program on the search path or the path of an \
-                     executable file",
-                    self.program
-                ),
-            }),
-        }
-    }
-
-    /// Starts the process and greets it. Returns the reason when either fails.
-    fn start(&self, greeting: Result<Vec<u8>, String>) -> Result<Process, String> {
-        let mut process =
-            Process::start(&self.program, &self.arguments, self.memory_bytes, self.sandbox.as_ref())
-                .map_err(|error| format!("`{}` cannot be started: {error}", self.program))?;
-        let greeted = greeting
-            .map_err(Fault::Broken)
-            .and_then(|line| process.exchange(line, self.start_limit))
-            .and_then(|line| protocol::check_greeting(&line).map_err(Fault::Broken));
-        match greeted {
-            Ok(()) => Ok(process),
-            Err(fault) => Err(format!("during the greeting, {}", process.end(fault))),
-        }
-    }
-}
-
-/// Returns the name of a command's pipeline.
-fn name(command: &str) -> String {
-    format!("exec:{command}")
-}
-
 impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
     fn name(&self) -> String {
         name(&self.command)
@@ -204,7 +120,7 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
     fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
         let plan = self.plan()?;
         Ok(Box::new(ExternalPipeline::<I> {
-            first_start: Some(plan.start(I::greeting(setup))),
+            first_start: Some(start::<I>(&plan, setup)),
             process: None,
             failed_starts: None,
             setup: setup.clone(),
@@ -214,6 +130,11 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
             write_time: self.write_time,
         }))
     }
+}
+
+/// Starts the process of a sequence and greets it.
+fn start<I: Protocol>(plan: &ProcessPlan, setup: &I::Setup) -> Result<Process, String> {
+    plan.start(I::greeting(setup), protocol::check_greeting).map(|(process, ())| process)
 }
 
 /// One sequence processed by one process.
@@ -244,19 +165,17 @@ impl<I: Protocol> ExternalPipeline<I> {
     fn answer(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> Result<I::Outcome, String> {
         let state = match &mut self.process {
             Some(state) => state,
-            None => {
-                match self.first_start.take().unwrap_or_else(|| self.plan.start(I::greeting(&self.setup))) {
-                    Ok(process) => {
-                        self.failed_starts = None;
-                        self.process.insert(Ok(process))
-                    }
-                    Err(reason) => {
-                        let count = self.failed_starts.as_ref().map_or(0, |failed| failed.count) + 1;
-                        self.failed_starts = Some(FailedStarts { count, reason: reason.clone() });
-                        return Err(reason);
-                    }
+            None => match self.first_start.take().unwrap_or_else(|| start::<I>(&self.plan, &self.setup)) {
+                Ok(process) => {
+                    self.failed_starts = None;
+                    self.process.insert(Ok(process))
                 }
-            }
+                Err(reason) => {
+                    let count = self.failed_starts.as_ref().map_or(0, |failed| failed.count) + 1;
+                    self.failed_starts = Some(FailedStarts { count, reason: reason.clone() });
+                    return Err(reason);
+                }
+            },
         };
         let process = state.as_mut().map_err(|reason| reason.clone())?;
         let number = I::number(image);

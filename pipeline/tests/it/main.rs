@@ -8,5 +8,7 @@ mod table_1;
 mod aberration;
 #[cfg(unix)]
 mod external;
+#[cfg(unix)]
+mod external_navigator;
 mod far_range;
 mod lost_in_space;

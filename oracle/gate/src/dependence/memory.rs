@@ -1,7 +1,7 @@
 //! Memory of figures: their autocorrelation times.
 use std::ops::Range;
 
-use score::{FigureTerms, UnitTable};
+use score::{FigureTerms, UnitTable, is_of_navigation};
 use statistics::effective_size;
 
 use super::blocks::{Blocks, sequences};
@@ -34,10 +34,13 @@ pub(crate) fn memory_of(figure: &FigureTerms, sequences: &[Range<usize>]) -> f64
     autocorrelation_time(&influence(figure), sequences)
 }
 
-/// Returns the longest autocorrelation time of the figures of a run.
+/// Returns the longest autocorrelation time of the figures of a run, without those of its navigation: the
+/// errors of an orbit are correlated over the whole run, and would leave few blocks to all other figures.
 pub(crate) fn memory(kind: SourceKind, world: &str, table: &UnitTable) -> Memory {
     let sequences = sequences(kind, world, table);
-    let of_figures = table.figures.iter().map(|figure| (memory_of(figure, &sequences), &figure.name));
+    let of_frames =
+        table.figures.iter().filter(|figure| !is_of_navigation(&figure.name) || kind == SourceKind::Study);
+    let of_figures = of_frames.map(|figure| (memory_of(figure, &sequences), &figure.name));
     of_figures.fold(Memory { units: 1.0, figure: String::new() }, |longest, (units, figure)| {
         if units > longest.units { Memory { units, figure: figure.clone() } } else { longest }
     })

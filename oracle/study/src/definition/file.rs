@@ -28,6 +28,11 @@ pub struct StudyFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1_u64 << 40))]
     pub warm_up_frames: Option<u64>,
+    /// Navigator that determines the relative orbit from the measurements of every case, with the defaults of
+    /// `boresight navigate`; its figures (`navigation_…`) are recorded after those of the score. Far range
+    /// only. Absent: no navigation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub navigate: Option<StudyNavigator>,
     /// Method of spreading the dispersed parameters over their distributions.
     #[serde(default)]
     pub design: DesignKind,
@@ -54,6 +59,16 @@ pub struct StudyFile {
     /// Requirements on the figures.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub require: Vec<StudyRequirement>,
+}
+
+/// Navigator of a study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StudyNavigator {
+    /// Least squares over all measurements.
+    Batch,
+    /// Filter: each estimate from the measurements until then.
+    Sequential,
 }
 
 const fn default_replications() -> u64 {

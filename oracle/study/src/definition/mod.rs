@@ -13,7 +13,9 @@ use files::sha256::hex;
 use files::{Failure, file_sha256, toml_file};
 use indexmap::IndexMap;
 use run::{AnyScenario, Options, ScenarioSource};
+use scenario::FarRangeScenario;
 use scenario::run_file::{FileDigests, content};
+use score::navigation_figures;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use sim::randomness::{Effect, Seed};
@@ -238,6 +240,12 @@ impl Study {
             hash: String::new(),
         };
         study.hash = study.make_hash()?;
+        let world = study.scenario().world();
+        if study.file.navigate.is_some() && !world.has_scenario::<FarRangeScenario>() {
+            let message =
+                format!("applies only to the far range; the scenario is of the world {}", world.code());
+            return Err(study.refuse("navigate", message));
+        }
         study.check_names()?;
         let frames = study.frames(study.first_frame_count()?)?;
         let warm_up = study.warm_up_frames();
@@ -452,7 +460,15 @@ impl Study {
 
     /// Returns the names of the recorded figures.
     pub fn figures(&self) -> Vec<String> {
-        self.file.record.figures.clone().unwrap_or_else(|| self.scenario().world().figure_names())
+        self.file.record.figures.clone().unwrap_or_else(|| self.known_figures())
+    }
+
+    /// Returns the names of the figures that a case has: those of the score, then those of the navigation if
+    /// the study navigates.
+    fn known_figures(&self) -> Vec<String> {
+        let navigation = self.file.navigate.iter().flat_map(|_| navigation_figures());
+        let of_score = self.scenario().world().figure_names().into_iter();
+        of_score.chain(navigation.map(|figure| figure.name)).collect()
     }
 
     /// Returns the figure that ranks cases from good to bad.
@@ -533,7 +549,7 @@ impl Study {
 
     /// Checks that all named figures exist and are recorded.
     fn check_names(&self) -> Result<(), Failure> {
-        let known = self.scenario().world().figure_names();
+        let known = self.known_figures();
         let check = |at: &str, name: &str| {
             if known.iter().any(|figure| figure == name) {
                 return Ok(());

@@ -5,11 +5,15 @@ pub(crate) mod study_pipeline;
 
 use std::path::Path;
 
-use files::Failure;
-use run::{AnyJudgement, FirstFailure, Options, RunResult};
+use files::{Failure, FileError, RunDirectory};
+use navigate::{
+    EVERY_S, Estimator, KnowledgeConfig, MeasurementSource, NavigationFigure, navigation_figures,
+};
+use run::{AnyJudgement, Expectation, FirstFailure, FrameJobs, Options, RunResult};
 use score::WARM_UP;
 
 use crate::cases::{CaseFigure, CaseRow};
+use crate::definition::file::StudyNavigator;
 use crate::definition::{Case, Study};
 use crate::evaluate::study_pipeline::StudyPipeline;
 
@@ -49,7 +53,7 @@ pub fn evaluate(
         figures: vec![CaseFigure { value: None, count: 0, of: 0 }; table.figures.len()],
         causes: vec![0; table.causes.len()],
     };
-    let RunResult { scored, first_failure, incomplete } =
+    let (RunResult { scored, first_failure, incomplete }, navigated) =
         match study.prepare_case(case).and_then(|case| run(study, &case, pipeline, scratch)) {
             Ok(result) => result,
             Err(failure @ (Failure::Toml(_) | Failure::Simulation(_) | Failure::Contract(_))) => {
@@ -60,6 +64,9 @@ pub fn evaluate(
         };
     for (figure, name) in row.figures.iter_mut().zip(&table.figures) {
         if let Some(found) = scored.figures().get(name) {
+            *figure = CaseFigure { value: found.value, count: found.count, of: found.of };
+        }
+        if let Some(found) = navigated.iter().find(|found| found.name == name) {
             *figure = CaseFigure { value: found.value, count: found.count, of: found.of };
         }
     }
@@ -76,13 +83,43 @@ pub fn evaluate(
     Ok(CaseResult { row, first_failure, has_started: incomplete.is_none() })
 }
 
+/// Result of a case, and the figures of its navigation; none if the study does not navigate.
+type Evaluated = (RunResult<Box<dyn AnyJudgement>>, Vec<NavigationFigure>);
+
 fn run(
     study: &Study,
     case: &Case,
     pipeline: &dyn StudyPipeline,
     scratch: &Path,
-) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure> {
+) -> Result<Evaluated, Failure> {
     let factory = pipeline.factory(case.source.scenario.as_ref(), scratch)?;
     let prepared = case.source.prepare(Options::default())?;
-    prepared.score(study.frames(prepared.frame_count())?, &factory)
+    let frames = study.frames(prepared.frame_count())?;
+    let Some(navigator) = study.file.navigate else {
+        return Ok((prepared.score(frames, &factory)?, Vec::new()));
+    };
+    // The navigation reads the files of a run.
+    let directory = RunDirectory::create(&scratch.join("run"))?;
+    let frame_jobs = FrameJobs { frames, jobs: 1, images: None, expectation: Expectation::Dropped };
+    let result = prepared.run(&directory, &frame_jobs, &factory, &|| Ok(()))?;
+    let estimator = match navigator {
+        StudyNavigator::Batch => Estimator::Batch,
+        StudyNavigator::Sequential => Estimator::Sequential,
+    };
+    let navigated = navigate(directory.path(), estimator);
+    std::fs::remove_dir_all(directory.path())
+        .map_err(|source| FileError::io(directory.path(), "remove", source))?;
+    // A case without a line of sight has no relative orbit.
+    Ok((result, navigated.unwrap_or_else(|_| vec![NO_ORBIT])))
+}
+
+/// Figure of a case without a relative orbit.
+const NO_ORBIT: NavigationFigure =
+    NavigationFigure { name: "navigation_estimate_rate", value: Some(0.0), count: 0, of: 1 };
+
+fn navigate(directory: &Path, estimator: Estimator) -> Result<Vec<NavigationFigure>, Failure> {
+    let source = MeasurementSource::default();
+    let campaign = navigate::Campaign::open(directory, &KnowledgeConfig::default(), &source)?;
+    let result = navigate::navigate(&campaign, estimator, EVERY_S)?;
+    navigation_figures(&campaign, &result)
 }

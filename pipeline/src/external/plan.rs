@@ -1,0 +1,113 @@
+//! Command and limits of an external program, checked.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use contract::ContractError;
+
+use super::process::{Fault, Process};
+use super::sandbox::Sandbox;
+
+/// Default memory limit of a process, MB (10⁶ bytes).
+pub const DEFAULT_MEMORY_MB: u64 = 4000;
+
+/// Command and limits of a factory in checked form.
+pub(super) struct ProcessPlan {
+    program: String,
+    arguments: Vec<String>,
+    start_limit: Duration,
+    /// Longest time for one answer.
+    pub(super) frame_limit: Duration,
+    memory_bytes: u64,
+    /// Sandbox, with the directory of the images.
+    sandbox: Option<(Sandbox, PathBuf)>,
+}
+
+impl ProcessPlan {
+    /// Splits a command and checks the limits.
+    pub(super) fn new(
+        command: &str,
+        start_timeout_s: f64,
+        timeout_s: f64,
+        memory_mb: u64,
+    ) -> Result<Self, ContractError> {
+        let cannot_build = |reason: String| ContractError::CannotBuild { pipeline: name(command), reason };
+        let limit = |name: &str, seconds: f64| {
+            if seconds > 0.0 && seconds <= 1e6 {
+                Ok(Duration::from_secs_f64(seconds))
+            } else {
+                Err(cannot_build(format!("{name} is {seconds}, expected above 0 to 1e6")))
+            }
+        };
+        if !(1..=1_000_000).contains(&memory_mb) {
+            return Err(cannot_build(format!("memory_mb is {memory_mb}, expected 1 to 1e6")));
+        }
+        let mut words = shlex::split(command)
+            .ok_or_else(|| cannot_build("the command ends inside a quotation".to_owned()))?
+            .into_iter();
+        Ok(Self {
+            program: words.next().ok_or_else(|| cannot_build("the command is empty".to_owned()))?,
+            arguments: words.collect(),
+            start_limit: limit("start_timeout_s", start_timeout_s)?,
+            frame_limit: limit("timeout_s", timeout_s)?,
+            memory_bytes: memory_mb * 1_000_000,
+            sandbox: None,
+        })
+    }
+
+    /// Sets the sandbox of the process, with its directory for images and temporary files.
+    pub(super) fn with_sandbox(self, sandbox: Option<&Sandbox>, scratch: &Path) -> Self {
+        Self { sandbox: sandbox.map(|sandbox| (sandbox.clone(), scratch.to_owned())), ..self }
+    }
+
+    /// Refuses a program that does not exist.
+    pub(super) fn check_program(&self) -> Result<(), ContractError> {
+        match which::which(&self.program) {
+            Ok(_) => Ok(()),
+            Err(_) => Err(ContractError::CannotBuild {
+                pipeline: name(
+                    &shlex::try_quote(&self.program).unwrap_or_else(|_| self.program.as_str().into()),
+                ),
+                reason: format!(
+                    "program `{}` not found, expected a program on the search path or the path of an \
+                     executable file",
+                    self.program
+                ),
+            }),
+        }
+    }
+
+    /// Starts the process and greets it, and returns what `read` makes of its answer; the reason when one of
+    /// them fails.
+    pub(super) fn start<T>(
+        &self,
+        greeting: Result<Vec<u8>, String>,
+        read: impl FnOnce(&[u8]) -> Result<T, String>,
+    ) -> Result<(Process, T), String> {
+        let mut process =
+            Process::start(&self.program, &self.arguments, self.memory_bytes, self.sandbox.as_ref())
+                .map_err(|error| format!("`{}` cannot be started: {error}", self.program))?;
+        let greeted = greeting
+            .map_err(Fault::Broken)
+            .and_then(|line| process.exchange(line, self.start_limit))
+            .and_then(|line| read(&line).map_err(Fault::Broken));
+        match greeted {
+            Ok(answer) => Ok((process, answer)),
+            Err(fault) => Err(format!("during the greeting, {}", process.end(fault))),
+        }
+    }
+}
+
+/// Refuses a sandbox that the system does not support.
+///
+/// # Errors
+/// [`ContractError::CannotBuild`] with the missing feature.
+pub(super) fn check_sandbox(command: &str, sandbox: Option<&Sandbox>) -> Result<(), ContractError> {
+    let cannot_build = |reason| ContractError::CannotBuild { pipeline: name(command), reason };
+    sandbox.map_or(Ok(()), |_| Sandbox::check().map_err(cannot_build))
+}
+
+/// Returns the name of a command's pipeline or navigator.
+pub(super) fn name(command: &str) -> String {
+    format!("exec:{command}")
+}
