@@ -25,6 +25,7 @@ mod command;
 mod errors;
 mod frame;
 mod json;
+mod navigation;
 mod prepared_scenario;
 mod python_pipeline;
 mod run;
@@ -46,6 +47,8 @@ mod _boresight {
     use crate::command::command;
     #[pymodule_export]
     use crate::frame::{FieldTelemetry, Frame, Telemetry};
+    #[pymodule_export]
+    use crate::navigation::{Navigation, navigate};
     #[pymodule_export]
     use crate::run::{Run, run};
     #[pymodule_export]

@@ -102,7 +102,7 @@ impl PythonPipeline {
 
 /// Returns the reason for a missing answer, from the exception raised instead; an exception that is no
 /// `Exception` also ends the work.
-fn reason(py: Python<'_>, error: PyErr, ended: &Interruption) -> String {
+pub(crate) fn reason(py: Python<'_>, error: PyErr, ended: &Interruption) -> String {
     let reason = format!("{}{}", exception_text(&error), traceback_location(py, &error));
     if !error.is_instance_of::<PyException>(py) {
         ended.set(error);
@@ -145,7 +145,7 @@ fn refused_kind(given: &Bound<'_, PyAny>) -> PyResult<PyErr> {
 }
 
 /// Returns true if the value is a class, from which a pipeline is made, rather than a pipeline.
-fn is_class(given: &Bound<'_, PyAny>) -> bool {
+pub(crate) fn is_class(given: &Bound<'_, PyAny>) -> bool {
     given.is_instance_of::<PyType>()
 }
 

@@ -27,6 +27,22 @@ def number(frame: Frame, telemetry: boresight.Telemetry) -> float:
     return telemetry.exposure_s
 
 
+def no_orbit(setup: dict[str, Any], events: list[dict[str, Any]], times: list[str]) -> list[str]:
+    return ["no_initial_orbit" for _ in times]
+
+
+class Filter:
+    mode = "sequential"
+
+    def __init__(self, setup: dict[str, Any]) -> None:
+        self.epoch = setup["epoch_utc"]
+
+    def __call__(self, events: list[dict[str, Any]], times: list[str]) -> list[dict[str, Any] | str]:
+        return ["no_convergence" for _ in times]
+
+
+boresight.navigate("run", navigator=no_orbit)
+boresight.navigate("run", navigator=Filter, every_s=60, prior=False)
 boresight.run("argon", frames=range(10), pipeline=brightest)
 boresight.run("argon", pipeline=nothing)
 boresight.run("docking", pipeline=Docking)

@@ -17,6 +17,7 @@ __all__ = [
     "FieldTelemetry",
     "Frame",
     "FrameStream",
+    "Navigation",
     "Run",
     "Scenario",
     "SimulatedFrame",
@@ -25,6 +26,7 @@ __all__ = [
     "Telemetry",
     "__version__",
     "command",
+    "navigate",
     "requirement_names",
     "run",
     "score",
@@ -40,6 +42,15 @@ _Docking: TypeAlias = Callable[[Frame, FieldTelemetry], Pose | RangeOnly | NoSol
 _Pipeline: TypeAlias = _FarRange | _Docking | Callable[[dict[str, Any]], _FarRange | _Docking]
 """A callable of (frame, telemetry), or a class that is made with the setup and whose instances are such
 callables."""
+
+_Answers: TypeAlias = Sequence[Mapping[str, Any] | str]
+_Events: TypeAlias = list[dict[str, Any]]
+_Navigator: TypeAlias = (
+    Callable[[dict[str, Any], _Events, list[str]], _Answers]
+    | Callable[[dict[str, Any]], Callable[[_Events, list[str]], _Answers]]
+)
+"""A function of (setup, events, times), or a class that is made with the setup and whose instances are
+callables of (events, times)."""
 
 @disjoint_base
 class Frame:
@@ -260,6 +271,45 @@ class StudyResult:
     def rows(self) -> Table:
         """A row per case: `case`, `seed`, `set.PATH` for drawn values, and NAME, NAME.count, NAME.of for each
         figure."""
+
+@final
+class Navigation:
+    """Result of a navigation: figures, and an estimate at each time."""
+
+    @property
+    def directory(self) -> Path:
+        """Directory of navigation.csv and navigation.json."""
+    @property
+    def figures(self) -> dict[str, Any]:
+        """Figures: navigation.json, described in docs/score.md."""
+    @property
+    def estimates(self) -> Table:
+        """Estimate, error and σ at each time: navigation.csv."""
+
+def navigate(
+    run: Run | _Word,
+    *,
+    navigator: _Navigator | str | None = None,
+    every_s: float = 600.0,
+    prior: bool = True,
+    out: _Word | None = None,
+    timeout_s: float = 60.0,
+) -> Navigation:
+    """Determines the relative orbit from the lines of sight of a far-range run, and compares it with the
+    truth, with the numbers of the command `boresight navigate`.
+
+    `run`: a `Run` or its directory. `every_s`: interval of the estimates, s. `prior`: False for a navigation
+    without a prior. `out`: directory for navigation.csv and navigation.json, which must not exist there.
+    `timeout_s`: longest time that an `exec:` navigator may take for a request, s.
+
+    `navigator` is `batch`, `sequential`, `exec:COMMAND`, a function of (setup, events, times), which receives
+    all events, or a class that is made with the setup and whose instances are callables of (events, times):
+    the events since the previous call, and the times of the requested estimates. A class with `mode =
+    "sequential"` is called for each time in turn. Setup and events are dictionaries with the keys of
+    docs/navigation.md. The answer is a list with an entry for each time: a dictionary with the keys of that
+    page, or the reason for no estimate as text. An `Exception` becomes the reason of all times of the call;
+    other exceptions (Ctrl-C) end the navigation.
+    """
 
 def run(
     scenario: Scenario | _Word,

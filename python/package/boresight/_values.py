@@ -57,6 +57,15 @@ def answer_line(answer: Any, key: str, number: int) -> str:
         raise type(error)(f"it returned {given!r}, expected finite numbers and text ({error})") from None
 
 
+def estimates_line(answers: Any) -> str:
+    """A navigator's answers as a line of the protocol of docs/navigation.md."""
+    try:
+        entries = [{"no_estimate": answer} if isinstance(answer, str) else answer for answer in answers]
+        return json.dumps({"estimates": entries}, default=plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"it returned {answers!r:.200}, expected a list of dictionaries or texts ({error})") from None
+
+
 def callable_hash(given: Any) -> bytes:
     """SHA-256 of name and source of a Python pipeline; random if the source is unavailable."""
     known = given if inspect.isclass(given) or inspect.isroutine(given) else type(given)
