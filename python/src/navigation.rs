@@ -73,8 +73,8 @@ impl Navigation {
 /// times): the events since the previous call, and the times of the requested estimates. A class with the
 /// attribute `mode = "sequential"` is called for each time in turn. Setup and events are dictionaries with
 /// the keys of docs/navigation.md. The answer is a list with an entry for each time: a dictionary with the
-/// keys of that page, or the reason for no estimate as text. An exception becomes the reason of all times of the
-/// call, with its message; only an exception that is no `Exception` (Ctrl-C) ends the navigation.
+/// keys of that page, or the reason for no estimate as text. An exception becomes the reason of all times of
+/// the call, with its message; only an exception that is no `Exception` (Ctrl-C) ends the navigation.
 #[pyfunction]
 #[pyo3(signature = (run, *, navigator=None, every_s=600.0, prior=true, out=None, timeout_s=60.0))]
 pub(crate) fn navigate(

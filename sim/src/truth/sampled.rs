@@ -10,12 +10,15 @@ use contract::OutOfRange;
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
-use super::orbit::{Elements, State};
+use super::orbit::{EARTH_GM_KM3_S2, Elements, State};
 use super::states::States;
 
 /// Largest supported degree of an interpolation; polynomials of a higher degree amplify the rounding of the
 /// samples.
 pub const MAX_DEGREE: usize = 19;
+
+/// Distances from the Earth's centre that are accepted, km: from 100 km above the equator.
+const DISTANCE_KM: RangeInclusive<f64> = 6_478.0..=1e6;
 
 /// State at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,6 +83,7 @@ impl SampledSegment {
                 let expected = "finite numbers";
                 return Err(OutOfRange::new(format!("{path}.samples[{index}]"), "not finite", expected));
             }
+            check_orbit(&format!("{path}.samples[{index}]"), &sample.state)?;
         }
         for (index, pair) in self.samples.windows(2).enumerate() {
             if let [before, after] = pair
@@ -119,6 +123,20 @@ impl SampledSegment {
             Interpolation::Hermite => hermite(samples, time_s),
         }
     }
+}
+
+/// Checks that a state is that of a bound orbit about the Earth: a file in metres has other numbers.
+fn check_orbit(path: &str, state: &State) -> Result<(), OutOfRange> {
+    let distance_km = state.position_km.norm();
+    if !DISTANCE_KM.contains(&distance_km) {
+        let value = format!("{distance_km:.3} km from the Earth's centre");
+        return Err(OutOfRange::new(path, value, "a distance of 6478 to 1e6 km"));
+    }
+    if 0.5 * state.velocity_km_s.norm_squared() < EARTH_GM_KM3_S2 / distance_km {
+        return Ok(());
+    }
+    let value = format!("{:.6} km/s", state.velocity_km_s.norm());
+    Err(OutOfRange::new(path, value, "a velocity of a bound orbit"))
 }
 
 /// Lagrange's polynomials of position and velocity.
@@ -173,9 +191,10 @@ pub struct SampledOrbit {
 impl SampledOrbit {
     /// Creates the orbit from segments in order of time. Where segments overlap, the later one applies.
     ///
-    /// # Errors [`OutOfRange`] for a segment with too few samples, samples out of order, numbers that are not
-    /// finite, or a usable interval outside its samples; for segments out of order or with a gap between
-    /// them. Paths begin with `segments[index]`.
+    /// # Errors
+    /// [`OutOfRange`] for a segment with too few samples, samples out of order, numbers that are not finite, a
+    /// sample that is not of a bound orbit above 100 km, or a usable interval outside its samples; for
+    /// segments out of order or with a gap between them. Paths begin with `segments[index]`.
     pub fn new(segments: Vec<SampledSegment>) -> Result<Self, OutOfRange> {
         if segments.is_empty() {
             return Err(OutOfRange::new("segments", "empty", "at least one segment"));
@@ -378,6 +397,13 @@ mod tests {
             SampledOrbit::new(vec![segment]).unwrap_err().to_string()
         };
         assert!(refusal(&|s| s.samples[3].state.position_km.x = f64::NAN).contains("segments[0].samples[3]"));
+        let refused = refusal(&|s| s.samples[2].state.position_km *= 1e3);
+        assert!(
+            refused.contains("segments[0].samples[2]") && refused.contains("6478 to 1e6 km"),
+            "{refused}"
+        );
+        let refused = refusal(&|s| s.samples[2].state.velocity_km_s *= 1e3);
+        assert!(refused.contains("segments[0].samples[2]") && refused.contains("a bound orbit"), "{refused}");
         assert!(refusal(&|s| s.samples.swap(4, 5)).contains("segments[0].samples[5]"));
         assert!(refusal(&|s| s.samples.truncate(5)).contains("at least 6 samples"));
         assert!(refusal(&|s| s.degree = 0).contains("segments[0].degree"));
