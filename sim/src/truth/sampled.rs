@@ -192,8 +192,8 @@ impl SampledOrbit {
     /// Creates the orbit from segments in order of time. Where segments overlap, the later one applies.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a segment with too few samples, samples out of order, numbers that are not finite, a
-    /// sample that is not of a bound orbit above 100 km, or a usable interval outside its samples; for
+    /// [`OutOfRange`] for a segment with too few samples, samples out of order, numbers that are not finite,
+    /// a sample that is not of a bound orbit above 100 km, or a usable interval outside its samples; for
     /// segments out of order or with a gap between them. Paths begin with `segments[index]`.
     pub fn new(segments: Vec<SampledSegment>) -> Result<Self, OutOfRange> {
         if segments.is_empty() {
