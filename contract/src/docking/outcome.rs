@@ -87,13 +87,17 @@ pub enum FailedCheck {
     Features,
     /// The pose deviates from the motion of the previous fields.
     Motion,
+    /// No earlier field confirms the pose of a small target, whose features alone do not exclude another
+    /// object.
+    Unconfirmed,
     /// The field is bit for bit identical to an earlier one: the pose belongs to another time.
     Repeated,
 }
 
 impl FailedCheck {
     /// All tests, in the order in which they are applied.
-    pub const ALL: [Self; 4] = [Self::Repeated, Self::Residuals, Self::Features, Self::Motion];
+    pub const ALL: [Self; 5] =
+        [Self::Repeated, Self::Residuals, Self::Features, Self::Motion, Self::Unconfirmed];
 
     /// Returns the name used in files, after `doubtful: `.
     pub fn code(self) -> &'static str {
@@ -101,6 +105,7 @@ impl FailedCheck {
             Self::Residuals => "residuals",
             Self::Features => "features",
             Self::Motion => "motion",
+            Self::Unconfirmed => "unconfirmed",
             Self::Repeated => "repeated",
         }
     }

@@ -53,6 +53,8 @@ pub(crate) struct FieldObservation {
     /// True if only one of the two methods (cross and circle, best estimator) gave a pose. Such a pose must
     /// be confirmed by the motion.
     pub(crate) is_backup: bool,
+    /// True if the cross is a few pixels: another field must confirm such a pose.
+    pub(crate) is_small: bool,
     /// Blur across the lines by the best estimator, px.
     pub(crate) blur_px: f64,
     /// Range by the station's outline, which is also an input to the motion.
@@ -69,6 +71,7 @@ impl FieldObservation {
             features: Features::default(),
             common: Matrix6::zeros(),
             is_backup: false,
+            is_small: false,
             blur_px: 0.0,
             outline: None,
             region: Rectangle::ALL,
@@ -286,18 +289,26 @@ impl Observer {
             // At large angles the paper's pose is too far off for the fit to converge.
             fitted = self.fit.fit(input.field, lens.model(), &self.target, &measurement.aimed_pose(&target)?);
         }
+        let outline = self_check::outline(input.view, lens, &self.target, cross, plane);
+        let outline_range = outline.and_then(|outline| outline.range(&self.target.station, lens.focal_px()));
+        if let Some(OutlineRange { range_m, .. }) = outline_range
+            && fitted.as_ref().map_or(true, |fitted| fitted.is_poor)
+        {
+            let start = measurement.facing_at(&target, range_m).aimed_pose(&target)?;
+            let again = self.fit.fit(input.field, lens.model(), &self.target, &start);
+            fitted = better(fitted, again);
+        }
         let by_features = paper_sigma::estimate(&measurement, &target, cross.seed.half_length_px)?;
-        let (best, common, mut doubt, is_backup, blur_px) = match fitted {
+        let (best, common, mut doubt, is_backup, is_small, blur_px) = match fitted {
             Ok(fitted) => {
                 evidence::refine(&mut features, &fitted);
                 let doubt = self_check::fit(&self.target, lens.focal_px(), &fitted, &by_features);
-                (fitted.estimate, fitted.common, doubt, false, fitted.blur_px[1])
+                (fitted.estimate, fitted.common, doubt, false, fitted.is_small_cross, fitted.blur_px[1])
             }
             // Cross and marks are present and consistent: the paper's pose is worse than the best one, but
             // better than none.
-            Err(_) => (by_features, Matrix6::zeros(), None, true, 0.0),
+            Err(_) => (by_features, Matrix6::zeros(), None, true, false, 0.0),
         };
-        let outline = self_check::outline(input.view, lens, &self.target, cross, plane);
         match self_check::range(lens, &self.target, plane, outline.as_ref(), &best) {
             Ok(()) => {}
             Err(NoPose::Inconsistent) => doubt = doubt.or(Some(FailedCheck::Features)),
@@ -317,8 +328,9 @@ impl Observer {
             features,
             common,
             is_backup,
+            is_small,
             blur_px,
-            outline: outline.and_then(|outline| outline.range(&self.target.station, lens.focal_px())),
+            outline: outline_range,
             region: evidence::plate(lens, plane, &self.target),
         })
     }
@@ -345,6 +357,7 @@ impl Observer {
             // If cross and marks should be visible but are not, the prediction may have led the fit to
             // another object.
             is_backup: !near_edge,
+            is_small: fitted.is_small_cross,
             blur_px: fitted.blur_px[1],
             outline: None,
             region: plane.map_or(Rectangle::ALL, |plane| evidence::plate(lens, &plane, &self.target)),
@@ -357,6 +370,14 @@ impl Observer {
         {
             self.track.push(sighting);
         }
+    }
+}
+
+/// Returns the fit with the smaller residuals.
+fn better(one: Result<FitResult, NoPose>, other: Result<FitResult, NoPose>) -> Result<FitResult, NoPose> {
+    match (one, other) {
+        (Ok(one), Ok(other)) => Ok(if other.noise_dn < one.noise_dn { other } else { one }),
+        (one, other) => one.or(other),
     }
 }
 

@@ -122,6 +122,7 @@ impl DockingPipeline {
             solution: DockingSolution::Measured(mut measurement),
             common,
             is_backup,
+            is_small,
             blur_px,
             ..
         } = observed
@@ -136,9 +137,13 @@ impl DockingPipeline {
         } else if is_backup && !self.motion.confirms(time_s, &measurement.best) {
             Some(FailedCheck::Residuals)
         } else {
-            let (continuity, factor) = self.motion.add(time_s, &measurement.best, &common);
+            let (continuity, factor) = self.motion.add(time_s, &measurement.best, &common, is_small);
             measurement.best.covariance *= factor;
-            (continuity == Continuity::Breaks).then_some(FailedCheck::Motion)
+            match continuity {
+                Continuity::Breaks => Some(FailedCheck::Motion),
+                Continuity::Begins if is_small => Some(FailedCheck::Unconfirmed),
+                Continuity::Begins | Continuity::Continues => None,
+            }
         };
         let solution = match doubt {
             Some(doubt) => DockingSolution::Doubtful { measurement, doubt },

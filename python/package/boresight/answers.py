@@ -71,7 +71,8 @@ class Pose:
 
     status: str = "measured"
     """`measured`; or the test that the pose has failed, and then it counts as doubtful:
-    `doubtful: residuals`, `doubtful: features`, `doubtful: motion`, `doubtful: repeated`."""
+    `doubtful: residuals`, `doubtful: features`, `doubtful: motion`, `doubtful: unconfirmed`,
+    `doubtful: repeated`."""
 
 
 @dataclass(frozen=True)

@@ -49,9 +49,9 @@ table! {
         /// number of the field; ascending, each once
         field: u64,
         /// `measured`; `range_only`; `doubtful: residuals`, `doubtful: features`, `doubtful: motion`,
-        /// `doubtful: repeated`: measured, but not to be relied on; or the reason for no solution:
-        /// `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`,
-        /// `too_few_features`, `inconsistent`, `failed`, `failed: ` and a reason
+        /// `doubtful: unconfirmed`, `doubtful: repeated`: measured, but not to be relied on; or the reason
+        /// for no solution: `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`,
+        /// `out_of_field`, `too_few_features`, `inconsistent`, `failed`, `failed: ` and a reason
         status: String,
         /// pose; empty unless `measured` or doubtful
         pose: Option<Pose> = POSE,
@@ -75,8 +75,8 @@ const MEASURED: &str = "measured";
 /// Status of a row with a range but no pose.
 const RANGE_ONLY: &str = "range_only";
 /// Expected values in the message for an unknown status.
-const STATUS: &str = "`measured`, `range_only`, `doubtful: residuals`, `doubtful: features`, `doubtful: motion`, `doubtful: repeated`, `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`, \
-                      `too_few_features`, `inconsistent`, `failed`, or `failed: ` and a reason";
+const STATUS: &str = "`measured`, `range_only`, `doubtful: residuals`, `doubtful: features`, `doubtful: motion`, `doubtful: unconfirmed`, `doubtful: repeated`, `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, \
+                      `out_of_field`, `too_few_features`, `inconsistent`, `failed`, or `failed: ` and a reason";
 
 /// Factors that convert metres and radians to metres and degrees.
 fn scale() -> Vector6<f64> {

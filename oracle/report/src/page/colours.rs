@@ -10,7 +10,7 @@ const PALETTE: [&str; 18] = [
 ];
 
 /// Colours of the failed tests of a doubtful pose.
-const DOUBTS: [&str; 4] = ["#fff0b8", "#fbdc76", "#f2c230", "#b58a00"];
+const DOUBTS: [&str; 5] = ["#fff0b8", "#fbdc76", "#f2c230", "#b58a00", "#7a5d00"];
 
 /// Returns the colour of a cause by its code.
 pub(crate) fn colour_of(cause: &str) -> &'static str {

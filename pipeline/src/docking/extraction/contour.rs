@@ -32,8 +32,9 @@ impl StationOutline {
 
     /// Returns the range by the outline, with its standard deviation from field to field.
     pub(crate) fn range(&self, outline: &Outline, focal_px: f64) -> Option<OutlineRange> {
-        let (range_m, sigma_m) = range(outline, focal_px, self.circle.radius, self.noise_px)?;
-        Some(OutlineRange { range_m, sigma_m })
+        let radius_px = self.circle.radius;
+        let (range_m, sigma_m) = range(outline, focal_px, radius_px, self.noise_px)?;
+        Some(OutlineRange { range_m, sigma_m, radius_px })
     }
 }
 

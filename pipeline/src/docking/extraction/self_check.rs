@@ -153,21 +153,22 @@ const OTHER_PARALLAX_PX: f64 = 2.5;
 /// Blur near the upper limit of the best estimator, px.
 const MAX_BLUR_PX: f64 = 4.9;
 
-/// Returns a doubt if the best estimator's pose needs a blur beyond its limit, or contradicts the pose from
-/// cross and circle only.
+/// Returns a doubt if the best estimator's pose needs a blur beyond its limit or leaves unusual residuals, or
+/// contradicts the pose from cross and circle only. A circle of a few pixels has a range of a few per cent.
 pub(crate) fn fit(
     model: &TargetModel,
     focal_px: f64,
     fitted: &FitResult,
     by_features: &PoseEstimate,
 ) -> Option<FailedCheck> {
-    if fitted.blur_px.iter().any(|blur| *blur >= MAX_BLUR_PX) {
+    if fitted.is_poor || fitted.blur_px.iter().any(|blur| *blur >= MAX_BLUR_PX) {
         return Some(FailedCheck::Residuals);
     }
     let (best, other) = (&fitted.estimate.pose.position_m, &by_features.pose.position_m);
     let parallax =
         |d: &Vector3<f64>| focal_px * model.cross.height_m / (d.z * (d.z - model.cross.height_m)) * d.xy();
-    let range = (other.z / best.z - 1.0).abs() <= OTHER_RANGE;
+    let sigma = by_features.covariance[(2, 2)].max(0.0).sqrt() / best.z;
+    let range = (other.z / best.z - 1.0).abs() <= OTHER_RANGE.max(3.0 * sigma);
     let cross = (parallax(best) - parallax(other)).norm() <= OTHER_PARALLAX_PX;
     (!(range && cross)).then_some(FailedCheck::Features)
 }

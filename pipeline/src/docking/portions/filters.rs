@@ -1,12 +1,12 @@
 //! Motion by four filters of one state that differ in the camera's acceleration, with a probability for each.
 //!
-//! State: (d, φ), its rates and accelerations, and the relative scale error of the station's outline. An
-//! acceleration is a random function of time with a standard deviation σ and a memory τ (Singer 1970). The
-//! filters have σ, 0.2 σ and 0.03 σ on all axes; the fourth has 0.3 σ along the axis of the approach and 0.03
-//! σ on the others. They exchange their estimates once a second according to the probabilities of a change
-//! between them (interacting multiple models: Blom & Bar-Shalom 1988). A hold or a glide is followed with a
-//! small σ, a braking ship with a large one, and the covariance includes the uncertainty about which filter
-//! applies.
+//! State: (d, φ), its rates and accelerations, and two errors of the station's outline: of its scale, and of
+//! the position of its edge in the image. An acceleration is a random function of time with a standard
+//! deviation σ and a memory τ (Singer 1970). The filters have σ, 0.2 σ and 0.03 σ on all axes; the fourth has
+//! 0.3 σ along the axis of the approach and 0.03 σ on the others. They exchange their estimates once a second
+//! according to the probabilities of a change between them (interacting multiple models: Blom & Bar-Shalom
+//! 1988). A hold or a glide is followed with a small σ, a braking ship with a large one, and the covariance
+//! includes the uncertainty about which filter applies.
 
 use contract::docking::{Motion, PoseEstimate};
 use contract::{OutOfRange, bounds};
@@ -16,9 +16,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::docking::pose::geometry::{to_pose, to_vector};
 
-const SIZE: usize = 19;
-/// Index of the outline's scale error in the state.
+const SIZE: usize = 20;
+/// Index of the outline's scale error in the state, relative to the radius.
 const SCALE: usize = 18;
+/// Index of the outline's edge error in the state, px outwards.
+const EDGE: usize = 19;
 type State = SVector<f64, SIZE>;
 type Square = SMatrix<f64, SIZE, SIZE>;
 
@@ -93,6 +95,12 @@ const CHANGE_S: f64 = 5.0;
 const OUTLINE_SCALE: f64 = 0.01;
 const OUTLINE_DRIFT: f64 = 2e-4;
 
+/// Error of the radius of a station's outline that is the same in pixels at every range, px, one standard
+/// deviation: blur moves the steepest fall of brightness towards the darker or the narrower side of a rim, by
+/// a part of its own width of 0.6 to 1 px. As a relative error it decreases with the range, which would
+/// otherwise appear as a range rate.
+const OUTLINE_EDGE_PX: f64 = 0.5;
+
 /// Standard deviations of the lateral offset, relative to the range, and of the attitude, rad, before any
 /// pose is measured.
 const PRIOR_OFFSET_SHARE: f64 = 0.2;
@@ -105,6 +113,8 @@ pub(in crate::docking) struct OutlineRange {
     pub(in crate::docking) range_m: f64,
     /// Standard deviation of the range from field to field, m, without errors common to many fields.
     pub(in crate::docking) sigma_m: f64,
+    /// Radius of the outline, px.
+    pub(in crate::docking) radius_px: f64,
 }
 
 /// Longest step of a prediction, s. Accelerations fade within some of these steps.
@@ -147,6 +157,7 @@ impl Track {
                 covariance[(12 + axis, 12 + axis)] = (part * acceleration) * (part * acceleration);
             }
             covariance[(SCALE, SCALE)] = OUTLINE_SCALE * OUTLINE_SCALE;
+            covariance[(EDGE, EDGE)] = OUTLINE_EDGE_PX * OUTLINE_EDGE_PX;
             Mode { probability: 1.0 / MODES.len() as f64, state, covariance }
         });
         Self { time_s, mixed_s: time_s, modes, common: *common }
@@ -450,6 +461,7 @@ impl RangeInnovation {
     fn from_range(mode: &Mode, range: &OutlineRange) -> Self {
         let mut by_state = State::zeros();
         (by_state[2], by_state[SCALE]) = (1.0, range.range_m);
+        by_state[EDGE] = -range.range_m / range.radius_px;
         let variance = by_state.dot(&(mode.covariance * by_state)) + range.sigma_m * range.sigma_m;
         Self { off_m: range.range_m - by_state.dot(&mode.state), by_state, variance }
     }

@@ -18,15 +18,56 @@ const TRUST: f64 = 5.0;
 /// correlated, so 49 of them count as 21.
 const CHANCE: f64 = 0.86;
 
+/// Number of fields over which the scatter of each component is averaged, and excess or lack that is
+/// attributed to chance: 2.8 standard deviations, because 199 of the differences count as 84.
+const COMPONENT_MEMORY: f64 = 100.0;
+const COMPONENT_CHANCE: f64 = 0.43;
+
+/// Number of fields without any scatter with which the average of a small target begins.
+const UNSEEN_FIELDS: f64 = 20.0;
+
+/// Number of the last measurements that are kept: differences of every second field need seven.
+const KEPT: usize = 8;
+
+/// Upper limit of a component's normalised square in its average: errors of twice the field's variance reach
+/// it in one of forty fields, so that wrong fields do not hide a lack of scatter.
+const MAX_COMPONENT_SQUARE: f64 = 10.0;
+
 /// Upper limit of a normalised square in the average: a wrong field is not scatter.
 const MAX_NORMALISED_SQUARE: f64 = 1e4;
 
+/// Longest time between the fields of a difference, s.
+const MAX_STEP_S: f64 = 0.1;
+
+/// Measurement of a field.
+#[derive(Debug, Clone)]
+struct Measurement<const N: usize> {
+    time_s: f64,
+    value: SVector<f64, N>,
+    covariance: SMatrix<f64, N, N>,
+}
+
 /// Scatter of the last fields' measurements, of N components each.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(crate) struct Scatter<const N: usize> {
-    last: VecDeque<(f64, SVector<f64, N>, SMatrix<f64, N, N>)>,
+    last: VecDeque<Measurement<N>>,
     sum: f64,
     weight: f64,
+    /// Sums of each component's normalised squares, and their number.
+    component_sums: SVector<f64, N>,
+    component_weight: f64,
+}
+
+impl<const N: usize> Default for Scatter<N> {
+    fn default() -> Self {
+        Self {
+            last: VecDeque::new(),
+            sum: 0.0,
+            weight: 0.0,
+            component_sums: SVector::zeros(),
+            component_weight: 0.0,
+        }
+    }
 }
 
 impl<const N: usize> Scatter<N>
@@ -41,8 +82,8 @@ where
         measured: &SVector<f64, N>,
         covariance: &SMatrix<f64, N, N>,
     ) -> f64 {
-        self.last.push_back((time_s, *measured, *covariance));
-        if self.last.len() > THIRD_DIFFERENCE.len() {
+        self.last.push_back(Measurement { time_s, value: *measured, covariance: *covariance });
+        if self.last.len() > KEPT {
             self.last.pop_front();
         }
         if let Some(square) = self.square() {
@@ -50,7 +91,34 @@ where
             self.sum = self.sum * kept + square.min(MAX_NORMALISED_SQUARE);
             self.weight = self.weight * kept + 1.0;
         }
+        if let Some(of_components) = self.component_squares() {
+            let kept = 1.0 - 1.0 / COMPONENT_MEMORY;
+            self.component_sums =
+                self.component_sums * kept + of_components.map(|square| square.min(MAX_COMPONENT_SQUARE));
+            self.component_weight = self.component_weight * kept + 1.0;
+        }
         self.factor()
+    }
+
+    /// Returns the part of the last covariance that does not scatter from field to field, and is therefore
+    /// common to neighbouring fields. `common` is the part that is already stated as common.
+    ///
+    /// The part is zero unless a component scatters by significantly less than its variance. The features of
+    /// a small target are narrower than pixels and lines; their errors count as common as far as no scatter
+    /// has been measured yet.
+    pub(crate) fn common_part(&self, common: &SMatrix<f64, N, N>, is_small: bool) -> SMatrix<f64, N, N> {
+        let Some(Measurement { covariance, .. }) = self.last.back() else { return SMatrix::zeros() };
+        let chance = COMPONENT_CHANCE * (COMPONENT_MEMORY / self.component_weight.max(1.0)).sqrt();
+        let shares = SVector::<f64, N>::from_fn(|i, _| {
+            let scatter = self.component_sums[i] / self.component_weight;
+            let lack = match is_small {
+                true => 1.0 - self.component_sums[i] / (self.component_weight + UNSEEN_FIELDS),
+                false if scatter < 1.0 - chance => 1.0 - scatter,
+                false => 0.0,
+            };
+            (lack - common[(i, i)] / covariance[(i, i)]).max(0.0).sqrt()
+        });
+        SMatrix::from_fn(|i, j| covariance[(i, j)] * shares[i] * shares[j])
     }
 
     /// Returns the factor by which the covariances are too small, 1 or more.
@@ -59,24 +127,47 @@ where
         if mean > 1.0 + CHANCE / (N as f64).sqrt() { mean } else { 1.0 }
     }
 
-    /// Returns the normalised square of the third difference, divided by its dimension. Returns `None` unless
-    /// the last four fields are evenly spaced in time.
+    /// Returns the normalised square of the third difference of the last four fields, divided by its
+    /// dimension. Returns `None` unless they are evenly spaced in time.
     fn square(&self) -> Option<f64> {
-        if self.last.len() < THIRD_DIFFERENCE.len() {
+        let last = self.last.len().checked_sub(THIRD_DIFFERENCE.len())?;
+        let fields: [&Measurement<N>; 4] = std::array::from_fn(|k| &self.last[last + k]);
+        let first = fields[1].time_s - fields[0].time_s;
+        let mut steps = fields.iter().zip(&fields[1..]).map(|(a, b)| b.time_s - a.time_s);
+        if !(first > 0.0 && first < MAX_STEP_S && steps.all(|step| (step / first - 1.0).abs() < 0.1)) {
             return None;
         }
-        let mut times = self.last.iter().zip(self.last.iter().skip(1)).map(|(a, b)| b.0 - a.0);
-        let first = times.next()?;
-        if !(first > 0.0 && first < 0.1 && times.all(|step| (step / first - 1.0).abs() < 0.1)) {
-            return None;
-        }
-        let (mut difference, mut covariance) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros());
-        for (weight, (_, measured, of_measured)) in THIRD_DIFFERENCE.iter().zip(&self.last) {
-            difference += measured * *weight;
-            covariance += of_measured * (weight * weight);
-        }
+        let (difference, covariance) = third_difference(fields);
         Some(difference.dot(&(inverse(&covariance)? * difference)) / N as f64)
     }
+
+    /// Returns the normalised squares of the components of the third difference of every second field: the
+    /// two fields of a frame have different lines, and errors common to one field's lines do not cancel those
+    /// of the other's. Returns `None` if one of the four fields is missing.
+    fn component_squares(&self) -> Option<SVector<f64, N>> {
+        let end_s = self.last.back()?.time_s;
+        let steps = self.last.iter().zip(self.last.iter().skip(1)).map(|(a, b)| b.time_s - a.time_s);
+        let step_s = steps.fold(f64::INFINITY, f64::min);
+        if !(step_s > 0.0 && step_s < MAX_STEP_S) {
+            return None;
+        }
+        let before = |fields: f64| {
+            let time_s = end_s - fields * step_s;
+            self.last.iter().find(|one| (one.time_s - time_s).abs() < 0.1 * step_s)
+        };
+        let fields = [before(6.0)?, before(4.0)?, before(2.0)?, before(0.0)?];
+        let (difference, covariance) = third_difference(fields);
+        Some(difference.component_mul(&difference).component_div(&covariance.diagonal()))
+    }
+}
+
+/// Returns the third difference of four measurements, and its covariance.
+fn third_difference<const N: usize>(fields: [&Measurement<N>; 4]) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+    let weighted = || THIRD_DIFFERENCE.iter().zip(fields);
+    (
+        weighted().map(|(weight, one)| one.value * *weight).sum(),
+        weighted().map(|(weight, one)| one.covariance * (weight * weight)).sum(),
+    )
 }
 
 #[cfg(test)]
@@ -112,6 +203,42 @@ mod tests {
             // with an uncertainty of a third.
             let factor = factor(3.0, seed);
             assert!((4.5..13.0).contains(&factor), "{factor}");
+        }
+    }
+
+    /// Returns the common part of each component after `fields` fields, relative to the covariance. Of each
+    /// component's variance, `white` scatters from field to field.
+    fn common_parts(white: f64, is_small: bool, fields: u32, seed: u64) -> Vector6<f64> {
+        let mut scatter = Scatter::default();
+        let sigma = Vector6::new(1e-3, 1e-3, 2e-3, 1e-4, 1e-4, 1e-4);
+        let covariance = Matrix6::from_diagonal(&sigma.component_mul(&sigma));
+        for k in 0..fields {
+            let draw = Vector6::from_fn(|i, _| normal(seed * 7_919 + u64::from(k) * 8 + i as u64));
+            let error = sigma.component_mul(&draw) * white.sqrt();
+            let t = f64::from(k) * 0.02;
+            scatter.add(t, &(to_vector(&approach(t)) + error), &covariance);
+        }
+        scatter.common_part(&Matrix6::zeros(), is_small).diagonal().component_div(&covariance.diagonal())
+    }
+
+    #[test]
+    fn variance_that_does_not_scatter_is_common() {
+        for seed in 0..10 {
+            let parts = common_parts(0.2, false, 300, seed);
+            assert!(parts.iter().all(|part| (0.65..0.9).contains(part)), "{parts}");
+        }
+        let wrong = (0..50).filter(|seed| common_parts(1.0, false, 300, *seed) != Vector6::zeros()).count();
+        assert!(wrong <= 2, "{wrong} of 50");
+        assert_eq!(common_parts(0.2, false, 5, 1), Vector6::zeros(), "too few fields");
+    }
+
+    #[test]
+    fn variance_of_a_small_target_is_common_until_it_scatters() {
+        assert_eq!(common_parts(1.0, true, 1, 1), Vector6::repeat(1.0));
+        for seed in 0..10 {
+            assert!(common_parts(1.0, true, 30, seed).iter().all(|part| *part > 0.1));
+            assert!(common_parts(1.0, true, 600, seed).mean() < 0.35);
+            assert!(common_parts(0.2, true, 600, seed).iter().all(|part| *part > 0.65));
         }
     }
 

@@ -12,6 +12,10 @@ use crate::docking::pose::geometry::to_vector;
 /// Longest time without a pose after which the motion remains valid, s.
 const MAX_GAP_S: f64 = 5.0;
 
+/// Longest time for which a pose confirms the next one, s. Later, the prediction is so uncertain that most
+/// wrong poses would agree with it.
+const MAX_CONFIRMATION_S: f64 = 1.0;
+
 /// Number of successive fields off the motion after which it begins anew.
 const CONTRARY_FIELDS: u32 = 5;
 
@@ -39,12 +43,16 @@ pub struct MotionTracker {
     /// Number of poses used since the last report, and since the motion began.
     fields: u32,
     all_fields: u32,
+    /// Time of the last pose that was used, s.
+    last_pose_s: f64,
 }
 
 /// Agreement of a pose with the motion so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Continuity {
-    /// The pose agrees with the motion, or the motion is unknown.
+    /// No pose within the second before confirms this one.
+    Begins,
+    /// The pose agrees with the motion of earlier ones.
     Continues,
     /// The pose differs from the motion by more than the gate.
     Breaks,
@@ -66,6 +74,7 @@ impl MotionTracker {
             contrary_outlines: 0,
             fields: 0,
             all_fields: 0,
+            last_pose_s: f64::NEG_INFINITY,
         })
     }
 
@@ -94,11 +103,18 @@ impl MotionTracker {
     }
 
     /// Adds the pose of a field, with the part of its covariance that is common to the fields of several
-    /// seconds. Returns the agreement with the motion, and the factor by which the scatter of the fields
+    /// seconds; `is_small`: the target's features are narrower than pixels, and more of the covariance may be
+    /// common. Returns the agreement with the motion, and the factor by which the scatter of the fields
     /// exceeds their covariances.
-    pub fn add(&mut self, time_s: f64, estimate: &PoseEstimate, common: &Matrix6<f64>) -> (Continuity, f64) {
+    pub fn add(
+        &mut self,
+        time_s: f64,
+        estimate: &PoseEstimate,
+        common: &Matrix6<f64>,
+        is_small: bool,
+    ) -> (Continuity, f64) {
         if !time_s.is_finite() {
-            return (Continuity::Continues, 1.0);
+            return (Continuity::Begins, 1.0);
         }
         let is_kept = self.track.as_ref().is_some_and(|track| {
             let elapsed_s = time_s - track.time_s;
@@ -107,12 +123,13 @@ impl MotionTracker {
         if !is_kept {
             self.scatter = Scatter::default();
             self.scatter.add(time_s, &to_vector(&estimate.pose), &estimate.covariance);
-            self.begin(time_s, estimate, common);
-            return (Continuity::Continues, 1.0);
+            let common = common + self.scatter.common_part(common, is_small);
+            self.begin(time_s, estimate, &common);
+            return (Continuity::Begins, 1.0);
         }
         let factor = self.scatter.add(time_s, &to_vector(&estimate.pose), &estimate.covariance);
         let noise = PoseEstimate { covariance: estimate.covariance * factor, ..*estimate };
-        (self.follow(time_s, &noise, common), factor)
+        (self.follow(time_s, &noise, common, is_small), factor)
     }
 
     /// Adds the range by the station's outline, after the field's pose if there is one.
@@ -148,36 +165,48 @@ impl MotionTracker {
         self.track = Some(Track::begin_at_range(time_s, range, &self.config));
     }
 
-    fn follow(&mut self, time_s: f64, estimate: &PoseEstimate, common: &Matrix6<f64>) -> Continuity {
+    fn follow(
+        &mut self,
+        time_s: f64,
+        estimate: &PoseEstimate,
+        common: &Matrix6<f64>,
+        is_small: bool,
+    ) -> Continuity {
         let noise = &estimate.covariance;
+        // Not part of the gate: the motion so far has the same error.
+        let all_common = &(common + self.scatter.common_part(common, is_small));
         let measured = to_vector(&estimate.pose);
-        let Some(track) = &mut self.track else { return Continuity::Continues };
+        let Some(track) = &mut self.track else { return Continuity::Begins };
         let mut next = track.clone();
         next.predict(time_s, &self.config);
         let square = next.least_square(&measured, &(noise + common)).unwrap_or(f64::INFINITY);
         if square > self.config.field_gate {
             self.contrary += 1;
-            if self.contrary >= CONTRARY_FIELDS {
-                self.begin(time_s, estimate, common);
+            // One pose alone is no more credible than the next one.
+            if self.contrary >= CONTRARY_FIELDS || self.all_fields == 1 {
+                self.begin(time_s, estimate, all_common);
             }
             return Continuity::Breaks;
         }
         self.contrary = 0;
+        let is_confirmed = time_s - self.last_pose_s <= MAX_CONFIRMATION_S;
         if next.update(&measured, noise) {
-            next.common = *common;
+            next.common = *all_common;
             *track = next;
             self.fields += 1;
             self.all_fields += 1;
+            self.last_pose_s = time_s;
         } else {
-            self.begin(time_s, estimate, common);
+            self.begin(time_s, estimate, all_common);
         }
-        Continuity::Continues
+        if is_confirmed { Continuity::Continues } else { Continuity::Begins }
     }
 
     fn begin(&mut self, time_s: f64, estimate: &PoseEstimate, common: &Matrix6<f64>) {
         (self.contrary, self.contrary_outlines) = (0, 0);
         self.fields = 1;
         self.all_fields = 1;
+        self.last_pose_s = time_s;
         self.track = Some(Track::begin(time_s, estimate, common, &self.config));
     }
 
@@ -239,7 +268,8 @@ mod tests {
         let mut reports_in_sigma = Vec::new();
         for k in 0..50 * seconds {
             let (t, estimate) = measured(&motion, k, seed);
-            assert_eq!(tracker.add(t, &estimate, &Matrix6::zeros()).0, Continuity::Continues, "field {k}");
+            let expected = if k == 0 { Continuity::Begins } else { Continuity::Continues };
+            assert_eq!(tracker.add(t, &estimate, &Matrix6::zeros(), false).0, expected, "field {k}");
             if k % 10 == 9 {
                 let report = tracker.report().unwrap();
                 let off = report.pose.position_m - motion(t).position_m;
@@ -283,12 +313,14 @@ mod tests {
                 let at = Vector6::new(0.3, -0.2, range(k), 0.0, 0.0, 0.0);
                 let pose = to_pose(&(at + sigma.component_mul(&draw)));
                 let covariance = Matrix6::from_diagonal(&sigma.component_mul(&sigma));
-                let (continuity, _) = tracker.add(t, &PoseEstimate { pose, covariance }, &Matrix6::zeros());
-                assert_eq!(continuity, Continuity::Continues, "field {k}");
+                let (continuity, _) =
+                    tracker.add(t, &PoseEstimate { pose, covariance }, &Matrix6::zeros(), false);
+                let expected = if k == 150 { Continuity::Begins } else { Continuity::Continues };
+                assert_eq!(continuity, expected, "field {k}");
             }
             // The rim makes the outline 0.7 % too large.
             let range_m = 0.993 * range(k) + 0.03 * normal(90_000 + u64::from(k));
-            tracker.add_range(t, &OutlineRange { range_m, sigma_m: 0.03 });
+            tracker.add_range(t, &OutlineRange { range_m, sigma_m: 0.03, radius_px: 6000.0 / range_m });
             assert!(k >= 152 || tracker.clone().report().is_none());
         }
         let motion = tracker.report().unwrap();
@@ -303,7 +335,7 @@ mod tests {
         let mut sigmas = Vec::new();
         for k in 0..200 {
             let (t, estimate) = measured(approach, k, 1);
-            tracker.add(t, &estimate, &Matrix6::zeros());
+            tracker.add(t, &estimate, &Matrix6::zeros(), false);
             if k % 10 == 9 {
                 sigmas.push(tracker.report().unwrap().position_covariance[(5, 5)].sqrt());
             }
@@ -322,7 +354,7 @@ mod tests {
                 estimate.pose.position_m.z += 0.5;
                 assert!(!tracker.confirms(t, &estimate));
             }
-            let (continuity, _) = tracker.add(t, &estimate, &Matrix6::zeros());
+            let (continuity, _) = tracker.add(t, &estimate, &Matrix6::zeros(), false);
             assert_eq!(continuity == Continuity::Breaks, is_wrong, "field {k}");
         }
         let motion = tracker.report().unwrap();
@@ -340,7 +372,7 @@ mod tests {
         };
         let broken = (0..40).filter(|k| {
             let (t, estimate) = measured(elsewhere, *k, 5);
-            tracker.add(t, &estimate, &Matrix6::zeros()).0 == Continuity::Breaks
+            tracker.add(t, &estimate, &Matrix6::zeros(), false).0 == Continuity::Breaks
         });
         assert_eq!(broken.collect::<Vec<_>>(), (20..20 + CONTRARY_FIELDS).collect::<Vec<_>>());
     }
@@ -351,7 +383,7 @@ mod tests {
         let mut tracker = MotionTracker::new(MotionConfig::default()).unwrap();
         for k in 0..100 {
             let (t, estimate) = measured(approach, k, 6);
-            tracker.add(t, &estimate, &common);
+            tracker.add(t, &estimate, &common, false);
         }
         assert!(tracker.report().unwrap().position_covariance[(2, 2)] >= 1e-4);
     }
@@ -362,14 +394,14 @@ mod tests {
         assert_eq!(tracker.report(), None);
         for k in 0..2 {
             let (t, estimate) = measured(approach, k, 7);
-            tracker.add(t, &estimate, &Matrix6::zeros());
+            tracker.add(t, &estimate, &Matrix6::zeros(), false);
         }
         assert_eq!(tracker.report(), None);
         let config = MotionConfig { speed_m_s: 0.05, ..MotionConfig::default() };
         let mut slow = MotionTracker::new(config).unwrap();
         for k in 0..100 {
             let (t, estimate) = measured(approach, k, 7);
-            slow.add(t, &estimate, &Matrix6::zeros());
+            slow.add(t, &estimate, &Matrix6::zeros(), false);
         }
         assert_eq!(slow.report(), None, "0.3 m/s is six times the speed that is expected");
     }
@@ -380,14 +412,14 @@ mod tests {
         let mut tracker = MotionTracker::new(MotionConfig::default()).unwrap();
         for k in 0..30 {
             let (_, estimate) = measured(|_| approach(1.0), k, 8);
-            tracker.add(1.0, &estimate, &Matrix6::zeros());
+            tracker.add(1.0, &estimate, &Matrix6::zeros(), false);
             assert_eq!(tracker.clone().report(), None, "field {k}");
         }
         for k in 1..MIN_FIELDS {
             assert_eq!(tracker.clone().report(), None, "{k} moments");
             let time_s = 1.0 + 0.02 * f64::from(k);
             let (_, estimate) = measured(|_| approach(time_s), 30 + k, 8);
-            tracker.add(time_s, &estimate, &Matrix6::zeros());
+            tracker.add(time_s, &estimate, &Matrix6::zeros(), false);
         }
         assert_eq!(tracker.report().unwrap().fields, MIN_FIELDS);
     }

@@ -89,6 +89,13 @@ impl PaperMeasurement {
         }
     }
 
+    /// Returns the measurement of a target at a known range that faces the camera: without the parallax of
+    /// the cross, and with the radius of the circle at that range. For a circle of a few pixels this is
+    /// closer to the truth than its measured centre and radius.
+    pub(crate) fn facing_at(&self, target: &PaperTarget, range_m: f64) -> Self {
+        Self { circle: self.cross, radius_px: self.focal_px * target.radius_m / range_m, ..*self }
+    }
+
     /// Returns the measurement expected from 3.1 at a pose: by its simplified forms, not the exact
     /// projection.
     pub fn expected(pose: &Pose, target: &PaperTarget, focal_px: f64) -> Self {
@@ -173,6 +180,28 @@ mod tests {
         // The residual from using the sine of the rotation angle is of third order.
         let (before, after) = (off(&seen.pose(&TARGET).unwrap()), off(&seen.aimed_pose(&TARGET).unwrap()));
         assert!(before > 3.0 && after < 1e-3, "{before} {after}");
+    }
+
+    #[test]
+    fn a_target_that_faces_the_camera_has_the_pose_of_its_range_and_cross() {
+        // A circle of 13 px, measured 0.7 px too large and 0.5 px aside: 5 % of the range, several degrees.
+        let seen = PaperMeasurement {
+            focal_px: NARROW_PX,
+            cross: [120.0, -80.0],
+            slope: 0.01,
+            circle: [120.5, -79.6],
+            radius_px: NARROW_PX * TARGET.radius_m / 56.0 + 0.7,
+        };
+        let (measured, facing) =
+            (seen.pose(&TARGET).unwrap(), seen.facing_at(&TARGET, 56.0).pose(&TARGET).unwrap());
+        assert!(measured.position_m.z < 54.0 && measured.position_m.xy().norm() > 1.0, "{measured:?}");
+        assert!(
+            (facing.position_m.z - 56.0).abs() < 1e-9 && facing.position_m.xy().norm() < 1e-9,
+            "{facing:?}"
+        );
+        assert!(
+            (facing.phi_rad.y + 120.0 / NARROW_PX).abs() < 1e-9 && (facing.phi_rad.z + 0.01).abs() < 1e-12
+        );
     }
 
     /// Least-squares circle through the exact images of 72 points of the mark circle.

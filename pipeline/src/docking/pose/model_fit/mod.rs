@@ -31,6 +31,7 @@ mod solve;
 mod swelling;
 mod uncertainty;
 mod unknowns;
+mod usual_residual;
 
 #[cfg(test)]
 mod tests;
@@ -48,6 +49,7 @@ use self::shadow::ShadowFinder;
 use self::solve::{Evaluation, Search, normals, residual, solve};
 use self::uncertainty::{SharedErrors, VideoKnowledge, uncertainty};
 use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
+use self::usual_residual::UsualResidual;
 use crate::CameraModel;
 use crate::docking::pose::geometry::{PoseProjection, project, to_pose, to_vector};
 
@@ -126,6 +128,11 @@ pub struct FitResult {
     pub common: Matrix6<f64>,
     /// Usage of every mark, with its centre predicted from the pose.
     pub marks: Vec<Mark>,
+    /// True if the cross is a single patch: its arms are shorter than 15 px.
+    pub is_small_cross: bool,
+    /// True if the residuals of a small cross and its marks are larger than in most earlier fields: the fit
+    /// is probably not at the best minimum.
+    pub is_poor: bool,
     /// Image of the centre of the cross's front face, predicted from the pose.
     pub cross_centre: PixelPoint,
     /// Image of the disk's centre, predicted from the pose: with perspective, not the centre of an ellipse.
@@ -134,6 +141,8 @@ pub struct FitResult {
     pub blur_px: [f64; 2],
     /// Standard deviation of the residuals, DN.
     pub noise_dn: f64,
+    /// Median level of the marks and parts of the cross over the plate, DN.
+    pub level_dn: f64,
     /// Number of pixels used.
     pub pixels: u32,
 }
@@ -149,6 +158,7 @@ pub struct ModelFit {
     video: VideoKnowledge,
     variances: Vec<f64>,
     blur: Blur,
+    residual_of_small: UsualResidual,
 }
 
 impl Default for ModelFit {
@@ -169,6 +179,7 @@ impl ModelFit {
             video: VideoKnowledge::default(),
             variances: Vec::new(),
             blur: Blur::new(FIRST_BLUR_PX2, FIRST_BLUR_PX2),
+            residual_of_small: UsualResidual::default(),
         }
     }
 
@@ -283,8 +294,10 @@ impl ModelFit {
             evaluation = solve(&scene, samples, &mut globals, &search, evaluation.variance())
                 .ok_or(NoPose::TooFewFeatures)?;
         }
-        let fitted =
+        let mut fitted =
             judge(samples, field.image(), &mut self.shared, &mut self.video, &scene, &globals, &evaluation)?;
+        fitted.is_poor =
+            fitted.is_small_cross && self.residual_of_small.add(fitted.noise_dn / fitted.level_dn);
         self.blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
         Ok(fitted)
     }
@@ -393,7 +406,8 @@ fn judge(
     let variance = evaluation.variance();
     let mut levels: Vec<f64> =
         samples.patches.iter().filter(|patch| patch.is_used).map(|p| p.levels[LOCALS - 1]).collect();
-    if median(&mut levels).is_none_or(|level| level < FAINTEST_LEVEL * variance.sqrt()) {
+    let level_dn = median(&mut levels).ok_or_else(|| too_few(samples))?;
+    if level_dn < FAINTEST_LEVEL * variance.sqrt() {
         return Err(too_few(samples));
     }
     let known = uncertainty(scene, samples, image, shared, video, globals, evaluation)
@@ -415,10 +429,13 @@ fn judge(
         estimate: PoseEstimate { pose, covariance },
         common,
         marks: marks(samples, scene, &pose),
+        is_small_cross: samples.is_small_cross(),
+        is_poor: false,
         cross_centre: see(Vector3::new(0.0, 0.0, scene.target.cross.height_m))?,
         circle_centre: see(Vector3::zeros())?,
         blur_px: [globals[BLUR].sqrt(), globals[BLUR + 1].sqrt()],
         noise_dn: variance.sqrt(),
+        level_dn,
         pixels: used_pixels as u32,
     })
 }

@@ -153,6 +153,11 @@ struct Search<'a> {
 }
 
 impl Samples {
+    /// Returns true if the cross is at most a single patch, used or not.
+    pub(super) fn is_small_cross(&self) -> bool {
+        self.patches.iter().filter(|patch| patch.feature == Feature::Cross).count() <= 1
+    }
+
     /// Collects about `most` of the pixels within `slack_px` + the blur's reach of an edge, for a given pose.
     /// Returns `None` when the features are not in front of the camera.
     #[allow(clippy::too_many_arguments, reason = "the parts of the scene and the resolution")]

@@ -109,7 +109,7 @@ pub(super) fn uncertainty(
     let to_pose_change = inverse.fixed_rows::<POSE>(0);
     let mut work = ChunkBuffers::NEW;
     let used = || samples.patches.iter().filter(|patch| patch.is_used).enumerate();
-    let is_small = used().filter(|(_, patch)| patch.feature == Feature::Cross).count() == 1;
+    let is_small = samples.is_small_cross();
     for (index, patch) in used() {
         let level = patch.levels[LOCALS - 1];
         let feature_model = FeatureModel {
