@@ -134,7 +134,7 @@ def make(program, folder):
     keep("psf", "small.csv", "0,1,0\n1,4,1.5\n0,1e0,0\n")
 
     for path in sorted((ROOT / "golden/flight_dynamics").iterdir()):
-        target = {"oem": "oem", "aem": "aem", "tdm": "tdm", "tle": "tle", "bsp": "spk"}.get(path.name.removesuffix(".xml").rpartition(".")[2])
+        target = {"oem": "oem", "aem": "aem", "opm": "opm", "tdm": "tdm", "tle": "tle", "bsp": "spk"}.get(path.name.removesuffix(".xml").rpartition(".")[2])
         if target is not None:
             keep(target, f"small-{path.name}", path)
     keep("opm", "small.opm", OPM)

@@ -15,6 +15,7 @@ element sets are those of published test cases (NORAD 25544 and 09880).
 - `teme.csv`: a state in TEME and the same along GCRF by Orekit (no corrections of the pole's motion).
 - `attitudes.csv`: file, TAI, and the components along the body of the GCRF axes x, y, z (nine numbers), by
   Orekit.
+- `parameters.csv`: file, TAI and GCRF state (km, km/s) by Orekit of each OPM.
 - `directions.csv`: TAI, right ascension and declination (degrees) given to the TDM.
 """
 
@@ -105,12 +106,13 @@ def orekit():
     from java.util import ArrayList
     from org.hipparchus.geometry.euclidean.threed import Rotation, RotationConvention, Vector3D
     from org.orekit.data import DataContext, DirectoryCrawler
-    from org.orekit.files.ccsds.definitions import BodyFacade, FrameFacade, SpacecraftBodyFrame, TimeSystem
+    from org.orekit.files.ccsds.definitions import BodyFacade, FrameFacade, OrbitRelativeFrame, SpacecraftBodyFrame, TimeSystem
     from org.orekit.files.ccsds.ndm import WriterBuilder
     from org.orekit.files.ccsds.ndm.adm import AdmHeader, AttitudeType
     from org.orekit.files.ccsds.ndm.adm.aem import Aem, AemData, AemMetadata, AemSegment
-    from org.orekit.files.ccsds.ndm.odm import CartesianCovariance, OdmHeader
+    from org.orekit.files.ccsds.ndm.odm import CartesianCovariance, OdmCommonMetadata, OdmHeader, SpacecraftParameters, StateVector
     from org.orekit.files.ccsds.ndm.odm.oem import InterpolationMethod, Oem, OemData, OemMetadata, OemSegment
+    from org.orekit.files.ccsds.ndm.odm.opm import Maneuver, Opm, OpmData
     from org.orekit.files.ccsds.ndm.tdm import AngleType, Observation, ObservationsBlock, ObservationType, Tdm, TdmHeader, TdmMetadata, TrackingMode
     from org.orekit.files.ccsds.section import Segment
     from org.orekit.files.ccsds.utils.generation import KvnGenerator, XmlGenerator
@@ -157,6 +159,17 @@ def orekit():
             numbers = [*got.getPosition().toArray(), *got.getVelocity().toArray()]
             states.append([name, str(date.toStringWithoutUtcOffset(tai, 9)), *texts(np.array(numbers) / 1e3)])
 
+    def covariance_at(date, facade):
+        covariance = CartesianCovariance(lambda: facade)
+        covariance.setEpoch(date)
+        matrix = np.diag([4e-4, 9e-4, 1e-4, 4e-10, 1e-10, 9e-10])
+        matrix[1, 0] = matrix[0, 1] = 1e-4
+        matrix[4, 2] = matrix[2, 4] = -3e-8
+        for i in range(6):
+            for j in range(i + 1):
+                covariance.setCovarianceMatrixEntry(i, j, float(matrix[i, j]) * 1e6)
+        return covariance
+
     def oem(name, notation, frame, system, scale, method, degree, covariances, segments):
         listed = ArrayList()
         for first, last in segments:
@@ -176,15 +189,7 @@ def orekit():
             for seconds in range(first, last + 1, 60):
                 data.addData(pv(START.shiftedBy(float(seconds)), kepler(seconds)), False)
             if covariances:
-                covariance = CartesianCovariance(lambda: FrameFacade.map(frame))
-                covariance.setEpoch(START.shiftedBy(first + 120.0))
-                matrix = np.diag([4e-4, 9e-4, 1e-4, 4e-10, 1e-10, 9e-10])
-                matrix[1, 0] = matrix[0, 1] = 1e-4
-                matrix[4, 2] = matrix[2, 4] = -3e-8
-                for i in range(6):
-                    for j in range(i + 1):
-                        covariance.setCovarianceMatrixEntry(i, j, float(matrix[i, j]) * 1e6)
-                data.addCovarianceMatrix(covariance)
+                data.addCovarianceMatrix(covariance_at(START.shiftedBy(first + 120.0), FrameFacade.map(frame)))
             listed.add(OemSegment(metadata, data, GM * 1e9))
         message = Oem(header(OdmHeader, 2.0), listed, conventions, context, GM * 1e9)
         (HERE / name).write_text(generate(builder.buildOemWriter(), message, notation))
@@ -218,6 +223,49 @@ def orekit():
         got = teme.getTransformTo(gcrf, date).transformPVCoordinates(PVCoordinates(vector(position), vector(velocity)))
         rows.append([str(date.toStringWithoutUtcOffset(tai, 9)), *texts([*position, *velocity]), *texts(np.array([*got.getPosition().toArray(), *got.getVelocity().toArray()]) / 1e3)])
     write("teme.csv", ["tai", "teme_x_km", "teme_y_km", "teme_z_km", "teme_vx_km_s", "teme_vy_km_s", "teme_vz_km_s", "x_km", "y_km", "z_km", "vx_km_s", "vy_km_s", "vz_km_s"], rows)
+
+    # Parameters: a state with masses, areas and coefficients, a finite burn along R, T, N and an impulse along
+    # the axes of the state.
+    rtn = FrameFacade(None, None, OrbitRelativeFrame.RTN, None, "RTN")
+    rows = []
+    for name, notation, frame, system in [("orekit.opm", "kvn", eme, TimeSystem.TT), ("orekit.opm.xml", "xml", gcrf, TimeSystem.UTC)]:
+        metadata = OdmCommonMetadata()
+        metadata.setObjectName("MANGO")
+        metadata.setObjectID("2010-028B")
+        metadata.setCenter(BodyFacade("EARTH", None))
+        metadata.setReferenceFrame(FrameFacade.map(frame))
+        metadata.setTimeSystem(system)
+        position, velocity = kepler(1234.5)
+        state = StateVector()
+        state.setEpoch(START)
+        for axis in range(3):
+            state.setP(axis, float(position[axis]) * 1e3)
+            state.setV(axis, float(velocity[axis]) * 1e3)
+        parameters = SpacecraftParameters()
+        parameters.setMass(145.0)
+        parameters.setSolarRadArea(1.3)
+        parameters.setSolarRadCoeff(1.32)
+        parameters.setDragArea(1.1)
+        parameters.setDragCoeff(2.5)
+        manoeuvres = ArrayList()
+        for seconds, duration, mass, axes, dv in [(600.0, 12.5, -0.02, rtn, (0.01, -0.2, 0.03)), (1800.0, 0.0, -0.01, FrameFacade.map(frame), (0.1, 0.0, -0.05))]:
+            manoeuvre = Maneuver()
+            manoeuvre.setEpochIgnition(START.shiftedBy(seconds))
+            manoeuvre.setDuration(duration)
+            manoeuvre.setDeltaMass(mass)
+            manoeuvre.setReferenceFrame(axes)
+            for axis in range(3):
+                manoeuvre.setDV(axis, dv[axis])
+            manoeuvres.add(manoeuvre)
+        data = OpmData(state, None, parameters, covariance_at(START, rtn), manoeuvres, None, 145.0)
+        listed = ArrayList()
+        listed.add(Segment(metadata, data))
+        message = Opm(header(OdmHeader, 2.0), listed, conventions, context, GM * 1e9)
+        (HERE / name).write_text(generate(builder.buildOpmWriter(), message, notation))
+        got = frame.getTransformTo(gcrf, START).transformPVCoordinates(PVCoordinates(vector(position), vector(velocity)))
+        numbers = [*got.getPosition().toArray(), *got.getVelocity().toArray()]
+        rows.append([name, str(START.toStringWithoutUtcOffset(tai, 9)), *texts(np.array(numbers) / 1e3)])
+    write("parameters.csv", ["file", "tai", "x_km", "y_km", "z_km", "vx_km_s", "vy_km_s", "vz_km_s"], rows)
 
     # Attitudes: a slow turn about an axis that is no axis of symmetry.
     attitudes = []

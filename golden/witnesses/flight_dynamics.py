@@ -43,6 +43,7 @@ def main(program):
 
         # Day 1 begins at 07:00:00 with 15 s between frames: the manoeuvre of 08:44:50 is after frame 419.
         boresight("run", "argon", "--frames", "400..440", "--out", "run", "--jobs", "2")
+        boresight("navigate", "run", "--navigator", "sequential", "--every", "60", "--out", "nav")
         truth = pyarrow.parquet.read_table(run / "truth/frames.parquet")
         column = lambda name: np.array(truth.column(name).to_pylist())
         vector = lambda *names: np.stack([column(name) for name in names], axis=1)
@@ -91,7 +92,59 @@ def main(program):
             read = np.array([[math.cos(d) * math.cos(a), math.cos(d) * math.sin(a), math.sin(d)] for a, d in zip(np.radians(ascensions), np.radians(declinations))])
             worst = np.abs(read - directions).max() if read.shape == directions.shape else math.inf
             claim(len(rows) > 5 and worst < 1e-12, f"ccsds-ndm, {notation}: {len(read)} directions to {worst:.0e}")
+            boresight("export", "run", "--format", "aem", "--estimates", "--frame", "camera", "--notation", notation, "--out", f"camera.{notation}")
+            stated = list(csv.DictReader((run / "measurements.csv").open()))
+            stated = np.array([[float(row[f"q_cam_j2000_{axis}"]) for axis in "wxyz"] for row in stated])
+            aem = NdmIo().from_path(pathlib.Path(folder) / f"camera.{notation}")
+            read = [state.quaternion_state.quaternion for segment in aem.body.segment for state in segment.data.attitude_state]
+            read = np.array([[value(q.qc), -value(q.q1), -value(q.q2), -value(q.q3)] for q in read])
+            worst = (1 - np.abs((read * stated).sum(axis=1))).max() if read.shape == stated.shape else math.inf
+            claim(worst < 1e-14, f"ccsds-ndm, {notation}: {len(read)} measured attitudes of the camera to {worst:.0e}")
+
+        estimates(pathlib.Path(folder), boresight, epochs, position)
     return 1 if FAILED else 0
+
+
+def estimates(folder, boresight, epochs, chaser_km):
+    """The exported orbit of the target against the table of the navigator: whole, and with a missing estimate."""
+    table = folder / "nav" / "navigation.csv"
+    rows = list(csv.DictReader(table.open()))
+    numbers = lambda row, *names: np.array([float(row[name]) for name in names])
+    for missing in (None, 4):
+        if missing is not None:
+            rows[missing] = {name: cell if name == "time_utc" or name.startswith("true_") else "" for name, cell in rows[missing].items()}
+            rows[missing]["status"] = "no_convergence"
+            with table.open("w", newline="") as file:
+                writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+                writer.writeheader()
+                writer.writerows(rows)
+        for notation in ("kvn", "xml"):
+            name = f"estimate-{missing}.{notation}"
+            boresight("export", "run", "--format", "oem", "--estimates", "--navigation", "nav", "--notation", notation, "--out", name)
+            message = OrbitEphemerisMessage.open(folder / name)
+            read = NdmIo().from_path(folder / name).body.segment
+            segments = list(message.segments)
+            counts = [sum(1 for _ in segment.states) for segment in segments]
+            expected = [len(rows)] if missing is None else [missing, len(rows) - missing - 1]
+            claim(counts == expected and [len(segment.data.state_vector) for segment in read] == expected, f"oem, ccsds-ndm, {notation}: {counts} estimates by segment")
+            states = [state for segment in segments for state in segment.states]
+            covariances = [covariance for segment in segments for covariance in segment.covariances]
+            claim(len(covariances) == len(states) == sum(len(segment.data.covariance_matrix) for segment in read), f"oem, ccsds-ndm, {notation}: {len(covariances)} covariances")
+            worst_m, worst_sigma = 0.0, 0.0
+            for row, state, covariance in zip([row for row in rows if row["status"] == "estimated"], states, covariances):
+                # The frames are 15 s apart: one is at the time of each estimate.
+                frame = np.abs((epochs - state.epoch).sec).argmin()
+                radial = state.position / np.linalg.norm(state.position)
+                normal = np.cross(state.position, state.velocity)
+                normal /= np.linalg.norm(normal)
+                axes = np.array([radial, np.cross(normal, radial), normal])
+                relative_m = axes @ (chaser_km[frame] - state.position) * 1e3
+                stated = numbers(row, "true_r_m", "true_t_m", "true_n_m") + numbers(row, "error_r_m", "error_t_m", "error_n_m")
+                worst_m = max(worst_m, np.abs(relative_m - stated).max())
+                sigma_t_m = math.sqrt((axes @ covariance.matrix[:3, :3] @ axes.T)[1, 1]) * 1e3
+                worst_sigma = max(worst_sigma, abs(sigma_t_m / float(row["sigma_t_m"]) - 1))
+            claim(worst_m < 1e-5, f"oem, {notation}: relative position of {len(states)} estimates to {worst_m:.0e} m")
+            claim(worst_sigma < 0.01, f"oem, {notation}: standard deviation along T to {worst_sigma:.0e} of it")
 
 
 def value(number):

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use boresight_flight_dynamics::{
-    Aem, CovarianceFrame, Oem, OrbitEphemeris, ReferenceFrame, Spk, Tdm, TimeSystem, Tle,
+    Aem, CovarianceFrame, InitialState, Oem, Opm, OrbitEphemeris, ReferenceFrame, SpacecraftParameters, Spk,
+    Tdm, TimeSystem, Tle,
 };
 use contract::{Angle, Direction, Icrs};
 use hifitime::Epoch;
 use nalgebra::Vector3;
+use sim::truth::ManoeuvreAxes;
 
 fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../golden/flight_dynamics").join(name)
@@ -116,7 +118,7 @@ fn states_in_teme_are_turned_as_by_orekit() {
              Y_DOT = {}\nZ_DOT = {}\n",
             head[0], numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]
         );
-        let opm = boresight_flight_dynamics::Opm::parse(Path::new("file"), &text).unwrap();
+        let opm = Opm::parse(Path::new("file"), &text).unwrap();
         let direction = |vector: Vector3<f64>| Direction::<Icrs>::from_vector(vector).unwrap();
         let angle = direction(opm.icrs_state().position_km).separation(&direction(vector(6)));
         worst = worst.max(angle.degrees() * 3600.0);
@@ -152,6 +154,49 @@ fn attitudes_of_orekit_turn_vectors_as_it_does() {
             }
         }
         assert_eq!(count, 15, "{name}");
+    }
+}
+
+#[test]
+fn states_and_manoeuvres_of_orekit_are_read() {
+    let rows = rows("parameters.csv", 2);
+    for name in ["orekit.opm", "orekit.opm.xml"] {
+        let opm = Opm::read(&golden(name)).unwrap();
+        let (head, numbers) = rows.iter().find(|(head, _)| head[0] == name).unwrap();
+        assert_eq!(opm.state.time, tai(&head[1]), "{name}");
+        let state = opm.icrs_state();
+        let error = (state.position_km - Vector3::from_column_slice(&numbers[..3])).norm();
+        // 0.2 µas between two frame biases, as for ephemerides.
+        assert!(error < 6e-9, "{name}: {error:e}");
+        let error = (state.velocity_km_s - Vector3::from_column_slice(&numbers[3..])).norm();
+        assert!(error < 6e-12, "{name}: {error:e}");
+        let expected = SpacecraftParameters {
+            mass_kg: Some(145.0),
+            solar_radiation_area_m2: Some(1.3),
+            solar_radiation_coefficient: Some(1.32),
+            drag_area_m2: Some(1.1),
+            drag_coefficient: Some(2.5),
+        };
+        assert_eq!(opm.parameters, expected, "{name}");
+        let covariance = opm.covariance.unwrap();
+        assert_eq!(covariance.frame, CovarianceFrame::Rtn);
+        let [xx, yx, yy] = [0, 1, 2].map(|index| covariance.lower_triangle[index]);
+        assert_eq!((xx, yx, yy, covariance.lower_triangle[12]), (4e-4, 1e-4, 9e-4, -3e-8), "{name}");
+
+        // A burn of 12.5 s along R, T, N ten minutes after the state, and an impulse along the state's axes.
+        let read = InitialState::read(&golden(name)).unwrap();
+        let [burn, impulse] = read.manoeuvres.as_slice() else { panic!("{:?}", read.manoeuvres) };
+        let after_s = |time: Epoch| (time - opm.state.time).to_seconds();
+        assert!((after_s(burn.time) - 606.25).abs() < 1e-9 && after_s(impulse.time) == 1800.0, "{name}");
+        assert_eq!((burn.duration_s, impulse.duration_s), (12.5, 0.0), "{name}");
+        assert_eq!((burn.axes, impulse.axes), (ManoeuvreAxes::Rtn, ManoeuvreAxes::Icrs), "{name}");
+        let error_m_s = |dv_m_s: [f64; 3], expected: Vector3<f64>| (Vector3::from(dv_m_s) - expected).norm();
+        assert!(error_m_s(burn.dv_m_s, Vector3::new(0.01, -0.2, 0.03)) < 1e-15, "{name}");
+        // 23 mas of 0.1 m/s between EME2000 and ICRS.
+        let error = error_m_s(impulse.dv_m_s, Vector3::new(0.1, 0.0, -0.05));
+        assert!(error < 2e-8 && (error > 1e-10) == (name == "orekit.opm"), "{name}: {error:e}");
+        assert!((read.drag_m2_kg.unwrap() - 2.5 * 1.1 / 145.0).abs() < 1e-15, "{name}");
+        assert!((read.radiation_m2_kg.unwrap() - 1.32 * 1.3 / 145.0).abs() < 1e-15, "{name}");
     }
 }
 
