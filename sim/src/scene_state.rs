@@ -32,7 +32,7 @@ impl SceneState {
     /// Computes the state of the scene at `time`, with the attitude of frame `number`.
     pub(crate) fn compute_at(simulator: &Simulator, time: Epoch, number: u64) -> Result<Self, SimError> {
         let states = simulator.trajectory.states_at(time);
-        simulator.target.check_separation(&states, number)?;
+        simulator.target.check_separation(simulator.trajectory.relative_path(), &states, number)?;
         let body_from_icrs = simulator.attitude.truth(&states, number);
         let camera_from_icrs = simulator.camera_from_body * body_from_icrs;
         let observer = Observer::new(time, states.chaser.position_km, states.chaser.velocity_km_s)?;

@@ -273,7 +273,7 @@ fn check_separation(
     let step = (schedule.frame_count() / SEPARATIONS as u64) as usize + 1;
     for frame in (0..last).step_by(step).chain([last]) {
         let Some((_, time)) = schedule.frame(frame) else { continue };
-        target.check_separation(&trajectory.states_at(time), frame)?;
+        target.check_separation(trajectory.relative_path(), &trajectory.states_at(time), frame)?;
     }
     Ok(())
 }

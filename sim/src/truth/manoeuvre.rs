@@ -281,7 +281,7 @@ impl ManoeuvreConfig {
     }
 
     /// Returns the error for a time, with its index in the list.
-    pub(crate) fn refused_time(&self, index: usize, expected: &'static str) -> OutOfRange {
+    pub(crate) fn refused_time(&self, index: usize, expected: String) -> OutOfRange {
         OutOfRange::new("orbit.manoeuvres[].time_utc", self.time_utc.clone(), expected).in_entry(index)
     }
 }

@@ -33,16 +33,16 @@ impl Arc {
 }
 
 impl MeanElements {
-    /// Computes the arcs for the orbits of `config` and `manoeuvres`.
+    /// Computes the arcs for the orbits of `config` and its manoeuvres as `executed`.
     ///
     /// # Errors
     /// [`OutOfRange`] for an invalid epoch, or an orbit outside the supported range; [`OutOfRange`] for a
     /// manoeuvre that is out of order, not after the epoch, or results in an unsupported orbit.
-    pub(super) fn new(config: &OrbitConfig, manoeuvres: &[ManoeuvreConfig]) -> Result<Self, OutOfRange> {
+    pub(super) fn new(config: &OrbitConfig, executed: &[ManoeuvreConfig]) -> Result<Self, OutOfRange> {
         let (epoch, chaser, target) = config.initial_elements()?;
         let mut last = Arc { start_s: 0.0, chaser };
         let mut arcs = vec![last];
-        for (index, (manoeuvre, burn)) in manoeuvres.iter().zip(burns(manoeuvres, epoch)?).enumerate() {
+        for (index, (manoeuvre, burn)) in executed.iter().zip(burns(config, executed, epoch)?).enumerate() {
             if burn.duration_s > 0.0 {
                 return Err(OutOfRange::new(
                     format!("orbit.manoeuvres[{index}].duration_s"),

@@ -97,26 +97,33 @@ impl OrbitConfig {
     }
 }
 
-/// Checks manoeuvres and converts their times to seconds since `epoch`.
+/// Checks the planned manoeuvres of an orbit, and returns the `executed` ones with their times in seconds since
+/// `epoch`. The limits of a change of velocity apply to the planned one.
 ///
 /// # Errors
 /// [`OutOfRange`] for a value outside its range, and for a manoeuvre that begins before the epoch or before
 /// the end of the preceding one.
-pub(super) fn burns(manoeuvres: &[ManoeuvreConfig], epoch: Epoch) -> Result<Vec<Burn>, OutOfRange> {
+pub(super) fn burns(
+    orbit: &OrbitConfig,
+    executed: &[ManoeuvreConfig],
+    epoch: Epoch,
+) -> Result<Vec<Burn>, OutOfRange> {
     let mut free_from_s = 0.0;
-    let mut burns = Vec::with_capacity(manoeuvres.len());
-    for (index, manoeuvre) in manoeuvres.iter().enumerate() {
+    let mut burns = Vec::with_capacity(executed.len());
+    for (index, (manoeuvre, executed)) in orbit.manoeuvres.iter().zip(executed).enumerate() {
         manoeuvre.check(index)?;
         let time = manoeuvre.time()?;
         check_covered(format!("orbit.manoeuvres[{index}].time_utc"), &manoeuvre.time_utc, time)?;
-        let start_s = seconds_between(epoch, time) - 0.5 * manoeuvre.duration_s;
-        if start_s <= free_from_s {
-            let expected = "after the orbit's epoch and after the previous manoeuvre";
-            return Err(manoeuvre.refused_time(index, expected));
-        }
         let duration_s = manoeuvre.duration_s;
+        let start_s = seconds_between(epoch, time) - 0.5 * duration_s;
+        if start_s <= free_from_s {
+            let after = if duration_s > 0.0 { "more than half the duration after" } else { "after" };
+            let event =
+                if start_s <= 0.0 { "the orbit's epoch" } else { "the end of the preceding manoeuvre" };
+            return Err(manoeuvre.refused_time(index, format!("a time {after} {event}")));
+        }
         free_from_s = start_s + duration_s;
-        let dv_km_s = Vector3::from(manoeuvre.dv_rtn_m_s) * 1e-3;
+        let dv_km_s = Vector3::from(executed.dv_rtn_m_s) * 1e-3;
         burns.push(Burn { start_s, duration_s, axes: ManoeuvreAxes::Rtn, dv_km_s });
     }
     Ok(burns)

@@ -81,9 +81,9 @@ impl PropagatedStates {
             // The comparison is false for NaN.
             if !(start_s >= free_from_s && duration_s >= 0.0) {
                 return Err(OutOfRange::new(
-                    format!("manoeuvres[{index}]"),
-                    format!("{} for {duration_s} s", format_utc(time)),
-                    "a manoeuvre after the chaser's state and after the preceding manoeuvre",
+                    "trajectory.chaser",
+                    format!("manoeuvre {} at {} for {duration_s} s", index + 1, format_utc(time)),
+                    "a manoeuvre after the chaser's state and after the end of the preceding manoeuvre",
                 ));
             }
             free_from_s = start_s + duration_s;
@@ -100,7 +100,15 @@ pub struct Trajectory {
     epoch: Epoch,
     motion: Motion,
     manoeuvres: Vec<ManoeuvreTruth>,
+    /// Path in a scenario of the value that gives the motion of one spacecraft relative to the other.
+    relative_path: &'static str,
 }
+
+/// Value of [`Trajectory::relative_path`] for configured orbits.
+const RELATIVE_ORBIT: &str = "orbit.relative";
+
+/// Value of [`Trajectory::relative_path`] for files.
+const TARGET_FILE: &str = "trajectory.target";
 
 /// Motion of one kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,7 +131,7 @@ impl Trajectory {
 
     fn from_mean_elements(orbit: &OrbitConfig, seed: u64) -> Result<Self, OutOfRange> {
         let motion = MeanElements::new(orbit, &orbit.executed_manoeuvres(seed))?;
-        Ok(Self { epoch: motion.epoch(), motion: Motion::MeanElements(motion), manoeuvres: Vec::new() }
+        Ok(Self::unmanoeuvred(motion.epoch(), Motion::MeanElements(motion), RELATIVE_ORBIT)
             .with_manoeuvres(&orbit.draws(seed), &orbit.planned_manoeuvres()?))
     }
 
@@ -159,9 +167,9 @@ impl Trajectory {
                     chaser: at_epoch(chaser, "orbit.relative"),
                     target: at_epoch(target, "orbit.target"),
                 };
-                let burns = burns(&orbit.executed_manoeuvres(seed), epoch)?;
+                let burns = burns(orbit, &orbit.executed_manoeuvres(seed), epoch)?;
                 let states = integrate(&initial, config, burns)?;
-                Self { epoch, motion: Motion::Numerical(states), manoeuvres: Vec::new() }
+                Self::unmanoeuvred(epoch, Motion::Numerical(states), RELATIVE_ORBIT)
                     .with_manoeuvres(&orbit.draws(seed), &orbit.planned_manoeuvres()?)
             }
             TrajectorySource::Propagated(propagated, config) => {
@@ -182,19 +190,27 @@ impl Trajectory {
                 };
                 let draws = ManoeuvreDraws { execution: *execution, reports: *reports, seed };
                 let states = integrate(&initial, config, propagated.burns(&draws)?)?;
-                Self { epoch, motion: Motion::Numerical(states), manoeuvres: Vec::new() }
+                Self::unmanoeuvred(epoch, Motion::Numerical(states), TARGET_FILE)
                     .with_manoeuvres(&draws, manoeuvres)
             }
-            TrajectorySource::Sampled(states) => Self {
-                epoch: states.epoch(),
-                motion: Motion::Sampled(states.clone()),
-                manoeuvres: Vec::new(),
-            },
+            TrajectorySource::Sampled(states) => {
+                Self::unmanoeuvred(states.epoch(), Motion::Sampled(states.clone()), TARGET_FILE)
+            }
         };
         for time in schedule.ends().into_iter().flatten() {
             trajectory.check_covers("schedule", time)?;
         }
         Ok(trajectory)
+    }
+
+    fn unmanoeuvred(epoch: Epoch, motion: Motion, relative_path: &'static str) -> Self {
+        Self { epoch, motion, manoeuvres: Vec::new(), relative_path }
+    }
+
+    /// Returns the path in a scenario of the value that gives the motion of one spacecraft relative to the
+    /// other, for messages.
+    pub(crate) fn relative_path(&self) -> &'static str {
+        self.relative_path
     }
 
     fn with_manoeuvres(self, draws: &ManoeuvreDraws, planned: &[PlannedManoeuvre]) -> Self {

@@ -112,3 +112,22 @@ fn reports_are_late_and_differ_from_the_executed_manoeuvres() {
     // Another seed, other errors.
     assert_ne!(executed, fragment.orbit.executed_manoeuvres(fragment.seed + 1));
 }
+
+/// The limit of ±100 m/s is that of the planned manoeuvre: the drawn error may exceed it.
+#[test]
+fn a_manoeuvre_at_the_limit_is_flown_with_the_errors_of_any_seed() {
+    let (fragment, _, schedule) = fragment();
+    let mut orbit = fragment.orbit;
+    orbit.manoeuvres.truncate(1);
+    (orbit.manoeuvres[0].duration_s, orbit.manoeuvres[0].dv_rtn_m_s) = (0.0, [0.0, 100.0, 0.0]);
+    let source = TrajectorySource::MeanElements(orbit.clone());
+    let executed_m_s = |seed| -> f64 {
+        let trajectory = Trajectory::from_source(&source, seed, &schedule).unwrap();
+        trajectory.manoeuvres()[0].executed_dv_rtn_m_s[1]
+    };
+    let beyond = (0..20).filter(|seed| executed_m_s(*seed) > 100.0).count();
+    assert!((1..20).contains(&beyond), "{beyond}");
+    orbit.manoeuvres[0].dv_rtn_m_s[1] = 100.1;
+    let refused = Trajectory::from_source(&TrajectorySource::MeanElements(orbit), 1, &schedule).unwrap_err();
+    assert!(refused.to_string().contains("orbit.manoeuvres[0].dv_rtn_m_s[1] is 100.1"), "{refused}");
+}

@@ -171,15 +171,18 @@ impl Spacecraft {
     }
 
     /// Rejects a camera that, in this frame, is practically at the target's centre or inside the target.
-    pub(crate) fn check_separation(&self, states: &States, frame: u64) -> Result<(), OutOfRange> {
+    /// `path` is that of the relative motion in the scenario.
+    pub(crate) fn check_separation(&self, path: &str, states: &States, frame: u64) -> Result<(), OutOfRange> {
         let (line_of_sight_km, range_m) = (states.line_of_sight_km(), states.range_km() * 1000.0);
-        require("orbit.relative", range_m, "a separation of 1 m or more", |m| m >= 1.0)?;
+        let refused = |expected: &str| {
+            let value = format!("{range_m:.3} m from the target's centre at frame {frame}");
+            Err(OutOfRange::new(path, value, expected))
+        };
+        if range_m.is_nan() || range_m < 1.0 {
+            return refused("a separation of 1 m or more");
+        }
         match self.outline(&-line_of_sight_km, self.attitude(states)) {
-            Some(outline) if outline.holds_camera() => Err(OutOfRange::new(
-                "orbit.relative",
-                format!("{range_m:.3} m from the target's centre at frame {frame}"),
-                "a camera outside the target",
-            )),
+            Some(outline) if outline.holds_camera() => refused("a camera outside the target"),
             _ => Ok(()),
         }
     }

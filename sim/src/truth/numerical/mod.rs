@@ -286,7 +286,9 @@ impl NumericalStates {
             Integration { forces, step_s: config.step_s, origin_s: 0.0, knots: Vec::new() }
                 .run(start, burns, span_s)
                 .map_err(|time_s| {
-                    let value = format!("an orbit that comes below 100 km {time_s:.0} s after the epoch");
+                    let side = if time_s < 0.0 { "before" } else { "after" };
+                    let value =
+                        format!("an orbit that comes below 100 km {:.0} s {side} the epoch", time_s.abs());
                     OutOfRange::new(start.path, value, "an orbit above 100 km until the end of the schedule")
                 })
         };

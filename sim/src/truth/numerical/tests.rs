@@ -30,7 +30,7 @@ fn all_forces() -> NumericalConfig {
 /// Integration without the cache.
 fn integrated(orbit: &OrbitConfig, config: &NumericalConfig, days: f64) -> NumericalStates {
     let epoch = parse_utc(&orbit.epoch_utc).unwrap();
-    let burns = burns(&orbit.manoeuvres, epoch).unwrap();
+    let burns = burns(&orbit, &orbit.manoeuvres, epoch).unwrap();
     NumericalStates::integrate(&initial(orbit), config, &burns, [-MARGIN_S, days * 86_400.0]).unwrap()
 }
 
@@ -210,9 +210,16 @@ fn bad_values_are_refused_by_name() {
     let epoch = parse_utc(&low.epoch_utc).unwrap();
     let compute = |orbit: &OrbitConfig, config: NumericalConfig, days: f64| {
         let last = epoch + hifitime::Duration::from_seconds(days * 86_400.0);
-        NumericalStates::compute(&initial(orbit), &config, vec![], [epoch, last]).unwrap_err().to_string()
+        let ends = [epoch.min(last), epoch.max(last)];
+        NumericalStates::compute(&initial(orbit), &config, vec![], ends).unwrap_err().to_string()
     };
-    let message = compute(&low, NumericalConfig { drag: Some(drag), ..base() }, 5.0);
-    assert!(message.contains("orbit.target") && message.contains("below 100 km"), "{message}");
+    let falling = NumericalConfig { drag: Some(drag), ..base() };
+    let message = compute(&low, falling.clone(), 5.0);
+    assert!(message.contains("orbit.target") && message.contains(" s after the epoch"), "{message}");
+    // An ellipse whose perigee is before the epoch: it is integrated backwards.
+    let mut low = orbit();
+    (low.target.semi_major_axis_km, low.target.eccentricity) = (6_900.0, 0.061);
+    let message = compute(&low, base(), -0.2);
+    assert!(message.contains("below 100 km ") && message.contains(" s before the epoch"), "{message}");
     assert!(compute(&orbit(), base(), 101.0).contains("within 100 days"));
 }
