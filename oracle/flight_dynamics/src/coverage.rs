@@ -5,6 +5,8 @@ use std::fmt;
 use hifitime::Epoch;
 use sim::truth::clock;
 
+use crate::time::TimeSystem;
+
 /// Time span that a file covers, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coverage {
@@ -17,6 +19,34 @@ pub struct Coverage {
 impl Coverage {
     pub(crate) fn contains(&self, time: Epoch) -> bool {
         self.start <= time && time <= self.stop
+    }
+}
+
+/// Rule for the start of a span that follows another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum BorderRule {
+    /// The spans share no more than an instant.
+    NoOverlap,
+    /// The second span begins at the latest where the first one ends.
+    NoGap,
+}
+
+impl BorderRule {
+    /// Returns the expected start of `later`, with a time of `system`, if it breaks the rule.
+    pub(crate) fn broken_by(
+        self,
+        earlier: &Coverage,
+        later: &Coverage,
+        system: TimeSystem,
+    ) -> Option<String> {
+        let (is_broken, start, reason) = match self {
+            Self::NoOverlap => {
+                (later.start < earlier.stop, "a start not before", "segments must not overlap")
+            }
+            Self::NoGap => (later.start > earlier.stop, "a start at", "there must be no gap"),
+        };
+        let end = system.format_time(earlier.stop);
+        is_broken.then(|| format!("{start} {end}, the end of the segment before: {reason}"))
     }
 }
 

@@ -2,63 +2,13 @@
 
 use contract::{Body, Icrs, Rotation};
 use hifitime::Epoch;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
-use sim::truth::{AttitudeFunction, State};
+use nalgebra::{Quaternion, UnitQuaternion, Vector4};
+use sim::truth::{AttitudeFunction, SampledSegment, State, first_node};
 
 use crate::coverage::{Coverage, Uncovered, seconds_between};
-use crate::interpolation::{Interpolation, Method, first_node, hermite, lagrange};
+use crate::interpolation::{Interpolation, Method, lagrange};
 use crate::spk::Spk;
 use crate::tle::Tle;
-
-/// States with a span and an interpolation, ICRS axes.
-#[derive(Debug, Clone)]
-pub(crate) struct OrbitNodes {
-    pub(crate) coverage: Coverage,
-    /// Seconds since the start of the coverage, ascending; at least as many as the interpolation needs.
-    times_s: Vec<f64>,
-    positions_km: Vec<Vector3<f64>>,
-    velocities_km_s: Vec<Vector3<f64>>,
-    interpolation: Interpolation,
-}
-
-impl OrbitNodes {
-    /// Creates a segment; the times of the nodes ascend, and there are as many as the interpolation needs.
-    pub(crate) fn new(
-        coverage: Coverage,
-        interpolation: Interpolation,
-        nodes: impl Iterator<Item = (Epoch, State)>,
-    ) -> Self {
-        let mut segment = Self {
-            coverage,
-            times_s: Vec::new(),
-            positions_km: Vec::new(),
-            velocities_km_s: Vec::new(),
-            interpolation,
-        };
-        for (time, state) in nodes {
-            segment.times_s.push(seconds_between(coverage.start, time));
-            segment.positions_km.push(state.position_km);
-            segment.velocities_km_s.push(state.velocity_km_s);
-        }
-        segment
-    }
-
-    fn state_at(&self, time: Epoch) -> Option<State> {
-        let time_s = seconds_between(self.coverage.start, time);
-        let first = first_node(&self.times_s, self.interpolation.nodes(), time_s);
-        let nodes = first..first + self.interpolation.nodes();
-        let times_s = self.times_s.get(nodes.clone())?;
-        let positions = self.positions_km.get(nodes.clone())?;
-        let velocities = self.velocities_km_s.get(nodes)?;
-        let (position_km, velocity_km_s) = match self.interpolation.method {
-            Method::Hermite => hermite(times_s, positions, velocities, time_s),
-            Method::Lagrange | Method::Linear => {
-                (lagrange(times_s, positions, time_s).0, lagrange(times_s, velocities, time_s).0)
-            }
-        };
-        Some(State { position_km, velocity_km_s })
-    }
-}
 
 /// Motion of one spacecraft, from a file.
 #[derive(Debug, Clone)]
@@ -68,21 +18,22 @@ pub struct OrbitEphemeris {
 
 #[derive(Debug, Clone)]
 enum OrbitSource {
-    /// Segments in order of time, without overlap but for common ends.
-    Nodes(Vec<OrbitNodes>),
+    /// Segments in order of time, without overlap but for common ends, with times in seconds since the start
+    /// of each.
+    Segments(Vec<(Coverage, SampledSegment)>),
     Tle(Box<Tle>),
     Spk(Spk),
 }
 
 impl OrbitEphemeris {
-    pub(crate) fn from_nodes(segments: Vec<OrbitNodes>) -> Self {
-        Self { source: OrbitSource::Nodes(segments) }
+    pub(crate) fn from_segments(segments: Vec<(Coverage, SampledSegment)>) -> Self {
+        Self { source: OrbitSource::Segments(segments) }
     }
 
     /// Spans that are covered, in order of time.
     pub fn coverage(&self) -> Vec<Coverage> {
         match &self.source {
-            OrbitSource::Nodes(segments) => segments.iter().map(|segment| segment.coverage).collect(),
+            OrbitSource::Segments(segments) => segments.iter().map(|(coverage, _)| *coverage).collect(),
             OrbitSource::Tle(tle) => vec![tle.coverage()],
             OrbitSource::Spk(spk) => spk.coverage(),
         }
@@ -95,9 +46,9 @@ impl OrbitEphemeris {
     /// [`Uncovered`] outside the coverage, and in a gap.
     pub fn state_at(&self, time: Epoch) -> Result<State, Uncovered> {
         let state = match &self.source {
-            OrbitSource::Nodes(segments) => {
-                let segment = segments.iter().rev().find(|segment| segment.coverage.contains(time));
-                segment.and_then(|segment| segment.state_at(time))
+            OrbitSource::Segments(segments) => {
+                let segment = segments.iter().rev().find(|(coverage, _)| coverage.contains(time));
+                segment.map(|(coverage, segment)| segment.state_at(seconds_between(coverage.start, time)))
             }
             OrbitSource::Tle(tle) => tle.state_at(time),
             OrbitSource::Spk(spk) => spk.state_at(time),
@@ -155,7 +106,7 @@ impl AttitudeNodes {
 
     fn rotation_at(&self, time: Epoch) -> Option<Rotation<Body, Icrs>> {
         let time_s = seconds_between(self.coverage.start, time);
-        let first = first_node(&self.times_s, self.interpolation.nodes(), time_s);
+        let first = first_node(&self.times_s, self.interpolation.nodes(), time_s, |node_s| *node_s);
         let nodes = first..first + self.interpolation.nodes();
         let times_s = self.times_s.get(nodes.clone())?;
         let quaternions = self.quaternions.get(nodes)?;
@@ -163,7 +114,7 @@ impl AttitudeNodes {
             (Method::Linear, [from_s, to_s], [from, to]) => {
                 along_great_circle(from, to, (time_s - from_s) / (to_s - from_s))
             }
-            _ => lagrange(times_s, quaternions, time_s).0,
+            _ => lagrange(times_s, quaternions, time_s),
         };
         let norm = vector.norm();
         // Nodes far apart: the polynomial passes near zero, where it states no attitude.

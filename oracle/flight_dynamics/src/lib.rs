@@ -39,8 +39,9 @@ mod time;
 mod tle;
 
 pub use ccsds::{
-    Aem, AemSegment, AttitudeDirection, AttitudeNode, Covariance, CovarianceFrame, Header, InitialState,
-    Manoeuvre, Observation, Oem, OemSegment, Opm, SpacecraftParameters, StateNode, Tdm, TdmSegment,
+    Aem, AemSegment, AttitudeDirection, AttitudeNode, BODY_FRAME, CAMERA_FRAME, Covariance, CovarianceFrame,
+    Header, InitialState, Manoeuvre, Observation, Oem, OemSegment, Opm, SpacecraftParameters, StateNode, Tdm,
+    TdmSegment,
 };
 pub use coverage::{Coverage, Uncovered};
 pub use document::Notation;

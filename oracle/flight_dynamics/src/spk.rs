@@ -18,7 +18,7 @@ use hifitime::Epoch;
 use nalgebra::Vector3;
 use sim::truth::{State, clock};
 
-use crate::coverage::Coverage;
+use crate::coverage::{BorderRule, Coverage};
 use crate::frame::ReferenceFrame;
 use crate::time::TimeSystem;
 
@@ -48,6 +48,8 @@ pub struct Spk {
 #[derive(Debug, Clone, Copy)]
 struct KernelSegment {
     summary: SPKSummaryRecord,
+    /// Number of the segment in the file, from 1.
+    number: usize,
     /// Record of summaries, and index in it.
     block: Option<usize>,
     index: usize,
@@ -82,6 +84,9 @@ impl Spk {
     /// See [`Spk::read`].
     pub fn parse(path: &Path, bytes: &[u8], target: Option<i32>) -> Result<Self, FileError> {
         let broken = |reason: String| FileError::format(path, "SPK", reason);
+        if bytes.is_empty() {
+            return Err(broken("it is empty".to_owned()));
+        }
         if !bytes.starts_with(b"DAF/SPK") {
             return Err(broken("it does not begin with `DAF/SPK`".to_owned()));
         }
@@ -110,33 +115,30 @@ impl Spk {
                 return Err(FileError::value(path, FileLocation::Whole, "body", value, expected));
             }
         };
-        summaries.retain(|(summary, ..)| summary.target_id == target);
         let mut segments = Vec::with_capacity(summaries.len());
-        for (summary, block, index) in summaries {
-            let segment = KernelSegment::new(path, summary, block, index)?;
-            segments.push(segment);
-        }
-        segments.sort_by_key(|segment: &KernelSegment| segment.coverage.start);
-        for pair in segments.windows(2) {
-            if let [earlier, later] = pair
-                && later.coverage.start < earlier.coverage.stop
-            {
-                let place = FileLocation::Row(later.index as u64);
-                let expected = format!(
-                    "a start not before {}: segments of a body must not overlap",
-                    TimeSystem::Tdb.format_time(earlier.coverage.stop)
-                );
-                let value = TimeSystem::Tdb.format_time(later.coverage.start);
-                return Err(FileError::value(path, place, "start of the segment, TDB", value, expected));
+        for (number, (summary, block, index)) in (1..).zip(summaries) {
+            if summary.target_id == target {
+                segments.push(KernelSegment::new(path, summary, number, (block, index))?);
             }
         }
+        segments.sort_by_key(|segment: &KernelSegment| segment.coverage.start);
+        check_borders(path, &segments, BorderRule::NoOverlap)?;
         let spk = Self { kernel: Arc::new(kernel), target, segments: segments.into() };
         for segment in spk.segments.iter() {
             for time in [segment.coverage.start, segment.coverage.stop] {
-                spk.evaluate(segment, time).map_err(broken)?;
+                spk.evaluate(segment, time)
+                    .map_err(|reason| broken(format!("{}: {reason}", segment.name())))?;
             }
         }
         Ok(spk)
+    }
+
+    /// Checks that each segment begins where the segment before ends.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] with segment and body; `path` is that of the file.
+    pub fn check_no_gaps(&self, path: &Path) -> Result<(), FileError> {
+        check_borders(path, &self.segments, BorderRule::NoGap)
     }
 
     /// NAIF's number of the body.
@@ -171,11 +173,11 @@ impl Spk {
             DafDataType::Type21ExtendedModifiedDifferenceArray => {
                 self.state::<ModifiedDiffType21<'_>>(segment, et_s)
             }
-            other => Err(format!("segments of type {other:?} are not read")),
+            other => Err(format!("its type {other:?} is not read")),
         }?;
         let is_finite =
             state.position_km.iter().chain(&state.velocity_km_s).all(|component| component.is_finite());
-        if is_finite { Ok(state) } else { Err("a segment has states that are not finite".to_owned()) }
+        if is_finite { Ok(state) } else { Err("its states are not finite".to_owned()) }
     }
 
     fn state<'a, S>(&'a self, segment: &KernelSegment, et_s: f64) -> Result<State, String>
@@ -190,27 +192,41 @@ impl Spk {
     }
 }
 
+/// Checks the start of each segment of a body against the end of the segment before.
+fn check_borders(path: &Path, segments: &[KernelSegment], rule: BorderRule) -> Result<(), FileError> {
+    for pair in segments.windows(2) {
+        let [earlier, later] = pair else { continue };
+        if let Some(expected) = rule.broken_by(&earlier.coverage, &later.coverage, TimeSystem::Tdb) {
+            let field = format!("start of {}, TDB", later.name());
+            let value = TimeSystem::Tdb.format_time(later.coverage.start);
+            return Err(FileError::value(path, FileLocation::Whole, field, value, expected));
+        }
+    }
+    Ok(())
+}
+
 impl KernelSegment {
     fn new(
         path: &Path,
         summary: SPKSummaryRecord,
-        block: Option<usize>,
-        index: usize,
+        number: usize,
+        (block, index): (Option<usize>, usize),
     ) -> Result<Self, FileError> {
-        let place = FileLocation::Row(index as u64);
-        let refused = |field: &str, value: i32, expected: String| {
-            Err(FileError::value(path, place, field, value, expected))
+        let name = name_of(number, summary.target_id);
+        let refused = |property: &str, value: String, expected: String| {
+            let field = format!("{property} of {name}");
+            Err(FileError::value(path, FileLocation::Whole, field, value, expected))
         };
         if summary.center_id != EARTH {
-            return refused("centre of the segment", summary.center_id, format!("{EARTH}, the Earth"));
+            return refused("centre", summary.center_id.to_string(), format!("{EARTH}, the Earth"));
         }
         if summary.frame_id != J2000 {
             let expected = format!("{J2000}, J2000 ({})", ReferenceFrame::Icrf.code());
-            return refused("frame of the segment", summary.frame_id, expected);
+            return refused("frame", summary.frame_id.to_string(), expected);
         }
         if !TYPES.contains(&summary.data_type_i) {
             let types = TYPES.map(|number| number.to_string()).join(", ");
-            return refused("type of the segment", summary.data_type_i, format!("one of {types}"));
+            return refused("type", summary.data_type_i.to_string(), format!("one of {types}"));
         }
         let time = |et_s: f64| {
             // 1e10 s is 317 years: outside the range of times that are read.
@@ -218,15 +234,22 @@ impl KernelSegment {
         };
         match (time(summary.start_epoch_et_s), time(summary.end_epoch_et_s)) {
             (Some(start), Some(stop)) if start < stop => {
-                Ok(Self { summary, block, index, coverage: Coverage { start, stop } })
+                Ok(Self { summary, number, block, index, coverage: Coverage { start, stop } })
             }
-            _ => Err(FileError::value(
-                path,
-                place,
-                "span of the segment, s of TDB since J2000.0",
+            _ => refused(
+                "span, s of TDB since J2000.0,",
                 format!("{} to {}", summary.start_epoch_et_s, summary.end_epoch_et_s),
-                "a start before the end, both within 1e10 s",
-            )),
+                "a start before the end, both within 1e10 s".to_owned(),
+            ),
         }
     }
+
+    /// Name in messages.
+    fn name(&self) -> String {
+        name_of(self.number, self.summary.target_id)
+    }
+}
+
+fn name_of(number: usize, body: i32) -> String {
+    format!("segment {number} of the file (body {body})")
 }

@@ -22,7 +22,7 @@ pub(crate) fn attitude_profile(
 ) -> Result<Option<AttitudeProfile>, Failure> {
     let Guidance::Aem { file } = &config.guidance else { return Ok(None) };
     let path = Path::new(file);
-    let ephemeris = Aem::read(path)?.ephemeris();
+    let ephemeris = Aem::read_of_body(path)?.ephemeris();
     if let Some(schedule) = schedule {
         let coverage = ephemeris.coverage();
         for frame in 0..schedule.frame_count() {

@@ -182,12 +182,15 @@ impl TrajectoryConfig {
             Self::Spk { chaser, target, chaser_id, target_id } => [(chaser, chaser_id), (target, target_id)]
                 .map(|(path, id)| {
                     let path = Path::new(path);
-                    sampled(path, &Spk::read(path, *id)?.into(), needed)
+                    let spk = Spk::read(path, *id)?;
+                    spk.check_no_gaps(path)?;
+                    sampled(path, &spk.into(), needed)
                 }),
         };
         let (epoch, chaser) = chaser?;
         let (_, target) = target?;
-        Ok(TrajectorySource::Sampled(Arc::new(SampledStates::new(epoch, chaser, target)?)))
+        let states = SampledStates::new(epoch, chaser, target).map_err(|error| error.under("trajectory"))?;
+        Ok(TrajectorySource::Sampled(Arc::new(states)))
     }
 }
 
@@ -253,34 +256,11 @@ fn seconds(from: Epoch, to: Epoch) -> f64 {
 
 /// Reads an orbit ephemeris message.
 fn oem(path: &Path, needed: Option<NeededTimes>) -> Result<(Epoch, SampledOrbit), Failure> {
-    let oem = Oem::read(path)?;
+    let oem = Oem::read_without_gaps(path)?;
     let coverage = oem.ephemeris().coverage();
     check_coverage(path, needed, &coverage)?;
     let epoch = origin(needed, &coverage);
-    let segments = oem.segments.iter().map(|segment| {
-        let stated = segment.interpolation.unwrap_or(flight_dynamics::Interpolation::ORBIT_DEFAULT);
-        let samples: Vec<StateSample> = segment
-            .icrs_states()
-            .map(|(time, state)| StateSample { time_s: seconds(epoch, time), state })
-            .collect();
-        // The file's first and last state may lie within the span by the rounding of its times.
-        let within = |time_s: f64| {
-            let (first, last) = (samples.first(), samples.last());
-            time_s.clamp(first.map_or(time_s, |s| s.time_s), last.map_or(time_s, |s| s.time_s))
-        };
-        SampledSegment {
-            interpolation: match stated.method {
-                flight_dynamics::Method::Hermite => Interpolation::Hermite,
-                flight_dynamics::Method::Lagrange | flight_dynamics::Method::Linear => {
-                    Interpolation::Lagrange
-                }
-            },
-            degree: stated.degree,
-            usable_s: [segment.coverage.start, segment.coverage.stop]
-                .map(|time| within(seconds(epoch, time))),
-            samples,
-        }
-    });
+    let segments = oem.segments.iter().map(|segment| segment.sampled_since(epoch));
     let orbit = SampledOrbit::new(segments.collect()).map_err(|error| in_file(path, &error))?;
     Ok((epoch, orbit))
 }

@@ -46,7 +46,9 @@ pub use orbit::{
 };
 pub use planets::{ApparentPlanet, Planet};
 pub use relative::RelativeElements;
-pub use sampled::{Interpolation, MAX_DEGREE, SampledOrbit, SampledSegment, SampledStates, StateSample};
+pub use sampled::{
+    Interpolation, MAX_DEGREE, SampledOrbit, SampledSegment, SampledStates, StateSample, first_node,
+};
 pub use schedule::{GroupConfig, MAX_FRAMES, Schedule, Sequence};
 pub use states::{OrbitConfig, States};
 pub use table::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};

@@ -54,7 +54,8 @@ pub struct SampledSegment {
 }
 
 impl SampledSegment {
-    /// Number of samples of a polynomial.
+    /// Number of samples of a polynomial, which is the smallest of a segment. A Hermite polynomial of even
+    /// degree gets the next odd degree.
     fn window(&self) -> usize {
         match self.interpolation {
             Interpolation::Lagrange => self.degree + 1,
@@ -111,18 +112,32 @@ impl SampledSegment {
         ))
     }
 
-    /// State at an instant between the first and the last sample.
-    fn state_at(&self, time_s: f64) -> State {
+    /// Returns the state at an instant between the first and the last sample, in seconds since the epoch. The
+    /// samples are as many as the polynomial needs, and ascend.
+    pub fn state_at(&self, time_s: f64) -> State {
         let window = self.window();
-        // The window is centred on the interval that contains the instant, as far as the ends permit.
-        let after = self.samples.partition_point(|sample| sample.time_s <= time_s);
-        let first = after.saturating_sub(window.div_ceil(2)).min(self.samples.len() - window);
+        let first = first_node(&self.samples, window, time_s, |sample| sample.time_s);
         let samples = self.samples.get(first..first + window).unwrap_or_default();
         match self.interpolation {
             Interpolation::Lagrange => lagrange(samples, time_s),
             Interpolation::Hermite => hermite(samples, time_s),
         }
     }
+}
+
+/// Returns the index of the first of `count` nodes around `time_s`: half of them on either side, or for an odd
+/// number the nearest node in the middle; at an end, the nodes of the end. The times of the nodes ascend.
+pub fn first_node<T>(nodes: &[T], count: usize, time_s: f64, time_of: impl Fn(&T) -> f64) -> usize {
+    let after = nodes.partition_point(|node| time_of(node) <= time_s);
+    let neighbours = after.checked_sub(1).and_then(|before| Some((nodes.get(before)?, nodes.get(after)?)));
+    let middle = match neighbours {
+        // The nearer of the two neighbours, made the last node of the lower half.
+        Some((before, next)) if count % 2 == 1 => {
+            after + usize::from(time_of(next) - time_s < time_s - time_of(before))
+        }
+        _ => after,
+    };
+    middle.saturating_sub(count.div_ceil(2)).min(nodes.len().saturating_sub(count))
 }
 
 /// Checks that a state is that of a bound orbit about the Earth: a file in metres has other numbers.
@@ -326,6 +341,26 @@ mod tests {
             .collect();
         let usable_s = [samples[0].time_s, samples[samples.len() - 1].time_s];
         SampledSegment { interpolation, degree, usable_s, samples }
+    }
+
+    #[test]
+    fn the_nodes_lie_around_the_time() {
+        let times: Vec<f64> = (0..10).map(f64::from).collect();
+        for (count, time, first) in [
+            (4, 4.2, 3),
+            (4, 4.0, 3),
+            (4, 0.5, 0),
+            (4, 9.0, 6),
+            (4, 8.5, 6),
+            (2, 4.2, 4),
+            (2, 9.0, 8),
+            (2, 0.0, 0),
+            (3, 4.2, 3),
+            (3, 4.7, 4),
+            (10, 5.0, 0),
+        ] {
+            assert_eq!(first_node(&times, count, time, |time| *time), first, "{count} nodes at {time}");
+        }
     }
 
     #[test]

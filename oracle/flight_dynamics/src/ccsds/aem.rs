@@ -7,14 +7,14 @@ use files::{FileError, FileLocation};
 use hifitime::Epoch;
 
 use super::common::{
-    Header, Times, check_center, check_count, check_order, read_coverage, read_interpolation,
-    read_time_system, write_coverage, write_message,
+    EphemerisSegment, Header, NO_DESIGNATOR, Times, check_center, read_coverage, read_interpolation,
+    read_segments, read_time_system, write_coverage, write_message,
 };
 use crate::coverage::Coverage;
 use crate::document::{self, Document, Kind, Notation, Record, Segment, Writer};
 use crate::ephemeris::{AttitudeEphemeris, AttitudeNodes};
 use crate::frame::{FRAME_NAMES, FileAxes, ReferenceFrame};
-use crate::interpolation::Interpolation;
+use crate::interpolation::{Interpolation, Method};
 use crate::time::TimeSystem;
 
 /// Keywords of the metadata of versions 1 and 2.
@@ -40,6 +40,12 @@ const METADATA: [&str; 17] = [
 
 /// Types that are read: those with a quaternion. Rates beside it are not used.
 const TYPES: [&str; 4] = ["QUATERNION", "QUATERNION/DERIVATIVE", "QUATERNION/RATE", "QUATERNION/ANGVEL"];
+
+/// Name of the frame of the spacecraft's body in written messages.
+pub const BODY_FRAME: &str = "SC_BODY_1";
+
+/// Name of the frame of the camera in written messages.
+pub const CAMERA_FRAME: &str = "INSTRUMENT_1";
 
 /// Quaternions with norms further from 1 than this are refused; five decimals give 1e-5.
 const NORM_TOLERANCE: f64 = 1e-4;
@@ -72,7 +78,7 @@ pub struct AemSegment {
     pub object_id: String,
     /// Celestial frame.
     pub frame: ReferenceFrame,
-    /// Name of the body frame, as SC_BODY_1.
+    /// Name of the frame of the spacecraft: [`BODY_FRAME`], [`CAMERA_FRAME`], or another one of these kinds.
     pub body_frame: String,
     /// Direction of the quaternions.
     pub direction: AttitudeDirection,
@@ -96,9 +102,10 @@ pub struct Aem {
 }
 
 impl AttitudeNode {
-    /// Creates a node of a segment with the axes ICRF and the direction [`AttitudeDirection::BodyFromFrame`].
-    pub fn from_rotation(time: Epoch, body_from_icrs: &Rotation<Body, Icrs>) -> Self {
-        let [w, x, y, z] = body_from_icrs.wxyz();
+    /// Creates a node of a segment with the axes ICRF and the direction [`AttitudeDirection::BodyFromFrame`],
+    /// from the attitude of the body or of the camera.
+    pub fn from_rotation<F>(time: Epoch, attitude: &Rotation<F, Icrs>) -> Self {
+        let [w, x, y, z] = attitude.wxyz();
         Self { time, q1_q2_q3_qc: [-x, -y, -z, w] }
     }
 
@@ -126,6 +133,23 @@ impl Aem {
         document::read(path, Kind::Aem, |document| Self::from_document(path, document))
     }
 
+    /// Reads a file with the attitude of the spacecraft's body, and not of an instrument.
+    ///
+    /// # Errors
+    /// Those of [`Aem::read`]; [`FileError::Value`] with line and field of an instrument's frame.
+    pub fn read_of_body(path: &Path) -> Result<Self, FileError> {
+        document::read(path, Kind::Aem, |document| {
+            let aem = Self::from_document(path, document)?;
+            for (segment, read) in document.segments.iter().zip(&aem.segments) {
+                if !is_body_frame(&read.body_frame) {
+                    let entry = segment.metadata.require(body_keyword(&segment.metadata))?;
+                    return Err(segment.metadata.refuse(entry, "SC_BODY_1 or another frame of the body"));
+                }
+            }
+            Ok(aem)
+        })
+    }
+
     /// [`Aem::read`] for text in memory; `path` is for messages.
     ///
     /// # Errors
@@ -136,31 +160,7 @@ impl Aem {
 
     fn from_document(path: &Path, document: &Document<'_>) -> Result<Self, FileError> {
         let header = Header::read(&document.header)?;
-        let segments: Vec<AemSegment> = document
-            .segments
-            .iter()
-            .map(|segment| AemSegment::read(path, segment))
-            .collect::<Result<_, _>>()?;
-        for (segment, read) in document.segments.iter().zip(&segments) {
-            let Some(first) = segments.first() else { break };
-            for (keyword, value, first) in [
-                ("OBJECT_NAME", &read.object_name, &first.object_name),
-                (segment_body_keyword(segment), &read.body_frame, &first.body_frame),
-            ] {
-                if !value.eq_ignore_ascii_case(first) {
-                    let entry = segment.metadata.require(keyword)?;
-                    return Err(segment.metadata.refuse(entry, format!("{first}, as in the first segment")));
-                }
-            }
-        }
-        let lines = document.segments.iter().map(|segment| segment.metadata.line);
-        let spans: Vec<_> = segments.iter().map(|segment| segment.coverage).zip(lines).collect();
-        let system =
-            |index: usize| segments.get(index).map_or(TimeSystem::Utc, |segment| segment.time_system);
-        check_order(path, system, &spans)?;
-        for (segment, line) in segments.iter().zip(spans.iter().map(|(_, line)| *line)) {
-            check_count(path, line, segment.polynomial(), segment.attitudes.len())?;
-        }
+        let segments = read_segments(path, document)?;
         Ok(Self { header, segments })
     }
 
@@ -170,7 +170,7 @@ impl Aem {
     pub fn ephemeris(&self) -> AttitudeEphemeris {
         let segments = self.segments.iter().map(|segment| {
             let nodes = segment.attitudes.iter().map(|node| (node.time, node.body_from_icrs(segment)));
-            AttitudeNodes::new(segment.coverage, segment.polynomial(), nodes)
+            AttitudeNodes::new(segment.coverage, segment.applied_interpolation(), nodes)
         });
         AttitudeEphemeris::new(segments.collect())
     }
@@ -192,11 +192,21 @@ impl Aem {
     }
 }
 
-/// Returns the keyword that names the body.
-fn segment_body_keyword(segment: &Segment<'_>) -> &'static str {
-    let is_frame = |keyword| {
-        segment.metadata.find(keyword).is_some_and(|entry| ReferenceFrame::parse(entry.value).is_some())
-    };
+/// Returns true for the name of a frame of the spacecraft's body.
+fn is_body_frame(name: &str) -> bool {
+    let name = name.to_ascii_uppercase();
+    name.starts_with("SC_BODY") || name.starts_with("SC BODY")
+}
+
+/// Returns true for the name of a frame of an instrument.
+fn is_instrument_frame(name: &str) -> bool {
+    name.to_ascii_uppercase().starts_with("INSTRUMENT")
+}
+
+/// Returns the keyword that names the frame of the spacecraft.
+fn body_keyword(metadata: &Record<'_>) -> &'static str {
+    let is_frame =
+        |keyword| metadata.find(keyword).is_some_and(|entry| ReferenceFrame::parse(entry.value).is_some());
     if is_frame("REF_FRAME_B") { "REF_FRAME_A" } else { "REF_FRAME_B" }
 }
 
@@ -212,11 +222,10 @@ fn read_frames(metadata: &Record<'_>) -> Result<(ReferenceFrame, String, Attitud
         },
     };
     let body = |entry: &document::Entry<'_>| {
-        let name = entry.value.to_ascii_uppercase();
-        if name.starts_with("SC_BODY") || name.starts_with("SC BODY") {
+        if is_body_frame(entry.value) || is_instrument_frame(entry.value) {
             Ok(entry.value.to_owned())
         } else {
-            Err(metadata.refuse(entry, "SC_BODY_1 or another frame SC_BODY of the spacecraft"))
+            Err(metadata.refuse(entry, "SC_BODY_1, INSTRUMENT_1 or another frame of these kinds"))
         }
     };
     let (frame, body_frame, frame_is_a) =
@@ -236,17 +245,7 @@ fn read_frames(metadata: &Record<'_>) -> Result<(ReferenceFrame, String, Attitud
     Ok((frame, body_frame, direction))
 }
 
-impl AemSegment {
-    fn polynomial(&self) -> Interpolation {
-        use crate::interpolation::Method;
-        match self.interpolation.unwrap_or(Interpolation::ATTITUDE_DEFAULT) {
-            Interpolation { method: Method::Hermite, degree } => {
-                Interpolation { method: Method::Lagrange, degree }
-            }
-            stated => stated,
-        }
-    }
-
+impl EphemerisSegment for AemSegment {
     fn read(path: &Path, segment: &Segment<'_>) -> Result<Self, FileError> {
         let metadata = &segment.metadata;
         let type_entry = metadata.require("ATTITUDE_TYPE")?;
@@ -291,6 +290,56 @@ impl AemSegment {
             time_system,
             coverage,
             interpolation: read_interpolation(metadata, "INTERPOLATION_METHOD")?,
+            attitudes,
+        })
+    }
+
+    fn names(&self, metadata: &Record<'_>) -> Vec<(&'static str, &str)> {
+        vec![("OBJECT_NAME", self.object_name.as_str()), (body_keyword(metadata), self.body_frame.as_str())]
+    }
+
+    fn coverage(&self) -> Coverage {
+        self.coverage
+    }
+
+    fn time_system(&self) -> TimeSystem {
+        self.time_system
+    }
+
+    fn applied_interpolation(&self) -> Interpolation {
+        match self.interpolation.unwrap_or(Interpolation::ATTITUDE_DEFAULT) {
+            Interpolation { method: Method::Hermite, degree } => {
+                Interpolation { method: Method::Lagrange, degree }
+            }
+            stated => stated,
+        }
+    }
+
+    fn record_count(&self) -> usize {
+        self.attitudes.len()
+    }
+}
+
+impl AemSegment {
+    /// Creates a segment of attitudes, axes ICRF, direction [`AttitudeDirection::BodyFromFrame`] and UTC, with
+    /// turns at constant rates between them.
+    ///
+    /// `None` unless the attitudes ascend in time and are at least two.
+    pub fn from_attitudes(object_name: &str, body_frame: &str, attitudes: Vec<AttitudeNode>) -> Option<Self> {
+        let ([first, ..], [.., last]) = (attitudes.as_slice(), attitudes.as_slice()) else { return None };
+        let coverage = Coverage { start: first.time, stop: last.time };
+        if coverage.start >= coverage.stop || !attitudes.is_sorted_by(|a, b| a.time < b.time) {
+            return None;
+        }
+        Some(Self {
+            object_name: object_name.to_owned(),
+            object_id: NO_DESIGNATOR.to_owned(),
+            frame: ReferenceFrame::Icrf,
+            body_frame: body_frame.to_owned(),
+            direction: AttitudeDirection::BodyFromFrame,
+            time_system: TimeSystem::Utc,
+            coverage,
+            interpolation: Some(Interpolation::ATTITUDE_DEFAULT),
             attitudes,
         })
     }

@@ -5,8 +5,8 @@ use std::path::Path;
 use files::{FileError, FileLocation};
 use hifitime::{Duration, Epoch};
 
-use crate::coverage::Coverage;
-use crate::document::{Record, Writer};
+use crate::coverage::{BorderRule, Coverage};
+use crate::document::{Document, Record, Segment, Writer};
 use crate::frame::{FRAME_NAMES, ReferenceFrame};
 use crate::interpolation::{Interpolation, MAX_DEGREE, Method};
 use crate::time::TimeSystem;
@@ -14,6 +14,9 @@ use crate::time::TimeSystem;
 /// Tolerance between the span that a message states and its first and last record: writers round times to
 /// milliseconds.
 const ROUNDING: Duration = Duration::from_parts(0, 1_000_000);
+
+/// International designator of spacecraft that have none.
+pub(crate) const NO_DESIGNATOR: &str = "UNKNOWN";
 
 /// Header of a message.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,40 +173,72 @@ impl Times<'_> {
     }
 }
 
-/// Checks that the spans of segments ascend and share no more than an instant. Each has the line of its
-/// metadata.
-pub(crate) fn check_order(
+/// Segment of an ephemeris message, of an orbit or of an attitude.
+pub(crate) trait EphemerisSegment: Sized {
+    /// Reads the segment.
+    fn read(path: &Path, segment: &Segment<'_>) -> Result<Self, FileError>;
+
+    /// Returns the names that all segments of a message share, with their keywords in `metadata`.
+    fn names(&self, metadata: &Record<'_>) -> Vec<(&'static str, &str)>;
+
+    /// Returns the span within which the records may be used.
+    fn coverage(&self) -> Coverage;
+
+    /// Returns the time system.
+    fn time_system(&self) -> TimeSystem;
+
+    /// Returns the interpolation that applies, stated or not.
+    fn applied_interpolation(&self) -> Interpolation;
+
+    /// Returns the number of records.
+    fn record_count(&self) -> usize;
+}
+
+/// Reads the segments of an ephemeris message: of one spacecraft, in order of time, sharing no more than an
+/// instant, each with enough records for its interpolation.
+pub(crate) fn read_segments<S: EphemerisSegment>(
     path: &Path,
-    system_of: impl Fn(usize) -> TimeSystem,
-    spans: &[(Coverage, u64)],
+    document: &Document<'_>,
+) -> Result<Vec<S>, FileError> {
+    let read = document.segments.iter().map(|segment| S::read(path, segment));
+    let segments: Vec<S> = read.collect::<Result<_, _>>()?;
+    let with_metadata = || segments.iter().zip(document.segments.iter().map(|segment| &segment.metadata));
+    let Some((first, first_metadata)) = with_metadata().next() else { return Ok(segments) };
+    let first_names = first.names(first_metadata);
+    for (segment, metadata) in with_metadata() {
+        for ((keyword, name), (_, first)) in segment.names(metadata).into_iter().zip(&first_names) {
+            if !name.eq_ignore_ascii_case(first) {
+                let expected = format!("{first}, as in the first segment");
+                return Err(metadata.refuse(metadata.require(keyword)?, expected));
+            }
+        }
+        check_count(path, metadata.line, segment.applied_interpolation(), segment.record_count())?;
+    }
+    check_borders(path, document, &segments, BorderRule::NoOverlap)?;
+    Ok(segments)
+}
+
+/// Checks the start of each segment of an ephemeris message against the end of the segment before.
+pub(crate) fn check_borders<S: EphemerisSegment>(
+    path: &Path,
+    document: &Document<'_>,
+    segments: &[S],
+    rule: BorderRule,
 ) -> Result<(), FileError> {
-    for (index, pair) in spans.windows(2).enumerate() {
-        if let [(earlier, _), (later, line)] = pair
-            && later.start < earlier.stop
-        {
-            let system = system_of(index + 1);
-            return Err(FileError::value(
-                path,
-                FileLocation::Line(*line),
-                "usable span of the segment",
-                format!("from {}", system.format_time(later.start)),
-                format!(
-                    "a start not before {}, the end of the segment before: segments must not overlap",
-                    system.format_time(earlier.stop)
-                ),
-            ));
+    for (pair, next) in segments.windows(2).zip(document.segments.iter().skip(1)) {
+        let [earlier, later] = pair else { continue };
+        let system = later.time_system();
+        if let Some(expected) = rule.broken_by(&earlier.coverage(), &later.coverage(), system) {
+            let place = FileLocation::Line(next.metadata.line);
+            let value = format!("from {}", system.format_time(later.coverage().start));
+            return Err(FileError::value(path, place, "usable span of the segment", value, expected));
         }
     }
     Ok(())
 }
 
 /// Checks that a segment has enough records for its interpolation.
-pub(crate) fn check_count(
-    path: &Path,
-    line: u64,
-    interpolation: Interpolation,
-    count: usize,
-) -> Result<(), FileError> {
+fn check_count(path: &Path, line: u64, interpolation: Interpolation, count: usize) -> Result<(), FileError> {
     if count >= interpolation.nodes() {
         return Ok(());
     }

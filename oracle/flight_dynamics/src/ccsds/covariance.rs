@@ -2,6 +2,7 @@
 
 use files::FileError;
 use hifitime::Epoch;
+use nalgebra::Matrix6;
 
 use crate::document::{COVARIANCE_KEYWORDS, Notation, Record, Writer};
 use crate::frame::{FRAME_NAMES, ReferenceFrame};
@@ -57,6 +58,16 @@ fn unit_of(keyword: &str) -> &'static str {
 }
 
 impl Covariance {
+    /// Creates the covariance of position, km, and velocity, km/s, along the axes ICRF.
+    pub fn from_icrf(time: Epoch, matrix: &Matrix6<f64>) -> Self {
+        let lower = (0..6).flat_map(|row| (0..=row).map(move |column| (row, column)));
+        let mut lower_triangle = [0.0; 21];
+        for (number, index) in lower_triangle.iter_mut().zip(lower) {
+            *number = matrix.get(index).copied().unwrap_or_default();
+        }
+        Self { time, frame: CovarianceFrame::Reference(ReferenceFrame::Icrf), lower_triangle }
+    }
+
     /// Reads a covariance. Without a frame of its own it has the frame before it, at first that of the
     /// states.
     pub(crate) fn read(

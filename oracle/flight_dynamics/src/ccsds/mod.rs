@@ -8,7 +8,7 @@ mod oem;
 mod opm;
 mod tdm;
 
-pub use aem::{Aem, AemSegment, AttitudeDirection, AttitudeNode};
+pub use aem::{Aem, AemSegment, AttitudeDirection, AttitudeNode, BODY_FRAME, CAMERA_FRAME};
 pub use common::Header;
 pub use covariance::{Covariance, CovarianceFrame};
 pub use initial_state::InitialState;

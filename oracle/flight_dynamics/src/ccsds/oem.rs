@@ -5,16 +5,16 @@ use std::path::Path;
 use files::FileError;
 use hifitime::Epoch;
 use nalgebra::{Matrix6, Vector3};
-use sim::truth::State;
+use sim::truth::{Interpolation as SampleInterpolation, SampledSegment, State, StateSample};
 
 use super::common::{
-    Header, Times, check_center, check_count, check_order, read_coverage, read_frame, read_interpolation,
-    read_time_system, write_coverage, write_message,
+    EphemerisSegment, Header, NO_DESIGNATOR, Times, check_borders, check_center, read_coverage, read_frame,
+    read_interpolation, read_segments, read_time_system, write_coverage, write_message,
 };
 use super::covariance::{Covariance, CovarianceFrame};
-use crate::coverage::Coverage;
+use crate::coverage::{BorderRule, Coverage, seconds_between};
 use crate::document::{self, Document, Kind, Notation, Record, Segment, Writer};
-use crate::ephemeris::{OrbitEphemeris, OrbitNodes};
+use crate::ephemeris::OrbitEphemeris;
 use crate::frame::ReferenceFrame;
 use crate::interpolation::{Interpolation, Method};
 use crate::time::TimeSystem;
@@ -116,6 +116,18 @@ impl Oem {
         document::read(path, Kind::Oem, |document| Self::from_document(path, document))
     }
 
+    /// Reads a file whose segments follow each other without a gap.
+    ///
+    /// # Errors
+    /// Those of [`Oem::read`]; [`FileError::Value`] with the line of the segment after a gap.
+    pub fn read_without_gaps(path: &Path) -> Result<Self, FileError> {
+        document::read(path, Kind::Oem, |document| {
+            let oem = Self::from_document(path, document)?;
+            check_borders(path, document, &oem.segments, BorderRule::NoGap)?;
+            Ok(oem)
+        })
+    }
+
     /// [`Oem::read`] for text in memory; `path` is for messages.
     ///
     /// # Errors
@@ -126,87 +138,18 @@ impl Oem {
 
     fn from_document(path: &Path, document: &Document<'_>) -> Result<Self, FileError> {
         let header = Header::read(&document.header)?;
-        let segments: Vec<OemSegment> = document
-            .segments
-            .iter()
-            .map(|segment| OemSegment::read(path, segment))
-            .collect::<Result<_, _>>()?;
-        for (segment, read) in document.segments.iter().zip(&segments) {
-            let first = segments.first().map_or("", |first| first.object_name.as_str());
-            if !read.object_name.eq_ignore_ascii_case(first) {
-                let entry = segment.metadata.require("OBJECT_NAME")?;
-                return Err(segment.metadata.refuse(entry, format!("{first}, as in the first segment")));
-            }
-        }
-        let lines = document.segments.iter().map(|segment| segment.metadata.line);
-        let spans: Vec<_> = segments.iter().map(|segment| segment.coverage).zip(lines).collect();
-        let system =
-            |index: usize| segments.get(index).map_or(TimeSystem::Utc, |segment| segment.time_system);
-        check_order(path, system, &spans)?;
-        for (segment, line) in segments.iter().zip(spans.iter().map(|(_, line)| *line)) {
-            let interpolation = segment.interpolation.unwrap_or(Interpolation::ORBIT_DEFAULT);
-            check_count(path, line, interpolation, segment.states.len())?;
-        }
+        let segments = read_segments(path, document)?;
         Ok(Self { header, segments })
-    }
-
-    /// Creates the message of one segment from states and their covariances, ICRS axes and UTC: for example
-    /// the estimates of a navigator. Covariances are those of position and velocity in km and km/s.
-    ///
-    /// `states` ascend in time and are at least two; fewer than eight have no interpolation of degree 7.
-    /// `None` if they are fewer, or do not ascend.
-    pub fn from_states(
-        header: Header,
-        object_name: &str,
-        object_id: &str,
-        states: &[(Epoch, State, Option<Matrix6<f64>>)],
-    ) -> Option<Self> {
-        let ([(start, ..), ..], [.., (stop, ..)]) = (states, states) else { return None };
-        if !states.is_sorted_by(|(a, ..), (b, ..)| a < b) || start >= stop {
-            return None;
-        }
-        let frame = CovarianceFrame::Reference(ReferenceFrame::Icrf);
-        let covariance = |time: Epoch, matrix: &Matrix6<f64>| {
-            let lower = (0..6).flat_map(|row| (0..=row).map(move |column| (row, column)));
-            let mut lower_triangle = [0.0; 21];
-            for (number, index) in lower_triangle.iter_mut().zip(lower) {
-                *number = matrix.get(index).copied().unwrap_or_default();
-            }
-            Covariance { time, frame, lower_triangle }
-        };
-        let nodes = states.iter().map(|(time, state, _)| StateNode {
-            time: *time,
-            position_km: state.position_km,
-            velocity_km_s: state.velocity_km_s,
-        });
-        let segment = OemSegment {
-            object_name: object_name.to_owned(),
-            object_id: object_id.to_owned(),
-            frame: ReferenceFrame::Icrf,
-            time_system: TimeSystem::Utc,
-            coverage: Coverage { start: *start, stop: *stop },
-            interpolation: (states.len() >= 8)
-                .then_some(Interpolation { method: Method::Lagrange, degree: 7 }),
-            states: nodes.collect(),
-            covariances: states
-                .iter()
-                .filter_map(|(time, _, matrix)| Some(covariance(*time, matrix.as_ref()?)))
-                .collect(),
-        };
-        Some(Self { header, segments: vec![segment] })
     }
 
     /// Returns the motion that the message describes, ICRS axes, interpolated as it states; without a
     /// statement by a Hermite polynomial of degree 7. Each node is turned to ICRS before the interpolation.
     pub fn ephemeris(&self) -> OrbitEphemeris {
-        let segments = self.segments.iter().map(|segment| {
-            OrbitNodes::new(
-                segment.coverage,
-                segment.interpolation.unwrap_or(Interpolation::ORBIT_DEFAULT),
-                segment.icrs_states(),
-            )
-        });
-        OrbitEphemeris::from_nodes(segments.collect())
+        let segments = self
+            .segments
+            .iter()
+            .map(|segment| (segment.coverage, segment.sampled_since(segment.coverage.start)));
+        OrbitEphemeris::from_segments(segments.collect())
     }
 
     /// Returns the message in keyword-value notation, version 2.0.
@@ -226,12 +169,7 @@ impl Oem {
     }
 }
 
-impl OemSegment {
-    /// Returns times and states in ICRS axes.
-    pub fn icrs_states(&self) -> impl Iterator<Item = (Epoch, State)> + '_ {
-        self.states.iter().map(|node| (node.time, node.to_icrs(self.frame)))
-    }
-
+impl EphemerisSegment for OemSegment {
     fn read(path: &Path, segment: &Segment<'_>) -> Result<Self, FileError> {
         let metadata = &segment.metadata;
         metadata.check_keywords(&METADATA)?;
@@ -274,6 +212,90 @@ impl OemSegment {
             states,
             covariances,
         })
+    }
+
+    fn names(&self, _: &Record<'_>) -> Vec<(&'static str, &str)> {
+        vec![("OBJECT_NAME", self.object_name.as_str())]
+    }
+
+    fn coverage(&self) -> Coverage {
+        self.coverage
+    }
+
+    fn time_system(&self) -> TimeSystem {
+        self.time_system
+    }
+
+    fn applied_interpolation(&self) -> Interpolation {
+        self.interpolation.unwrap_or(Interpolation::ORBIT_DEFAULT)
+    }
+
+    fn record_count(&self) -> usize {
+        self.states.len()
+    }
+}
+
+impl OemSegment {
+    /// Creates a segment of states and their covariances, ICRS axes and UTC. Covariances are those of
+    /// position and velocity in km and km/s.
+    ///
+    /// `None` unless the states ascend in time and are at least two and as many as the interpolation needs.
+    pub fn from_states(
+        object_name: &str,
+        interpolation: Interpolation,
+        states: &[(Epoch, State, Option<Matrix6<f64>>)],
+    ) -> Option<Self> {
+        let ([(start, ..), ..], [.., (stop, ..)]) = (states, states) else { return None };
+        let ascends = states.is_sorted_by(|(a, ..), (b, ..)| a < b) && start < stop;
+        if !ascends || states.len() < interpolation.nodes() {
+            return None;
+        }
+        let nodes = states.iter().map(|(time, state, _)| StateNode {
+            time: *time,
+            position_km: state.position_km,
+            velocity_km_s: state.velocity_km_s,
+        });
+        Some(Self {
+            object_name: object_name.to_owned(),
+            object_id: NO_DESIGNATOR.to_owned(),
+            frame: ReferenceFrame::Icrf,
+            time_system: TimeSystem::Utc,
+            coverage: Coverage { start: *start, stop: *stop },
+            interpolation: Some(interpolation),
+            states: nodes.collect(),
+            covariances: states
+                .iter()
+                .filter_map(|(time, _, matrix)| Some(Covariance::from_icrf(*time, matrix.as_ref()?)))
+                .collect(),
+        })
+    }
+
+    /// Returns the states in ICRS axes with their interpolation, times in seconds since `epoch`.
+    pub fn sampled_since(&self, epoch: Epoch) -> SampledSegment {
+        let Interpolation { method, degree } = self.applied_interpolation();
+        let samples: Vec<StateSample> = self
+            .states
+            .iter()
+            .map(|node| StateSample {
+                time_s: seconds_between(epoch, node.time),
+                state: node.to_icrs(self.frame),
+            })
+            .collect();
+        // The message's first and last state may lie within the span by the rounding of its times.
+        let within = |time_s: f64| {
+            let (first, last) = (samples.first(), samples.last());
+            time_s.max(first.map_or(time_s, |s| s.time_s)).min(last.map_or(time_s, |s| s.time_s))
+        };
+        SampledSegment {
+            interpolation: match method {
+                Method::Hermite => SampleInterpolation::Hermite,
+                Method::Lagrange | Method::Linear => SampleInterpolation::Lagrange,
+            },
+            degree,
+            usable_s: [self.coverage.start, self.coverage.stop]
+                .map(|time| within(seconds_between(epoch, time))),
+            samples,
+        }
     }
 
     fn write(&self, writer: &mut Writer) {

@@ -45,6 +45,10 @@ pub(crate) fn parse<T>(
     convert: impl FnOnce(&Document<'_>) -> Result<T, FileError>,
 ) -> Result<T, FileError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if text.trim().is_empty() {
+        let expected = format!("`{} = …` or XML", kind.version_keyword());
+        return Err(FileError::value(path, FileLocation::Line(1), "content", "empty", expected));
+    }
     let checked = |document: Document<'_>| {
         let keyword = kind.version_keyword();
         let version = document.header.require(keyword)?;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use files::FileError;
+use files::{FileError, FileLocation};
 use roxmltree::{Node, ParsingOptions};
 
 use super::kind::Kind;
@@ -19,7 +19,28 @@ const MAX_DEPTH: u32 = 8;
 pub(super) fn tree<'a>(path: &Path, text: &'a str, kind: Kind) -> Result<roxmltree::Document<'a>, FileError> {
     let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     roxmltree::Document::parse_with_options(text, options)
-        .map_err(|error| FileError::format(path, kind.name(), format!("XML: {error}")))
+        .map_err(|error| malformed(path, text, kind, &error))
+}
+
+/// Returns the error of text that is not XML. The library has no position for a text that ends early.
+fn malformed(path: &Path, text: &str, kind: Kind, error: &roxmltree::Error) -> FileError {
+    use roxmltree::Error;
+    let refused = |line: u64, field: &str, value: String, expected: String| {
+        FileError::value(path, FileLocation::Line(line), field, value, expected)
+    };
+    match error {
+        Error::UnclosedRootNode | Error::UnexpectedEndOfStream => {
+            let expected = format!("</{}> before the end of the file: it is truncated", kind.element());
+            refused(text.lines().count().max(1) as u64, "end of file", "missing".to_owned(), expected)
+        }
+        Error::NoRootNode | Error::DtdDetected | Error::NodesLimitReached => {
+            FileError::format(path, kind.name(), format!("XML: {error}"))
+        }
+        error => {
+            let expected = format!("well-formed XML of a complete {}", kind.name());
+            refused(u64::from(error.pos().row), "XML", error.to_string(), expected)
+        }
+    }
 }
 
 /// Numbers of lines by position in the text.

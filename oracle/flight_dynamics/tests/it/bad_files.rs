@@ -300,13 +300,57 @@ fn segments_that_overlap_are_refused() {
     );
 }
 
-#[test]
-fn a_time_in_a_gap_is_not_covered() {
+/// Message whose first segment ends ten seconds before the second one begins.
+fn oem_with_a_gap() -> String {
     let text = OEM.replace(
         "T00:01:00 7129.0 60.0 440.0 -0.4 1.0 7.4\nMETA",
         "T00:00:50 7129.0 60.0 440.0 -0.4 1.0 7.4\nMETA",
     );
-    let text = with(&text, 0, "STOP_TIME = 2012-04-23T00:01:00", "STOP_TIME = 2012-04-23T00:00:50");
+    with(&text, 0, "STOP_TIME = 2012-04-23T00:01:00", "STOP_TIME = 2012-04-23T00:00:50")
+}
+
+/// Returns the message of a file with the given content.
+fn message_of_file<T>(content: &[u8], read: impl Fn(&Path) -> Result<T, files::FileError>) -> String {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), content).unwrap();
+    read(file.path()).err().map_or("accepted".to_owned(), |error| error.to_string())
+}
+
+#[test]
+fn a_gap_is_refused_with_its_line_where_none_is_permitted() {
+    assert_message(
+        &message_of_file(oem_with_a_gap().as_bytes(), Oem::read_without_gaps),
+        ", line 17: `usable span of the segment` is `from 2012-04-23T00:01:00.000000000`, expected a start at \
+         2012-04-23T00:00:50.000000000, the end of the segment before: there must be no gap",
+    );
+    assert_eq!(message_of_file(OEM.as_bytes(), Oem::read_without_gaps), "accepted");
+}
+
+#[test]
+fn the_frame_of_an_instrument_is_refused_where_that_of_the_body_is_needed() {
+    let text = AEM.replace("SC_BODY_1", "INSTRUMENT_1");
+    assert_eq!(message_of_file(text.as_bytes(), Aem::read), "accepted");
+    assert_message(
+        &message_of_file(text.as_bytes(), Aem::read_of_body),
+        ", line 8: `REF_FRAME_B` is `INSTRUMENT_1`, expected SC_BODY_1 or another frame of the body",
+    );
+    assert_eq!(message_of_file(AEM.as_bytes(), Aem::read_of_body), "accepted");
+}
+
+#[test]
+fn an_empty_file_is_refused_as_empty() {
+    let file = Path::new("file");
+    for text in ["", " \n\n", "\u{feff}"] {
+        let expected = ", line 1: `content` is `empty`, expected `CCSDS_OEM_VERS = …` or XML";
+        assert_message(&message(Oem::parse(file, text)), expected);
+    }
+    assert_message(&message(Tle::parse(file, " \n")), "`number of lines` is `0`, expected 2 lines");
+    assert_message(&message(Spk::parse(file, b"", None)), "not a readable SPK file: it is empty");
+}
+
+#[test]
+fn a_time_in_a_gap_is_not_covered() {
+    let text = oem_with_a_gap();
     let ephemeris = Oem::parse(Path::new("file"), &text).unwrap().ephemeris();
     assert_eq!(ephemeris.coverage().len(), 2);
     let at = |second: &str| {
@@ -355,7 +399,11 @@ fn every_truncation_is_refused_or_leaves_the_segments_whole() {
 fn a_bad_aem_is_refused_by_line_field_and_value() {
     for (from, to, parts) in [
         ("EME2000", "ITRF", ", line 7: `REF_FRAME_A` is `ITRF`, expected ICRF, GCRF, EME2000 or TEME"),
-        ("SC_BODY_1", "INSTRUMENT", ", line 8: `REF_FRAME_B` is `INSTRUMENT`, expected SC_BODY_1"),
+        (
+            "SC_BODY_1",
+            "ACTUATOR_1",
+            ", line 8: `REF_FRAME_B` is `ACTUATOR_1`, expected SC_BODY_1, INSTRUMENT_1",
+        ),
         ("SC_BODY_1", "ICRF", ", line 8: `REF_FRAME_B` is `ICRF`, expected SC_BODY_1"),
         ("A2B", "AB", ", line 9: `ATTITUDE_DIR` is `AB`, expected A2B or B2A"),
         ("= TAI", "= UT1", ", line 10: `TIME_SYSTEM` is `UT1`"),
@@ -465,6 +513,22 @@ fn bad_kernels_are_refused() {
         "not a readable SPK file: it does not begin with",
     );
     assert_message(&message(Spk::parse(file, b"DAF/SPK ", None)), "not a readable SPK file");
+    // The first summary of a kernel of CSPICE: two times of eight bytes, then body, centre, frame and type of
+    // four bytes each, after the record's 24 bytes.
+    let kernel = std::fs::read(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../golden/flight_dynamics/spice-type9.bsp"),
+    )
+    .unwrap();
+    for (offset, value, parts) in [
+        (4, 0_i32, "`centre of segment 1 of the file (body -200)` is `0`, expected 399, the Earth"),
+        (8, 17, "`frame of segment 1 of the file (body -200)` is `17`, expected 1, J2000"),
+        (12, 5, "`type of segment 1 of the file (body -200)` is `5`, expected one of 1, 2, 3"),
+    ] {
+        let mut changed = kernel.clone();
+        let place = 1024 + 24 + 16 + offset;
+        changed[place..place + 4].copy_from_slice(&value.to_le_bytes());
+        assert_message(&message(Spk::parse(file, &changed, None)), parts);
+    }
     let mut zeros = vec![0; 4096];
     zeros[..8].copy_from_slice(b"DAF/SPK ");
     assert_message(&message(Spk::parse(file, &zeros, None)), "not a readable SPK file");
@@ -475,6 +539,7 @@ fn bad_xml_is_refused_with_its_line() {
     let file = Path::new("file");
     let xml = Oem::parse(file, OEM).unwrap().to_xml();
     let line_of = |part: &str| 1 + xml[..xml.find(part).unwrap()].matches('\n').count();
+    let lines = xml.lines().count();
     for (from, to, parts) in [
         ("EME2000", "ITRF", format!(", line {}: `REF_FRAME` is `ITRF`", line_of("<REF_FRAME>"))),
         (
@@ -483,9 +548,16 @@ fn bad_xml_is_refused_with_its_line() {
             format!(", line {}: `X` is `7130 [m]`, expected the unit km", line_of(">7130<")),
         ),
         (">7130<", ">NaN<", format!(", line {}: `X` is `NaN`, expected a finite number", line_of(">7130<"))),
-        ("</body>", "", "not a readable OEM file: XML: ".to_owned()),
+        ("</body>", "", format!(", line {}: `XML` is `expected 'body' tag, not 'oem'", lines)),
         ("<oem ", "<!DOCTYPE x [<!ENTITY a \"b\">]><oem ", "not a readable OEM file: XML: ".to_owned()),
-        ("stateVector>", "state>", "not a readable OEM file: XML: ".to_owned()),
+        (
+            "stateVector>",
+            "state>",
+            format!(
+                ", line {}: `XML` is `expected 'state' tag, not 'stateVector'",
+                line_of("</stateVector>")
+            ),
+        ),
         ("version=\"2.0\"", "version=\"9\"", ", line 2: `CCSDS_OEM_VERS` is `9`".to_owned()),
         (
             "<X_DOT units=\"km/s\">0</X_DOT>",
@@ -496,6 +568,26 @@ fn bad_xml_is_refused_with_its_line() {
         assert_message(&message(Oem::parse(file, &with(&xml, 0, from, to))), &parts);
     }
     assert_message(&message(Aem::parse(file, &xml)), "its root element is `oem`, expected `aem`");
+}
+
+/// Every cut of an XML file is refused with the line at which it ends; the reader notices some cuts only at
+/// the beginning of the last element.
+#[test]
+fn truncated_xml_is_refused_with_its_last_line() {
+    let xml = Oem::parse(Path::new("file"), OEM).unwrap().to_xml();
+    for end in (xml.find("<header>").unwrap()..xml.trim_end().len()).filter(|end| xml.is_char_boundary(*end))
+    {
+        let cut = &xml[..end];
+        let message = message(Oem::parse(Path::new("file"), cut));
+        let line = message.strip_prefix(", line ").and_then(|rest| rest.split(':').next());
+        let line: usize = line.unwrap_or_else(|| panic!("{message}")).parse().unwrap();
+        let last = cut.lines().count();
+        assert!(line.abs_diff(last) <= 1, "{message} of {last} lines");
+    }
+    assert_message(
+        &message(Oem::parse(Path::new("file"), &xml[..xml.find("<X_DOT").unwrap()])),
+        "`end of file` is `missing`, expected </oem> before the end of the file: it is truncated",
+    );
 }
 
 #[test]

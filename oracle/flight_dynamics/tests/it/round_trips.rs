@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use boresight_flight_dynamics::{
-    Aem, AemSegment, AttitudeDirection, AttitudeNode, Covariance, CovarianceFrame, Coverage, Header,
-    Interpolation, Manoeuvre, Method, Notation, Observation, Oem, OemSegment, Opm, ReferenceFrame,
+    Aem, AemSegment, AttitudeDirection, AttitudeNode, CAMERA_FRAME, Covariance, CovarianceFrame, Coverage,
+    Header, Interpolation, Manoeuvre, Method, Notation, Observation, Oem, OemSegment, Opm, ReferenceFrame,
     SpacecraftParameters, StateNode, Tdm, TdmSegment, TimeSystem,
 };
 use contract::{Direction, Rotation};
@@ -160,6 +160,24 @@ impl InverseAsBody for Rotation<contract::Body, contract::Icrs> {
 }
 
 #[test]
+fn attitudes_of_a_camera_come_back_as_those_of_an_instrument() {
+    let rotation = |k: u32| -> Rotation<contract::CameraFrame, contract::Icrs> {
+        Rotation::from_rotation_vector(Vector3::new(0.1, -0.7, 0.02 * f64::from(k)))
+    };
+    let nodes = |range: std::ops::Range<u32>| -> Vec<AttitudeNode> {
+        range.map(|k| AttitudeNode::from_rotation(time(10.0 * f64::from(k)), &rotation(k))).collect()
+    };
+    let segment = AemSegment::from_attitudes("CHASER", CAMERA_FRAME, nodes(0..4)).unwrap();
+    let written = Aem { header: header(), segments: vec![segment] };
+    for notation in NOTATIONS {
+        assert_eq!(Aem::parse(Path::new("file"), &written.to_text(notation)).unwrap(), written);
+    }
+    assert_eq!(AemSegment::from_attitudes("CHASER", CAMERA_FRAME, nodes(0..1)), None);
+    let reversed = nodes(0..4).into_iter().rev().collect();
+    assert_eq!(AemSegment::from_attitudes("CHASER", CAMERA_FRAME, reversed), None);
+}
+
+#[test]
 fn attitudes_between_nodes_lie_on_the_shortest_turn_or_the_polynomial() {
     let rotation =
         |seconds: f64| Rotation::from_rotation_vector(Vector3::new(0.0, 0.0, 3.0 + 0.01 * seconds));
@@ -300,7 +318,9 @@ fn states_and_covariances_of_a_navigator_become_a_message() {
             (time, sim::truth::State { position_km, velocity_km_s }, (k % 4 == 0).then_some(matrix))
         })
         .collect();
-    let oem = Oem::from_states(header(), "CHASER", "UNKNOWN", &states).unwrap();
+    let degree_7 = Interpolation { method: Method::Hermite, degree: 7 };
+    let of_states = |states: &[_]| OemSegment::from_states("TARGET", degree_7, states);
+    let oem = Oem { header: header(), segments: vec![of_states(&states).unwrap()] };
     let read = Oem::parse(Path::new("file"), &oem.to_kvn()).unwrap();
     assert_eq!(read, oem);
     assert_eq!((read.segments[0].states.len(), read.segments[0].covariances.len()), (9, 3));
@@ -310,6 +330,6 @@ fn states_and_covariances_of_a_navigator_become_a_message() {
         (1.0 / 3.0, 1.0 / 8.0, 1.0 / 11.0)
     );
     let reversed: Vec<_> = states.iter().rev().cloned().collect();
-    assert!(Oem::from_states(header(), "CHASER", "UNKNOWN", &reversed).is_none());
-    assert!(Oem::from_states(header(), "CHASER", "UNKNOWN", &states[..1]).is_none());
+    assert!(of_states(&reversed).is_none());
+    assert!(of_states(&states[..4]).is_some() && of_states(&states[..3]).is_none());
 }

@@ -94,7 +94,11 @@ pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result
     source.check_part("far_range", scenario.far_range.check())?;
     scenario.score.check().map_err(|error| source.out_of_range(&error))?;
     scenario.check_orbit().map_err(|error| source.out_of_range(&error))?;
-    Simulator::new(&scenario.simulation()?, &source.folder).map_err(|error| source.explain(error))
+    let simulation = scenario.simulation().map_err(|failure| match failure {
+        Failure::Contract(error) => source.explain(error.into()),
+        failure => failure,
+    })?;
+    Simulator::new(&simulation, &source.folder).map_err(|error| source.explain(error))
 }
 
 /// A star list in the form of its file, and in the form passed to a pipeline.
