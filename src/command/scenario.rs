@@ -101,8 +101,8 @@ fn camera(name: &str, output: &Output) -> Result<(), Failure> {
     output.answer(&json!({ "name": name, "toml": camera.text }), camera.text.trim_end().to_owned())
 }
 
-/// Checks a scenario. A mistake in it gives the negative result; a file that cannot be read is a failure
-/// instead.
+/// Checks a scenario. A mistake in it, or in a file that it names, gives the negative result; a scenario that
+/// cannot be read is a failure instead.
 fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Answer, Failure> {
     let checked = ScenarioSource::read(scenario).and_then(|source| {
         let prepared = source.prepare(Options::default())?;
@@ -113,7 +113,7 @@ fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Ans
         Ok((prepared.summary(), prepared.warnings()))
     });
     let ((mut document, mut text), warnings) = match checked {
-        Err(mistake @ Failure::Toml(_)) => {
+        Err(mistake @ (Failure::Toml(_) | Failure::File(_) | Failure::Simulation(_))) => {
             let document = json!({ "scenario": scenario, "ok": false, "error": mistake.to_string() });
             output.answer(&document, mistake.explain())?;
             return Ok(Answer::No);

@@ -192,6 +192,16 @@ impl Answer {
         self
     }
 
+    /// Asserts that `scenario check` found a mistake, with a message that contains these parts.
+    pub(crate) fn found(self, parts: &[&str]) -> Self {
+        assert_eq!(self.status, Some(1), "{}", self.stderr);
+        let message = self.stdout.replace("\n  | ", " ");
+        for part in parts {
+            assert!(message.contains(part), "`{part}` in\n{message}");
+        }
+        self
+    }
+
     /// Returns the JSON document on stdout; fails if stdout contains anything else.
     pub(crate) fn json(&self) -> Value {
         let document = serde_json::from_str(&self.stdout);
