@@ -182,6 +182,7 @@ fn row(truth: &Truth, time: Epoch, answer: Answer) -> Result<NavigationRow, Fail
         position_sigma_m: None,
         velocity_error_m_s: None,
         velocity_sigma_m_s: None,
+        state_correlations: None,
         true_elements_m: elements.into(),
         elements_error_m: None,
         elements_sigma_m: None,
@@ -204,6 +205,7 @@ fn row(truth: &Truth, time: Epoch, answer: Answer) -> Result<NavigationRow, Fail
     row.velocity_error_m_s = Some(three(&error, 3));
     row.position_sigma_m = Some(three(&sigmas, 0));
     row.velocity_sigma_m_s = Some(three(&sigmas, 3));
+    row.state_correlations = Some(NavigationRow::correlations(covariance));
     row.elements_error_m = Some(elements_error.into());
     row.elements_sigma_m = Some(estimate.elements_covariance.sigmas().into());
     row.nees_state = nees(&error, covariance);

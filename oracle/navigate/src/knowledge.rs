@@ -263,7 +263,7 @@ fn truncation(scenario: &FarRangeScenario) -> Vec<SlowError> {
 }
 
 /// Returns the period of the osculating orbit of a state, s (vis-viva equation).
-fn orbital_period_s(state: &State) -> f64 {
+pub(crate) fn orbital_period_s(state: &State) -> f64 {
     let inverse_axis = 2.0 / state.position_km.norm() - state.velocity_km_s.norm_squared() / EARTH_GM_KM3_S2;
     TAU / (EARTH_GM_KM3_S2 * inverse_axis * inverse_axis * inverse_axis).sqrt()
 }

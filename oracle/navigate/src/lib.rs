@@ -26,6 +26,7 @@ mod navigator_choice;
 mod result;
 mod row;
 mod score;
+mod target_orbit;
 mod truth;
 
 pub use bound::{BoundAt, BoundReport, bound_of};
@@ -39,3 +40,4 @@ pub use navigator_choice::NavigatorChoice;
 pub use result::{FIGURES_FILE, NavigationResult, TABLE_FILE};
 pub use row::{NavigationRow, read_navigation, tables};
 pub use score::{Axis, MeasurementUse, NavigationScore};
+pub use target_orbit::{TargetOrbit, TargetState};

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use files::{AtomicFile, Failure, FileError, write_csv};
+use files::{AtomicFile, Failure, FileError, FileLocation, write_csv};
 use serde::{Deserialize, Serialize};
 
 use crate::row::NavigationRow;
@@ -14,6 +14,9 @@ pub const TABLE_FILE: &str = "navigation.csv";
 
 /// Name of the file of figures.
 pub const FIGURES_FILE: &str = "navigation.json";
+
+/// Largest file of figures that is read.
+const MAX_BYTES: u64 = 1 << 24;
 
 /// Result of a navigator on a campaign.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -41,6 +44,39 @@ pub struct NavigationResult {
 }
 
 impl NavigationResult {
+    /// Reads `navigation.json` of a directory; the rows are empty.
+    ///
+    /// # Errors
+    /// [`FileError`] for a file that cannot be read, or is not such a result.
+    pub fn read_figures(directory: &Path) -> Result<Self, FileError> {
+        let path = directory.join(FIGURES_FILE);
+        let text = sim::regular_file::read_text(&path, MAX_BYTES).map_err(|source| FileError::Io {
+            path: path.clone(),
+            doing: "read",
+            source,
+        })?;
+        serde_json::from_str(&text).map_err(|error| FileError::Value {
+            path,
+            place: FileLocation::Line(error.line() as u64),
+            field: "JSON".to_owned(),
+            value: error.to_string(),
+            expected: "the figures of a navigator".to_owned(),
+        })
+    }
+
+    /// Checks that the estimates in `directory` are of the run with this hash.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] with both hashes.
+    pub fn check_run(&self, directory: &Path, hash: &str) -> Result<(), FileError> {
+        if self.hash == hash {
+            return Ok(());
+        }
+        let path = directory.join(FIGURES_FILE);
+        let expected = format!("{hash}, the hash of the run: estimates of this run");
+        Err(FileError::value(&path, FileLocation::Whole, "hash", &self.hash, expected))
+    }
+
     /// Writes `navigation.csv` and `navigation.json` into a directory, which is created if necessary.
     ///
     /// # Errors

@@ -2,8 +2,34 @@
 
 use std::path::Path;
 
-use files::{CsvLine, CsvReader, FieldDeclaration, FileError, Table, parse_utc, table};
+use files::{CsvLine, CsvReader, CsvRow, FieldDeclaration, FileError, Table, optional, parse_utc, table};
 use hifitime::Epoch;
+use nalgebra::{Matrix6, Vector6};
+
+/// Columns of the correlations: the lower triangle without its diagonal, row by row, of position and velocity
+/// along R, T, N.
+const CORRELATIONS: [&str; 15] = [
+    "rho_t_r",
+    "rho_n_r",
+    "rho_n_t",
+    "rho_v_r_r",
+    "rho_v_r_t",
+    "rho_v_r_n",
+    "rho_v_t_r",
+    "rho_v_t_t",
+    "rho_v_t_n",
+    "rho_v_t_v_r",
+    "rho_v_n_r",
+    "rho_v_n_t",
+    "rho_v_n_n",
+    "rho_v_n_v_r",
+    "rho_v_n_v_t",
+];
+
+/// Returns the indices of the lower triangle without its diagonal, row by row.
+fn below_diagonal() -> impl Iterator<Item = (usize, usize)> {
+    (0..6).flat_map(|row| (0..row).map(move |column| (row, column)))
+}
 
 table! {
     /// A row of `navigation.csv`. Axes are those of the target; the orbit is that of the chaser with respect
@@ -26,6 +52,8 @@ table! {
         velocity_error_m_s: Option<[f64; 3]> = ["error_v_r_m_s", "error_v_t_m_s", "error_v_n_m_s"],
         /// standard deviation of the velocity along R, T, N, m/s
         velocity_sigma_m_s: Option<[f64; 3]> = ["sigma_v_r_m_s", "sigma_v_t_m_s", "sigma_v_n_m_s"],
+        /// correlations of the errors of position and velocity
+        state_correlations: Option<[f64; 15]> = optional(CORRELATIONS),
         /// true mean relative elements, m
         true_elements_m: [f64; 6] =
             ["true_a_da_m", "true_a_dlambda_m", "true_a_dex_m", "true_a_dey_m", "true_a_dix_m", "true_a_diy_m"],
@@ -55,6 +83,35 @@ impl NavigationRow {
         parse_utc(&self.time_utc).ok()
     }
 
+    /// Returns the error of position, m, and velocity, m/s; `None` without an estimate.
+    pub(crate) fn state_error(&self) -> Option<Vector6<f64>> {
+        let ([r, t, n], [vr, vt, vn]) = self.position_error_m.zip(self.velocity_error_m_s)?;
+        Some(Vector6::new(r, t, n, vr, vt, vn))
+    }
+
+    /// Returns the covariance of position, m, and velocity, m/s, along R, T, N; `None` without an estimate or
+    /// its correlations.
+    pub(crate) fn state_covariance(&self) -> Option<Matrix6<f64>> {
+        let ([r, t, n], [vr, vt, vn]) = self.position_sigma_m.zip(self.velocity_sigma_m_s)?;
+        let sigmas = Vector6::new(r, t, n, vr, vt, vn);
+        let mut correlations = Matrix6::identity();
+        for ((row, column), correlation) in below_diagonal().zip(self.state_correlations?) {
+            (correlations[(row, column)], correlations[(column, row)]) = (correlation, correlation);
+        }
+        Some(correlations.component_mul(&(sigmas * sigmas.transpose())))
+    }
+
+    /// Returns the correlations of a covariance in the order of the columns.
+    pub(crate) fn correlations(covariance: &Matrix6<f64>) -> [f64; 15] {
+        let sigmas = covariance.diagonal().map(f64::sqrt);
+        let correlations = covariance.component_div(&(sigmas * sigmas.transpose()));
+        let mut listed = [0.0; 15];
+        for (number, index) in listed.iter_mut().zip(below_diagonal()) {
+            *number = correlations[index];
+        }
+        listed
+    }
+
     /// Returns the true distance between chaser and target, m.
     pub fn true_range_m(&self) -> f64 {
         let [r, t, n] = self.true_position_m;
@@ -79,11 +136,18 @@ impl NavigationRow {
 /// # Errors
 /// [`FileError`] with line and column of the first invalid cell.
 pub fn read_navigation(path: &Path) -> Result<Vec<NavigationRow>, FileError> {
-    CsvReader::open::<NavigationRow>(path)?.read_rows(|row, _: Option<&NavigationRow>| {
-        let read = NavigationRow::read(row)?;
-        parse_utc(&read.time_utc).map_err(|expected| row.error("time_utc", expected))?;
-        Ok(read)
-    })
+    CsvReader::open::<NavigationRow>(path)?.read_rows(|row, _| read_row(row))
+}
+
+/// [`read_navigation`] with the line of each row; a table without rows is an error.
+pub(crate) fn read_navigation_lines(path: &Path) -> Result<Vec<(u64, NavigationRow)>, FileError> {
+    CsvReader::open::<NavigationRow>(path)?.read_all(|row, _| read_row(row))
+}
+
+fn read_row(row: &CsvRow<'_>) -> Result<NavigationRow, FileError> {
+    let read = NavigationRow::read(row)?;
+    parse_utc(&read.time_utc).map_err(|expected| row.error("time_utc", expected))?;
+    Ok(read)
 }
 
 /// Returns the columns of the table of this crate, by file name.

@@ -187,6 +187,7 @@ mod tests {
             position_sigma_m: error.map(|_| [1.0, 10.0, 1.0]),
             velocity_error_m_s: error.map(|_| [0.0; 3]),
             velocity_sigma_m_s: error.map(|_| [1.0; 3]),
+            state_correlations: None,
             true_elements_m: [0.0; 6],
             elements_error_m: error.map(|_| [0.0; 6]),
             elements_sigma_m: error.map(|_| [1.0; 6]),

@@ -43,15 +43,7 @@ impl Truth {
     /// Returns position, m, and velocity in the rotating frame, m/s, of the chaser in the target's R, T, N.
     pub(crate) fn state(&self, time: Epoch) -> Vector6<f64> {
         let states = self.trajectory.states_at(time);
-        let rtn_from_icrs = states.target.rtn_from_icrs();
-        let position: Vector3<f64> =
-            rtn_from_icrs.rotate(&(states.chaser.position_km - states.target.position_km)) * 1000.0;
-        let inertial =
-            rtn_from_icrs.rotate(&(states.chaser.velocity_km_s - states.target.velocity_km_s)) * 1000.0;
-        let (r, v) = (&states.target.position_km, &states.target.velocity_km_s);
-        let rate = Vector3::new(0.0, 0.0, r.cross(v).norm() / r.norm_squared());
-        let velocity = inertial - rate.cross(&position);
-        Vector6::new(position.x, position.y, position.z, velocity.x, velocity.y, velocity.z)
+        relative_state(&states.chaser, &states.target)
     }
 
     /// Returns the mean relative elements: those of the trajectory if it has mean elements, otherwise those
@@ -74,4 +66,19 @@ impl Truth {
         };
         Ok(between(&mean(states.chaser)?, &mean(states.target)?))
     }
+}
+
+/// Returns position, m, and velocity in the rotating frame, m/s, of the chaser in the target's R, T, N.
+pub(crate) fn relative_state(chaser: &sim::truth::State, target: &sim::truth::State) -> Vector6<f64> {
+    let rtn_from_icrs = target.rtn_from_icrs();
+    let position: Vector3<f64> = rtn_from_icrs.rotate(&(chaser.position_km - target.position_km)) * 1000.0;
+    let inertial = rtn_from_icrs.rotate(&(chaser.velocity_km_s - target.velocity_km_s)) * 1000.0;
+    let velocity = inertial - rotation_rate(target).cross(&position);
+    Vector6::new(position.x, position.y, position.z, velocity.x, velocity.y, velocity.z)
+}
+
+/// Returns the angular velocity of the R, T, N axes of a state about themselves, rad/s.
+pub(crate) fn rotation_rate(state: &sim::truth::State) -> Vector3<f64> {
+    let (r, v) = (&state.position_km, &state.velocity_km_s);
+    Vector3::new(0.0, 0.0, r.cross(v).norm() / r.norm_squared())
 }
