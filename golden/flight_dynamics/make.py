@@ -224,8 +224,8 @@ def orekit():
         rows.append([str(date.toStringWithoutUtcOffset(tai, 9)), *texts([*position, *velocity]), *texts(np.array([*got.getPosition().toArray(), *got.getVelocity().toArray()]) / 1e3)])
     write("teme.csv", ["tai", "teme_x_km", "teme_y_km", "teme_z_km", "teme_vx_km_s", "teme_vy_km_s", "teme_vz_km_s", "x_km", "y_km", "z_km", "vx_km_s", "vy_km_s", "vz_km_s"], rows)
 
-    # Parameters: a state with masses, areas and coefficients, a finite burn along R, T, N and an impulse along
-    # the axes of the state.
+    # Parameters: a state with masses, areas and coefficients, a finite burn along R, T, N and an impulse
+    # along the axes of the state.
     rtn = FrameFacade(None, None, OrbitRelativeFrame.RTN, None, "RTN")
     rows = []
     for name, notation, frame, system in [("orekit.opm", "kvn", eme, TimeSystem.TT), ("orekit.opm.xml", "xml", gcrf, TimeSystem.UTC)]:

@@ -33,12 +33,12 @@ pub struct TargetOrbit {
 }
 
 impl TargetOrbit {
-    /// Reads the estimates in `directory`, which are of `run`. The orbit of the chaser is the true one: states
-    /// and covariances have the errors of the relative orbit alone.
+    /// Reads the estimates in `directory`, which are of `run`. The orbit of the chaser is the true one:
+    /// states and covariances have the errors of the relative orbit alone.
     ///
     /// # Errors
-    /// A [`Failure`] that names file, line and field of the first invalid value; for estimates of another run,
-    /// estimates out of order or more than a sixth of a revolution apart.
+    /// A [`Failure`] that names file, line and field of the first invalid value; for estimates of another
+    /// run, estimates out of order or more than a sixth of a revolution apart.
     pub fn read(directory: &Path, run: &RunFile<FarRangeScenario>) -> Result<Self, Failure> {
         let result = NavigationResult::read_figures(directory)?;
         result.check_run(directory, &run.hash)?;
@@ -101,9 +101,9 @@ impl TargetOrbit {
     }
 }
 
-/// Returns the state of the target, ICRS axes, from that of the chaser and its position, m, and velocity in the
-/// rotating frame, m/s, along the target's R, T, N, with their covariance in km and km/s. `None` if no orbit of
-/// the target has these axes.
+/// Returns the state of the target, ICRS axes, from that of the chaser and its position, m, and velocity in
+/// the rotating frame, m/s, along the target's R, T, N, with their covariance in km and km/s. `None` if no
+/// orbit of the target has these axes.
 fn target_state(
     chaser: &State,
     relative: &Vector6<f64>,

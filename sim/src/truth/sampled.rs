@@ -125,8 +125,8 @@ impl SampledSegment {
     }
 }
 
-/// Returns the index of the first of `count` nodes around `time_s`: half of them on either side, or for an odd
-/// number the nearest node in the middle; at an end, the nodes of the end. The times of the nodes ascend.
+/// Returns the index of the first of `count` nodes around `time_s`: half of them on either side, or for an
+/// odd number the nearest node in the middle; at an end, the nodes of the end. The times of the nodes ascend.
 pub fn first_node<T>(nodes: &[T], count: usize, time_s: f64, time_of: impl Fn(&T) -> f64) -> usize {
     let after = nodes.partition_point(|node| time_of(node) <= time_s);
     let neighbours = after.checked_sub(1).and_then(|before| Some((nodes.get(before)?, nodes.get(after)?)));

@@ -97,8 +97,8 @@ impl OrbitConfig {
     }
 }
 
-/// Checks the planned manoeuvres of an orbit, and returns the `executed` ones with their times in seconds since
-/// `epoch`. The limits of a change of velocity apply to the planned one.
+/// Checks the planned manoeuvres of an orbit, and returns the `executed` ones with their times in seconds
+/// since `epoch`. The limits of a change of velocity apply to the planned one.
 ///
 /// # Errors
 /// [`OutOfRange`] for a value outside its range, and for a manoeuvre that begins before the epoch or before

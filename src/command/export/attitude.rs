@@ -12,8 +12,7 @@ use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use sim::truth::Schedule;
 
-use super::Export;
-use super::parts::{CHASER, header, true_frames};
+use super::parts::{CHASER, Export, header, true_frames};
 
 /// Frame whose attitude a message has.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -66,9 +65,9 @@ pub(super) fn true_attitude(
     message(run, frame, groups.collect(), Vec::new())
 }
 
-/// Returns the attitude of the camera that the pipeline states, or that of the body by the nominal mounting. A
-/// frame without one, and the end of a group, end a segment; an attitude between two such frames is left out,
-/// because a segment has a span.
+/// Returns the attitude of the camera that the pipeline states, or that of the body by the nominal mounting.
+/// A frame without one, and the end of a group, end a segment; an attitude between two such frames is left
+/// out, because a segment has a span.
 pub(super) fn measured_attitude(
     directory: &Path,
     run: &RunFile<FarRangeScenario>,

@@ -18,6 +18,7 @@ use serde_json::json;
 use self::attitude::{AttitudeFrame, attitude_count, measured_attitude, true_attitude};
 use self::directions::tdm;
 use self::orbit::{Spacecraft, estimated_orbit, state_count, true_orbit};
+use self::parts::Export;
 use super::Answer;
 use super::options::output_path;
 use super::output::Output;
@@ -57,7 +58,8 @@ pub(super) struct ExportArguments {
 /// Content of an exported message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ExportFormat {
-    /// Orbit ephemeris message: the true motion of the chaser or the target, or the estimated one of the target
+    /// Orbit ephemeris message: the true motion of the chaser or the target, or the estimated one of the
+    /// target
     Oem,
     /// Attitude ephemeris message: the true or the measured attitude of the chaser at the frames
     Aem,
@@ -73,12 +75,6 @@ enum MessageNotation {
     Kvn,
     /// XML
     Xml,
-}
-
-/// A message, and the number of records that it cannot hold: those alone between two gaps.
-struct Export<M> {
-    message: M,
-    left_out: usize,
 }
 
 /// Default of the largest step between true states, s.

@@ -10,8 +10,7 @@ use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use sim::truth::State;
 
-use super::Export;
-use super::parts::{CHASER, TARGET, header, true_frames};
+use super::parts::{CHASER, Export, TARGET, header, true_frames};
 
 /// Fewest intervals of a segment of truth: those of a polynomial of degree 7.
 const MIN_INTERVALS: u32 = 8;
@@ -114,8 +113,8 @@ fn just_before(state_at: &impl Fn(f64) -> State, time_s: f64) -> State {
 }
 
 /// Returns the orbit of the target by relative navigation, from the table in `directory`. A requested time
-/// without an estimate ends a segment; an estimate between two such times is left out, because a segment has a
-/// span. Velocities are derivatives of positions, so the interpolation is HERMITE.
+/// without an estimate ends a segment; an estimate between two such times is left out, because a segment has
+/// a span. Velocities are derivatives of positions, so the interpolation is HERMITE.
 pub(super) fn estimated_orbit(
     directory: &Path,
     run: &RunFile<FarRangeScenario>,

@@ -12,6 +12,12 @@ use sim::truth::{FrameTruth, clock};
 pub(super) const CHASER: &str = "CHASER";
 pub(super) const TARGET: &str = "TARGET";
 
+/// A message, and the number of records that it cannot hold: those alone between two gaps.
+pub(super) struct Export<M> {
+    pub(super) message: M,
+    pub(super) left_out: usize,
+}
+
 /// Returns the header of a message of a run, with comments on its content.
 pub(super) fn header(run: &RunFile<FarRangeScenario>, comments: Vec<String>) -> Header {
     let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);

@@ -321,8 +321,8 @@ impl EphemerisSegment for AemSegment {
 }
 
 impl AemSegment {
-    /// Creates a segment of attitudes, axes ICRF, direction [`AttitudeDirection::BodyFromFrame`] and UTC, with
-    /// turns at constant rates between them.
+    /// Creates a segment of attitudes, axes ICRF, direction [`AttitudeDirection::BodyFromFrame`] and UTC,
+    /// with turns at constant rates between them.
     ///
     /// `None` unless the attitudes ascend in time and are at least two.
     pub fn from_attitudes(object_name: &str, body_frame: &str, attitudes: Vec<AttitudeNode>) -> Option<Self> {
