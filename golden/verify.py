@@ -259,7 +259,9 @@ def flight_dynamics(court):
 
 def exported(court):
     """Packages of others read what `boresight export` writes."""
-    python = court.environment("exported", GOLDEN / "witnesses" / "flight_dynamics_requirements.txt")
+    if shutil.which("java") is None:
+        raise CannotAsk("java is not there: Orekit needs it")
+    python = court.environment("exported", GOLDEN / "flight_dynamics" / "exported_requirements.txt")
     return claims_of(court.run(python, GOLDEN / "witnesses" / "flight_dynamics.py", court.program("boresight")))
 
 
@@ -297,7 +299,7 @@ WITNESSES = {
     "radiometry": ("spectra of CALSPEC and of Gunn and Stryker: electrons", remade("radiometry", arguments=photometry)),
     "video": ("FFmpeg: video files", remade("video")),
     "flight_dynamics": ("Orekit, oem, CSPICE, sgp4, ERFA: OEM, AEM, OPM, TDM, SPK, two-line elements", flight_dynamics),
-    "exported": ("oem, ccsds-ndm: exported OEM, AEM, TDM, also of estimates", exported),
+    "exported": ("oem, ccsds-ndm, Orekit: exported OEM, AEM, TDM, also of estimates", exported),
     "docking": ("Mitsuba: images of the docking target", docking),
     "references": ("our simulator against all of these", tests("golden_apparent::", "golden_moon::", "golden_orbits::", "golden_psf::", "golden_radiometry::", "golden_manifest::", "planets::")),
     "drawn": ("our facets against Mitsuba's images", tests("golden_docking::")),

@@ -24,7 +24,6 @@ import io
 import math
 import pathlib
 import sys
-import tempfile
 
 import erfa
 import numpy as np
@@ -33,6 +32,7 @@ import spiceypy as spice
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import manifest
+import orekit_data
 
 GM = 398600.4415  # km^3/s^2
 CREATED = "2012-04-20T00:00:00"
@@ -85,27 +85,14 @@ def write(name, header, rows):
 # --- Orekit -------------------------------------------------------------------------------------------------
 
 
-def leap_seconds(folder):
-    """Writes ERFA's table of leap seconds in the form of the US Naval Observatory, which Orekit reads."""
-    months = "JAN FEB MAR APR MAY JUN JUL AUG SEP OCT NOV DEC".split()
-    lines = []
-    for year, month, offset in erfa.leap_seconds.get():
-        if year >= 1972:
-            jd1, jd2 = erfa.cal2jd(year, month, 1)
-            lines.append(f" {year} {months[month - 1]}  1 =JD {jd1 + jd2:.1f}  TAI-UTC={offset:12.7f} S + (MJD - 41317.) X 0.0      S")
-    (pathlib.Path(folder) / "tai-utc.dat").write_text("\n".join(lines) + "\n")
-
-
 def orekit():
     import jpype
-    import orekit_jpype
 
-    orekit_jpype.initVM()
-    from java.io import File
+    orekit_data.begin()
     from java.lang import StringBuilder
     from java.util import ArrayList
     from org.hipparchus.geometry.euclidean.threed import Rotation, RotationConvention, Vector3D
-    from org.orekit.data import DataContext, DirectoryCrawler
+    from org.orekit.data import DataContext
     from org.orekit.files.ccsds.definitions import BodyFacade, FrameFacade, OrbitRelativeFrame, SpacecraftBodyFrame, TimeSystem
     from org.orekit.files.ccsds.ndm import WriterBuilder
     from org.orekit.files.ccsds.ndm.adm import AdmHeader, AttitudeType
@@ -120,9 +107,6 @@ def orekit():
     from org.orekit.time import AbsoluteDate, TimeScalesFactory
     from org.orekit.utils import CartesianDerivativesFilter, IERSConventions, PVCoordinates, TimeStampedAngularCoordinates, TimeStampedPVCoordinates, TimeStampedPVCoordinatesHermiteInterpolator
 
-    folder = tempfile.mkdtemp()
-    leap_seconds(folder)
-    DataContext.getDefault().getDataProvidersManager().addProvider(DirectoryCrawler(File(folder)))
     tai, utc = TimeScalesFactory.getTAI(), TimeScalesFactory.getUTC()
     gcrf, eme, teme = FramesFactory.getGCRF(), FramesFactory.getEME2000(), FramesFactory.getTEME()
     context, conventions = DataContext.getDefault(), IERSConventions.IERS_2010

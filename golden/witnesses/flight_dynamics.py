@@ -2,8 +2,8 @@
 
     python3 golden/witnesses/flight_dynamics.py target/debug/boresight
 
-Needs `oem` (MIT) and `ccsds-ndm` (GPL-3.0, used as a program), pinned in flight_dynamics_requirements.txt, and
-pyarrow for the truth tables. `ok` lines are the claims that hold; exit status 1 if one does not.
+Needs `oem` (MIT), `ccsds-ndm` (GPL-3.0, used as a program) and Orekit (Apache-2.0, with Java 11 or later),
+pinned in ../flight_dynamics/exported_requirements.txt, and pyarrow for the truth tables. `ok` lines are the claims that hold; exit status 1 if one does not.
 """
 
 import csv
@@ -18,6 +18,9 @@ import pyarrow.parquet
 from astropy.time import Time
 from ccsds_ndm.ndm_io import NdmIo
 from oem import OrbitEphemerisMessage
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "flight_dynamics"))
+import orekit_data
 
 FAILED = []
 
@@ -102,6 +105,7 @@ def main(program):
             claim(worst < 1e-14, f"ccsds-ndm, {notation}: {len(read)} measured attitudes of the camera to {worst:.0e}")
 
         estimates(pathlib.Path(folder), boresight, epochs, position)
+        orekit(pathlib.Path(folder), attitude)
     return 1 if FAILED else 0
 
 
@@ -145,6 +149,47 @@ def estimates(folder, boresight, epochs, chaser_km):
                 worst_sigma = max(worst_sigma, abs(sigma_t_m / float(row["sigma_t_m"]) - 1))
             claim(worst_m < 1e-5, f"oem, {notation}: relative position of {len(states)} estimates to {worst_m:.0e} m")
             claim(worst_sigma < 0.01, f"oem, {notation}: standard deviation along T to {worst_sigma:.0e} of it")
+
+
+def orekit(folder, attitude):
+    """Compares the content that Orekit reads: states and times with those of `oem`, attitudes and angles with the run."""
+    orekit_data.begin()
+    from java.io import File
+    from org.hipparchus.geometry.euclidean.threed import Vector3D
+    from org.orekit.data import DataSource
+    from org.orekit.files.ccsds.ndm import ParserBuilder
+    from org.orekit.time import TimeScalesFactory
+
+    tai = TimeScalesFactory.getTAI()
+    parsers = ParserBuilder()
+    parse = lambda parser, name: parser.parseMessage(DataSource(File(str(folder / name))))
+    for notation in ("kvn", "xml"):
+        for name in (f"oem-chaser.{notation}", f"oem-target.{notation}", f"estimate-4.{notation}"):
+            segments = parse(parsers.buildOemParser(), name).getSegments()
+            others = list(OrbitEphemerisMessage.open(folder / name).segments)
+            worst_km, worst_s, count = 0.0, 0.0, 0
+            for segment, other in zip(segments, others):
+                coordinates = segment.getData().getCoordinates()
+                states = list(other.states)
+                for index in sorted({*range(0, len(states), 50), len(states) - 1}):
+                    read, state = coordinates.get(index), states[index]
+                    worst_km = max(worst_km, np.abs(np.array(read.getPosition().toArray()) / 1e3 - state.position).max())
+                    stated = Time(str(read.getDate().toStringWithoutUtcOffset(tai, 9)), scale="tai")
+                    worst_s = max(worst_s, abs((stated - state.epoch).sec))
+                count += coordinates.size() if coordinates.size() == len(states) else math.nan
+            claim(len(others) == segments.size() and count > 0 and worst_km < 1e-9 and worst_s < 1e-6, f"Orekit, {name}: {count} states, positions to {worst_km:.0e} km, times to {worst_s:.0e} s")
+        coordinates = [c for segment in parse(parsers.buildAemParser(), f"aem.{notation}").getSegments() for c in segment.getAngularCoordinates()]
+        # Orekit's rotation applied to an axis gives its components along the body, as our matrix.
+        worst = 0.0
+        for read, (w, x, y, z) in zip(coordinates[1:-1], attitude):
+            first = [w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)]
+            worst = max(worst, np.abs(np.array(read.getRotation().applyTo(Vector3D.PLUS_I).toArray()) - first).max())
+        claim(len(coordinates) == len(attitude) + 2 and worst < 1e-12, f"Orekit, {notation}: {len(coordinates)} attitudes to {worst:.0e}")
+        blocks = [segment.getData().getObservations() for segment in parse(parsers.buildTdmParser(), f"tdm.{notation}").getSegments()]
+        rows = [row for row in csv.DictReader((folder / "run" / "measurements.csv").open()) if row["los_j2000_x"]]
+        first = math.atan2(float(rows[0]["los_j2000_y"]), float(rows[0]["los_j2000_x"])) % (2 * math.pi)
+        read = float(blocks[0].get(0).getMeasurement()) % (2 * math.pi)
+        claim(blocks[0].size() == 2 * len(rows) and abs(read - first) < 1e-12, f"Orekit, {notation}: {blocks[0].size()} angles")
 
 
 def value(number):

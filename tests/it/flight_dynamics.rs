@@ -465,7 +465,7 @@ fn bad_files_of_a_trajectory_are_found_by_the_check_of_the_scenario() {
     for (content, parts) in [
         (gap.as_str(), ["chaser.oem, line ", "usable span of the segment", "there must be no gap"]),
         ("", ["chaser.oem, line 1", "`content` is `empty`", "CCSDS_OEM_VERS"]),
-        (&good.replace("= ICRF", "= ITRF"), ["chaser.oem, line ", "`REF_FRAME` is `ITRF`", "expected ICRF"]),
+        (&good.replace("= GCRF", "= ITRF"), ["chaser.oem, line ", "`REF_FRAME` is `ITRF`", "expected ICRF"]),
     ] {
         bench.write("chaser.oem", content);
         bench.boresight("scenario check second.toml").found(&parts);

@@ -17,7 +17,8 @@ use turn::{ARCSEC, turn};
 /// of UT1 and of the pole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReferenceFrame {
-    /// Axes of the International Celestial Reference System: ICRF and GCRF.
+    /// Axes of the International Celestial Reference System: ICRF and GCRF. Written as GCRF, the geocentric
+    /// one: the origin of Orekit's ICRF is the barycentre of the Solar System.
     Icrf,
     /// Mean equator and equinox of J2000.0, turned against ICRS by the frame bias of 23 mas (IERS Conventions
     /// 2010, 5.21 and 5.33).
@@ -39,7 +40,7 @@ impl ReferenceFrame {
     /// Returns the keyword of CCSDS.
     pub fn code(self) -> &'static str {
         match self {
-            Self::Icrf => "ICRF",
+            Self::Icrf => "GCRF",
             Self::Eme2000 => "EME2000",
             Self::Teme => "TEME",
         }
