@@ -7,7 +7,7 @@ use flight_dynamics::Coverage;
 use hifitime::{Duration, Epoch};
 use sim::onboard::ShutterConfig;
 use sim::sensor::SensorConfig;
-use sim::truth::{KnowledgeConfig, Schedule, clock};
+use sim::truth::{KnowledgeConfig, Schedule};
 
 /// Interval about the middle of each exposure in which the motion is needed.
 #[derive(Debug, Clone, Copy, PartialEq)]
