@@ -58,4 +58,6 @@ def begin():
     leap_seconds(folder)
     context = DataContext.getDefault()
     context.getDataProvidersManager().addProvider(DirectoryCrawler(File(folder)))
-    context.getCelestialBodies().addCelestialBodyLoader("Earth", jpype.JProxy(CelestialBodyLoader, inst=EarthLoader()))
+    # The axes of ICRF, which angles refer to, are those of the barycentre.
+    for name in ("Earth", "solar system barycenter"):
+        context.getCelestialBodies().addCelestialBodyLoader(name, jpype.JProxy(CelestialBodyLoader, inst=EarthLoader()))

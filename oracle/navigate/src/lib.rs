@@ -26,7 +26,6 @@ mod navigator_choice;
 mod result;
 mod row;
 mod score;
-mod target_orbit;
 mod truth;
 
 pub use bound::{BoundAt, BoundReport, bound_of};
@@ -40,4 +39,4 @@ pub use navigator_choice::NavigatorChoice;
 pub use result::{FIGURES_FILE, NavigationResult, TABLE_FILE};
 pub use row::{NavigationRow, read_navigation, tables};
 pub use score::{Axis, MeasurementUse, NavigationScore};
-pub use target_orbit::{TargetOrbit, TargetState};
+pub use truth::target_orbit::{TargetOrbit, TargetState};

@@ -202,7 +202,9 @@ impl TdmSegment {
         writer.value("MODE", "SEQUENTIAL");
         writer.value("PATH", "2,1");
         writer.value("ANGLE_TYPE", "RADEC");
-        writer.value("REFERENCE_FRAME", self.frame.code());
+        // The schema of the format lists ICRF, and not GCRF.
+        let frame = if self.frame == ReferenceFrame::Icrf { "ICRF" } else { self.frame.code() };
+        writer.value("REFERENCE_FRAME", frame);
         writer.close("metadata");
         writer.line("META_STOP");
         writer.line("DATA_START");

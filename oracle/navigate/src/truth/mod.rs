@@ -1,5 +1,7 @@
 //! True relative orbit.
 
+pub(crate) mod target_orbit;
+
 use contract::navigation::RelativeElements;
 use files::Failure;
 use hifitime::Epoch;
