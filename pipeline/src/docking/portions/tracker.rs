@@ -12,9 +12,9 @@ use crate::docking::pose::geometry::to_vector;
 /// Longest time without a pose after which the motion remains valid, s.
 const MAX_GAP_S: f64 = 5.0;
 
-/// Longest time for which a pose confirms the next one, s. Later, the prediction is so uncertain that most
-/// wrong poses would agree with it.
-const MAX_CONFIRMATION_S: f64 = 1.0;
+/// Longest time for which a pose confirms the next one, s: five fields. Wrong poses are found here and there
+/// in a video without a recognisable target, and before the rates are known a later one would agree.
+const MAX_CONFIRMATION_S: f64 = 0.11;
 
 /// Number of successive fields off the motion after which it begins anew.
 const CONTRARY_FIELDS: u32 = 5;
@@ -50,7 +50,7 @@ pub struct MotionTracker {
 /// Agreement of a pose with the motion so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Continuity {
-    /// No pose within the second before confirms this one.
+    /// No pose of the five fields before confirms this one.
     Begins,
     /// The pose agrees with the motion of earlier ones.
     Continues,
