@@ -26,11 +26,6 @@ const CORRELATIONS: [&str; 15] = [
     "rho_v_n_v_t",
 ];
 
-/// Returns the indices of the lower triangle without its diagonal, row by row.
-fn below_diagonal() -> impl Iterator<Item = (usize, usize)> {
-    (0..6).flat_map(|row| (0..row).map(move |column| (row, column)))
-}
-
 table! {
     /// A row of `navigation.csv`. Axes are those of the target; the orbit is that of the chaser with respect
     /// to the target; errors are estimated minus true.
@@ -94,10 +89,14 @@ impl NavigationRow {
     pub(crate) fn state_covariance(&self) -> Option<Matrix6<f64>> {
         let ([r, t, n], [vr, vt, vn]) = self.position_sigma_m.zip(self.velocity_sigma_m_s)?;
         let sigmas = Vector6::new(r, t, n, vr, vt, vn);
-        let mut correlations = Matrix6::identity();
-        for ((row, column), correlation) in below_diagonal().zip(self.state_correlations?) {
-            (correlations[(row, column)], correlations[(column, row)]) = (correlation, correlation);
-        }
+        let listed = self.state_correlations?;
+        let correlations = Matrix6::from_fn(|row, column| {
+            let (high, low) = (row.max(column), row.min(column));
+            if high == low {
+                return 1.0;
+            }
+            listed.get(high * (high - 1) / 2 + low).copied().unwrap_or_default()
+        });
         Some(correlations.component_mul(&(sigmas * sigmas.transpose())))
     }
 
@@ -106,8 +105,9 @@ impl NavigationRow {
         let sigmas = covariance.diagonal().map(f64::sqrt);
         let correlations = covariance.component_div(&(sigmas * sigmas.transpose()));
         let mut listed = [0.0; 15];
-        for (number, index) in listed.iter_mut().zip(below_diagonal()) {
-            *number = correlations[index];
+        let below = (0..6).flat_map(|row| (0..row).map(move |column| (row, column)));
+        for (number, index) in listed.iter_mut().zip(below) {
+            *number = correlations.get(index).copied().unwrap_or_default();
         }
         listed
     }

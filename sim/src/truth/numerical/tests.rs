@@ -30,7 +30,7 @@ fn all_forces() -> NumericalConfig {
 /// Integration without the cache.
 fn integrated(orbit: &OrbitConfig, config: &NumericalConfig, days: f64) -> NumericalStates {
     let epoch = parse_utc(&orbit.epoch_utc).unwrap();
-    let burns = burns(&orbit, &orbit.manoeuvres, epoch).unwrap();
+    let burns = burns(orbit, &orbit.manoeuvres, epoch).unwrap();
     NumericalStates::integrate(&initial(orbit), config, &burns, [-MARGIN_S, days * 86_400.0]).unwrap()
 }
 
