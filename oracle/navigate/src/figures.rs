@@ -169,6 +169,7 @@ mod tests {
             position_sigma_m: error.map(|_| [1.0, 10.0, 1.0]),
             velocity_error_m_s: None,
             velocity_sigma_m_s: None,
+            state_correlations: None,
             true_elements_m: [0.0; 6],
             elements_error_m: None,
             elements_sigma_m: None,
