@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release -p boresight-navigation --example consistency -- CAMPAIGNS STRIDE [FIRST]`: every
 //! STRIDE-th measurement of ARGON's schedule, seeds from FIRST. The variable VARIANT contains `sequential`
-//! for the filter instead of the batch, `precise` for the errors of best mode, `exact` for exact manoeuvres,
+//! for the filter instead of the batch, `precise` for the errors of best mode, `displaced` for those with a centre
+//! of brightness displaced by centimetres instead of arcseconds, `exact` for exact manoeuvres,
 //! `white` without slow errors, `unbiased` without constant errors, `halved` with all drawn errors halved,
 //! `mirrored` with all of the opposite sign, `noiseless` without any.
 
@@ -26,13 +27,19 @@ fn main() {
     let (mut slowest, mut total) = (0.0_f64, 0.0);
     for seed in first..first + campaigns {
         let variant = std::env::var("VARIANT").unwrap_or_default();
-        let mut campaign =
-            if variant.contains("precise") { Campaign::precise(stride) } else { Campaign::argon(stride) };
+        let mut campaign = if variant.contains("displaced") {
+            Campaign::displaced(stride)
+        } else if variant.contains("precise") {
+            Campaign::precise(stride)
+        } else {
+            Campaign::argon(stride)
+        };
         if variant.contains("exact") {
             campaign.manoeuvre_sigma = (0.0, 1e-7);
         }
         if variant.contains("white") {
             campaign.slow.clear();
+            campaign.displacements.clear();
         }
         if variant.contains("unbiased") {
             campaign.constant_arcsec = 0.0;

@@ -41,7 +41,9 @@ pub struct Hypothesis {
     pub elements: RelativeElements,
     /// Their covariance, m², by linearisation.
     pub covariance: Covariance6,
-    /// Weighted sum of squared residuals of the measurements used.
+    /// Weighted sum of squared residuals of the measurements used, and the logarithm of the determinant of
+    /// their covariance relative to that of white errors, which depends on the distance if there are
+    /// displacements.
     pub cost: f64,
     /// Number of measurements used, two angles each.
     pub measurements: usize,
@@ -87,7 +89,7 @@ pub(crate) fn hypotheses(problem: &Problem<'_>) -> Result<Vec<Hypothesis>, NoEst
     if distinct.is_empty() { Err(NoEstimate::NoInitialOrbit) } else { Ok(distinct) }
 }
 
-/// Returns sum of squares and elements of the least squares with aδλ held near `distance_m`.
+/// Returns cost ([`Hypothesis::cost`]) and elements of the least squares with aδλ held near `distance_m`.
 fn held(problem: &Problem<'_>, few: &[Sight], distance_m: f64) -> Option<(f64, RelativeElements)> {
     let elements = RelativeElements { a_dlambda_m: distance_m, ..RelativeElements::default() };
     let shape = SHAPE * distance_m.abs();

@@ -42,6 +42,8 @@ mod sequential;
 pub mod short_period;
 #[allow(clippy::indexing_slicing, reason = "two axes")]
 mod sight;
+#[allow(clippy::indexing_slicing, reason = "two axes")]
+mod slow_errors;
 #[allow(clippy::indexing_slicing, reason = "sizes are those of the layout of the state")]
 mod smoother;
 #[allow(clippy::indexing_slicing, reason = "sizes are those of the matrix")]

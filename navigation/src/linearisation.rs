@@ -28,6 +28,8 @@ pub(crate) struct Linearisation {
     pub(crate) by_elements: Matrix2x6<f64>,
     /// Derivatives of the angles with respect to a rotation of the camera.
     pub(crate) by_rotation: Matrix2x3<f64>,
+    /// Derivatives of the angles with respect to a displacement of the target along columns and rows, rad/m.
+    pub(crate) by_displacement: [f64; 2],
     /// Variance of the remainder, rad².
     pub(crate) scatter: Matrix2<f64>,
 }
@@ -69,6 +71,7 @@ impl Linearisation {
             shift,
             by_elements: slopes * inverse,
             by_rotation: prediction.by_rotation(),
+            by_displacement: prediction.by_displacement(),
             // Positive but for rounding.
             scatter: scatter.map_with_location(|i, j, x| if i == j { x.max(0.0) } else { x }),
         })

@@ -17,7 +17,7 @@ use crate::relative_state;
 use crate::sight::{ErrorClass, Sight};
 use crate::square_root::SquareRoot;
 use crate::time::seconds_between;
-use crate::whitener::Whitener;
+use crate::whitener::{RowErrors, Whitener};
 
 /// Largest number of measurements of a coarse stage.
 const COARSE: usize = 1000;
@@ -39,6 +39,10 @@ const HUBER: f64 = 2.5;
 
 /// Median of the length of two independent unit normal values.
 const RAYLEIGH_MEDIAN: f64 = 1.177_410_022_515_474_6;
+
+/// Passes over the residuals to find weights: an outlier of degrees disturbs the whitened residuals of the
+/// measurements after it until its weight is small.
+const WEIGHTINGS: usize = 4;
 
 /// Largest damping before an iteration is given up.
 const MAX_DAMPING: f64 = 1e8;
@@ -65,7 +69,8 @@ pub(crate) struct Solution {
     pub(crate) values: Vec<f64>,
     /// Their covariance.
     pub(crate) covariance: DMatrix<f64>,
-    /// Sum of squares at the minimum, prior included.
+    /// Minus twice the logarithm of the likelihood at the minimum, prior included, less a constant: the sum of
+    /// squares and the logarithm of the determinant of the covariance relative to that of white errors.
     pub(crate) cost: f64,
     /// Weight of each measurement: 1 used, 0 edited.
     pub(crate) weights: Vec<f64>,
@@ -89,6 +94,9 @@ struct Step {
 struct Residuals {
     /// Sum of squares of whitened, weighted residuals and prior.
     cost: f64,
+    /// Logarithm of the determinant of the covariance of the measurements with a weight, relative to that of
+    /// their white errors.
+    log_determinant: f64,
     /// Length of each measurement's whitened residual.
     lengths: Vec<f64>,
     residuals: Vec<[f64; 2]>,
@@ -119,25 +127,30 @@ impl Problem<'_> {
         self.fine(values)
     }
 
-    /// Iterates with Huber's weights; returns the sum of squares.
+    /// Iterates with Huber's weights; returns minus twice the logarithm of the likelihood, less a constant.
     pub(crate) fn robust(&self, values: &mut Vec<f64>) -> Result<f64, NoEstimate> {
-        let all = vec![1.0; self.sights.len()];
+        let mut weights = vec![1.0; self.sights.len()];
         let mut damping = 0.0;
         let mut cost = f64::INFINITY;
         for iteration in 0..ITERATIONS {
-            let weights = huber(&self.residuals(values, &all)?.lengths);
-            let step = self.iterate(values, &weights, &mut damping, None)?;
+            let displaced = self.by_displacement(values)?;
+            for _ in 0..WEIGHTINGS {
+                weights = huber(&self.residuals(values, &weights, &displaced)?.lengths);
+            }
+            let step = self.iterate(values, &weights, &mut damping)?;
             cost = step.cost;
             if step.length < CONVERGED && iteration > 0 {
                 break;
             }
         }
-        Ok(cost)
+        Ok(cost + self.log_determinant(values)?)
     }
 
     fn fine(&self, mut values: Vec<f64>) -> Result<Solution, NoEstimate> {
-        let all = vec![1.0; self.sights.len()];
-        let mut edited = self.edited(&values, &all)?;
+        let mut edited = vec![1.0; self.sights.len()];
+        for _ in 0..WEIGHTINGS {
+            edited = self.edited(&values, &edited)?;
+        }
         for editing in 1..=EDITINGS {
             if edited.iter().all(|weight| *weight == 0.0) {
                 return Err(NoEstimate::NoMeasurements);
@@ -154,20 +167,18 @@ impl Problem<'_> {
 
     /// Returns weight 1 for each measurement within the gate, 0 for others.
     fn edited(&self, values: &[f64], weights: &[f64]) -> Result<Vec<f64>, NoEstimate> {
-        let lengths = self.residuals(values, weights)?.lengths;
+        let lengths = self.residuals(values, weights, &self.by_displacement(values)?)?.lengths;
         Ok(lengths.iter().map(|length| f64::from(*length <= self.outlier_sigma)).collect())
     }
 
     /// Iterates to the minimum; returns the covariance there.
     fn converge(&self, values: &mut Vec<f64>, weights: &[f64]) -> Result<DMatrix<f64>, NoEstimate> {
         let mut damping = 0.0;
-        let mut cost = None;
         for _ in 0..ITERATIONS {
-            let step = self.iterate(values, weights, &mut damping, cost)?;
+            let step = self.iterate(values, weights, &mut damping)?;
             if step.length < CONVERGED {
                 return Ok(step.covariance);
             }
-            cost = Some(step.cost);
         }
         Err(NoEstimate::NoConvergence)
     }
@@ -175,7 +186,9 @@ impl Problem<'_> {
     /// Returns the covariance at parameters, with all measurements.
     pub(crate) fn covariance(&self, values: &[f64]) -> Result<DMatrix<f64>, NoEstimate> {
         let weights = vec![1.0; self.sights.len()];
-        self.equations(values, &weights)?.covariance().ok_or(NoEstimate::NoConvergence)
+        self.equations(values, &weights, &self.by_displacement(values)?)?
+            .covariance()
+            .ok_or(NoEstimate::NoConvergence)
     }
 
     /// Returns the result at given parameters, with all measurements.
@@ -190,31 +203,28 @@ impl Problem<'_> {
         weights: Vec<f64>,
         covariance: DMatrix<f64>,
     ) -> Result<Solution, NoEstimate> {
-        let Residuals { cost, residuals, .. } = self.residuals(&values, &weights)?;
+        let displaced = self.by_displacement(&values)?;
+        let Residuals { cost, log_determinant, residuals, .. } =
+            self.residuals(&values, &weights, &displaced)?;
+        let cost = cost + log_determinant;
         let path = self.path(&values).ok_or(NoEstimate::NoConvergence)?;
         Ok(Solution { values, covariance, cost, weights, residuals, path })
     }
 
-    /// Makes one step from `values`, where the sum of squares is `cost` if known.
-    fn iterate(
-        &self,
-        values: &mut Vec<f64>,
-        weights: &[f64],
-        damping: &mut f64,
-        cost: Option<f64>,
-    ) -> Result<Step, NoEstimate> {
-        let mut root = self.equations(values, weights)?;
-        let old = match cost {
-            Some(cost) => cost,
-            None => self.residuals(values, weights)?.cost,
-        };
+    /// Makes one step from `values`. The distances that turn displacements into angles remain those before the
+    /// step: otherwise a longer distance would lower the sum of squares by larger residuals per σ.
+    fn iterate(&self, values: &mut Vec<f64>, weights: &[f64], damping: &mut f64) -> Result<Step, NoEstimate> {
+        let displaced = self.by_displacement(values)?;
+        let mut root = self.equations(values, weights, &displaced)?;
+        let old = self.residuals(values, weights, &displaced)?.cost;
         let covariance = root.covariance().ok_or(NoEstimate::NoConvergence)?;
         let sigmas = covariance.diagonal().map(f64::sqrt);
         loop {
             let step = root.solve(*damping).ok_or(NoEstimate::NoConvergence)?;
             let length = step.component_div(&sigmas).abs().max();
             let moved: Vec<f64> = values.iter().zip(step.iter()).map(|(value, step)| value + step).collect();
-            let new = self.residuals(&moved, weights).map_or(f64::INFINITY, |residuals| residuals.cost);
+            let new =
+                self.residuals(&moved, weights, &displaced).map_or(f64::INFINITY, |residuals| residuals.cost);
             // Rounding may raise the sum of squares by a step below the tolerance.
             if new <= old || (length < CONVERGED && new.is_finite()) {
                 *values = moved;
@@ -241,20 +251,47 @@ impl Problem<'_> {
         })
     }
 
-    fn whiteners(&self, columns: usize) -> [Whitener; 2] {
-        let errors = &self.setup.errors;
-        [&errors.with_stars, &errors.without_stars].map(|errors| Whitener::new(errors, columns))
+    fn whitener(&self, columns: usize) -> Whitener {
+        let is_present = |class: &ErrorClass| self.sights.iter().any(|sight| sight.class == *class);
+        let classes: Vec<ErrorClass> = ErrorClass::ALL.into_iter().filter(is_present).collect();
+        Whitener::new(&self.setup.errors, &classes, columns)
+    }
+
+    /// Returns the derivatives of the angles of each measurement with respect to a displacement of the target,
+    /// rad/m.
+    fn by_displacement(&self, values: &[f64]) -> Result<Vec<[f64; 2]>, NoEstimate> {
+        if self.setup.errors.displacements.is_empty() {
+            return Ok(vec![[0.0; 2]; self.sights.len()]);
+        }
+        let path = self.path(values).ok_or(NoEstimate::NoConvergence)?;
+        let slopes = |sight: &Sight| {
+            let elements = path.at(sight.seconds).ok_or(NoEstimate::NoConvergence)?;
+            Ok(sight.predict(&elements, self.reference.osculation()).by_displacement())
+        };
+        self.sights.iter().map(slopes).collect()
+    }
+
+    /// Returns the logarithm of the determinant of the covariance of the measurements, relative to that of
+    /// their white errors.
+    fn log_determinant(&self, values: &[f64]) -> Result<f64, NoEstimate> {
+        let weights = vec![1.0; self.sights.len()];
+        Ok(self.residuals(values, &weights, &self.by_displacement(values)?)?.log_determinant)
     }
 
     /// Returns the linearised equations, prior included.
-    fn equations(&self, values: &[f64], weights: &[f64]) -> Result<SquareRoot, NoEstimate> {
+    fn equations(
+        &self,
+        values: &[f64],
+        weights: &[f64],
+        displaced: &[[f64; 2]],
+    ) -> Result<SquareRoot, NoEstimate> {
         let osculation = self.reference.osculation();
         let path = self.path(values).ok_or(NoEstimate::NoConvergence)?;
         let count = self.parameters.count();
-        let mut whiteners = self.whiteners(count + 1);
+        let mut whitener = self.whitener(count + 1);
         let mut root = SquareRoot::new(count);
         let mut rows = [vec![0.0; count + 1], vec![0.0; count + 1]];
-        for (sight, weight) in self.sights.iter().zip(weights) {
+        for ((sight, weight), by_displacement) in self.sights.iter().zip(weights).zip(displaced) {
             if *weight == 0.0 {
                 continue;
             }
@@ -276,29 +313,32 @@ impl Problem<'_> {
                     }
                 }
             }
-            whitener(&mut whiteners, sight.class).apply(
-                sight.seconds,
-                sight.noise.map(|x| x / weight),
-                &mut rows,
-            );
+            whitener.apply(&row_errors(sight, *weight, *by_displacement), &mut rows);
             rows.iter().for_each(|row| root.add(row));
         }
         self.parameters.prior_rows(values).iter().for_each(|row| root.add(row));
         Ok(root)
     }
 
-    /// Returns the residuals. A measurement of weight 0 has a residual and no effect on others.
-    fn residuals(&self, values: &[f64], weights: &[f64]) -> Result<Residuals, NoEstimate> {
+    /// Returns the residuals. The length of a residual is that of a measurement of full weight, but a measurement
+    /// affects later ones by its own weight.
+    fn residuals(
+        &self,
+        values: &[f64],
+        weights: &[f64],
+        displaced: &[[f64; 2]],
+    ) -> Result<Residuals, NoEstimate> {
         let osculation = self.reference.osculation();
         let path = self.path(values).ok_or(NoEstimate::NoConvergence)?;
-        let mut whiteners = self.whiteners(1);
+        let mut whitener = self.whitener(1);
         let count = self.parameters.count();
         let prior = self.parameters.prior_rows(values);
         let mut cost: f64 = prior.iter().map(|row| row[count] * row[count]).sum();
+        let mut log_determinant = 0.0;
         let mut lengths = Vec::with_capacity(self.sights.len());
         let mut residuals = Vec::with_capacity(self.sights.len());
         let mut rows = [vec![0.0], vec![0.0]];
-        for (sight, weight) in self.sights.iter().zip(weights) {
+        for ((sight, weight), by_displacement) in self.sights.iter().zip(weights).zip(displaced) {
             let elements = path.at(sight.seconds).ok_or(NoEstimate::NoConvergence)?;
             let prediction = sight.predict(&elements, osculation);
             let mut residual = sight.residual(&prediction);
@@ -310,19 +350,21 @@ impl Problem<'_> {
             }
             residuals.push(residual);
             rows.iter_mut().zip(residual).for_each(|(row, value)| row[0] = value);
-            let whitener = whitener(&mut whiteners, sight.class);
+            if *weight < 1.0 {
+                let mut of_full_weight = rows.clone();
+                whitener.clone().apply(&row_errors(sight, 1.0, *by_displacement), &mut of_full_weight);
+                lengths.push(squared(&of_full_weight).sqrt());
+            }
             if *weight > 0.0 {
-                whitener.apply(sight.seconds, sight.noise.map(|x| x / weight), &mut rows);
-                let squared: f64 = rows.iter().map(|row| row[0] * row[0]).sum();
-                cost += squared;
-                lengths.push(squared.sqrt());
-            } else {
-                whitener.clone().apply(sight.seconds, sight.noise, &mut rows);
-                lengths.push(rows.iter().map(|row| row[0] * row[0]).sum::<f64>().sqrt());
+                log_determinant += whitener.apply(&row_errors(sight, *weight, *by_displacement), &mut rows);
+                cost += squared(&rows);
+            }
+            if *weight >= 1.0 {
+                lengths.push(squared(&rows).sqrt());
             }
         }
         if cost.is_finite() {
-            Ok(Residuals { cost, lengths, residuals })
+            Ok(Residuals { cost, log_determinant, lengths, residuals })
         } else {
             Err(NoEstimate::NoConvergence)
         }
@@ -343,11 +385,13 @@ impl Solution {
     }
 }
 
-fn whitener(whiteners: &mut [Whitener; 2], class: ErrorClass) -> &mut Whitener {
-    match class {
-        ErrorClass::WithStars => &mut whiteners[0],
-        ErrorClass::WithoutStars => &mut whiteners[1],
-    }
+fn squared(rows: &[Vec<f64>; 2]) -> f64 {
+    rows.iter().flatten().map(|value| value * value).sum()
+}
+
+fn row_errors(sight: &Sight, weight: f64, by_displacement: [f64; 2]) -> RowErrors {
+    let (seconds, class) = (sight.seconds, sight.class);
+    RowErrors { seconds, class, noise: sight.noise.map(|x| x / weight), by_displacement }
 }
 
 /// Huber's weights of measurements with whitened residuals of these lengths, scaled by their median, which is

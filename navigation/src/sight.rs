@@ -4,7 +4,7 @@
 //! elements to R, T, N omits the curvature of the orbit, 63 m at 30 km.
 
 use contract::AttitudeSource;
-use contract::navigation::{LineOfSightErrors, LineOfSightMeasurement, RelativeElements, Use};
+use contract::navigation::{AngleErrors, LineOfSightErrors, LineOfSightMeasurement, RelativeElements, Use};
 use hifitime::Epoch;
 use nalgebra::{Matrix2x3, Matrix2x6, Matrix3, Vector3};
 
@@ -21,6 +21,19 @@ pub(crate) enum ErrorClass {
     WithStars,
     /// Attitude from telemetry, or of unknown source.
     WithoutStars,
+}
+
+impl ErrorClass {
+    /// Both classes.
+    pub(crate) const ALL: [Self; 2] = [Self::WithStars, Self::WithoutStars];
+
+    /// Returns the errors of this class.
+    pub(crate) fn errors(self, errors: &LineOfSightErrors) -> &AngleErrors {
+        match self {
+            Self::WithStars => &errors.with_stars,
+            Self::WithoutStars => &errors.without_stars,
+        }
+    }
 }
 
 /// Measurement prepared for estimation.
@@ -66,14 +79,10 @@ impl Sight {
             Some(AttitudeSource::Stars) => ErrorClass::WithStars,
             _ => ErrorClass::WithoutStars,
         };
-        let assumed = match class {
-            ErrorClass::WithStars => &errors.with_stars,
-            ErrorClass::WithoutStars => &errors.without_stars,
-        };
         let noise = match &measurement.covariance {
             Some(covariance) => covariance.matrix(),
             None => {
-                let [x, y] = assumed.white_arcsec.map(radians_from_arcsec);
+                let [x, y] = class.errors(errors).white_arcsec.map(radians_from_arcsec);
                 [x * x, 0.0, y * y]
             }
         };
@@ -139,6 +148,13 @@ impl Prediction {
         let d = &self.direction;
         let cross = Matrix3::new(0.0, -d.z, d.y, d.z, 0.0, -d.x, -d.y, d.x, 0.0);
         -angle_partials(d) * cross
+    }
+
+    /// Returns the derivatives of the angles across columns and rows with respect to a displacement of the
+    /// target along columns and along rows, rad/m.
+    pub(crate) fn by_displacement(&self) -> [f64; 2] {
+        let partials = angle_partials(&self.direction) * 1e-3;
+        [partials[(0, 0)], partials[(1, 1)]]
     }
 }
 

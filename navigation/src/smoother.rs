@@ -85,7 +85,7 @@ mod tests {
             chaser_orbit: ChaserOrbit::States(Vec::new()),
             camera_from_body: Rotation::identity(),
             prior: None,
-            errors: LineOfSightErrors { with_stars: errors, without_stars: AngleErrors::default() },
+            errors: LineOfSightErrors { with_stars: errors, ..LineOfSightErrors::default() },
             drag: DifferentialDrag { a_da_rate_m_per_day: 0.0, sigma_m_per_day: 5.0 },
         }
     }

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, Matrix6, Vector6};
 use crate::layout::Layout;
 use crate::orbit::Orbit;
 use crate::relative::{DriftPartials, target};
+use crate::slow_errors::SlowTransition;
 
 /// Linear transition of the state: the drift of the elements, and the decay of slow errors.
 #[derive(Debug, Clone)]
@@ -15,36 +16,14 @@ pub(crate) struct Transition {
     slow: Vec<SlowTransition>,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct SlowTransition {
-    state: usize,
-    is_periodic: bool,
-    /// Decay times cosine and sine of the phase.
-    cos: f64,
-    sin: f64,
-    /// Variance of the noise.
-    noise: f64,
-}
-
 impl Transition {
     /// Computes the transition over `dt` from the elements of a chaser in an orbit.
     pub(crate) fn new(layout: &Layout, chaser: &Orbit, elements: &RelativeElements, dt: f64) -> Self {
         let partials = DriftPartials::new(&target(chaser, elements));
-        let slow = layout.slow.iter().map(|slow| {
-            let decay = libm::exp(-dt.abs() / slow.memory_s);
-            let (sin, cos) = libm::sincos(slow.rate_rad_s * dt);
-            SlowTransition {
-                state: slow.state,
-                is_periodic: slow.is_periodic,
-                cos: decay * cos,
-                sin: decay * sin,
-                noise: slow.variance * (1.0 - decay * decay),
-            }
-        });
         Self {
             elements: partials.transition(dt),
             drag: layout.drag.map(|column| (column, partials.drag(dt))),
-            slow: slow.collect(),
+            slow: layout.slow.iter().map(|slow| slow.transition(dt)).collect(),
         }
     }
 

@@ -3,11 +3,10 @@
 use hifitime::{Duration, Epoch, Unit};
 use nalgebra::{Rotation3, Vector3};
 
-use crate::navigation::{AngleErrors, Use};
 use crate::navigation::{
-    Answer, ChaserOrbit, Covariance6, DifferentialDrag, Event, LineOfSightErrors, LineOfSightMeasurement,
-    ManoeuvreReport, MeanElements, Mode, NavigationSetup, NavigatorFactory, NoEstimate, PriorOrbit,
-    RelativeElements,
+    AngleErrors, Answer, ChaserOrbit, Covariance6, DifferentialDrag, Event, LineOfSightErrors,
+    LineOfSightMeasurement, ManoeuvreReport, MeanElements, Mode, NavigationSetup, NavigatorFactory,
+    NoEstimate, PriorOrbit, RelativeElements, SlowDisplacement, Use,
 };
 use crate::{Direction, Rotation};
 
@@ -144,7 +143,11 @@ fn setup(prior: bool) -> NavigationSetup {
         }),
         camera_from_body: Rotation::identity(),
         prior: covariance.filter(|_| prior).map(|covariance| PriorOrbit { elements, covariance }),
-        errors: LineOfSightErrors { with_stars: errors.clone(), without_stars: errors },
+        errors: LineOfSightErrors {
+            with_stars: errors.clone(),
+            without_stars: errors,
+            displacements: vec![SlowDisplacement { sigma_m: [0.2; 2], memory_s: 6000.0, period_s: None }],
+        },
         drag: DifferentialDrag::default(),
     }
 }

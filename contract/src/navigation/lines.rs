@@ -388,7 +388,7 @@ fn covariance(key: &str, rows: &[[f64; 6]; 6]) -> Result<Covariance6, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::navigation::{AngleErrors, SlowError};
+    use crate::navigation::{AngleErrors, SlowDisplacement, SlowError};
 
     fn write(time: Epoch) -> String {
         format!("{}", (time - origin()).total_nanoseconds())
@@ -421,6 +421,7 @@ mod tests {
             slow: vec![slow, SlowError { period_s: None, ..slow }],
             constant_arcsec: [1.0, 2.0, 3.0],
         };
+        let displacement = SlowDisplacement { sigma_m: [0.1, 0.2], memory_s: 1e6, period_s: Some(5930.0) };
         NavigationSetup {
             epoch: origin(),
             chaser_orbit: ChaserOrbit::States(vec![0, 60].into_iter().map(state).collect()),
@@ -429,7 +430,11 @@ mod tests {
                 elements: RelativeElements { a_dlambda_m: -3e4, ..RelativeElements::default() },
                 covariance: Covariance6::from_sigmas([1.0, 1e3, 30.0, 30.0, 30.0, 30.0]).unwrap(),
             }),
-            errors: LineOfSightErrors { with_stars: AngleErrors::default(), without_stars: errors },
+            errors: LineOfSightErrors {
+                with_stars: AngleErrors::default(),
+                without_stars: errors,
+                displacements: vec![displacement, SlowDisplacement { period_s: None, ..displacement }],
+            },
             drag: DifferentialDrag { a_da_rate_m_per_day: -0.5, sigma_m_per_day: 1.0 },
         }
     }

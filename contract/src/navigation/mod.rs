@@ -21,5 +21,5 @@ pub use event::{Event, LineOfSightMeasurement, ManoeuvreReport};
 pub use navigator::{Mode, Navigator, NavigatorFactory};
 pub use setup::{
     AngleErrors, ChaserOrbit, DifferentialDrag, LineOfSightErrors, MeanElements, NavigationSetup, PriorOrbit,
-    ReportedState, SlowError,
+    ReportedState, SlowDisplacement, SlowError,
 };

@@ -158,6 +158,11 @@ pub struct LineOfSightErrors {
     /// Errors where the attitude is that of the telemetry and a mounting, or its source is unknown.
     #[serde(default)]
     pub without_stars: AngleErrors,
+    /// Slow displacements of the measured point of the target from its centre of mass, for both classes;
+    /// their sum applies; at most eight.
+    #[serde(default)]
+    #[schemars(length(max = 8))]
+    pub displacements: Vec<SlowDisplacement>,
 }
 
 /// Errors of a measured direction as rotations about the axes of the camera, arcsec.
@@ -190,6 +195,24 @@ pub struct SlowError {
     #[schemars(range(min = 1, max = 1e9))]
     pub memory_s: f64,
     /// Period P of a periodic error, s, 1 to 1e9; `None` for an aperiodic one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1e9))]
+    pub period_s: Option<f64>,
+}
+
+/// A slow displacement of the measured point of the target across the line of sight, such as that of the
+/// centre of brightness. Its autocovariance is that of a [`SlowError`], in metres; the angle of the error is the
+/// displacement over the distance, which the navigator takes from its own trajectory.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SlowDisplacement {
+    /// Standard deviation across columns and across rows, m, each 0 to 10000.
+    #[schemars(inner(range(min = 0, max = 1e4)))]
+    pub sigma_m: [f64; 2],
+    /// Time constant of the memory τ, s, 1 to 1e9.
+    #[schemars(range(min = 1, max = 1e9))]
+    pub memory_s: f64,
+    /// Period P of a periodic displacement, s, 1 to 1e9; `None` for an aperiodic one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1e9))]
     pub period_s: Option<f64>,
@@ -262,5 +285,15 @@ mod tests {
         assert_eq!(refused(|s| s.drag.sigma_m_per_day = -1.0), "navigation.drag.sigma_m_per_day");
         let path = "navigation.errors.with_stars.white_arcsec[1]";
         assert_eq!(refused(|s| s.errors.with_stars.white_arcsec[1] = f64::NAN), path);
+        let displaced = |sigma_m, memory_s, period_s| {
+            let mut setup = setup();
+            setup.errors.displacements = vec![SlowDisplacement { sigma_m, memory_s, period_s }];
+            setup.check().map_err(|error| error.path)
+        };
+        let path = |key: &str| Err(format!("navigation.errors.displacements[0].{key}"));
+        assert_eq!(displaced([0.1, 0.0], 5900.0, Some(5900.0)), Ok(()));
+        assert_eq!(displaced([0.1, -0.1], 5900.0, None), path("sigma_m[1]"));
+        assert_eq!(displaced([0.1; 2], 0.0, None), path("memory_s"));
+        assert_eq!(displaced([0.1; 2], 5900.0, Some(f64::INFINITY)), path("period_s"));
     }
 }

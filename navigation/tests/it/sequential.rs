@@ -1,7 +1,7 @@
 //! Tests of the sequential navigator.
 
 use boresight_navigation::{Batch, BatchConfig, Sequential, SequentialConfig};
-use contract::navigation::{Event, NavigationSetup, Navigator, NoEstimate, RelativeEstimate, Use};
+use contract::navigation::{Event, NavigationSetup, Navigator, NoEstimate, RelativeEstimate, SlowError, Use};
 
 use hifitime::Unit;
 
@@ -86,6 +86,42 @@ fn precise_measurements_are_filtered_as_the_batch_fits_them() {
             assert!(difference < 0.2, "{seed}, {seconds} s: {difference} sigma");
             assert!((b[1] / a[1] - 1.0).abs() < 0.03, "{seed}, {seconds} s: {} {}", a[1], b[1]);
         }
+    }
+}
+
+/// The angle of a displacement grows tenfold as the chaser approaches.
+#[test]
+fn displacements_are_filtered_as_the_batch_fits_them() {
+    for seed in [1, 2] {
+        let flight = Campaign::displaced(16).fly(seed);
+        let (mut batch, mut filter) =
+            (fed_batch(&flight.setup, &flight.events), fed(&flight.setup, &flight.events));
+        let end = [at(430_000.0)];
+        let [fitted, filtered]: [RelativeEstimate; 2] =
+            [batch.estimates(&end), filter.estimates(&end)].map(|mut answers| answers.remove(0).unwrap());
+        for estimate in [&fitted, &filtered] {
+            // χ² with six degrees of freedom exceeds 27.9 once in 10,000.
+            let squared = squared(&flight, estimate);
+            assert!(squared < 27.9, "{seed}: {squared}");
+        }
+        let (a, b) = (fitted.covariance.sigmas(), filtered.covariance.sigmas());
+        for k in 0..3 {
+            let difference = (fitted.position_m[k] - filtered.position_m[k]).abs() / a[k];
+            // Both fit the chaser's orbit to different states: 1″ at this accuracy, without displacements too.
+            assert!(difference < 1.0, "{seed}, {k}: {difference} sigma");
+            assert!((b[k] / a[k] - 1.0).abs() < 0.01, "{seed}, {k}: {} {}", a[k], b[k]);
+        }
+        // The same displacements as angles at the smallest distance are errors too large at the others.
+        let mut setup = flight.setup.clone();
+        let displacements = std::mem::take(&mut setup.errors.displacements);
+        let angles = displacements.iter().map(|displacement| SlowError {
+            sigma_arcsec: displacement.sigma_m.map(|sigma| (sigma / 2_500.0).to_degrees() * 3600.0),
+            memory_s: displacement.memory_s,
+            period_s: displacement.period_s,
+        });
+        setup.errors.without_stars.slow.extend(angles);
+        let angular = fed_batch(&setup, &flight.events).estimates(&end).remove(0).unwrap();
+        assert!(angular.covariance.sigmas()[1] > 1.3 * a[1], "{seed}: {}", angular.covariance.sigmas());
     }
 }
 

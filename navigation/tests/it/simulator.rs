@@ -10,7 +10,7 @@ use boresight_navigation::{Osculation, relative};
 use contract::navigation::{
     AngleErrors, ChaserOrbit, Covariance6, DifferentialDrag, Event, LineOfSightErrors,
     LineOfSightMeasurement, ManoeuvreReport, NavigationSetup, PriorOrbit, RelativeElements, RelativeEstimate,
-    ReportedState, SlowError,
+    ReportedState, SlowDisplacement, SlowError,
 };
 use contract::{Direction, Rotation};
 use hifitime::{Epoch, Unit};
@@ -44,6 +44,8 @@ pub(crate) struct Campaign {
     /// First-order Gauss–Markov errors on each axis: σ, arcsec, and memory, s.
     pub(crate) irregular: Vec<(f64, f64)>,
     pub(crate) constant_arcsec: f64,
+    /// Displacements of the measured point of the target.
+    pub(crate) displacements: Vec<SlowDisplacement>,
     /// Fraction of measurements that are outliers, with errors of degrees.
     pub(crate) outliers: f64,
     /// Errors of the reported states of the chaser, m and m/s.
@@ -122,6 +124,7 @@ impl Campaign {
             theory: Vec::new(),
             irregular: Vec::new(),
             constant_arcsec: 20.0,
+            displacements: Vec::new(),
             outliers: 0.0,
             state_sigma: (5.0, 0.02),
             drag_m_per_day: (0.0, 0.0),
@@ -141,6 +144,26 @@ impl Campaign {
             irregular: vec![(7.0, 5900.0)],
             constant_arcsec: 1.0,
             ..Self::argon(stride)
+        }
+    }
+
+    /// Campaign of [`Campaign::precise`] with a centre of brightness that is displaced by centimetres instead
+    /// of arcseconds: a constant part, one with the period of the orbit, and a remainder.
+    pub(crate) fn displaced(stride: usize) -> Self {
+        let part = |sigma: f64, memory_s: f64, period_s: Option<f64>| SlowDisplacement {
+            sigma_m: [sigma; 2],
+            memory_s,
+            period_s,
+        };
+        Self {
+            slow: Vec::new(),
+            irregular: Vec::new(),
+            displacements: vec![
+                part(0.11, 5e6, None),
+                part(0.12, 5e6, Some(5992.0)),
+                part(0.05, 1000.0, None),
+            ],
+            ..Self::precise(stride)
         }
     }
 
@@ -201,6 +224,10 @@ impl Campaign {
         let constant = Vector3::new(normal(), normal(), normal()) * (self.constant_arcsec * arcsec);
         let mut events: Vec<Event> = reports.iter().map(|report| Event::Manoeuvre(*report)).collect();
         let mut wander = vec![[0.0; 2]; self.irregular.len()];
+        let mut displaced: Vec<[[f64; 2]; 2]> = Vec::new();
+        for displacement in &self.displacements {
+            displaced.push(displacement.sigma_m.map(|sigma| [sigma * normal(), sigma * normal()]));
+        }
         let mut previous_s = f64::NEG_INFINITY;
         let mut frame = 0;
         for (first, interval, count) in &self.schedule {
@@ -210,6 +237,16 @@ impl Campaign {
                     let decay = libm::exp((previous_s - seconds) / memory);
                     let fresh = sigma * arcsec * (1.0 - decay * decay).sqrt();
                     *value = value.map(|value| decay * value + fresh * normal());
+                }
+                for (displacement, states) in self.displacements.iter().zip(&mut displaced) {
+                    let dt = (seconds - previous_s).min(1e9);
+                    let decay = libm::exp(-dt / displacement.memory_s);
+                    let (sin, cos) = libm::sincos(displacement.period_s.map_or(0.0, |p| TAU * dt / p));
+                    for (state, sigma) in states.iter_mut().zip(displacement.sigma_m) {
+                        let fresh = sigma * (1.0 - decay * decay).sqrt();
+                        let turned = [cos * state[0] - sin * state[1], sin * state[0] + cos * state[1]];
+                        *state = turned.map(|value| decay * value + fresh * normal());
+                    }
                 }
                 previous_s = seconds;
                 let (chaser, target) = &states[(seconds / STEP_S).round() as usize];
@@ -230,6 +267,10 @@ impl Campaign {
                 }
                 for value in &wander {
                     angles = [angles[0] + value[0], angles[1] + value[1]];
+                }
+                for states in &displaced {
+                    let [x, y] = [states[0][0], states[1][0]].map(|metres| metres * 1e-3 / los.norm());
+                    angles = [angles[0] + x, angles[1] + y];
                 }
                 angles = angles.map(|angle| angle + self.white_arcsec * arcsec * normal());
                 if libm::fabs(normal()) < outlier_threshold(self.outliers) {
@@ -288,7 +329,11 @@ impl Campaign {
             chaser_orbit: ChaserOrbit::States(reported),
             camera_from_body: Rotation::identity(),
             prior,
-            errors: LineOfSightErrors { with_stars: AngleErrors::default(), without_stars: errors },
+            errors: LineOfSightErrors {
+                with_stars: AngleErrors::default(),
+                without_stars: errors,
+                displacements: self.displacements.clone(),
+            },
             drag: DifferentialDrag { a_da_rate_m_per_day: 0.0, sigma_m_per_day: self.drag_m_per_day.1 },
         };
         Flight { setup, events, states, true_relative, true_manoeuvres }

@@ -38,7 +38,7 @@ fn the_estimate_is_that_of_scipy_and_of_orekit() {
         chaser_orbit: ChaserOrbit::States(states.collect()),
         camera_from_body: Rotation::identity(),
         prior: None,
-        errors: LineOfSightErrors { with_stars: AngleErrors::default(), without_stars },
+        errors: LineOfSightErrors { without_stars, ..LineOfSightErrors::default() },
         drag: DifferentialDrag::default(),
     };
     let mut batch = Batch::new(&setup, &BatchConfig::default()).unwrap();
