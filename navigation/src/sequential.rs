@@ -15,8 +15,8 @@ use std::collections::BTreeSet;
 
 use contract::ContractError;
 use contract::navigation::{
-    Answer, Disposition, Event, LineOfSightMeasurement, ManoeuvreReport, Mode, NavigationSetup, Navigator,
-    NavigatorFactory, NoEstimate, PriorOrbit, Use,
+    Answer, ChaserOrbit, Disposition, Event, LineOfSightMeasurement, ManoeuvreReport, Mode, NavigationSetup,
+    Navigator, NavigatorFactory, NoEstimate, PriorOrbit, ReportedState, SlowError, Use,
 };
 use hifitime::Epoch;
 
@@ -59,6 +59,29 @@ const STATES_S: f64 = 6.0 * 3600.0;
 
 /// Time after the last state of a fit until which the chaser's orbit is extrapolated, s.
 const REFRESH_S: f64 = 1800.0;
+
+/// Time over which the error of reported velocities moves the chaser's orbit, s: shortly after an impulse, a fit
+/// to a few states is extrapolated by up to [`REFRESH_S`].
+const REFERENCE_DRIFT_S: f64 = 600.0;
+
+/// Returns the setup with the error of the chaser's orbit as a slow error of the lines of sight. It turns both
+/// satellites by the error of one state, position and drift, over the distance from the Earth's centre. A batch
+/// fits hours of states on both sides of a measurement, to a tenth of that.
+fn with_reference_errors(setup: &NavigationSetup) -> NavigationSetup {
+    let mut setup = setup.clone();
+    let ChaserOrbit::States(states) = &setup.chaser_orbit else { return setup };
+    let angle = |state: &ReportedState| {
+        let drift_m = state.velocity_sigma_m_s * REFERENCE_DRIFT_S;
+        libm::hypot(state.position_sigma_m, drift_m) * 1e-3 / state.position_km.norm()
+    };
+    let squares: f64 = states.iter().map(|state| angle(state) * angle(state)).sum();
+    let sigma_rad = (squares / states.len().max(1) as f64).sqrt();
+    let sigma_arcsec = [(sigma_rad.to_degrees() * 3600.0).min(36_000.0); 2];
+    let error = SlowError { sigma_arcsec, memory_s: REFRESH_S, period_s: None };
+    setup.errors.with_stars.slow.push(error);
+    setup.errors.without_stars.slow.push(error);
+    setup
+}
 
 /// Sequential navigator.
 #[derive(Debug, Clone)]
@@ -106,7 +129,7 @@ impl Sequential {
     pub fn new(setup: &NavigationSetup, config: &SequentialConfig) -> Result<Self, ContractError> {
         setup.check()?;
         config.check()?;
-        let layout = Layout::new(setup, config.velocity_noise_m_s_per_hour);
+        let layout = Layout::new(&with_reference_errors(setup), config.velocity_noise_m_s_per_hour);
         let start = setup.prior.as_ref().map(|prior| FilterState::new(&layout, 0.0, prior));
         Ok(Self {
             setup: setup.clone(),

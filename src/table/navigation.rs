@@ -47,6 +47,15 @@ pub fn navigation_table(result: &NavigationResult, styled: bool) -> String {
         shown(score.nees_state_per_dimension),
         shown(score.nees_elements_per_dimension)
     ));
+    if let Some(before) = &score.before_report {
+        text.push_str(&format!(
+            "Between a manoeuvre and its report: {} estimates; NEES per dimension of the others: position {}, \
+             position and velocity {}\n",
+            before.estimates,
+            shown(before.others_nees_position_per_dimension),
+            shown(before.others_nees_state_per_dimension)
+        ));
+    }
     text.push_str(&format!(
         "Distance: error {} % rms, {} % at the end; below 1 % after {}\n",
         shown(score.range_error_rms_percent),

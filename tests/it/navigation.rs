@@ -356,3 +356,61 @@ fn wrong_input_of_navigate_is_refused() {
     bench.write("run/measurements.csv", bench.read("another/measurements.csv"));
     bench.boresight("navigate run").refused(&["measurements.csv"]);
 }
+
+/// The paper's first statement (section 4): errors in R and N are smaller than in T, because the boresight is
+/// nearly along the velocity. With integrated orbits, which the navigator's theory approximates.
+#[test]
+fn on_numerical_orbits_the_error_along_track_is_the_largest() {
+    let bench = Bench::new();
+    bench.scenario("thin.toml", "argon-numerical", |scenario| {
+        scenario.insert("far_range".into(), "mode = 'best'".parse::<toml::Table>().unwrap().into());
+        let day = |name: &str, start: &str, count: i64| {
+            let day = format!("name = '{name}'\nstart_utc = {start}\ncadence_s = 1800.0\ncount = {count}");
+            toml::Value::from(day.parse::<toml::Table>().unwrap())
+        };
+        let days = vec![
+            day("day 1", "'2012-04-23T07:00:00Z'", 13),
+            day("day 2", "'2012-04-24T06:00:00Z'", 24),
+            day("day 3", "'2012-04-25T06:00:00Z'", 27),
+        ];
+        scenario.insert("schedule".into(), days.into());
+    });
+    bench.boresight("run thin.toml --no-report --out run").done();
+    let json = bench.boresight("navigate run --json").done().json();
+    let score = &json["score"];
+    assert_eq!(score["estimates"], score["requested"], "{score}");
+    let of = |axis: &str, figure: &str| score["position_m"][axis][figure].as_f64().unwrap();
+    for figure in ["rms", "sigma_rms"] {
+        assert!(5.0 * of("r", figure) < of("t", figure), "{score}");
+        assert!(5.0 * of("n", figure) < of("t", figure), "{score}");
+    }
+    assert!(["r", "t", "n"].iter().all(|axis| of(axis, "within_3_sigma") > 0.97), "{score}");
+    // A filter has no report of a manoeuvre for ten minutes after it.
+    let json = bench.boresight("navigate run --navigator sequential --out filter --json").done().json();
+    let before = &json["score"]["before_report"];
+    assert!((1..=8).contains(&before["estimates"].as_u64().unwrap()), "{json}");
+    let all = json["score"]["nees_state_per_dimension"].as_f64().unwrap();
+    assert!(before["others_nees_state_per_dimension"].as_f64().unwrap() < 0.5 * all, "{json}");
+}
+
+/// The cause of the paper's second statement: errors grow at the end of 26 April, because fewer stars are
+/// detected and regions cut the target. Lines of sight of that evening have a bias of the declination that
+/// whole images do not have.
+#[test]
+fn at_the_end_of_the_fourth_day_stars_are_fewer_and_regions_bias_the_declination() {
+    let bench = Bench::new();
+    let figures = |frames: &str, more: &str, out: &str| {
+        bench.boresight(&format!("run argon --frames {frames} --no-report {more} --out {out}")).done();
+        let figures = bench.json(&format!("{out}/score.json"))["figures"].clone();
+        let value = |name: &str| figures[name]["value"].as_f64().unwrap();
+        (3600.0 * value("dec_median_deg"), value("stars_mean"))
+    };
+    // 24 and 26 April, evening.
+    let (early_arcsec, early_stars) = figures("4000..4080", "", "early");
+    let (late_arcsec, late_stars) = figures("13000..13080", "", "late");
+    let (whole_arcsec, _) = figures("13000..13080", "--inject roi", "whole");
+    assert!(early_arcsec.abs() < 40.0, "{early_arcsec}");
+    assert!((-300.0..-120.0).contains(&late_arcsec), "{late_arcsec}");
+    assert!(whole_arcsec.abs() < 0.3 * late_arcsec.abs(), "{whole_arcsec} {late_arcsec}");
+    assert!(late_stars < 0.7 * early_stars, "{late_stars} {early_stars}");
+}

@@ -111,7 +111,7 @@ fn displacements_are_filtered_as_the_batch_fits_them() {
             assert!(difference < 1.0, "{seed}, {k}: {difference} sigma");
             assert!((b[k] / a[k] - 1.0).abs() < 0.01, "{seed}, {k}: {} {}", a[k], b[k]);
         }
-        // The same displacements as angles at the smallest distance are errors too large at the others.
+        // Displacements stated as angles at the smallest distance are too large at the others.
         let mut setup = flight.setup.clone();
         let displacements = std::mem::take(&mut setup.errors.displacements);
         let angles = displacements.iter().map(|displacement| SlowError {

@@ -7,7 +7,7 @@ use contract::{AttitudeSource, ContractError, Covariance2, Direction, Rotation};
 use files::{Checksums, Failure, FileError, FileLocation, refuse_unfinished};
 use hifitime::Epoch;
 use nalgebra::Vector3;
-use run::world_of_run;
+use run::check_world_of_run;
 use scenario::FarRangeScenario;
 use scenario::run_file::{RunFile, ScenarioFile};
 use sim::truth::{Schedule, Trajectory};
@@ -63,18 +63,10 @@ impl Campaign {
         knowledge: &KnowledgeConfig,
         source: &MeasurementSource,
     ) -> Result<Self, Failure> {
-        let path = directory.join("run.toml");
-        let world = world_of_run(&path)?;
-        if world.code() != FarRangeScenario::WORLD {
-            return Err(Failure::Usage(format!(
-                "{}: is a run of the world {}, expected {}",
-                directory.display(),
-                world.code(),
-                FarRangeScenario::WORLD
-            )));
-        }
+        check_world_of_run(directory, FarRangeScenario::WORLD)?;
         refuse_unfinished(directory)?;
-        let campaign = Self::read_with(directory, &RunFile::read(&path)?, knowledge, source)?;
+        let run = RunFile::read(&directory.join("run.toml"))?;
+        let campaign = Self::read_with(directory, &run, knowledge, source)?;
         let is_read = |name: &str| READ.contains(&name) && (source.file.is_none() || name != MEASUREMENTS);
         Checksums::check(directory, is_read)?;
         Ok(campaign)
@@ -110,7 +102,7 @@ impl Campaign {
         let measurements = source.measurements(directory, run)?;
         let truth = Truth::new(scenario)?;
         let times: Vec<Epoch> = measurements.iter().map(|measurement| measurement.time).collect();
-        let (Some(epoch), Some(last)) = (times.first().copied(), times.last().copied()) else {
+        let (Some(first), Some(last)) = (measurements.first(), times.last().copied()) else {
             let path = source.path(directory);
             let expected = "a detected target with a line of sight in at least one row";
             return Err(FileError::value(&path, FileLocation::Whole, "los_j2000_x", "", expected).into());
@@ -118,7 +110,8 @@ impl Campaign {
         // Only a pipeline that solves the attitude in each image states the error of a line of sight.
         let has_covariance = measurements.iter().any(|measurement| measurement.covariance.is_some());
         let method = if has_covariance { Method::StarAttitude } else { Method::StarMounting };
-        let setup = knowledge.setup(scenario, &truth, &times, method)?;
+        let epoch = first.time;
+        let setup = knowledge.setup(scenario, &truth, &times, first.camera_from_icrs, method)?;
         let mut arrivals: Vec<Arrival> = measurements
             .into_iter()
             .map(|measurement| Arrival { arrives: measurement.time, event: Event::LineOfSight(measurement) })
@@ -164,7 +157,14 @@ impl Campaign {
         let (Some(epoch), Some(last)) = (times.first().copied(), times.last().copied()) else {
             return Err(Failure::Usage(format!("scenario `{name}` has no frames")));
         };
-        let setup = knowledge.setup(scenario, &truth, &times, Method::StarMounting)?;
+        // Boresight along the line of sight, columns across the plane of the orbit.
+        let camera = |time: Epoch| {
+            let states = truth.trajectory().states_at(time);
+            let z = states.line_of_sight_km().normalize();
+            let x = z.cross(&states.chaser.position_km).normalize();
+            Rotation::from_axes(&x, &z.cross(&x), &z)
+        };
+        let setup = knowledge.setup(scenario, &truth, &times, camera(epoch), Method::StarMounting)?;
         let [across, along] = setup
             .errors
             .with_stars
@@ -174,13 +174,11 @@ impl Campaign {
         let mut arrivals = Vec::with_capacity(frames.len());
         for (frame, time) in frames {
             let sight_km = truth.trajectory().states_at(time).line_of_sight_km();
-            let z = sight_km.normalize();
-            let x = z.cross(&Vector3::ith(z.iamin(), 1.0)).normalize();
             let measurement = LineOfSightMeasurement {
                 frame,
                 time,
                 line_of_sight: Direction::from_vector(sight_km)?,
-                camera_from_icrs: Rotation::from_axes(&x, &z.cross(&x), &z),
+                camera_from_icrs: camera(time),
                 covariance: Some(covariance),
                 attitude_source: Some(AttitudeSource::Stars),
             };
@@ -204,6 +202,14 @@ impl Campaign {
             arrivals,
             last,
             truth,
+        })
+    }
+
+    /// Returns true if a manoeuvre before a time has not been reported by then.
+    pub(crate) fn awaits_report(&self, time: Epoch) -> bool {
+        self.arrivals.iter().any(|arrival| {
+            let is_manoeuvre = matches!(arrival.event, Event::Manoeuvre(_));
+            is_manoeuvre && arrival.event.time() < time && arrival.arrives > time
         })
     }
 

@@ -1,6 +1,7 @@
 //! Built-in navigators, driven through the events of a campaign.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use contract::navigation::{Answer, Mode, Navigator, NavigatorFactory};
 use files::Failure;
@@ -106,6 +107,10 @@ pub fn navigate_with(
         .zip(answers)
         .map(|(time, answer)| row(&campaign.truth, *time, answer))
         .collect::<Result<Vec<_>, Failure>>()?;
+    let before_report: Vec<bool> = match factory.mode() {
+        Mode::Batch => Vec::new(),
+        Mode::Sequential => times.iter().map(|time| campaign.awaits_report(*time)).collect(),
+    };
     let mut uses = BTreeMap::new();
     for disposition in navigator.dispositions() {
         *uses.entry(disposition.used.code().to_owned()).or_insert(0) += 1;
@@ -118,9 +123,21 @@ pub fn navigate_with(
         every_s,
         lines_of_sight: campaign.lines_of_sight,
         manoeuvres: campaign.manoeuvres,
-        score: NavigationScore::new(&rows, uses),
+        score: NavigationScore::new(&rows, &before_report, uses),
         rows,
     })
+}
+
+/// Returns the number of estimation times of a run with a line of sight in its first and in its last frame.
+///
+/// # Errors
+/// A [`Failure`] for a `telemetry.csv` that cannot be read.
+pub fn requested_estimates(directory: &Path, every_s: f64) -> Result<u64, Failure> {
+    let telemetry = files::read_telemetry(&directory.join("telemetry.csv"))?;
+    let (Some(first), Some(last)) = (telemetry.first(), telemetry.last()) else { return Ok(0) };
+    let intervals = (last.telemetry.time - first.telemetry.time).to_seconds() / every_s;
+    // The last line of sight has an estimate of its own.
+    Ok(intervals.ceil().clamp(0.0, MAX_ESTIMATES) as u64 + 1)
 }
 
 /// Returns the estimation times of a campaign.

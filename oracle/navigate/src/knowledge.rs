@@ -4,30 +4,38 @@ use std::f64::consts::TAU;
 
 use contract::navigation::{
     AngleErrors, ChaserOrbit, Covariance6, DifferentialDrag, LineOfSightErrors, NavigationSetup, PriorOrbit,
-    RelativeElements, ReportedState, SlowError,
+    RelativeElements, ReportedState, SlowDisplacement, SlowError,
 };
-use contract::{AttitudeKnowledge, ContractError};
+use contract::{AttitudeKnowledge, CameraFrame, ContractError, Icrs, Rotation};
 use files::Failure;
 use hifitime::{Duration, Epoch};
 use nalgebra::{Vector3, Vector6};
 use scenario::FarRangeScenario;
 use sim::onboard::ScanOrder;
 use sim::randomness::{Effect, Seed, Stream, normal};
-use sim::truth::{EARTH_GM_KM3_S2, State, Trajectory};
+use sim::truth::{EARTH_GM_KM3_S2, State, Trajectory, clock, ephemeris};
 
 use crate::truth::Truth;
 
-/// Standard deviation of the centre of brightness about the centre of the target, relative to its radius:
-/// that of a sphere at a phase angle of 90° is 0.4 to 0.6, that of a plate seen face on 0.
-const BRIGHTNESS_OFFSET: f64 = 0.3;
+/// Root mean squares of the parts of the offset of the centre of brightness from the centre of mass along R and N
+/// of the orbit, relative to the radius of the target. They are those of spheres and boxes with an attitude fixed
+/// in the orbital frame (`research/brightness_offset/run.py`) for an elevation β of the Sun above the plane of
+/// the orbit: the constant part along N is the root of the sum of the squares of a fixed value and one times
+/// sin β; the two harmonics of the orbit and the remainder are proportional to cos β, the part of the Sun that
+/// turns. A navigator takes the first harmonic for a relative eccentricity or inclination.
+const BRIGHTNESS_CONSTANT: [f64; 2] = [0.15, 0.1];
+const BRIGHTNESS_CONSTANT_BY_SIN: [f64; 2] = [0.0, 0.54];
+const BRIGHTNESS_FIRST_BY_COS: [f64; 2] = [0.47, 0.24];
+const BRIGHTNESS_SECOND_BY_COS: [f64; 2] = [0.14, 0.1];
+const BRIGHTNESS_REMAINDER_BY_COS: [f64; 2] = [0.08, 0.06];
 
-/// Memory of that error, s: the side of the target that is seen and lit turns with the orbit.
-const BRIGHTNESS_MEMORY_S: f64 = 5900.0;
+/// Memory of the constant and the periodic parts, s: the Sun moves by a radian in 58 days. As a Gauss–Markov process
+/// a part changes by two fifths of its σ in five days, which covers the difference between the osculating period and
+/// that of the illumination.
+const BRIGHTNESS_MEMORY_S: f64 = 5e6;
 
-/// Part of that error that repeats with every orbit, relative to the whole, and its memory, s: the Sun and
-/// the attitude in the orbital frame change within weeks. A navigator takes it for a relative eccentricity.
-const PERIODIC_SHARE: f64 = 0.3;
-const PERIODIC_MEMORY_S: f64 = 1e6;
+/// Memory of the remainder, in periods of the orbit: harmonics from the third on.
+const REMAINDER_MEMORY_PERIODS: f64 = 1.0 / 6.0;
 
 /// Parts of the relative orbit that secular J2 and its first-order short-period terms omit (other zonal and
 /// tesseral terms, J2², Sun and Moon), as an angle from the target, arcsec, and their memories, s. They move
@@ -54,10 +62,9 @@ const MIN_STATES_S: f64 = 900.0;
 /// Largest number of reported states.
 const MAX_STATES: f64 = 1e6;
 
-/// Memories of the error by regions that cut the target, s, each of a half of its variance: the size of the
-/// target's image follows its illumination, which turns with the orbit, and its distance, which changes
-/// within days.
-const TRUNCATION_MEMORY_S: [f64; 2] = [BRIGHTNESS_MEMORY_S, 86_400.0];
+/// Memory of the error by regions that cut the target, s: the size of the target's image follows its distance,
+/// which changes within days, and its illumination, which turns with the orbit. Each has a half of the variance.
+const TRUNCATION_MEMORY_S: f64 = 86_400.0;
 
 /// Constant error of a line of sight with the attitude of telemetry and a mounting from stars, arcsec.
 const MOUNTING_CONSTANT_ARCSEC: f64 = 5.0;
@@ -103,7 +110,8 @@ impl Default for KnowledgeConfig {
 }
 
 impl KnowledgeConfig {
-    /// Builds the setup of a navigator for measurements at `times`, in order; the first is the epoch. States
+    /// Builds the setup of a navigator for measurements at `times`, in order; the first is the epoch, with the
+    /// attitude `camera`. States
     /// and prior are those of the truth with errors drawn from the scenario's seed.
     ///
     /// # Errors
@@ -113,6 +121,7 @@ impl KnowledgeConfig {
         scenario: &FarRangeScenario,
         truth: &Truth,
         times: &[Epoch],
+        camera: Rotation<CameraFrame, Icrs>,
         method: Method,
     ) -> Result<NavigationSetup, Failure> {
         let seed = Seed { seed: scenario.seed, case: 0 };
@@ -127,7 +136,7 @@ impl KnowledgeConfig {
             chaser_orbit: ChaserOrbit::States(self.states(truth.trajectory(), seed, [epoch, last])?),
             camera_from_body: scenario.mounting.nominal.camera_from_body(),
             prior,
-            errors: errors(scenario, truth, times, method),
+            errors: errors(scenario, truth, times, camera, method),
             drag: DifferentialDrag {
                 a_da_rate_m_per_day: 0.0,
                 sigma_m_per_day: if truth.has_mean_elements() { 0.0 } else { DRAG_SIGMA_M_PER_DAY },
@@ -186,21 +195,26 @@ fn prior(sigmas: [f64; 6], truth: &RelativeElements, seed: Seed) -> Result<Prior
 }
 
 /// Returns the errors of the lines of sight: of the attitude in telemetry those of the scenario's
-/// calibration, of an attitude from stars those of the target's centre of brightness, as an angle at the
-/// smallest distance.
-fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch], method: Method) -> LineOfSightErrors {
+/// calibration; displacements of the target's centre of brightness.
+fn errors(
+    scenario: &FarRangeScenario,
+    truth: &Truth,
+    times: &[Epoch],
+    camera: Rotation<CameraFrame, Icrs>,
+    method: Method,
+) -> LineOfSightErrors {
     let calibration = scenario.calibration();
     let radius_m = calibration.target.map_or(0.0, |target| target.radius_m);
-    let nearest_m = times
-        .iter()
-        .map(|time| truth.trajectory().states_at(*time).range_km() * 1000.0)
-        .fold(f64::INFINITY, f64::min);
-    let arcsec = (BRIGHTNESS_OFFSET * radius_m / nearest_m).to_degrees() * 3600.0;
-    let brightness = (arcsec > 0.0).then_some(SlowError {
-        sigma_arcsec: [arcsec.min(36_000.0); 2],
-        memory_s: BRIGHTNESS_MEMORY_S,
-        period_s: None,
+    // The chaser's orbit is reported, the Sun is in an almanac; the target's plane is nearly the same.
+    let illumination = times.first().map(|first| {
+        let orbit = truth.trajectory().states_at(*first).chaser;
+        Illumination {
+            period_s: orbital_period_s(&orbit),
+            sun_elevation_rad: sun_elevation_rad(&orbit, *first),
+            columns_to_normal: columns_to_normal(&orbit, camera),
+        }
     });
+    let displacements = illumination.map_or(Vec::new(), |illumination| illumination.displacements(radius_m));
     let pixel_arcsec =
         (scenario.camera.pixel_width_um * 1e-3 / scenario.camera.focal_length_mm).to_degrees() * 3600.0;
     let centre_arcsec = (CENTRE_SIGMA_PX * pixel_arcsec).min(36_000.0);
@@ -209,24 +223,18 @@ fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch], method: M
         memory_s,
         period_s: None,
     });
-    let omitted = omitted.into_iter().filter(|_| !truth.has_mean_elements());
-    let periodic = brightness.zip(times.first()).map(|(irregular, first)| SlowError {
-        sigma_arcsec: irregular.sigma_arcsec.map(|sigma| PERIODIC_SHARE * sigma),
-        memory_s: PERIODIC_MEMORY_S,
-        period_s: Some(orbital_period_s(&truth.trajectory().states_at(*first).target).clamp(1.0, 1e9)),
-    });
-    let slow: Vec<SlowError> = brightness.into_iter().chain(periodic).chain(omitted).collect();
+    let slow: Vec<SlowError> = omitted.into_iter().filter(|_| !truth.has_mean_elements()).collect();
     let solved = AngleErrors {
         white_arcsec: [centre_arcsec; 2],
         slow: slow.clone(),
         constant_arcsec: [STARS_CONSTANT_ARCSEC; 3],
     };
     let Some(attitude) = calibration.attitude else {
-        return LineOfSightErrors { with_stars: solved.clone(), without_stars: solved };
+        return LineOfSightErrors { with_stars: solved.clone(), without_stars: solved, displacements };
     };
     let truncation = match method {
         Method::StarAttitude => Vec::new(),
-        Method::StarMounting => truncation(scenario),
+        Method::StarMounting => truncation(scenario, illumination.map(|illumination| illumination.period_s)),
     };
     let slow = slow.into_iter().chain(truncation).collect();
     let without_stars = of_telemetry(scenario, &attitude, centre_arcsec, slow);
@@ -236,7 +244,68 @@ fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch], method: M
             AngleErrors { constant_arcsec: [MOUNTING_CONSTANT_ARCSEC; 3], ..without_stars.clone() }
         }
     };
-    LineOfSightErrors { with_stars, without_stars }
+    LineOfSightErrors { with_stars, without_stars, displacements }
+}
+
+/// Illumination of a target during a campaign.
+#[derive(Debug, Clone, Copy)]
+struct Illumination {
+    /// Period of the orbit, s.
+    period_s: f64,
+    /// Elevation of the Sun above the plane of the orbit, rad.
+    sun_elevation_rad: f64,
+    /// Square of the cosine of the angle between the camera's columns and N, in the plane of N and R.
+    columns_to_normal: f64,
+}
+
+impl Illumination {
+    /// Returns the displacements of the centre of brightness of a target with a radius, which is 0 for a point.
+    fn displacements(&self, radius_m: f64) -> Vec<SlowDisplacement> {
+        if radius_m <= 0.0 || !self.period_s.is_finite() {
+            return Vec::new();
+        }
+        let part = |relative: [f64; 2], memory_s: f64, period_s: Option<f64>| {
+            let [r, n] = relative.map(|relative| relative * relative);
+            let of_columns = self.columns_to_normal;
+            let variances =
+                [of_columns * n + (1.0 - of_columns) * r, of_columns * r + (1.0 - of_columns) * n];
+            SlowDisplacement {
+                sigma_m: variances.map(|variance| (variance.sqrt() * radius_m).min(1e4)),
+                memory_s: memory_s.clamp(1.0, 1e9),
+                period_s: period_s.map(|period| period.clamp(1.0, 1e9)),
+            }
+        };
+        let (sin, cos) = libm::sincos(self.sun_elevation_rad);
+        let [r, n] = BRIGHTNESS_CONSTANT_BY_SIN.map(|by_sin| by_sin * sin);
+        let constant = [libm::hypot(BRIGHTNESS_CONSTANT[0], r), libm::hypot(BRIGHTNESS_CONSTANT[1], n)];
+        let by_cos = |parts: [f64; 2]| parts.map(|part| part * cos);
+        let period_s = self.period_s;
+        vec![
+            part(constant, BRIGHTNESS_MEMORY_S, None),
+            part(by_cos(BRIGHTNESS_FIRST_BY_COS), BRIGHTNESS_MEMORY_S, Some(period_s)),
+            part(by_cos(BRIGHTNESS_SECOND_BY_COS), BRIGHTNESS_MEMORY_S, Some(0.5 * period_s)),
+            part(by_cos(BRIGHTNESS_REMAINDER_BY_COS), REMAINDER_MEMORY_PERIODS * period_s, None),
+        ]
+    }
+}
+
+/// Returns the square of the cosine of the angle between the camera's columns and N of the orbit of a state, in
+/// the plane of N and R; 0.5 for columns along T.
+fn columns_to_normal(state: &State, camera: Rotation<CameraFrame, Icrs>) -> f64 {
+    let radial = camera.rotate(&state.position_km.normalize());
+    let normal = camera.rotate(&state.position_km.cross(&state.velocity_km_s).normalize());
+    let across = normal.x * normal.x + radial.x * radial.x;
+    if across > 1e-6 { normal.x * normal.x / across } else { 0.5 }
+}
+
+/// Returns the elevation of the Sun above the plane of the orbit of a state, rad; 0, the largest harmonics,
+/// outside the years of the ephemeris.
+fn sun_elevation_rad(state: &State, time: Epoch) -> f64 {
+    ephemeris::earth(clock::tdb_j2000_s(time)).map_or(0.0, |earth| {
+        let sun = earth.sun_geocentric_km();
+        let normal = state.position_km.cross(&state.velocity_km_s);
+        libm::asin((sun.dot(&normal) / (sun.norm() * normal.norm())).clamp(-1.0, 1.0))
+    })
 }
 
 /// Returns the error of a centroid in a region of interest that cuts the target, for a pipeline that states
@@ -244,7 +313,7 @@ fn errors(scenario: &FarRangeScenario, truth: &Truth, times: &[Epoch], method: M
 /// target, up to twice as tall: then a second region begins. The centroid errs by 0 to n/2 rows, with equal
 /// probability, and the root of the mean square is n/(2√3) (paper, section 4: the truncation by regions
 /// is the largest error of the declination). A scan by columns cuts columns.
-fn truncation(scenario: &FarRangeScenario) -> Vec<SlowError> {
+fn truncation(scenario: &FarRangeScenario, period_s: Option<f64>) -> Vec<SlowError> {
     let Some(roi) = &scenario.roi else { return Vec::new() };
     let rms_arcsec = |side: usize, anchor: usize, pitch_um: f64| {
         let pixel_rad = pitch_um * 1e-3 / scenario.camera.focal_length_mm;
@@ -258,8 +327,9 @@ fn truncation(scenario: &FarRangeScenario) -> Vec<SlowError> {
         }
     };
     let halved = sigma_arcsec.map(|sigma| sigma * 0.5_f64.sqrt());
-    let part = |memory_s| SlowError { sigma_arcsec: halved, memory_s, period_s: None };
-    TRUNCATION_MEMORY_S.map(part).into()
+    let period_s = period_s.filter(|period| period.is_finite()).map(|period| period.clamp(1.0, 1e9));
+    let part = |period_s| SlowError { sigma_arcsec: halved, memory_s: TRUNCATION_MEMORY_S, period_s };
+    vec![part(None), part(period_s)]
 }
 
 /// Returns the period of the osculating orbit of a state, s (vis-viva equation).
@@ -297,5 +367,57 @@ fn of_telemetry(
         white_arcsec: [with_centre(white.y), with_centre(white.x)],
         slow: drift.chain(others).collect(),
         constant_arcsec: constant.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sigmas(elevation_deg: f64, columns_to_normal: f64) -> Vec<[f64; 2]> {
+        let sun_elevation_rad = elevation_deg.to_radians();
+        let illumination = Illumination { period_s: 6000.0, sun_elevation_rad, columns_to_normal };
+        illumination.displacements(0.5).iter().map(|part| part.sigma_m).collect()
+    }
+
+    /// The Sun along the normal of the orbit lights the same sides all the time; in its plane, harmonics are the
+    /// largest parts.
+    #[test]
+    fn a_sun_in_the_plane_of_the_orbit_makes_the_centre_of_brightness_wander() {
+        let (inside, normal) = (sigmas(0.0, 1.0), sigmas(90.0, 1.0));
+        assert!((inside[0][1] - 0.075).abs() < 1e-12 && (inside[1][1] - 0.235).abs() < 1e-12, "{inside:?}");
+        assert!(normal[0][0] > 0.27 && normal[0][1] < 0.08, "{normal:?}");
+        assert!(normal[1..].iter().flatten().all(|sigma| *sigma < 1e-12), "{normal:?}");
+        assert_eq!(sigmas(-60.0, 0.3), sigmas(60.0, 0.3));
+        // Columns along R.
+        let turned: Vec<[f64; 2]> = sigmas(50.0, 0.0).into_iter().map(|[x, y]| [y, x]).collect();
+        assert_eq!(turned, sigmas(50.0, 1.0));
+    }
+
+    #[test]
+    fn the_columns_of_the_camera_are_compared_with_the_normal_of_the_orbit() {
+        // R along y, T along −x, N along z.
+        let state = State {
+            position_km: Vector3::new(0.0, 7000.0, 0.0),
+            velocity_km_s: Vector3::new(-7.5, 0.0, 0.0),
+        };
+        let camera = |x: Vector3<f64>, z: Vector3<f64>| Rotation::from_axes(&x, &z.cross(&x), &z);
+        let forward = Vector3::new(-1.0, 0.0, 0.0);
+        assert!((columns_to_normal(&state, camera(Vector3::z(), forward)) - 1.0).abs() < 1e-12);
+        assert!(columns_to_normal(&state, camera(Vector3::y(), forward)).abs() < 1e-12);
+        let between = Vector3::new(0.0, 3.0_f64.sqrt() / 2.0, 0.5);
+        assert!((columns_to_normal(&state, camera(between, forward)) - 0.25).abs() < 1e-12);
+        assert!((columns_to_normal(&state, camera(forward, Vector3::z())) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_elevation_of_the_sun_is_its_angle_from_the_plane_of_the_orbit() {
+        // On 20 March the Sun is along x; an orbit about x has it at 90°, one about z at 0°.
+        let time = Epoch::from_gregorian_utc_hms(2012, 3, 20, 5, 14, 0);
+        let state = |velocity_km_s| State { position_km: Vector3::new(0.0, 7000.0, 0.0), velocity_km_s };
+        let about_x = sun_elevation_rad(&state(Vector3::new(0.0, 0.0, 7.5)), time).to_degrees();
+        assert!((about_x - 90.0).abs() < 0.3, "{about_x}");
+        let about_z = sun_elevation_rad(&state(Vector3::new(-7.5, 0.0, 0.0)), time).to_degrees();
+        assert!(about_z.abs() < 0.3, "{about_z}");
     }
 }

@@ -53,6 +53,38 @@ impl Axis {
 /// Number of measurements by their use.
 pub type MeasurementUse = BTreeMap<String, u64>;
 
+/// Estimates at times when a manoeuvre had been flown and its report had not arrived. The navigator does not
+/// receive it, so that neither error nor σ of these estimates measures the navigator.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BeforeReport {
+    /// Number of these estimates.
+    pub estimates: u64,
+    /// Mean normalised squared error of position and velocity per dimension, over the other estimates.
+    pub others_nees_state_per_dimension: Option<f64>,
+    /// Mean normalised squared error of the position per dimension, over the other estimates.
+    pub others_nees_position_per_dimension: Option<f64>,
+}
+
+impl BeforeReport {
+    /// Computes the figures of rows, each with a mark if it is before a report; `None` without a mark.
+    fn new(rows: &[NavigationRow], marks: &[bool]) -> Option<Self> {
+        let has_estimate = |row: &&NavigationRow| row.position_error_m.is_some();
+        let (mut marked, mut others) = (0, Vec::new());
+        for (row, mark) in rows.iter().zip(marks).filter(|(row, _)| has_estimate(row)) {
+            if *mark {
+                marked += 1;
+            } else {
+                others.push(row);
+            }
+        }
+        (marked > 0).then(|| Self {
+            estimates: marked,
+            others_nees_state_per_dimension: mean(&others, |row| Some(row.nees_state? / 6.0)),
+            others_nees_position_per_dimension: mean(&others, |row| Some(row.nees_position? / 3.0)),
+        })
+    }
+}
+
 /// Figures of a relative orbit determination. A figure without data is absent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NavigationScore {
@@ -78,6 +110,9 @@ pub struct NavigationScore {
     pub nees_position_per_dimension: Option<f64>,
     /// Mean normalised squared error of the elements per dimension.
     pub nees_elements_per_dimension: Option<f64>,
+    /// Estimates of a sequential navigator between a manoeuvre and its report; absent if there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub before_report: Option<BeforeReport>,
     /// Root mean square of the error of the distance, percent of the distance.
     pub range_error_rms_percent: Option<f64>,
     /// Size of the error of the distance at the last estimate, percent of the distance.
@@ -88,8 +123,8 @@ pub struct NavigationScore {
 }
 
 impl NavigationScore {
-    /// Computes the figures of all rows.
-    pub(crate) fn new(rows: &[NavigationRow], measurements: MeasurementUse) -> Self {
+    /// Computes the figures of all rows, each with a mark if it is between a manoeuvre and its report.
+    pub(crate) fn new(rows: &[NavigationRow], before_report: &[bool], measurements: MeasurementUse) -> Self {
         let estimated: Vec<&NavigationRow> =
             rows.iter().filter(|row| row.position_error_m.is_some()).collect();
         let mut unanswered = BTreeMap::new();
@@ -118,6 +153,7 @@ impl NavigationScore {
             nees_state_per_dimension: mean(&estimated, |row| Some(row.nees_state? / 6.0)),
             nees_position_per_dimension: mean(&estimated, |row| Some(row.nees_position? / 3.0)),
             nees_elements_per_dimension: mean(&estimated, |row| Some(row.nees_elements? / 6.0)),
+            before_report: BeforeReport::new(rows, before_report),
             range_error_rms_percent: rms,
             range_error_end_percent: relative.last().map(|last| 100.0 * last),
             convergence_s: convergence_s(rows),
@@ -205,7 +241,8 @@ mod tests {
             row(2.0, Some([3.0, 5.0, 0.0])),
             row(1440.0, Some([-4.0, -9.0, 0.0])),
         ];
-        let score = NavigationScore::new(&rows, MeasurementUse::new());
+        let score = NavigationScore::new(&rows, &[false; 4], MeasurementUse::new());
+        assert_eq!(score.before_report, None);
         assert_eq!((score.requested, score.estimates), (4, 3));
         assert_eq!(score.unanswered["no_initial_orbit"], 1);
         let [r, t] = ["r", "t"].map(|axis| score.position_m[axis]);
@@ -224,8 +261,23 @@ mod tests {
     }
 
     #[test]
+    fn estimates_before_a_report_are_counted_apart() {
+        let mut rows = [row(0.0, None), row(1.0, Some([0.0; 3])), row(2.0, Some([9.0; 3]))];
+        rows[2].nees_state = Some(600.0);
+        rows[2].nees_position = Some(300.0);
+        let score = NavigationScore::new(&rows, &[true, false, true], MeasurementUse::new());
+        assert_eq!(score.nees_state_per_dimension, Some(50.5));
+        let expected = BeforeReport {
+            estimates: 1,
+            others_nees_state_per_dimension: Some(1.0),
+            others_nees_position_per_dimension: Some(0.5),
+        };
+        assert_eq!(score.before_report, Some(expected));
+    }
+
+    #[test]
     fn without_an_estimate_there_is_no_figure() {
-        let score = NavigationScore::new(&[row(0.0, None)], MeasurementUse::new());
+        let score = NavigationScore::new(&[row(0.0, None)], &[true], MeasurementUse::new());
         assert!(score.position_m.is_empty() && score.convergence_s.is_none());
         assert_eq!(score.range_error_rms_percent, None);
     }
@@ -233,6 +285,6 @@ mod tests {
     #[test]
     fn an_estimation_that_diverges_has_no_convergence_time() {
         let rows = [row(0.0, Some([0.0; 3])), row(1.0, Some([0.0, 30.0, 0.0]))];
-        assert_eq!(NavigationScore::new(&rows, MeasurementUse::new()).convergence_s, None);
+        assert_eq!(NavigationScore::new(&rows, &[], MeasurementUse::new()).convergence_s, None);
     }
 }

@@ -25,7 +25,7 @@ pub mod world;
 pub mod worlds;
 
 pub use any_world::erasure::ErasedWorld;
-pub use any_world::source::world_of_run;
+pub use any_world::source::{check_world_of_run, world_of_run};
 pub use any_world::{AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, Options, ScenarioSource};
 pub use choice::pipeline_choice;
 pub use choice::renderer_choice::RendererChoice;

@@ -154,6 +154,22 @@ pub fn world_of_run(run_file: &Path) -> Result<&'static dyn AnyWorld, Failure> {
     world_in(run_file, &text, "scenario.world")
 }
 
+/// Checks that the run in a directory is of the world with the name `expected`.
+///
+/// # Errors
+/// [`Failure::Usage`] with both names for another world; those of [`world_of_run`].
+pub fn check_world_of_run(directory: &Path, expected: &str) -> Result<(), Failure> {
+    let world = world_of_run(&directory.join("run.toml"))?;
+    if world.code() == expected {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "{}: is a run of the world {}, expected {expected}",
+        directory.display(),
+        world.code()
+    )))
+}
+
 /// Returns the world that a file names at a dotted path; the first world if it names none.
 ///
 /// # Errors

@@ -8,6 +8,7 @@ use std::path::Path;
 use files::{Failure, FileError, RunDirectory};
 use navigate::{
     EVERY_S, Estimator, KnowledgeConfig, MeasurementSource, NavigationFigure, navigation_figures,
+    requested_estimates,
 };
 use run::{AnyJudgement, Expectation, FirstFailure, FrameJobs, Options, RunResult};
 use score::WARM_UP;
@@ -106,16 +107,18 @@ fn run(
         StudyNavigator::Batch => Estimator::Batch,
         StudyNavigator::Sequential => Estimator::Sequential,
     };
-    let navigated = navigate(directory.path(), estimator);
+    let navigated = match navigate(directory.path(), estimator) {
+        // Measurements without a usable line of sight determine no orbit; the case counts with all its times.
+        Err(Failure::File(FileError::Value { .. }) | Failure::Contract(_)) => {
+            let of = requested_estimates(directory.path(), EVERY_S)?;
+            vec![NavigationFigure { name: "navigation_estimate_rate", value: Some(0.0), count: 0, of }]
+        }
+        other => other?,
+    };
     std::fs::remove_dir_all(directory.path())
         .map_err(|source| FileError::io(directory.path(), "remove", source))?;
-    // A case without a line of sight has no relative orbit.
-    Ok((result, navigated.unwrap_or_else(|_| vec![NO_ORBIT])))
+    Ok((result, navigated))
 }
-
-/// Figure of a case without a relative orbit.
-const NO_ORBIT: NavigationFigure =
-    NavigationFigure { name: "navigation_estimate_rate", value: Some(0.0), count: 0, of: 1 };
 
 fn navigate(directory: &Path, estimator: Estimator) -> Result<Vec<NavigationFigure>, Failure> {
     let source = MeasurementSource::default();
