@@ -2,10 +2,10 @@
 //!
 //! `cargo run --release -p boresight-navigation --example consistency -- CAMPAIGNS STRIDE [FIRST]`: every
 //! STRIDE-th measurement of ARGON's schedule, seeds from FIRST. The variable VARIANT contains `sequential`
-//! for the filter instead of the batch, `precise` for the errors of best mode, `displaced` for those with a centre
-//! of brightness displaced by centimetres instead of arcseconds, `exact` for exact manoeuvres,
-//! `white` without slow errors, `unbiased` without constant errors, `halved` with all drawn errors halved,
-//! `mirrored` with all of the opposite sign, `noiseless` without any.
+//! for the filter instead of the batch, `precise` for the errors of best mode, `displaced` for those with a
+//! centre of brightness displaced by centimetres instead of arcseconds, `exact` for exact manoeuvres, `white`
+//! without slow errors, `unbiased` without constant errors, `halved` with all drawn errors halved, `mirrored`
+//! with all of the opposite sign, `noiseless` without any.
 
 #[path = "../tests/it/simulator.rs"]
 mod simulator;

@@ -69,8 +69,8 @@ pub(crate) struct Solution {
     pub(crate) values: Vec<f64>,
     /// Their covariance.
     pub(crate) covariance: DMatrix<f64>,
-    /// Minus twice the logarithm of the likelihood at the minimum, prior included, less a constant: the sum of
-    /// squares and the logarithm of the determinant of the covariance relative to that of white errors.
+    /// Minus twice the logarithm of the likelihood at the minimum, prior included, less a constant: the sum
+    /// of squares and the logarithm of the determinant of the covariance relative to that of white errors.
     pub(crate) cost: f64,
     /// Weight of each measurement: 1 used, 0 edited.
     pub(crate) weights: Vec<f64>,
@@ -211,8 +211,8 @@ impl Problem<'_> {
         Ok(Solution { values, covariance, cost, weights, residuals, path })
     }
 
-    /// Makes one step from `values`. The distances that turn displacements into angles remain those before the
-    /// step: otherwise a longer distance would lower the sum of squares by larger residuals per σ.
+    /// Makes one step from `values`. The distances that turn displacements into angles remain those before
+    /// the step: otherwise a longer distance would lower the sum of squares by larger residuals per σ.
     fn iterate(&self, values: &mut Vec<f64>, weights: &[f64], damping: &mut f64) -> Result<Step, NoEstimate> {
         let displaced = self.by_displacement(values)?;
         let mut root = self.equations(values, weights, &displaced)?;
@@ -257,8 +257,8 @@ impl Problem<'_> {
         Whitener::new(&self.setup.errors, &classes, columns)
     }
 
-    /// Returns the derivatives of the angles of each measurement with respect to a displacement of the target,
-    /// rad/m.
+    /// Returns the derivatives of the angles of each measurement with respect to a displacement of the
+    /// target, rad/m.
     fn by_displacement(&self, values: &[f64]) -> Result<Vec<[f64; 2]>, NoEstimate> {
         if self.setup.errors.displacements.is_empty() {
             return Ok(vec![[0.0; 2]; self.sights.len()]);
@@ -320,8 +320,8 @@ impl Problem<'_> {
         Ok(root)
     }
 
-    /// Returns the residuals. The length of a residual is that of a measurement of full weight, but a measurement
-    /// affects later ones by its own weight.
+    /// Returns the residuals. The length of a residual is that of a measurement of full weight, but a
+    /// measurement affects later ones by its own weight.
     fn residuals(
         &self,
         values: &[f64],

@@ -60,13 +60,13 @@ const STATES_S: f64 = 6.0 * 3600.0;
 /// Time after the last state of a fit until which the chaser's orbit is extrapolated, s.
 const REFRESH_S: f64 = 1800.0;
 
-/// Time over which the error of reported velocities moves the chaser's orbit, s: shortly after an impulse, a fit
-/// to a few states is extrapolated by up to [`REFRESH_S`].
+/// Time over which the error of reported velocities moves the chaser's orbit, s: shortly after an impulse, a
+/// fit to a few states is extrapolated by up to [`REFRESH_S`].
 const REFERENCE_DRIFT_S: f64 = 600.0;
 
-/// Returns the setup with the error of the chaser's orbit as a slow error of the lines of sight. It turns both
-/// satellites by the error of one state, position and drift, over the distance from the Earth's centre. A batch
-/// fits hours of states on both sides of a measurement, to a tenth of that.
+/// Returns the setup with the error of the chaser's orbit as a slow error of the lines of sight. It turns
+/// both satellites by the error of one state, position and drift, over the distance from the Earth's centre.
+/// A batch fits hours of states on both sides of a measurement, to a tenth of that.
 fn with_reference_errors(setup: &NavigationSetup) -> NavigationSetup {
     let mut setup = setup.clone();
     let ChaserOrbit::States(states) = &setup.chaser_orbit else { return setup };

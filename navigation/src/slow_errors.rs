@@ -1,7 +1,7 @@
 //! Slow errors of the lines of sight as independent processes of one axis each.
 //!
-//! A process is Gauss–Markov: of first order (Gelb, *Applied Optimal Estimation*, 1974, section 3.6) or, for a
-//! periodic error, damped rotation in two dimensions with autocovariance σ² exp(−|Δt|/τ) cos(2π Δt/P). Its
+//! A process is Gauss–Markov: of first order (Gelb, *Applied Optimal Estimation*, 1974, section 3.6) or, for
+//! a periodic error, damped rotation in two dimensions with autocovariance σ² exp(−|Δt|/τ) cos(2π Δt/P). Its
 //! first state is an angle, or a displacement of the target that the distance turns into an angle.
 
 use std::f64::consts::TAU;
@@ -66,7 +66,8 @@ impl SlowProcess {
     }
 
     /// Returns the derivatives of the two angles of a measurement with respect to the first state.
-    /// `by_displacement` are those with respect to a displacement of the target across columns and rows, rad/m.
+    /// `by_displacement` are those with respect to a displacement of the target across columns and rows,
+    /// rad/m.
     pub(crate) fn slopes(&self, class: ErrorClass, by_displacement: [f64; 2]) -> [f64; 2] {
         let slope = match self.quantity {
             Quantity::Angle(own) => f64::from(u8::from(own == class)),
@@ -78,7 +79,8 @@ impl SlowProcess {
     }
 }
 
-/// Orders the processes of the errors of some classes of measurements; their states are numbered from `first`.
+/// Orders the processes of the errors of some classes of measurements; their states are numbered from
+/// `first`.
 pub(crate) fn slow_processes(
     errors: &LineOfSightErrors,
     classes: &[ErrorClass],

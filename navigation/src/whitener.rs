@@ -5,8 +5,8 @@
 //! the slow errors alone depends on times, distances and covariances, not on the data. Applied to the
 //! residuals it yields independent innovations; applied with the same gains to every column of the design
 //! matrix, it yields the design matrix of these innovations. Ordinary least squares of the filtered rows is
-//! therefore generalised least squares of the original ones (Ansley 1979, Biometrika 66, 59), in a time linear
-//! in the number of measurements.
+//! therefore generalised least squares of the original ones (Ansley 1979, Biometrika 66, 59), in a time
+//! linear in the number of measurements.
 
 use contract::navigation::LineOfSightErrors;
 
@@ -63,9 +63,9 @@ impl Whitener {
         }
     }
 
-    /// Whitens the two rows of a measurement, across columns and across rows, at a time not before that of the
-    /// previous call. Returns the logarithm of the determinant of its covariance given the measurements before,
-    /// relative to that of its white errors.
+    /// Whitens the two rows of a measurement, across columns and across rows, at a time not before that of
+    /// the previous call. Returns the logarithm of the determinant of its covariance given the measurements
+    /// before, relative to that of its white errors.
     pub(crate) fn apply(&mut self, errors: &RowErrors, rows: &mut [Vec<f64>; 2]) -> f64 {
         // Rows with independent unit white errors: the inverse of the Cholesky factor of the covariance.
         let [xx, xy, yy] = errors.noise;
@@ -169,8 +169,8 @@ mod tests {
     }
 
     /// Compares the filtered rows with generalised least squares by the full covariance matrix, to which slow
-    /// errors add `slow`, a function of the indices of two measurements and of two axes. The filtered rows are
-    /// L⁻¹ A up to an orthogonal transformation, so the normal matrices Aᵀ C⁻¹ A agree.
+    /// errors add `slow`, a function of the indices of two measurements and of two axes. The filtered rows
+    /// are L⁻¹ A up to an orthogonal transformation, so the normal matrices Aᵀ C⁻¹ A agree.
     fn check(
         errors: &LineOfSightErrors,
         classes: [ErrorClass; 7],

@@ -201,8 +201,8 @@ pub struct SlowError {
 }
 
 /// A slow displacement of the measured point of the target across the line of sight, such as that of the
-/// centre of brightness. Its autocovariance is that of a [`SlowError`], in metres; the angle of the error is the
-/// displacement over the distance, which the navigator takes from its own trajectory.
+/// centre of brightness. Its autocovariance is that of a [`SlowError`], in metres; the angle of the error is
+/// the displacement over the distance, which the navigator takes from its own trajectory.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SlowDisplacement {

@@ -64,8 +64,8 @@ fn outliers_are_edited() {
     assert!((0.03..0.07).contains(&fraction), "{fraction}");
 }
 
-/// An outlier of degrees among measurements with slow errors disturbs the whitened residuals after it. With the
-/// paper's pipeline on numerical orbits, a tenth of the first measurements are such.
+/// An outlier of degrees among measurements with slow errors disturbs the whitened residuals after it. With
+/// the paper's pipeline on numerical orbits, a tenth of the first measurements are such.
 #[test]
 fn outliers_are_edited_among_slow_errors() {
     let slow = Campaign { irregular: vec![(50.0, 1500.0)], white_arcsec: 20.0, ..Campaign::argon(8) };

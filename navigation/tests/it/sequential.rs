@@ -107,7 +107,8 @@ fn displacements_are_filtered_as_the_batch_fits_them() {
         let (a, b) = (fitted.covariance.sigmas(), filtered.covariance.sigmas());
         for k in 0..3 {
             let difference = (fitted.position_m[k] - filtered.position_m[k]).abs() / a[k];
-            // Both fit the chaser's orbit to different states: 1″ at this accuracy, without displacements too.
+            // Both fit the chaser's orbit to different states: 1″ at this accuracy, without displacements
+            // too.
             assert!(difference < 1.0, "{seed}, {k}: {difference} sigma");
             assert!((b[k] / a[k] - 1.0).abs() < 0.01, "{seed}, {k}: {} {}", a[k], b[k]);
         }

@@ -17,21 +17,22 @@ use sim::truth::{EARTH_GM_KM3_S2, State, Trajectory, clock, ephemeris};
 
 use crate::truth::Truth;
 
-/// Root mean squares of the parts of the offset of the centre of brightness from the centre of mass along R and N
-/// of the orbit, relative to the radius of the target. They are those of spheres and boxes with an attitude fixed
-/// in the orbital frame (`research/brightness_offset/run.py`) for an elevation β of the Sun above the plane of
-/// the orbit: the constant part along N is the root of the sum of the squares of a fixed value and one times
-/// sin β; the two harmonics of the orbit and the remainder are proportional to cos β, the part of the Sun that
-/// turns. A navigator takes the first harmonic for a relative eccentricity or inclination.
+/// Root mean squares of the parts of the offset of the centre of brightness from the centre of mass along R
+/// and N of the orbit, relative to the radius of the target. They are those of spheres and boxes with an
+/// attitude fixed in the orbital frame (`research/brightness_offset/run.py`) for an elevation β of the Sun
+/// above the plane of the orbit: the constant part along N is the root of the sum of the squares of a fixed
+/// value and one times sin β; the two harmonics of the orbit and the remainder are proportional to cos β, the
+/// part of the Sun that turns. A navigator takes the first harmonic for a relative eccentricity or
+/// inclination.
 const BRIGHTNESS_CONSTANT: [f64; 2] = [0.15, 0.1];
 const BRIGHTNESS_CONSTANT_BY_SIN: [f64; 2] = [0.0, 0.54];
 const BRIGHTNESS_FIRST_BY_COS: [f64; 2] = [0.47, 0.24];
 const BRIGHTNESS_SECOND_BY_COS: [f64; 2] = [0.14, 0.1];
 const BRIGHTNESS_REMAINDER_BY_COS: [f64; 2] = [0.08, 0.06];
 
-/// Memory of the constant and the periodic parts, s: the Sun moves by a radian in 58 days. As a Gauss–Markov process
-/// a part changes by two fifths of its σ in five days, which covers the difference between the osculating period and
-/// that of the illumination.
+/// Memory of the constant and the periodic parts, s: the Sun moves by a radian in 58 days. As a Gauss–Markov
+/// process a part changes by two fifths of its σ in five days, which covers the difference between the
+/// osculating period and that of the illumination.
 const BRIGHTNESS_MEMORY_S: f64 = 5e6;
 
 /// Memory of the remainder, in periods of the orbit: harmonics from the third on.
@@ -62,8 +63,9 @@ const MIN_STATES_S: f64 = 900.0;
 /// Largest number of reported states.
 const MAX_STATES: f64 = 1e6;
 
-/// Memory of the error by regions that cut the target, s: the size of the target's image follows its distance,
-/// which changes within days, and its illumination, which turns with the orbit. Each has a half of the variance.
+/// Memory of the error by regions that cut the target, s: the size of the target's image follows its
+/// distance, which changes within days, and its illumination, which turns with the orbit. Each has a half of
+/// the variance.
 const TRUNCATION_MEMORY_S: f64 = 86_400.0;
 
 /// Constant error of a line of sight with the attitude of telemetry and a mounting from stars, arcsec.
@@ -110,9 +112,9 @@ impl Default for KnowledgeConfig {
 }
 
 impl KnowledgeConfig {
-    /// Builds the setup of a navigator for measurements at `times`, in order; the first is the epoch, with the
-    /// attitude `camera`. States
-    /// and prior are those of the truth with errors drawn from the scenario's seed.
+    /// Builds the setup of a navigator for measurements at `times`, in order; the first is the epoch, with
+    /// the attitude `camera`. States and prior are those of the truth with errors drawn from the scenario's
+    /// seed.
     ///
     /// # Errors
     /// [`Failure::Usage`] if the true orbits have no elements at the first time.
@@ -259,7 +261,8 @@ struct Illumination {
 }
 
 impl Illumination {
-    /// Returns the displacements of the centre of brightness of a target with a radius, which is 0 for a point.
+    /// Returns the displacements of the centre of brightness of a target with a radius, which is 0 for a
+    /// point.
     fn displacements(&self, radius_m: f64) -> Vec<SlowDisplacement> {
         if radius_m <= 0.0 || !self.period_s.is_finite() {
             return Vec::new();
@@ -289,8 +292,8 @@ impl Illumination {
     }
 }
 
-/// Returns the square of the cosine of the angle between the camera's columns and N of the orbit of a state, in
-/// the plane of N and R; 0.5 for columns along T.
+/// Returns the square of the cosine of the angle between the camera's columns and N of the orbit of a state,
+/// in the plane of N and R; 0.5 for columns along T.
 fn columns_to_normal(state: &State, camera: Rotation<CameraFrame, Icrs>) -> f64 {
     let radial = camera.rotate(&state.position_km.normalize());
     let normal = camera.rotate(&state.position_km.cross(&state.velocity_km_s).normalize());
@@ -380,8 +383,8 @@ mod tests {
         illumination.displacements(0.5).iter().map(|part| part.sigma_m).collect()
     }
 
-    /// The Sun along the normal of the orbit lights the same sides all the time; in its plane, harmonics are the
-    /// largest parts.
+    /// The Sun along the normal of the orbit lights the same sides all the time; in its plane, harmonics are
+    /// the largest parts.
     #[test]
     fn a_sun_in_the_plane_of_the_orbit_makes_the_centre_of_brightness_wander() {
         let (inside, normal) = (sigmas(0.0, 1.0), sigmas(90.0, 1.0));

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use files::{AtomicFile, Failure};
 use flight_dynamics::Notation;
-use run::world_of_run;
+use run::check_world_of_run;
 use scenario::FarRangeScenario;
 use scenario::run_file::{RunFile, ScenarioFile};
 use serde_json::json;
@@ -150,15 +150,6 @@ pub(super) fn export(arguments: &ExportArguments, output: &Output) -> Result<Ans
 
 /// Reads the description of a far-range run.
 fn run_file(directory: &Path) -> Result<RunFile<FarRangeScenario>, Failure> {
-    let path = directory.join("run.toml");
-    let world = world_of_run(&path)?;
-    if world.code() != FarRangeScenario::WORLD {
-        return Err(Failure::Usage(format!(
-            "{}: is a run of the world {}, expected {}",
-            directory.display(),
-            world.code(),
-            FarRangeScenario::WORLD
-        )));
-    }
-    RunFile::read(&path)
+    check_world_of_run(directory, FarRangeScenario::WORLD)?;
+    RunFile::read(&directory.join("run.toml"))
 }
