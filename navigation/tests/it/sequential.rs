@@ -110,7 +110,8 @@ fn displacements_are_filtered_as_the_batch_fits_them() {
             // Both fit the chaser's orbit to different states: 1″ at this accuracy, without displacements
             // too.
             assert!(difference < 1.0, "{seed}, {k}: {difference} sigma");
-            assert!((b[k] / a[k] - 1.0).abs() < 0.01, "{seed}, {k}: {} {}", a[k], b[k]);
+            // The filter has the error of the chaser's orbit, too.
+            assert!((b[k] / a[k] - 1.0).abs() < 0.06, "{seed}, {k}: {} {}", a[k], b[k]);
         }
         // Displacements stated as angles at the smallest distance are too large at the others.
         let mut setup = flight.setup.clone();
