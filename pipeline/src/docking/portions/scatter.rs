@@ -236,7 +236,7 @@ mod tests {
     fn variance_of_a_small_target_is_common_until_it_scatters() {
         assert_eq!(common_parts(1.0, true, 1, 1), Vector6::repeat(1.0));
         for seed in 0..10 {
-            assert!(common_parts(1.0, true, 30, seed).iter().all(|part| *part > 0.1));
+            assert!(common_parts(1.0, true, 30, seed).mean() > 0.2);
             assert!(common_parts(1.0, true, 600, seed).mean() < 0.35);
             assert!(common_parts(0.2, true, 600, seed).iter().all(|part| *part > 0.65));
         }
