@@ -154,7 +154,8 @@ const OTHER_PARALLAX_PX: f64 = 2.5;
 const MAX_BLUR_PX: f64 = 4.9;
 
 /// Returns a doubt if the best estimator's pose needs a blur beyond its limit or leaves unusual residuals, or
-/// contradicts the pose from cross and circle only. A circle of a few pixels has a range of a few per cent.
+/// contradicts the pose from cross and circle only. The range by a circle of a few pixels has a σ of a few
+/// per cent, so the limit of the range is at least three σ.
 pub(crate) fn fit(
     model: &TargetModel,
     focal_px: f64,

@@ -1,11 +1,12 @@
 //! Usual size of the residuals of a small target. A fit that ends in a wrong minimum leaves more.
 //!
 //! The features of a small target are narrower than pixels and lines, so that a fit from a rough pose may
-//! exchange what belongs to a mark, the cross and its surroundings. Its residuals are then a part of the
-//! features themselves, two to five times the usual ones. The noise of the sky is no measure of them: it is
-//! cut off at black.
+//! assign pixels of a mark to the cross or to the plate. Its residuals then contain a part of the features'
+//! signal and are two to five times the usual ones. The noise of the sky is no reference for the residuals:
+//! the sky is clipped at black.
 
-/// Ratio to the usual residuals above which a fit is poor.
+/// Ratio to the usual residuals above which a fit is poor. In the approach on which it was chosen
+/// (docs/docking-consistency.md, case 7), fits at the best minimum have up to 1.5, others 2 and more.
 const MAX_RATIO: f64 = 1.6;
 
 /// Rate at which larger residuals become usual, per field: within a second or two.
