@@ -99,7 +99,7 @@ fn held(problem: &Problem<'_>, few: &[Sight], distance_m: f64) -> Option<(f64, R
     let problem = Problem { sights: few, parameters: &parameters, ..*problem };
     let mut values = vec![0.0; parameters.count()];
     values.iter_mut().zip(elements.vector().iter()).for_each(|(value, x)| *value = *x);
-    let cost = problem.robust(&mut values).ok()?;
+    let cost = problem.robust(&mut values).ok()?.cost;
     Some((cost, parameters.elements(&values)))
 }
 

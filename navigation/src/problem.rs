@@ -1,20 +1,20 @@
 //! Weighted nonlinear least squares over the parameters of a campaign.
 //!
 //! Gauss–Newton with Marquardt's damping, in square-root form, over rows whose slow errors are whitened
-//! ([`crate::whitener`]). A coarse stage on a part of the measurements weights large residuals down (Huber
-//! 1964, Ann. Math. Stat. 35, 73, scaled by the median) and proceeds from the first hours to the whole
-//! campaign; the fine stage uses all, and edits those whose innovation is beyond a gate, until the set is
-//! stable.
+//! ([`crate::whitener`]). Coarse stages on a part of the measurements proceed from the first hours to the
+//! whole campaign. Each excludes new measurements that disagree with the orbit so far and its covariance, and
+//! weights large residuals of the others down (Huber 1964, Ann. Math. Stat. 35, 73, scaled by the median).
+//! The fine stage uses all, and edits those whose innovation is beyond a gate, until the set is stable.
 
 use contract::navigation::{Answer, NavigationSetup, NoEstimate, RelativeElements};
 use hifitime::Epoch;
-use nalgebra::{DMatrix, Matrix6};
+use nalgebra::{DMatrix, Matrix2, Matrix2x3, Matrix6, Vector2, Vector3};
 
 use crate::parameters::Parameters;
 use crate::path::{Path, PathSetup};
 use crate::reference::Reference;
 use crate::relative_state;
-use crate::sight::{ErrorClass, Sight};
+use crate::sight::{ErrorClass, Prediction, Sight};
 use crate::square_root::SquareRoot;
 use crate::time::seconds_between;
 use crate::whitener::{RowErrors, Whitener};
@@ -24,6 +24,10 @@ const COARSE: usize = 1000;
 
 /// Fractions of the campaign that the coarse stages use, one after the other.
 const PARTS: [f64; 5] = [0.06, 0.15, 0.35, 0.65, 1.0];
+
+/// Gate of new measurements of a coarse stage, in gates of the fine stage: the orbit so far is predicted
+/// linearly.
+const COARSE_GATES: f64 = 2.0;
 
 /// Largest number of iterations of one stage.
 const ITERATIONS: usize = 25;
@@ -80,6 +84,14 @@ pub(crate) struct Solution {
     pub(crate) path: Path,
 }
 
+/// Result of a coarse stage.
+pub(crate) struct Coarse {
+    /// Minus twice the logarithm of the likelihood, less a constant.
+    pub(crate) cost: f64,
+    /// Covariance of the parameters.
+    pub(crate) covariance: DMatrix<f64>,
+}
+
 /// Step of an iteration.
 struct Step {
     /// Largest component in standard deviations.
@@ -117,43 +129,57 @@ impl Problem<'_> {
         // its first measurements before later ones are added.
         let last = self.sights.last().map_or(0.0, |sight| sight.seconds);
         let first = self.sights.first().map_or(0.0, |sight| sight.seconds);
+        let mut covariance = self.prior_covariance(&values)?;
+        let mut plausible: Vec<Sight> = Vec::new();
+        let mut begin = 0;
         for part in PARTS {
             let end = self.sights.partition_point(|sight| sight.seconds <= first + part * (last - first));
-            let chosen = &self.sights[..end.max(1)];
-            let stride = chosen.len().div_ceil(COARSE);
-            let coarse: Vec<Sight> = chosen.iter().step_by(stride).cloned().collect();
-            Problem { sights: &coarse, ..*self }.robust(&mut values)?;
+            let new = Problem { sights: &self.sights[begin..end], ..*self };
+            let weights = new.within(COARSE_GATES * self.outlier_sigma, &values, &covariance)?;
+            let of_weight = new.sights.iter().zip(&weights).filter(|(_, weight)| **weight > 0.0);
+            plausible.extend(of_weight.map(|(sight, _)| sight.clone()));
+            begin = end;
+            if plausible.is_empty() {
+                continue;
+            }
+            let stride = plausible.len().div_ceil(COARSE);
+            let coarse: Vec<Sight> = plausible.iter().step_by(stride).cloned().collect();
+            covariance = Problem { sights: &coarse, ..*self }.robust(&mut values)?.covariance;
         }
-        self.fine(values)
+        let edited = self.within(self.outlier_sigma, &values, &covariance)?;
+        self.fine(values, edited)
     }
 
-    /// Iterates with Huber's weights; returns minus twice the logarithm of the likelihood, less a constant.
-    pub(crate) fn robust(&self, values: &mut Vec<f64>) -> Result<f64, NoEstimate> {
+    /// Iterates with Huber's weights.
+    pub(crate) fn robust(&self, values: &mut Vec<f64>) -> Result<Coarse, NoEstimate> {
         let mut weights = vec![1.0; self.sights.len()];
         let mut damping = 0.0;
-        let mut cost = f64::INFINITY;
-        for iteration in 0..ITERATIONS {
+        let mut iteration = 0;
+        loop {
             let displaced = self.by_displacement(values)?;
             for _ in 0..WEIGHTINGS {
                 weights = huber(&self.residuals(values, &weights, &displaced)?.lengths);
             }
-            let step = self.iterate(values, &weights, &mut damping)?;
-            cost = step.cost;
-            if step.length < CONVERGED && iteration > 0 {
-                break;
+            let Step { length, cost, covariance } = self.iterate(values, &weights, &mut damping)?;
+            iteration += 1;
+            if (length < CONVERGED && iteration > 1) || iteration == ITERATIONS {
+                return Ok(Coarse { cost: cost + self.log_determinant(values)?, covariance });
             }
         }
-        Ok(cost + self.log_determinant(values)?)
     }
 
-    fn fine(&self, mut values: Vec<f64>) -> Result<Solution, NoEstimate> {
-        let mut edited = vec![1.0; self.sights.len()];
+    /// Iterates with all measurements whose weight is 1, and edits them.
+    fn fine(&self, mut values: Vec<f64>, mut edited: Vec<f64>) -> Result<Solution, NoEstimate> {
         for _ in 0..WEIGHTINGS {
             edited = self.edited(&values, &edited)?;
         }
         for editing in 1..=EDITINGS {
             if edited.iter().all(|weight| *weight == 0.0) {
-                return Err(NoEstimate::NoMeasurements);
+                return Err(NoEstimate::Failed(format!(
+                    "none of {} lines of sight is within {} σ of an orbit",
+                    self.sights.len(),
+                    self.outlier_sigma
+                )));
             }
             let covariance = self.converge(&mut values, &edited)?;
             let again = self.edited(&values, &edited)?;
@@ -169,6 +195,32 @@ impl Problem<'_> {
     fn edited(&self, values: &[f64], weights: &[f64]) -> Result<Vec<f64>, NoEstimate> {
         let lengths = self.residuals(values, weights, &self.by_displacement(values)?)?.lengths;
         Ok(lengths.iter().map(|length| f64::from(*length <= self.outlier_sigma)).collect())
+    }
+
+    /// Returns weight 1 for each measurement that is within a gate of the orbit at `values`, whose parameters
+    /// have a covariance, 0 for others. The measurements do not affect each other.
+    fn within(&self, gate: f64, values: &[f64], covariance: &DMatrix<f64>) -> Result<Vec<f64>, NoEstimate> {
+        let path = self.path(values).ok_or(NoEstimate::NoConvergence)?;
+        let count = self.parameters.count();
+        let displaced = self.by_displacement(values)?;
+        let whitener = self.whitener(count + 1);
+        let weight = |(sight, by_displacement): (&Sight, &[f64; 2])| {
+            let mut rows = [vec![0.0; count + 1], vec![0.0; count + 1]];
+            self.linearise(sight, &path, values, &mut rows)?;
+            whitener.clone().apply(&row_errors(sight, 1.0, *by_displacement), &mut rows);
+            let slopes = DMatrix::from_fn(2, count, |axis, column| rows[axis][column]);
+            let residual = Vector2::new(rows[0][count], rows[1][count]);
+            let variance =
+                Matrix2::from_iterator((&slopes * covariance * slopes.transpose()).iter().copied());
+            let inverse = (variance + Matrix2::identity()).try_inverse().ok_or(NoEstimate::NoConvergence)?;
+            Ok(f64::from((residual.transpose() * inverse * residual).x <= gate * gate))
+        };
+        self.sights.iter().zip(&displaced).map(weight).collect()
+    }
+
+    /// Returns the covariance of the parameters without measurements.
+    fn prior_covariance(&self, values: &[f64]) -> Result<DMatrix<f64>, NoEstimate> {
+        Problem { sights: &[], ..*self }.covariance(values)
     }
 
     /// Iterates to the minimum; returns the covariance there.
@@ -285,7 +337,6 @@ impl Problem<'_> {
         weights: &[f64],
         displaced: &[[f64; 2]],
     ) -> Result<SquareRoot, NoEstimate> {
-        let osculation = self.reference.osculation();
         let path = self.path(values).ok_or(NoEstimate::NoConvergence)?;
         let count = self.parameters.count();
         let mut whitener = self.whitener(count + 1);
@@ -295,29 +346,56 @@ impl Problem<'_> {
             if *weight == 0.0 {
                 continue;
             }
-            let elements = path.at(sight.seconds).ok_or(NoEstimate::NoConvergence)?;
-            let prediction = sight.predict(&elements, osculation);
-            let by_elements = sight.by_elements(&elements, &prediction, osculation);
-            let by_rotation = prediction.by_rotation();
-            let bias = self.parameters.bias(sight.class);
-            let residual = sight.residual(&prediction);
-            for (axis, row) in rows.iter_mut().enumerate() {
-                row.fill(0.0);
-                let by_elements = [0, 1, 2, 3, 4, 5].map(|k| by_elements[(axis, k)]);
-                path.pull_back(sight.seconds, &by_elements, row);
-                row[count] = residual[axis];
-                for (k, column) in bias.iter().enumerate() {
-                    if let Some(column) = column {
-                        row[*column] += by_rotation[(axis, k)];
-                        row[count] -= by_rotation[(axis, k)] * values[*column];
-                    }
-                }
-            }
+            self.linearise(sight, &path, values, &mut rows)?;
             whitener.apply(&row_errors(sight, *weight, *by_displacement), &mut rows);
             rows.iter().for_each(|row| root.add(row));
         }
         self.parameters.prior_rows(values).iter().for_each(|row| root.add(row));
         Ok(root)
+    }
+
+    /// Writes the linearised equations [A | b] of a measurement, rad, one row per angle.
+    fn linearise(
+        &self,
+        sight: &Sight,
+        path: &Path,
+        values: &[f64],
+        rows: &mut [Vec<f64>; 2],
+    ) -> Result<(), NoEstimate> {
+        let osculation = self.reference.osculation();
+        let elements = path.at(sight.seconds).ok_or(NoEstimate::NoConvergence)?;
+        let prediction = sight.predict(&elements, osculation);
+        let by_elements = sight.by_elements(&elements, &prediction, osculation);
+        let by_rotation = prediction.by_rotation();
+        let residual = self.residual(sight, &prediction, &by_rotation, values);
+        for (axis, row) in rows.iter_mut().enumerate() {
+            row.fill(0.0);
+            let by_elements = [0, 1, 2, 3, 4, 5].map(|k| by_elements[(axis, k)]);
+            path.pull_back(sight.seconds, &by_elements, row);
+            for (k, column) in self.parameters.bias(sight.class).iter().enumerate() {
+                if let Some(column) = column {
+                    row[*column] += by_rotation[(axis, k)];
+                }
+            }
+            if let Some(right) = row.last_mut() {
+                *right = residual[axis];
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns measured minus predicted angles without the constant rotation in `values`, rad.
+    fn residual(
+        &self,
+        sight: &Sight,
+        prediction: &Prediction,
+        by_rotation: &Matrix2x3<f64>,
+        values: &[f64],
+    ) -> [f64; 2] {
+        let rotation = self.parameters.bias(sight.class).map(|column| column.map_or(0.0, |k| values[k]));
+        let angles = by_rotation * Vector3::from(rotation);
+        let residual = sight.residual(prediction);
+        [0, 1].map(|axis| residual[axis] - angles[axis])
     }
 
     /// Returns the residuals. The length of a residual is that of a measurement of full weight, but a
@@ -341,13 +419,7 @@ impl Problem<'_> {
         for ((sight, weight), by_displacement) in self.sights.iter().zip(weights).zip(displaced) {
             let elements = path.at(sight.seconds).ok_or(NoEstimate::NoConvergence)?;
             let prediction = sight.predict(&elements, osculation);
-            let mut residual = sight.residual(&prediction);
-            let by_rotation = prediction.by_rotation();
-            for (k, column) in self.parameters.bias(sight.class).iter().enumerate() {
-                if let Some(column) = column {
-                    (0..2).for_each(|axis| residual[axis] -= by_rotation[(axis, k)] * values[*column]);
-                }
-            }
+            let residual = self.residual(sight, &prediction, &prediction.by_rotation(), values);
             residuals.push(residual);
             rows.iter_mut().zip(residual).for_each(|(row, value)| row[0] = value);
             if *weight < 1.0 {

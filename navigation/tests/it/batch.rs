@@ -1,9 +1,11 @@
 //! Tests of the batch navigator.
 
 use boresight_navigation::{Batch, BatchConfig, Bound};
+use contract::Direction;
 use contract::navigation::{
     Event, LineOfSightMeasurement, NavigationSetup, Navigator, NoEstimate, RelativeEstimate, Use,
 };
+use nalgebra::Vector3;
 
 use crate::simulator::{Campaign, Flight, at};
 
@@ -65,12 +67,13 @@ fn outliers_are_edited() {
 }
 
 /// An outlier of degrees among measurements with slow errors disturbs the whitened residuals after it. With
-/// the paper's pipeline on numerical orbits, a tenth of the first measurements are such.
+/// the paper's pipeline on numerical orbits, a tenth of the first measurements are such; of a target that is
+/// dark in a part of each orbit, a third.
 #[test]
 fn outliers_are_edited_among_slow_errors() {
     let slow = Campaign { irregular: vec![(50.0, 1500.0)], white_arcsec: 20.0, ..Campaign::argon(8) };
-    for seed in [6, 7, 8] {
-        let flight = Campaign { outliers: 0.15, ..slow.clone() }.fly(seed);
+    for (outliers, seed) in [(0.15, 6), (0.15, 7), (0.15, 8), (0.35, 9), (0.35, 10)] {
+        let flight = Campaign { outliers, ..slow.clone() }.fly(seed);
         let mut batch = fed(&flight.setup, &flight.events);
         let estimate = batch.estimates(&[at(200_000.0)]).remove(0).unwrap();
         let squared = squared(&flight, &estimate);
@@ -78,8 +81,43 @@ fn outliers_are_edited_among_slow_errors() {
         let dispositions = batch.dispositions();
         let edited = dispositions.iter().filter(|d| d.used == Use::Outlier).count() as f64;
         let fraction = edited / dispositions.len() as f64;
-        assert!((0.12..0.18).contains(&fraction), "{seed}: {fraction}");
+        assert!((fraction - outliers).abs() < 0.04, "{seed}: {fraction}");
     }
+}
+
+/// A third of the lines of sight belong to one wrong point that is fixed in the camera, such as a hot pixel,
+/// among them the first ones.
+#[test]
+fn a_wrong_point_that_persists_is_edited() {
+    let flight = Campaign { white_arcsec: 2.0, slow: Vec::new(), ..Campaign::argon(80) }.fly(12);
+    let wrong = |(index, event): (usize, &Event)| match event {
+        Event::LineOfSight(sight) if matches!(index % 5, 0 | 4) => {
+            let fixed = Direction::from_vector(Vector3::new(0.03, -0.05, 1.0)).expect("a direction");
+            let line_of_sight = sight.camera_from_icrs.inverse() * fixed;
+            Event::LineOfSight(LineOfSightMeasurement { line_of_sight, ..*sight })
+        }
+        other => *other,
+    };
+    let events: Vec<Event> = flight.events.iter().enumerate().map(wrong).collect();
+    let mut batch = fed(&flight.setup, &events);
+    let estimate = batch.estimates(&[at(200_000.0)]).remove(0).unwrap();
+    let squared = squared(&flight, &estimate);
+    assert!(squared < 27.9, "{squared}");
+    let edited = batch.dispositions().iter().filter(|d| d.used == Use::Outlier).count();
+    assert!(edited * 10 > events.len() * 3, "{edited} of {}", events.len());
+}
+
+/// A prior that no line of sight agrees with is an error that says so.
+#[test]
+fn lines_of_sight_of_another_orbit_are_refused() {
+    let flight = Campaign::argon(64).fly(13);
+    let mut setup = flight.setup.clone();
+    if let Some(prior) = &mut setup.prior {
+        prior.elements.a_diy_m += 20_000.0;
+    }
+    let answer = fed(&setup, &flight.events).estimates(&[at(0.0)]).remove(0);
+    let reason = answer.map(|estimate| estimate.elements).unwrap_err().to_string();
+    assert!(reason.contains("lines of sight is within 5 σ"), "{reason}");
 }
 
 #[test]
