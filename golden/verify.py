@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs every independent witness of Boresight's correctness, and prints the verdict of each.
+"""Runs every independent witness of Boresight's correctness, and prints the result of each.
 
     python3 golden/verify.py [--fast] [--only NAME ...] [--list] [--work FOLDER] [--python PYTHON]
 
@@ -45,7 +45,7 @@ class CannotAsk(Exception):
 
 
 @dataclasses.dataclass
-class Court:
+class Workspace:
     """Environment in which witnesses run."""
 
     work: pathlib.Path
@@ -119,22 +119,22 @@ def last_lines(text):
 def remade(folder, script="make.py", requirements=None, arguments=lambda python: []):
     """The files of a folder, made again beside the committed ones, are the committed ones."""
 
-    def hear(court):
-        python = court.environment(folder if requirements is None else requirements, GOLDEN / (requirements or folder) / "requirements.txt")
-        copy = court.work / "golden"
+    def check(workspace):
+        python = workspace.environment(folder if requirements is None else requirements, GOLDEN / (requirements or folder) / "requirements.txt")
+        copy = workspace.work / "golden"
         shutil.rmtree(copy, ignore_errors=True)
         shutil.copytree(GOLDEN, copy, ignore=shutil.ignore_patterns("baselines", "docking", "witnesses", "__pycache__"))
         for name in references(folder):
             (copy / folder / name).unlink()  # A script that leaves one out makes none.
         environment = {name: value for name, value in os.environ.items() if name != "CI"}  # It is a copy that is made there.
-        court.run(python, copy / folder / script, *arguments(python), "--reason", "made again to be compared", env=environment)
+        workspace.run(python, copy / folder / script, *arguments(python), "--reason", "made again to be compared", env=environment)
         names = references(folder)
         worst = compared(GOLDEN / folder, copy / folder, names)
         if worst > SAME_NUMBERS:
             raise AssertionError(f"differs by {worst:.1e}")
         return f"{len(names)} files, {'the same bytes' if worst == 0 else f'the same numbers to {worst:.0e}'}"
 
-    return hear
+    return check
 
 
 def references(folder):
@@ -187,12 +187,12 @@ def photometry(python):
 def tests(*suites):
     """Suites of integration tests that compare with the references."""
 
-    def hear(court):
+    def check(workspace):
         # One by one: a missing suite would pass unnoticed among others.
-        counts = [passed(court.run("cargo", "test", *COMPILED, "--test", "it", "--", suite), suite) for suite in suites]
+        counts = [passed(workspace.run("cargo", "test", *COMPILED, "--test", "it", "--", suite), suite) for suite in suites]
         return f"{sum(counts)} tests"
 
-    return hear
+    return check
 
 
 def passed(said, chosen):
@@ -206,13 +206,13 @@ def passed(said, chosen):
 def looks(script, fast, *, needs=None):
     """A tool that processes frames; its last lines are its claims."""
 
-    def hear(court):
+    def check(workspace):
         if needs is not None and not any(pathlib.Path(place).exists() for place in needs):
             raise CannotAsk(f"{needs[0]} is not there: apt-get install astrometry.net astrometry-data-tycho2-10-19")
-        said = court.run(court.witness_python(), GOLDEN / "witnesses" / script, *(fast if court.fast else []))
+        said = workspace.run(workspace.witness_python(), GOLDEN / "witnesses" / script, *(fast if workspace.fast else []))
         return claims_of(said)
 
-    return hear
+    return check
 
 
 def claims_of(said):
@@ -220,71 +220,71 @@ def claims_of(said):
     return "; ".join(line.removeprefix("ok   ") for line in said.splitlines() if line.startswith("ok   "))
 
 
-def opencv(court):
+def opencv(workspace):
     """OpenCV measures the poses of the same docking fields, and is less exact."""
-    python = court.environment("docking", ROOT / "tests" / "python" / "docking_requirements.txt")
-    rows = ["--poses", "10", "--rows", "wide-5m,narrow-5m"] if court.fast else ["--poses", "40"]
-    table = court.run(court.program("docking_accuracy"), court.work / "accuracy", *rows, "--python", python)
-    court.run(sys.executable, ROOT / "tests" / "python" / "check_docking_accuracy.py", input=table)
+    python = workspace.environment("docking", ROOT / "tests" / "python" / "docking_requirements.txt")
+    rows = ["--poses", "10", "--rows", "wide-5m,narrow-5m"] if workspace.fast else ["--poses", "40"]
+    table = workspace.run(workspace.program("docking_accuracy"), workspace.work / "accuracy", *rows, "--python", python)
+    workspace.run(sys.executable, ROOT / "tests" / "python" / "check_docking_accuracy.py", input=table)
     return "poses nearer to the truth than OpenCV's in every row"
 
 
-def night_sky(court):
+def night_sky(workspace):
     """Attitudes of the images of the night sky that GalSim draws."""
-    python = court.environment("night-sky", GOLDEN / "night_sky" / "requirements.txt")
-    more = ["--frames", "5"] if court.fast else ["--real", fetched(court, python, GOLDEN / "night_sky" / "frames.txt")]
-    return claims_of(court.run(python, GOLDEN / "night_sky" / "check.py", court.program("boresight"), *more))
+    python = workspace.environment("night-sky", GOLDEN / "night_sky" / "requirements.txt")
+    more = ["--frames", "5"] if workspace.fast else ["--real", fetched(workspace, python, GOLDEN / "night_sky" / "frames.txt")]
+    return claims_of(workspace.run(python, GOLDEN / "night_sky" / "check.py", workspace.program("boresight"), *more))
 
 
-def fetched(court, python, pin):
+def fetched(workspace, python, pin):
     """The source distribution that a file pins by its hash; it is not installed."""
-    folder = court.work / pin.stem
+    folder = workspace.work / pin.stem
     shutil.rmtree(folder, ignore_errors=True)
     name = next(line.split("==")[0] for line in pin.read_text().splitlines() if "==" in line)
     try:
-        court.run(python, "-m", "pip", "download", "--quiet", "--no-deps", "--no-binary", name, "--require-hashes", "--dest", folder, "-r", pin)
+        workspace.run(python, "-m", "pip", "download", "--quiet", "--no-deps", "--no-binary", name, "--require-hashes", "--dest", folder, "-r", pin)
     except subprocess.CalledProcessError as failed:
         raise CannotAsk(f"pip does not fetch what {pin.name} pins: {last_lines(failed.stdout)}") from failed
     return next(folder.iterdir())
 
 
-def flight_dynamics(court):
+def flight_dynamics(workspace):
     """Files of other tools, made again, and the reader's tests with them."""
     if shutil.which("java") is None:
         raise CannotAsk("java is not there: Orekit needs it")
-    said = remade("flight_dynamics")(court)
-    count = passed(court.run("cargo", "test", "--locked", "-p", "boresight-flight-dynamics", "--test", "it", "--", "other_tools"), "other_tools")
+    said = remade("flight_dynamics")(workspace)
+    count = passed(workspace.run("cargo", "test", "--locked", "-p", "boresight-flight-dynamics", "--test", "it", "--", "other_tools"), "other_tools")
     return f"{said}; {count} tests"
 
 
-def exported(court):
+def exported(workspace):
     """Packages of others read what `boresight export` writes."""
     if shutil.which("java") is None:
         raise CannotAsk("java is not there: Orekit needs it")
-    python = court.environment("exported", GOLDEN / "flight_dynamics" / "exported_requirements.txt")
-    return claims_of(court.run(python, GOLDEN / "witnesses" / "flight_dynamics.py", court.program("boresight")))
+    python = workspace.environment("exported", GOLDEN / "flight_dynamics" / "exported_requirements.txt")
+    return claims_of(workspace.run(python, GOLDEN / "witnesses" / "flight_dynamics.py", workspace.program("boresight")))
 
 
-def docking(court):
+def docking(workspace):
     """Mitsuba's images of the docking target, made again; the smallest one alone when it must be fast."""
-    python = court.environment("mitsuba", GOLDEN / "docking" / "requirements.txt")
-    made, cache = court.work / "docking", court.work / "docking-cache"
+    python = workspace.environment("mitsuba", GOLDEN / "docking" / "requirements.txt")
+    made, cache = workspace.work / "docking", workspace.work / "docking-cache"
     for folder in (made, cache):
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
     # Bypasses the user's cache: a cached image would not be made again.
     environment = {**os.environ, "BORESIGHT_MITSUBA": shlex.quote(str(python.parent / "mitsuba")), "XDG_CACHE_HOME": str(cache)}
-    case = ["wide-10-tilt"] if court.fast else []
-    court.run(court.program("golden_docking"), made, *case, env=environment)
+    case = ["wide-10-tilt"] if workspace.fast else []
+    workspace.run(workspace.program("golden_docking"), made, *case, env=environment)
     names = [f"{name}.exr" for name in case] or sorted(path.name for path in (GOLDEN / "docking").glob("*.exr"))
-    return claims_of(court.run(python, GOLDEN / "witnesses" / "docking_images.py", GOLDEN / "docking", made, *names))
+    return claims_of(workspace.run(python, GOLDEN / "witnesses" / "docking_images.py", GOLDEN / "docking", made, *names))
 
 
-def mitsuba(court):
+def mitsuba(workspace):
     """Mitsuba draws closed forms through our exporter."""
-    python = court.environment("mitsuba", GOLDEN / "docking" / "requirements.txt")
-    chosen = "mitsuba_live::" + ("sun_lamp_fill_and_sky" if court.fast else "")
-    said = court.run("cargo", "test", *COMPILED, "--test", "it", "--", "--ignored", chosen, env={**os.environ, "BORESIGHT_MITSUBA": str(python.parent / "mitsuba")})
+    python = workspace.environment("mitsuba", GOLDEN / "docking" / "requirements.txt")
+    chosen = "mitsuba_live::" + ("sun_lamp_fill_and_sky" if workspace.fast else "")
+    said = workspace.run("cargo", "test", *COMPILED, "--test", "it", "--", "--ignored", chosen, env={**os.environ, "BORESIGHT_MITSUBA": str(python.parent / "mitsuba")})
     return f"{passed(said, chosen)} passed"
 
 
@@ -314,10 +314,10 @@ WITNESSES = {
 }
 
 
-def heard(court, hear, log):
-    """Verdict of a witness and its reason. An exception in one witness does not stop those after it."""
+def result_of(workspace, check, log):
+    """Result of a witness and its reason. An exception in one witness does not stop those after it."""
     try:
-        return "ok", hear(court)
+        return "ok", check(workspace)
     except CannotAsk as why:
         return "not asked", why
     except AssertionError as why:
@@ -325,13 +325,13 @@ def heard(court, hear, log):
     except subprocess.CalledProcessError as failed:
         return "NO", f"{last_lines(failed.stdout)} (all of it: {log})"
     except Exception as why:
-        traceback.print_exc(file=court.log)
+        traceback.print_exc(file=workspace.log)
         return "NO", f"{type(why).__name__}: {why} (all of it: {log})"
 
 
-def status_of(verdicts):
+def status_of(results):
     """Exit status: a disagreement takes precedence over a witness that could not run."""
-    return 1 if "NO" in verdicts else 2 if "not asked" in verdicts else 0
+    return 1 if "NO" in results else 2 if "not asked" in results else 0
 
 
 def debian_versions():
@@ -360,20 +360,20 @@ def main():
 
     work = arguments.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
-    court = Court(work, arguments.python and arguments.python.absolute(), arguments.fast)
+    workspace = Workspace(work, arguments.python and arguments.python.absolute(), arguments.fast)
     for line in debian_versions():
         print(line, flush=True)
-    verdicts = []
-    for name, (what, hear) in WITNESSES.items():
+    results = []
+    for name, (what, check) in WITNESSES.items():
         if arguments.only and name not in arguments.only:
             continue
         started = time.monotonic()
         log = work / f"{name}.log"
-        with log.open("w") as court.log:
-            verdict, said = heard(court, hear, log)
-        verdicts.append(verdict)
-        print(f"{verdict:9} {name:15} {time.monotonic() - started:5.0f} s  {what}: {said}", flush=True)
-    return status_of(verdicts)
+        with log.open("w") as workspace.log:
+            result, said = result_of(workspace, check, log)
+        results.append(result)
+        print(f"{result:9} {name:15} {time.monotonic() - started:5.0f} s  {what}: {said}", flush=True)
+    return status_of(results)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Asserts how golden/verify.py judges: who is heard over whom, and that no witness silences those after it.
+"""Tests golden/verify.py: which results take precedence, and that a failure does not stop later witnesses.
 
     python3 tests/python/check_verify.py
 """
@@ -34,24 +34,24 @@ def breaks(_):
     raise FileNotFoundError("made.csv")
 
 
-class Judging(unittest.TestCase):
-    def asked(self, *hears):
+class Results(unittest.TestCase):
+    def asked(self, *checks):
         """Exit status and output of a run with these witnesses."""
-        witnesses = {f"w{i}": ("a witness", hear) for i, hear in enumerate(hears)}
+        witnesses = {f"w{i}": ("a witness", check) for i, check in enumerate(checks)}
         with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(io.StringIO()) as said:
             with mock.patch.object(verify, "WITNESSES", witnesses), mock.patch.object(sys, "argv", ["verify.py", "--work", work]):
                 return verify.main(), said.getvalue()
 
     def test_exit_status(self):
-        for hears, expected in [
+        for checks, expected in [
             ([agrees], 0),
             ([agrees, is_not_there], 2),
             ([disagrees, is_not_there], 1),
             ([is_not_there, disagrees], 1),
             ([breaks, agrees, is_not_there], 1),
         ]:
-            with self.subTest([hear.__name__ for hear in hears]):
-                self.assertEqual(self.asked(*hears)[0], expected)
+            with self.subTest([check.__name__ for check in checks]):
+                self.assertEqual(self.asked(*checks)[0], expected)
 
     def test_one_that_breaks_does_not_silence_the_next(self):
         status, said = self.asked(breaks, agrees)
@@ -60,13 +60,13 @@ class Judging(unittest.TestCase):
         self.assertRegex(said, r"(?m)^ok .* w1 .*all of it")
 
     def test_a_command_that_is_not_there_cannot_be_asked(self):
-        status, said = self.asked(lambda court: court.run("no-command-of-this-name"))
+        status, said = self.asked(lambda workspace: workspace.run("no-command-of-this-name"))
         self.assertEqual(status, 2)
         self.assertIn("no-command-of-this-name is not there", said)
 
     def test_a_command_that_fails_disagrees_and_its_claims_are_told(self):
         script = "print('FAIL places'); print('ok   a'); print('ok   b'); print('ok   c'); raise SystemExit(1)"
-        status, said = self.asked(lambda court: court.run(sys.executable, "-c", script))
+        status, said = self.asked(lambda workspace: workspace.run(sys.executable, "-c", script))
         self.assertEqual(status, 1)
         self.assertIn("FAIL places", said)
 
