@@ -284,8 +284,10 @@ fn the_budget_of_a_navigation_adds_up_to_its_error() {
             assert!(parts["interaction"][1][axis].abs() < 0.05, "{parts:?}");
             let without = json["share_without_interaction"][axis].as_f64().unwrap();
             assert!((without + parts["interaction"][1][axis] - 1.0).abs() < 1e-12, "{json}");
+            // The budget composes each line of sight from its parts; the prior leaves the range uncertain, which
+            // enlarges rounding.
             let rms = json["rms_m"][axis].as_f64().unwrap();
-            assert!((rms / score[name]["rms"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{json} {score}");
+            assert!((rms / score[name]["rms"].as_f64().unwrap() - 1.0).abs() < 1e-7, "{json} {score}");
         }
         parts
     };
@@ -299,9 +301,11 @@ fn the_budget_of_a_navigation_adds_up_to_its_error() {
     }
     // The range is that of the prior within minutes.
     assert!(best["prior"][1][1] > 0.9, "{best:?}");
-    // The paper's mode learns its hot pixels first, and has no usable line of sight yet.
-    bench.boresight("run argon --frames 4000..4020 --no-report --out paper").done();
-    bench.boresight("navigate paper --budget").refused(&["no estimate at 2012-04-24", "no_measurements"]);
+    // The paper's mode learns its hot pixels first, and takes them for the target until then.
+    bench.boresight("run argon --frames 4000..4006 --no-report --out paper").done();
+    bench
+        .boresight("navigate paper --budget")
+        .refused(&["no estimate at 2012-04-24", "none of 5 lines of sight is within 5 σ"]);
     let table = bench.boresight("navigate best --budget").done().stdout;
     assert!(table.contains("centre of brightness") && table.contains("interaction"), "{table}");
     bench.boresight("navigate best --budget --out other").refused(&["--budget", "--out"]);

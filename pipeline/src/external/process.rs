@@ -20,13 +20,19 @@ pub(super) struct Process {
     /// Lines for the child; `None` once its input is closed.
     requests: Option<SyncSender<Vec<u8>>>,
     events: Receiver<Event>,
+    /// The last answer arrived together with a further line.
+    is_ahead: bool,
     errors: Arc<Mutex<Tail>>,
     errors_reader: JoinHandle<()>,
 }
 
 /// Events of the child, in order.
 enum Event {
-    Line(Vec<u8>),
+    Line {
+        text: Vec<u8>,
+        /// A further line arrived together with this one: its event may be later than the next request.
+        is_ahead: bool,
+    },
     LineTooLong,
     OutputClosed,
     InputClosed,
@@ -80,7 +86,7 @@ impl Process {
         };
         match group::limit_memory(&child, memory_bytes).and_then(|()| Pipes::connect(&mut child)) {
             Ok(Pipes { requests, events, errors, errors_reader }) => {
-                Ok(Self { child, requests: Some(requests), events, errors, errors_reader })
+                Ok(Self { child, requests: Some(requests), events, is_ahead: false, errors, errors_reader })
             }
             Err(error) => {
                 group::kill(&mut child);
@@ -92,12 +98,12 @@ impl Process {
 
     /// Sends a line and waits for the child's answer, for at most `limit`.
     pub(super) fn exchange(&mut self, request: Vec<u8>, limit: Duration) -> Result<Vec<u8>, Fault> {
+        let unsolicited = || Fault::Broken("it wrote a line without a request".to_owned());
         match self.events.try_recv() {
+            _ if self.is_ahead => return Err(unsolicited()),
             Err(TryRecvError::Empty) => {}
             Err(TryRecvError::Disconnected) => return Err(Fault::Closed("its output")),
-            Ok(Event::Line(_)) => {
-                return Err(Fault::Broken("it wrote a line without a request".to_owned()));
-            }
+            Ok(Event::Line { .. }) => return Err(unsolicited()),
             Ok(event) => return Err(fault(&event)),
         }
         let sent = self
@@ -112,7 +118,10 @@ impl Process {
             Err(TrySendError::Disconnected(_)) => return Err(Fault::Closed("its input")),
         }
         match self.events.recv_timeout(limit) {
-            Ok(Event::Line(line)) => Ok(line),
+            Ok(Event::Line { text, is_ahead }) => {
+                self.is_ahead = is_ahead;
+                Ok(text)
+            }
             Ok(event) => Err(fault(&event)),
             Err(RecvTimeoutError::Timeout) => Err(Fault::Late(limit)),
             Err(RecvTimeoutError::Disconnected) => Err(Fault::Closed("its output")),
@@ -216,7 +225,7 @@ impl Pipes {
 
 fn fault(event: &Event) -> Fault {
     match event {
-        Event::Line(_) | Event::OutputClosed => Fault::Closed("its output"),
+        Event::Line { .. } | Event::OutputClosed => Fault::Closed("its output"),
         Event::LineTooLong => Fault::Broken(format!("it wrote a line longer than {MAX_LINE_BYTES} bytes")),
         Event::InputClosed => Fault::Closed("its input"),
     }
@@ -227,19 +236,18 @@ fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> std::io::Result<Jo
 }
 
 /// Reads lines until the output ends, a line is too long, or the receiver is gone.
-fn read_lines(mut output: impl BufRead, events: &SyncSender<Event>) {
+fn read_lines(mut output: BufReader<impl Read>, events: &SyncSender<Event>) {
     loop {
         let mut line = Vec::new();
         // An error of a pipe cannot be distinguished from its end.
         let read = (&mut output).take(MAX_LINE_BYTES as u64 + 1).read_until(b'\n', &mut line).unwrap_or(0);
         let event = match read {
             0 => Event::OutputClosed,
-            _ if line.last() == Some(&b'\n') => Event::Line(line),
-            n if n > MAX_LINE_BYTES => Event::LineTooLong,
+            n if n > MAX_LINE_BYTES && line.last() != Some(&b'\n') => Event::LineTooLong,
             // The last line of an output may lack its line end.
-            _ => Event::Line(line),
+            _ => Event::Line { text: line, is_ahead: output.buffer().contains(&b'\n') },
         };
-        let is_last = !matches!(event, Event::Line(_));
+        let is_last = !matches!(event, Event::Line { .. });
         if events.send(event).is_err() || is_last {
             return;
         }
