@@ -417,8 +417,19 @@ impl Points {
                 points.entry(drawn.into_iter().take(swept).collect()).or_default().push(place);
             }
         }
-        let (at, of_draw): (Vec<Vec<String>>, _) = points.into_iter().unzip();
-        let at = at.into_iter().map(|at| cases.drawn_columns().cloned().zip(at).collect()).collect();
+        // A parameter with one value is a setting of the study, and points that do not differ are none.
+        let (mut at, mut of_draw): (Vec<Vec<String>>, Vec<Vec<usize>>) = points.into_iter().unzip();
+        let first = at.first().cloned().unwrap_or_default();
+        let differs = |column: usize| at.iter().any(|point| point.get(column) != first.get(column));
+        let differing: Vec<bool> = (0..swept).map(differs).collect();
+        if at.len() == 1 {
+            (at, of_draw) = (Vec::new(), Vec::new());
+        }
+        let named = |point: Vec<String>| {
+            let values = cases.drawn_columns().cloned().zip(point).zip(&differing);
+            values.filter(|(_, differs)| **differs).map(|(value, _)| value).collect()
+        };
+        let at = at.into_iter().map(named).collect();
         Ok(Self { at, of_draw, together, rows })
     }
 
