@@ -284,8 +284,8 @@ fn the_budget_of_a_navigation_adds_up_to_its_error() {
             assert!(parts["interaction"][1][axis].abs() < 0.05, "{parts:?}");
             let without = json["share_without_interaction"][axis].as_f64().unwrap();
             assert!((without + parts["interaction"][1][axis] - 1.0).abs() < 1e-12, "{json}");
-            // The budget composes each line of sight from its parts; the prior leaves the range uncertain, which
-            // enlarges rounding.
+            // The budget composes each line of sight from its parts; the prior leaves the range uncertain,
+            // which enlarges rounding.
             let rms = json["rms_m"][axis].as_f64().unwrap();
             assert!((rms / score[name]["rms"].as_f64().unwrap() - 1.0).abs() < 1e-7, "{json} {score}");
         }
