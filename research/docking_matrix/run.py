@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""Docking on degraded television: eleven kinds of degradation by ffmpeg and OpenCV, at three ranges, in two
-motions.
+"""Docking on degraded television: kinds of degradation by ffmpeg and OpenCV (degrade.py), at three ranges, in
+several motions.
 
     python3 research/docking_matrix/run.py --boresight target/release/boresight                # 1000 fields a cell
     python3 research/docking_matrix/run.py --boresight target/release/boresight --blocks 1     # 40 fields a cell, minutes
     python3 research/docking_matrix/run.py --boresight ... --blocks 1 --fields 12 --kinds none "blur 3" --check
+    python3 research/docking_matrix/run.py --boresight ... --blocks 2 --cache CLEAN --kinds all --json CELLS
 
 A cell is a kind, a range and a motion, measured in blocks of consecutive fields, each block by a new
 pipeline. `constant` moves at constant velocity before a camera with noise only; `approach` is the scenario
-`docking` with every artefact. `defocus` is not degraded: the simulator's lens has the blur. Printed per cell:
+`docking` with every artefact. `lateral` is `constant` at 0.3 m/s across, with jitter of the lines too; `roll N` is
+`constant` with a roll of N degrees. `defocus` is not degraded: the simulator's lens has the blur. Printed per cell:
 the share of measured, doubtful and grossly wrong fields, the share of wrong and not doubtful fields with the
 upper end of its 95 % interval (Clopper and Pearson), NEES over its dimension, and the share of motion
 parameters within 3 σ.
@@ -25,6 +27,7 @@ Needs ffmpeg and the packages of requirements.txt.
 
 import argparse
 import concurrent.futures
+import hashlib
 import json
 import math
 import pathlib
@@ -53,30 +56,33 @@ RANGES = {
     "near": {"d3_m": 5.0, "rate_m_s": -0.1, "fields": (21900, 22700)},
 }
 # Blur of the simulator's lens, px, at a distance.
+ROLLS_DEG = [30, 45, 50, 60, 90, 135, 180]
 DEFOCUS = [(2.2, 27.0), (3.0, 27.0), (5.0, 20.0), (3.0, 55.0)]
 
 
-def scenario(approach_toml, blur_px=0.7, is_quiet=True):
-    """The scenario of this tree with another approach and blur; `quiet` keeps only the noise of the
+def scenario(approach_toml, blur_px=0.7, is_quiet=True, artefacts=("noise",)):
+    """The scenario of this tree with another approach and blur; `quiet` keeps only these artefacts of the
     television."""
+    kept_sections = [f"television.{name}" for name in artefacts]
     lines, section, kept = SCENARIO.read_text().splitlines(), "", []
     for line in lines:
         if line.startswith("["):
             section = line.strip("[] ").split("]")[0]
         is_dropped = section.startswith("approach") or (
-            is_quiet and section.startswith("television.") and section != "television.noise")
+            is_quiet and section.startswith("television.") and section not in kept_sections)
         if not is_dropped:
             kept.append(f"blur_sigma_px = {blur_px}" if line.startswith("blur_sigma_px") else line)
     return "\n".join(kept) + "\n" + approach_toml
 
 
-def constant_velocity(d3_m, rate_m_s, count):
+def constant_velocity(d3_m, rate_m_s, count, lateral_m_s=0.01, roll_deg=0.5):
+    begin_m = 0.012 * d3_m - (lateral_m_s - 0.01) * count / 100
     return f"""
 [approach]
 kind = "constant_velocity"
-position_m = [{0.012 * d3_m}, {-0.008 * d3_m}, {d3_m}]
-velocity_m_s = [0.01, -0.005, {rate_m_s}]
-phi_deg = [0.3, -0.2, 0.5]
+position_m = [{begin_m}, {-0.008 * d3_m}, {d3_m}]
+velocity_m_s = [{lateral_m_s}, -0.005, {rate_m_s}]
+phi_deg = [0.3, -0.2, {roll_deg}]
 phi_rate_deg_s = [0.02, 0.01, -0.03]
 duration_s = {(count + 2) / 50}
 """
@@ -116,8 +122,8 @@ class Cell:
                 f"{100 * self.doubtful / n:7.1f} {self.wrong:6} {100 * upper(self.wrong, n):7.2f} {nees} {within}")
 
 
-HEAD = ("motion    range        kind            fields measured doubtful wrong  <= %     NEES  motion within 3 sigma, %\n"
-        "                                                   %        %")
+HEAD = ("motion    range        kind                    fields measured doubtful wrong  <= %     NEES  motion within 3 sigma, %\n"
+        "                                                           %        %")
 
 
 def upper(count, of):
@@ -144,10 +150,10 @@ def boresight(program, *words):
     return subprocess.run([program, *map(str, words)], cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout
 
 
-def turned_truth(table):
+def turned_truth(table, turn_deg):
     """The truth of a camera that sees the turned picture: exp([phi']) = exp([phi]) Rz(-turn); see
     degrade.turned."""
-    half = -0.5 * math.radians(degrade.TURN_DEG)
+    half = -0.5 * math.radians(turn_deg)
     turn = np.array([math.cos(half), 0.0, 0.0, math.sin(half)])
 
     def quaternion(v):
@@ -179,35 +185,47 @@ def turned_truth(table):
 
 
 def render(arguments, work, toml, first, seed):
-    """A dataset of a block's fields."""
-    work.mkdir(parents=True)
-    (work / "scenario.toml").write_text(toml)
+    """A dataset of a block's fields: rendered, or from the cache when program and scenario are the same."""
     frames = f"{first}..{first + arguments.fields}"
-    words = ["render", work / "scenario.toml", "--frames", frames, "--seed", seed, "--jobs", 1]
+    words = ["render", "scenario.toml", "--frames", frames, "--seed", seed, "--jobs", 1]
     if arguments.renderer == "mitsuba":
         words += ["--renderer", "mitsuba", "--mitsuba-rays", arguments.mitsuba_rays]
         words += ["--mitsuba", arguments.mitsuba] if arguments.mitsuba else []
         words += ["--mitsuba-cache", arguments.mitsuba_cache] if arguments.mitsuba_cache else []
+    if arguments.cache:
+        digest = hashlib.sha256(f"{toml} {words}".encode()).hexdigest()[:20]
+        work = arguments.cache / digest
+        if (work / "complete").exists():
+            return work / "clean"
+        shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    (work / "scenario.toml").write_text(toml)
+    words[1] = work / "scenario.toml"
     boresight(arguments.boresight, *words, "--out", work / "clean")
+    (work / "complete").touch()
     return work / "clean"
 
 
-def measure(program, clean, work, kind, first):
-    """Degrades a dataset, measures and scores it."""
-    is_turned, function = degrade.KINDS[kind]
+def measure(arguments, clean, work, kind, first, keep):
+    """Degrades a dataset, measures and scores it. `keep`: copy of the measurements."""
+    degradation = degrade.KINDS[kind]
     shutil.copytree(clean, work)
-    files = sorted((work / "frames").iterdir())
-    fields = np.stack([cv2.imread(str(file), cv2.IMREAD_UNCHANGED) for file in files])
-    scene = {"principal": PRINCIPAL_PX, "first_is_odd": first % 2, "seed": SEED + first}
     if kind != "none":
-        for file, field in zip(files, function(fields, scene)):
+        files = sorted((work / "frames").iterdir())
+        fields = np.stack([cv2.imread(str(file), cv2.IMREAD_UNCHANGED) for file in files])
+        scene = {"principal": PRINCIPAL_PX, "first_is_odd": first % 2, "seed": SEED + first}
+        for file, field in zip(files, degradation.function(fields, scene)):
             cv2.imwrite(str(file), field, [cv2.IMWRITE_PNG_COMPRESSION, 1])
         (work / "SHA256SUMS").unlink(missing_ok=True)
-    if is_turned:
-        truth = work / "truth" / "fields.parquet"
-        pq.write_table(turned_truth(pq.read_table(truth)), truth)
-    boresight(program, "process", work)
-    score = json.loads(boresight(program, "score", work, work / "measurements.csv", "--json"))
+    truth = work / "truth" / "fields.parquet"
+    if degradation.turn_deg:
+        pq.write_table(turned_truth(pq.read_table(truth), degradation.turn_deg), truth)
+    boresight(arguments.boresight, "process", work)
+    score = json.loads(boresight(arguments.boresight, "score", work, work / "measurements.csv", "--json"))
+    if keep:
+        keep.mkdir(parents=True, exist_ok=True)
+        shutil.copy(work / "measurements.csv", keep / "measurements.csv")
+        shutil.copy(truth, keep / "fields.parquet")
     shutil.rmtree(work)
     return score["score"] if "score" in score else score
 
@@ -223,6 +241,13 @@ def jobs(arguments):
             toml = scenario(constant_velocity(d3_m, at["rate_m_s"], count))
             if "constant" in arguments.motions:
                 yield "constant", name, toml, 0, arguments.kinds, block
+            if "lateral" in arguments.motions:
+                moving = constant_velocity(d3_m, at["rate_m_s"], count, lateral_m_s=0.3)
+                yield "lateral", name, scenario(moving, artefacts=("noise", "line_jitter")), 0, arguments.kinds, block
+            for roll_deg in ROLLS_DEG:
+                if f"roll {roll_deg}" in arguments.motions:
+                    rolled = scenario(constant_velocity(d3_m, at["rate_m_s"], count, roll_deg=roll_deg))
+                    yield f"roll {roll_deg}", name, rolled, 0, arguments.kinds, block
             first, last = at["fields"]
             spread = max(last - first - count, 0) / max(arguments.blocks - 1, 1)
             begin = first + 2 * int(spread * block / 2)
@@ -237,9 +262,14 @@ def jobs(arguments):
 
 def block(arguments, scratch, job):
     motion, name, toml, first, kinds, number = job
-    work = pathlib.Path(scratch) / f"{motion}-{name}-{number}".replace(" ", "_")
+    place = f"{motion}-{name}-{number}".replace(" ", "_")
+    work = pathlib.Path(scratch) / place
     clean = render(arguments, work, toml, first, SEED + number)
-    scores = [(kind, measure(arguments.boresight, clean, work / "degraded", kind, first)) for kind in kinds]
+    work.mkdir(exist_ok=True)
+    scores = []
+    for kind in kinds:
+        keep = arguments.keep and arguments.keep / kind.replace(" ", "_") / place
+        scores.append((kind, measure(arguments, clean, work / "degraded", kind, first, keep)))
     shutil.rmtree(work)
     return motion, name, scores
 
@@ -249,7 +279,8 @@ def main():
     parser.add_argument("--boresight", required=True, type=lambda path: str(pathlib.Path(path).resolve()))
     parser.add_argument("--blocks", type=int, default=25, help="blocks of a cell")
     parser.add_argument("--fields", type=int, default=40, help="fields of a block")
-    parser.add_argument("--kinds", nargs="+", default=list(degrade.KINDS), choices=list(degrade.KINDS))
+    parser.add_argument("--kinds", nargs="+", default=degrade.FIRST, choices=[*degrade.KINDS, "every", "new"],
+                        metavar="KIND", help="kinds of degrade.py; `every`, or `new`: without those of the first matrix")
     parser.add_argument("--ranges", nargs="+", default=[], choices=list(RANGES))
     parser.add_argument("--motions", nargs="+", default=["constant", "approach", "defocus"])
     parser.add_argument("--jobs", type=int, default=2)
@@ -257,10 +288,17 @@ def main():
     parser.add_argument("--mitsuba", help="command of Mitsuba")
     parser.add_argument("--mitsuba-rays", type=int, default=64, help="a square number")
     parser.add_argument("--mitsuba-cache", type=lambda path: pathlib.Path(path).resolve())
+    parser.add_argument("--cache", type=lambda path: pathlib.Path(path).resolve(),
+                        help="folder for clean renderings, used again for the same scenario and fields")
+    parser.add_argument("--keep", type=pathlib.Path, help="copy measurements and truth of every block here")
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--max-nees", type=float, default=math.inf)
     parser.add_argument("--json", type=pathlib.Path, help="write the cells here too")
     arguments = parser.parse_args()
+    if "every" in arguments.kinds:
+        arguments.kinds = list(degrade.KINDS)
+    elif "new" in arguments.kinds:
+        arguments.kinds = ["none", *(kind for kind in degrade.KINDS if kind not in degrade.FIRST)]
     cells = {}
     with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         for motion, name, scores in pool.map(lambda job: block(arguments, scratch, job), jobs(arguments)):
