@@ -5,7 +5,7 @@
 
 use statrs::function::beta::beta_reg;
 
-use super::clusters::{ClusterSum, MIN_CLUSTERS, Ratio, independent_trials, non_empty, t_quantile};
+use super::clusters::{ClusterSum, MIN_CLUSTERS, Ratio, independent_trials, non_empty};
 use super::quantile::{ClusterValue, independent_values};
 
 /// Two one-sided bounds: the value is at least `low` with the requested confidence, and at most `high` with
@@ -24,23 +24,23 @@ pub struct Bounds {
 pub fn cluster_rate_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
     let counted = non_empty(clusters);
     let ratio = Ratio::new(&counted)?;
-    let n = independent_trials(&counted, &ratio) * size;
+    let n = independent_trials(&counted, &ratio, size);
     let count = ratio.value * n;
     let low = if count <= 0.0 { 0.0 } else { beta_quantile(count, n - count + 1.0, 1.0 - confidence) };
     let high = if count >= n { 1.0 } else { beta_quantile(count + 1.0, n - count, confidence) };
     Some(Bounds { low: Some(low), high: Some(high) })
 }
 
-/// Computes the bounds of a mean over clusters, Σ sum / Σ of, by Student's t. `None` for fewer than
-/// [`MIN_CLUSTERS`].
+/// Computes the bounds of a mean over clusters, Σ sum / Σ count, by Student's t with a correction for
+/// skewness. `None` for fewer than [`MIN_CLUSTERS`].
 pub fn cluster_mean_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
     let counted = non_empty(clusters);
     if counted.len() < MIN_CLUSTERS {
         return None;
     }
     let ratio = Ratio::new(&counted)?;
-    let half = t_quantile(counted.len() as f64 * size, confidence) * (ratio.variance() / size).sqrt();
-    Some(Bounds { low: Some(ratio.value - half), high: Some(ratio.value + half) })
+    let reach = ratio.residuals.reach(confidence, size);
+    Some(Bounds { low: Some(ratio.value - reach.below), high: Some(ratio.value + reach.above) })
 }
 
 /// Computes the bounds of the quantile `p` of values in clusters, sorted by value: order statistics of the

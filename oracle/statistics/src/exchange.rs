@@ -14,8 +14,16 @@ use sim::randomness::{Effect, Seed};
 
 /// Largest number of blocks for which all exchanges are evaluated.
 const MAX_EXHAUSTED: usize = 13;
-/// Number of random exchanges for more blocks, in addition to the identity.
+/// Number of random exchanges for more blocks, in addition to the identity, unless alpha is small.
 const RANDOM_EXCHANGES: usize = 9_999;
+/// Number of exchanges for each that a test at alpha may reject: the smallest p is a twentieth of alpha.
+const EXCHANGES_PER_ALPHA: f64 = 20.0;
+/// Largest number of random exchanges.
+const MAX_EXCHANGES: usize = 1 << 20;
+/// Largest number of blocks in all exchanges together, which limits time and memory.
+const MAX_EXCHANGED_BLOCKS: usize = 1 << 28;
+/// Smallest number of blocks whose sets have quantiles of 2.5 %, so that an interval of 95 % exists.
+pub const MIN_BLOCKS_OF_INTERVAL: usize = 6;
 /// Number of random sets used for an interval: its ends are quantiles with a standard deviation of a
 /// twentieth of its width.
 const FOR_AN_INTERVAL: usize = 1_999;
@@ -35,13 +43,25 @@ impl Exchanges {
     /// Creates all sets of up to 13 blocks. For more blocks, creates the empty set and 9999 random ones,
     /// which depend only on the number of blocks.
     pub fn new(blocks: usize) -> Self {
+        Self::with_random(blocks, RANDOM_EXCHANGES)
+    }
+
+    /// Creates the sets for a test at `alpha`: those of [`Self::new`], or for a small `alpha` so many random
+    /// ones that a p of a twentieth of it is resolved; a million at most, and fewer for more than 256 blocks.
+    pub fn for_alpha(blocks: usize, alpha: f64) -> Self {
+        let most = MAX_EXCHANGES.min(MAX_EXCHANGED_BLOCKS / blocks.max(1)).max(RANDOM_EXCHANGES + 1) - 1;
+        let random = (EXCHANGES_PER_ALPHA / alpha).ceil().min(most as f64) as usize;
+        Self::with_random(blocks, random.max(RANDOM_EXCHANGES))
+    }
+
+    fn with_random(blocks: usize, random: usize) -> Self {
         let words = blocks.div_ceil(64).max(1);
         if blocks <= MAX_EXHAUSTED {
             return Self { blocks, words, bits: (0..1u64 << blocks).collect() };
         }
         let mut stream = Seed { seed: blocks as u64, case: 0 }.stream(0, Effect::BlockExchange, 0);
         let mut bits = vec![0; words];
-        bits.extend((0..RANDOM_EXCHANGES * words).map(|_| stream.next_u64()));
+        bits.extend((0..random * words).map(|_| stream.next_u64()));
         Self { blocks, words, bits }
     }
 
@@ -71,6 +91,16 @@ impl ExchangeSet<'_> {
     fn has(self, block: usize) -> bool {
         self.words[block / 64] >> (block % 64) & 1 == 1
     }
+
+    /// Returns true if the set has none of the blocks of `mask`.
+    fn has_none_of(self, mask: &[u64]) -> bool {
+        self.words.iter().zip(mask).all(|(words, mask)| words & mask == 0)
+    }
+
+    /// Returns true if the set has all blocks of `mask`.
+    fn has_all_of(self, mask: &[u64]) -> bool {
+        self.words.iter().zip(mask).all(|(words, mask)| words & mask == *mask)
+    }
 }
 
 /// Effects of the blocks on one figure: the amount by which each block makes the second run worse than the
@@ -79,9 +109,37 @@ impl ExchangeSet<'_> {
 pub struct BlockEffects {
     /// One effect per block; their sum is the total effect.
     pub effects: Vec<f64>,
+    /// True for each block in which the figure has a value: in others, no data could make an effect.
+    pub has_value: Vec<bool>,
+    /// True if the opposite effects are tested too, as another figure.
+    pub is_two_sided: bool,
 }
 
 impl BlockEffects {
+    /// Creates the effects of a figure that has a value in every block and is tested for one side.
+    pub fn one_sided(effects: Vec<f64>) -> Self {
+        Self { has_value: vec![true; effects.len()], effects, is_two_sided: false }
+    }
+
+    /// Returns the effects with the opposite sign.
+    pub fn opposite(&self) -> Self {
+        Self { effects: self.effects.iter().map(|effect| -effect).collect(), ..self.clone() }
+    }
+
+    /// Returns the largest statistic that any effects of these blocks can have: that of equal effects.
+    fn largest_statistic(&self) -> f64 {
+        (self.has_value.iter().filter(|has| **has).count() as f64).sqrt()
+    }
+
+    /// Returns the blocks with a value, one bit per block.
+    fn mask(&self) -> Vec<u64> {
+        let mut mask = vec![0; self.has_value.len().div_ceil(64).max(1)];
+        for block in (0..self.has_value.len()).filter(|block| self.has_value[*block]) {
+            mask[block / 64] |= 1 << (block % 64);
+        }
+        mask
+    }
+
     /// Returns the test statistic of an exchange's effect: the effect over the root of the sum of squares,
     /// which is the same for every exchange. For hits and misses it is the statistic of McNemar's test for
     /// blocks (Yang, Sun & Hardin 2010, Biometrical Journal 52, 638–652). 0 if no block differs.
@@ -104,6 +162,9 @@ pub struct FigureTest {
     /// Probability under the null hypothesis of a statistic at least as large, adjusted for all figures
     /// together.
     pub adjusted_p: f64,
+    /// Smallest `adjusted_p` that any data in the blocks of this figure could have, beside the given effects
+    /// of the other figures: that of equal effects in all its blocks. 1 without a block.
+    pub attainable_p: f64,
 }
 
 /// Joint test of several figures.
@@ -149,6 +210,7 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
     let mut order: Vec<usize> = (0..figures.len()).collect();
     order.sort_by(|a, b| observed[*b].total_cmp(&observed[*a]).then(a.cmp(b)));
     let (mut alone, mut together) = (vec![0u64; figures.len()], vec![0u64; figures.len()]);
+    let mut attainable: Vec<Attainable> = figures.iter().map(Attainable::new).collect();
     let mut largest = Vec::new();
     let mut exchanged = vec![0.0; figures.len()];
     for set in exchanges.sets() {
@@ -160,6 +222,9 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
             together[figure] += u64::from(reaches(below, observed[figure]));
         }
         largest.push(below);
+        for (figure, attainable) in attainable.iter_mut().enumerate() {
+            attainable.count(figure, set, &exchanged);
+        }
     }
     let count = largest.len() as f64;
     let mut tested: Vec<FigureTest> = (0..figures.len())
@@ -167,6 +232,7 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
             statistic: observed[figure],
             p: alone[figure] as f64 / count,
             adjusted_p: together[figure] as f64 / count,
+            attainable_p: attainable[figure].exchanges as f64 / count,
         })
         .collect();
     let mut least: f64 = 0.0;
@@ -179,6 +245,37 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
     let reached = (alpha * count).floor() as usize;
     let critical = largest.len().checked_sub(reached + 1).map_or(0.0, |place| largest[place].max(0.0));
     JointTest { figures: tested, critical }
+}
+
+/// Number of exchanges under which a figure with equal effects in all its blocks, or another figure with its
+/// given effects, reaches the statistic of those equal effects.
+struct Attainable {
+    statistic: f64,
+    blocks: Vec<u64>,
+    is_two_sided: bool,
+    exchanges: u64,
+}
+
+impl Attainable {
+    fn new(figure: &BlockEffects) -> Self {
+        Self {
+            statistic: figure.largest_statistic(),
+            blocks: figure.mask(),
+            is_two_sided: figure.is_two_sided,
+            exchanges: 0,
+        }
+    }
+
+    /// Counts an exchange; `exchanged` has the statistics of all figures under it, and `figure` is the number
+    /// of this figure among them.
+    fn count(&mut self, figure: usize, set: ExchangeSet<'_>, exchanged: &[f64]) {
+        let by_itself = set.has_none_of(&self.blocks) || self.is_two_sided && set.has_all_of(&self.blocks);
+        let by_another = || {
+            let others = exchanged.iter().enumerate().filter(|(other, _)| *other != figure);
+            others.into_iter().any(|(_, statistic)| reaches(*statistic, self.statistic))
+        };
+        self.exchanges += u64::from(by_itself || by_another());
+    }
 }
 
 /// Returns true if a statistic is at least as large as the observed one, within rounding.
@@ -194,11 +291,13 @@ pub const SETS: usize = 8;
 /// American Statistical Association 64, 1303–1317).
 ///
 /// A bootstrap with weights 0 and 2 gives the same interval, as does the inversion of the test by exchanges.
-/// It is exact for the mean of at least six symmetric independent differences; with fewer blocks it is the
-/// whole range of the sets, whose confidence is below 95 %.
+/// It is exact for the mean of at least six symmetric independent differences
+/// ([`MIN_BLOCKS_OF_INTERVAL`]). Fewer have no quantile of 2.5 %, and no interval: even the whole range of
+/// their sets has a confidence below 95 %.
 ///
 /// `differences` receives for each block its weight, 0 or 1, in each of [`SETS`] sets, and returns the
-/// difference of each set, if it has one. Returns `None` if most sets have none.
+/// difference of each set, if it has one. Returns `None` for fewer than six blocks, and if most sets have no
+/// difference.
 pub fn interval_by_sets(
     exchanges: &Exchanges,
     differences: impl Fn(&[[f64; SETS]]) -> [Option<f64>; SETS],
@@ -215,7 +314,7 @@ pub fn interval_by_sets(
         }
         values.extend(differences(&weights).into_iter().take(sets.len()).flatten());
     }
-    if values.is_empty() || values.len() * 2 < count {
+    if exchanges.blocks < MIN_BLOCKS_OF_INTERVAL || values.len() * 2 < count {
         return None;
     }
     values.sort_by(f64::total_cmp);
@@ -232,7 +331,7 @@ mod tests {
     use super::*;
 
     fn effects(effects: &[f64]) -> BlockEffects {
-        BlockEffects { effects: effects.to_vec() }
+        BlockEffects::one_sided(effects.to_vec())
     }
 
     fn test_of(figures: &[BlockEffects], alpha: f64) -> JointTest {
@@ -265,9 +364,12 @@ mod tests {
         };
         let interval = interval_one_by_one(&Exchanges::new(7), |taken| Some(sum(taken))).unwrap();
         assert_eq!((interval.low, interval.high), (3.0, 125.0));
-        // For fewer than six blocks the interval is the whole range.
-        let interval = interval_one_by_one(&Exchanges::new(5), |taken| Some(sum(taken))).unwrap();
-        assert_eq!((interval.low, interval.high), (1.0, 31.0));
+        // Six blocks have an interval, the whole range; for five, that range has a confidence of 15/16.
+        let interval = interval_one_by_one(&Exchanges::new(6), |taken| Some(sum(taken))).unwrap();
+        assert_eq!((interval.low, interval.high), (1.0, 63.0));
+        for blocks in 0..6 {
+            assert_eq!(interval_one_by_one(&Exchanges::new(blocks), |taken| Some(sum(taken))), None);
+        }
         // A difference without a value for most sets has no interval: values for 63 of 127 sets are too few,
         // 64 are enough.
         let below = |limit: f64| {
@@ -330,7 +432,48 @@ mod tests {
         assert_eq!(test.figures[0].p, 1.0 / 64.0);
         assert!((test.figures[0].statistic - 6f64.sqrt()).abs() < 1e-12);
         let nothing = test_of(&[effects(&[0.0; 6])], 0.05);
-        assert_eq!(nothing.figures[0], FigureTest { statistic: 0.0, p: 1.0, adjusted_p: 1.0 });
+        let attainable_p = 1.0 / 64.0;
+        assert_eq!(nothing.figures[0], FigureTest { statistic: 0.0, p: 1.0, adjusted_p: 1.0, attainable_p });
+    }
+
+    /// Of n blocks with values, one exchange in 2ⁿ keeps all of them; where both sides are tested, one more
+    /// exchanges all of them. Uneven effects attain no less.
+    #[test]
+    fn no_data_have_a_smaller_p_than_equal_effects() {
+        for blocks in 1..=13 {
+            let uneven: Vec<f64> = (0..blocks).map(|block| f64::from(block) - 3.2).collect();
+            let test = test_of(&[effects(&uneven)], 0.05);
+            assert_eq!(test.figures[0].attainable_p, libm::exp2(-f64::from(blocks)));
+            let up = BlockEffects { is_two_sided: true, ..effects(&uneven) };
+            let test = test_of(&[up.clone(), up.opposite()], 0.05);
+            for figure in &test.figures {
+                assert_eq!(figure.attainable_p, libm::exp2(1.0 - f64::from(blocks)));
+            }
+        }
+        // Values in five of twelve blocks; another figure with equal effects in six of them reaches more.
+        let mut five = effects(&[1.0; 12]);
+        (5..12).for_each(|block| five.has_value[block] = false);
+        assert_eq!(test_of(std::slice::from_ref(&five), 0.05).figures[0].attainable_p, 1.0 / 32.0);
+        let mut six = [0.0; 12];
+        (6..12).for_each(|block| six[block] = 1.0);
+        let both = test_of(&[five, effects(&six)], 0.05);
+        let either = 1.0 - (31.0 / 32.0) * (63.0 / 64.0);
+        assert!((both.figures[0].attainable_p - either).abs() < 1e-12, "{both:?}");
+    }
+
+    /// A test at 1e-6 of twenty blocks needs their 2²⁰ exchanges, and one at 1e-4 more than 9999.
+    #[test]
+    fn a_small_alpha_has_as_many_exchanges_as_it_needs() {
+        for (blocks, alpha, count) in [
+            (13, 1e-6, 1 << 13),
+            (14, 0.05, 10_000),
+            (14, 0.002, 10_001),
+            (200, 1e-4, 200_001),
+            (20, 1e-9, 1 << 20),
+            (100_000, 1e-9, 10_000),
+        ] {
+            assert_eq!(Exchanges::for_alpha(blocks, alpha).sets().count(), count, "{blocks} {alpha}");
+        }
     }
 
     /// With effects that are powers of two every exchange has a different sum: 31, 29, 27, … for five blocks.
@@ -454,7 +597,7 @@ mod tests {
     #[test]
     fn zero_blocks_have_no_result() {
         let test = joint_test(&[effects(&[])], &Exchanges::new(0), 0.05);
-        assert_eq!((test.figures[0].p, test.critical), (1.0, 0.0));
+        assert_eq!((test.figures[0].p, test.figures[0].attainable_p, test.critical), (1.0, 1.0, 0.0));
         assert_eq!(interval_one_by_one(&Exchanges::new(0), |_| Some(1.0)), None);
     }
 }

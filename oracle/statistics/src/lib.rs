@@ -56,7 +56,10 @@ pub use clusters::{
     ClusterSum, MIN_CLUSTERS, cluster_mean_interval, cluster_rate_interval, mean_difference_interval,
     rate_difference_interval,
 };
-pub use exchange::{BlockEffects, Exchanges, FigureTest, JointTest, SETS, interval_by_sets, joint_test};
+pub use exchange::{
+    BlockEffects, Exchanges, FigureTest, JointTest, MIN_BLOCKS_OF_INTERVAL, SETS, interval_by_sets,
+    joint_test,
+};
 pub use interval::{Interval, Z_95};
 pub use location::{below_median, mean_interval, median, median_interval, rms_interval};
 pub use normal_quantile::normal_quantile;

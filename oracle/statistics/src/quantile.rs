@@ -3,7 +3,7 @@
 use statrs::function::beta::beta_reg;
 
 use super::Interval;
-use super::clusters::{ClusterSum, OUTSIDE, Ratio, independent_trials, non_empty};
+use super::clusters::{ClusterSum, OUTSIDE, Ratio, non_empty, trials_by_scatter};
 
 /// Number of a cluster, and a value that belongs to it.
 pub type ClusterValue = (usize, f64);
@@ -48,7 +48,7 @@ pub(super) fn independent_values(sorted: &[ClusterValue], p: f64) -> Option<f64>
         }
     }
     let counted = non_empty(&sums);
-    Some(independent_trials(&counted, &Ratio::new(&counted)?))
+    Some(trials_by_scatter(&counted, &Ratio::new(&counted)?, 1.0))
 }
 
 #[cfg(test)]
