@@ -31,7 +31,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
             Cell::new(difference(name, figure)),
             Cell::new(format!("{:.3}", figure.adjusted_p)),
             if is_plain { verdict } else { verdict.add_attribute(Attribute::Bold) },
-            Cell::new(value(figure.smallest_visible)),
+            Cell::new(figure.smallest_visible.map_or("none".to_owned(), |size| number(name, size))),
         ]);
     }
     let worse: Vec<String> = report.worse_figures().map(|name| figure_by_name(name).words).collect();
@@ -57,7 +57,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
         "{} {} in {} blocks; {paired}. Worse: p, adjusted for all figures, is at most {}, and the worsening exceeds the\n\
          tolerance; or, for a rate on the same frames, losses in a row or an excess of losses that chance does not explain.\n\
          Changed: a figure with a best value (a bias) differs as significantly from the baseline, but is no farther from that value.\n\
-         Visible: smallest worsening that is detected with a probability of 95 % or more. Rates in percent.\n\
+         Visible: smallest worsening that is detected with a probability of 95 % or more; none with too little data. Rates in percent.\n\
          Baseline: {}\n",
         report.count, report.units, report.blocks, report.alpha, report.reason,
     ));

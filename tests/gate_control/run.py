@@ -296,7 +296,7 @@ def is_visible(report):
 
     def of_figure(figure):
         run = figure["loss_run"]
-        if run and run["won"] == 0 and run["longest"] >= run["smallest_visible"] and figure["worse_by"] > figure["tolerance"]:
+        if run and run["won"] == 0 and run["smallest_visible"] and run["longest"] >= run["smallest_visible"] and figure["worse_by"] > figure["tolerance"]:
             return True
         size, change = figure["smallest_visible"], figure["worse_by"]
         if figure["better"].startswith("near") and figure["difference"] is not None:

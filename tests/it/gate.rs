@@ -1,5 +1,7 @@
 //! `boresight gate` finds changes for the worse, and reports nothing where there are none.
 
+#[cfg(unix)]
+mod action;
 mod cases;
 mod simulator_runs;
 

@@ -66,6 +66,7 @@ pub(super) fn report(figures: &[(&str, FigureVerdict)]) -> GateReport {
         tolerance: 0.0,
         p: 0.015_625,
         adjusted_p: 0.031_25,
+        attainable_p: 0.015_625,
         better_adjusted_p: 1.0,
         smallest_visible: None,
         blocks: 6,

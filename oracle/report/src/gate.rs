@@ -100,7 +100,15 @@ pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
             accepted.unwrap_or_default()
         )
     } else if worse.is_empty() {
-        format!("None of the {} compared figures is worse than in the baseline.", report.figures.len())
+        let is_judged = |figure: &&FigureReport| figure.verdict != FigureVerdict::TooLittleData;
+        let judged = report.figures.values().filter(is_judged).count();
+        match report.figures.len() - judged {
+            0 => format!("None of the {judged} compared figures is worse than in the baseline."),
+            others => format!(
+                "None of the {judged} figures with enough data is worse than in the baseline; {others} have too \
+                 little data."
+            ),
+        }
     } else {
         format!("Worse than in the baseline: {}.", worse.join(", "))
     };

@@ -205,6 +205,8 @@ impl Synthetic {
                     image: None,
                     n_stars: Some((22.0 + 2.0 * ra).round() as u32),
                     attitude_source: Some(AttitudeSource::Stars),
+                    is_absent: false,
+                    log_odds: None,
                 }
             })
             .collect()

@@ -51,6 +51,7 @@ impl Judge<'_> {
             tolerance: effect.tolerance,
             p: figure_test.p,
             adjusted_p: figure_test.adjusted_p,
+            attainable_p: figure_test.attainable_p,
             better_adjusted_p: self.better.figures[self.index].adjusted_p,
             smallest_visible: self.smallest_visible(),
             blocks: effect.blocks as u64,
@@ -71,7 +72,7 @@ impl Judge<'_> {
         let effect = self.effect;
         if effect.baseline.is_some() && effect.result.is_none() {
             let by_chance = self.better.figures.len() as f64 * libm::exp2(-(effect.blocks as f64));
-            return if by_chance <= GONE_BY_CHANCE {
+            return if by_chance <= GONE_BY_CHANCE.min(self.alpha) {
                 FigureVerdict::Gone
             } else {
                 FigureVerdict::TooLittleData
@@ -100,16 +101,37 @@ impl Judge<'_> {
         self.loss_run.is_some_and(|run| run.adjusted_p <= ALPHA_OF_RUNS * self.alpha)
     }
 
-    /// Returns true if a figure with equal differences in all of its blocks would be found.
+    /// Returns true if a figure with equal differences in all of its blocks would be found: its p, adjusted
+    /// for all figures, is at most alpha, and its statistic exceeds the critical value.
     fn can_be_seen(&self) -> bool {
-        !self.effect.is_beyond_blocks && (self.effect.blocks as f64).sqrt() > self.worse.critical + 1e-9
+        !self.effect.is_beyond_blocks
+            && self.worse.figures[self.index].attainable_p <= self.alpha
+            && (self.effect.blocks as f64).sqrt() > self.worse.critical + 1e-9
     }
 
-    /// Returns the worsening that is found with a probability of 95 %: its expected statistic exceeds the
-    /// critical value by the margin that one statistic in twenty falls short of. A worsening of a rate adds
-    /// scatter: a loss of the fraction δ of n units has a variance of at least δ/n. The critical value is
-    /// that of this comparison, or that of Bonferroni if the former is smaller because few figures differ at
-    /// all: a real change brings differences.
+    /// Returns the number of standard errors of a change that is found with a probability of 95 %. The
+    /// statistic T of n blocks is bounded by √n, and grows with Student's t as T² = n t²/(n − 1 + t²). The
+    /// change, k standard errors as estimated here, must exceed the t of the critical value by the margin
+    /// that one result in twenty falls short of. In units of the true standard error the variance is that of
+    /// the change, 1, and of both estimates of the standard error, t²/2(n − 1) for the result to come and
+    /// k²/2(n − 1) for this one. The critical value is that of this comparison, or that of Bonferroni if the
+    /// former is smaller because few figures differ at all: a real change brings differences. Above √(n − 1),
+    /// only equal signs in all blocks are found, which no statistic of another sign pattern exceeds. `None`
+    /// for two blocks: their standard error is too uncertain for any multiple.
+    fn visible_standard_errors(&self) -> Option<f64> {
+        let n = self.effect.blocks as f64;
+        let bonferroni = normal_quantile(1.0 - self.alpha / self.worse.figures.len() as f64);
+        let critical = self.worse.critical.max(bonferroni.min((n - 1.0).sqrt()));
+        let t = critical * ((n - 1.0) / (n - critical * critical)).sqrt();
+        // (k − t)² = z² (1 + (t² + k²)/2(n − 1)), the larger root.
+        let z2 = Z_POWER * Z_POWER;
+        let of_estimate = 0.5 * z2 / (n - 1.0);
+        let (square, rest) = (1.0 - of_estimate, t * t * (1.0 - of_estimate) - z2);
+        (square > 0.0).then(|| (t + (t * t - square * rest).max(0.0).sqrt()) / square)
+    }
+
+    /// Returns the worsening that is found with a probability of 95 %; `None` if no worsening is. A worsening
+    /// of a rate adds scatter: a loss of the fraction δ of n units has a variance of at least δ/n.
     fn smallest_visible(&self) -> Option<f64> {
         let effect = self.effect;
         effect.worsening()?;
@@ -117,8 +139,7 @@ impl Judge<'_> {
             return None;
         }
         let Sense { kind, .. } = effect.sense;
-        let bonferroni = normal_quantile(1.0 - self.alpha / self.worse.figures.len() as f64);
-        let z = self.worse.critical.max(bonferroni) + Z_POWER;
+        let z = self.visible_standard_errors()?;
         let by_noise = match kind {
             Kind::Amount => z * effect.standard_error,
             Kind::Rate => {
@@ -146,7 +167,7 @@ mod tests {
             baseline_of: 100,
             result_of: 50,
             blocks: 10,
-            worse: BlockEffects { effects: Vec::new() },
+            worse: BlockEffects::one_sided(Vec::new()),
             standard_error: 0.25,
             tolerance: 0.5,
             is_beyond_blocks: false,
@@ -162,7 +183,8 @@ mod tests {
         figures: usize,
     ) -> FigureReport {
         let test = |adjusted_p| {
-            let figure_test = FigureTest { statistic: 1.0, p: 0.5 * adjusted_p, adjusted_p };
+            let figure_test =
+                FigureTest { statistic: 1.0, p: 0.5 * adjusted_p, adjusted_p, attainable_p: 0.001 };
             JointTest { figures: vec![figure_test; figures], critical }
         };
         let (worse, better) = (&test(worse), &test(better));
@@ -243,8 +265,8 @@ mod tests {
         assert_eq!(judged(&near, [1.0, 1.0], 2.0, 1).better, "near 1");
     }
 
-    /// The statistic must exceed the critical value, that of the comparison or of Bonferroni (0.05/2: 1.960),
-    /// by 1.645 standard errors.
+    /// Student's t must exceed that of the critical value, of the comparison or of Bonferroni (0.05/2:
+    /// 1.960), by 1.645 of its standard deviations.
     #[test]
     fn the_smallest_visible_amount_is_a_multiple_of_its_standard_error() {
         let seen = |critical, figures, tolerance| {
@@ -252,9 +274,21 @@ mod tests {
             judged(&effect, [1.0, 1.0], critical, figures).smallest_visible.unwrap()
         };
         let is = |got: f64, expected: f64| assert!((got - expected).abs() < 1e-6, "{got}, not {expected}");
-        is(seen(3.0, 2, 0.0), 0.25 * (3.0 + 1.644_854));
-        is(seen(1.0, 2, 0.0), 0.25 * (1.959_964 + 1.644_854));
-        is(seen(1.0, 1, 0.0), 0.25 * (1.644_854 + 1.644_854));
+        // For ten blocks, a critical value of 3 is a t of 9; 1.96 is one of 2.369 632, 1.645 of 1.827 146.
+        let with_scatter = |t: f64| {
+            let of_estimate = 1.644_854 * 1.644_854 / 18.0;
+            let square = 1.0 - of_estimate;
+            let k = (t + (t * t - square * (t * t * square - 18.0 * of_estimate)).sqrt()) / square;
+            // The margin is 1.645 of its standard deviation.
+            let margin = 1.644_854 * (1.0 + (t * t + k * k) / 18.0).sqrt();
+            assert!((k - t - margin).abs() < 1e-6, "{k} for {t}");
+            0.25 * k
+        };
+        is(seen(3.0, 2, 0.0), with_scatter(9.0));
+        is(seen(1.0, 2, 0.0), with_scatter(2.369_357));
+        is(seen(1.0, 1, 0.0), with_scatter(1.827_057));
+        // A hundred figures would need more than √9: equal signs in all blocks are enough.
+        is(seen(1.0, 100_000, 0.0), with_scatter(9.0));
         // A tolerance above the change that the test finds: the smallest visible change exceeds it with a
         // probability of 95 %.
         is(seen(1.0, 2, 5.0), 5.0 + 0.25 * 1.644_854);
@@ -272,9 +306,10 @@ mod tests {
                 ..effect(2.0)
             };
             let seen = judged(&effect, [1.0, 1.0], 3.0, 2).smallest_visible.unwrap();
-            let z = 3.0 + 1.644_853_626_951_472_2;
+            // As for the amount, with a t of 9.
+            let z = 16.455_191;
             let expected = z * (standard_error * standard_error + seen / result_of as f64).sqrt();
-            assert!(seen > 0.0 && (seen - expected).abs() < 1e-12, "{seen}, not {expected}");
+            assert!(seen > 0.0 && (seen / expected - 1.0).abs() < 1e-6, "{seen}, not {expected}");
         }
         // The value for zero units is that for one unit.
         let none = FigureEffect {

@@ -22,6 +22,8 @@ pub(crate) struct NoteInputs<'a> {
     pub(crate) figures: &'a IndexMap<String, FigureReport>,
     /// Figures whose difference is correlated from block to block.
     pub(crate) beyond_blocks: &'a [&'a str],
+    /// Figures with values in so few blocks that no data would be found worse.
+    pub(crate) out_of_reach: &'a [&'a str],
     /// Largest correlation of neighbouring blocks among all figures.
     pub(crate) correlation: f64,
     pub(crate) blocks: usize,
@@ -47,6 +49,14 @@ pub(crate) fn notes(noted: &NoteInputs<'_>) -> Vec<String> {
             "Too little data for {} with different frames: the difference is correlated from block to block. \
              Compare the same frames, or make a longer run.",
             labels(noted.beyond_blocks)
+        ));
+    }
+    if !noted.out_of_reach.is_empty() {
+        notes.push(format!(
+            "Too little data for {}: in so few blocks, no values would be found worse at alpha = {}. Compare a \
+             longer result, or leave out --figures that have fewer values.",
+            labels(noted.out_of_reach),
+            noted.alpha
         ));
     }
     // Value that the largest of independent correlations, one per figure, exceeds in one of twenty
@@ -130,6 +140,7 @@ mod tests {
                 alpha: 0.05,
                 figures: &report.figures,
                 beyond_blocks: &[],
+                out_of_reach: &[],
                 correlation,
                 blocks: 25,
             })

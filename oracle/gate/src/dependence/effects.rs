@@ -94,9 +94,13 @@ impl FigureEffect {
             result: of_result,
             baseline_of: a.count as u64,
             result_of: b.count as u64,
-            blocks: has_data.into_iter().filter(|has| *has).count(),
+            blocks: has_data.iter().filter(|has| **has).count(),
             standard_error: standard_error(&effects),
-            worse: BlockEffects { effects },
+            worse: BlockEffects {
+                effects,
+                has_value: has_data,
+                is_two_sided: matches!(sense.better, Better::Near(_)),
+            },
             tolerance,
             is_beyond_blocks: false,
         }
@@ -136,8 +140,7 @@ impl FigureEffect {
     /// Returns the effect with the opposite sign: an improvement, or for a figure with a best value a
     /// decrease.
     pub(crate) fn better(&self) -> BlockEffects {
-        let effects = self.worse.effects.iter().map(|effect| -effect).collect();
-        BlockEffects { effects }
+        self.worse.opposite()
     }
 }
 
@@ -344,7 +347,7 @@ mod tests {
         let shifted = A.map(|value| value.map(|value| value + 0.25));
         for (name, reduction) in [("ra_mean_deg", Reduction::Mean), ("ra_median_deg", Reduction::Median)] {
             let [a, b] = [&A, &shifted].map(|values| terms(name, reduction, values));
-            let blocks = Blocks::every(8, 2);
+            let blocks = Blocks::every(8, 1);
             let interval = interval(&a, &b, &blocks, &Exchanges::new(blocks.count())).unwrap();
             assert!((interval.low - 0.25).abs() < 1e-12 && (interval.high - 0.25).abs() < 1e-12, "{name}");
         }

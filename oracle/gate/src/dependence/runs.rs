@@ -37,14 +37,17 @@ pub struct LossRun {
     /// Probability of at least this many losses, or of a run at least this long, if losing and winning are
     /// equally likely; adjusted for all rates together.
     pub adjusted_p: f64,
-    /// Shortest run of losses, without any other flip, that the test would detect, units.
-    pub smallest_visible: u64,
+    /// Shortest run of losses, without any other flip, that the test would detect, units; null if the rate
+    /// counts fewer units.
+    pub smallest_visible: Option<u64>,
 }
 
 /// Flips of one rate.
 struct Series {
     /// Index of each changed unit, and true if the unit was lost.
     flips: Vec<(usize, bool)>,
+    /// Number of units that the rate counts in both runs.
+    units: u64,
     episode: f64,
 }
 
@@ -57,15 +60,19 @@ impl Series {
             (Kind::Rate, Better::Less) => -1.0,
             _ => return None,
         };
-        let units = before.terms.iter().zip(&after.terms).enumerate();
-        let flips = units.filter(|(_, (before, after))| before.count > 0 && after.count > 0).filter_map(
-            |(unit, (before, after))| {
-                let change =
-                    sign * (after.sum / f64::from(after.count) - before.sum / f64::from(before.count));
-                (change != 0.0).then_some((unit, change < 0.0))
-            },
-        );
-        Some(Self { flips: flips.collect(), episode: memory_of(before, sequences).max(SHORTEST_EPISODE) })
+        let (mut flips, mut counted) = (Vec::new(), 0);
+        for (unit, (before, after)) in before.terms.iter().zip(&after.terms).enumerate() {
+            if before.count == 0 || after.count == 0 {
+                continue;
+            }
+            counted += 1;
+            let change = sign * (after.sum / f64::from(after.count) - before.sum / f64::from(before.count));
+            if change != 0.0 {
+                flips.push((unit, change < 0.0));
+            }
+        }
+        let episode = memory_of(before, sequences).max(SHORTEST_EPISODE);
+        Some(Self { flips, units: counted, episode })
     }
 
     fn lost(&self) -> usize {
@@ -124,7 +131,7 @@ pub(crate) fn loss_runs(
             last: number(longest.last()),
             episode: series.episode,
             adjusted_p: (count * series.p(lost, longest.len(), flips)).min(1.0),
-            smallest_visible: (1..).find(is_seen).unwrap_or(u64::MAX),
+            smallest_visible: (1..=series.units).find(is_seen),
         }
     };
     series.iter().map(|series| series.as_ref().map(of_series)).collect()
@@ -159,7 +166,7 @@ mod tests {
         is(run_of(&before, &lost(1..12)).adjusted_p, 0.25);
         is(run_of(&before, &lost(1..13)).adjusted_p, 0.125);
         // 2 · 2⁻ᵏ ≤ 0.0025 holds from ten throws on.
-        assert_eq!(run.smallest_visible, 30);
+        assert_eq!(run.smallest_visible, Some(30));
         let none = run_of(&before, &before);
         assert_eq!((none.lost, none.longest, none.first, none.adjusted_p), (0, 0, None, 1.0));
     }
@@ -171,7 +178,7 @@ mod tests {
         let after = [0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 1];
         let run = run_of(&before, &after);
         assert_eq!((run.lost, run.won, run.longest), (12, 3, 6));
-        let series = Series { flips: Vec::new(), episode: 3.0 };
+        let series = Series { flips: Vec::new(), units: 100, episode: 3.0 };
         assert!((series.p(12, 6, 15) - 2.0 * 6.0 / 32.0).abs() < 1e-12);
         assert!((series.p(12, 12, 12) - 2.0 / 16.0).abs() < 1e-12);
         // Thousands of losses and wins do not overflow.

@@ -77,14 +77,33 @@ pub struct FigureReport {
     pub p: f64,
     /// Probability `p` adjusted for all figures together; the figure is worse when it is at most alpha.
     pub adjusted_p: f64,
+    /// Smallest adjusted probability that any values in the blocks of this figure could have; above alpha,
+    /// the figure has too little data.
+    pub attainable_p: f64,
     /// Adjusted probability of at least this improvement if there is none.
     pub better_adjusted_p: f64,
-    /// Smallest worsening that is detected with a probability of at least 95 %.
+    /// Smallest worsening that is detected with a probability of at least 95 %; null if none is, because of
+    /// too little data.
     pub smallest_visible: Option<f64>,
     /// Number of blocks in which the figure has a value.
     pub blocks: u64,
     /// Lost and won units and the longest run of losses, for a rate on the same frames.
     pub loss_run: Option<LossRun>,
+}
+
+impl FigureReport {
+    /// Returns true if the figure has values in both results, but in too few blocks to be found worse.
+    pub(crate) fn is_out_of_reach(&self, alpha: f64) -> bool {
+        self.difference.is_some() && self.verdict == FigureVerdict::TooLittleData && self.attainable_p > alpha
+    }
+
+    /// Returns the smallest number of blocks in which the figure could be found worse: each block halves the
+    /// smallest p. `None` if the figure has no value.
+    pub(crate) fn blocks_needed(&self, alpha: f64) -> Option<u64> {
+        self.difference?;
+        let sides = if self.better.starts_with("near") { 2.0 } else { 1.0 };
+        Some(libm::ceil(libm::log2(sides / alpha) - 1e-9) as u64)
+    }
 }
 
 /// Report of a gate: the document of `--json`.
