@@ -34,6 +34,7 @@ mod frame;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod interpolation;
+mod physics;
 mod spk;
 mod time;
 mod tle;
@@ -50,6 +51,7 @@ pub use frame::ReferenceFrame;
 /// Instant of a state.
 pub use hifitime::Epoch;
 pub use interpolation::{Interpolation, Method};
+pub use physics::check_samples;
 pub use spk::Spk;
 pub use time::TimeSystem;
 pub use tle::Tle;

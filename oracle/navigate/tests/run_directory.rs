@@ -57,6 +57,7 @@ fn write(directory: &Path, scenario: &FarRangeScenario, count: u64) {
             position_covariance: None,
             line_of_sight: Some(camera_from_icrs.inverse() * measured),
             line_of_sight_covariance: Some(Covariance2::from_sigmas(SIGMA_RAD, SIGMA_RAD, 0.0).unwrap()),
+            log_odds: None,
         };
         let outcome = Outcome {
             solution: Solution::Detected(measurement),

@@ -22,7 +22,7 @@ pub(crate) fn attitude_profile(
 ) -> Result<Option<AttitudeProfile>, Failure> {
     let Guidance::Aem { file } = &config.guidance else { return Ok(None) };
     let path = Path::new(file);
-    let ephemeris = Aem::read_of_body(path)?.ephemeris();
+    let ephemeris = Aem::read_pointing(path)?.0.ephemeris();
     if let Some(schedule) = schedule {
         let coverage = ephemeris.coverage();
         for frame in 0..schedule.frame_count() {
@@ -40,4 +40,11 @@ pub(crate) fn attitude_profile(
         }
     }
     Ok(Some(AttitudeProfile(Arc::new(ephemeris))))
+}
+
+/// Returns remarks on unusual attitudes in the file that guidance names, each with file and line; none for a
+/// file with errors.
+pub(crate) fn attitude_remarks(config: &AttitudeConfig) -> Vec<String> {
+    let Guidance::Aem { file } = &config.guidance else { return Vec::new() };
+    Aem::read_pointing(Path::new(file)).map(|(_, remarks)| remarks).unwrap_or_default()
 }

@@ -22,7 +22,7 @@ use sim::truth::{
     OrbitConfig, Schedule, Trajectory, TrajectorySource,
 };
 
-use crate::attitude::attitude_profile;
+use crate::attitude::{attitude_profile, attitude_remarks};
 use crate::coverage::{NeededTimes, Reach};
 use crate::{TrajectoryConfig, scenario_file};
 
@@ -242,6 +242,15 @@ impl FarRangeScenario {
     /// Returns the span about the middle of an exposure in which motion and attitude have an effect.
     pub fn needed_about(&self, time: Epoch) -> Coverage {
         self.reach().about(time)
+    }
+
+    /// Returns remarks on unusual motion and attitudes in the files of the scenario, each with file and line.
+    pub fn motion_remarks(&self) -> Vec<String> {
+        let schedule = Schedule::new(&self.schedule).ok();
+        let needed = schedule.and_then(|schedule| NeededTimes::of_schedule(&schedule, self.reach()));
+        let mut remarks = self.trajectory.remarks(needed);
+        remarks.extend(attitude_remarks(&self.attitude));
+        remarks
     }
 
     fn trajectory_source(&self, schedule: Option<&Schedule>) -> Result<TrajectorySource, Failure> {

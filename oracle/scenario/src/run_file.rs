@@ -229,9 +229,13 @@ impl<S: ScenarioFile> RunFile<S> {
     /// Writes the file completely or not at all.
     ///
     /// # Errors
-    /// [`Failure`] when the file cannot be written.
+    /// [`Failure`] when the file cannot be written, or could not be read again: TOML has no integers above
+    /// 2⁶³ − 1, and its writer does not refuse them.
     pub fn write(&self, path: &Path) -> Result<(), Failure> {
         let text = S::run_to_toml(self)?;
+        S::parse_run(path, &text).map_err(|error| {
+            Failure::Usage(format!("{}: could not be read again: {error}", path.display()))
+        })?;
         Ok(AtomicFile::with_text(path, &text)?.commit_new()?)
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use contract::OutOfRange;
 use files::{Failure, FileError, FileLocation};
-use flight_dynamics::{Coverage, InitialState, Oem, OrbitEphemeris, Spk, Tle};
+use flight_dynamics::{Coverage, InitialState, Oem, OrbitEphemeris, Spk, Tle, check_samples};
 use hifitime::{Duration, Epoch};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -165,7 +165,7 @@ impl TrajectoryConfig {
             let missing = || OutOfRange::new("orbit", "missing", "a table");
             Ok(source(orbit.cloned().ok_or_else(missing)?))
         };
-        let [chaser, target] = match self {
+        match self {
             Self::MeanElements {} => return with_orbit(&TrajectorySource::MeanElements),
             Self::Numerical(config) => {
                 return with_orbit(&|orbit| TrajectorySource::Numerical(orbit, config.clone()));
@@ -174,24 +174,54 @@ impl TrajectoryConfig {
                 let (execution, reports) = (execution.unwrap_or_default(), reports.unwrap_or_default());
                 return propagated([chaser, target].map(Path::new), forces, execution, reports);
             }
-            Self::Oem { chaser, target } => [chaser, target].map(|path| oem(Path::new(path), needed)),
-            Self::Tle { chaser, target } => [chaser, target].map(|path| {
-                let path = Path::new(path);
-                sampled(path, &Tle::read(path)?.into(), needed)
-            }),
+            Self::Oem { .. } | Self::Tle { .. } | Self::Spk { .. } => {}
+        }
+        let mut orbits = self.sampled_orbits(needed)?.into_iter();
+        let (Some(chaser), Some(target)) = (orbits.next(), orbits.next()) else {
+            return Err(OutOfRange::new("trajectory", self.kind(), "a chaser and a target").into());
+        };
+        let states = SampledStates::new(chaser.epoch, chaser.orbit, target.orbit)
+            .map_err(|error| error.under("trajectory"))?;
+        Ok(TrajectorySource::Sampled(Arc::new(states)))
+    }
+
+    /// Returns remarks on unusual motion in the files, each with file and line; none for files with errors.
+    pub(crate) fn remarks(&self, needed: Option<NeededTimes>) -> Vec<String> {
+        let orbits = self.sampled_orbits(needed).unwrap_or_default();
+        orbits.into_iter().flat_map(|orbit| orbit.remarks).collect()
+    }
+
+    /// Reads the orbits of chaser and target from the files that contain states; none for other kinds.
+    fn sampled_orbits(&self, needed: Option<NeededTimes>) -> Result<Vec<OrbitFile>, Failure> {
+        let orbits: Vec<Result<OrbitFile, Failure>> = match self {
+            Self::MeanElements {} | Self::Numerical(_) | Self::Opm { .. } => Vec::new(),
+            Self::Oem { chaser, target } => [chaser, target].map(|path| oem(Path::new(path), needed)).into(),
+            Self::Tle { chaser, target } => [chaser, target]
+                .map(|path| {
+                    let path = Path::new(path);
+                    sampled(path, &Tle::read(path)?.into(), needed)
+                })
+                .into(),
             Self::Spk { chaser, target, chaser_id, target_id } => [(chaser, chaser_id), (target, target_id)]
                 .map(|(path, id)| {
                     let path = Path::new(path);
                     let spk = Spk::read(path, *id)?;
                     spk.check_no_gaps(path)?;
                     sampled(path, &spk.into(), needed)
-                }),
+                })
+                .into(),
         };
-        let (epoch, chaser) = chaser?;
-        let (_, target) = target?;
-        let states = SampledStates::new(epoch, chaser, target).map_err(|error| error.under("trajectory"))?;
-        Ok(TrajectorySource::Sampled(Arc::new(states)))
+        orbits.into_iter().collect()
     }
+}
+
+/// Orbit of one spacecraft from a file.
+struct OrbitFile {
+    /// Origin of the samples' times.
+    epoch: Epoch,
+    orbit: SampledOrbit,
+    /// Remarks on unusual motion, each with file and line.
+    remarks: Vec<String>,
 }
 
 /// Reads the orbit parameter messages of chaser and target.
@@ -255,14 +285,14 @@ fn seconds(from: Epoch, to: Epoch) -> f64 {
 }
 
 /// Reads an orbit ephemeris message.
-fn oem(path: &Path, needed: Option<NeededTimes>) -> Result<(Epoch, SampledOrbit), Failure> {
-    let oem = Oem::read_without_gaps(path)?;
+fn oem(path: &Path, needed: Option<NeededTimes>) -> Result<OrbitFile, Failure> {
+    let (oem, remarks) = Oem::read_motion(path)?;
     let coverage = oem.ephemeris().coverage();
     check_coverage(path, needed, &coverage)?;
     let epoch = origin(needed, &coverage);
     let segments = oem.segments.iter().map(|segment| segment.sampled_since(epoch));
     let orbit = SampledOrbit::new(segments.collect()).map_err(|error| in_file(path, &error))?;
-    Ok((epoch, orbit))
+    Ok(OrbitFile { epoch, orbit, remarks })
 }
 
 /// Samples an ephemeris from before the first to after the last frame, as far as it covers that.
@@ -270,7 +300,7 @@ fn sampled(
     path: &Path,
     ephemeris: &OrbitEphemeris,
     needed: Option<NeededTimes>,
-) -> Result<(Epoch, SampledOrbit), Failure> {
+) -> Result<OrbitFile, Failure> {
     let coverage = ephemeris.coverage();
     check_coverage(path, needed, &coverage)?;
     let epoch = origin(needed, &coverage);
@@ -317,8 +347,9 @@ fn sampled(
     let ends_s = [samples.first(), samples.last()].map(|sample| sample.map_or(0.0, |sample| sample.time_s));
     let segment =
         SampledSegment { interpolation: Interpolation::Lagrange, degree: 7, usable_s: ends_s, samples };
+    let remarks = check_samples(path, epoch, segment.clone())?;
     let orbit = SampledOrbit::new(vec![segment]).map_err(|error| in_file(path, &error))?;
-    Ok((epoch, orbit))
+    Ok(OrbitFile { epoch, orbit, remarks })
 }
 
 /// Returns the error of samples with the file that they are from.

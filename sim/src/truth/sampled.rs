@@ -140,18 +140,33 @@ pub fn first_node<T>(nodes: &[T], count: usize, time_s: f64, time_of: impl Fn(&T
     middle.saturating_sub(count.div_ceil(2)).min(nodes.len().saturating_sub(count))
 }
 
-/// Checks that a state is that of a bound orbit about the Earth: a file in metres has other numbers.
+/// Largest speed at infinity of a hyperbola about the Earth, km/s.
+const MAX_EXCESS_KM_S: f64 = 20.0;
+
+/// Smallest semi-latus rectum of an orbit, km: below it the velocity is zero or along the position, and the
+/// orbit has no plane.
+const MIN_PARAMETER_KM: f64 = 10.0;
+
+/// Checks that a state is that of an orbit about the Earth: a file in metres has other numbers, and a state
+/// without velocity has no orbital plane.
 fn check_orbit(path: &str, state: &State) -> Result<(), OutOfRange> {
     let distance_km = state.position_km.norm();
     if !DISTANCE_KM.contains(&distance_km) {
         let value = format!("{distance_km:.3} km from the Earth's centre");
         return Err(OutOfRange::new(path, value, "a distance of 6478 to 1e6 km"));
     }
-    if 0.5 * state.velocity_km_s.norm_squared() < EARTH_GM_KM3_S2 / distance_km {
-        return Ok(());
-    }
     let value = format!("{:.6} km/s", state.velocity_km_s.norm());
-    Err(OutOfRange::new(path, value, "a velocity of a bound orbit"))
+    let energy = 0.5 * state.velocity_km_s.norm_squared() - EARTH_GM_KM3_S2 / distance_km;
+    if energy > 0.5 * MAX_EXCESS_KM_S * MAX_EXCESS_KM_S {
+        let expected = "a velocity of an orbit about the Earth, at most 20 km/s at infinity";
+        return Err(OutOfRange::new(path, value, expected));
+    }
+    let momentum = state.position_km.cross(&state.velocity_km_s).norm_squared();
+    if momentum < MIN_PARAMETER_KM * EARTH_GM_KM3_S2 {
+        let expected = "a velocity of an orbit about the Earth, neither zero nor along the position";
+        return Err(OutOfRange::new(path, value, expected));
+    }
+    Ok(())
 }
 
 /// Lagrange's polynomials of position and velocity.
@@ -208,7 +223,7 @@ impl SampledOrbit {
     ///
     /// # Errors
     /// [`OutOfRange`] for a segment with too few samples, samples out of order, numbers that are not finite,
-    /// a sample that is not of a bound orbit above 100 km, or a usable interval outside its samples; for
+    /// a sample that is not of an orbit above 100 km, or a usable interval outside its samples; for
     /// segments out of order or with a gap between them. Paths begin with `segments[index]`.
     pub fn new(segments: Vec<SampledSegment>) -> Result<Self, OutOfRange> {
         if segments.is_empty() {
@@ -438,7 +453,12 @@ mod tests {
             "{refused}"
         );
         let refused = refusal(&|s| s.samples[2].state.velocity_km_s *= 1e3);
-        assert!(refused.contains("segments[0].samples[2]") && refused.contains("a bound orbit"), "{refused}");
+        assert!(
+            refused.contains("segments[0].samples[2]") && refused.contains("an orbit about the Earth"),
+            "{refused}"
+        );
+        let refused = refusal(&|s| s.samples[2].state.velocity_km_s *= 0.0);
+        assert!(refused.contains("segments[0].samples[2]") && refused.contains("neither zero"), "{refused}");
         assert!(refusal(&|s| s.samples.swap(4, 5)).contains("segments[0].samples[5]"));
         assert!(refusal(&|s| s.samples.truncate(5)).contains("at least 6 samples"));
         assert!(refusal(&|s| s.degree = 0).contains("segments[0].degree"));

@@ -108,7 +108,7 @@ fn check(bench: &Bench) -> (Answer, serde_json::Value) {
 }
 
 #[test]
-fn a_distortion_beyond_sip_is_reported_and_its_fits_files_have_none() {
+fn a_distortion_beyond_sip_is_reported_and_its_fits_files_have_no_coordinates() {
     for (k1, from_px, to_px) in [(-4e-7, 350.0, 491.0), (2e-6, 100.0, 491.0), (5e-6, 50.0, 491.0)] {
         let bench = with_change("starting-point", |table| {
             set(table, "camera.radial", vec![Value::Float(k1), Value::Float(0.0), Value::Float(0.0)]);
@@ -123,8 +123,9 @@ fn a_distortion_beyond_sip_is_reported_and_its_fits_files_have_none() {
         assert!(rendered.stderr.contains(warning), "{}", rendered.stderr);
         let image = std::fs::read(bench.path("set/frames/000100.fits")).unwrap();
         let header = String::from_utf8_lossy(&image[..3 * 2880]).into_owned();
-        assert!(header.contains("'RA---TAN'") && header.contains("No SIP polynomial fits"), "{header}");
-        assert!(!header.contains("A_ORDER"), "{header}");
+        for keyword in ["CTYPE1", "CRVAL1", "CRPIX1", "CD1_1", "A_ORDER"] {
+            assert!(!header.contains(keyword), "{keyword}: {header}");
+        }
     }
     // If a corner has no direction, or more than one, the camera is invalid.
     let parts = ["camera.radial", "one-to-one on the detector: this one folds back 4"];

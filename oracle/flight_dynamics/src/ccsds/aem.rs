@@ -5,16 +5,18 @@ use std::path::Path;
 use contract::{Body, Icrs, Rotation};
 use files::{FileError, FileLocation};
 use hifitime::Epoch;
+use nalgebra::Vector4;
 
 use super::common::{
-    EphemerisSegment, Header, NO_DESIGNATOR, Times, check_center, read_coverage, read_interpolation,
-    read_segments, read_time_system, write_coverage, write_message,
+    EphemerisSegment, Header, NO_DESIGNATOR, Times, check_center, lines_of, read_coverage,
+    read_interpolation, read_segments, read_time_system, write_coverage, write_message,
 };
-use crate::coverage::Coverage;
+use crate::coverage::{Coverage, seconds_between};
 use crate::document::{self, Document, Kind, Notation, Record, Segment, Writer};
 use crate::ephemeris::{AttitudeEphemeris, AttitudeNodes};
 use crate::frame::{FRAME_NAMES, FileAxes, ReferenceFrame};
 use crate::interpolation::{Interpolation, Method};
+use crate::physics::{PointingNode, check_pointing, check_pointing_border};
 use crate::time::TimeSystem;
 
 /// Keywords of the metadata of versions 1 and 2.
@@ -138,16 +140,42 @@ impl Aem {
     /// # Errors
     /// Those of [`Aem::read`]; [`FileError::Value`] with line and field of an instrument's frame.
     pub fn read_of_body(path: &Path) -> Result<Self, FileError> {
+        document::read(path, Kind::Aem, |document| Self::of_body(path, document))
+    }
+
+    /// [`Aem::read_of_body`] with a check that a spacecraft can turn as the attitudes do. Returns the
+    /// message, and remarks on unusual attitudes with their lines.
+    ///
+    /// # Errors
+    /// Those of [`Aem::read_of_body`]; [`FileError::Value`] with the line of an attitude that its neighbours
+    /// contradict, and the likely slip.
+    pub fn read_pointing(path: &Path) -> Result<(Self, Vec<String>), FileError> {
         document::read(path, Kind::Aem, |document| {
-            let aem = Self::from_document(path, document)?;
-            for (segment, read) in document.segments.iter().zip(&aem.segments) {
-                if !is_body_frame(&read.body_frame) {
-                    let entry = segment.metadata.require(body_keyword(&segment.metadata))?;
-                    return Err(segment.metadata.refuse(entry, "SC_BODY_1 or another frame of the body"));
+            let aem = Self::of_body(path, document)?;
+            let mut remarks = Vec::new();
+            let mut last: Option<PointingNode> = None;
+            for (segment, read) in aem.segments.iter().zip(&document.segments) {
+                let epoch = aem.segments.first().map_or(segment.coverage.start, |first| first.coverage.start);
+                let nodes = segment.pointing_nodes(epoch, &lines_of(read, "attitudeState"));
+                if let (Some(before), Some(after)) = (last, nodes.first()) {
+                    remarks.extend(check_pointing_border(path, &before, after));
                 }
+                remarks.extend(check_pointing(path, &nodes)?);
+                last = nodes.last().copied();
             }
-            Ok(aem)
+            Ok((aem, remarks))
         })
+    }
+
+    fn of_body(path: &Path, document: &Document<'_>) -> Result<Self, FileError> {
+        let aem = Self::from_document(path, document)?;
+        for (segment, read) in document.segments.iter().zip(&aem.segments) {
+            if !is_body_frame(&read.body_frame) {
+                let entry = segment.metadata.require(body_keyword(&segment.metadata))?;
+                return Err(segment.metadata.refuse(entry, "SC_BODY_1 or another frame of the body"));
+            }
+        }
+        Ok(aem)
     }
 
     /// [`Aem::read`] for text in memory; `path` is for messages.
@@ -160,6 +188,12 @@ impl Aem {
 
     fn from_document(path: &Path, document: &Document<'_>) -> Result<Self, FileError> {
         let header = Header::read(&document.header)?;
+        // Version 1 has no default, and both directions are in use.
+        if document.header.require(Kind::Aem.version_keyword())?.value == "1.0" {
+            for segment in &document.segments {
+                segment.metadata.require("ATTITUDE_DIR")?;
+            }
+        }
         let segments = read_segments(path, document)?;
         Ok(Self { header, segments })
     }
@@ -321,6 +355,19 @@ impl EphemerisSegment for AemSegment {
 }
 
 impl AemSegment {
+    /// Returns the attitudes with their lines, times in seconds since `epoch`, axes of the segment.
+    fn pointing_nodes(&self, epoch: Epoch, lines: &[u64]) -> Vec<PointingNode> {
+        let node = |(attitude, line): (&AttitudeNode, &u64)| {
+            let [q1, q2, q3, qc] = attitude.q1_q2_q3_qc;
+            PointingNode {
+                time_s: seconds_between(epoch, attitude.time),
+                wxyz: Vector4::new(qc, q1, q2, q3).normalize(),
+                line: *line,
+            }
+        };
+        self.attitudes.iter().zip(lines).map(node).collect()
+    }
+
     /// Creates a segment of attitudes, axes ICRF, direction [`AttitudeDirection::BodyFromFrame`] and UTC,
     /// with turns at constant rates between them.
     ///

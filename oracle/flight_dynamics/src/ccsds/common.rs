@@ -237,6 +237,11 @@ pub(crate) fn check_borders<S: EphemerisSegment>(
     Ok(())
 }
 
+/// Returns the lines of the records of a segment with one name.
+pub(crate) fn lines_of(segment: &Segment<'_>, name: &str) -> Vec<u64> {
+    segment.data.iter().filter(|record| record.name == name).map(|record| record.line).collect()
+}
+
 /// Checks that a segment has enough records for its interpolation.
 fn check_count(path: &Path, line: u64, interpolation: Interpolation, count: usize) -> Result<(), FileError> {
     if count >= interpolation.nodes() {

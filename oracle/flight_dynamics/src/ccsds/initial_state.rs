@@ -10,6 +10,7 @@ use sim::truth::{EARTH_GM_KM3_S2, ManoeuvreAxes, PlannedManoeuvre, State};
 use super::covariance::CovarianceFrame;
 use super::opm::{Manoeuvre, Opm, SpacecraftParameters};
 use crate::document::{self, Document, Kind, Record};
+use crate::physics::implausible_state;
 
 /// Distances from the Earth's centre that are accepted, km: from 100 km above the equator.
 const DISTANCE_KM: std::ops::RangeInclusive<f64> = 6_478.0..=1e6;
@@ -122,7 +123,10 @@ fn check_orbit(record: &Record<'_>, state: &State) -> Result<(), FileError> {
     }
     // The comparison is false for NaN.
     if energy < 0.0 {
-        return Ok(());
+        return match implausible_state(state) {
+            Some(fault) => refuse("X_DOT, Y_DOT, Z_DOT", fault.value(), fault.expected()),
+            None => Ok(()),
+        };
     }
     let speed = format!("{:.6} km/s", state.velocity_km_s.norm());
     refuse("X_DOT, Y_DOT, Z_DOT", speed, "a velocity of a bound orbit")

@@ -8,8 +8,8 @@ use nalgebra::{Matrix6, Vector3};
 use sim::truth::{Interpolation as SampleInterpolation, SampledSegment, State, StateSample};
 
 use super::common::{
-    EphemerisSegment, Header, NO_DESIGNATOR, Times, check_borders, check_center, read_coverage, read_frame,
-    read_interpolation, read_segments, read_time_system, write_coverage, write_message,
+    EphemerisSegment, Header, NO_DESIGNATOR, Times, check_borders, check_center, lines_of, read_coverage,
+    read_frame, read_interpolation, read_segments, read_time_system, write_coverage, write_message,
 };
 use super::covariance::{Covariance, CovarianceFrame};
 use crate::coverage::{BorderRule, Coverage, seconds_between};
@@ -17,6 +17,7 @@ use crate::document::{self, Document, Kind, Notation, Record, Segment, Writer};
 use crate::ephemeris::OrbitEphemeris;
 use crate::frame::ReferenceFrame;
 use crate::interpolation::{Interpolation, Method};
+use crate::physics::{MotionSegment, check_motion};
 use crate::time::TimeSystem;
 
 /// Keywords of the metadata.
@@ -125,6 +126,32 @@ impl Oem {
             let oem = Self::from_document(path, document)?;
             check_borders(path, document, &oem.segments, BorderRule::NoGap)?;
             Ok(oem)
+        })
+    }
+
+    /// Reads a file whose segments follow each other without a gap, and checks that a spacecraft can move as
+    /// its states do. Returns the message, and remarks on unusual motion with their lines.
+    ///
+    /// # Errors
+    /// Those of [`Oem::read_without_gaps`]; [`FileError::Value`] with the line of a state that no spacecraft
+    /// has or that does not follow from its neighbours, and the likely slip.
+    pub fn read_motion(path: &Path) -> Result<(Self, Vec<String>), FileError> {
+        document::read(path, Kind::Oem, |document| {
+            let oem = Self::from_document(path, document)?;
+            check_borders(path, document, &oem.segments, BorderRule::NoGap)?;
+            let Some(first) = oem.segments.first() else { return Ok((oem, Vec::new())) };
+            let epoch = first.coverage.start;
+            let segments: Vec<MotionSegment> = oem
+                .segments
+                .iter()
+                .zip(&document.segments)
+                .map(|(segment, read)| MotionSegment {
+                    samples: segment.sampled_since(epoch),
+                    lines: lines_of(read, "stateVector"),
+                })
+                .collect();
+            let remarks = check_motion(path, epoch, &segments)?;
+            Ok((oem, remarks))
         })
     }
 

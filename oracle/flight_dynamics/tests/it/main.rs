@@ -4,4 +4,5 @@
 
 mod bad_files;
 mod other_tools;
+mod physics;
 mod round_trips;
