@@ -6,8 +6,9 @@ ones.
     python3 docs/examples/night_sky.py compare sky
 
 Needs numpy. Uses nothing of Boresight except its copy of the Hipparcos catalogue (sim/data/hipparcos2.bin):
-stars are Gaussians with Poisson noise, imaged at random attitudes by a camera of 24.1 x 19.3 degrees, without
-aberration. The attitude in telemetry.csv is the identity. `sky-truth.csv`, beside the folder, has the
+stars are Gaussians with Poisson noise, at the positions of the date of telemetry.csv (proper motion in a
+straight line from the catalogue's epoch, J1991.25; no parallax and no aberration), imaged at random attitudes
+by a camera of 24.1 x 19.3 degrees. The attitude in telemetry.csv is the identity. `sky-truth.csv`, beside the folder, has the
 attitudes of the camera.
 """
 
@@ -22,6 +23,9 @@ PRINCIPAL = (639.5, 511.5)
 FRAMES, EXPOSURE_S, ZERO_MAGNITUDE_E_PER_S = 20, 0.5, 4.0e6
 SIGMA_PX, GAIN_E_PER_DN, BIAS_DN, READ_NOISE_E, BACKGROUND_E = 0.9, 10.0, 100.0, 12.0, 60.0
 HOT_PIXELS = 15
+# Date of the images, and its distance from the epoch of the catalogue in Julian years.
+DATE = "2026-03-01"
+YEARS = 2026.164 - 1991.25
 
 CAMERA = f"""bit_depth = 12
 magnitude_limit = 7.0
@@ -48,7 +52,7 @@ prior = "none"
 
 
 def stars():
-    """Unit vectors and magnitudes (Hp) of Hipparcos to 8.5; the format is at the head of
+    """Unit vectors of the date and magnitudes (Hp) of Hipparcos to 8.5; the format is at the head of
     sim/data/make_hipparcos2.py."""
     data = (pathlib.Path(__file__).parents[2] / "sim/data/hipparcos2.bin").read_bytes()[48:]
     rows = np.frombuffer(data, np.uint8).reshape(-1, 29).astype(np.int64)
@@ -59,7 +63,13 @@ def stars():
 
     ra = sum(rows[:, 3 + i] << (8 * i) for i in range(5)) * 1e-10
     dec, magnitude = number(8, 5) * 1e-10, number(22, 3) * 1e-4
+    # From units of 0.01 mas per year; the motion in right ascension is that along the parallel.
+    along_ra, along_dec = (np.radians(number(first, 3) * 1e-5 / 3600) * YEARS for first in (16, 19))
+    east = np.stack([-np.sin(ra), np.cos(ra), np.zeros_like(ra)], axis=1)
+    north = np.stack([-np.sin(dec) * np.cos(ra), -np.sin(dec) * np.sin(ra), np.cos(dec)], axis=1)
     vectors = np.stack([np.cos(dec) * np.cos(ra), np.cos(dec) * np.sin(ra), np.sin(dec)], axis=1)
+    vectors = vectors + along_ra[:, None] * east + along_dec[:, None] * north
+    vectors /= np.linalg.norm(vectors, axis=1)[:, None]
     return vectors[magnitude < 8.5], magnitude[magnitude < 8.5]
 
 
@@ -118,7 +128,7 @@ def make(directory):
         q /= np.linalg.norm(q)
         name = f"frames/{frame:06}.fits"
         write_fits(directory / name, image(random, vectors, magnitudes, q))
-        telemetry.append(f"{frame},{name},2026-03-01T21:{frame:02}:00Z,{EXPOSURE_S},1,0,0,0")
+        telemetry.append(f"{frame},{name},{DATE}T21:{frame:02}:00Z,{EXPOSURE_S},1,0,0,0")
         truth.append(",".join([str(frame), *map(repr, map(float, q))]))
     (directory / "telemetry.csv").write_text("\n".join(telemetry) + "\n")
     directory.with_name(directory.name + "-truth.csv").write_text("\n".join(truth) + "\n")
