@@ -25,6 +25,7 @@ pub(crate) fn raw(sandbox: &Sandbox, bytes: &[u8]) {
 fn read(path: &Path, raw: Option<FrameSize>) {
     let options = SequenceOptions {
         scan: Scan::Interlaced(FieldOrder::Top),
+        scan_is_stated: false,
         camera: 0,
         frame_rate_hz: None,
         raw,

@@ -232,6 +232,7 @@ impl SequenceArguments {
         let order = self.field_order.unwrap_or(FieldOrder::Top);
         SequenceOptions {
             scan: if self.progressive { Scan::Progressive } else { Scan::Interlaced(order) },
+            scan_is_stated: self.progressive || self.field_order.is_some(),
             camera: self.camera.unwrap_or(0),
             frame_rate_hz: self.frame_rate_hz,
             raw: self.raw,

@@ -39,7 +39,7 @@ pub(super) struct Selection {
     #[arg(long, value_name = "A..B")]
     pub(super) frames: Option<FrameRange>,
     /// Seed instead of the scenario's seed
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     pub(super) seed: Option<u64>,
     /// Threads that make frames; default: all cores. The results do not depend on the number of threads
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use files::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
-use pipeline::external::protocol::harmless;
+use pipeline::external::protocol::{harmless, is_invisible};
 use run::FirstFailure;
 use serde::Serialize;
 
@@ -147,9 +147,9 @@ fn harmless_but_styled(text: &str) -> String {
     shown + &harmless(rest)
 }
 
-/// Prints JSON without terminal control characters. JSON itself only escapes the control characters below
-/// U+0020, and not DEL or the characters from U+0080 on, of which U+009B begins a control sequence as ESC
-/// does.
+/// Prints JSON without terminal control characters and without invisible ones. JSON itself only escapes the
+/// control characters below U+0020, and not DEL or the characters from U+0080 on, of which U+009B begins a
+/// control sequence as ESC does.
 fn print_json(json: &str) -> Result<(), Failure> {
     print_line(harmless_json(json))
 }
@@ -158,11 +158,17 @@ fn harmless_json(json: &str) -> String {
     let mut shown = String::with_capacity(json.len());
     for character in json.chars() {
         match character {
-            '\u{7f}'..='\u{9f}' => shown += &format!("\\u{:04x}", u32::from(character)),
+            '\u{7f}'..='\u{9f}' => shown += &escaped_json(character),
+            _ if is_invisible(character) => shown += &escaped_json(character),
             _ => shown.push(character),
         }
     }
     shown
+}
+
+/// Returns the escape sequence of a character in JSON, a pair of surrogates beyond U+FFFF.
+fn escaped_json(character: char) -> String {
+    character.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")).collect()
 }
 
 /// Prints one line; a reader that has closed the pipe (`| head`) is not an error.
@@ -181,9 +187,11 @@ mod tests {
 
     #[test]
     fn escaped_json_has_the_same_meaning_and_no_control_characters() {
-        let document = serde_json::json!({ "day\u{9b}2J": "ä\u{7f}\u{80}\u{9f}\u{a0}\u{1b}" });
+        let document =
+            serde_json::json!({ "day\u{9b}2J": "ä\u{7f}\u{80}\u{9f}\u{a0}\u{1b}", "b": "\u{202e}\u{e0001}" });
         let shown = harmless_json(&serde_json::to_string_pretty(&document).unwrap());
         assert!(!shown.chars().any(|character| character.is_control() && character != '\n'), "{shown:?}");
+        assert!(shown.contains("\\u202e\\udb40\\udc01"), "{shown}");
         assert!(shown.contains("ä\\u007f\\u0080\\u009f\u{a0}\\u001b"), "{shown}");
         assert_eq!(serde_json::from_str::<serde_json::Value>(&shown).unwrap(), document);
     }

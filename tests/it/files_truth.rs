@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use boresight::files::{Column, Columns, FileError, Row, TableReader, TableWriter, parse_utc};
+use boresight::files::{
+    Column, Columns, FileError, Row, TableOptions, TableReader, TableWriter, parse_utc, write_table,
+};
 use contract::{Angle, Direction, PixelPoint, Rotation};
 use hifitime::Unit;
 use nalgebra::Vector3;
@@ -144,9 +146,24 @@ fn frames_that_go_back_are_named_by_row() {
 
 #[test]
 fn a_number_that_is_not_one_is_named_by_row() {
-    let (_directory, path) = write([vec![object(1, 0)], vec![ObjectTruth { snr: f64::NAN, ..object(2, 0) }]]);
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("table.parquet");
+    let columns = ObjectTruth::columns(&[object(1, 0), ObjectTruth { snr: f64::NAN, ..object(2, 0) }]);
+    let options = TableOptions { is_checked: false, ..TableOptions::default() };
+    write_table(fs::File::create_new(&path).unwrap(), &path, &columns, options).unwrap();
     let message = message::<ObjectTruth>(&path);
     assert!(message.contains("row 1: `snr` is `NaN`, expected a finite number"), "{message}");
+}
+
+#[test]
+fn a_number_that_is_not_one_is_not_written() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("table.parquet");
+    let mut writer = TableWriter::create(&path).unwrap();
+    let rows = vec![object(1, 0), ObjectTruth { snr: f64::NAN, ..object(1, 1) }];
+    let written = writer.write(rows).and_then(|()| writer.finish());
+    let message = written.unwrap_err().to_string();
+    assert!(message.contains("column `snr` is not a finite number"), "{message}");
 }
 
 /// A table with a column of the right name and the wrong type.

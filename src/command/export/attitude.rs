@@ -51,7 +51,7 @@ pub(super) fn true_attitude(
             AttitudeFrame::Camera => AttitudeNode::from_rotation(time, &(camera_from_body * body_from_icrs)),
         }
     };
-    let frames = true_frames(directory)?;
+    let frames = true_frames(directory, run)?;
     let groups = frames.chunk_by(|a, b| a.group == b.group).filter_map(|group| {
         let (first, last) = group.first().zip(group.last())?;
         let before = at(run.scenario.needed_about(first.time).start, first.frame);

@@ -45,7 +45,7 @@ pub(super) fn true_orbit(
     step_s: f64,
 ) -> Result<Export<Oem>, Failure> {
     let trajectory = run.scenario.trajectory()?;
-    let frames = true_frames(directory)?;
+    let frames = true_frames(directory, run)?;
     let [first, last] = [frames.first(), frames.last()]
         .map(|frame| frame.map_or(trajectory.epoch(), |frame| frame.time))
         .map(|time| trajectory.seconds(time));

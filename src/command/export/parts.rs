@@ -6,7 +6,7 @@ use files::{Failure, FileError, FileLocation, TableReader, TelemetryRow};
 use flight_dynamics::Header;
 use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
-use sim::truth::{FrameTruth, clock};
+use sim::truth::{FrameTruth, Schedule, clock};
 
 /// Names of the spacecraft in messages.
 pub(super) const CHASER: &str = "CHASER";
@@ -35,8 +35,12 @@ pub(super) fn header(run: &RunFile<FarRangeScenario>, comments: Vec<String>) -> 
     }
 }
 
-/// Returns the truth of the frames of a run, in order.
-pub(super) fn true_frames(directory: &Path) -> Result<Vec<FrameTruth>, Failure> {
+/// Returns the truth of the frames of a run, in order. Their times are those of the schedule: a timestamp of
+/// the file has the same value throughout a leap second.
+pub(super) fn true_frames(
+    directory: &Path,
+    run: &RunFile<FarRangeScenario>,
+) -> Result<Vec<FrameTruth>, Failure> {
     let path = directory.join("truth/frames.parquet");
     let mut frames = Vec::new();
     for rows in TableReader::<FrameTruth>::open(&path)? {
@@ -44,6 +48,12 @@ pub(super) fn true_frames(directory: &Path) -> Result<Vec<FrameTruth>, Failure> 
     }
     if frames.is_empty() {
         return Err(FileError::value(&path, FileLocation::Whole, "number of rows", 0, "frames").into());
+    }
+    let schedule = Schedule::new(&run.scenario.schedule)?;
+    for truth in &mut frames {
+        if let Some((_, time)) = schedule.frame(truth.frame) {
+            truth.time = time;
+        }
     }
     Ok(frames)
 }

@@ -134,6 +134,7 @@ fn fields(
         // The options do not apply to a directory with telemetry.
         let options = SequenceOptions {
             scan: Scan::Interlaced(FieldOrder::Top),
+            scan_is_stated: false,
             camera: 0,
             frame_rate_hz: None,
             raw: None,

@@ -82,3 +82,22 @@ fn arguments_out_of_their_range_are_refused() {
     check_refused(&bench, "run", &["SCENARIO"]);
     check_refused(&bench, "render argon", &["--out"]);
 }
+
+/// TOML has no larger integers: a run with a larger seed could not be read.
+#[test]
+fn every_seed_that_is_accepted_gives_a_run_that_is_read() {
+    let bench = Bench::new();
+    for command in ["run", "render"] {
+        for seed in ["9223372036854775808", "18446744073709551615", "-1", "1.5"] {
+            let words = format!("{command} starting-point --frames 0..1 --seed={seed} --out out");
+            check_refused(&bench, &words, &["--seed", seed]);
+        }
+    }
+    for (run, seed) in [("small", "0"), ("large", "9223372036854775807")] {
+        bench
+            .boresight(&format!("run starting-point --frames 0..1 --seed {seed} --out {run} --no-report"))
+            .done();
+        bench.boresight(&format!("score {run} {run}/measurements.csv")).done();
+        assert!(bench.read(&format!("{run}/run.toml")).contains(&format!("seed = {seed}")), "{run}");
+    }
+}

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::lines::Lines;
 use crate::error::{FileLocation, open_regular};
+use crate::table::column::ColumnType;
 use crate::table::declarations::Table;
 use crate::table::field::Atom;
 use crate::{AtomicFile, FileError};
@@ -218,6 +219,8 @@ pub struct CsvWriter<T> {
     writer: csv::Writer<Box<dyn Write>>,
     /// Output file; `None` for a stream.
     file: Option<AtomicFile>,
+    /// Names of the columns of numbers; `None` for other columns.
+    numbers: Vec<Option<&'static str>>,
     row: PhantomData<T>,
 }
 
@@ -242,7 +245,12 @@ impl<T: CsvLine> CsvWriter<T> {
 
     fn headed(path: &Path, out: Box<dyn Write>, file: Option<AtomicFile>) -> Result<Self, FileError> {
         let writer = csv::Writer::from_writer(out);
-        let mut writer = Self { path: path.to_owned(), writer, file, row: PhantomData };
+        let numbers = T::declarations().into_iter().flat_map(|field| {
+            let is_number = matches!(field.column_type, ColumnType::Float32 | ColumnType::Float64);
+            field.names.into_iter().map(move |name| is_number.then_some(name))
+        });
+        let mut writer =
+            Self { path: path.to_owned(), writer, file, numbers: numbers.collect(), row: PhantomData };
         writer.record(layout::<T>().map(|(name, _)| name))?;
         Ok(writer)
     }
@@ -250,9 +258,29 @@ impl<T: CsvLine> CsvWriter<T> {
     /// Writes a row. Numbers are written with enough digits to be read back bit for bit.
     ///
     /// # Errors
-    /// [`FileError::Io`].
+    /// [`FileError::Io`]; [`FileError::Value`] for a number that is not finite, which no reader accepts.
     pub fn line(&mut self, row: &T) -> Result<(), FileError> {
-        self.record(row.cells())
+        let cells = row.cells();
+        self.check_finite(&cells)?;
+        self.record(cells)
+    }
+
+    fn check_finite(&self, cells: &[String]) -> Result<(), FileError> {
+        let is_unsound = |cell: &str| matches!(cell, "NaN" | "inf" | "-inf");
+        for (cell, column) in cells.iter().zip(&self.numbers) {
+            if let Some(name) = column
+                && is_unsound(cell)
+            {
+                return Err(FileError::value(
+                    &self.path,
+                    FileLocation::Whole,
+                    *name,
+                    cell,
+                    "a finite number",
+                ));
+            }
+        }
+        Ok(())
     }
 
     fn record(&mut self, cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Result<(), FileError> {
@@ -319,5 +347,44 @@ pub(crate) fn csv_error(path: &Path, error: &csv::Error) -> FileError {
             FileError::value(path, line(pos), format!("cell {}", err.field() + 1), "bytes", "text in UTF-8")
         }
         _ => FileError::format(path, "CSV", error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tempfile::tempdir;
+
+    use super::*;
+
+    crate::table! {
+        /// Row with a number and a text that looks like one.
+        struct Measure: csv {
+            /// number
+            number: f64,
+            /// number that may be absent
+            other: Option<f64>,
+            /// text
+            text: String,
+        }
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_not_written() {
+        let directory = tempdir().unwrap();
+        let row = |number, other| Measure { number, other, text: "NaN".to_owned() };
+        write_csv(&directory.path().join("good.csv"), &[row(1.0, Some(2.0)), row(-0.0, None)]).unwrap();
+        for (name, rows, column) in [
+            ("a.csv", [row(1.0, None), row(f64::NAN, None)], "number"),
+            ("b.csv", [row(f64::INFINITY, None), row(1.0, None)], "number"),
+            ("c.csv", [row(1.0, None), row(1.0, Some(f64::NEG_INFINITY))], "other"),
+        ] {
+            let path = directory.path().join(name);
+            let message = write_csv(&path, &rows).unwrap_err().to_string();
+            assert!(
+                message.contains(&format!("`{column}` is")) && message.contains("a finite number"),
+                "{message}"
+            );
+            assert!(!path.exists(), "{name} is written in part");
+        }
     }
 }

@@ -17,6 +17,7 @@ use crate::{optional, table};
 const POSITION: [&str; 2] = ["x_px", "y_px"];
 const LINE_OF_SIGHT: [&str; 3] = ["los_j2000_x", "los_j2000_y", "los_j2000_z"];
 const POSITION_COVARIANCE: [&str; 3] = ["sigma_x_px", "sigma_y_px", "correlation_xy"];
+const LOG_ODDS: [&str; 1] = ["log_odds"];
 const LINE_OF_SIGHT_COVARIANCE: [&str; 3] = ["sigma_ra_deg", "sigma_dec_deg", "correlation_ra_dec"];
 
 table! {
@@ -46,6 +47,9 @@ table! {
         /// for its angles across columns ("RA") and rows ("Dec") in the camera, including the error of the
         /// attitude; none without a line of sight
         line_of_sight_covariance: Option<[f64; 3]> = optional(LINE_OF_SIGHT_COVARIANCE),
+        /// natural logarithm of the odds p/(1 − p) that this is the target, with the probability p by the
+        /// pipeline; none unless `detected`
+        log_odds: Option<f64> = optional(LOG_ODDS),
     }
 }
 
@@ -81,6 +85,7 @@ impl MeasurementWriter {
             line_of_sight_covariance: measurement
                 .and_then(|measurement| measurement.line_of_sight_covariance)
                 .map(|covariance| covariance.degrees()),
+            log_odds: measurement.and_then(|measurement| measurement.log_odds),
         })
     }
 }
@@ -123,7 +128,8 @@ fn reason(row: &CsvRow<'_>) -> Result<Option<NoSolution>, FileError> {
     // The text after `failed: ` is kept verbatim.
     let reason =
         NoSolution::parse(status.trim_start_matches(' ')).ok_or_else(|| row.error("status", STATUS))?;
-    let of_a_target = [POSITION.as_slice(), &LINE_OF_SIGHT, &POSITION_COVARIANCE, &LINE_OF_SIGHT_COVARIANCE];
+    let of_a_target =
+        [POSITION.as_slice(), &LINE_OF_SIGHT, &POSITION_COVARIANCE, &LINE_OF_SIGHT_COVARIANCE, &LOG_ODDS];
     row.check_empty(of_a_target.into_iter().flatten().copied())?;
     Ok(Some(reason))
 }
@@ -182,6 +188,7 @@ fn outcome(
                 position_covariance: covariance(row, POSITION_COVARIANCE, of_position)?,
                 line_of_sight: line.line_of_sight,
                 line_of_sight_covariance: covariance(row, LINE_OF_SIGHT_COVARIANCE, of_line_of_sight)?,
+                log_odds: line.log_odds,
             })
         }
     };
@@ -322,6 +329,7 @@ mod tests {
                     Solution::Detected(Measurement {
                         position: PixelPoint::new(x, if (-0.5..=579.5).contains(&y) { y } else { -0.0 }),
                         position_covariance,
+                        log_odds: position_covariance.map(|covariance| covariance.sigma_x() - 7.5),
                         line_of_sight,
                         line_of_sight_covariance: los.and_then(|(_, covariance)| covariance),
                     })

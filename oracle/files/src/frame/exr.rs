@@ -124,7 +124,7 @@ pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, File
         field("frame").map(|text| text.parse().map_err(|_| error("frame", text, "a number"))).transpose()?;
     let metadata =
         ImageMetadata { frame: frame.map(|frame| ("boresight.frame", frame)), ..ImageMetadata::default() };
-    Ok(RawImage { columns, rows, dn, bit_depth, windows, metadata })
+    Ok(RawImage { columns, rows, dn, bit_depth, stored_bits: None, windows, metadata })
 }
 
 fn attributes(path: &Path, layer: &str, own: &str) -> Result<LayerAttributes, FileError> {

@@ -121,7 +121,8 @@ impl Header<'_> {
     /// Rejects a header in which a keyword that defines the storage of the pixels occurs twice: other readers
     /// may use either value.
     fn check_once(&self) -> Result<(), FileError> {
-        const STORED: [&str; 7] = ["BITPIX", "NAXIS", "NAXIS1", "NAXIS2", "BSCALE", "BZERO", "BLANK"];
+        const STORED: [&str; 8] =
+            ["BITPIX", "NAXIS", "NAXIS1", "NAXIS2", "BSCALE", "BZERO", "BLANK", "ROWORDER"];
         let count = |keyword: &str| self.cards.iter().filter(|card| card.keyword_str() == keyword).count();
         match STORED.into_iter().find(|keyword| count(keyword) > 1) {
             Some(keyword) => Err(self.error(keyword, format!("present {} times", count(keyword)), "once")),
@@ -255,6 +256,25 @@ impl Header<'_> {
         })
     }
 
+    /// Returns true if the first row of the file is the bottom row of the image, by `ROWORDER`, a convention
+    /// of astronomical cameras (Siril, N.I.N.A.); without the keyword the first row is the top row.
+    fn is_bottom_up(&self) -> Result<bool, FileError> {
+        const EXPECTED: &str = "`TOP-DOWN` or `BOTTOM-UP`";
+        let is_bottom_up = match self.value("ROWORDER") {
+            None | Some(Value::Undefined) => return Ok(false),
+            Some(Value::String(order)) => match order.trim().to_ascii_uppercase().as_str() {
+                "TOP-DOWN" => false,
+                "BOTTOM-UP" => true,
+                _ => return Err(self.error("ROWORDER", order, EXPECTED)),
+            },
+            Some(other) => return Err(self.error("ROWORDER", format!("{other:?}"), EXPECTED)),
+        };
+        if is_bottom_up && self.integer("NROI")?.is_some() {
+            return Err(self.error("ROWORDER", "BOTTOM-UP", "`TOP-DOWN`, because the file states regions"));
+        }
+        Ok(is_bottom_up)
+    }
+
     /// Returns the transmitted regions, in the form written by [`write`].
     fn windows(&self) -> Result<Option<Vec<Window>>, FileError> {
         if self.integer("NROI")?.is_none() {
@@ -373,7 +393,19 @@ fn read_image(
         _ => dn_of_all(path, columns, samples.map(|b| float(f64::from_be_bytes(fixed(b))))),
     }?;
     let (bit_depth, windows, metadata) = (header.bit_depth()?, header.windows()?, header.metadata()?);
-    Ok(RawImage { columns, rows, dn, bit_depth, windows, metadata })
+    let dn = if header.is_bottom_up()? { reversed_rows(&dn, columns) } else { dn };
+    // A scale other than 1 spreads the 8 bits over more.
+    let stored_bits = (width == 1 && scale == 1.0).then_some(8);
+    Ok(RawImage { columns, rows, dn, bit_depth, stored_bits, windows, metadata })
+}
+
+/// Returns the rows of an image in reverse order.
+fn reversed_rows(dn: &[u16], columns: usize) -> Vec<u16> {
+    let mut reversed = Vec::with_capacity(dn.len());
+    for row in dn.chunks_exact(columns).rev() {
+        reversed.extend_from_slice(row);
+    }
+    reversed
 }
 
 /// Returns the bytes of one sample; `chunks_exact` supplies exactly this number.
@@ -412,6 +444,20 @@ mod tests {
         let bitpix = format!("BITPIX  = {bitpix:20}");
         let cards = ["SIMPLE  =                    T", &bitpix, "NAXIS   = 2", "NAXIS1  = 2", "NAXIS2  = 1"];
         read_bytes(&file(&[&cards, more].concat(), data))
+    }
+
+    #[test]
+    fn the_rows_are_in_the_order_that_the_file_states() {
+        let rows = |order: &str| {
+            let cards = ["SIMPLE  =                    T", "BITPIX  = 8", "NAXIS   = 2", "NAXIS1  = 2"];
+            read_bytes(&file(&[&cards, &["NAXIS2  = 2", order] as &[_]].concat(), &[1, 2, 3, 4]))
+        };
+        for order in ["ROWORDER= 'TOP-DOWN'", "COMMENT none"] {
+            assert_eq!(rows(order).unwrap().dn, [1, 2, 3, 4], "{order}");
+        }
+        assert_eq!(rows("ROWORDER= 'BOTTOM-UP'").unwrap().dn, [3, 4, 1, 2]);
+        check_refused(rows("ROWORDER= 'LEFT'"), &["ROWORDER", "LEFT", "BOTTOM-UP"]);
+        check_refused(rows("ROWORDER= 3"), &["ROWORDER", "BOTTOM-UP"]);
     }
 
     fn check_refused(result: Result<RawImage, FileError>, parts: &[&str]) {

@@ -71,6 +71,7 @@ pub(crate) fn frame_cards(path: &Path, frame: &Frame, header: &FrameHeader) -> R
     cards.text("BUNIT", "adu", "")?;
     cards.integer("FRAMENO", frame.number(), "number of the frame")?;
     cards.integer("BITDEPTH", u64::from(frame.bit_depth()), "bits of the converter")?;
+    cards.text("ROWORDER", "TOP-DOWN", "the first row is the top row")?;
     times(&mut cards, header)?;
     if let Some(gain) = header.gain_e_per_dn {
         cards.number("GAIN", gain, "[electron/adu]")?;

@@ -86,7 +86,9 @@ pub(crate) fn read(
             return Err(FileError::value(path, FileLocation::Header, "pixel type", kind, "L8 or L16"));
         }
     };
-    Ok(RawImage { columns, rows, dn, bit_depth: None, windows: None, metadata: ImageMetadata::default() })
+    let stored_bits = (color == ExtendedColorType::L8).then_some(8);
+    let metadata = ImageMetadata::default();
+    Ok(RawImage { columns, rows, dn, bit_depth: None, stored_bits, windows: None, metadata })
 }
 
 /// Returns the pixel type of a PNG with fewer than 8 bits per sample, whose decoder reports the 8 bits to
@@ -163,6 +165,21 @@ mod tests {
             ImageBuffer::<Luma<u16>, _>::from_raw(2, 1, vec![500_u16, 4095]).unwrap().save(&path).unwrap();
             let frame = read_frame(&path, 1, 12, None).unwrap();
             assert_eq!((frame.dn(), frame.bit_depth()), ([500, 4095].as_slice(), 12));
+        }
+    }
+
+    #[test]
+    fn fewer_bits_than_the_camera_are_refused() {
+        let directory = tempdir().unwrap();
+        for extension in ["png", "tif"] {
+            let path = directory.path().join("a").with_extension(extension);
+            GrayImage::from_raw(3, 1, vec![0, 7, 255]).unwrap().save(&path).unwrap();
+            assert!(read_frame(&path, 1, 8, None).is_ok() && read_frame(&path, 1, 8, None).is_ok());
+            for bits in [9, 12, 16] {
+                let message = read_frame(&path, 1, bits, None).unwrap_err().to_string();
+                let expected = format!("`bits of a pixel` is `8`, expected at least {bits}");
+                assert!(message.contains(&expected), "{message}");
+            }
         }
     }
 

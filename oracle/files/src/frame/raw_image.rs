@@ -18,6 +18,8 @@ pub(crate) struct RawImage {
     pub(crate) dn: Vec<u16>,
     /// Bits of the converter, if stated in the file.
     pub(crate) bit_depth: Option<u8>,
+    /// Largest number of bits that the stored integers hold, if the file has fewer than 16.
+    pub(crate) stored_bits: Option<u8>,
     /// Transmitted regions, if stated in the file.
     pub(crate) windows: Option<Vec<Window>>,
     /// Other frame data stated in the file.
@@ -74,7 +76,8 @@ pub(crate) struct Size<'a> {
 }
 
 impl RawImage {
-    /// Converts the image to a frame. Rejects a file that states another bit depth than `bit_depth`. Regions
+    /// Converts the image to a frame. Rejects a file that states another bit depth than `bit_depth`, or whose
+    /// integers have fewer bits. Regions
     /// from the telemetry take precedence over those in the file. A value above the full scale is rejected:
     /// it indicates a wrong bit depth, which would also make every threshold that a pipeline derives from it
     /// wrong.
@@ -88,6 +91,12 @@ impl RawImage {
         if let Some(own) = self.bit_depth.filter(|own| *own != bit_depth) {
             let expected = format!("{bit_depth}, the bit depth of the camera");
             return Err(FileError::value(path, FileLocation::Header, "bit depth", own, expected));
+        }
+        if let Some(stored) = self.stored_bits.filter(|stored| *stored < bit_depth) {
+            let expected = format!(
+                "at least {bit_depth}, the bit depth of the camera: the image has been scaled or cut to fewer bits"
+            );
+            return Err(FileError::value(path, FileLocation::Header, "bits of a pixel", stored, expected));
         }
         let columns = self.columns.max(1);
         let frame = Frame::new(number, self.columns, self.rows, bit_depth, self.dn, windows.or(self.windows))
@@ -183,6 +192,7 @@ mod tests {
             columns: 2,
             rows: 2,
             dn: vec![0, 0, 0, 1024],
+            stored_bits: None,
             bit_depth: None,
             windows: None,
             metadata: ImageMetadata::default(),

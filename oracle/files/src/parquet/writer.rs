@@ -38,11 +38,13 @@ pub struct TableOptions {
     pub has_statistics: bool,
     /// Keys and values of the metadata.
     pub notes: Vec<(String, String)>,
+    /// True if numbers that are not finite are refused; false only for files that test a reader.
+    pub is_checked: bool,
 }
 
 impl Default for TableOptions {
     fn default() -> Self {
-        Self { row_group_rows: 1 << 20, has_statistics: true, notes: Vec::new() }
+        Self { row_group_rows: 1 << 20, has_statistics: true, notes: Vec::new(), is_checked: true }
     }
 }
 
@@ -67,6 +69,7 @@ pub struct ParquetWriter<W: Write + Send> {
     file: SerializedFileWriter<BufWriter<W>>,
     properties: WriterPropertiesPtr,
     row_group_rows: usize,
+    is_checked: bool,
     group: Option<RowGroup>,
 }
 
@@ -88,17 +91,18 @@ impl<W: Write + Send> ParquetWriter<W> {
             schema(columns).and_then(|schema| SerializedFileWriter::new(out, schema, properties.clone()));
         let file = file.map_err(|error| unwritten(path, error))?;
         let row_group_rows = options.row_group_rows.max(1);
-        Ok(Self { path: path.to_owned(), file, properties, row_group_rows, group: None })
+        let is_checked = options.is_checked;
+        Ok(Self { path: path.to_owned(), file, properties, row_group_rows, is_checked, group: None })
     }
 
     /// Adds rows: columns of equal length, with the same names and types as the columns of the file.
     ///
     /// # Errors
-    /// [`FileError`] for columns of different lengths, a null in a non-nullable column, and if the file
-    /// cannot be written.
+    /// [`FileError`] for columns of different lengths, a null in a non-nullable column, a number that is not
+    /// finite, and if the file cannot be written.
     pub fn write(&mut self, columns: &[Column]) -> Result<(), FileError> {
         let rows = columns.first().map_or(0, |column| column.values().len());
-        check(columns, rows)
+        check(columns, rows, self.is_checked)
             .and_then(|()| self.encode(columns, rows))
             .map_err(|error| unwritten(&self.path, error))
     }
@@ -160,8 +164,9 @@ impl RowGroup {
     }
 }
 
-/// Rejects columns of different lengths, and nulls in non-nullable columns.
-fn check(columns: &[Column], rows: usize) -> ParquetResult<()> {
+/// Rejects columns of different lengths, nulls in non-nullable columns, and numbers that are not finite,
+/// which no reader accepts.
+fn check(columns: &[Column], rows: usize, is_checked: bool) -> ParquetResult<()> {
     for column in columns {
         let (name, found) = (column.name(), column.values().len());
         if found != rows {
@@ -172,6 +177,11 @@ fn check(columns: &[Column], rows: usize) -> ParquetResult<()> {
         if let Some(row) = column.values().first_null().filter(|_| !column.is_nullable()) {
             return Err(ParquetError::General(format!(
                 "column `{name}` has no value in row {row}, expected one in every row"
+            )));
+        }
+        if let Some(row) = column.values().first_unsound().filter(|_| is_checked) {
+            return Err(ParquetError::General(format!(
+                "column `{name}` is not a finite number in row {row}"
             )));
         }
     }

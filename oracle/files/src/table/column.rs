@@ -129,6 +129,21 @@ impl ColumnValues {
     }
 }
 
+impl ColumnValues {
+    /// Returns the row of the first number that is not finite.
+    pub(crate) fn first_unsound(&self) -> Option<usize> {
+        match self {
+            Self::Float32(cells) => {
+                cells.iter().position(|cell| cell.is_some_and(|number| !number.is_sound()))
+            }
+            Self::Float64(cells) => {
+                cells.iter().position(|cell| cell.is_some_and(|number| !number.is_sound()))
+            }
+            _ => None,
+        }
+    }
+}
+
 /// A value of fixed size that a column may contain.
 pub trait Cell: Copy + Default + fmt::Debug + FromStr {
     /// Type of the column.

@@ -241,10 +241,24 @@ mod tests {
             let place = columns.iter().position(|column| column.name() == other.name()).unwrap();
             columns[place] = other;
         }
-        write_table(File::create_new(&path).unwrap(), &path, &columns, TableOptions::default()).unwrap();
+        let options = TableOptions { is_checked: false, ..TableOptions::default() };
+        write_table(File::create_new(&path).unwrap(), &path, &columns, options).unwrap();
         let frames = TableReader::<Turn>::open(&path).map_err(|error| error.to_string())?;
         let frames: Result<Vec<_>, _> = frames.collect();
         Ok(frames.map_err(|error| error.to_string())?.into_iter().flat_map(|(_, rows)| rows).collect())
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_not_written() {
+        let folder = tempfile::tempdir().unwrap();
+        for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let path = folder.path().join(format!("{number}.parquet"));
+            let mut columns = Turn::columns(&rows());
+            columns[2] = Column::new("y", [0.8, number, 0.8]);
+            let file = File::create_new(&path).unwrap();
+            let error = write_table(file, &path, &columns, TableOptions::default()).unwrap_err();
+            assert!(error.to_string().contains("column `y` is not a finite number in row 1"), "{error}");
+        }
     }
 
     #[test]

@@ -45,8 +45,11 @@ impl FromStr for FrameSize {
 /// Properties of a sequence that the sequence itself does not state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SequenceOptions {
-    /// Scan of the rows in whole frames. A field order in a header is ignored, because too many are wrong.
+    /// Scan of the rows in whole frames.
     pub scan: Scan,
+    /// True if the scan was stated, and takes precedence over the header of the video; false if it is a
+    /// default, which the header must not contradict.
+    pub scan_is_stated: bool,
     /// Index in [`DockingSetup::cameras`] of the camera that took the sequence, from 0.
     pub camera: usize,
     /// Whole frames per second; default: the rate in the file, or 25.
@@ -61,6 +64,7 @@ impl SequenceOptions {
     /// Options for interlaced television of the first camera, with the top field first.
     pub const INTERLACED: Self = Self {
         scan: Scan::Interlaced(FieldOrder::Top),
+        scan_is_stated: false,
         camera: 0,
         frame_rate_hz: None,
         raw: None,
@@ -176,6 +180,9 @@ impl FieldSource {
     ) -> Result<Self, FileError> {
         let path = input.path().to_owned();
         let reader = StreamReader::y4m(input, size(&path, setup, options)?)?;
+        if !options.scan_is_stated {
+            reader.check_default_scan(options.scan)?;
+        }
         let format = format(&path, setup, options, 8, reader.rate_hz())?;
         Ok(Self::from_frames(&path, format, reader))
     }

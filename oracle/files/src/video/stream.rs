@@ -2,7 +2,7 @@
 //! as its last byte has arrived, without waiting for further bytes.
 
 use super::input::Input;
-use super::video_frame::VideoFrame;
+use super::video_frame::{FieldOrder, Scan, VideoFrame};
 use crate::FileError;
 
 /// Iterator over the frames of a Y4M stream (8 bits, mono, 4:2:0, 4:2:2 or 4:4:4) or of raw grey bytes. The
@@ -14,6 +14,8 @@ pub(super) struct StreamReader {
     /// Number of colour bytes after the grey bytes.
     colour_bytes: u64,
     rate_hz: Option<f64>,
+    /// Interlacing that a header states: `p`, `t`, `b` or `m`.
+    interlacing: Option<char>,
     next: u64,
 }
 
@@ -32,7 +34,15 @@ impl StreamReader {
     /// Creates a reader of raw frames: one byte per pixel, row by row, frame after frame.
     pub(super) fn raw(input: Input, (columns, rows): (usize, usize)) -> Self {
         let grey = vec![0; columns * rows];
-        Self { input, framing: Framing::Nothing, grey, colour_bytes: 0, rate_hz: None, next: 0 }
+        Self {
+            input,
+            framing: Framing::Nothing,
+            grey,
+            colour_bytes: 0,
+            rate_hz: None,
+            interlacing: None,
+            next: 0,
+        }
     }
 
     /// Reads the header of a Y4M stream; `size` is the number of columns and rows of the camera.
@@ -45,6 +55,7 @@ impl StreamReader {
         };
         let mut claimed = (None, None);
         let mut rate_hz = None;
+        let mut interlacing = None;
         let mut colour = "420";
         for parameter in parameters.split(' ').filter(|text| !text.is_empty()) {
             let (name, value) = (parameter.chars().next(), parameter.get(1..).unwrap_or(""));
@@ -52,6 +63,7 @@ impl StreamReader {
                 Some('W') => claimed.0 = value.parse().ok(),
                 Some('H') => claimed.1 = value.parse().ok(),
                 Some('F') => rate_hz = rate(&input, value)?,
+                Some('I') => interlacing = value.chars().next(),
                 Some('C') => colour = value,
                 _ => {}
             }
@@ -83,6 +95,7 @@ impl StreamReader {
             grey,
             colour_bytes: colour_bytes as u64,
             rate_hz,
+            interlacing,
             next: 0,
         })
     }
@@ -90,6 +103,24 @@ impl StreamReader {
     /// Returns the number of frames per second, if stated in the stream.
     pub(super) fn rate_hz(&self) -> Option<f64> {
         self.rate_hz
+    }
+
+    /// Checks that the header does not contradict the scan, which is a default and was not stated.
+    ///
+    /// A header of bottom field first contradicts the default, and mixed frames have no common order. A
+    /// header of progressive frames is no contradiction: programs write it for frames of two fields too.
+    pub(super) fn check_default_scan(&self, scan: Scan) -> Result<(), FileError> {
+        let contradicts = match (self.interlacing, scan) {
+            (Some('b'), Scan::Interlaced(FieldOrder::Top)) => "bottom field first",
+            (Some('t'), Scan::Interlaced(FieldOrder::Bottom)) => "top field first",
+            (Some('m'), Scan::Interlaced(_)) => "mixed frames",
+            _ => return Ok(()),
+        };
+        let reason = format!(
+            "header: {contradicts}, which the default order of the fields contradicts; state the order with \
+             --field-order top, --field-order bottom or --progressive"
+        );
+        Err(self.input.error(Y4M, reason))
     }
 
     fn next_frame(&mut self) -> Result<Option<VideoFrame>, FileError> {

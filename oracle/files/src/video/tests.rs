@@ -51,7 +51,14 @@ fn setup(columns: usize, rows: usize) -> DockingSetup {
 }
 
 fn options(scan: Scan) -> SequenceOptions {
-    SequenceOptions { scan, camera: 0, frame_rate_hz: None, raw: None, digitiser: Digitiser::default() }
+    SequenceOptions {
+        scan,
+        scan_is_stated: false,
+        camera: 0,
+        frame_rate_hz: None,
+        raw: None,
+        digitiser: Digitiser::default(),
+    }
 }
 
 const TOP: Scan = Scan::Interlaced(FieldOrder::Top);
@@ -309,6 +316,44 @@ fn a_live_stream_yields_each_frame_on_arrival_and_ends_with_the_pipe() {
     drop(sender);
     assert!(source.next().unwrap().is_ok());
     assert!(source.next().is_none());
+}
+
+#[test]
+fn a_y4m_header_does_not_contradict_the_default_order_of_fields() {
+    let read = |interlacing: &str, stated: Option<Scan>| {
+        let bytes = format!("YUV4MPEG2 W2 H2 F25:1 {interlacing} Cmono\nFRAME\n1234").into_bytes();
+        let default = options(TOP);
+        let scan = stated.unwrap_or(default.scan);
+        let options = SequenceOptions { scan, scan_is_stated: stated.is_some(), ..default };
+        opened(FieldSource::y4m(input(&bytes), &setup(2, 2), &options)).1
+    };
+    for (interlacing, words) in [("Ib", "bottom field first"), ("Im", "mixed frames")] {
+        let message = read(interlacing, None).unwrap();
+        assert!(message.contains(words) && message.contains("--field-order bottom"), "{message}");
+        for stated in [TOP, Scan::Interlaced(FieldOrder::Bottom), Scan::Progressive] {
+            assert_eq!(read(interlacing, Some(stated)), None);
+        }
+    }
+    for interlacing in ["It", "Ip", "I?", ""] {
+        assert_eq!(read(interlacing, None), None, "{interlacing}");
+    }
+}
+
+#[test]
+fn a_y4m_header_has_the_aspect_of_the_pixels() {
+    let directory = tempdir().unwrap();
+    for (name, width_um, height_um, aspect) in
+        [("a.y4m", 8.6, 8.3, "A86:83"), ("b.y4m", 7.4, 7.4, "A1:1"), ("c.y4m", 5.5, 11.0, "A1:2")]
+    {
+        let path = directory.path().join(name);
+        let writer = Y4mWriter::create(&path, (4, 4), 25.0).unwrap();
+        let mut writer = writer.with_pixel_size(width_um, height_um);
+        writer.write(&field(0, Lines::All, 4, 4, 1)).unwrap();
+        writer.finish().unwrap();
+        let bytes = fs::read(&path).unwrap();
+        let header = bytes.split(|byte| *byte == b'\n').next().unwrap();
+        assert!(String::from_utf8_lossy(header).contains(&format!(" {aspect} ")), "{name}");
+    }
 }
 
 #[test]

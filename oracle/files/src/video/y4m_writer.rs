@@ -21,6 +21,8 @@ pub struct Y4mWriter {
     columns: usize,
     rows: usize,
     frame_rate_hz: f64,
+    /// Width and height of a pixel, in a common unit.
+    pixel_aspect: (u64, u64),
     header_is_written: bool,
 }
 
@@ -63,8 +65,18 @@ impl Y4mWriter {
             columns,
             rows,
             frame_rate_hz,
+            pixel_aspect: (1, 1),
             header_is_written: false,
         }
+    }
+
+    /// Returns the writer with the width and the height of a pixel, µm (stored to 1 nm), instead of square
+    /// pixels.
+    pub fn with_pixel_size(self, width_um: f64, height_um: f64) -> Self {
+        let nanometres = |size_um: f64| ((size_um * 1000.0).round() as u64).max(1);
+        let (width, height) = (nanometres(width_um), nanometres(height_um));
+        let divisor = greatest_common_divisor(width, height);
+        Self { pixel_aspect: (width / divisor, height / divisor), ..self }
     }
 
     /// Writes a field: a progressive frame, or one of the two fields of a frame. Fields come in pairs of an
@@ -83,7 +95,10 @@ impl Y4mWriter {
             };
             let rate = (self.frame_rate_hz * 1e6).round() as u64;
             let (columns, rows) = (self.columns, self.rows);
-            let header = format!("YUV4MPEG2 W{columns} H{rows} F{rate}:1000000 I{interlace} A1:1 Cmono\n");
+            let (width, height) = self.pixel_aspect;
+            let header = format!(
+                "YUV4MPEG2 W{columns} H{rows} F{rate}:1000000 I{interlace} A{width}:{height} Cmono\n"
+            );
             self.put(|out, _| out.write_all(header.as_bytes()))?;
         }
         if self.weaver.add(field)? { self.put_frame() } else { Ok(()) }
@@ -121,4 +136,9 @@ impl Y4mWriter {
             _ => FileError::io(&self.path, "write", source),
         })
     }
+}
+
+/// Greatest common divisor of two positive numbers (Euclid).
+fn greatest_common_divisor(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }

@@ -83,7 +83,10 @@ impl Video {
             FieldImages::Png => return Ok(None),
             FieldImages::Avi => avi(AviCoding::Grey),
             FieldImages::MotionJpeg => avi(AviCoding::MotionJpeg { quality: JPEG_QUALITY }),
-            FieldImages::Y4m => Y4mWriter::create(&path, size, rate_hz).map(|y4m| Self::Y4m(Box::new(y4m))),
+            FieldImages::Y4m => Y4mWriter::create(&path, size, rate_hz).map(|y4m| {
+                let y4m = y4m.with_pixel_size(camera.pixel_width_um, camera.pixel_height_um);
+                Self::Y4m(Box::new(y4m))
+            }),
         }
         .map(Some)
     }

@@ -164,6 +164,9 @@ impl World for DockingMission {
         let size = self.setup.cameras.first().map_or((0, 0), |camera| (camera.columns, camera.rows));
         let rate_hz = self.scenario().television.frame_rate_hz;
         let mut video = Y4mWriter::standard_output(size, rate_hz)?;
+        if let Some(camera) = self.setup.cameras.first() {
+            video = video.with_pixel_size(camera.pixel_width_um, camera.pixel_height_um);
+        }
         let make = |workspace: &mut DockingWorkspace, field| {
             Ok(self.expose(workspace, field)?.video.digitise(&Digitiser::default()))
         };

@@ -84,7 +84,8 @@ impl Dataset<FarRangeMission> for FrameDataset {
     }
 }
 
-/// Saves the image of an exposure, as FITS with world coordinates derived from the truth.
+/// Saves the image of an exposure, as FITS with world coordinates derived from the truth, if SIP follows the
+/// distortion of the camera.
 ///
 /// # Errors
 /// [`Failure`] when the file cannot be written, or no world coordinates can be fitted to the camera.
@@ -98,7 +99,9 @@ pub fn save_image(
     let truth = &exposure.truth;
     let observer = Observer::new(truth.time, truth.position_km, truth.velocity_km_s)?;
     let wcs = match format {
-        ImageFormat::Fits => Some(world_coordinates(simulator, &run_file.scenario, truth, &observer)?),
+        // Coordinates without the distortion are wrong by more than a hundred pixels at the corners.
+        ImageFormat::Fits => Some(world_coordinates(simulator, &run_file.scenario, truth, &observer)?)
+            .filter(|wcs| wcs.sip.is_some()),
         ImageFormat::Png | ImageFormat::Exr => None,
     };
     let header = FrameHeader {

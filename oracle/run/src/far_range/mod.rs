@@ -28,6 +28,7 @@ use score::{
     ScoreError, UnitTable, WithinLimits, names,
 };
 use serde_json::{Value, json};
+use sim::Simulator;
 use sim::catalog::Catalog;
 use sim::onboard::image_bytes;
 use sim::optics::Projection;
@@ -50,6 +51,24 @@ const LIMITING_SNR: f64 = 5.0;
 fn fits_bytes(columns: usize, rows: usize) -> u64 {
     const BLOCK: u64 = 2880;
     ((columns * rows * size_of::<u16>()) as u64).div_ceil(BLOCK) * BLOCK + 3 * BLOCK
+}
+
+/// Relative speed above which chaser and target pass each other, km/s.
+const PASSING_KM_S: f64 = 1.0;
+
+/// Returns a remark on spacecraft that pass each other at the first frame: their orbits are unrelated, or one
+/// velocity has the wrong sign.
+fn passing_speed(simulator: &Simulator) -> Option<String> {
+    let (_, time) = simulator.schedule().frame(0)?;
+    let states = simulator.trajectory().states_at(time);
+    let speed_km_s = (states.target.velocity_km_s - states.chaser.velocity_km_s).norm();
+    (speed_km_s > PASSING_KM_S).then(|| {
+        format!(
+            "trajectory: at the first frame chaser and target pass each other at {speed_km_s:.3} km/s, {:.3} km \
+             apart; a velocity with the wrong sign, or two unrelated orbits?",
+            states.range_km()
+        )
+    })
 }
 
 impl World for FarRangeMission {
@@ -146,10 +165,13 @@ impl World for FarRangeMission {
         let beyond = dataset::sip_reach_px(&self.simulator, &self.scenario().camera).map(|reach_px| {
             format!(
                 "camera.radial, camera.tangential: no SIP polynomial fits the distortion beyond \
-                 {reach_px:.0} px from the principal point; FITS files are written without SIP"
+                 {reach_px:.0} px from the principal point; FITS files are written without world coordinates"
             )
         });
-        beyond.into_iter().collect()
+        let mut warnings: Vec<String> = beyond.into_iter().collect();
+        warnings.extend(self.scenario().motion_remarks());
+        warnings.extend(passing_speed(&self.simulator));
+        warnings
     }
 
     fn config(scenario: &FarRangeScenario) -> &FarRangeConfig {

@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use super::super::star::CATALOG_EPOCH_JYR;
 use super::super::{CatalogError, CatalogStar, photometry};
 use super::field::Field;
 
@@ -22,9 +23,10 @@ enum Column {
     RadialVelocityKmS,
     BV,
     VI,
+    EpochJyr,
 }
 
-const COLUMNS: [(Column, &str); 11] = [
+const COLUMNS: [(Column, &str); 12] = [
     (Column::Id, "id"),
     (Column::RaDeg, "ra_deg"),
     (Column::DecDeg, "dec_deg"),
@@ -36,6 +38,7 @@ const COLUMNS: [(Column, &str); 11] = [
     (Column::RadialVelocityKmS, "radial_velocity_km_s"),
     (Column::BV, "b_v"),
     (Column::VI, "v_i"),
+    (Column::EpochJyr, "epoch_jyr"),
 ];
 
 pub(super) fn parse(path: &Path, text: &str) -> Result<Vec<(usize, CatalogStar)>, CatalogError> {
@@ -148,7 +151,10 @@ fn star(row: &Row<'_>) -> Result<CatalogStar, CatalogError> {
         Some(v_mag) => photometry::hp_mag(v_mag, b_v),
         None => row.required(Column::HpMag, Field::magnitude)?,
     };
-    Ok(CatalogStar {
+    let epoch =
+        |field: &Field<'_>| field.optional(1900.0, 2100.0, "blank, or a Julian year from 1900 to 2100");
+    let epoch_jyr = row.optional(Column::EpochJyr, epoch)?.unwrap_or(CATALOG_EPOCH_JYR);
+    let star = CatalogStar {
         id: row.required(Column::Id, Field::id)?,
         ra_rad: row.required(Column::RaDeg, Field::ra_deg)?.to_radians(),
         dec_rad: row.required(Column::DecDeg, Field::dec_deg)?.to_radians(),
@@ -161,7 +167,8 @@ fn star(row: &Row<'_>) -> Result<CatalogStar, CatalogError> {
         hp_mag,
         b_v,
         v_i: row.optional(Column::VI, Field::colour)?,
-    })
+    };
+    Ok(star.at_catalog_epoch(epoch_jyr))
 }
 
 #[cfg(test)]
@@ -195,6 +202,21 @@ mod tests {
             v_i: Some(1.1),
         };
         assert_eq!(stars, [expected]);
+    }
+
+    #[test]
+    fn an_epoch_moves_the_star_to_that_of_the_catalogue() {
+        let header = "id,ra_deg,dec_deg,hp_mag,pm_dec_mas_per_yr,epoch_jyr";
+        let stars =
+            stars(&format!("{header}\n1,10,20,5,1000,2016.0\n2,10,20,5,1000,\n3,10,20,5,1000,1991.25\n"));
+        // 24.75 years at 1″ a year.
+        let moved_arcsec = (stars[0].dec_rad.to_degrees() - 20.0) * 3_600.0;
+        assert!((moved_arcsec + 24.75).abs() < 1e-4, "{moved_arcsec}");
+        assert_eq!((stars[1].dec_rad, stars[2].dec_rad), (20.0_f64.to_radians(), 20.0_f64.to_radians()));
+        refused(
+            &format!("{header}\n1,10,20,5,1000,16\n"),
+            "epoch_jyr is `16`, expected blank, or a Julian year",
+        );
     }
 
     #[test]
