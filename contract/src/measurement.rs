@@ -18,12 +18,21 @@ pub struct Measurement {
     /// atan2(Y, Z) across rows in the camera frame, including the error of the attitude; `None` without a
     /// line of sight, or if the pipeline does not estimate it.
     pub line_of_sight_covariance: Option<Covariance2>,
+    /// Natural logarithm of the odds p/(1 − p) that this is the target's image, with the probability p by the
+    /// pipeline; finite; `None` if the pipeline does not estimate it.
+    pub log_odds: Option<f64>,
 }
 
 impl Measurement {
-    /// Creates a measurement without covariances.
+    /// Creates a measurement without covariances and odds.
     pub fn new(position: PixelPoint, line_of_sight: Option<Direction<Icrs>>) -> Self {
-        Self { position, position_covariance: None, line_of_sight, line_of_sight_covariance: None }
+        Self {
+            position,
+            position_covariance: None,
+            line_of_sight,
+            line_of_sight_covariance: None,
+            log_odds: None,
+        }
     }
 }
 

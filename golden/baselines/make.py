@@ -19,7 +19,7 @@ ROOT = HERE.parent.parent
 sys.path.insert(0, str(HERE.parent))
 import manifest  # noqa: E402
 
-NAMES = ("argon", "docking")
+NAMES = ("argon", "docking", "empty")
 
 
 def boresight(*words):

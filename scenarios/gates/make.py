@@ -9,6 +9,9 @@ block: the next one is hours away. They begin at positions of the golden ratio w
 so that they sample all phases of every period of the orbit or of a drift.
 
 `docking.toml`: from 30 m to contact in half a minute instead of from 500 m in eight minutes.
+
+`empty.toml`: the starting point with a target of V = 20 at 1 km, which is never visible, in twelve stretches
+of thirty images over the orbit.
 """
 
 from datetime import datetime, timedelta
@@ -18,7 +21,7 @@ import re
 HERE = Path(__file__).parent
 STRETCHES, IMAGES, GOLDEN = 6, 30, 0.6180339887498949
 
-HEADER = "# Written by make.py from ../{name}.toml; {what} Comments are there.\n"
+HEADER = "# Written by make.py from ../{name}.toml; {what}\n# Comments are there.\n"
 
 SEGMENTS = [("to_d3_m = 12.0", 2.0), ("to_d3_m = 5.0", 1.0), ("to_d3_m = 2.0", 0.4), (None, 0.3)]
 
@@ -62,8 +65,24 @@ def docking():
     return retitled(text, "Docking for a gate: from 30 m to contact in half a minute")
 
 
-for name, make, what in [
-    ("argon", argon, "they differ in title and schedule alone."),
-    ("docking", docking, "they differ in title and in the approach alone."),
+def empty():
+    text = without_comments((HERE / "../starting-point.toml").read_text())
+    text = re.sub(
+        r"(?s)\[target\]\n.*?\n\n", '[target]\nkind = "beacon"\nmagnitude_at_1_km = 20.0\n\n', text, count=1
+    )
+    begin = datetime.fromisoformat("2012-04-25T00:10:00+00:00")
+    stretches = [
+        f'[[schedule]]\nname = "stretch {i + 1}"\nstart_utc = "{begin + timedelta(minutes=9 * i):%Y-%m-%dT%H:%M:%SZ}"\n'
+        f"cadence_s = 15.0\ncount = {IMAGES}\n"
+        for i in range(12)
+    ]
+    text = text[: text.index("[[schedule]]")].rstrip() + "\n\n" + "\n".join(stretches)
+    return retitled(text, "No target for a gate: twelve stretches of thirty images of stars")
+
+
+for name, source, make, what in [
+    ("argon", "argon", argon, "they differ in title and schedule alone."),
+    ("docking", "docking", docking, "they differ in title and in the approach alone."),
+    ("empty", "starting-point", empty, "they differ in title, target and schedule alone."),
 ]:
-    (HERE / f"{name}.toml").write_text(HEADER.format(name=name, what=what) + make())
+    (HERE / f"{name}.toml").write_text(HEADER.format(name=source, what=what) + make())

@@ -41,6 +41,9 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
          (x, y) in pixels. Start-up: frames before the first 20 correct measurements in a row. Cause of a\n\
          wrong measurement: reason why the target was not selected.\n",
     );
+    if is_counted_in_any(&columns, names::FALSE_ALARM_RATE) {
+        text.push_str("False alarms: wrong measurements in frames without a visible target.\n");
+    }
     if !score.consistency.is_empty() {
         text.push_str(
             "NEES and percent within 1 and 3 σ by the covariances of correct measurements; correct covariances\n\
@@ -137,18 +140,26 @@ fn rows(columns: &[Column<'_>], reference: Option<&Table2>, best_mode: Option<&[
     add("Dec", names::DEC_WITHIN_2PX, percent, of(|t| t.dec_within_2px));
     add("correct", names::CORRECT_RATE, percent, None);
     add("wrong", names::WRONG_RATE, percent, None);
+    if is_counted_in_any(columns, names::FALSE_ALARM_RATE) {
+        add("false alarms", names::FALSE_ALARM_RATE, percent, None);
+    }
     add("RA RMS", names::RA_RMS_DEG, arcsec, None);
     add("Dec RMS", names::DEC_RMS_DEG, arcsec, None);
     add("x RMS, px", names::CENTROID_X_RMS_PX, pixels, None);
     add("y RMS, px", names::CENTROID_Y_RMS_PX, pixels, None);
     for (label, name, format) in CONSISTENCY {
         // Most pipelines state no covariance.
-        if columns.iter().any(|column| column.figures.get(name).is_some_and(|figure| figure.of > 0)) {
+        if is_counted_in_any(columns, name) {
             add(label, name, format, None);
         }
     }
     add("start-up", names::FRAMES_UNTIL_SETTLED, integer_text, None);
     rows
+}
+
+/// Returns true if a figure counts any frame of any column.
+fn is_counted_in_any(columns: &[Column<'_>], name: &str) -> bool {
+    columns.iter().any(|column| column.figures.get(name).is_some_and(|figure| figure.of > 0))
 }
 
 /// Format of a number.
@@ -333,6 +344,7 @@ mod tests {
             wrong: IndexMap::new(),
             wrong_taken: IndexMap::new(),
             consistency: Vec::new(),
+            threshold_curve: Vec::new(),
         }
     }
 

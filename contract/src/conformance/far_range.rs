@@ -61,6 +61,11 @@ impl Conformance for FarRange {
             {
                 return Some(format!("the line of sight is not a unit vector: {los:?}"));
             }
+            if let Some(log_odds) = measurement.log_odds
+                && !log_odds.is_finite()
+            {
+                return Some(format!("the logarithm of the odds of the target is {log_odds}"));
+            }
             if measurement.line_of_sight.is_none()
                 && let Some(covariance) = &measurement.line_of_sight_covariance
             {

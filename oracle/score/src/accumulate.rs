@@ -1,5 +1,7 @@
 //! Accumulation of frames into figures.
 
+mod threshold_curve;
+
 use std::sync::Arc;
 
 use contract::{Angle, AttitudeSource, Outcome};
@@ -7,11 +9,12 @@ use indexmap::IndexMap;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 use thiserror::Error;
 
+use self::threshold_curve::threshold_curve;
 use super::angles::{
     AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_word,
 };
 use super::argon_table2::Table2;
-use super::cause::{Cause, Detector};
+use super::cause::{Cause, Detector, is_absent};
 use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use super::figure_spec::{Better, FigureSpec};
 use super::report::{GroupScore, Score, names};
@@ -197,6 +200,10 @@ impl<'a> Scorer<'a> {
             image,
             n_stars: outcome.and_then(|outcome| outcome.n_stars),
             attitude_source: outcome.and_then(|outcome| outcome.attitude_source),
+            is_absent: is_absent(truth, detector),
+            log_odds: outcome
+                .and_then(|outcome| outcome.measurement()?.log_odds)
+                .filter(|log_odds| log_odds.is_finite()),
         };
         Ok(self.verdicts.push_mut(verdict))
     }
@@ -233,6 +240,7 @@ impl<'a> Scorer<'a> {
             wrong: all.wrong,
             wrong_taken: all.wrong_taken,
             consistency: consistency::rows(&sequences),
+            threshold_curve: threshold_curve(&sequences.concat()),
         };
         FarRangeJudgement { score, verdicts: self.verdicts, limits, published: None, best_mode: None }
     }
@@ -373,6 +381,10 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
         of_all(names::CORRECT_RATE, "correct rate", |frame| matches!(frame.verdict, Verdict::Correct { .. })),
         of_all(names::WRONG_RATE, "wrong rate", |frame| matches!(frame.verdict, Verdict::Wrong { .. }))
             .with_direction(Better::Less),
+        Definition::rate(names::FALSE_ALARM_RATE, "false alarm rate", |frame: &FrameVerdict| {
+            frame.is_absent.then_some(matches!(frame.verdict, Verdict::Wrong { .. }))
+        })
+        .with_direction(Better::Less),
         of_all(names::MISS_RATE, "miss rate", |frame| matches!(frame.verdict, Verdict::Missed { .. }))
             .with_direction(Better::Less),
         deg(names::RA_RMS_DEG, "RA RMS", Reduction::Rms, ra),

@@ -129,6 +129,7 @@ mod tests {
             wrong: IndexMap::new(),
             wrong_taken: IndexMap::new(),
             consistency: Vec::new(),
+            threshold_curve: Vec::new(),
         }
     }
 

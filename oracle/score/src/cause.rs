@@ -160,10 +160,19 @@ pub(super) fn cause(
         .unwrap_or(Cause::Unexplained)
 }
 
+/// Returns true if the target's centre is on the detector.
+fn is_in_field(truth: &FrameTruth, detector: Detector) -> bool {
+    truth.target_position.is_some_and(|at| at.is_on_detector(detector.columns, detector.rows))
+}
+
+/// Returns true if no target is visible: it is outside the field, or invisible by its signal-to-noise ratio.
+pub(super) fn is_absent(truth: &FrameTruth, detector: Detector) -> bool {
+    !is_in_field(truth, detector) || truth.target_visibility == Visibility::Invisible
+}
+
 /// Returns a cause that no pipeline could have avoided.
 fn undetectable_cause(truth: &FrameTruth, target: Option<&ObjectTruth>, detector: Detector) -> Option<Cause> {
-    let in_field = truth.target_position.is_some_and(|at| at.is_on_detector(detector.columns, detector.rows));
-    if !in_field {
+    if !is_in_field(truth, detector) {
         Some(Cause::OutsideField)
     } else if truth.target_visibility != Visibility::Detectable {
         Some(if truth.shadow == Shadow::Sunlit { Cause::TooFaint } else { Cause::InEclipse })

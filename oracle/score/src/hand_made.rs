@@ -9,6 +9,10 @@ use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
 
+use crate::angles::AnswerError;
+use crate::cause::Cause;
+use crate::verdict::{FrameVerdict, MistakenObject, Verdict};
+
 pub(crate) const COLUMNS: usize = 752;
 pub(crate) const ROWS: usize = 580;
 pub(crate) const CENTRE: PixelPoint = PixelPoint::new(395.0, 288.0);
@@ -110,6 +114,36 @@ pub(crate) fn cosmic_ray_at(id: u32, position: PixelPoint, electrons: f64) -> Ob
 
 pub(crate) fn cluster(position: PixelPoint, label: Label) -> Cluster {
     Cluster { position, size: 2.0, pixels: 9, label }
+}
+
+/// Returns the verdict on a frame without further data.
+pub(crate) fn verdict_of(verdict: Verdict) -> FrameVerdict {
+    FrameVerdict {
+        frame: 0,
+        group: "day 1".into(),
+        is_warm_up: false,
+        verdict,
+        image: None,
+        n_stars: None,
+        attitude_source: None,
+        is_absent: false,
+        log_odds: None,
+    }
+}
+
+const NO_ERROR: AnswerError = AnswerError {
+    centroid_px: None,
+    line_of_sight: None,
+    centroid_normalised: None,
+    line_of_sight_normalised: None,
+};
+
+pub(crate) fn correct_verdict() -> Verdict {
+    Verdict::Correct { error: NO_ERROR }
+}
+
+pub(crate) fn wrong_verdict() -> Verdict {
+    Verdict::Wrong { error: NO_ERROR, taken: MistakenObject::Nothing, cause: Cause::Unexplained }
 }
 
 /// Returns an outcome with a centroid only, without a line of sight.

@@ -52,5 +52,5 @@ pub use covariance::normalised_error::NormalisedError;
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 pub use figure_spec::navigation::{figures as navigation_figures, is_of_navigation};
 pub use figure_spec::{Better, FigureSpec, Kind, Sense, angle};
-pub use report::{ConsistencyRow, Figure, GroupScore, Score, is_zero, names, warm_up_note};
+pub use report::{ConsistencyRow, Figure, GroupScore, Score, ThresholdPoint, is_zero, names, warm_up_note};
 pub use verdict::{FrameVerdict, MistakenObject, Unproject, Verdict, VerdictRow};

@@ -15,6 +15,8 @@ pub mod names {
     pub const CORRECT_RATE: &str = "correct_rate";
     /// Wrong frames, as a fraction of all frames.
     pub const WRONG_RATE: &str = "wrong_rate";
+    /// Wrong measurements in frames without a visible target, as a fraction of these frames.
+    pub const FALSE_ALARM_RATE: &str = "false_alarm_rate";
     /// Frames whose measurement states a line of sight, as a fraction of the detected frames.
     pub const LINE_OF_SIGHT_RATE: &str = "line_of_sight_rate";
     /// Frames with an |RA error| below the limit of one pixel, as a fraction of the detected frames with a
@@ -220,6 +222,9 @@ pub struct Score {
     /// Absent where no correct measurement has a covariance.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub consistency: Vec<ConsistencyRow>,
+    /// Rates by a threshold on the odds that measurements state. Absent where a measurement states none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub threshold_curve: Vec<ThresholdPoint>,
 }
 
 /// Consistency of the covariances in one class of frames: a row of `consistency` in `score.json`.
@@ -234,6 +239,23 @@ pub struct ConsistencyRow {
     pub frames: u64,
     /// Figures of consistency over these measurements, by name.
     pub figures: IndexMap<String, Figure>,
+}
+
+/// Rates if only measurements count whose stated odds reach a threshold: a row of `threshold_curve` in
+/// `score.json`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ThresholdPoint {
+    /// Threshold: natural logarithm of the odds.
+    pub min_log_odds: f64,
+    /// Correct measurements above the threshold, as a fraction of the frames with a visible target; `None`
+    /// without such frames.
+    pub correct_rate: Option<f64>,
+    /// Wrong measurements above the threshold in frames with a visible target, as a fraction of these;
+    /// `None` without such frames.
+    pub wrong_rate: Option<f64>,
+    /// Wrong measurements above the threshold in frames without a visible target, as a fraction of these;
+    /// `None` without such frames.
+    pub false_alarm_rate: Option<f64>,
 }
 
 /// Score of one group of frames.

@@ -76,6 +76,8 @@ mod tests {
                 image: None,
                 n_stars: None,
                 attitude_source: None,
+                is_absent: false,
+                log_odds: None,
             };
             (0..).zip(verdicts).map(frame).collect()
         };

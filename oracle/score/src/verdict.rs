@@ -137,6 +137,10 @@ pub struct FrameVerdict {
     pub n_stars: Option<u32>,
     /// Source of the attitude, if the outcome states it.
     pub attitude_source: Option<AttitudeSource>,
+    /// True if no target is visible: it is outside the field, or invisible by its signal-to-noise ratio.
+    pub is_absent: bool,
+    /// Natural logarithm of the odds that the measurement states, if it does.
+    pub log_odds: Option<f64>,
 }
 
 impl FrameVerdict {
@@ -174,6 +178,7 @@ impl FrameVerdict {
             ra_over_sigma: direction.map(x),
             dec_over_sigma: direction.map(y),
             line_of_sight_nees: direction.map(|error| error.nees),
+            log_odds: self.log_odds,
         }
     }
 }
@@ -221,6 +226,8 @@ pub struct VerdictRow<'a> {
     pub dec_over_sigma: Option<f64>,
     /// NEES of the line of sight, eᵀ C⁻¹ e / 2.
     pub line_of_sight_nees: Option<f64>,
+    /// Natural logarithm of the odds that the measurement states, if it does.
+    pub log_odds: Option<f64>,
 }
 
 /// Determines the verdict on one frame. `objects` are the objects of this frame; `outcome` is `None` when the
@@ -498,11 +505,13 @@ mod tests {
             image: None,
             n_stars: Some(12),
             attitude_source: Some(AttitudeSource::Stars),
+            is_absent: true,
+            log_odds: None,
         };
         let missed = frame_verdict(Verdict::Missed { cause: Cause::TooFaint });
         assert_eq!(
             serde_json::to_string(&missed.row()).unwrap(),
-            r#"{"frame":3,"group":"day 1","verdict":"missed","cause":"too_faint","taken":null,"taken_id":null,"centroid_x_error_px":null,"centroid_y_error_px":null,"ra_error_deg":null,"dec_error_deg":null,"line_of_sight":null,"n_stars":12,"attitude_source":"stars","image":null,"centroid_x_over_sigma":null,"centroid_y_over_sigma":null,"centroid_nees":null,"ra_over_sigma":null,"dec_over_sigma":null,"line_of_sight_nees":null}"#
+            r#"{"frame":3,"group":"day 1","verdict":"missed","cause":"too_faint","taken":null,"taken_id":null,"centroid_x_error_px":null,"centroid_y_error_px":null,"ra_error_deg":null,"dec_error_deg":null,"line_of_sight":null,"n_stars":12,"attitude_source":"stars","image":null,"centroid_x_over_sigma":null,"centroid_y_over_sigma":null,"centroid_nees":null,"ra_over_sigma":null,"dec_over_sigma":null,"line_of_sight_nees":null,"log_odds":null}"#
         );
     }
 }

@@ -115,6 +115,7 @@ struct Answer {
     sigma_ra_deg: Option<f64>,
     sigma_dec_deg: Option<f64>,
     correlation_ra_dec: Option<f64>,
+    log_odds: Option<f64>,
 }
 
 /// Status of an answer with a target.
@@ -213,6 +214,9 @@ pub fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Ou
         status if status != DETECTED && answer.states_a_covariance() => {
             return Err(format!("it states a covariance with the status `{}`", shortened(status)));
         }
+        status if status != DETECTED && answer.log_odds.is_some() => {
+            return Err(format!("it states log_odds with the status `{}`", shortened(status)));
+        }
         DETECTED => Solution::Detected(measurement(&answer, size_px)?),
         status => match NoSolution::parse(status) {
             None => return Err(format!("its status `{}` is unknown", shortened(status))),
@@ -263,6 +267,7 @@ fn measurement(answer: &Answer, (columns, rows): (usize, usize)) -> Result<Measu
             of_line_of_sight,
             Covariance2::from_degrees,
         )?,
+        log_odds: answer.log_odds,
     })
 }
 
@@ -302,6 +307,8 @@ pub(super) fn utf8(path: &Path) -> Result<&str, String> {
 }
 
 pub(super) fn parse<'a, T: Deserialize<'a>>(line: &'a [u8]) -> Result<T, String> {
+    // Some languages write a byte-order mark before their first line.
+    let line = line.strip_prefix("\u{feff}".as_bytes()).unwrap_or(line);
     serde_json::from_slice(line).map_err(|error| {
         format!("its answer `{}` cannot be read: {error}", shortened(&String::from_utf8_lossy(line)))
     })
@@ -315,12 +322,14 @@ pub(super) fn shortened(text: &str) -> String {
     harmless(&beginning.map_or_else(|| text.to_owned(), |beginning| format!("{beginning}…")))
 }
 
-/// Returns a text without control characters. Text quoted from a file or a program may contain escape
-/// sequences for terminals, which are replaced by their code numbers. Line breaks and tabs remain.
+/// Returns a text without control characters and without characters that are invisible or change the order of
+/// others. Text quoted from a file or a program may contain escape sequences for terminals and marks of the
+/// writing direction (U+202E and others), which are replaced by their code numbers. Line breaks and tabs
+/// remain.
 pub fn harmless(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for character in text.chars() {
-        if character.is_control() && !matches!(character, '\n' | '\t') {
+        if is_harmful(character) {
             shown.extend(character.escape_unicode());
         } else {
             shown.push(character);
@@ -329,10 +338,52 @@ pub fn harmless(text: &str) -> String {
     shown
 }
 
+/// Returns true for a character that can change how a terminal shows the text about it.
+fn is_harmful(character: char) -> bool {
+    (character.is_control() && !matches!(character, '\n' | '\t')) || is_invisible(character)
+}
+
+/// Returns true for the characters that have no image (Unicode 16.0, Default_Ignorable_Code_Point; not the
+/// joiners and the sixteen common variation selectors, which shape visible characters), and for the
+/// separators of lines and paragraphs.
+pub fn is_invisible(character: char) -> bool {
+    matches!(
+        character,
+        '\u{ad}'
+            | '\u{34f}'
+            | '\u{61c}'
+            | '\u{115f}'..='\u{1160}'
+            | '\u{17b4}'..='\u{17b5}'
+            | '\u{180e}'
+            | '\u{200b}'
+            | '\u{200e}'..='\u{200f}'
+            | '\u{2028}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}'
+            | '\u{3164}'
+            | '\u{feff}'
+            | '\u{ffa0}'
+            | '\u{fff0}'..='\u{fffb}'
+            | '\u{1bca0}'..='\u{1bca3}'
+            | '\u{1d173}'..='\u{1d17a}'
+            | '\u{e0000}'..='\u{e0fff}'
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use contract::NoSolution;
+
+    #[test]
+    fn characters_that_change_the_text_about_them_are_shown_by_number() {
+        assert_eq!(harmless("a\u{202e}b\u{feff}c\u{200b}"), "a\\u{202e}b\\u{feff}c\\u{200b}");
+        assert_eq!(harmless("ä φ σ′ \u{200d}\u{fe0f}"), "ä φ σ′ \u{200d}\u{fe0f}");
+    }
+
+    #[test]
+    fn a_greeting_may_begin_with_a_byte_order_mark() {
+        assert_eq!(check_greeting("\u{feff}{\"boresight_pipeline\":1,\"name\":\"x\"}".as_bytes()), Ok(()));
+    }
 
     fn read(answer: &str) -> Result<Outcome, String> {
         outcome(answer.as_bytes(), 7, (100, 80))

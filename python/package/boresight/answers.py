@@ -39,6 +39,8 @@ class Detection:
     """Standard deviation across rows, degrees, above 0."""
     correlation_ra_dec: float | None = None
     """Correlation of both errors, above -1 and below 1."""
+    log_odds: float | None = None
+    """Natural logarithm of the odds p/(1 - p) that this is the target."""
 
     status = "detected"
 

@@ -10,6 +10,7 @@ mod image;
 mod navigation;
 mod run;
 mod series;
+mod thresholds;
 
 use std::path::Path;
 
@@ -90,6 +91,7 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Fa
         attitude::mounting(run),
         attitude::aberration(run)?,
         navigation::errors(run),
+        thresholds::thresholds(&run.score),
         covariances::covariances(&run.score),
         causes(run),
         budget::budget(run),

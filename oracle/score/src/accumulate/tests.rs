@@ -316,6 +316,8 @@ fn an_error_of_exactly_one_pixel_is_not_within_it() {
             image: None,
             n_stars: None,
             attitude_source: None,
+            is_absent: false,
+            log_odds: None,
         };
         group_score(&[&[&verdict]], &[], &LIMITS).figures[names::RA_WITHIN_1PX].count
     };

@@ -29,7 +29,8 @@ pub struct BestConfig {
     /// Largest speed of the target in the image, px/s, 1e-6 to 1e6.
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub max_speed_px_per_s: f64,
-    /// Smallest natural logarithm of the odds that the reported cluster is the target, −100 to 100.
+    /// Smallest natural logarithm of the odds that the reported cluster is the target, −100 to 100. With 3 a
+    /// reported cluster is the target with a probability of at least 95 %.
     #[schemars(range(min = -100, max = 100))]
     pub min_log_odds: f64,
 }
@@ -56,7 +57,7 @@ impl Default for BestConfig {
             psf_width_error: 0.05,
             max_stars: 12,
             max_speed_px_per_s: 5.0,
-            min_log_odds: 0.0,
+            min_log_odds: 3.0,
         }
     }
 }

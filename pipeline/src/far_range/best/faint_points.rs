@@ -13,6 +13,9 @@ pub(super) struct FaintPoint {
     pub(super) variance_px2: f64,
     /// Flux, electrons.
     pub(super) flux_e: f64,
+    /// Natural logarithm of the ratio of the likelihoods of the image of a point and of one or two bright
+    /// pixels.
+    pub(super) point_over_pixel: f64,
 }
 
 /// Search for [`FaintPoint`]s, with reusable buffers.
@@ -89,8 +92,15 @@ impl FaintPoints {
                 if !is_taken {
                     let flux_e = f64::from(value) / power;
                     let snr = f64::from(value) / (context.model.pixel_sigma_e * power.sqrt());
-                    // Position variance of a Gaussian in uniform noise: 2 σ²/snr².
-                    let point = FaintPoint { position, variance_px2: 2.0 * sigma2 / (snr * snr), flux_e };
+                    // Reduction of χ² by a point of this flux, and by the two brightest pixels.
+                    let pair = self.pair(x, y, columns).map(|e| f64::from(e) / context.model.pixel_sigma_e);
+                    let point = FaintPoint {
+                        position,
+                        // Position variance of a Gaussian in uniform noise: 2 σ²/snr².
+                        variance_px2: 2.0 * sigma2 / (snr * snr),
+                        flux_e,
+                        point_over_pixel: 0.5 * (snr * snr - pair[0] * pair[0] - pair[1] * pair[1]),
+                    };
                     self.points.push((value, point));
                 }
             }
@@ -147,6 +157,23 @@ impl FaintPoints {
         let before = row(y - 1).iter().chain(&self.filtered[at - 1..at]);
         let after = self.filtered[at + 1..=at + 1].iter().chain(row(y + 1));
         before.into_iter().all(|v| *v < value) && after.into_iter().all(|v| *v <= value)
+    }
+
+    /// Returns the electrons of the brightest pixel of 3 × 3 about a pixel, and of its brightest neighbour
+    /// along columns and rows.
+    fn pair(&self, x: usize, y: usize, columns: usize) -> [f32; 2] {
+        let mut peak = (f32::NEG_INFINITY, 0);
+        for row in y - 1..=y + 1 {
+            for at in row * columns + x - 1..=row * columns + x + 1 {
+                if self.context[at] > peak.0 {
+                    peak = (self.context[at], at);
+                }
+            }
+        }
+        let neighbours = [peak.1.wrapping_sub(1), peak.1 + 1, peak.1.wrapping_sub(columns), peak.1 + columns];
+        let second =
+            neighbours.iter().filter_map(|at| self.context.get(*at)).fold(0.0, |a: f32, b| a.max(*b));
+        [peak.0, second]
     }
 
     /// Returns the maximum, in frame coordinates, of the parabolas through a pixel and its neighbours along

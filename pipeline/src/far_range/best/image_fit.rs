@@ -88,6 +88,19 @@ impl PointImage {
         (1.0 - self.halo_fraction) * of(self.sigma_px) + self.halo_fraction * of(self.halo_sigma_px)
     }
 
+    /// Returns Σ k², with the shares k of the flux on the pixels of an image centred on a pixel.
+    pub(super) fn sum_of_squares(&self) -> f64 {
+        let reach = (3.0 * self.sigma_px).ceil().clamp(2.0, 12.0) as i32;
+        let mut sum = 0.0;
+        for dy in -reach..=reach {
+            for dx in -reach..=reach {
+                let share = self.share(f64::from(dx), f64::from(dy));
+                sum += share * share;
+            }
+        }
+        sum
+    }
+
     /// Returns the share of the flux on the central pixel of an image centred on it.
     pub(super) fn central_share(&self) -> f64 {
         self.share(0.0, 0.0)

@@ -51,11 +51,13 @@ impl BestPipeline {
     }
 
     /// Returns the measurement: position and line of sight of the target with their covariances.
+    /// `log_odds` is the logarithm of the odds of its track.
     pub(super) fn measurement(
         &self,
         image: &CandidateImage,
         inputs: TargetContext<'_>,
         overrides: &Overrides<'_>,
+        log_odds: Option<f64>,
     ) -> Measurement {
         let TargetContext { attitude, exposure_s, .. } = inputs;
         let (candidate, fit) = (&image.candidate, image.fit.as_ref());
@@ -87,6 +89,7 @@ impl BestPipeline {
             position,
             position_covariance: centroid.and_then(checked),
             line_of_sight,
+            log_odds,
             line_of_sight_covariance: centroid.and_then(|centroid| {
                 checked(self.line_of_sight_covariance(position, centroid, offset, attitude)?)
             }),

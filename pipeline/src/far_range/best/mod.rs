@@ -5,6 +5,7 @@ mod config;
 mod faint_points;
 mod frame_attitude;
 mod hot_pixels;
+mod hypotheses;
 mod image_fit;
 mod lost_in_space;
 mod measurement;
@@ -18,6 +19,7 @@ mod start;
 mod state;
 mod target;
 mod tracks;
+mod unlisted_stars;
 
 pub use config::{AttitudePrior, BestConfig};
 pub(super) use state::BestPipeline;

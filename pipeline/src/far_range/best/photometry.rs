@@ -36,6 +36,11 @@ pub(super) struct Source {
     pub(super) saturated: usize,
     /// True if adjacent pixels were not transmitted.
     pub(super) is_cut: bool,
+    /// Index of the brightest pixel, and its electrons above the background.
+    pub(super) peak: (usize, f64),
+    /// Σ n² of the brightest pixel and its brightest neighbour along columns and rows, n: electrons above the
+    /// background.
+    pub(super) pair_e2: f64,
     /// Index of an isolated bright pixel, narrower than any optical image; `None` for other clusters.
     pub(super) spike: Option<usize>,
 }
@@ -116,7 +121,23 @@ impl PhotometryModel {
         }
         let centre = if flux_e > 0.0 { PixelPoint::new(sum_x / flux_e, sum_y / flux_e) } else { blob.centre };
         let spike = (saturated <= 1 && self.is_spike(frame, peak.0, psf)).then_some(peak.0);
-        Source { blob: *blob, centre, flux_e, saturated, is_cut, spike }
+        let peak_e = self.electrons(peak.1) - self.background_e;
+        let second_e = self.brightest_neighbour_e(frame, peak.0);
+        let pair_e2 = peak_e * peak_e + second_e * second_e;
+
+        Source { blob: *blob, centre, flux_e, saturated, is_cut, peak: (peak.0, peak_e), pair_e2, spike }
+    }
+
+    /// Returns the electrons above the background of the brightest neighbour of a pixel along columns and
+    /// rows.
+    fn brightest_neighbour_e(&self, frame: &Frame, index: usize) -> f64 {
+        let (x, y) = (index % frame.columns(), index / frame.columns());
+        let neighbours = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
+        neighbours
+            .into_iter()
+            .filter(|&(x, y)| x < frame.columns() && y < frame.rows() && is_transmitted(frame, x, y))
+            .map(|(x, y)| self.electrons(frame.dn_at(x, y)) - self.background_e)
+            .fold(0.0, f64::max)
     }
 
     /// Returns true if the pixel's share of the surrounding flux significantly exceeds the mean of the

@@ -1,16 +1,15 @@
 //! Sequence of steps of the best mode.
 
-use contract::{
-    Cluster, Direction, Frame, Icrs, Label, NoSolution, Outcome, PixelPoint, Readout, Solution, Telemetry,
-};
+use contract::{Cluster, Frame, Label, NoSolution, Outcome, PixelPoint, Readout, Solution, Telemetry};
 
 use super::frame_attitude::FrameAttitude;
 use super::hot_pixels::HotPixels;
 use super::photometry::{KnownSource, PhotometryContext, PhotometryModel, Source};
 use super::stars::ExpectedStar;
-use super::state::{BestPipeline, LastFrame};
+use super::state::{BestPipeline, LastFrame, ScaleSource};
 use super::target::TargetContext;
-use super::tracks::{TargetCandidate, TrackModel};
+use super::tracks::{FrameCandidates, Sky, TargetCandidate, TrackModel};
+use super::unlisted_stars::UnlistedStars;
 use crate::far_range::background::Background;
 use crate::far_range::detect::{Blob, transmitted_pixels};
 use crate::far_range::overrides::Overrides;
@@ -129,7 +128,17 @@ impl BestPipeline {
         };
         let known = self.known_sources(&attitude, trail_px);
         let exposure_s = telemetry.exposure_s;
-        let inputs = TargetContext { context, sources, attitude: &attitude, known: &known, exposure_s };
+        let limit_e = self.star_limit_e(exposure_s);
+        let unlisted_stars =
+            UnlistedStars::new(attitude.expected.len(), attitude.n_stars > 0, limit_e, context.threshold_e);
+        let inputs = TargetContext {
+            context,
+            sources,
+            attitude: &attitude,
+            known: &known,
+            exposure_s,
+            unlisted_stars,
+        };
         let mut images = self.candidates(inputs, overrides);
         let candidates: Vec<TargetCandidate> = images.iter().map(|image| image.candidate).collect();
         let track_model = TrackModel {
@@ -138,21 +147,30 @@ impl BestPipeline {
                 / transmitted_pixels(context.frame).max(1) as f64,
             threshold_e_per_s: context.threshold_e / exposure_s,
         };
-        let model = &self.model;
-        let position_of = |direction: &Direction<Icrs>| {
-            model.project_vector(&attitude.camera_from_icrs?.rotate(direction.vector()))
-        };
-        self.tracks.update(&candidates, &track_model, &position_of);
+        let sky = Sky { camera_from_icrs: attitude.camera_from_icrs, model: &self.model };
+        let attitude_variance_px2 =
+            candidates.iter().map(|candidate| candidate.attitude_variance_px2).fold(0.0, f64::max);
+        self.tracks.update(&FrameCandidates {
+            candidates: &candidates,
+            model: &track_model,
+            sky,
+            attitude_variance_px2,
+        });
         self.last = Some(LastFrame { time: telemetry.time, camera_from_icrs: attitude.camera_from_icrs });
 
         let chosen = self
             .tracks
             .by_odds()
-            .find_map(|track| track.candidate.filter(|_| track.log_odds >= self.config.best.min_log_odds));
+            .find_map(|track| Some((track.candidate?, track.log_odds())))
+            // An object whose centre is off the detector is none that can be measured.
+            .filter(|&(c, _)| candidates.get(c).is_some_and(|c| self.model.is_on_detector(c.position)))
+            .filter(|(_, log_odds)| *log_odds >= self.config.best.min_log_odds);
+        let log_odds = chosen.map(|(_, log_odds)| log_odds);
+        let chosen = chosen.map(|(candidate, _)| candidate);
         let solution = match chosen.and_then(|c| images.get_mut(c)) {
             Some(image) => {
                 self.fit_candidate(inputs, image);
-                Solution::Detected(self.measurement(image, inputs, overrides))
+                Solution::Detected(self.measurement(image, inputs, overrides, log_odds))
             }
             None if sources.is_empty() => Solution::NoSolution(NoSolution::EmptyFrame),
             None => Solution::NoSolution(NoSolution::NoTarget),
@@ -183,6 +201,13 @@ impl BestPipeline {
         }
     }
 
+    /// Returns the flux of a star at the limit of the star list, electrons; `None` without a list or a scale
+    /// of brightness.
+    fn star_limit_e(&self, exposure_s: f64) -> Option<f64> {
+        let magnitude = self.star_limit.filter(|_| self.brightness.source != ScaleSource::Unknown)?;
+        Some(libm::exp(self.brightness.log_ratio) * self.unscaled_flux_e(magnitude, exposure_s))
+    }
+
     /// Returns the expected stars of known flux as known sources for the fit of a target's image.
     fn known_sources(&self, attitude: &FrameAttitude, trail_px: [f64; 2]) -> Vec<KnownSource> {
         let image = self.psf.image(trail_px);
@@ -196,7 +221,7 @@ impl BestPipeline {
 
 #[cfg(test)]
 mod tests {
-    use contract::{Calibration, Camera, ListedStar, PsfCalibration, Rotation, Setup};
+    use contract::{Calibration, Camera, Direction, ListedStar, PsfCalibration, Rotation, Setup};
     use hifitime::Epoch;
     use nalgebra::Vector3;
 

@@ -11,6 +11,7 @@ use super::mounting::MountingFilter;
 use super::photometry::SourceFitter;
 use super::point_image::PointImageEstimate;
 use super::tracks::Tracks;
+use super::unlisted_stars::magnitude_limit;
 use crate::far_range::background::BackgroundEstimator;
 use crate::far_range::config::FarRangeConfig;
 use crate::far_range::detect::Detector;
@@ -23,6 +24,8 @@ pub(in crate::far_range) struct BestPipeline {
     pub(super) config: FarRangeConfig,
     pub(super) model: CameraModel,
     pub(super) stars: StarList,
+    /// Magnitude that counts as the limit of the star list; `None` for an empty list.
+    pub(super) star_limit: Option<f64>,
     pub(super) readout: Option<Readout>,
     pub(super) calibration: PhotometryCalibration,
     pub(super) mounting: MountingFilter,
@@ -96,6 +99,8 @@ impl BestPipeline {
         let model = CameraModel::new(&setup.camera)?;
         let calibration = &setup.calibration;
         Ok(Self {
+            star_limit: magnitude_limit(&setup.stars)
+                .map(|limit| limit.min(config.identification.max_magnitude)),
             stars: StarList::new(&setup.stars, config.identification.max_magnitude, &model),
             readout: setup.readout,
             calibration: PhotometryCalibration {

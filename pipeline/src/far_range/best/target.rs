@@ -4,9 +4,12 @@ use contract::{Direction, Icrs, PixelPoint};
 
 use super::faint_points::FaintPoint;
 use super::frame_attitude::FrameAttitude;
+use super::hypotheses::{Hypotheses, STARS};
 use super::photometry::{FittedSource, KnownSource, PhotometryContext, Source, TargetStart};
+use super::stars::image_covariance;
 use super::state::BestPipeline;
-use super::tracks::TargetCandidate;
+use super::tracks::{Sky, TargetCandidate};
+use super::unlisted_stars::{STAR_EXPONENT, UnlistedStars};
 use crate::far_range::overrides::{Identity, Overrides};
 
 /// Inputs to the search for the target in a frame.
@@ -18,6 +21,7 @@ pub(super) struct TargetContext<'a> {
     /// Listed stars of known flux.
     pub(super) known: &'a [KnownSource],
     pub(super) exposure_s: f64,
+    pub(super) unlisted_stars: UnlistedStars,
 }
 
 /// Candidate with its fit and cluster.
@@ -33,18 +37,45 @@ pub(super) struct CandidateImage {
 /// prediction of the best track are always fitted.
 const MAX_FITTED: usize = 2;
 
-/// Exponent of the cumulative number of clutter by flux: N(> F) ∝ F^−1.2, that of the stars (Allen 1973,
-/// Astrophysical Quantities, §117).
-const CLUTTER_EXPONENT: f64 = 1.2;
+/// Expected number of targets per frame and unit of ln F: one, of any brightness between noise and
+/// saturation of the sky, ten units.
+const TARGETS_PER_LOG_FLUX: f64 = 0.1;
 
-/// Natural logarithm of the odds of a cluster at the detection threshold, and of a point below it.
-const THRESHOLD_LOG_ODDS: f64 = -2.0;
-const FAINT_LOG_ODDS: f64 = -6.0;
+/// Expected number of chance clusters, and of clusters of unknown defective pixels, per frame and unit of
+/// ln F at the detection threshold. Both decrease with flux like the stars.
+const CHANCE_PER_LOG_FLUX: f64 = 0.7;
+const PIXELS_PER_LOG_FLUX: f64 = 0.3;
 
-/// Misfit above which an unsaturated cluster is unlikely to be a point or a small body, and the resulting
-/// reduction of the logarithm of the odds.
+/// Expected number of noise maxima that are faint points, per frame and unit of ln F.
+const FAINT_CHANCE_PER_LOG_FLUX: f64 = 40.0;
+
+/// Fractions of unlisted stars that are single, close pairs, and wide pairs whose images merge in some
+/// frames.
+const STAR_FRACTIONS: [f64; STARS] = [0.7, 0.2, 0.1];
+
+/// Misfit above which an unsaturated cluster is unlikely to be a point or a small body, and smallest width of
+/// its image relative to that of a point.
 const CLUTTER_MISFIT: f64 = 4.0;
-const MISFIT_LOG_ODDS: f64 = 5.0;
+const CLUTTER_WIDTH: f64 = 0.6;
+
+/// Logarithms of the likelihood ratios of the image of a point against chance (particle hits, groups of
+/// pixels) for a fit that agrees with a point, for one that does not, and for an image with more than
+/// `FILLED_WELLS` saturated pixels, which a particle does not fill.
+const POINT_LOG_RATIO: f64 = 3.5;
+const MISFIT_LOG_RATIO: f64 = -5.0;
+const FILLED_LOG_RATIO: f64 = 8.0;
+const FILLED_WELLS: usize = 4;
+
+/// Largest logarithm of the likelihood ratio of a point and of bright pixels: the model of the image
+/// is not valid beyond it.
+const MAX_POINT_OVER_PIXEL: f64 = 8.0;
+
+/// Number of saturated pixels above which an image is not that of defective pixels.
+const MAX_SATURATED_PIXELS: usize = 2;
+
+/// Fraction of a cluster's flux in a hot pixel, its brightest, above which the cluster belongs to the pixel.
+/// A point has a smaller one, unless it is very sharp.
+const HOT_FRACTION: f64 = 0.35;
 
 /// Distance from a cluster within which expected stars are fitted with it, px.
 const KNOWN_REACH_PX: f64 = 24.0;
@@ -69,8 +100,7 @@ impl BestPipeline {
             let source = &inputs.sources[i];
             let is_fitted = images.len() < max_fitted || self.tracks.is_expected(source.centre);
             let fit = is_fitted.then(|| self.fit_cluster(inputs, i)).flatten();
-            let log_odds = log_odds(source, fit.as_ref(), inputs.context.threshold_e);
-            let candidate = self.cluster_candidate(inputs, source, fit.as_ref(), log_odds);
+            let candidate = self.cluster_candidate(inputs, source, fit.as_ref());
             images.push(CandidateImage { candidate, fit, cluster: Some(i) });
         }
         if !self.tracks.is_settled() && overrides.identity.is_none() {
@@ -90,9 +120,10 @@ impl BestPipeline {
             variance_px2: point.variance_px2,
             flux_e_per_s: point.flux_e / inputs.exposure_s,
             is_flux_bounded: false,
-            log_odds: FAINT_LOG_ODDS,
+            weights: faint_weights(point, inputs.unlisted_stars, inputs.context.threshold_e),
+            point_over_pixel: limited_shape(point.point_over_pixel),
             evidence: None,
-            direction: self.direction(point.position, inputs.attitude),
+            attitude_variance_px2: self.attitude_variance_px2(point.position, inputs.attitude),
         };
         points
             .iter()
@@ -168,8 +199,8 @@ impl BestPipeline {
         inputs: TargetContext<'_>,
         source: &Source,
         fit: Option<&FittedSource>,
-        log_odds: f64,
     ) -> TargetCandidate {
+        let point_over_pixel = self.point_over_pixel(inputs, source, fit);
         let position = fit.map_or(source.centre, |fit| fit.position);
         let fitted_flux_e = fit.map(|fit| fit.image.flux_e).filter(|flux_e| *flux_e > 0.0);
         let variance_px2 = fit.map_or(0.1, |fit| {
@@ -181,10 +212,45 @@ impl BestPipeline {
             variance_px2,
             flux_e_per_s: fitted_flux_e.unwrap_or(source.flux_e) / inputs.exposure_s,
             is_flux_bounded: fitted_flux_e.is_none() && (source.saturated > 0 || source.is_cut),
-            log_odds,
+            weights: cluster_weights(
+                source,
+                fit,
+                point_over_pixel,
+                inputs.unlisted_stars,
+                inputs.context.threshold_e,
+            ),
+            point_over_pixel,
             evidence: None,
-            direction: self.direction(position, inputs.attitude),
+            attitude_variance_px2: self.attitude_variance_px2(position, inputs.attitude),
         }
+    }
+
+    /// Returns the logarithm of the ratio of the likelihoods of the image of a point and of one or two bright
+    /// pixels for a cluster: half the difference of the reductions of χ² by either; 0 where the cluster is
+    /// not fitted or has few saturated pixels.
+    fn point_over_pixel(
+        &self,
+        inputs: TargetContext<'_>,
+        source: &Source,
+        fit: Option<&FittedSource>,
+    ) -> f64 {
+        if source.saturated > MAX_SATURATED_PIXELS {
+            return MAX_POINT_OVER_PIXEL;
+        }
+        let Some(fit) = fit.filter(|_| source.saturated == 0) else { return 0.0 };
+        let sigma_e = inputs.context.model.pixel_sigma_e;
+        let variance_e2 = sigma_e * sigma_e + source.peak.1.max(0.0);
+        let by_point = fit.image.flux_e * fit.image.flux_e * self.psf.image([0.0; 2]).sum_of_squares();
+        limited_shape(0.5 * (by_point - source.pair_e2) / variance_e2)
+    }
+
+    /// Returns the variance of the position of a star due to the error of the attitude, along the axis with
+    /// the larger one, px²; infinite where the camera has no direction.
+    fn attitude_variance_px2(&self, position: PixelPoint, attitude: &FrameAttitude) -> f64 {
+        let Some((u, v)) = self.model.to_ideal(position) else { return f64::INFINITY };
+        let (fx, fy) = self.model.focal_px();
+        let covariance = image_covariance(&attitude.error.covariance, u / fx, v / fy, (fx, fy));
+        covariance[(0, 0)].max(covariance[(1, 1)])
     }
 
     pub(super) fn direction(
@@ -192,7 +258,7 @@ impl BestPipeline {
         position: PixelPoint,
         attitude: &FrameAttitude,
     ) -> Option<Direction<Icrs>> {
-        Some(attitude.camera_from_icrs?.inverse() * self.model.back_project(position)?)
+        Sky { camera_from_icrs: attitude.camera_from_icrs, model: &self.model }.direction(position)
     }
 
     /// Returns the target at the position predicted by the best track, if no candidate is there: it is too
@@ -206,7 +272,7 @@ impl BestPipeline {
     ) -> Option<CandidateImage> {
         let track = *self.tracks.by_odds().next()?;
         let sigma_px = track.variance_px2().sqrt();
-        if track.log_odds < PREDICTED_LOG_ODDS || sigma_px > PREDICTED_REACH_PX {
+        if track.log_odds() < PREDICTED_LOG_ODDS || sigma_px > PREDICTED_REACH_PX {
             return None;
         }
         let reach_px = 4.0 * sigma_px + 1.0;
@@ -230,9 +296,11 @@ impl BestPipeline {
                 variance_px2: xx.max(yy),
                 flux_e_per_s: flux_e / inputs.exposure_s,
                 is_flux_bounded: false,
-                log_odds: THRESHOLD_LOG_ODDS,
+                // The candidate continues the track or is dropped: it begins none.
+                weights: Hypotheses::of_any_object(0.0),
+                point_over_pixel: 0.0,
                 evidence: Some(evidence),
-                direction: self.direction(fit.position, inputs.attitude),
+                attitude_variance_px2: self.attitude_variance_px2(fit.position, inputs.attitude),
             },
             fit: Some(fit),
             cluster: None,
@@ -251,16 +319,9 @@ fn evidence(flux: f64, sigma: f64, expected: f64, expected_sigma: f64) -> f64 {
 /// Returns the clusters that may be the target, brightest first.
 fn target_clusters(inputs: TargetContext<'_>, overrides: &Overrides<'_>) -> Vec<usize> {
     let is_hot = |source: &Source| {
-        source.spike.is_some() || {
-            let (x, y) = (source.centre.x.round(), source.centre.y.round());
-            source.blob.pixels <= 2
-                && x >= 0.0
-                && y >= 0.0
-                && inputs
-                    .context
-                    .hot_pixels
-                    .contains(y as usize * inputs.context.frame.columns() + x as usize)
-        }
+        source.spike.is_some()
+            || (source.peak.1 > HOT_FRACTION * source.flux_e
+                && inputs.context.hot_pixels.contains(source.peak.0))
     };
     let mut clusters: Vec<usize> = (0..inputs.sources.len())
         .filter(|&i| match overrides.identity {
@@ -272,15 +333,55 @@ fn target_clusters(inputs: TargetContext<'_>, overrides: &Overrides<'_>) -> Vec<
     clusters
 }
 
-/// Returns the natural logarithm of the odds that a cluster is the target, by its brightness and shape only.
-fn log_odds(source: &Source, fit: Option<&FittedSource>, threshold_e: f64) -> f64 {
-    let mut log_odds =
-        THRESHOLD_LOG_ODDS + CLUTTER_EXPONENT * libm::log((source.flux_e / threshold_e).max(1e-3));
-    if source.saturated == 0
-        && let Some(fit) = fit
-        && (fit.image.misfit() > CLUTTER_MISFIT || fit.image.width < 0.6)
-    {
-        log_odds -= MISFIT_LOG_ODDS;
+/// Returns the weights of the hypotheses for a cluster by its brightness and shape only.
+fn cluster_weights(
+    source: &Source,
+    fit: Option<&FittedSource>,
+    point_over_pixel: f64,
+    unlisted_stars: UnlistedStars,
+    threshold_e: f64,
+) -> Hypotheses {
+    let decrease = -STAR_EXPONENT * libm::log((source.flux_e / threshold_e).max(1e-3));
+    let log_chance = libm::log(CHANCE_PER_LOG_FLUX) + decrease;
+    let log_pixels = libm::log(PIXELS_PER_LOG_FLUX) + decrease;
+    let point = point_log_ratio(source, fit);
+    let star = libm::log(unlisted_stars.per_log_flux(source.flux_e)) - log_chance;
+    let mut weights = Hypotheses {
+        target: libm::log(TARGETS_PER_LOG_FLUX) - log_chance,
+        stars: STAR_FRACTIONS.map(|fraction| star + libm::log(fraction)),
+        pixel: log_pixels - log_chance,
+    };
+    weights.add(Hypotheses { pixel: point - point_over_pixel, ..Hypotheses::of_any_object(point) });
+    weights
+}
+
+/// Returns the weights of the hypotheses for a point below the threshold of clusters.
+fn faint_weights(point: &FaintPoint, unlisted_stars: UnlistedStars, threshold_e: f64) -> Hypotheses {
+    let log_chance = libm::log(FAINT_CHANCE_PER_LOG_FLUX);
+    let decrease = -STAR_EXPONENT * libm::log((point.flux_e / threshold_e).max(1e-3));
+    let star = libm::log(unlisted_stars.per_log_flux(point.flux_e)) - log_chance;
+    Hypotheses {
+        target: libm::log(TARGETS_PER_LOG_FLUX) - log_chance,
+        stars: STAR_FRACTIONS.map(|fraction| star + libm::log(fraction)),
+        pixel: libm::log(PIXELS_PER_LOG_FLUX) + decrease - log_chance - limited_shape(point.point_over_pixel),
     }
-    log_odds
+}
+
+/// Returns the logarithm of the likelihood ratio of the image of a point against chance for a cluster; 0 for
+/// a cluster whose shape is not known.
+fn point_log_ratio(source: &Source, fit: Option<&FittedSource>) -> f64 {
+    if source.saturated > FILLED_WELLS {
+        return FILLED_LOG_RATIO;
+    }
+    match fit.filter(|_| source.saturated == 0) {
+        None => 0.0,
+        Some(fit) if fit.image.misfit() > CLUTTER_MISFIT || fit.image.width < CLUTTER_WIDTH => {
+            MISFIT_LOG_RATIO
+        }
+        Some(_) => POINT_LOG_RATIO,
+    }
+}
+
+fn limited_shape(log_ratio: f64) -> f64 {
+    log_ratio.clamp(-MAX_POINT_OVER_PIXEL, MAX_POINT_OVER_PIXEL)
 }

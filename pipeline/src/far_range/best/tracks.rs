@@ -1,14 +1,18 @@
 //! Hypotheses for the target's cluster. Each hypothesis is a track in the image with the odds that it is the
 //! target's.
 //!
-//! A track moves with constant velocity, disturbed by white acceleration, in the image of the camera. Its
-//! odds increase by the ratio of the likelihoods of its clusters, in position and flux, to that of clutter
-//! (Bar-Shalom & Li 1995, Multitarget-Multisensor Tracking, Sec. 7.3). They decrease when the track has no
-//! cluster and when its cluster moves with the stars.
+//! A track moves with constant velocity, disturbed by white acceleration, in the image of the camera. The
+//! weight of the target increases by the ratio of the likelihoods of its clusters, in position and flux, to
+//! that of clutter (Bar-Shalom & Li 1995, Multitarget-Multisensor Tracking, Sec. 7.3) and decreases when the
+//! track has no cluster. An unlisted star at rest on the sky and a defective pixel at rest on the detector
+//! compete with the target for the same clusters ([`Hypotheses`]).
 
 use std::collections::VecDeque;
 
-use contract::{Direction, Icrs, PixelPoint};
+use contract::{CameraFrame, Direction, Icrs, PixelPoint, Rotation};
+
+use super::hypotheses::{Hypotheses, STARS};
+use crate::CameraModel;
 
 /// Cluster that may be the target.
 #[derive(Debug, Clone, Copy)]
@@ -20,14 +24,65 @@ pub(super) struct TargetCandidate {
     pub(super) flux_e_per_s: f64,
     /// True if the flux is a lower bound, or only a part of the image was transmitted.
     pub(super) is_flux_bounded: bool,
-    /// Natural logarithm of the odds that a cluster of this brightness and shape is the target, from this
-    /// frame only.
-    pub(super) log_odds: f64,
+    /// Weights of the hypotheses for a cluster of this brightness and shape, from this frame only.
+    pub(super) weights: Hypotheses,
+    /// Natural logarithm of the ratio of the likelihoods of the image of a point and of one or two bright
+    /// pixels.
+    pub(super) point_over_pixel: f64,
     /// Natural logarithm of the ratio of the likelihoods with and without the target, for a candidate
     /// searched for at the prediction of the best track.
     pub(super) evidence: Option<f64>,
-    /// Direction along the axes of ICRS, by the attitude of this frame.
-    pub(super) direction: Option<Direction<Icrs>>,
+    /// Variance of the position of a star here, along an axis, due to the error of the attitude, px².
+    pub(super) attitude_variance_px2: f64,
+}
+
+/// Attitude of a frame and camera model, between directions among the stars and positions in the image.
+#[derive(Clone, Copy)]
+pub(super) struct Sky<'a> {
+    /// Attitude; `None` if unknown.
+    pub(super) camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
+    pub(super) model: &'a CameraModel,
+}
+
+impl Sky<'_> {
+    /// Returns the position of a direction in the image; `None` without an attitude or outside the model.
+    fn position(&self, direction: &Direction<Icrs>) -> Option<PixelPoint> {
+        self.model.project_vector(&self.camera_from_icrs?.rotate(direction.vector()))
+    }
+
+    /// Returns true if the image of a star at a position reaches the detector.
+    fn is_near_detector(&self, position: PixelPoint) -> bool {
+        let (columns, rows) = self.model.size_px();
+        let is_near = |at: f64, size: usize| at >= -EDGE_PX && at <= size as f64 - 1.0 + EDGE_PX;
+        is_near(position.x, columns) && is_near(position.y, rows)
+    }
+
+    /// Returns the direction at a position in the image; `None` without an attitude or outside the model.
+    pub(super) fn direction(&self, position: PixelPoint) -> Option<Direction<Icrs>> {
+        Some(self.camera_from_icrs?.inverse() * self.model.back_project(position)?)
+    }
+}
+
+/// Candidates of a frame, and what their tracks depend on.
+#[derive(Clone, Copy)]
+pub(super) struct FrameCandidates<'a> {
+    pub(super) candidates: &'a [TargetCandidate],
+    pub(super) model: &'a TrackModel,
+    pub(super) sky: Sky<'a>,
+    /// Largest variance of the position of a star in the image, along an axis, due to the error of the
+    /// attitude, px².
+    pub(super) attitude_variance_px2: f64,
+}
+
+/// Star at its mean direction.
+type Star = AtRest<Direction<Icrs>>;
+
+/// Object at rest, with its mean position over the frames of a track.
+#[derive(Debug, Clone, Copy)]
+struct AtRest<P> {
+    at: P,
+    /// Variance along an axis, px².
+    variance_px2: f64,
 }
 
 /// Hypothesis for the target.
@@ -39,12 +94,17 @@ pub(super) struct Track {
     covariance: [f64; 3],
     log_flux: f64,
     log_flux_variance: f64,
-    pub(super) log_odds: f64,
+    hypotheses: Hypotheses,
     /// Number of frames with a cluster of this track.
     pub(super) hits: u32,
     misses: u32,
-    /// Position of the last cluster in the image, and its direction among the stars.
-    last: (PixelPoint, Option<Direction<Icrs>>),
+    /// Mean directions of the track's object if it is a star, by the scatter of its centroid; `None` without
+    /// an attitude.
+    stars: [Option<Star>; STARS],
+    /// Its direction in the last frame.
+    last: Option<Star>,
+    /// Position of the track's object if it is a pixel.
+    pixel: AtRest<PixelPoint>,
     /// Index of the candidate in the last frame that continues the track.
     pub(super) candidate: Option<usize>,
 }
@@ -81,19 +141,28 @@ const FAINT_DETECTION_PROBABILITY: f64 = 0.6;
 /// Largest likelihood ratio of one frame, natural logarithm: the error model is not valid beyond it.
 const MAX_LOG_LIKELIHOOD_RATIO: f64 = 8.0;
 
-/// Limits of the logarithm of the odds. Odds beyond the limits carry no further information, and a track must
-/// remain able to lose.
-const LOG_ODDS: (f64, f64) = (-20.0, 25.0);
+/// The same limit for the position of an object at rest, which is predicted better than that of the target.
+const MAX_AT_REST: f64 = 11.0;
 
-/// Reduction of the logarithm of the odds for a cluster that moved with the stars, and gain for one that
-/// moved neither with the stars nor with the detector.
+/// Gain of the logarithm of a star's weight for a new cluster that moved with the stars since one of the last
+/// frames.
 const STAR_MOTION: f64 = 6.0;
-const OWN_MOTION: f64 = 1.5;
 
-/// Distance from the position that moved with the stars, px: below the first limit a cluster moved with them,
-/// above the second it did not.
+/// Error of the position of an object at rest on the sky or on the detector in addition to those of centroid
+/// and attitude (distortion, aberration, response of the pixels), px.
+const AT_REST_PX: f64 = 0.1;
+
+/// Standard deviations of the centroid of a star besides those of fit and attitude, px: a single star, a
+/// close pair, a wide pair whose images are separated in some frames.
+const STAR_SCATTER_PX: [f64; STARS] = [AT_REST_PX, 0.5, 1.5];
+
+/// Distance from the position that moved with the stars below which a cluster moved with them, and motion of
+/// the stars above which it is distinguished from rest on the detector, px.
 const WITH_STARS_PX: f64 = 0.8;
 const APART_PX: f64 = 2.0;
+
+/// Distance of a star outside the detector whose image still reaches it, px.
+const EDGE_PX: f64 = 4.0;
 
 /// Number of previous frames whose candidates are kept, to distinguish unlisted stars from the target.
 const RECENT_FRAMES: usize = 3;
@@ -104,15 +173,18 @@ const GATE: f64 = 20.0;
 /// Natural logarithm of the odds above which a track counts as settled.
 const SETTLED_LOG_ODDS: f64 = 12.0;
 
+/// Largest number of tracks besides the best one that expect clusters.
+const MAX_EXPECTED: usize = 8;
+
 /// Largest distance at which a track expects a cluster, px.
 const MAX_REACH_PX: f64 = 10.0;
 
 /// Largest number of tracks, and number of frames without a cluster after which a track ends.
-const MAX_TRACKS: usize = 64;
+const MAX_TRACKS: usize = 400;
 const MAX_MISSES: u32 = 20;
 
 impl Track {
-    fn new(candidate: usize, c: &TargetCandidate, model: &TrackModel) -> Self {
+    fn new(candidate: usize, c: &TargetCandidate, model: &TrackModel, sky: Sky<'_>) -> Self {
         let speed = model.max_speed_px_per_s / 2.0;
         Self {
             position: c.position,
@@ -120,10 +192,12 @@ impl Track {
             covariance: [c.variance_px2, 0.0, speed * speed],
             log_flux: libm::log(c.flux_e_per_s.max(1e-9)),
             log_flux_variance: LOG_FLUX_STEP * LOG_FLUX_STEP,
-            log_odds: c.log_odds.clamp(LOG_ODDS.0, LOG_ODDS.1),
+            hypotheses: c.weights,
             hits: 1,
             misses: 0,
-            last: (c.position, c.direction),
+            stars: STAR_SCATTER_PX.map(|scatter_px| star_at(c, scatter_px, sky)),
+            last: star_at(c, AT_REST_PX, sky),
+            pixel: AtRest { at: c.position, variance_px2: c.variance_px2 },
             candidate: Some(candidate),
         }
     }
@@ -157,46 +231,161 @@ impl Track {
     /// Returns the logarithm of the likelihood ratio of a candidate against clutter; `None` outside the gate.
     fn likelihood(&self, c: &TargetCandidate, model: &TrackModel) -> Option<f64> {
         let variance = self.variance_px2() + c.variance_px2;
-        let (dx, dy) = (c.position.x - self.position.x, c.position.y - self.position.y);
-        let distance = (dx * dx + dy * dy) / variance;
-        let log_flux = libm::log(c.flux_e_per_s.max(1e-9)) - self.log_flux;
-        let flux_variance = self.log_flux_variance + LOG_FLUX_STEP * LOG_FLUX_STEP;
-        // Truncation by a region and saturation hide at most some two thirds of the flux.
-        let log_flux =
-            if c.is_flux_bounded { (log_flux + MAX_LOG_TOTAL_OVER_VISIBLE).min(0.0) } else { log_flux };
-        let flux_distance = log_flux * log_flux / flux_variance;
+        let distance = squared_distance(self.position, c.position) / variance;
+        let flux_distance = self.flux_distance(c);
         if distance + flux_distance > GATE {
             return None;
         }
-        let by_position =
-            -0.5 * distance - libm::log(std::f64::consts::TAU * variance * model.clutter_per_px2);
-        // The fluxes of clutter cover some four units of the natural logarithm.
-        let by_flux =
-            -0.5 * flux_distance - 0.5 * libm::log(std::f64::consts::TAU * flux_variance) + libm::log(4.0);
-        Some(libm::log(DETECTION_PROBABILITY) + by_position.min(MAX_LOG_LIKELIHOOD_RATIO) + by_flux)
+        Some(self.log_likelihood_ratio(distance, variance, flux_distance, model, MAX_LOG_LIKELIHOOD_RATIO))
     }
 
-    /// Returns the change of the logarithm of the odds by the motion since the last cluster. `position_of`
-    /// returns the current image position of a direction among the stars.
-    fn motion_odds(
+    /// Returns the squared normalised difference of the natural logarithms of measured and predicted flux.
+    fn flux_distance(&self, c: &TargetCandidate) -> f64 {
+        let log_flux = libm::log(c.flux_e_per_s.max(1e-9)) - self.log_flux;
+        // Truncation by a region and saturation hide at most some two thirds of the flux.
+        let log_flux =
+            if c.is_flux_bounded { (log_flux + MAX_LOG_TOTAL_OVER_VISIBLE).min(0.0) } else { log_flux };
+        log_flux * log_flux / self.flux_variance()
+    }
+
+    fn flux_variance(&self) -> f64 {
+        self.log_flux_variance + LOG_FLUX_STEP * LOG_FLUX_STEP
+    }
+
+    /// Returns ln [P_D N(position) N(ln F)/(clutter density)] for squared normalised distances of position
+    /// and flux and the variance of the position along an axis, px². The part of the position is at most
+    /// `limit`.
+    fn log_likelihood_ratio(
         &self,
-        c: &TargetCandidate,
-        position_of: &dyn Fn(&Direction<Icrs>) -> Option<PixelPoint>,
+        distance: f64,
+        variance_px2: f64,
+        flux_distance: f64,
+        model: &TrackModel,
+        limit: f64,
     ) -> f64 {
-        let (position, direction) = &self.last;
-        let Some(with_stars) = direction.as_ref().and_then(position_of) else { return 0.0 };
-        let star_step = with_stars.distance(*position);
-        let from_stars = with_stars.distance(c.position);
-        if from_stars < WITH_STARS_PX && star_step > APART_PX {
-            -STAR_MOTION
-        } else if self.hits > 1 && from_stars > APART_PX && position.distance(c.position) > APART_PX {
-            OWN_MOTION
-        } else {
-            0.0
+        let by_position =
+            -0.5 * distance - libm::log(std::f64::consts::TAU * variance_px2 * model.clutter_per_px2);
+        // The fluxes of clutter cover some four units of the natural logarithm.
+        let by_flux = -0.5 * flux_distance - 0.5 * libm::log(std::f64::consts::TAU * self.flux_variance())
+            + libm::log(4.0);
+        libm::log(DETECTION_PROBABILITY) + by_position.min(limit) + by_flux
+    }
+
+    /// Returns the evidence of a frame for an object that is expected at `position` with the variance
+    /// `variance_px2` along an axis besides that of the candidates, and the candidate that is most likely the
+    /// object. The sum of both cases, that the object has an image and that it has none, is the likelihood.
+    fn evidence_at<'a>(
+        &self,
+        position: PixelPoint,
+        variance_px2: f64,
+        frame: &FrameCandidates<'a>,
+        of_shape: fn(&TargetCandidate) -> f64,
+    ) -> (f64, Option<&'a TargetCandidate>) {
+        if !frame.sky.is_near_detector(position) {
+            return (0.0, None);
+        }
+        let mut best: Option<(f64, &TargetCandidate)> = None;
+        for c in frame.candidates {
+            let variance = variance_px2 + c.variance_px2;
+            let distance = squared_distance(position, c.position) / variance;
+            let flux_distance = self.flux_distance(c);
+            if distance + flux_distance > GATE {
+                continue;
+            }
+            let gain = self.log_likelihood_ratio(distance, variance, flux_distance, frame.model, MAX_AT_REST)
+                + of_shape(c);
+            if best.is_none_or(|(other, _)| gain > other) {
+                best = Some((gain, c));
+            }
+        }
+        let missed = self.log_miss(frame.model);
+        match best {
+            None => (missed, None),
+            Some((gain, c)) => (log_sum(gain, missed), (gain > missed).then_some(c)),
         }
     }
 
-    fn update_with(&mut self, index: usize, c: &TargetCandidate, gain: f64) {
+    /// Returns the evidence of a frame for the hypotheses other than the target, and moves their objects
+    /// towards their candidates. Each object has its own candidate.
+    fn follow_objects_at_rest(&mut self, frame: &FrameCandidates<'_>) -> Hypotheses {
+        let mut evidence = Hypotheses::of_any_object(0.0);
+        let mut of_pair = None;
+        for (i, scatter_px) in STAR_SCATTER_PX.into_iter().enumerate() {
+            let (about_mean, candidate) = self.star_evidence(&self.stars[i], scatter_px, frame);
+            evidence.stars[i] = about_mean;
+            if let Some(c) = candidate {
+                self.stars[i] = updated_star(self.stars[i], c, scatter_px, frame.sky);
+            }
+            of_pair = candidate;
+        }
+        // The images of a wide pair are separated or not: the centroid is that of the last frame, or anywhere
+        // about the mean.
+        let (at_last, candidate) = self.star_evidence(&self.last, AT_REST_PX, frame);
+        let about_mean = evidence.stars[STARS - 1];
+        evidence.stars[STARS - 1] = log_sum(about_mean, at_last) - std::f64::consts::LN_2;
+        if let Some(c) = if at_last > about_mean { candidate } else { of_pair } {
+            self.last = star_at(c, AT_REST_PX, frame.sky);
+        }
+        evidence.pixel = self.follow_pixel(frame);
+        evidence
+    }
+
+    /// Begins the objects at rest anew with a candidate where that has the larger weight: the clusters before
+    /// were chance, and this one is a star or a pixel that is seen for the first time.
+    fn begin_objects_at_rest(&mut self, c: &TargetCandidate, sky: Sky<'_>) {
+        for (i, scatter_px) in STAR_SCATTER_PX.into_iter().enumerate() {
+            if c.weights.stars[i] > self.hypotheses.stars[i] {
+                self.hypotheses.stars[i] = c.weights.stars[i];
+                self.stars[i] = star_at(c, scatter_px, sky);
+                self.last = star_at(c, AT_REST_PX, sky);
+            }
+        }
+        if c.weights.pixel > self.hypotheses.pixel {
+            self.hypotheses.pixel = c.weights.pixel;
+            self.pixel = AtRest { at: c.position, variance_px2: c.variance_px2 };
+        }
+    }
+
+    /// Returns the evidence of a frame for a pixel, and moves the mean position of the pixel.
+    fn follow_pixel(&mut self, frame: &FrameCandidates<'_>) -> f64 {
+        let variance_px2 = self.pixel.variance_px2 + AT_REST_PX * AT_REST_PX;
+        let (evidence, candidate) =
+            self.evidence_at(self.pixel.at, variance_px2, frame, |c| -c.point_over_pixel);
+        if let Some(c) = candidate {
+            let k = self.pixel.variance_px2 / (self.pixel.variance_px2 + c.variance_px2);
+            let at = weighted_mean(self.pixel.at, c.position, k);
+            self.pixel = AtRest { at, variance_px2: (1.0 - k) * self.pixel.variance_px2 };
+        }
+        evidence
+    }
+
+    /// Returns the evidence for a star whose centroid has the standard deviation `scatter_px`, and its
+    /// candidate; 0 without its direction.
+    fn star_evidence<'a>(
+        &self,
+        star: &Option<Star>,
+        scatter_px: f64,
+        frame: &FrameCandidates<'a>,
+    ) -> (f64, Option<&'a TargetCandidate>) {
+        let expected = star.as_ref().and_then(|star| Some((star, frame.sky.position(&star.at)?)));
+        let Some((star, position)) = expected else { return (0.0, None) };
+        let variance_px2 = star.variance_px2 + frame.attitude_variance_px2 + scatter_px * scatter_px;
+        self.evidence_at(position, variance_px2, frame, |_| 0.0)
+    }
+
+    /// Returns the natural logarithm of the probability that an object of the track's flux has no image.
+    fn log_miss(&self, model: &TrackModel) -> f64 {
+        let is_faint = libm::exp(self.log_flux) < 2.0 * model.threshold_e_per_s;
+        let detected = if is_faint { FAINT_DETECTION_PROBABILITY } else { DETECTION_PROBABILITY };
+        libm::log(1.0 - detected)
+    }
+
+    /// Returns the natural logarithm of the odds that the track is the target's.
+    pub(super) fn log_odds(&self) -> f64 {
+        self.hypotheses.log_odds()
+    }
+
+    fn update_with(&mut self, index: usize, c: &TargetCandidate) {
         let [pp, pv, vv] = self.covariance;
         let measured = c.variance_px2 + JITTER_PX * JITTER_PX;
         let (kp, kv) = (pp / (pp + measured), pv / (pp + measured));
@@ -208,19 +397,43 @@ impl Track {
         let k = self.log_flux_variance / (self.log_flux_variance + flux_noise);
         self.log_flux += k * (libm::log(c.flux_e_per_s.max(1e-9)) - self.log_flux);
         self.log_flux_variance *= 1.0 - k;
-        self.log_odds = (self.log_odds + gain).clamp(LOG_ODDS.0, LOG_ODDS.1);
-        self.last = (c.position, c.direction);
         self.hits += 1;
         self.misses = 0;
         self.candidate = Some(index);
     }
+}
 
-    fn register_miss(&mut self, model: &TrackModel) {
-        let is_faint = libm::exp(self.log_flux) < 2.0 * model.threshold_e_per_s;
-        let detected = if is_faint { FAINT_DETECTION_PROBABILITY } else { DETECTION_PROBABILITY };
-        self.log_odds = (self.log_odds + libm::log(1.0 - detected)).max(LOG_ODDS.0);
-        self.misses += 1;
-    }
+/// Returns the star that a candidate would be. `scatter_px` is the standard deviation of its centroid besides
+/// that of the candidate.
+fn star_at(c: &TargetCandidate, scatter_px: f64, sky: Sky<'_>) -> Option<Star> {
+    let variance_px2 = c.variance_px2 + c.attitude_variance_px2 + scatter_px * scatter_px;
+    sky.direction(c.position).map(|at| AtRest { at, variance_px2 })
+}
+
+/// Returns a star moved towards a candidate; a new one at the candidate if it was not known.
+fn updated_star(star: Option<Star>, c: &TargetCandidate, scatter_px: f64, sky: Sky<'_>) -> Option<Star> {
+    let predicted = star.and_then(|star| Some((star, sky.position(&star.at)?)));
+    let Some((star, position)) = predicted else { return star_at(c, scatter_px, sky) };
+    let measured = c.variance_px2 + c.attitude_variance_px2 + scatter_px * scatter_px;
+    let k = star.variance_px2 / (star.variance_px2 + measured);
+    let variance_px2 = (1.0 - k) * star.variance_px2 + AT_REST_PX * AT_REST_PX;
+    sky.direction(weighted_mean(position, c.position, k)).map(|at| AtRest { at, variance_px2 })
+}
+
+/// Returns ln (eᵃ + eᵇ).
+fn log_sum(a: f64, b: f64) -> f64 {
+    a.max(b) + libm::log1p(libm::exp(-(a - b).abs()))
+}
+
+/// Returns the squared distance of two positions, px².
+fn squared_distance(a: PixelPoint, b: PixelPoint) -> f64 {
+    let (dx, dy) = (a.x - b.x, a.y - b.y);
+    dx * dx + dy * dy
+}
+
+/// Returns (1 − k) a + k b.
+fn weighted_mean(a: PixelPoint, b: PixelPoint, k: f64) -> PixelPoint {
+    PixelPoint::new(a.x + k * (b.x - a.x), a.y + k * (b.y - a.y))
 }
 
 /// Hypotheses of a sequence.
@@ -248,12 +461,14 @@ impl Tracks {
 
     /// Returns true if the odds of the best track suffice to regard its target as found.
     pub(super) fn is_settled(&self) -> bool {
-        self.tracks.first().is_some_and(|track| track.log_odds > SETTLED_LOG_ODDS && track.misses < 2)
+        self.tracks.first().is_some_and(|track| track.log_odds() > SETTLED_LOG_ODDS && track.misses < 2)
     }
 
-    /// Returns true if the track with the best odds is expected near a position.
+    /// Returns true if the track with the best odds, or one that is no star, is expected near a position. The
+    /// shape of a cluster there tells a target at rest on the detector from a pixel.
     pub(super) fn is_expected(&self, position: PixelPoint) -> bool {
-        self.tracks.first().is_some_and(|track| {
+        let others = self.tracks.iter().skip(1).filter(|track| track.hypotheses.is_no_star());
+        self.tracks.first().into_iter().chain(others.take(MAX_EXPECTED)).any(|track| {
             let reach_px = GATE.sqrt() * track.variance_px2().sqrt();
             track.position.distance(position) <= reach_px.min(MAX_REACH_PX)
         })
@@ -266,63 +481,93 @@ impl Tracks {
 
     /// Continues tracks with the candidates of a frame, begins new tracks and ends lost ones. A candidate
     /// continues only the track with the best odds.
-    pub(super) fn update(
-        &mut self,
-        candidates: &[TargetCandidate],
-        model: &TrackModel,
-        position_of: &dyn Fn(&Direction<Icrs>) -> Option<PixelPoint>,
-    ) {
-        let mut pairs: Vec<(f64, f64, usize, usize)> = Vec::new();
+    pub(super) fn update(&mut self, frame: &FrameCandidates<'_>) {
+        let candidates = frame.candidates;
+        let of_others: Vec<Hypotheses> =
+            self.tracks.iter_mut().map(|track| track.follow_objects_at_rest(frame)).collect();
+        let mut is_taken = vec![false; candidates.len()];
+        let mut gains: Vec<Option<f64>> = vec![None; self.tracks.len()];
+        for pair in self.pairs(frame, &of_others) {
+            if !is_taken[pair.candidate] && gains[pair.track].is_none() {
+                is_taken[pair.candidate] = true;
+                gains[pair.track] = Some(pair.gain);
+                self.tracks[pair.track].update_with(pair.candidate, &candidates[pair.candidate]);
+            }
+        }
+        for (i, track) in self.tracks.iter_mut().enumerate() {
+            let target = gains[i].unwrap_or_else(|| track.log_miss(frame.model));
+            track.hypotheses.add(Hypotheses { target, ..of_others[i] });
+            track.misses += u32::from(gains[i].is_none());
+            let candidate = track.candidate.and_then(|c| candidates.get(c));
+            if let Some(c) = candidate.filter(|c| c.evidence.is_none()) {
+                track.begin_objects_at_rest(c, frame.sky);
+            }
+        }
+        self.begin(frame, &is_taken);
+        let seen = candidates.iter().filter_map(|c| Some((c.position, frame.sky.direction(c.position)?)));
+        self.recent.push_front(seen.collect());
+        self.recent.truncate(RECENT_FRAMES);
+        self.tracks
+            .retain(|track| track.misses <= MAX_MISSES && (track.misses == 0 || track.log_odds() > -10.0));
+        self.tracks.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()).then(b.hits.cmp(&a.hits)));
+        self.tracks.truncate(MAX_TRACKS);
+    }
+
+    /// Returns the possible continuations of tracks by candidates, best resulting odds first. `of_others` is
+    /// the evidence for the hypotheses of each track other than the target.
+    fn pairs(&self, frame: &FrameCandidates<'_>, of_others: &[Hypotheses]) -> Vec<Pair> {
+        let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
-            for (c, candidate) in candidates.iter().enumerate() {
+            for (c, candidate) in frame.candidates.iter().enumerate() {
                 let gain = match candidate.evidence {
                     Some(evidence) => (t == 0).then_some(evidence.min(MAX_LOG_LIKELIHOOD_RATIO)),
-                    None => track.likelihood(candidate, model),
+                    None => track.likelihood(candidate, frame.model),
                 };
                 if let Some(gain) = gain {
-                    let gain = gain + track.motion_odds(candidate, position_of);
-                    pairs.push((track.log_odds + gain, gain, t, c));
+                    let mut hypotheses = track.hypotheses;
+                    hypotheses.add(Hypotheses { target: gain, ..of_others[t] });
+                    pairs.push(Pair { log_odds: hypotheses.log_odds(), gain, track: t, candidate: c });
                 }
             }
         }
-        pairs.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
-        let mut is_taken = vec![false; candidates.len()];
-        for (_, gain, t, c) in pairs {
-            if !is_taken[c] && self.tracks[t].candidate.is_none() {
-                is_taken[c] = true;
-                self.tracks[t].update_with(c, &candidates[c], gain);
-            }
-        }
-        for track in self.tracks.iter_mut().filter(|track| track.candidate.is_none()) {
-            track.register_miss(model);
-        }
-        let with_stars = self.moved_with_the_stars(position_of);
-        for (c, candidate) in candidates.iter().enumerate() {
+        pairs.sort_by(|a, b| {
+            let by_place = (a.track, a.candidate).cmp(&(b.track, b.candidate));
+            b.log_odds.total_cmp(&a.log_odds).then(by_place)
+        });
+        pairs
+    }
+
+    /// Begins a track with every candidate that continues none.
+    fn begin(&mut self, frame: &FrameCandidates<'_>, is_taken: &[bool]) {
+        let with_stars = self.moved_with_the_stars(frame.sky);
+        for (c, candidate) in frame.candidates.iter().enumerate() {
             if is_taken[c] || candidate.evidence.is_some() {
                 continue;
             }
             let reach_px = WITH_STARS_PX + 2.0 * candidate.variance_px2.sqrt();
             let is_star = with_stars.iter().any(|at| at.distance(candidate.position) < reach_px);
-            let mut track = Track::new(c, candidate, model);
-            track.log_odds -= if is_star { STAR_MOTION } else { 0.0 };
+            let mut track = Track::new(c, candidate, frame.model, frame.sky);
+            let gain = if is_star { STAR_MOTION } else { 0.0 };
+            track.hypotheses.add(Hypotheses { target: 0.0, stars: [gain; STARS], pixel: 0.0 });
             self.tracks.push(track);
         }
-        self.recent.push_front(candidates.iter().filter_map(|c| Some((c.position, c.direction?))).collect());
-        self.recent.truncate(RECENT_FRAMES);
-        self.tracks
-            .retain(|track| track.misses <= MAX_MISSES && (track.misses == 0 || track.log_odds > -10.0));
-        self.tracks.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds).then(b.hits.cmp(&a.hits)));
-        self.tracks.truncate(MAX_TRACKS);
     }
 
     /// Returns the current image positions of the last frames' candidates, assuming that they are stars,
     /// where the stars have moved far enough since.
-    fn moved_with_the_stars(
-        &self,
-        position_of: &dyn Fn(&Direction<Icrs>) -> Option<PixelPoint>,
-    ) -> Vec<PixelPoint> {
+    fn moved_with_the_stars(&self, sky: Sky<'_>) -> Vec<PixelPoint> {
         let recent = self.recent.iter().flatten();
-        let now = recent.filter_map(|(before, direction)| Some((before, position_of(direction)?)));
+        let now = recent.filter_map(|(before, direction)| Some((before, sky.position(direction)?)));
         now.filter(|(before, now)| now.distance(**before) > APART_PX).map(|(_, now)| now).collect()
     }
+}
+
+/// Possible continuation of a track by a candidate.
+struct Pair {
+    /// Natural logarithm of the odds of the track with the candidate.
+    log_odds: f64,
+    /// Evidence of the candidate for the target.
+    gain: f64,
+    track: usize,
+    candidate: usize,
 }
