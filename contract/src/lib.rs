@@ -51,7 +51,7 @@ pub use error::ContractError;
 pub use far_range::{FarRange, Setup};
 pub use frame::{Frame, Window};
 pub use measurement::{AttitudeSource, Cluster, Label, Measurement, NoSolution, Outcome, Solution};
-pub use pipeline::{FailedStarts, Interface, Pipeline, PipelineFactory};
+pub use pipeline::{FailedStarts, Interface, MachineFault, Pipeline, PipelineFactory};
 pub use pixel::PixelPoint;
 pub use readout::Readout;
 pub use rotation::Rotation;

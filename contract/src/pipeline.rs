@@ -45,6 +45,21 @@ pub trait Pipeline<I: Interface>: Send {
     fn failed_starts(&self) -> Option<&FailedStarts> {
         None
     }
+
+    /// Returns the fault of the machine that kept the last image from the pipeline, a full disk for instance;
+    /// `None` if it received the image. The outcome of such an image is not the pipeline's: the caller ends
+    /// the sequence.
+    fn machine_fault(&self) -> Option<&MachineFault> {
+        None
+    }
+}
+
+/// Fault of the machine on which a pipeline runs, not of the pipeline.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{reason}; the image did not reach the pipeline, and nothing was scored")]
+pub struct MachineFault {
+    /// What failed, and why.
+    pub reason: String,
 }
 
 /// Consecutive failed starts of a pipeline. One start is attempted per image until one succeeds.

@@ -43,7 +43,9 @@ fn print_interruption() {
 /// Creates a temporary directory; removed when the value is dropped, or when the process is requested to end.
 pub(super) fn scratch_directory() -> Result<ScratchDirectory, Failure> {
     clean_up_when_interrupted();
-    ScratchDirectory::create(&std::env::temp_dir())
+    // Programs may change their directory: a relative TMPDIR would then be another one.
+    let folder = std::env::temp_dir();
+    ScratchDirectory::create(&std::path::absolute(&folder).unwrap_or(folder))
 }
 
 /// Installs a handler for SIGINT, SIGTERM and SIGHUP. The handler ends the programs of pipelines, removes

@@ -25,6 +25,10 @@ pub(super) struct RunArguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,
+    /// Draw a secret seed instead of the scenario's: the program cannot know or make its frames beforehand.
+    /// The seed is in the run's `run.toml`, which the sandbox hides from the program
+    #[arg(long, requires = "sandbox", conflicts_with = "seed")]
+    blind: bool,
     #[command(flatten)]
     attitude: AttitudeOption,
     /// Replace the result of this stage of the built-in pipeline by the truth, to measure the stage's
@@ -59,6 +63,7 @@ impl RunArguments {
             selection: Selection::for_scenario("argon"),
             out: None,
             pipeline: PipelineOptions::default(),
+            blind: false,
             attitude: AttitudeOption::default(),
             inject: None,
             save_frames: None,
@@ -70,7 +75,10 @@ impl RunArguments {
 }
 
 pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
-    let source = arguments.selection.scenario()?;
+    let mut source = arguments.selection.scenario()?;
+    if arguments.blind {
+        source.scenario.set_seed(secret_seed()?);
+    }
     let out = arguments.out.as_deref().unwrap_or(Path::new(RUNS));
     let hidden = [Path::new(&arguments.selection.scenario), Path::new(RUNS), out];
     let (world, choice) = (source.world(), arguments.pipeline.choice(&hidden));
@@ -118,4 +126,14 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         navigate: arguments.navigate,
     };
     execute(prepared.as_ref(), &frame_jobs, &factory, &directory, shown, output)
+}
+
+/// Draws a seed that nobody knows: 63 bits, the range of seeds in files.
+///
+/// # Errors
+/// [`Failure::Usage`] if the operating system gives no random numbers.
+fn secret_seed() -> Result<u64, Failure> {
+    let bits = getrandom::u64()
+        .map_err(|error| Failure::Usage(format!("--blind: the system gives no random numbers: {error}")))?;
+    Ok(bits >> 1)
 }

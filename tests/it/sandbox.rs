@@ -5,7 +5,7 @@ use crate::support::Bench;
 /// A program that answers every frame with a list of everything it could reach; it reads the image and a
 /// module beside it in any case.
 const CURIOUS: &str = r#"
-import json, os, pathlib, socket, sys, tempfile
+import json, os, pathlib, socket, subprocess, sys, tempfile
 import beside
 
 json.loads(sys.stdin.readline())
@@ -22,6 +22,9 @@ def attempts(image):
     yield "variable", lambda: os.environ["BORESIGHT_SECRET"]
     yield "writing", lambda: pathlib.Path("left.txt").write_text("seen")
     yield "network", lambda: socket.create_connection(("127.0.0.1", int(os.environ["PORT"])), 5).close()
+    yield "datagrams", lambda: socket.socket(socket.AF_INET, socket.SOCK_DGRAM).close()
+    yield "shared memory", lambda: open("/dev/shm/boresight-sandbox-test", "wb").close()
+    yield "simulator", lambda: subprocess.run(["boresight", "--version"], check=True, stdout=subprocess.DEVNULL)
 
 for line in sys.stdin:
     asked = json.loads(line)
@@ -57,6 +60,10 @@ fn the_truth_is_out_of_reach() {
     bench.set("FOREIGN", elsewhere.path("notes.txt"));
     bench.set("PORT", listener.local_addr().unwrap().port().to_string());
     bench.set("BORESIGHT_SECRET", "4");
+    let program = std::path::Path::new(env!("CARGO_BIN_EXE_boresight")).parent().unwrap();
+    let search_path = std::env::var_os("PATH").unwrap();
+    let search_path = [program.to_owned()].into_iter().chain(std::env::split_paths(&search_path));
+    bench.set("PATH", std::env::join_paths(search_path).unwrap());
     bench.scenario("sky.toml", "starting-point", |_| {});
     bench.write("curious.py", CURIOUS);
     bench.write("beside.py", "WORD = 'own'\n");
@@ -65,9 +72,11 @@ fn the_truth_is_out_of_reach() {
     // Without a sandbox a program has the rights of its caller; Boresight's own environment variables are not
     // passed on.
     let all = reached(&bench, "--out out-1");
-    for name in ["earlier truth", "scenario", "command line", "foreign folder", "writing", "network"] {
+    let open = ["earlier truth", "scenario", "command line", "foreign folder", "writing", "network"];
+    for name in open.into_iter().chain(["datagrams", "shared memory", "simulator"]) {
         assert!(all.contains(name), "{name}: {all}");
     }
+    std::fs::remove_file("/dev/shm/boresight-sandbox-test").unwrap();
     assert!(!all.contains("variable"), "{all}");
     std::fs::remove_file(bench.path("left.txt")).unwrap();
 
@@ -91,6 +100,32 @@ fn a_dataset_hides_its_truth_as_well() {
         ["process", "data", "--out", "mine.csv", "--sandbox", "--pipeline", "exec:python3 curious.py"];
     bench.boresight_words(&words).done();
     assert_eq!(bench.csv("mine.csv")[0]["status"], "failed: scenario");
+}
+
+/// A blind run has a seed that the program cannot know, and can be repeated afterwards.
+#[test]
+fn a_blind_run_draws_a_secret_seed() {
+    let bench = Bench::new();
+    bench.scenario("sky.toml", "starting-point", |_| {});
+    bench.write("curious.py", CURIOUS);
+    bench.write("beside.py", "WORD = 'own'\n");
+    let blind = |out: &'static str| {
+        let words =
+            ["run", "sky.toml", "--frames", "0..1", "--no-report", "--out", out, "--sandbox", "--blind"];
+        let words: Vec<&str> = words.into_iter().chain(["--pipeline", "exec:python3 curious.py"]).collect();
+        bench.boresight_words(&words).done();
+        assert_eq!(bench.csv(&format!("{out}/measurements.csv"))[0]["status"], "failed: nothing");
+        let run = bench.read(&format!("{out}/run.toml"));
+        let seed = run.lines().find_map(|line| line.strip_prefix("seed = ")).unwrap();
+        seed.parse::<u64>().unwrap()
+    };
+    let seeds = ["out-1", "out-2"].map(blind);
+    assert!(seeds[0] != seeds[1] && seeds.iter().all(|seed| *seed > 1_000_000), "{seeds:?}");
+    let words = format!("run sky.toml --frames 0..1 --no-report --out again --seed {}", seeds[0]);
+    bench.boresight(&words).done();
+    assert_eq!(bench.tree("again/truth"), bench.tree("out-1/truth"));
+
+    bench.boresight("run sky.toml --out out-3 --blind").refused(&["--sandbox"]);
 }
 
 #[test]

@@ -41,7 +41,7 @@ impl<I: Interface, L: CsvLine + for<'a> From<(u64, &'a I::Outcome)>> Answers<I> 
         CsvWriter::create(measurements).map(Self)
     }
 
-    fn add(&mut self, number: u64, outcome: &I::Outcome) -> Result<(), FileError> {
+    fn add(&mut self, number: u64, _: &I::Telemetry, outcome: &I::Outcome) -> Result<(), FileError> {
         self.0.line(&L::from((number, outcome)))
     }
 

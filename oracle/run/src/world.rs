@@ -346,7 +346,7 @@ pub trait World: Sized + Send + Sync + 'static {
             first_failure = first_failure
                 .take()
                 .or_else(|| FirstFailure::from_outcome::<Self::Interface>(number, &outcome));
-            answers.add(number, &outcome)?;
+            answers.add(number, &telemetry, &outcome)?;
             scorer.add(&truth, &telemetry, &outcome)?;
             if let Some((pipeline, scorer)) = &mut beside {
                 scorer.add(&truth, &telemetry, &pipeline.process(&image, &telemetry))?;
@@ -508,10 +508,10 @@ pub trait Answers<I: Interface>: Sized {
     ///
     /// # Errors
     /// [`FileError`] when a file cannot be written.
-    fn add(&mut self, number: u64, outcome: &I::Outcome) -> Result<(), FileError>;
+    fn add(&mut self, number: u64, telemetry: &I::Telemetry, outcome: &I::Outcome) -> Result<(), FileError>;
 
     /// Returns a summary of all outcomes so far, if the world provides one.
-    fn summary(&self) -> Option<AnswerSummary> {
+    fn summary(&self, _setup: &I::Setup) -> Option<AnswerSummary> {
         None
     }
 
@@ -587,6 +587,7 @@ impl<W: World> RunningPipeline<W> {
             Processor::Own(pipeline) => pipeline.process(&image, &telemetry),
             Processor::Informed(pipeline) => pipeline.process(&image, &telemetry, &truth)?,
         };
+        self.check_machine()?;
         self.feedback = W::feedback(self.feedback.clone(), &outcome);
         Ok(FrameAnswer { image, telemetry, truth, outcome })
     }
@@ -602,6 +603,14 @@ impl<W: World> RunningPipeline<W> {
         check_starts(self.failed_starts())
     }
 
+    /// Returns an error if the machine kept the last image from the pipeline.
+    fn check_machine(&self) -> Result<(), Failure> {
+        match &self.pipeline {
+            Processor::Own(pipeline) => check_machine(pipeline.as_ref()),
+            Processor::Informed(_) => Ok(()),
+        }
+    }
+
     fn incomplete(&self, frames: &Range<u64>) -> Option<IncompleteRun> {
         self.failed_starts()
             .map(|failed| IncompleteRun::from_failed_starts(frames.end - frames.start, failed))
@@ -612,6 +621,14 @@ impl<W: World> RunningPipeline<W> {
 fn check_starts(failed: Option<&FailedStarts>) -> Result<(), Failure> {
     match failed.filter(|failed| failed.count >= MAX_FAILED_STARTS) {
         Some(failed) => Err(failed.clone().into()),
+        None => Ok(()),
+    }
+}
+
+/// Returns an error if the machine kept the last image from a pipeline.
+fn check_machine<I: Interface>(pipeline: &dyn Pipeline<I>) -> Result<(), Failure> {
+    match pipeline.machine_fault() {
+        Some(fault) => Err(fault.clone().into()),
         None => Ok(()),
     }
 }
@@ -694,9 +711,10 @@ pub fn process_into<I: Interface, A: Answers<I>>(
     for image in images {
         let (image, telemetry) = image?;
         let (number, outcome) = (I::number(&image), pipeline.process(&image, &telemetry));
+        check_machine(pipeline.as_ref())?;
         let failure = || FirstFailure::from_outcome::<I>(number, &outcome);
         processed.first_failure = processed.first_failure.or_else(failure);
-        answers.add(number, &outcome)?;
+        answers.add(number, &telemetry, &outcome)?;
         processed.frames += 1;
         done();
         check_starts(pipeline.failed_starts())?;
@@ -704,7 +722,7 @@ pub fn process_into<I: Interface, A: Answers<I>>(
     if let Some(failed) = pipeline.failed_starts() {
         return Err(failed.clone().into());
     }
-    processed.summary = answers.summary();
+    processed.summary = answers.summary(setup);
     answers.finish()?;
     Ok(processed)
 }

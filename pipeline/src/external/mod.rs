@@ -2,7 +2,8 @@
 //!
 //! For each frame, the process receives one JSON line on its standard input and answers with one JSON line on
 //! its standard output. The lines are described in [`protocol`], those of docking in [`docking_protocol`].
-//! Any fault of the process is an outcome with a reason, never an error of the run:
+//! Any fault of the process is an outcome with a reason, never an error of the run; a fault of the machine (a
+//! full disk) is [`contract::Pipeline::machine_fault`], with which the caller ends the run:
 //!
 //! - An answer that cannot be used (garbage, a number that is missing, not finite or off the detector, the
 //!   wrong frame) costs its frame only; the next frame is sent regardless.
@@ -36,9 +37,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use contract::{ContractError, FailedStarts, Interface, Pipeline, PipelineFactory};
+use contract::{ContractError, FailedStarts, Interface, MachineFault, Pipeline, PipelineFactory};
 
-use plan::{ProcessPlan, name};
+use plan::{ProcessPlan, StartError, name};
 use process::Process;
 
 /// Function that writes an image (far range: FITS of 16 bits, BZERO 32768; docking: grey PNG) to a path that
@@ -123,6 +124,7 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
             first_start: Some(start::<I>(&plan, setup)),
             process: None,
             failed_starts: None,
+            machine_fault: None,
             setup: setup.clone(),
             plan,
             images: Images::new(&self.scratch_dir, I::EXTENSION),
@@ -133,17 +135,18 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
 }
 
 /// Starts the process of a sequence and greets it.
-fn start<I: Protocol>(plan: &ProcessPlan, setup: &I::Setup) -> Result<Process, String> {
+fn start<I: Protocol>(plan: &ProcessPlan, setup: &I::Setup) -> Result<Process, StartError> {
     plan.start(I::greeting(setup), protocol::check_greeting).map(|(process, ())| process)
 }
 
 /// One sequence processed by one process.
 struct ExternalPipeline<I: Protocol> {
     /// Result of the first start, kept until the first image.
-    first_start: Option<Result<Process, String>>,
+    first_start: Option<Result<Process, StartError>>,
     /// Process after its greeting, or the reason why it was ended afterwards.
     process: Option<Result<Process, String>>,
     failed_starts: Option<FailedStarts>,
+    machine_fault: Option<MachineFault>,
     setup: I::Setup,
     plan: ProcessPlan,
     images: Images,
@@ -153,16 +156,42 @@ struct ExternalPipeline<I: Protocol> {
 
 impl<I: Protocol> Pipeline<I> for ExternalPipeline<I> {
     fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome {
-        self.answer(image, telemetry).unwrap_or_else(I::failed)
+        match self.answer(image, telemetry) {
+            Ok(outcome) => outcome,
+            Err(NoAnswer::Program(reason)) => I::failed(reason),
+            Err(NoAnswer::Machine(reason)) => {
+                let reason = format!("at {} {}, {reason}", I::IMAGE, I::number(image));
+                self.machine_fault = Some(MachineFault { reason: reason.clone() });
+                I::failed(reason)
+            }
+        }
     }
 
     fn failed_starts(&self) -> Option<&FailedStarts> {
         self.failed_starts.as_ref()
     }
+
+    fn machine_fault(&self) -> Option<&MachineFault> {
+        self.machine_fault.as_ref()
+    }
+}
+
+/// Reason why there is no answer to an image.
+enum NoAnswer {
+    /// The program is at fault.
+    Program(String),
+    /// The machine is at fault.
+    Machine(String),
+}
+
+impl From<String> for NoAnswer {
+    fn from(reason: String) -> Self {
+        Self::Program(reason)
+    }
 }
 
 impl<I: Protocol> ExternalPipeline<I> {
-    fn answer(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> Result<I::Outcome, String> {
+    fn answer(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> Result<I::Outcome, NoAnswer> {
         let state = match &mut self.process {
             Some(state) => state,
             None => match self.first_start.take().unwrap_or_else(|| start::<I>(&self.plan, &self.setup)) {
@@ -170,10 +199,11 @@ impl<I: Protocol> ExternalPipeline<I> {
                     self.failed_starts = None;
                     self.process.insert(Ok(process))
                 }
-                Err(reason) => {
+                Err(StartError::Machine(reason)) => return Err(NoAnswer::Machine(reason)),
+                Err(StartError::Program(reason)) => {
                     let count = self.failed_starts.as_ref().map_or(0, |failed| failed.count) + 1;
                     self.failed_starts = Some(FailedStarts { count, reason: reason.clone() });
-                    return Err(reason);
+                    return Err(reason.into());
                 }
             },
         };
@@ -181,14 +211,14 @@ impl<I: Protocol> ExternalPipeline<I> {
         let number = I::number(image);
         let file = self.images.image_file(number);
         (self.write_image)(image, telemetry, &file.path)
-            .map_err(|error| format!("the image cannot be written: {error}"))?;
-        let request = I::request(image, telemetry, self.write_time, &file.path)?;
+            .map_err(|error| NoAnswer::Machine(format!("the image cannot be written: {error}")))?;
+        let request = I::request(image, telemetry, self.write_time, &file.path).map_err(NoAnswer::Machine)?;
         match process.exchange(request, self.plan.frame_limit) {
-            Ok(line) => I::outcome(&line, number, &self.setup),
+            Ok(line) => Ok(I::outcome(&line, number, &self.setup)?),
             Err(fault) => {
                 let reason = format!("at {} {number}, {}", I::IMAGE, process.end(fault));
                 *state = Err(reason.clone());
-                Err(reason)
+                Err(reason.into())
             }
         }
     }

@@ -103,7 +103,8 @@ impl NavigatorFactory for ExternalNavigatorFactory {
         let plan = self.plan()?;
         let greeting = line(&Line::Setup(Box::new(SetupLine::new(setup, &self.write_time))));
         let cannot_build = |reason| ContractError::CannotBuild { pipeline: self.name(), reason };
-        let (process, mode) = plan.start(greeting, check_greeting).map_err(cannot_build)?;
+        let (process, mode) =
+            plan.start(greeting, check_greeting).map_err(|error| cannot_build(error.to_string()))?;
         let first = *self.mode.get_or_init(|| mode);
         if first != mode {
             return Err(cannot_build(format!("its mode is {mode:?}, and was {first:?} at its first start")));

@@ -4,9 +4,21 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use contract::ContractError;
+use thiserror::Error;
 
 use super::process::{Fault, Process};
 use super::sandbox::Sandbox;
+
+/// Reason why a program does not start or does not greet.
+#[derive(Debug, Clone, Error)]
+pub(super) enum StartError {
+    /// The program is at fault.
+    #[error("{0}")]
+    Program(String),
+    /// The machine is at fault: it lacks memory, processes, open files or space on a disk.
+    #[error("{0}")]
+    Machine(String),
+}
 
 /// Default memory limit of a process, MB (10⁶ bytes).
 pub const DEFAULT_MEMORY_MB: u64 = 4000;
@@ -77,25 +89,49 @@ impl ProcessPlan {
         }
     }
 
-    /// Starts the process and greets it, and returns what `read` makes of its answer; the reason when one of
-    /// them fails.
+    /// Starts the process and greets it, and returns what `read` makes of its answer.
+    ///
+    /// # Errors
+    /// [`StartError`] with the reason.
     pub(super) fn start<T>(
         &self,
         greeting: Result<Vec<u8>, String>,
         read: impl FnOnce(&[u8]) -> Result<T, String>,
-    ) -> Result<(Process, T), String> {
+    ) -> Result<(Process, T), StartError> {
         let mut process =
             Process::start(&self.program, &self.arguments, self.memory_bytes, self.sandbox.as_ref())
-                .map_err(|error| format!("`{}` cannot be started: {error}", self.program))?;
+                .map_err(|error| self.start_error(&error))?;
         let greeted = greeting
             .map_err(Fault::Broken)
             .and_then(|line| process.exchange(line, self.start_limit))
             .and_then(|line| read(&line).map_err(Fault::Broken));
         match greeted {
             Ok(answer) => Ok((process, answer)),
-            Err(fault) => Err(format!("during the greeting, {}", process.end(fault))),
+            Err(fault) => Err(StartError::Program(format!("during the greeting, {}", process.end(fault)))),
         }
     }
+
+    fn start_error(&self, error: &std::io::Error) -> StartError {
+        let reason = format!("`{}` cannot be started: {error}", self.program);
+        if is_of_machine(error) { StartError::Machine(reason) } else { StartError::Program(reason) }
+    }
+}
+
+/// Returns true if the machine lacks what every program needs to start.
+fn is_of_machine(error: &std::io::Error) -> bool {
+    use std::io::ErrorKind;
+    // Numbers of open files of the process and of the system, which have no kind.
+    let lacks_files = cfg!(unix) && matches!(error.raw_os_error(), Some(23 | 24));
+    let kinds = [
+        ErrorKind::StorageFull,
+        ErrorKind::QuotaExceeded,
+        ErrorKind::FileTooLarge,
+        ErrorKind::ReadOnlyFilesystem,
+        ErrorKind::OutOfMemory,
+        // A limit on the number of processes (EAGAIN).
+        ErrorKind::WouldBlock,
+    ];
+    lacks_files || kinds.contains(&error.kind())
 }
 
 /// Refuses a sandbox that the system does not support.

@@ -1,6 +1,7 @@
 //! Access of an external pipeline: its frames, its files and the system, but not the truth.
 //!
-//! Enforced by the kernel (Landlock, Linux 5.13 and later) for the process and all processes that it starts.
+//! Enforced by the kernel for the process and all processes that it starts: Landlock (Linux 5.13 and later)
+//! for files, TCP and signals, seccomp for all other sockets.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
@@ -34,15 +35,15 @@ const SYSTEM: [&str; 14] = [
     "/proc/meminfo",
 ];
 
-/// Devices without stored data, and devices for computation.
+/// Devices without stored data, and devices for computation. Shared memory is not among them: what a program
+/// leaves there survives into the next run.
 #[cfg(target_os = "linux")]
-const DEVICES: [&str; 11] = [
+const DEVICES: [&str; 10] = [
     "/dev/null",
     "/dev/zero",
     "/dev/full",
     "/dev/random",
     "/dev/urandom",
-    "/dev/shm",
     "/dev/dri",
     "/dev/kfd",
     "/dev/nvidia0",
@@ -63,6 +64,10 @@ mod landlocked {
     use landlock::{
         ABI, Access, AccessFs, AccessNet, CompatLevel, Compatible, LandlockStatus, PathBeneath, PathFd,
         Ruleset, RulesetAttr, RulesetCreated, RulesetCreatedAttr, Scope,
+    };
+    use seccompiler::{
+        BpfProgram, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter,
+        SeccompRule,
     };
 
     use super::*;
@@ -106,6 +111,7 @@ mod landlocked {
                     rules = allow(rules, path, AccessFs::from_all(NEWEST))?;
                 }
                 let status = rules.restrict_self().map_err(std::io::Error::other)?;
+                seccompiler::apply_filter(&without_network()?).map_err(std::io::Error::other)?;
                 match status.landlock {
                     LandlockStatus::Available { .. } => spawn(command),
                     _ => Err(std::io::Error::other(MISSING)),
@@ -142,7 +148,10 @@ mod landlocked {
                     _ => {}
                 }
             }
-            grants
+            match std::env::current_exe().and_then(|program| program.canonicalize()) {
+                Ok(own) => without(grants, &own),
+                Err(_) => grants,
+            }
         }
 
         /// Grants access to the contents of a directory, except runs and hidden entries.
@@ -170,6 +179,49 @@ mod landlocked {
         whole: Vec<PathBuf>,
         /// Directories of which only the names, including those of subdirectories, are readable.
         listed: Vec<PathBuf>,
+    }
+
+    /// Returns what is left of `readable` without a file: the other entries of each directory that contains it.
+    /// A program in the sandbox cannot run Boresight to make the frames with their truth.
+    fn without(readable: Readable, file: &Path) -> Readable {
+        let mut rest = Readable { whole: Vec::new(), listed: readable.listed };
+        let mut pending = readable.whole;
+        while let Some(path) = pending.pop() {
+            let resolved = path.canonicalize().unwrap_or_else(|_| path.clone());
+            if resolved == file {
+                continue;
+            }
+            if !file.starts_with(&resolved) {
+                rest.whole.push(path);
+                continue;
+            }
+            let entries = std::fs::read_dir(&path).into_iter().flatten().flatten();
+            pending.extend(entries.map(|entry| entry.path()));
+            rest.listed.push(path);
+        }
+        rest
+    }
+
+    /// Returns a filter that refuses all sockets but those of the file system (`AF_UNIX`), which Landlock
+    /// governs, and `io_uring`, which makes sockets without `socket`.
+    fn without_network() -> std::io::Result<BpfProgram> {
+        let other_than_unix = || {
+            let family = libc::AF_UNIX as u64;
+            SeccompCondition::new(0, SeccompCmpArgLen::Dword, SeccompCmpOp::Ne, family)
+                .and_then(|condition| SeccompRule::new(vec![condition]))
+        };
+        let filter = || -> Result<BpfProgram, seccompiler::BackendError> {
+            let rules =
+                [(libc::SYS_socket, vec![other_than_unix()?]), (libc::SYS_io_uring_setup, Vec::new())];
+            SeccompFilter::new(
+                rules.into_iter().collect(),
+                SeccompAction::Allow,
+                SeccompAction::Errno(libc::EACCES as u32),
+                std::env::consts::ARCH.try_into()?,
+            )?
+            .try_into()
+        };
+        filter().map_err(std::io::Error::other)
     }
 
     /// Newest supported version of the access rights. An older kernel enforces the rights that it supports.

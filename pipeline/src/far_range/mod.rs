@@ -25,7 +25,10 @@ mod unusable_frame;
 
 pub use aberration::aberration_correction;
 pub use attitude::AttitudeConfig;
-pub use best::{AttitudePrior, BestConfig};
+pub use best::{
+    AttitudePrior, BestConfig, InputMistake, Mounting, PixelOrder, QuaternionForm, QuaternionOrder,
+    UnmatchedFrame, find_mistake,
+};
 pub use config::{AberrationConfig, FarRangeConfig, Mode};
 pub use detect::Weights;
 pub use hotspots::HotspotConfig;

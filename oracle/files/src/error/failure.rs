@@ -26,6 +26,9 @@ pub enum Failure {
     /// A pipeline that never started.
     #[error(transparent)]
     NotStarted(#[from] contract::FailedStarts),
+    /// A fault of the machine that kept an image from a pipeline.
+    #[error(transparent)]
+    Machine(#[from] contract::MachineFault),
     /// The request was cancelled.
     #[error("interrupted")]
     Interrupted,

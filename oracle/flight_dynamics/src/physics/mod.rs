@@ -9,6 +9,5 @@ mod motion;
 mod slip;
 
 pub(crate) use attitude::{PointingNode, check_pointing, check_pointing_border};
-pub(crate) use findings::Findings;
 pub use motion::check_samples;
 pub(crate) use motion::{MotionSegment, check_motion, implausible_state};

@@ -4,7 +4,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use contract::docking::{Docking, DockingOutcome};
+use contract::docking::{Docking, DockingOutcome, FieldTelemetry};
 use files::docking::{FeatureRow, FieldMeasurementWriter, MotionWriter, outcome_as_filed, report_as_filed};
 use files::{FileError, TableWriter};
 
@@ -42,7 +42,7 @@ impl Answers<Docking> for FieldAnswers {
         })
     }
 
-    fn add(&mut self, field: u64, outcome: &DockingOutcome) -> Result<(), FileError> {
+    fn add(&mut self, field: u64, _: &FieldTelemetry, outcome: &DockingOutcome) -> Result<(), FileError> {
         self.measurements.write(field, outcome)?;
         if let Some((motion, features)) = &mut self.more {
             if let Some(report) = &outcome.motion {

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use contract::{AttitudeSource, FarRange, Outcome};
+use contract::{AttitudeSource, FarRange, Outcome, Setup, Telemetry};
 use files::{FileError, FrameCluster, MeasurementWriter, TableWriter};
 use indexmap::IndexMap;
+use pipeline::far_range::{UnmatchedFrame, find_mistake};
 
 use crate::run_result::AnswerSummary;
 use crate::world::{Answers, paths};
@@ -14,7 +15,13 @@ pub struct FrameAnswers {
     measurements: MeasurementWriter,
     clusters: TableWriter<FrameCluster>,
     attitudes: AttitudeCounts,
+    /// First frames without a matched star, among those that have clusters enough.
+    unmatched: Vec<UnmatchedFrame>,
 }
+
+/// Number of frames kept for the search for a mistake, and smallest number of clusters of such a frame.
+const KEPT_FRAMES: usize = 8;
+const KEPT_CLUSTERS: usize = 5;
 
 impl Answers<FarRange> for FrameAnswers {
     fn files(measurements: &Path) -> Vec<PathBuf> {
@@ -27,22 +34,43 @@ impl Answers<FarRange> for FrameAnswers {
             measurements: MeasurementWriter::create(measurements)?,
             clusters: TableWriter::create(clusters)?,
             attitudes: AttitudeCounts::default(),
+            unmatched: Vec::new(),
         })
     }
 
-    fn add(&mut self, frame: u64, outcome: &Outcome) -> Result<(), FileError> {
+    fn add(&mut self, frame: u64, telemetry: &Telemetry, outcome: &Outcome) -> Result<(), FileError> {
         self.measurements.write(frame, outcome)?;
         self.attitudes.add(outcome.attitude_source);
+        self.keep_unmatched(telemetry, outcome);
         self.clusters.write(outcome.clusters.iter().map(|&cluster| FrameCluster { frame, cluster }))
     }
 
-    fn summary(&self) -> Option<AnswerSummary> {
-        self.attitudes.summary()
+    /// Adds what makes the stars fit, if they fit in fewer than half of the frames.
+    fn summary(&self, setup: &Setup) -> Option<AnswerSummary> {
+        let mut summary = self.attitudes.summary()?;
+        if self.attitudes.are_mostly_unmatched()
+            && let Some(mistake) = find_mistake(setup, &self.unmatched)
+        {
+            summary.text.push_str(&format!("\n{mistake}"));
+        }
+        Some(summary)
     }
 
     fn finish(self) -> Result<(), FileError> {
         self.clusters.finish()?;
         self.measurements.finish()
+    }
+}
+
+impl FrameAnswers {
+    fn keep_unmatched(&mut self, telemetry: &Telemetry, outcome: &Outcome) {
+        let is_unmatched =
+            matches!(outcome.attitude_source, Some(AttitudeSource::NoMatch | AttitudeSource::NoStars));
+        if !is_unmatched || outcome.clusters.len() < KEPT_CLUSTERS || self.unmatched.len() >= KEPT_FRAMES {
+            return;
+        }
+        let sources = outcome.clusters.iter().map(|cluster| (cluster.position, cluster.size)).collect();
+        self.unmatched.push(UnmatchedFrame { sources, body_from_icrs: telemetry.body_from_icrs });
     }
 }
 
@@ -59,6 +87,12 @@ impl AttitudeCounts {
         if let Some(source) = source {
             *self.stated.entry(source.code()).or_default() += 1;
         }
+    }
+
+    /// Returns true if stars determine the attitude in fewer than half of the frames.
+    fn are_mostly_unmatched(&self) -> bool {
+        let of_stars = self.stated.get(AttitudeSource::Stars.code()).copied().unwrap_or(0);
+        2 * of_stars < self.frames
     }
 
     /// Summarises the sources, for instance `attitude from stars in 5 of 8 frames; 2 with too few stars, 1

@@ -6,8 +6,8 @@ use super::lost_in_space;
 use super::mounting::AttitudeError;
 use super::photometry::{FittedSource, PhotometryContext, Source};
 use super::stars::{
-    ExpectedStar, StarCandidate, StarMeasurement, are_confirmed, image_covariance, matches_at_positions,
-    matches_by_offset, solve_attitude,
+    ExpectedStar, StarCandidate, StarMeasurement, are_confirmed, image_covariance, is_contradicted,
+    matches_at_positions, matches_by_offset, solve_attitude,
 };
 use super::start::AttitudeStart;
 use super::state::{BestPipeline, ScaleSource};
@@ -45,6 +45,16 @@ impl FrameAttitude {
             count if count < lost_in_space::MIN_MATCHED => AttitudeSource::TooFewStars,
             _ => AttitudeSource::NoMatch,
         };
+        Self::without_attitude(source, sources)
+    }
+
+    /// Returns the result for a frame whose stars contradict the attitude of the telemetry: many must have an
+    /// image there, and none has. The attitude has an unknown error, and no line of sight follows from it.
+    fn contradicted(sources: &[Source]) -> Self {
+        Self::without_attitude(AttitudeSource::NoMatch, sources)
+    }
+
+    fn without_attitude(source: AttitudeSource, sources: &[Source]) -> Self {
         let any = nalgebra::Matrix3::identity() * (std::f64::consts::PI * std::f64::consts::PI);
         Self {
             camera_from_icrs: None,
@@ -224,6 +234,12 @@ impl BestPipeline {
         }
         if overrides.camera_from_icrs.is_none() && self.lost_in_space.is_none() {
             self.mounting.update(&prior, &error);
+        }
+        if n_stars == 0
+            && overrides.camera_from_icrs.is_none()
+            && is_contradicted(&expected, candidates.len(), context.threshold_e, is_in_image)
+        {
+            return FrameAttitude::contradicted(sources);
         }
         self.update_estimates(&matched, &candidates, &expected, &fits, telemetry.exposure_s);
         let source = match n_stars {

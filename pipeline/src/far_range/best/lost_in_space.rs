@@ -47,7 +47,6 @@ pub(super) struct FoundAttitude {
     pub(super) covariance: Matrix3<f64>,
     /// Sources, by their index in the argument, with their stars: at least four, each source and each star
     /// once.
-    #[cfg_attr(not(test), expect(dead_code, reason = "tests hold the matches against the truth"))]
     pub(super) matched: Vec<(usize, ListedStar)>,
 }
 

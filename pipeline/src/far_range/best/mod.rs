@@ -2,6 +2,7 @@
 //! fit of the target's image with all knowledge of the camera (docs/best-mode.md).
 
 mod config;
+mod diagnosis;
 mod faint_points;
 mod frame_attitude;
 mod hot_pixels;
@@ -22,4 +23,7 @@ mod tracks;
 mod unlisted_stars;
 
 pub use config::{AttitudePrior, BestConfig};
+pub use diagnosis::{
+    InputMistake, Mounting, PixelOrder, QuaternionForm, QuaternionOrder, UnmatchedFrame, find_mistake,
+};
 pub(super) use state::BestPipeline;

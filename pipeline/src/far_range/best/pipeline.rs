@@ -128,9 +128,7 @@ impl BestPipeline {
         };
         let known = self.known_sources(&attitude, trail_px);
         let exposure_s = telemetry.exposure_s;
-        let limit_e = self.star_limit_e(exposure_s);
-        let unlisted_stars =
-            UnlistedStars::new(attitude.expected.len(), attitude.n_stars > 0, limit_e, context.threshold_e);
+        let unlisted_stars = self.unlisted_stars(&attitude, sources, exposure_s, context.threshold_e);
         let inputs = TargetContext {
             context,
             sources,
@@ -199,6 +197,22 @@ impl BestPipeline {
             n_stars: Some(attitude.n_stars),
             clusters: clusters.collect(),
         }
+    }
+
+    /// Returns the distribution of the stars in a frame that are not identified. Without an attitude every
+    /// cluster may be a star.
+    fn unlisted_stars(
+        &self,
+        attitude: &FrameAttitude,
+        sources: &[Source],
+        exposure_s: f64,
+        threshold_e: f64,
+    ) -> UnlistedStars {
+        if attitude.camera_from_icrs.is_none() {
+            return UnlistedStars::new(sources.len(), false, None, threshold_e);
+        }
+        let limit_e = self.star_limit_e(exposure_s);
+        UnlistedStars::new(attitude.expected.len(), attitude.n_stars > 0, limit_e, threshold_e)
     }
 
     /// Returns the flux of a star at the limit of the star list, electrons; `None` without a list or a scale

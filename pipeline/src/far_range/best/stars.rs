@@ -170,6 +170,27 @@ pub(super) fn are_confirmed(
     stars.iter().filter(is_missing).count() <= matched.len()
 }
 
+/// Smallest number of listed stars without an image that contradicts an attitude.
+const CONTRADICTING_STARS: usize = 5;
+
+/// Returns true if a frame without matched stars contradicts its attitude: at least five listed stars must
+/// have an image. While the brightness scale is unknown, they must have one if the frame has as many clusters.
+/// `is_in_image` returns true if the position of a star was transmitted.
+pub(super) fn is_contradicted(
+    stars: &[ExpectedStar],
+    clusters: usize,
+    threshold_e: f64,
+    is_in_image: impl Fn(PixelPoint) -> bool,
+) -> bool {
+    let must_appear = |star: &&ExpectedStar| {
+        is_in_image(star.position)
+            && star.flux_e.map_or(clusters >= CONTRADICTING_STARS, |flux_e| {
+                libm::log(flux_e / threshold_e) + LOG_FLUX_RATIO.0 > 0.0
+            })
+    };
+    stars.iter().filter(must_appear).count() >= CONTRADICTING_STARS
+}
+
 /// Returns the residual of a star, px, and its derivative with respect to a small rotation of the camera
 /// about its axes, for an attitude; `None` if the star has no image.
 fn residual(

@@ -74,6 +74,16 @@ pub(super) struct FrameCandidates<'a> {
     pub(super) attitude_variance_px2: f64,
 }
 
+impl FrameCandidates<'_> {
+    /// Returns the evidence of this frame for all hypotheses of a track from that for the target and that for
+    /// the others. Without an attitude the motion of a star is as unknown as that of the target, and does not
+    /// distinguish them.
+    fn evidence(&self, target: f64, of_others: Hypotheses) -> Hypotheses {
+        let stars = if self.sky.camera_from_icrs.is_some() { of_others.stars } else { [target; STARS] };
+        Hypotheses { target, stars, pixel: of_others.pixel }
+    }
+}
+
 /// Star at its mean direction.
 type Star = AtRest<Direction<Icrs>>;
 
@@ -88,6 +98,8 @@ struct AtRest<P> {
 /// Hypothesis for the target.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Track {
+    /// Number of the track in its sequence.
+    id: u64,
     pub(super) position: PixelPoint,
     velocity: [f64; 2],
     /// Covariance of position and velocity along either axis: px², px²/s, px²/s².
@@ -184,9 +196,10 @@ const MAX_TRACKS: usize = 400;
 const MAX_MISSES: u32 = 20;
 
 impl Track {
-    fn new(candidate: usize, c: &TargetCandidate, model: &TrackModel, sky: Sky<'_>) -> Self {
+    fn new(id: u64, candidate: usize, c: &TargetCandidate, model: &TrackModel, sky: Sky<'_>) -> Self {
         let speed = model.max_speed_px_per_s / 2.0;
         Self {
+            id,
             position: c.position,
             velocity: [0.0; 2],
             covariance: [c.variance_px2, 0.0, speed * speed],
@@ -440,9 +453,28 @@ fn weighted_mean(a: PixelPoint, b: PixelPoint, k: f64) -> PixelPoint {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tracks {
     tracks: Vec<Track>,
-    /// Candidates of the last frames, latest frame first: position in the image and direction among the
-    /// stars.
-    recent: VecDeque<Vec<(PixelPoint, Direction<Icrs>)>>,
+    /// Number of tracks begun so far.
+    begun: u64,
+    /// Candidates of the last frames, latest frame first.
+    recent: VecDeque<Vec<RecentCandidate>>,
+}
+
+/// Candidate of one of the last frames.
+#[derive(Debug, Clone, Copy)]
+struct RecentCandidate {
+    /// Position in the image of its frame.
+    position: PixelPoint,
+    direction: Direction<Icrs>,
+    /// Track that it continued or began.
+    track: u64,
+}
+
+/// Position in the image of a candidate of the last frames, if that was a star.
+#[derive(Debug, Clone, Copy)]
+struct SeenStar {
+    position: PixelPoint,
+    /// Track of the candidate.
+    track: u64,
 }
 
 impl Tracks {
@@ -483,29 +515,30 @@ impl Tracks {
     /// continues only the track with the best odds.
     pub(super) fn update(&mut self, frame: &FrameCandidates<'_>) {
         let candidates = frame.candidates;
+        let seen_stars = self.seen_stars(frame.sky);
         let of_others: Vec<Hypotheses> =
             self.tracks.iter_mut().map(|track| track.follow_objects_at_rest(frame)).collect();
-        let mut is_taken = vec![false; candidates.len()];
+        // Track that each candidate continues or begins.
+        let mut track_of: Vec<Option<u64>> = vec![None; candidates.len()];
         let mut gains: Vec<Option<f64>> = vec![None; self.tracks.len()];
-        for pair in self.pairs(frame, &of_others) {
-            if !is_taken[pair.candidate] && gains[pair.track].is_none() {
-                is_taken[pair.candidate] = true;
+        for pair in self.pairs(frame, &of_others, &seen_stars) {
+            if track_of[pair.candidate].is_none() && gains[pair.track].is_none() {
+                track_of[pair.candidate] = Some(self.tracks[pair.track].id);
                 gains[pair.track] = Some(pair.gain);
                 self.tracks[pair.track].update_with(pair.candidate, &candidates[pair.candidate]);
             }
         }
         for (i, track) in self.tracks.iter_mut().enumerate() {
             let target = gains[i].unwrap_or_else(|| track.log_miss(frame.model));
-            track.hypotheses.add(Hypotheses { target, ..of_others[i] });
+            track.hypotheses.add(frame.evidence(target, of_others[i]));
             track.misses += u32::from(gains[i].is_none());
             let candidate = track.candidate.and_then(|c| candidates.get(c));
             if let Some(c) = candidate.filter(|c| c.evidence.is_none()) {
                 track.begin_objects_at_rest(c, frame.sky);
             }
         }
-        self.begin(frame, &is_taken);
-        let seen = candidates.iter().filter_map(|c| Some((c.position, frame.sky.direction(c.position)?)));
-        self.recent.push_front(seen.collect());
+        self.begin(frame, &mut track_of, &seen_stars);
+        self.recent.push_front(recent_candidates(frame, &track_of));
         self.recent.truncate(RECENT_FRAMES);
         self.tracks
             .retain(|track| track.misses <= MAX_MISSES && (track.misses == 0 || track.log_odds() > -10.0));
@@ -515,7 +548,15 @@ impl Tracks {
 
     /// Returns the possible continuations of tracks by candidates, best resulting odds first. `of_others` is
     /// the evidence for the hypotheses of each track other than the target.
-    fn pairs(&self, frame: &FrameCandidates<'_>, of_others: &[Hypotheses]) -> Vec<Pair> {
+    ///
+    /// A candidate at the position of a star that another track has seen is that star: a track that one star
+    /// after the other continues is not the target's.
+    fn pairs(
+        &self,
+        frame: &FrameCandidates<'_>,
+        of_others: &[Hypotheses],
+        seen_stars: &[SeenStar],
+    ) -> Vec<Pair> {
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
             for (c, candidate) in frame.candidates.iter().enumerate() {
@@ -523,9 +564,12 @@ impl Tracks {
                     Some(evidence) => (t == 0).then_some(evidence.min(MAX_LOG_LIKELIHOOD_RATIO)),
                     None => track.likelihood(candidate, frame.model),
                 };
-                if let Some(gain) = gain {
+                if let Some(mut gain) = gain {
+                    if is_star_of(candidate, seen_stars, |seen_by| seen_by != track.id) {
+                        gain -= STAR_MOTION;
+                    }
                     let mut hypotheses = track.hypotheses;
-                    hypotheses.add(Hypotheses { target: gain, ..of_others[t] });
+                    hypotheses.add(frame.evidence(gain, of_others[t]));
                     pairs.push(Pair { log_odds: hypotheses.log_odds(), gain, track: t, candidate: c });
                 }
             }
@@ -538,28 +582,51 @@ impl Tracks {
     }
 
     /// Begins a track with every candidate that continues none.
-    fn begin(&mut self, frame: &FrameCandidates<'_>, is_taken: &[bool]) {
-        let with_stars = self.moved_with_the_stars(frame.sky);
+    fn begin(&mut self, frame: &FrameCandidates<'_>, track_of: &mut [Option<u64>], seen_stars: &[SeenStar]) {
         for (c, candidate) in frame.candidates.iter().enumerate() {
-            if is_taken[c] || candidate.evidence.is_some() {
+            if track_of[c].is_some() || candidate.evidence.is_some() {
                 continue;
             }
-            let reach_px = WITH_STARS_PX + 2.0 * candidate.variance_px2.sqrt();
-            let is_star = with_stars.iter().any(|at| at.distance(candidate.position) < reach_px);
-            let mut track = Track::new(c, candidate, frame.model, frame.sky);
-            let gain = if is_star { STAR_MOTION } else { 0.0 };
+            let mut track = Track::new(self.begun, c, candidate, frame.model, frame.sky);
+            let gain = if is_star_of(candidate, seen_stars, |_| true) { STAR_MOTION } else { 0.0 };
             track.hypotheses.add(Hypotheses { target: 0.0, stars: [gain; STARS], pixel: 0.0 });
+            track_of[c] = Some(track.id);
+            self.begun += 1;
             self.tracks.push(track);
         }
     }
 
     /// Returns the current image positions of the last frames' candidates, assuming that they are stars,
     /// where the stars have moved far enough since.
-    fn moved_with_the_stars(&self, sky: Sky<'_>) -> Vec<PixelPoint> {
-        let recent = self.recent.iter().flatten();
-        let now = recent.filter_map(|(before, direction)| Some((before, sky.position(direction)?)));
-        now.filter(|(before, now)| now.distance(**before) > APART_PX).map(|(_, now)| now).collect()
+    fn seen_stars(&self, sky: Sky<'_>) -> Vec<SeenStar> {
+        let mut seen = Vec::new();
+        for recent in self.recent.iter().flatten() {
+            let Some(position) = sky.position(&recent.direction) else { continue };
+            if position.distance(recent.position) > APART_PX {
+                seen.push(SeenStar { position, track: recent.track });
+            }
+        }
+        seen
     }
+}
+
+/// Returns the candidates of a frame with their tracks; none without an attitude.
+fn recent_candidates(frame: &FrameCandidates<'_>, track_of: &[Option<u64>]) -> Vec<RecentCandidate> {
+    let mut recent = Vec::new();
+    for (candidate, track) in frame.candidates.iter().zip(track_of) {
+        if let (Some(track), Some(direction)) = (*track, frame.sky.direction(candidate.position)) {
+            recent.push(RecentCandidate { position: candidate.position, direction, track });
+        }
+    }
+    recent
+}
+
+/// Returns true if a candidate is at the position of a star seen by a track for which `is_meant` is true.
+fn is_star_of(candidate: &TargetCandidate, seen_stars: &[SeenStar], is_meant: impl Fn(u64) -> bool) -> bool {
+    let reach_px = WITH_STARS_PX + 2.0 * candidate.variance_px2.sqrt();
+    seen_stars
+        .iter()
+        .any(|seen| is_meant(seen.track) && seen.position.distance(candidate.position) < reach_px)
 }
 
 /// Possible continuation of a track by a candidate.
