@@ -35,6 +35,9 @@ mod golden_docking;
 mod identity;
 mod import_circles;
 mod inject;
+mod input_mistakes;
+#[cfg(unix)]
+mod machine_faults;
 #[cfg(unix)]
 mod mitsuba;
 mod mitsuba_live;

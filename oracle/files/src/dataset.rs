@@ -210,14 +210,27 @@ pub(crate) fn refuse_twice<'a>(
 ) -> Result<(), FileError> {
     let mut known = BTreeMap::new();
     for (number, path) in images {
-        let real = path.canonicalize().map_err(|source| FileError::io(path, "open", source))?;
-        if let Some(other) = known.insert(real, number) {
+        let identity = identity(path).map_err(|source| FileError::io(path, "open", source))?;
+        if let Some(other) = known.insert(identity, number) {
             let field = format!("file of {what} {number}");
             let expected = format!("a separate image; {what} {other} has the same image");
             return Err(FileError::value(table, FileLocation::Whole, field, path.display(), expected));
         }
     }
     Ok(())
+}
+
+/// Returns what identifies a file under all its names, hard links included: its device and number.
+#[cfg(unix)]
+fn identity(path: &Path) -> std::io::Result<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    path.metadata().map(|metadata| (metadata.dev(), metadata.ino()))
+}
+
+/// Returns what identifies a file under all its names but hard links: its path without links.
+#[cfg(not(unix))]
+fn identity(path: &Path) -> std::io::Result<PathBuf> {
+    path.canonicalize()
 }
 
 /// Rejects an image in the directories of the named images that no row of the telemetry names: its row is

@@ -6,7 +6,8 @@ use std::io::{Error, ErrorKind, Read, Result};
 /// Longest record, bytes.
 const MAX_RECORD_BYTES: usize = 1 << 20;
 
-/// A reader that fails if a record exceeds 1 MiB.
+/// A reader that fails if a record exceeds 1 MiB, or if the last one has no line end: the file may be cut off
+/// within a number, which would then be read as another one.
 #[derive(Debug)]
 pub struct Lines<R> {
     inner: R,
@@ -50,6 +51,11 @@ impl<R> Lines<R> {
 impl<R: Read> Read for Lines<R> {
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
         let count = self.inner.read(buffer)?;
+        if count == 0 && !buffer.is_empty() && self.length > 0 {
+            let message = "the last line has no line end, so the file may be cut off: check its last value, \
+                           and end the line";
+            return Err(Error::new(ErrorKind::InvalidData, message));
+        }
         for &byte in buffer.get(..count).unwrap_or_default() {
             self.state = self.state.after(byte);
             self.length += 1;

@@ -88,6 +88,9 @@ pub fn read_telemetry(path: &Path) -> Result<Vec<TelemetryRow>, FileError> {
     read_with_lines(path).map(|rows| rows.into_iter().map(|(_, row)| row).collect())
 }
 
+/// Shortest exposure besides 0, s. A shorter one is a mistake of a unit or a cut number.
+const SHORTEST_EXPOSURE_S: f64 = 1e-9;
+
 /// Reads the table like [`read_telemetry`], each row with its line in the file.
 pub(crate) fn read_with_lines(path: &Path) -> Result<Vec<(u64, TelemetryRow)>, FileError> {
     CsvReader::open::<TelemetryLine>(path)?.read_all(parse)
@@ -101,8 +104,8 @@ fn parse(row: &CsvRow<'_>, previous: Option<&TelemetryRow>) -> Result<TelemetryR
     if previous.is_some_and(|previous| time <= previous.telemetry.time) {
         return Err(row.error("time_utc", "later than the time of the previous row"));
     }
-    if exposure_s < 0.0 {
-        return Err(row.error("exposure_s", "0 or greater"));
+    if exposure_s != 0.0 && exposure_s < SHORTEST_EXPOSURE_S {
+        return Err(row.error("exposure_s", "0, or 1e-9 or greater"));
     }
     if velocity_km_s.is_some_and(|velocity| velocity.norm() > FASTEST_KM_S) {
         return Err(row.error(VELOCITY[0], "a velocity about the Earth of at most 100 km/s"));
@@ -147,6 +150,7 @@ mod tests {
         check_refused(&[GOOD, "2,,2012-04-25T23:59:60Z,0.25,1,0,0,0"], "line 3", "time_utc");
         check_refused(&["1,,yesterday,0.25,1,0,0,0"], "line 2", "time_utc");
         check_refused(&["1,,2012-04-25T00:00:01Z,-0.25,1,0,0,0"], "line 2", "exposure_s");
+        check_refused(&["1,,2012-04-25T00:00:01Z,1e-320,1,0,0,0"], "line 2", "exposure_s");
         check_refused(&["1,,2012-04-25T00:00:01Z,NaN,1,0,0,0"], "line 2", "exposure_s");
         check_refused(&["1,,2012-04-25T00:00:01Z,inf,1,0,0,0"], "line 2", "exposure_s");
         check_refused(&["1,,2012-04-25T00:00:01Z,0.25,1,0,nan,0"], "line 2", "q_sc_j2000_y");

@@ -7,6 +7,7 @@ use contract::{Camera, Frame};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageBuffer, ImageDecoder, ImageEncoder, ImageReader, Limits, Luma};
 
+use super::png_stream;
 use super::raw_image::{ImageMetadata, RawImage, Size, check_claim, checked_size};
 use crate::FileError;
 use crate::error::file_error::{FileLocation, create_new, open_regular};
@@ -73,6 +74,10 @@ pub(crate) fn read(
         ));
     }
     check_claim(path, decoder.total_bytes())?;
+    if format == image::ImageFormat::Png {
+        let bytes_per_pixel = if color == ExtendedColorType::L8 { 1 } else { 2 };
+        png_stream::check(path, columns, rows, bytes_per_pixel)?;
+    }
     // Memory for the pixels, and the same amount for the decoder's own strips.
     let mut limits = limits();
     limits.max_alloc = Some(ABOUT_PIXELS_BYTES.saturating_add(decoder.total_bytes().saturating_mul(2)));

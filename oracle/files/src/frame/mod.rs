@@ -6,6 +6,7 @@ mod fits;
 mod fits_cards;
 mod header;
 pub(crate) mod image16;
+mod png_stream;
 pub(crate) mod raw_image;
 pub(crate) mod wcs;
 

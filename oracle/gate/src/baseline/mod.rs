@@ -33,6 +33,10 @@ const MAX_BYTES: u64 = 1 << 28;
 /// Names of the files of a baseline.
 const NAMES: [&str; 2] = ["baseline.toml", "rows.parquet"];
 
+/// Number of attempts to read a baseline before the one whose error counts, and the pause after each.
+const READ_AGAIN: u32 = 3;
+const READ_PAUSE: std::time::Duration = std::time::Duration::from_millis(20);
+
 /// Files that a newer baseline may replace.
 const HEADERS: ReplaceableFile<'static> = ReplaceableFile {
     description: "the baseline.toml of an earlier baseline",
@@ -232,11 +236,22 @@ impl Baseline {
         Ok(Checksums::write(folder, &NAMES)?)
     }
 
-    /// Reads a baseline.
+    /// Reads a baseline. Header and rows of one that is being replaced do not agree for an instant: what
+    /// cannot be read is read again, a few times.
     ///
     /// # Errors
     /// [`Failure`] for a directory without a baseline, or with a damaged one.
     pub fn read(folder: &Path) -> Result<Self, Failure> {
+        for _ in 0..READ_AGAIN {
+            if let Ok(baseline) = Self::read_once(folder) {
+                return Ok(baseline);
+            }
+            std::thread::sleep(READ_PAUSE);
+        }
+        Self::read_once(folder)
+    }
+
+    fn read_once(folder: &Path) -> Result<Self, Failure> {
         let [path, rows_path] = paths(folder);
         if !path.is_file() {
             return Err(Failure::Usage(format!(
