@@ -74,13 +74,19 @@ pub(super) struct FrameCandidates<'a> {
     pub(super) attitude_variance_px2: f64,
 }
 
-impl FrameCandidates<'_> {
-    /// Returns the evidence of this frame for all hypotheses of a track from that for the target and that for
-    /// the others. Without an attitude the motion of a star is as unknown as that of the target, and does not
-    /// distinguish them.
-    fn evidence(&self, target: f64, of_others: Hypotheses) -> Hypotheses {
-        let stars = if self.sky.camera_from_icrs.is_some() { of_others.stars } else { [target; STARS] };
-        Hypotheses { target, stars, pixel: of_others.pixel }
+/// Evidence of a frame for the hypotheses of a track other than the target.
+#[derive(Debug, Clone, Copy)]
+struct EvidenceOfOthers {
+    /// `None` without the direction of the star or the attitude of the frame.
+    stars: [Option<f64>; STARS],
+    pixel: f64,
+}
+
+impl EvidenceOfOthers {
+    /// Returns the evidence for all hypotheses from that for the target. Without a direction the motion of a
+    /// star is as unknown as that of the target, and does not distinguish them.
+    fn with_target(&self, target: f64) -> Hypotheses {
+        Hypotheses { target, stars: self.stars.map(|evidence| evidence.unwrap_or(target)), pixel: self.pixel }
     }
 }
 
@@ -182,6 +188,9 @@ const RECENT_FRAMES: usize = 3;
 /// Largest squared normalised distance of a candidate that continues a track.
 const GATE: f64 = 20.0;
 
+/// Smallest natural logarithm of the odds of a track that is kept without a cluster.
+const MIN_KEPT_LOG_ODDS: f64 = -10.0;
+
 /// Natural logarithm of the odds above which a track counts as settled.
 const SETTLED_LOG_ODDS: f64 = 12.0;
 
@@ -191,9 +200,11 @@ const MAX_EXPECTED: usize = 8;
 /// Largest distance at which a track expects a cluster, px.
 const MAX_REACH_PX: f64 = 10.0;
 
-/// Largest number of tracks, and number of frames without a cluster after which a track ends.
-const MAX_TRACKS: usize = 400;
+/// Largest number of tracks, and numbers of frames without a cluster after which a track ends: one of several
+/// clusters, and one of a single cluster, whose speed is unknown.
+const MAX_TRACKS: usize = 1000;
 const MAX_MISSES: u32 = 20;
+const MAX_MISSES_OF_NEW: u32 = 2;
 
 impl Track {
     fn new(id: u64, candidate: usize, c: &TargetCandidate, model: &TrackModel, sky: Sky<'_>) -> Self {
@@ -245,11 +256,31 @@ impl Track {
     fn likelihood(&self, c: &TargetCandidate, model: &TrackModel) -> Option<f64> {
         let variance = self.variance_px2() + c.variance_px2;
         let distance = squared_distance(self.position, c.position) / variance;
+        if distance > GATE {
+            return None;
+        }
         let flux_distance = self.flux_distance(c);
         if distance + flux_distance > GATE {
             return None;
         }
-        Some(self.log_likelihood_ratio(distance, variance, flux_distance, model, MAX_LOG_LIKELIHOOD_RATIO))
+        let log_density = if self.hits == 1 {
+            self.log_density_of_unknown_speed(c)
+        } else {
+            log_normal_density(distance, variance)
+        };
+        Some(self.log_likelihood_ratio(log_density, flux_distance, model, MAX_LOG_LIKELIHOOD_RATIO))
+    }
+
+    /// Returns the natural logarithm of the density of the position of a candidate, px⁻², for a track of a
+    /// single cluster. Slow targets are more frequent than fast ones: the logarithm of the speed is uniform up
+    /// to the largest speed. With the distance r, the largest distance R and the error s of a position, the
+    /// density is 1/[π (r² + s²) ln(1 + R²/s²)].
+    fn log_density_of_unknown_speed(&self, c: &TargetCandidate) -> f64 {
+        let error_px2 = 2.0 * (c.variance_px2 + JITTER_PX * JITTER_PX);
+        // The standard deviation of the predicted position is half of the largest distance.
+        let largest_px2 = 4.0 * self.covariance[0];
+        let squares_px2 = squared_distance(self.position, c.position) + error_px2;
+        -libm::log(std::f64::consts::PI * squares_px2 * libm::log1p(largest_px2 / error_px2))
     }
 
     /// Returns the squared normalised difference of the natural logarithms of measured and predicted flux.
@@ -265,19 +296,17 @@ impl Track {
         self.log_flux_variance + LOG_FLUX_STEP * LOG_FLUX_STEP
     }
 
-    /// Returns ln [P_D N(position) N(ln F)/(clutter density)] for squared normalised distances of position
-    /// and flux and the variance of the position along an axis, px². The part of the position is at most
+    /// Returns ln [P_D p(position) N(ln F)/(clutter density)] for the natural logarithm of the density of the
+    /// position, px⁻², and the squared normalised distance of the flux. The part of the position is at most
     /// `limit`.
     fn log_likelihood_ratio(
         &self,
-        distance: f64,
-        variance_px2: f64,
+        log_density: f64,
         flux_distance: f64,
         model: &TrackModel,
         limit: f64,
     ) -> f64 {
-        let by_position =
-            -0.5 * distance - libm::log(std::f64::consts::TAU * variance_px2 * model.clutter_per_px2);
+        let by_position = log_density - libm::log(model.clutter_per_px2);
         // The fluxes of clutter cover some four units of the natural logarithm.
         let by_flux = -0.5 * flux_distance - 0.5 * libm::log(std::f64::consts::TAU * self.flux_variance())
             + libm::log(4.0);
@@ -301,12 +330,16 @@ impl Track {
         for c in frame.candidates {
             let variance = variance_px2 + c.variance_px2;
             let distance = squared_distance(position, c.position) / variance;
+            if distance > GATE {
+                continue;
+            }
             let flux_distance = self.flux_distance(c);
             if distance + flux_distance > GATE {
                 continue;
             }
-            let gain = self.log_likelihood_ratio(distance, variance, flux_distance, frame.model, MAX_AT_REST)
-                + of_shape(c);
+            let log_density = log_normal_density(distance, variance);
+            let gain =
+                self.log_likelihood_ratio(log_density, flux_distance, frame.model, MAX_AT_REST) + of_shape(c);
             if best.is_none_or(|(other, _)| gain > other) {
                 best = Some((gain, c));
             }
@@ -320,38 +353,41 @@ impl Track {
 
     /// Returns the evidence of a frame for the hypotheses other than the target, and moves their objects
     /// towards their candidates. Each object has its own candidate.
-    fn follow_objects_at_rest(&mut self, frame: &FrameCandidates<'_>) -> Hypotheses {
-        let mut evidence = Hypotheses::of_any_object(0.0);
-        let mut of_pair = None;
+    fn follow_objects_at_rest(&mut self, frame: &FrameCandidates<'_>) -> EvidenceOfOthers {
+        let mut evidence = EvidenceOfOthers { stars: [None; STARS], pixel: self.follow_pixel(frame) };
+        let mut about_mean = None;
         for (i, scatter_px) in STAR_SCATTER_PX.into_iter().enumerate() {
-            let (about_mean, candidate) = self.star_evidence(&self.stars[i], scatter_px, frame);
-            evidence.stars[i] = about_mean;
-            if let Some(c) = candidate {
+            about_mean = self.star_evidence(&self.stars[i], scatter_px, frame);
+            evidence.stars[i] = about_mean.map(|(evidence, _)| evidence);
+            if let Some((_, Some(c))) = about_mean {
                 self.stars[i] = updated_star(self.stars[i], c, scatter_px, frame.sky);
             }
-            of_pair = candidate;
         }
         // The images of a wide pair are separated or not: the centroid is that of the last frame, or anywhere
         // about the mean.
-        let (at_last, candidate) = self.star_evidence(&self.last, AT_REST_PX, frame);
-        let about_mean = evidence.stars[STARS - 1];
-        evidence.stars[STARS - 1] = log_sum(about_mean, at_last) - std::f64::consts::LN_2;
-        if let Some(c) = if at_last > about_mean { candidate } else { of_pair } {
-            self.last = star_at(c, AT_REST_PX, frame.sky);
+        let at_last = self.star_evidence(&self.last, AT_REST_PX, frame);
+        if let (Some((by_mean, of_mean)), Some((by_last, of_last))) = (about_mean, at_last) {
+            evidence.stars[STARS - 1] = Some(log_sum(by_mean, by_last) - std::f64::consts::LN_2);
+            if let Some(c) = if by_last > by_mean { of_last } else { of_mean } {
+                self.last = star_at(c, AT_REST_PX, frame.sky);
+            }
         }
-        evidence.pixel = self.follow_pixel(frame);
         evidence
     }
 
-    /// Begins the objects at rest anew with a candidate where that has the larger weight: the clusters before
-    /// were chance, and this one is a star or a pixel that is seen for the first time.
+    /// Begins the objects at rest anew with a candidate where that has the larger weight (the clusters before
+    /// were chance, and this one is a star or a pixel that is seen for the first time), and the stars where no
+    /// direction was known before.
     fn begin_objects_at_rest(&mut self, c: &TargetCandidate, sky: Sky<'_>) {
         for (i, scatter_px) in STAR_SCATTER_PX.into_iter().enumerate() {
+            let is_first = self.stars[i].is_none();
             if c.weights.stars[i] > self.hypotheses.stars[i] {
                 self.hypotheses.stars[i] = c.weights.stars[i];
-                self.stars[i] = star_at(c, scatter_px, sky);
-                self.last = star_at(c, AT_REST_PX, sky);
+            } else if !is_first {
+                continue;
             }
+            self.stars[i] = star_at(c, scatter_px, sky);
+            self.last = star_at(c, AT_REST_PX, sky);
         }
         if c.weights.pixel > self.hypotheses.pixel {
             self.hypotheses.pixel = c.weights.pixel;
@@ -373,17 +409,19 @@ impl Track {
     }
 
     /// Returns the evidence for a star whose centroid has the standard deviation `scatter_px`, and its
-    /// candidate; 0 without its direction.
+    /// candidate; `None` without its direction or the attitude of the frame.
     fn star_evidence<'a>(
         &self,
         star: &Option<Star>,
         scatter_px: f64,
         frame: &FrameCandidates<'a>,
-    ) -> (f64, Option<&'a TargetCandidate>) {
-        let expected = star.as_ref().and_then(|star| Some((star, frame.sky.position(&star.at)?)));
-        let Some((star, position)) = expected else { return (0.0, None) };
+    ) -> Option<(f64, Option<&'a TargetCandidate>)> {
+        let star = star.as_ref()?;
+        frame.sky.camera_from_icrs?;
+        // A star outside the camera's model has no image.
+        let Some(position) = frame.sky.position(&star.at) else { return Some((0.0, None)) };
         let variance_px2 = star.variance_px2 + frame.attitude_variance_px2 + scatter_px * scatter_px;
-        self.evidence_at(position, variance_px2, frame, |_| 0.0)
+        Some(self.evidence_at(position, variance_px2, frame, |_| 0.0))
     }
 
     /// Returns the natural logarithm of the probability that an object of the track's flux has no image.
@@ -396,6 +434,12 @@ impl Track {
     /// Returns the natural logarithm of the odds that the track is the target's.
     pub(super) fn log_odds(&self) -> f64 {
         self.hypotheses.log_odds()
+    }
+
+    /// Returns true if the track may still become the target's.
+    fn is_kept(&self) -> bool {
+        let most = if self.hits > 1 { MAX_MISSES } else { MAX_MISSES_OF_NEW };
+        self.misses <= most && (self.misses == 0 || self.log_odds() > MIN_KEPT_LOG_ODDS)
     }
 
     fn update_with(&mut self, index: usize, c: &TargetCandidate) {
@@ -431,6 +475,12 @@ fn updated_star(star: Option<Star>, c: &TargetCandidate, scatter_px: f64, sky: S
     let k = star.variance_px2 / (star.variance_px2 + measured);
     let variance_px2 = (1.0 - k) * star.variance_px2 + AT_REST_PX * AT_REST_PX;
     sky.direction(weighted_mean(position, c.position, k)).map(|at| AtRest { at, variance_px2 })
+}
+
+/// Returns the natural logarithm of the density of a normal distribution in the image, px⁻², at a squared
+/// normalised distance. `variance_px2` is its variance along an axis.
+fn log_normal_density(distance: f64, variance_px2: f64) -> f64 {
+    -0.5 * distance - libm::log(std::f64::consts::TAU * variance_px2)
 }
 
 /// Returns ln (eᵃ + eᵇ).
@@ -516,7 +566,7 @@ impl Tracks {
     pub(super) fn update(&mut self, frame: &FrameCandidates<'_>) {
         let candidates = frame.candidates;
         let seen_stars = self.seen_stars(frame.sky);
-        let of_others: Vec<Hypotheses> =
+        let of_others: Vec<EvidenceOfOthers> =
             self.tracks.iter_mut().map(|track| track.follow_objects_at_rest(frame)).collect();
         // Track that each candidate continues or begins.
         let mut track_of: Vec<Option<u64>> = vec![None; candidates.len()];
@@ -530,7 +580,7 @@ impl Tracks {
         }
         for (i, track) in self.tracks.iter_mut().enumerate() {
             let target = gains[i].unwrap_or_else(|| track.log_miss(frame.model));
-            track.hypotheses.add(frame.evidence(target, of_others[i]));
+            track.hypotheses.add(of_others[i].with_target(target));
             track.misses += u32::from(gains[i].is_none());
             let candidate = track.candidate.and_then(|c| candidates.get(c));
             if let Some(c) = candidate.filter(|c| c.evidence.is_none()) {
@@ -540,8 +590,7 @@ impl Tracks {
         self.begin(frame, &mut track_of, &seen_stars);
         self.recent.push_front(recent_candidates(frame, &track_of));
         self.recent.truncate(RECENT_FRAMES);
-        self.tracks
-            .retain(|track| track.misses <= MAX_MISSES && (track.misses == 0 || track.log_odds() > -10.0));
+        self.tracks.retain(Track::is_kept);
         self.tracks.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()).then(b.hits.cmp(&a.hits)));
         self.tracks.truncate(MAX_TRACKS);
     }
@@ -554,7 +603,7 @@ impl Tracks {
     fn pairs(
         &self,
         frame: &FrameCandidates<'_>,
-        of_others: &[Hypotheses],
+        of_others: &[EvidenceOfOthers],
         seen_stars: &[SeenStar],
     ) -> Vec<Pair> {
         let mut pairs = Vec::new();
@@ -569,7 +618,7 @@ impl Tracks {
                         gain -= STAR_MOTION;
                     }
                     let mut hypotheses = track.hypotheses;
-                    hypotheses.add(frame.evidence(gain, of_others[t]));
+                    hypotheses.add(of_others[t].with_target(gain));
                     pairs.push(Pair { log_odds: hypotheses.log_odds(), gain, track: t, candidate: c });
                 }
             }
