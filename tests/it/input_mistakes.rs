@@ -14,7 +14,6 @@ fn dataset() -> Bench {
             ("exposure_s".to_owned(), 0.25.into()),
         ])
         .into();
-        scenario["far_range"] = toml::Table::from_iter([("mode".to_owned(), "best".into())]).into();
     });
     bench.boresight(&format!("render sky.toml --frames {FRAMES} --format png --out set")).done();
     bench.unseal("set");
@@ -27,8 +26,8 @@ fn check_mistake(bench: &Bench, sentence: &str) {
     let output = bench.boresight("process set --out answers.csv").done().stdout;
     assert!(output.contains(&format!("the stars fit in 6 of 6 frames if {sentence}")), "{output}");
     for row in bench.csv("answers.csv") {
-        assert_ne!(row["attitude_source"], "stars", "{row:?}");
-        assert!(row["sigma_ra_deg"].is_empty() && row["ra_deg"].is_empty(), "{row:?}");
+        assert_eq!(row["attitude"], "no_match", "{row:?}");
+        assert!(row["sigma_ra_deg"].is_empty() && row["los_j2000_x"].is_empty(), "{row:?}");
     }
 }
 
@@ -110,10 +109,7 @@ fn another_mounting_is_recognised() {
     let camera = bench.read("set/camera.toml");
     let line = camera.lines().find(|line| line.starts_with("phi_deg")).unwrap().to_owned();
     bench.edit("set/camera.toml", &line, "phi_deg = -60.0");
-    check_mistake(
-        &bench,
-        "the mounting of the camera is phi_deg = -89.98, theta_deg = 0.01, psi_deg = 0.03\n",
-    );
+    check_mistake(&bench, "the mounting of the camera is phi_deg = -89.9");
 }
 
 #[test]
@@ -121,5 +117,6 @@ fn another_focal_length_is_recognised() {
     let bench = dataset();
     bench.edit("set/camera.toml", "focal_length_mm = 20.187", "focal_length_mm = 20.9945");
     let output = bench.boresight("process set --out answers.csv").done().stdout;
+    // 20.187/20.9945 = 0.9615.
     assert!(output.contains("if the focal length is 0.961"), "{output}");
 }

@@ -16,6 +16,7 @@ mod preprocessing;
 mod repeats;
 #[cfg(test)]
 mod synthetic;
+mod temporal_noise;
 
 pub use config::DockingConfig;
 pub use pipeline::{DockingFactory, DockingPipeline};

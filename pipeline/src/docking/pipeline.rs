@@ -12,6 +12,7 @@ use super::pose::paper_pose::{PaperMeasurement, PaperTarget};
 use super::preprocessing::histogram::Histogram;
 use super::preprocessing::view::View;
 use super::repeats::RepeatDetector;
+use super::temporal_noise::{PictureAge, TemporalNoise};
 use crate::PipelineError;
 
 /// Factory of pipelines by the docking method.
@@ -53,6 +54,7 @@ pub struct DockingPipeline {
     portion: Portion,
     motion: MotionTracker,
     repeats: RepeatDetector,
+    temporal_noise: TemporalNoise,
     paper: PaperPortions,
 }
 
@@ -76,6 +78,7 @@ impl DockingPipeline {
             observer: Observer::new(&config, setup)?,
             motion: MotionTracker::new(config.motion)?,
             repeats: RepeatDetector::default(),
+            temporal_noise: TemporalNoise::default(),
             paper: PaperPortions::new(config.paper_portions, target)?,
             target,
             config,
@@ -108,16 +111,17 @@ impl DockingPipeline {
 
     /// Tests a pose against previous fields, and scales its covariance to their scatter.
     fn test(&mut self, field: &Field, time_s: f64, observed: FieldObservation) -> FieldObservation {
-        let is_repeated = self.repeats.is_repeated(field);
-        let outline = observed.outline.filter(|_| !is_repeated);
-        let tested = self.test_pose(is_repeated, time_s, observed);
+        let mut age = self.temporal_noise.add(field, time_s);
+        age.is_repeated |= self.repeats.is_repeated(field);
+        let outline = observed.outline.filter(|_| !age.is_repeated);
+        let tested = self.test_pose(age, time_s, observed);
         if let Some(outline) = outline {
             self.motion.add_range(time_s, &outline);
         }
         tested
     }
 
-    fn test_pose(&mut self, is_repeated: bool, time_s: f64, observed: FieldObservation) -> FieldObservation {
+    fn test_pose(&mut self, age: PictureAge, time_s: f64, observed: FieldObservation) -> FieldObservation {
         let FieldObservation {
             solution: DockingSolution::Measured(mut measurement),
             common,
@@ -129,10 +133,12 @@ impl DockingPipeline {
         else {
             return observed;
         };
-        if blur_px > MIXING_BLUR_PX {
-            measurement.best.covariance += self.motion.timing_covariance(time_s, MIXED_S);
+        let mixed_s = if blur_px > MIXING_BLUR_PX { MIXED_S } else { 0.0 };
+        let timing_s = libm::hypot(mixed_s, age.sigma_s);
+        if timing_s > 0.0 {
+            measurement.best.covariance += self.motion.timing_covariance(time_s, timing_s);
         }
-        let doubt = if is_repeated {
+        let doubt = if age.is_repeated {
             Some(FailedCheck::Repeated)
         } else if is_backup && !self.motion.confirms(time_s, &measurement.best) {
             Some(FailedCheck::Residuals)

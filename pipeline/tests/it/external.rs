@@ -337,11 +337,14 @@ fn error_output_does_not_block_and_is_kept_short() {
 }
 
 #[test]
-fn an_image_that_cannot_be_written_fails_its_frame() {
+fn an_image_that_cannot_be_written_is_a_fault_of_the_machine() {
     let mut bench = Bench::python("hello()\nask()");
     bench.factory.write_image = Arc::new(|_, _, _| Err("disk full".to_owned()));
     let mut pipeline = bench.build();
-    assert_eq!(reason(&process(&mut *pipeline, 0)), "the image cannot be written: disk full");
+    assert_eq!(pipeline.machine_fault(), None);
+    let expected = "at frame 0, the image cannot be written: disk full";
+    assert_eq!(reason(&process(&mut *pipeline, 0)), expected);
+    assert_eq!(pipeline.machine_fault().unwrap().reason, expected);
 }
 
 #[test]

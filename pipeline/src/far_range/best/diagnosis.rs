@@ -7,6 +7,7 @@
 use std::fmt;
 
 use contract::{Angle, Body, Camera, CameraFrame, Icrs, PixelPoint, Rotation, Setup};
+use nalgebra::{Vector2, Vector3};
 
 use super::lost_in_space::LostInSpace;
 use crate::CameraModel;
@@ -179,8 +180,12 @@ fn fitting_camera(setup: &Setup, frames: &[UnmatchedFrame]) -> Option<(Camera, f
         let solver = LostInSpace::new(&setup.stars, &model, f64::INFINITY);
         // An image in any other order is one of these, turned.
         for image in [PixelOrder::AsExpected, PixelOrder::RowsReversed] {
-            if !solve_all(&solver, &model, frames, image).is_empty() {
-                return Some((camera, ratio));
+            let solved = solve_all(&solver, &model, frames, image);
+            if !solved.is_empty() {
+                // The first focal length found fits stars of a part of the image.
+                let of_stars = median_ratio(&solved);
+                camera.focal_length_mm *= of_stars;
+                return Some((camera, ratio * of_stars));
             }
         }
     }
@@ -199,33 +204,53 @@ fn solve_all(
         let sources: Vec<(PixelPoint, f64)> =
             frame.sources.iter().map(|(at, flux)| (image.position(*at, model.size_px()), *flux)).collect();
         if let Some(found) = solver.solve(&sources) {
-            let of_stars = found.matched.iter().filter_map(|(source, star)| {
-                let (position, _) = sources.get(*source)?;
-                radial_terms(model, *position, &found.camera_from_icrs.rotate(star.direction.vector()))
-            });
-            let (measured, expected) =
-                of_stars.fold((0.0, 0.0), |(measured, expected), (m, e)| (measured + m, expected + e));
+            let positions: Vec<[Vector2<f64>; 2]> = found
+                .matched
+                .iter()
+                .filter_map(|(source, star)| {
+                    let (position, _) = sources.get(*source)?;
+                    let direction = found.camera_from_icrs.rotate(star.direction.vector());
+                    positions(model, *position, &direction)
+                })
+                .collect();
             solved.push(SolvedFrame {
                 camera_from_icrs: found.camera_from_icrs,
                 body_from_icrs: frame.body_from_icrs,
-                focal_length_ratio: if expected > 0.0 { measured / expected } else { 1.0 },
+                focal_length_ratio: scale(&positions),
             });
         }
     }
     solved
 }
 
-/// Returns u·p and p·p for the measured position u and the expected position p of a star relative to the
-/// principal point, px: the ratio of their sums is that of the focal lengths (least squares).
-fn radial_terms(
+/// Returns the measured and the expected position of a star in the image without distortion, px.
+fn positions(
     model: &CameraModel,
     position: PixelPoint,
-    direction: &nalgebra::Vector3<f64>,
-) -> Option<(f64, f64)> {
+    direction: &Vector3<f64>,
+) -> Option<[Vector2<f64>; 2]> {
     let (u, v) = model.to_ideal(position)?;
     let (fx, fy) = model.focal_px();
-    let (x, y) = (fx * direction.x / direction.z, fy * direction.y / direction.z);
-    Some((u * x + v * y, x * x + y * y))
+    let expected = Vector2::new(fx * direction.x / direction.z, fy * direction.y / direction.z);
+    Some([Vector2::new(u, v), expected])
+}
+
+/// Returns the scale of measured positions u relative to expected ones p about their means, by least squares:
+/// Σ (u − ū)·(p − p̄)/Σ |p − p̄|². The attitude has absorbed a shift.
+fn scale(positions: &[[Vector2<f64>; 2]]) -> f64 {
+    let count = positions.len().max(1) as f64;
+    let [mut mean_measured, mut mean_expected] = [Vector2::zeros(); 2];
+    for [measured, expected] in positions {
+        mean_measured += measured / count;
+        mean_expected += expected / count;
+    }
+    let (mut products, mut squares) = (0.0, 0.0);
+    for [measured, expected] in positions {
+        let about_mean = expected - mean_expected;
+        products += (measured - mean_measured).dot(&about_mean);
+        squares += about_mean.norm_squared();
+    }
+    if squares > 0.0 { products / squares } else { 1.0 }
 }
 
 /// Returns the median of the ratios of the focal lengths.

@@ -1,0 +1,321 @@
+//! Noise from field to field: repeated pictures and mixtures of successive pictures.
+//!
+//! The noise of a live picture is new in every field. With the noise n_k of field k of variance σ², the
+//! difference between two fields has the variance 2σ², and successive differences between fields of the same
+//! rows have the correlation −1/2. A picture that is frozen has less new noise than the noise between its own
+//! pixels shows, whatever noise or coding came on top. If a share a of the picture two fields ago remains in
+//! each picture (noise reduction, a camera's lag, a codec), the noise is a first-order process, whose
+//! differences have the correlation −(1 − a)/2: the picture then is that of an earlier time, 2T a/(1 − a) on
+//! average for the time T between fields.
+
+use std::collections::VecDeque;
+
+use contract::docking::{Field, Lines};
+
+/// What the noise of a field shows about its time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct PictureAge {
+    /// True if the picture is an earlier one, with new noise or coded again.
+    pub(crate) is_repeated: bool,
+    /// Standard deviation of the time of the picture before that of its field, s.
+    pub(crate) sigma_s: f64,
+}
+
+/// Ratio of the new noise to the noise between pixels below which a picture is repeated, and above which one
+/// is live again after that. A live picture has 0.9 to 1, or more if its noise is blurred or coded; strong
+/// noise reduction 0.3; a frozen picture with new noise of half its own 0.2.
+const MIN_NEW_NOISE: f64 = 0.3;
+const LIVE_NEW_NOISE: f64 = 0.6;
+
+/// The same limit between the two fields of a frame: a field made from the other one has none, a strong noise
+/// reduction 0.15.
+const MIN_NEW_NOISE_IN_FRAME: f64 = 0.1;
+
+/// Share of the picture two fields ago below which none is noticed: five standard deviations of its estimate.
+const MIN_REMAINING: f64 = 0.05;
+
+/// Standard deviation of the picture's time, relative to its mean delay, and its largest value, s: a codec
+/// refreshes what has moved.
+const SIGMA_PER_DELAY: f64 = 1.5;
+const MAX_SIGMA_S: f64 = 0.06;
+
+/// Longest time between fields that are compared, s: two and four fields, with a margin.
+const MAX_APART_S: f64 = 0.06;
+const MAX_FAR_APART_S: f64 = 0.12;
+
+/// Rows from one row that is evaluated to the next.
+const ROW_STEP: usize = 4;
+
+/// Range of brightness, and largest difference that counts as noise, as shares of the full scale. Black and
+/// white are clipped and have no noise.
+const DARKEST: f64 = 0.05;
+const BRIGHTEST: f64 = 0.94;
+const LARGEST_NOISE: f64 = 0.08;
+
+/// Smallest number of pixels, and smallest variance of the noise between pixels, (full scale)², that determine
+/// a ratio: 0.14 of 255 DN.
+const MIN_PIXELS: usize = 2000;
+const MIN_VARIANCE: f64 = 3e-7;
+
+/// Fields in memory.
+const MEMORY: usize = 4;
+
+/// Comparison of each field with the ones before it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct TemporalNoise {
+    last: VecDeque<PastField>,
+    is_frozen: bool,
+}
+
+#[derive(Debug, Clone)]
+struct PastField {
+    lines: Lines,
+    time_s: f64,
+    dn: Vec<u16>,
+}
+
+/// Sums over the flat pixels of a field.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    pixels: usize,
+    /// Σ of the difference to the field before, and of its square, clipped.
+    difference: f64,
+    squares: f64,
+    /// Σ of the square of the difference between a pixel and the mean of its neighbours.
+    between_pixels: f64,
+}
+
+impl TemporalNoise {
+    /// Adds a field and compares it with the last fields.
+    pub(crate) fn add(&mut self, field: &Field, time_s: f64) -> PictureAge {
+        let image = field.image();
+        let now = PastField { lines: field.lines(), time_s, dn: image.dn().to_vec() };
+        let size = (image.columns(), image.rows());
+        let full_scale = f64::from(image.full_scale_dn());
+        let age = self.age(&now, size, full_scale);
+        self.last.push_front(now);
+        self.last.truncate(MEMORY);
+        age
+    }
+
+    fn age(&mut self, now: &PastField, size: (usize, usize), full_scale: f64) -> PictureAge {
+        let is_comparable = |before: &&PastField, apart_s: f64| {
+            let elapsed_s = now.time_s - before.time_s;
+            before.dn.len() == now.dn.len() && elapsed_s > 0.0 && elapsed_s <= apart_s
+        };
+        let mut same_rows = self.last.iter().filter(|before| before.lines == now.lines);
+        let Some(before) = same_rows.next().filter(|before| is_comparable(before, MAX_APART_S)) else {
+            self.is_frozen = false;
+            return PictureAge::default();
+        };
+        let new = new_noise(now, before, size, full_scale);
+        let in_frame = self
+            .last
+            .front()
+            .filter(|other| other.lines != now.lines && is_comparable(other, MAX_APART_S))
+            .and_then(|other| new_noise(now, other, size, full_scale));
+        self.is_frozen = match new {
+            Some(ratio) if self.is_frozen => ratio < LIVE_NEW_NOISE,
+            Some(ratio) => ratio < MIN_NEW_NOISE,
+            None => false,
+        };
+        let is_repeated = self.is_frozen || in_frame.is_some_and(|ratio| ratio < MIN_NEW_NOISE_IN_FRAME);
+        let remaining = same_rows
+            .next()
+            .filter(|earlier| is_comparable(earlier, MAX_FAR_APART_S))
+            .and_then(|earlier| remaining(now, before, earlier, size, full_scale));
+        let period_s = now.time_s - before.time_s;
+        PictureAge { is_repeated, sigma_s: remaining.map_or(0.0, |share| sigma_s(share, period_s)) }
+    }
+}
+
+/// Returns the standard deviation of the time of a picture in which a share of the one before by `period_s`
+/// remains, s.
+fn sigma_s(share: f64, period_s: f64) -> f64 {
+    if share < MIN_REMAINING {
+        return 0.0;
+    }
+    let delay_s = if share < 1.0 { period_s * share / (1.0 - share) } else { f64::INFINITY };
+    (SIGMA_PER_DELAY * delay_s).min(MAX_SIGMA_S)
+}
+
+/// Returns the ratio of the noise that is new since another field to the noise between pixels, both variances;
+/// `None` if there is too little of it to tell.
+fn new_noise(now: &PastField, before: &PastField, size: (usize, usize), full_scale: f64) -> Option<f64> {
+    let mut sums = Sums::default();
+    for_flat_pixels(now, before, size, full_scale, |at| {
+        let clipped = |difference: f64| {
+            let limit = LARGEST_NOISE * full_scale;
+            difference.clamp(-limit, limit)
+        };
+        let difference = clipped(value(now, at) - value(before, at));
+        let beside = 0.5 * (value(now, at - 1) + value(now, at + 1));
+        let between = clipped(value(now, at) - beside);
+        sums.pixels += 1;
+        sums.difference += difference;
+        sums.squares += difference * difference;
+        sums.between_pixels += between * between;
+    });
+    if sums.pixels < MIN_PIXELS {
+        return None;
+    }
+    let count = sums.pixels as f64;
+    let mean = sums.difference / count;
+    // Var(n_k − n_j) = 2σ²; Var[n(x) − (n(x − 1) + n(x + 1))/2] = 1.5σ².
+    let new = (sums.squares / count - mean * mean) / 2.0;
+    let between = sums.between_pixels / count / 1.5;
+    (between > MIN_VARIANCE * full_scale * full_scale).then(|| new / between)
+}
+
+/// Returns the share of the picture two fields ago that remains, 1 + 2r for the correlation r of successive
+/// differences.
+fn remaining(
+    now: &PastField,
+    before: &PastField,
+    earlier: &PastField,
+    size: (usize, usize),
+    full_scale: f64,
+) -> Option<f64> {
+    let (mut pixels, mut products, mut squares) = (0, 0.0, [0.0; 2]);
+    for_flat_pixels(now, before, size, full_scale, |at| {
+        let limit = LARGEST_NOISE * full_scale;
+        let latest = (value(now, at) - value(before, at)).clamp(-limit, limit);
+        let last = (value(before, at) - value(earlier, at)).clamp(-limit, limit);
+        pixels += 1;
+        products += latest * last;
+        squares[0] += latest * latest;
+        squares[1] += last * last;
+    });
+    let [latest, last] = squares;
+    let size = (latest * last).sqrt();
+    let is_known = pixels >= MIN_PIXELS && size > MIN_VARIANCE * full_scale * full_scale * pixels as f64;
+    is_known.then(|| 1.0 + 2.0 * products / size)
+}
+
+fn value(field: &PastField, at: usize) -> f64 {
+    field.dn.get(at).map_or(0.0, |dn| f64::from(*dn))
+}
+
+/// Calls a function with the index of each pixel that is neither black nor white nor beside an edge, in every
+/// fourth row: of those, the half with the smallest differences to their neighbours.
+fn for_flat_pixels(
+    now: &PastField,
+    before: &PastField,
+    (columns, rows): (usize, usize),
+    full_scale: f64,
+    mut visit: impl FnMut(usize),
+) {
+    // Sums of two fields: they halve the noise and keep the picture.
+    let both = |at: usize| value(now, at) + value(before, at);
+    let slope =
+        |at: usize| (both(at + 1) - both(at - 1)).abs() + (both(at + columns) - both(at - columns)).abs();
+    let is_grey = |at: usize| (2.0 * DARKEST..2.0 * BRIGHTEST).contains(&(both(at) / full_scale));
+    let indices = move || {
+        (1..rows.saturating_sub(1))
+            .step_by(ROW_STEP)
+            .flat_map(move |row| (1..columns.saturating_sub(1)).map(move |column| row * columns + column))
+    };
+    let mut slopes: Vec<f64> = indices().filter(|at| is_grey(*at)).map(slope).collect();
+    let half = slopes.len() / 2;
+    if half == 0 {
+        return;
+    }
+    let limit = *slopes.select_nth_unstable_by(half, f64::total_cmp).1;
+    for at in indices() {
+        if is_grey(at) && slope(at) <= limit {
+            visit(at);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic;
+    use super::*;
+
+    /// Returns a normal number, from the sum of twelve uniform ones of a linear congruential sequence.
+    fn normal(state: &mut u64) -> f64 {
+        let mut uniform = || {
+            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (*state >> 33) as f64 / (1_u64 << 31) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+
+    const SIDE: (usize, usize) = (768, 288);
+
+    /// Returns the noise of a picture, DN.
+    fn noise(seed: u64, sigma_dn: f64) -> Vec<f64> {
+        let mut state = seed;
+        (0..SIDE.0 * SIDE.1).map(|_| sigma_dn * normal(&mut state)).collect()
+    }
+
+    /// Returns a field of a grey picture with tiles.
+    fn field(noise: &[f64], lines: Lines) -> Field {
+        synthetic::drawn(lines, |x, y| {
+            let tile = if (x / 60 + y / 80) % 2 == 0 { 90.0 } else { 120.0 };
+            (tile + noise[(y / 2) * SIDE.0 + x]).round().clamp(0.0, 255.0) as u16
+        })
+    }
+
+    fn lines(k: usize) -> Lines {
+        if k % 2 == 0 { Lines::Even } else { Lines::Odd }
+    }
+
+    /// Returns the results for fields with noise.
+    fn ages(noises: &[Vec<f64>]) -> Vec<PictureAge> {
+        let mut temporal = TemporalNoise::default();
+        noises
+            .iter()
+            .enumerate()
+            .map(|(k, noise)| temporal.add(&field(noise, lines(k)), 0.02 * k as f64))
+            .collect()
+    }
+
+    fn sum(a: &[f64], a_share: f64, b: &[f64], b_share: f64) -> Vec<f64> {
+        a.iter().zip(b).map(|(a, b)| a_share * a + b_share * b).collect()
+    }
+
+    #[test]
+    fn a_live_picture_is_new() {
+        let noises: Vec<Vec<f64>> = (0..8).map(|k| noise(k + 1, 2.0)).collect();
+        assert!(ages(&noises).iter().all(|age| *age == PictureAge::default()));
+    }
+
+    #[test]
+    fn a_frozen_picture_with_new_noise_is_repeated_until_it_is_live() {
+        let live = |k: usize| noise(k as u64 + 1, 2.0);
+        let frozen = |k: usize| sum(&live(2 + k % 2), 1.0, &noise(100 + k as u64, 1.0), 1.0);
+        let noises: Vec<Vec<f64>> =
+            (0..4).map(live).chain((4..10).map(frozen)).chain((10..13).map(live)).collect();
+        let repeated: Vec<bool> = ages(&noises).iter().map(|age| age.is_repeated).collect();
+        assert_eq!(repeated.iter().filter(|is_repeated| **is_repeated).count(), 6, "{repeated:?}");
+        assert!(repeated[4..10].iter().all(|is_repeated| *is_repeated), "{repeated:?}");
+    }
+
+    #[test]
+    fn a_field_made_from_the_other_one_of_its_frame_is_repeated() {
+        let live: Vec<Vec<f64>> = (0..4).map(|k| noise(k + 1, 2.0)).collect();
+        let noises: Vec<Vec<f64>> = (0..8).map(|k| live[k / 2].clone()).collect();
+        let repeated: Vec<bool> = ages(&noises).iter().map(|age| age.is_repeated).collect();
+        assert!((2..8).all(|k| repeated[k] == (k % 2 == 1)), "{repeated:?}");
+    }
+
+    #[test]
+    fn the_delay_of_an_averaged_picture_is_found() {
+        // Half of the picture two fields ago remains: 0.04 s on average.
+        let mut noises: Vec<Vec<f64>> = (0..2).map(|k| noise(k + 1, 4.0)).collect();
+        for k in 2..16 {
+            noises.push(sum(&noise(k as u64 + 1, 4.0), 0.5, &noises[k - 2], 0.5));
+        }
+        let sigma_s = ages(&noises)[15].sigma_s;
+        assert!((0.03..=MAX_SIGMA_S).contains(&sigma_s), "{sigma_s}");
+        assert!(!ages(&noises)[15].is_repeated);
+    }
+
+    #[test]
+    fn a_picture_without_noise_tells_nothing() {
+        let still = vec![vec![0.0; SIDE.0 * SIDE.1]; 6];
+        assert!(ages(&still).iter().all(|age| *age == PictureAge::default()));
+    }
+}
