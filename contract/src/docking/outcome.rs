@@ -88,9 +88,11 @@ pub enum FailedCheck {
     /// The pose deviates from the motion of the previous fields.
     Motion,
     /// No earlier field confirms the pose of a small target, whose features alone do not exclude another
-    /// object.
+    /// object; or the roll is above 20°, and no field has shown the docking unit: the target may be turned by
+    /// a quarter.
     Unconfirmed,
-    /// The field is bit for bit identical to an earlier one: the pose belongs to another time.
+    /// The picture is that of an earlier field, bit for bit, with new noise on it or coded again: the pose
+    /// belongs to another time.
     Repeated,
 }
 

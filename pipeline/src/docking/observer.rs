@@ -314,7 +314,7 @@ impl Observer {
             Err(NoPose::Inconsistent) => doubt = doubt.or(Some(FailedCheck::Features)),
             Err(reason) => return Err(reason),
         }
-        doubt = doubt.or_else(|| self_check::tilt(&best));
+        doubt = doubt.or_else(|| self_check::tilt(&best)).or_else(|| self.doubt_of_roll(&best.pose));
         if doubt.is_none() {
             self.remember(input, lens, best.pose);
         }
@@ -349,8 +349,12 @@ impl Observer {
             return FieldObservation::without_solution(NoPose::Inconsistent);
         }
         let plane = self.track.last().map(|sighting| sighting.plane);
+        let measurement = Box::new(FieldMeasurement { best, paper: None });
         FieldObservation {
-            solution: DockingSolution::Measured(Box::new(FieldMeasurement { best, paper: None })),
+            solution: match self.doubt_of_roll(&best.pose) {
+                Some(doubt) => DockingSolution::Doubtful { measurement, doubt },
+                None => DockingSolution::Measured(measurement),
+            },
             paper: None,
             features: Features { marks: fitted.marks.clone(), ..Features::default() },
             common: fitted.common,
@@ -362,6 +366,11 @@ impl Observer {
             outline: None,
             region: plane.map_or(Rectangle::ALL, |plane| evidence::plate(lens, &plane, &self.target)),
         }
+    }
+
+    /// Returns a doubt if the target may be turned by a quarter.
+    fn doubt_of_roll(&self, pose: &Pose) -> Option<FailedCheck> {
+        self.orientation.is_ambiguous(pose.phi_rad.z).then_some(FailedCheck::Unconfirmed)
     }
 
     fn remember(&mut self, input: &FieldInput, lens: &Lens, pose: Pose) {

@@ -86,7 +86,9 @@ impl Inflated {
     /// Adds a part of the compressed data.
     fn add(&mut self, mut part: &[u8]) -> Result<(), flate2::DecompressError> {
         let mut sink = [0; 1 << 15];
-        while !part.is_empty() && !self.is_whole {
+        // A full buffer may leave output in the decompressor when the whole part has been read.
+        let mut is_full = false;
+        while (!part.is_empty() || is_full) && !self.is_whole {
             let (before_in, before_out) = (self.decompress.total_in(), self.decompress.total_out());
             let status = self.decompress.decompress(part, &mut sink, FlushDecompress::None)?;
             let read = (self.decompress.total_in() - before_in) as usize;
@@ -94,6 +96,7 @@ impl Inflated {
             self.bytes += written;
             part = part.get(read..).unwrap_or_default();
             self.is_whole = status == Status::StreamEnd;
+            is_full = written == sink.len() as u64;
             if read == 0 && written == 0 {
                 break;
             }
@@ -145,6 +148,16 @@ mod tests {
         assert!(rows.contains("bytes of pixels") && rows.contains("`16`, expected 8"), "{rows}");
         let surplus = message(&PIXELS, |data| data.extend(b"more"), b"");
         assert!(surplus.contains("bytes behind the image"), "{surplus}");
+    }
+
+    /// The decompressor's buffer is smaller than the image.
+    #[test]
+    fn a_large_image_is_whole() {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("a.png");
+        let pixels = (0..768 * 288).map(|i: u32| (i.wrapping_mul(2_654_435_761) >> 27) as u8).collect();
+        image::GrayImage::from_raw(768, 288, pixels).unwrap().save(&path).unwrap();
+        super::check(&path, 768, 288, 1).unwrap();
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Upright orientation of the target. Cross and marks are unchanged by a quarter turn, the docking unit is
-//! not.
+//! not. Without the docking unit in the image the roll is known but for quarter turns, and is taken to be
+//! within 45° of upright.
 
 use contract::docking::TargetModel;
 
@@ -59,6 +60,10 @@ pub(crate) fn assess(
 /// Number of votes that outweighs any number of contrary fields.
 const DECISIVE_VOTES: i32 = 10;
 
+/// Largest roll of a target whose docking unit has not been seen, rad: 20°. The target turned by a quarter has
+/// 70° then, which no approach has.
+const MAX_UNCONFIRMED_ROLL: f64 = 20.0 / 180.0 * std::f64::consts::PI;
+
 /// Longest time for which an orientation remains valid without new evidence, s.
 const MEMORY_S: f64 = 10.0;
 
@@ -85,6 +90,12 @@ impl Orientation {
         self.votes = (self.votes + vote).clamp(-DECISIVE_VOTES, DECISIVE_VOTES);
         self.votes < 0
     }
+
+    /// Returns true if a roll, rad, may be that of a target turned by a quarter: it is large, and the docking
+    /// unit has not been seen on its nominal side.
+    pub(crate) fn is_ambiguous(&self, roll_rad: f64) -> bool {
+        self.votes <= 0 && roll_rad.abs() > MAX_UNCONFIRMED_ROLL
+    }
 }
 
 #[cfg(test)]
@@ -99,6 +110,16 @@ mod tests {
         assert!((2..200).all(|i| orientation.is_turned(0.02 * f64::from(i), Unknown)));
         let mut orientation = Orientation::default();
         assert!(!orientation.is_turned(0.0, Upright) && !orientation.is_turned(0.02, Unknown));
+    }
+
+    #[test]
+    fn a_large_roll_is_ambiguous_until_the_docking_unit_is_seen() {
+        let mut orientation = Orientation::default();
+        orientation.is_turned(0.0, Unknown);
+        assert!(orientation.is_ambiguous(0.6) && orientation.is_ambiguous(-0.6));
+        assert!(!orientation.is_ambiguous(0.3));
+        orientation.is_turned(0.02, Upright);
+        assert!(!orientation.is_ambiguous(0.6));
     }
 
     #[test]
