@@ -1,4 +1,4 @@
-//! Noise from field to field: repeated pictures and mixtures of successive pictures.
+//! Noise from field to field: detection of repeated pictures and of mixtures of successive pictures.
 //!
 //! The noise of a live picture is new in every field. With the noise n_k of field k of variance σ², the
 //! difference between two fields has the variance 2σ², and successive differences between fields of the same
@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 
 use contract::docking::{Field, Lines};
 
-/// What the noise of a field shows about its time.
+/// Age of the picture of a field, by its noise.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct PictureAge {
     /// True if the picture is an earlier one, with new noise or coded again.
@@ -27,14 +27,14 @@ pub(crate) struct PictureAge {
 const MIN_NEW_NOISE: f64 = 0.3;
 const LIVE_NEW_NOISE: f64 = 0.6;
 
-/// The same limit between the two fields of a frame: a field made from the other one has none, a strong noise
+/// This limit between the two fields of a frame: a field made from the other one has none, a strong noise
 /// reduction 0.15.
 const MIN_NEW_NOISE_IN_FRAME: f64 = 0.1;
 
 /// Share of the picture two fields ago below which none is noticed: five standard deviations of its estimate.
 const MIN_REMAINING: f64 = 0.05;
 
-/// Standard deviation of the picture's time, relative to its mean delay, and its largest value, s: a codec
+/// Standard deviation of the time of the picture over its mean delay, and its largest value, s: a codec
 /// refreshes what has moved.
 const SIGMA_PER_DELAY: f64 = 1.5;
 const MAX_SIGMA_S: f64 = 0.06;
@@ -50,10 +50,10 @@ const ROW_STEP: usize = 4;
 /// white are clipped and have no noise.
 const DARKEST: f64 = 0.05;
 const BRIGHTEST: f64 = 0.94;
-const LARGEST_NOISE: f64 = 0.08;
+const MAX_NOISE: f64 = 0.08;
 
-/// Smallest number of pixels, and smallest variance of the noise between pixels, (full scale)², that determine
-/// a ratio: 0.14 of 255 DN.
+/// Smallest number of pixels, and smallest variance of the noise between pixels, (full scale)², that
+/// determine a ratio: 0.14 of 255 DN.
 const MIN_PIXELS: usize = 2000;
 const MIN_VARIANCE: f64 = 3e-7;
 
@@ -139,13 +139,13 @@ fn sigma_s(share: f64, period_s: f64) -> f64 {
     (SIGMA_PER_DELAY * delay_s).min(MAX_SIGMA_S)
 }
 
-/// Returns the ratio of the noise that is new since another field to the noise between pixels, both variances;
-/// `None` if there is too little of it to tell.
+/// Returns the ratio of the noise that is new since another field to the noise between pixels, both
+/// variances; `None` if there is too little of it to tell.
 fn new_noise(now: &PastField, before: &PastField, size: (usize, usize), full_scale: f64) -> Option<f64> {
     let mut sums = Sums::default();
     for_flat_pixels(now, before, size, full_scale, |at| {
         let clipped = |difference: f64| {
-            let limit = LARGEST_NOISE * full_scale;
+            let limit = MAX_NOISE * full_scale;
             difference.clamp(-limit, limit)
         };
         let difference = clipped(value(now, at) - value(before, at));
@@ -178,7 +178,7 @@ fn remaining(
 ) -> Option<f64> {
     let (mut pixels, mut products, mut squares) = (0, 0.0, [0.0; 2]);
     for_flat_pixels(now, before, size, full_scale, |at| {
-        let limit = LARGEST_NOISE * full_scale;
+        let limit = MAX_NOISE * full_scale;
         let latest = (value(now, at) - value(before, at)).clamp(-limit, limit);
         let last = (value(before, at) - value(earlier, at)).clamp(-limit, limit);
         pixels += 1;
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_without_noise_tells_nothing() {
+    fn a_picture_without_noise_is_not_judged() {
         let still = vec![vec![0.0; SIDE.0 * SIDE.1]; 6];
         assert!(ages(&still).iter().all(|age| *age == PictureAge::default()));
     }

@@ -181,8 +181,8 @@ mod landlocked {
         listed: Vec<PathBuf>,
     }
 
-    /// Returns what is left of `readable` without a file: the other entries of each directory that contains it.
-    /// A program in the sandbox cannot run Boresight to make the frames with their truth.
+    /// Returns what is left of `readable` without a file: the other entries of each directory that contains
+    /// it. A program in the sandbox cannot run Boresight to make the frames with their truth.
     fn without(readable: Readable, file: &Path) -> Readable {
         let mut rest = Readable { whole: Vec::new(), listed: readable.listed };
         let mut pending = readable.whole;

@@ -123,8 +123,8 @@ struct SolvedFrame {
     focal_length_ratio: f64,
 }
 
-/// Returns the inputs with which the stars of frames fit; `None` if none of those tried does, or if all are as
-/// stated.
+/// Returns the inputs with which the stars of frames fit; `None` if none of those tried does, or if all are
+/// as stated.
 pub fn find_mistake(setup: &Setup, frames: &[UnmatchedFrame]) -> Option<InputMistake> {
     let frames = frames.get(..MAX_FRAMES).unwrap_or(frames);
     let (camera, ratio) = fitting_camera(setup, frames)?;
@@ -167,8 +167,8 @@ pub fn find_mistake(setup: &Setup, frames: &[UnmatchedFrame]) -> Option<InputMis
     Some(with(*image, as_stated, mounting.map_or(Mounting::None, Mounting::Other), solved))
 }
 
-/// Returns the camera with the focal length with which the stars of the first frames fit, and its ratio to the
-/// stated one: the nearest to it.
+/// Returns the camera with the focal length with which the stars of the first frames fit, and its ratio to
+/// the stated one: the nearest to it.
 fn fitting_camera(setup: &Setup, frames: &[UnmatchedFrame]) -> Option<(Camera, f64)> {
     let frames = frames.get(..FOCAL_FRAMES).unwrap_or(frames);
     let steps = (MAX_FOCAL_ERROR / FOCAL_STEP).round() as i32;

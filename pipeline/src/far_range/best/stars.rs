@@ -174,8 +174,8 @@ pub(super) fn are_confirmed(
 const CONTRADICTING_STARS: usize = 5;
 
 /// Returns true if a frame without matched stars contradicts its attitude: at least five listed stars must
-/// have an image. While the brightness scale is unknown, they must have one if the frame has as many clusters.
-/// `is_in_image` returns true if the position of a star was transmitted.
+/// have an image. While the brightness scale is unknown, they must have one if the frame has as many
+/// clusters. `is_in_image` returns true if the position of a star was transmitted.
 pub(super) fn is_contradicted(
     stars: &[ExpectedStar],
     clusters: usize,

@@ -272,9 +272,9 @@ impl Track {
     }
 
     /// Returns the natural logarithm of the density of the position of a candidate, px⁻², for a track of a
-    /// single cluster. Slow targets are more frequent than fast ones: the logarithm of the speed is uniform up
-    /// to the largest speed. With the distance r, the largest distance R and the error s of a position, the
-    /// density is 1/[π (r² + s²) ln(1 + R²/s²)].
+    /// single cluster. Slow targets are more frequent than fast ones: the logarithm of the speed is uniform
+    /// up to the largest speed. With the distance r, the largest distance R and the error s of a position,
+    /// the density is 1/[π (r² + s²) ln(1 + R²/s²)].
     fn log_density_of_unknown_speed(&self, c: &TargetCandidate) -> f64 {
         let error_px2 = 2.0 * (c.variance_px2 + JITTER_PX * JITTER_PX);
         // The standard deviation of the predicted position is half of the largest distance.
@@ -376,8 +376,8 @@ impl Track {
     }
 
     /// Begins the objects at rest anew with a candidate where that has the larger weight (the clusters before
-    /// were chance, and this one is a star or a pixel that is seen for the first time), and the stars where no
-    /// direction was known before.
+    /// were chance, and this one is a star or a pixel that is seen for the first time), and the stars where
+    /// no direction was known before.
     fn begin_objects_at_rest(&mut self, c: &TargetCandidate, sky: Sky<'_>) {
         for (i, scatter_px) in STAR_SCATTER_PX.into_iter().enumerate() {
             let is_first = self.stars[i].is_none();

@@ -42,8 +42,8 @@ impl UnlistedStars {
     /// Creates the distribution for a frame.
     ///
     /// `limit_e` is the flux of a star at the limit of the list, electrons, if the scale of brightness is
-    /// known; `listed` is the number of listed stars in the image, `is_matched` true if some were found: without
-    /// them a cluster may be any star of the list.
+    /// known; `listed` is the number of listed stars in the image, `is_matched` true if some were found:
+    /// without them a cluster may be any star of the list.
     pub(super) fn new(listed: usize, is_matched: bool, limit_e: Option<f64>, threshold_e: f64) -> Self {
         match limit_e {
             Some(limit_e) if listed > 0 => {
