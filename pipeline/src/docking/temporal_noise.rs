@@ -6,7 +6,9 @@
 //! pixels shows, whatever noise or coding came on top. If a share a of the picture two fields ago remains in
 //! each picture (noise reduction, a camera's lag, a codec), the noise is a first-order process, whose
 //! differences have the correlation −(1 − a)/2: the picture then is that of an earlier time, 2T a/(1 − a) on
-//! average for the time T between fields.
+//! average for the time T between fields. Fields that share picture with the other one of their frame
+//! (deinterlaced, coded as frames) have less new noise since that one than since the field before of the same
+//! rows.
 
 use std::collections::VecDeque;
 
@@ -36,8 +38,14 @@ const MIN_REMAINING: f64 = 0.05;
 
 /// Standard deviation of the time of the picture over its mean delay, and its largest value, s: a codec
 /// refreshes what has moved.
-const SIGMA_PER_DELAY: f64 = 1.5;
-const MAX_SIGMA_S: f64 = 0.06;
+const SIGMA_PER_DELAY: f64 = 2.0;
+const MAX_SIGMA_S: f64 = 0.08;
+
+/// Ratio of the new noise since the other field of a frame to that since the field before of the same rows
+/// below which the two fields of a frame share picture, and the standard deviation of their times then, s: half
+/// of the time between them.
+const MIN_OWN_NOISE: f64 = 0.85;
+const MIXED_SIGMA_S: f64 = 0.01;
 
 /// Longest time between fields that are compared, s: two and four fields, with a margin.
 const MAX_APART_S: f64 = 0.06;
@@ -65,6 +73,8 @@ const MEMORY: usize = 4;
 pub(crate) struct TemporalNoise {
     last: VecDeque<PastField>,
     is_frozen: bool,
+    /// True if the last field shared picture with the other one of its frame.
+    was_mixed: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -103,29 +113,33 @@ impl TemporalNoise {
             let elapsed_s = now.time_s - before.time_s;
             before.dn.len() == now.dn.len() && elapsed_s > 0.0 && elapsed_s <= apart_s
         };
+        let other_rows = self.last.front().filter(|other| other.lines != now.lines);
+        let in_frame = other_rows
+            .filter(|other| is_comparable(other, MAX_APART_S))
+            .and_then(|other| new_noise(now, other, size, full_scale));
+        let is_copy = in_frame.is_some_and(|ratio| ratio < MIN_NEW_NOISE_IN_FRAME);
         let mut same_rows = self.last.iter().filter(|before| before.lines == now.lines);
-        let Some(before) = same_rows.next().filter(|before| is_comparable(before, MAX_APART_S)) else {
-            self.is_frozen = false;
-            return PictureAge::default();
+        let before = same_rows.next().filter(|before| is_comparable(before, MAX_APART_S));
+        let earlier = same_rows.next().filter(|earlier| is_comparable(earlier, MAX_FAR_APART_S));
+        let Some(before) = before else {
+            (self.is_frozen, self.was_mixed) = (false, false);
+            return PictureAge { is_repeated: is_copy, sigma_s: 0.0 };
         };
         let new = new_noise(now, before, size, full_scale);
-        let in_frame = self
-            .last
-            .front()
-            .filter(|other| other.lines != now.lines && is_comparable(other, MAX_APART_S))
-            .and_then(|other| new_noise(now, other, size, full_scale));
         self.is_frozen = match new {
             Some(ratio) if self.is_frozen => ratio < LIVE_NEW_NOISE,
             Some(ratio) => ratio < MIN_NEW_NOISE,
             None => false,
         };
-        let is_repeated = self.is_frozen || in_frame.is_some_and(|ratio| ratio < MIN_NEW_NOISE_IN_FRAME);
-        let remaining = same_rows
-            .next()
-            .filter(|earlier| is_comparable(earlier, MAX_FAR_APART_S))
-            .and_then(|earlier| remaining(now, before, earlier, size, full_scale));
-        let period_s = now.time_s - before.time_s;
-        PictureAge { is_repeated, sigma_s: remaining.map_or(0.0, |share| sigma_s(share, period_s)) }
+        let is_mixed = in_frame.zip(new).is_some_and(|(in_frame, new)| in_frame < MIN_OWN_NOISE * new);
+        let mixed_s = if is_mixed || self.was_mixed { MIXED_SIGMA_S } else { 0.0 };
+        self.was_mixed = is_mixed;
+        // Without the field before that, a first-order process of white noise has the share 1 − ratio.
+        let share = earlier
+            .and_then(|earlier| remaining(now, before, earlier, size, full_scale))
+            .or_else(|| new.map(|ratio| 1.0 - ratio));
+        let remaining_s = share.map_or(0.0, |share| sigma_s(share, now.time_s - before.time_s));
+        PictureAge { is_repeated: self.is_frozen || is_copy, sigma_s: libm::hypot(remaining_s, mixed_s) }
     }
 }
 
@@ -298,7 +312,7 @@ mod tests {
         let live: Vec<Vec<f64>> = (0..4).map(|k| noise(k + 1, 2.0)).collect();
         let noises: Vec<Vec<f64>> = (0..8).map(|k| live[k / 2].clone()).collect();
         let repeated: Vec<bool> = ages(&noises).iter().map(|age| age.is_repeated).collect();
-        assert!((2..8).all(|k| repeated[k] == (k % 2 == 1)), "{repeated:?}");
+        assert!((0..8).all(|k| repeated[k] == (k % 2 == 1)), "{repeated:?}");
     }
 
     #[test]
