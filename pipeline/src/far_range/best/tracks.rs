@@ -80,6 +80,8 @@ struct EvidenceOfOthers {
     /// `None` without the direction of the star or the attitude of the frame.
     stars: [Option<f64>; STARS],
     pixel: f64,
+    /// Indices of the candidates that are the image of the star.
+    images: [Option<usize>; STARS],
 }
 
 impl EvidenceOfOthers {
@@ -104,8 +106,6 @@ struct AtRest<P> {
 /// Hypothesis for the target.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Track {
-    /// Number of the track in its sequence.
-    id: u64,
     pub(super) position: PixelPoint,
     velocity: [f64; 2],
     /// Covariance of position and velocity along either axis: px², px²/s, px²/s².
@@ -207,10 +207,9 @@ const MAX_MISSES: u32 = 20;
 const MAX_MISSES_OF_NEW: u32 = 2;
 
 impl Track {
-    fn new(id: u64, candidate: usize, c: &TargetCandidate, model: &TrackModel, sky: Sky<'_>) -> Self {
+    fn new(candidate: usize, c: &TargetCandidate, model: &TrackModel, sky: Sky<'_>) -> Self {
         let speed = model.max_speed_px_per_s / 2.0;
         Self {
-            id,
             position: c.position,
             velocity: [0.0; 2],
             covariance: [c.variance_px2, 0.0, speed * speed],
@@ -315,19 +314,20 @@ impl Track {
 
     /// Returns the evidence of a frame for an object that is expected at `position` with the variance
     /// `variance_px2` along an axis besides that of the candidates, and the candidate that is most likely the
-    /// object. The sum of both cases, that the object has an image and that it has none, is the likelihood.
-    fn evidence_at<'a>(
+    /// object, by its index. The sum of both cases, that the object has an image and that it has none, is the
+    /// likelihood.
+    fn evidence_at(
         &self,
         position: PixelPoint,
         variance_px2: f64,
-        frame: &FrameCandidates<'a>,
+        frame: &FrameCandidates<'_>,
         of_shape: fn(&TargetCandidate) -> f64,
-    ) -> (f64, Option<&'a TargetCandidate>) {
+    ) -> (f64, Option<usize>) {
         if !frame.sky.is_near_detector(position) {
             return (0.0, None);
         }
-        let mut best: Option<(f64, &TargetCandidate)> = None;
-        for c in frame.candidates {
+        let mut best: Option<(f64, usize)> = None;
+        for (index, c) in frame.candidates.iter().enumerate() {
             let variance = variance_px2 + c.variance_px2;
             let distance = squared_distance(position, c.position) / variance;
             if distance > GATE {
@@ -341,25 +341,27 @@ impl Track {
             let gain =
                 self.log_likelihood_ratio(log_density, flux_distance, frame.model, MAX_AT_REST) + of_shape(c);
             if best.is_none_or(|(other, _)| gain > other) {
-                best = Some((gain, c));
+                best = Some((gain, index));
             }
         }
         let missed = self.log_miss(frame.model);
         match best {
             None => (missed, None),
-            Some((gain, c)) => (log_sum(gain, missed), (gain > missed).then_some(c)),
+            Some((gain, index)) => (log_sum(gain, missed), (gain > missed).then_some(index)),
         }
     }
 
     /// Returns the evidence of a frame for the hypotheses other than the target, and moves their objects
     /// towards their candidates. Each object has its own candidate.
     fn follow_objects_at_rest(&mut self, frame: &FrameCandidates<'_>) -> EvidenceOfOthers {
-        let mut evidence = EvidenceOfOthers { stars: [None; STARS], pixel: self.follow_pixel(frame) };
+        let pixel = self.follow_pixel(frame);
+        let mut evidence = EvidenceOfOthers { stars: [None; STARS], pixel, images: [None; STARS] };
         let mut about_mean = None;
         for (i, scatter_px) in STAR_SCATTER_PX.into_iter().enumerate() {
             about_mean = self.star_evidence(&self.stars[i], scatter_px, frame);
             evidence.stars[i] = about_mean.map(|(evidence, _)| evidence);
-            if let Some((_, Some(c))) = about_mean {
+            evidence.images[i] = about_mean.and_then(|(_, image)| image);
+            if let Some(c) = evidence.images[i].and_then(|image| frame.candidates.get(image)) {
                 self.stars[i] = updated_star(self.stars[i], c, scatter_px, frame.sky);
             }
         }
@@ -368,7 +370,9 @@ impl Track {
         let at_last = self.star_evidence(&self.last, AT_REST_PX, frame);
         if let (Some((by_mean, of_mean)), Some((by_last, of_last))) = (about_mean, at_last) {
             evidence.stars[STARS - 1] = Some(log_sum(by_mean, by_last) - std::f64::consts::LN_2);
-            if let Some(c) = if by_last > by_mean { of_last } else { of_mean } {
+            let image = if by_last > by_mean { of_last } else { of_mean };
+            evidence.images[STARS - 1] = image;
+            if let Some(c) = image.and_then(|image| frame.candidates.get(image)) {
                 self.last = star_at(c, AT_REST_PX, frame.sky);
             }
         }
@@ -400,7 +404,7 @@ impl Track {
         let variance_px2 = self.pixel.variance_px2 + AT_REST_PX * AT_REST_PX;
         let (evidence, candidate) =
             self.evidence_at(self.pixel.at, variance_px2, frame, |c| -c.point_over_pixel);
-        if let Some(c) = candidate {
+        if let Some(c) = candidate.and_then(|index| frame.candidates.get(index)) {
             let k = self.pixel.variance_px2 / (self.pixel.variance_px2 + c.variance_px2);
             let at = weighted_mean(self.pixel.at, c.position, k);
             self.pixel = AtRest { at, variance_px2: (1.0 - k) * self.pixel.variance_px2 };
@@ -409,13 +413,13 @@ impl Track {
     }
 
     /// Returns the evidence for a star whose centroid has the standard deviation `scatter_px`, and its
-    /// candidate; `None` without its direction or the attitude of the frame.
-    fn star_evidence<'a>(
+    /// candidate, by its index; `None` without its direction or the attitude of the frame.
+    fn star_evidence(
         &self,
         star: &Option<Star>,
         scatter_px: f64,
-        frame: &FrameCandidates<'a>,
-    ) -> Option<(f64, Option<&'a TargetCandidate>)> {
+        frame: &FrameCandidates<'_>,
+    ) -> Option<(f64, Option<usize>)> {
         let star = star.as_ref()?;
         frame.sky.camera_from_icrs?;
         // A star outside the camera's model has no image.
@@ -503,28 +507,9 @@ fn weighted_mean(a: PixelPoint, b: PixelPoint, k: f64) -> PixelPoint {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tracks {
     tracks: Vec<Track>,
-    /// Number of tracks begun so far.
-    begun: u64,
-    /// Candidates of the last frames, latest frame first.
-    recent: VecDeque<Vec<RecentCandidate>>,
-}
-
-/// Candidate of one of the last frames.
-#[derive(Debug, Clone, Copy)]
-struct RecentCandidate {
-    /// Position in the image of its frame.
-    position: PixelPoint,
-    direction: Direction<Icrs>,
-    /// Track that it continued or began.
-    track: u64,
-}
-
-/// Position in the image of a candidate of the last frames, if that was a star.
-#[derive(Debug, Clone, Copy)]
-struct SeenStar {
-    position: PixelPoint,
-    /// Track of the candidate.
-    track: u64,
+    /// Candidates of the last frames, latest frame first: position in the image and direction among the
+    /// stars.
+    recent: VecDeque<Vec<(PixelPoint, Direction<Icrs>)>>,
 }
 
 impl Tracks {
@@ -568,12 +553,11 @@ impl Tracks {
         let seen_stars = self.seen_stars(frame.sky);
         let of_others: Vec<EvidenceOfOthers> =
             self.tracks.iter_mut().map(|track| track.follow_objects_at_rest(frame)).collect();
-        // Track that each candidate continues or begins.
-        let mut track_of: Vec<Option<u64>> = vec![None; candidates.len()];
+        let mut is_taken = vec![false; candidates.len()];
         let mut gains: Vec<Option<f64>> = vec![None; self.tracks.len()];
         for pair in self.pairs(frame, &of_others, &seen_stars) {
-            if track_of[pair.candidate].is_none() && gains[pair.track].is_none() {
-                track_of[pair.candidate] = Some(self.tracks[pair.track].id);
+            if !is_taken[pair.candidate] && gains[pair.track].is_none() {
+                is_taken[pair.candidate] = true;
                 gains[pair.track] = Some(pair.gain);
                 self.tracks[pair.track].update_with(pair.candidate, &candidates[pair.candidate]);
             }
@@ -587,8 +571,9 @@ impl Tracks {
                 track.begin_objects_at_rest(c, frame.sky);
             }
         }
-        self.begin(frame, &mut track_of, &seen_stars);
-        self.recent.push_front(recent_candidates(frame, &track_of));
+        self.begin(frame, &is_taken, &seen_stars);
+        let seen = candidates.iter().filter_map(|c| Some((c.position, frame.sky.direction(c.position)?)));
+        self.recent.push_front(seen.collect());
         self.recent.truncate(RECENT_FRAMES);
         self.tracks.retain(Track::is_kept);
         self.tracks.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()).then(b.hits.cmp(&a.hits)));
@@ -598,13 +583,14 @@ impl Tracks {
     /// Returns the possible continuations of tracks by candidates, best resulting odds first. `of_others` is
     /// the evidence for the hypotheses of each track other than the target.
     ///
-    /// A candidate at the position of a star that another track has seen is that star: a track that one star
-    /// after the other continues is not the target's.
+    /// A candidate at the position of a star that was seen before is that star. If it is not the star that the
+    /// track's own hypothesis follows, it is evidence against the target: a track that one star after the
+    /// other continues is not the target's.
     fn pairs(
         &self,
         frame: &FrameCandidates<'_>,
         of_others: &[EvidenceOfOthers],
-        seen_stars: &[SeenStar],
+        seen_stars: &[PixelPoint],
     ) -> Vec<Pair> {
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
@@ -614,7 +600,8 @@ impl Tracks {
                     None => track.likelihood(candidate, frame.model),
                 };
                 if let Some(mut gain) = gain {
-                    if is_star_of(candidate, seen_stars, |seen_by| seen_by != track.id) {
+                    let is_own = of_others[t].images.contains(&Some(c));
+                    if !is_own && is_star(candidate, seen_stars) {
                         gain -= STAR_MOTION;
                     }
                     let mut hypotheses = track.hypotheses;
@@ -631,51 +618,36 @@ impl Tracks {
     }
 
     /// Begins a track with every candidate that continues none.
-    fn begin(&mut self, frame: &FrameCandidates<'_>, track_of: &mut [Option<u64>], seen_stars: &[SeenStar]) {
+    fn begin(&mut self, frame: &FrameCandidates<'_>, is_taken: &[bool], seen_stars: &[PixelPoint]) {
         for (c, candidate) in frame.candidates.iter().enumerate() {
-            if track_of[c].is_some() || candidate.evidence.is_some() {
+            if is_taken[c] || candidate.evidence.is_some() {
                 continue;
             }
-            let mut track = Track::new(self.begun, c, candidate, frame.model, frame.sky);
-            let gain = if is_star_of(candidate, seen_stars, |_| true) { STAR_MOTION } else { 0.0 };
+            let mut track = Track::new(c, candidate, frame.model, frame.sky);
+            let gain = if is_star(candidate, seen_stars) { STAR_MOTION } else { 0.0 };
             track.hypotheses.add(Hypotheses { target: 0.0, stars: [gain; STARS], pixel: 0.0 });
-            track_of[c] = Some(track.id);
-            self.begun += 1;
             self.tracks.push(track);
         }
     }
 
     /// Returns the current image positions of the last frames' candidates, assuming that they are stars,
     /// where the stars have moved far enough since.
-    fn seen_stars(&self, sky: Sky<'_>) -> Vec<SeenStar> {
+    fn seen_stars(&self, sky: Sky<'_>) -> Vec<PixelPoint> {
         let mut seen = Vec::new();
-        for recent in self.recent.iter().flatten() {
-            let Some(position) = sky.position(&recent.direction) else { continue };
-            if position.distance(recent.position) > APART_PX {
-                seen.push(SeenStar { position, track: recent.track });
+        for (before, direction) in self.recent.iter().flatten() {
+            let Some(position) = sky.position(direction) else { continue };
+            if position.distance(*before) > APART_PX {
+                seen.push(position);
             }
         }
         seen
     }
 }
 
-/// Returns the candidates of a frame with their tracks; none without an attitude.
-fn recent_candidates(frame: &FrameCandidates<'_>, track_of: &[Option<u64>]) -> Vec<RecentCandidate> {
-    let mut recent = Vec::new();
-    for (candidate, track) in frame.candidates.iter().zip(track_of) {
-        if let (Some(track), Some(direction)) = (*track, frame.sky.direction(candidate.position)) {
-            recent.push(RecentCandidate { position: candidate.position, direction, track });
-        }
-    }
-    recent
-}
-
-/// Returns true if a candidate is at the position of a star seen by a track for which `is_meant` is true.
-fn is_star_of(candidate: &TargetCandidate, seen_stars: &[SeenStar], is_meant: impl Fn(u64) -> bool) -> bool {
+/// Returns true if a candidate is at the position of a star seen before.
+fn is_star(candidate: &TargetCandidate, seen_stars: &[PixelPoint]) -> bool {
     let reach_px = WITH_STARS_PX + 2.0 * candidate.variance_px2.sqrt();
-    seen_stars
-        .iter()
-        .any(|seen| is_meant(seen.track) && seen.position.distance(candidate.position) < reach_px)
+    seen_stars.iter().any(|seen| seen.distance(candidate.position) < reach_px)
 }
 
 /// Possible continuation of a track by a candidate.
