@@ -42,8 +42,8 @@ const SIGMA_PER_DELAY: f64 = 2.0;
 const MAX_SIGMA_S: f64 = 0.08;
 
 /// Ratio of the new noise since the other field of a frame to that since the field before of the same rows
-/// below which the two fields of a frame share picture, and the standard deviation of their times then, s: half
-/// of the time between them.
+/// below which the two fields of a frame share picture, and the standard deviation of their times then, s:
+/// half of the time between them.
 const MIN_OWN_NOISE: f64 = 0.85;
 const MIXED_SIGMA_S: f64 = 0.01;
 

@@ -583,8 +583,8 @@ impl Tracks {
     /// Returns the possible continuations of tracks by candidates, best resulting odds first. `of_others` is
     /// the evidence for the hypotheses of each track other than the target.
     ///
-    /// A candidate at the position of a star that was seen before is that star. If it is not the star that the
-    /// track's own hypothesis follows, it is evidence against the target: a track that one star after the
+    /// A candidate at the position of a star that was seen before is that star. If it is not the star that
+    /// the track's own hypothesis follows, it is evidence against the target: a track that one star after the
     /// other continues is not the target's.
     fn pairs(
         &self,
