@@ -3,12 +3,13 @@
 //! The noise of a live picture is new in every field. With the noise n_k of field k of variance σ², the
 //! difference between two fields has the variance 2σ², and successive differences between fields of the same
 //! rows have the correlation −1/2. A picture that is frozen has less new noise than the noise between its own
-//! pixels shows, whatever noise or coding came on top. If a share a of the picture two fields ago remains in
-//! each picture (noise reduction, a camera's lag, a codec), the noise is a first-order process, whose
-//! differences have the correlation −(1 − a)/2: the picture then is that of an earlier time, 2T a/(1 − a) on
-//! average for the time T between fields. Fields that share picture with the other one of their frame
-//! (deinterlaced, coded as frames) have less new noise since that one than since the field before of the same
-//! rows.
+//! pixels shows and than the fields before had, whatever noise or coding came on top. If a share a of the
+//! picture two fields ago remains in each picture (noise reduction, a camera's lag, a codec), the noise is a
+//! first-order process, whose differences have the correlation −(1 − a)/2: the picture then is that of an
+//! earlier time, 2T a/(1 − a) on average for the time T between fields. Fields that share picture with the
+//! other one of their frame (deinterlaced, coded as frames) have less new noise since that one than since the
+//! field before of the same rows. A steady motion correlates differences, too, those of fields farther apart
+//! as well: this part is subtracted.
 
 use std::collections::VecDeque;
 
@@ -29,27 +30,38 @@ pub(crate) struct PictureAge {
 const MIN_NEW_NOISE: f64 = 0.3;
 const LIVE_NEW_NOISE: f64 = 0.6;
 
-/// This limit between the two fields of a frame: a field made from the other one has none, a strong noise
-/// reduction 0.15.
+/// This limit between the two fields of a frame: a field made from the other one and coded has none, a strong
+/// noise reduction 0.15.
 const MIN_NEW_NOISE_IN_FRAME: f64 = 0.1;
 
-/// Share of the picture two fields ago below which none is noticed: five standard deviations of its estimate.
+/// Share of the picture two fields ago below which none is noticed, and the same for a single pixel: six
+/// standard deviations of its estimate.
 const MIN_REMAINING: f64 = 0.05;
+const MIN_REMAINING_OF_PIXEL: f64 = 9.0;
+
+/// Ratio of new noise below which, and share of unchanged pixels above which, an earlier picture may remain.
+/// Live pictures have 0.14 unchanged with noise of 2 of 255 DN, coded ones 0.6 to 0.9.
+const MAX_MIXED_NOISE: f64 = 0.97;
+const MIN_UNCHANGED: f64 = 0.5;
+
+/// Number of live fields before a picture can count as frozen.
+const MIN_LIVE_FIELDS: u32 = 4;
 
 /// Standard deviation of the time of the picture over its mean delay, and its largest value, s: a codec
 /// refreshes what has moved.
 const SIGMA_PER_DELAY: f64 = 2.0;
 const MAX_SIGMA_S: f64 = 0.08;
 
-/// Ratio of the new noise since the other field of a frame to that since the field before of the same rows
-/// below which the two fields of a frame share picture, and the standard deviation of their times then, s:
-/// half of the time between them.
+/// Ratio of the noise that is new since the other field of a frame to the noise between pixels below which
+/// the two fields share picture, and the standard deviation of their times then, s: half of the time between
+/// them.
 const MIN_OWN_NOISE: f64 = 0.85;
 const MIXED_SIGMA_S: f64 = 0.01;
 
-/// Longest time between fields that are compared, s: two and four fields, with a margin.
+/// Longest time between a field and that two, four and six fields before, s.
 const MAX_APART_S: f64 = 0.06;
 const MAX_FAR_APART_S: f64 = 0.12;
+const MAX_FARTHEST_APART_S: f64 = 0.17;
 
 /// Rows from one row that is evaluated to the next.
 const ROW_STEP: usize = 4;
@@ -60,19 +72,30 @@ const DARKEST: f64 = 0.05;
 const BRIGHTEST: f64 = 0.94;
 const MAX_NOISE: f64 = 0.08;
 
-/// Smallest number of pixels, and smallest variance of the noise between pixels, (full scale)², that
-/// determine a ratio: 0.14 of 255 DN.
+/// Smallest number of pixels that determine a ratio or a correlation.
 const MIN_PIXELS: usize = 2000;
-const MIN_VARIANCE: f64 = 3e-7;
+
+/// Smallest variance of the noise between pixels, (full scale)², with which a picture is compared: 0.2 of
+/// 255 DN.
+const MIN_VARIANCE: f64 = 6e-7;
+
+/// Smallest variance of differences, (full scale)², whose correlation is used: 0.14 of 255 DN.
+const MIN_DIFFERENCE: f64 = 3e-7;
+
+/// Largest correlation of successive differences of noise. Differences that the motion makes have a larger
+/// one.
+const MAX_CORRELATION: f64 = 0.05;
 
 /// Fields in memory.
-const MEMORY: usize = 4;
+const MEMORY: usize = 6;
 
 /// Comparison of each field with the ones before it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TemporalNoise {
     last: VecDeque<PastField>,
     is_frozen: bool,
+    /// Number of fields so far that had new noise: a picture without noise is not frozen.
+    live_fields: u32,
     /// True if the last field shared picture with the other one of its frame.
     was_mixed: bool,
 }
@@ -88,6 +111,8 @@ struct PastField {
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     pixels: usize,
+    /// Number of pixels without a difference to the field before.
+    unchanged: usize,
     /// Σ of the difference to the field before, and of its square, clipped.
     difference: f64,
     squares: f64,
@@ -117,27 +142,35 @@ impl TemporalNoise {
         let in_frame = other_rows
             .filter(|other| is_comparable(other, MAX_APART_S))
             .and_then(|other| new_noise(now, other, size, full_scale));
-        let is_copy = in_frame.is_some_and(|ratio| ratio < MIN_NEW_NOISE_IN_FRAME);
+        let is_live = self.live_fields >= MIN_LIVE_FIELDS;
+        let is_copy = in_frame.is_some_and(|new| is_live && new.ratio < MIN_NEW_NOISE_IN_FRAME)
+            || other_rows.is_some_and(|other| other.dn == now.dn);
         let mut same_rows = self.last.iter().filter(|before| before.lines == now.lines);
         let before = same_rows.next().filter(|before| is_comparable(before, MAX_APART_S));
         let earlier = same_rows.next().filter(|earlier| is_comparable(earlier, MAX_FAR_APART_S));
+        let first = same_rows.next().filter(|first| is_comparable(first, MAX_FARTHEST_APART_S));
         let Some(before) = before else {
-            (self.is_frozen, self.was_mixed) = (false, false);
+            (self.is_frozen, self.live_fields, self.was_mixed) = (false, 0, false);
             return PictureAge { is_repeated: is_copy, sigma_s: 0.0 };
         };
         let new = new_noise(now, before, size, full_scale);
-        self.is_frozen = match new {
+        let ratio = new.map(|new| new.ratio);
+        self.is_frozen = match ratio {
             Some(ratio) if self.is_frozen => ratio < LIVE_NEW_NOISE,
-            Some(ratio) => ratio < MIN_NEW_NOISE,
+            Some(ratio) => is_live && ratio < MIN_NEW_NOISE,
             None => false,
         };
-        let is_mixed = in_frame.zip(new).is_some_and(|(in_frame, new)| in_frame < MIN_OWN_NOISE * new);
+        self.live_fields += u32::from(ratio.is_some_and(|ratio| ratio >= LIVE_NEW_NOISE));
+        let is_mixed = in_frame.is_some_and(|new| new.ratio < MIN_OWN_NOISE);
         let mixed_s = if is_mixed || self.was_mixed { MIXED_SIGMA_S } else { 0.0 };
         self.was_mixed = is_mixed;
-        // Without the field before that, a first-order process of white noise has the share 1 − ratio.
-        let share = earlier
-            .and_then(|earlier| remaining(now, before, earlier, size, full_scale))
-            .or_else(|| new.map(|ratio| 1.0 - ratio));
+        // With too few fields: a first-order process of white noise has the share 1 − ratio.
+        let share = new.filter(NewNoise::may_be_mixed).and_then(|new| {
+            earlier
+                .zip(first)
+                .and_then(|(earlier, first)| remaining([now, before, earlier, first], size, full_scale))
+                .or(Some(1.0 - new.ratio))
+        });
         let remaining_s = share.map_or(0.0, |share| sigma_s(share, now.time_s - before.time_s));
         PictureAge { is_repeated: self.is_frozen || is_copy, sigma_s: libm::hypot(remaining_s, mixed_s) }
     }
@@ -153,9 +186,25 @@ fn sigma_s(share: f64, period_s: f64) -> f64 {
     (SIGMA_PER_DELAY * delay_s).min(MAX_SIGMA_S)
 }
 
-/// Returns the ratio of the noise that is new since another field to the noise between pixels, both
-/// variances; `None` if there is too little of it to tell.
-fn new_noise(now: &PastField, before: &PastField, size: (usize, usize), full_scale: f64) -> Option<f64> {
+/// Noise of a field that is new since another one.
+#[derive(Debug, Clone, Copy)]
+struct NewNoise {
+    /// Its variance over that of the noise between pixels.
+    ratio: f64,
+    /// Share of the pixels that are unchanged.
+    unchanged: f64,
+}
+
+impl NewNoise {
+    /// Returns true if a part of an earlier picture may remain: less noise is new than in a live picture, or
+    /// a codec has copied most pixels. Otherwise the motion makes successive differences alike.
+    fn may_be_mixed(&self) -> bool {
+        self.ratio < MAX_MIXED_NOISE || self.unchanged > MIN_UNCHANGED
+    }
+}
+
+/// Returns the noise that is new since another field; `None` if there is too little of it.
+fn new_noise(now: &PastField, before: &PastField, size: (usize, usize), full_scale: f64) -> Option<NewNoise> {
     let mut sums = Sums::default();
     for_flat_pixels(now, before, size, full_scale, |at| {
         let clipped = |difference: f64| {
@@ -166,6 +215,7 @@ fn new_noise(now: &PastField, before: &PastField, size: (usize, usize), full_sca
         let beside = 0.5 * (value(now, at - 1) + value(now, at + 1));
         let between = clipped(value(now, at) - beside);
         sums.pixels += 1;
+        sums.unchanged += usize::from(difference == 0.0);
         sums.difference += difference;
         sums.squares += difference * difference;
         sums.between_pixels += between * between;
@@ -178,32 +228,38 @@ fn new_noise(now: &PastField, before: &PastField, size: (usize, usize), full_sca
     // Var(n_k − n_j) = 2σ²; Var[n(x) − (n(x − 1) + n(x + 1))/2] = 1.5σ².
     let new = (sums.squares / count - mean * mean) / 2.0;
     let between = sums.between_pixels / count / 1.5;
-    (between > MIN_VARIANCE * full_scale * full_scale).then(|| new / between)
+    (between > MIN_VARIANCE * full_scale * full_scale)
+        .then(|| NewNoise { ratio: new / between, unchanged: sums.unchanged as f64 / count })
 }
 
 /// Returns the share of the picture two fields ago that remains, 1 + 2r for the correlation r of successive
-/// differences.
-fn remaining(
-    now: &PastField,
-    before: &PastField,
-    earlier: &PastField,
-    size: (usize, usize),
-    full_scale: f64,
-) -> Option<f64> {
-    let (mut pixels, mut products, mut squares) = (0, 0.0, [0.0; 2]);
+/// differences without the part of a steady motion; `None` without noise to tell. `fields` has the same rows,
+/// the latest first.
+fn remaining(fields: [&PastField; 4], size: (usize, usize), full_scale: f64) -> Option<f64> {
+    let [now, before, earlier, first] = fields;
+    let limit = MAX_NOISE * full_scale;
+    let (mut pixels, mut successive, mut apart, mut squares) = (0, 0.0, 0.0, [0.0; 2]);
     for_flat_pixels(now, before, size, full_scale, |at| {
-        let limit = MAX_NOISE * full_scale;
         let latest = (value(now, at) - value(before, at)).clamp(-limit, limit);
         let last = (value(before, at) - value(earlier, at)).clamp(-limit, limit);
+        let one_before = (value(earlier, at) - value(first, at)).clamp(-limit, limit);
         pixels += 1;
-        products += latest * last;
+        successive += latest * last;
+        apart += latest * one_before;
         squares[0] += latest * latest;
         squares[1] += last * last;
     });
+    // Differences that are not successive have no noise in common but that of what remains, whose product is
+    // negative.
+    let of_motion = f64::max(apart, 0.0);
     let [latest, last] = squares;
-    let size = (latest * last).sqrt();
-    let is_known = pixels >= MIN_PIXELS && size > MIN_VARIANCE * full_scale * full_scale * pixels as f64;
-    is_known.then(|| 1.0 + 2.0 * products / size)
+    let noise = (latest * last).sqrt() - of_motion;
+    let products = successive - of_motion;
+    let smallest = MIN_DIFFERENCE * full_scale * full_scale * pixels as f64;
+    let is_noise = pixels >= MIN_PIXELS && noise > smallest && products <= MAX_CORRELATION * noise;
+    let share = 1.0 + 2.0 * products / noise;
+    let is_significant = share * (pixels as f64).sqrt() > MIN_REMAINING_OF_PIXEL;
+    is_noise.then_some(if is_significant { share } else { 0.0 })
 }
 
 fn value(field: &PastField, at: usize) -> f64 {
@@ -273,7 +329,7 @@ mod tests {
     }
 
     fn lines(k: usize) -> Lines {
-        if k % 2 == 0 { Lines::Even } else { Lines::Odd }
+        if k.is_multiple_of(2) { Lines::Even } else { Lines::Odd }
     }
 
     /// Returns the results for fields with noise.
@@ -299,12 +355,12 @@ mod tests {
     #[test]
     fn a_frozen_picture_with_new_noise_is_repeated_until_it_is_live() {
         let live = |k: usize| noise(k as u64 + 1, 2.0);
-        let frozen = |k: usize| sum(&live(2 + k % 2), 1.0, &noise(100 + k as u64, 1.0), 1.0);
+        let frozen = |k: usize| sum(&live(6 + k % 2), 1.0, &noise(100 + k as u64, 1.0), 1.0);
         let noises: Vec<Vec<f64>> =
-            (0..4).map(live).chain((4..10).map(frozen)).chain((10..13).map(live)).collect();
+            (0..8).map(live).chain((8..14).map(frozen)).chain((14..17).map(live)).collect();
         let repeated: Vec<bool> = ages(&noises).iter().map(|age| age.is_repeated).collect();
         assert_eq!(repeated.iter().filter(|is_repeated| **is_repeated).count(), 6, "{repeated:?}");
-        assert!(repeated[4..10].iter().all(|is_repeated| *is_repeated), "{repeated:?}");
+        assert!(repeated[8..14].iter().all(|is_repeated| *is_repeated), "{repeated:?}");
     }
 
     #[test]
@@ -329,7 +385,7 @@ mod tests {
 
     #[test]
     fn a_picture_without_noise_is_not_judged() {
-        let still = vec![vec![0.0; SIDE.0 * SIDE.1]; 6];
+        let still: Vec<Vec<f64>> = (0..6).map(|k| vec![f64::from(k % 2); SIDE.0 * SIDE.1]).collect();
         assert!(ages(&still).iter().all(|age| *age == PictureAge::default()));
     }
 }

@@ -14,7 +14,7 @@ fn check(change: impl FnOnce(&mut Vec<Vec<String>>), parts: &[&str]) {
         .collect();
     change(&mut table);
     let lines: Vec<String> = table.iter().map(|row| row.join(",")).collect();
-    bench.write("set/telemetry.csv", lines.join("\n"));
+    bench.write("set/telemetry.csv", lines.join("\n") + "\n");
     check_refused(&bench, "process set", &[&["set/telemetry.csv"], parts].concat());
 }
 
@@ -51,7 +51,8 @@ fn an_image_outside_the_dataset_is_refused() {
 fn an_invalid_number_is_named_by_line_and_column() {
     check_cell(2, "q_sc_j2000_w", "NaN", &["`q_sc_j2000_w` is `NaN`", "finite number"]);
     check_cell(4, "exposure_s", "inf", &["`exposure_s` is `inf`", "finite number"]);
-    check_cell(4, "exposure_s", "-0.1", &["`exposure_s` is `-0.1`", "0 or greater"]);
+    check_cell(4, "exposure_s", "-0.1", &["`exposure_s` is `-0.1`", "1e-9 or greater"]);
+    check_cell(4, "exposure_s", "1e-320", &["`exposure_s` is `1e-320`", "1e-9 or greater"]);
     check_cell(3, "v_orbital_j2000_y_km_s", "", &["`v_orbital_j2000_y_km_s` is ``", "finite number"]);
     check_cell(3, "time_utc", "2012-04-23", &["`time_utc` is `2012-04-23`", "expected"]);
     check_cell(3, "windows", "1 2 3", &["`windows` is `1 2 3`", "expected"]);

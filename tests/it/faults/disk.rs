@@ -141,17 +141,16 @@ fn measurements_on_a_full_disk_leave_no_file() {
     let before = bench.tree("set");
     check_no_room(&with_short_files(&bench, 2, "process set"), "set");
     check_same_files(&before, &bench.tree("set"));
-    // If the images cannot be passed to a program, each frame is a failure.
+    // If the images cannot be passed to a program, nothing is scored.
     let words = "process set --pipeline 'exec:python3 program.py' --out answers.csv";
     bench.write(
         "program.py",
         "input()\nprint('{\"boresight_pipeline\": 1, \"name\": \"x\"}', flush=True)\ninput()\n",
     );
     let output = with_short_files(&bench, 20, words);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let rows = bench.csv("answers.csv");
-    assert_eq!(rows.len(), 20);
-    assert!(rows.iter().all(|row| row["status"].contains("the image cannot be written")), "{rows:?}");
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the image cannot be written"), "{}", stderr(&output));
+    assert!(!bench.path("answers.csv").exists());
     // Without a directory for the images, nothing begins.
     let output = shell(
         &bench,

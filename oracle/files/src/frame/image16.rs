@@ -74,15 +74,15 @@ pub(crate) fn read(
         ));
     }
     check_claim(path, decoder.total_bytes())?;
-    if format == image::ImageFormat::Png {
-        let bytes_per_pixel = if color == ExtendedColorType::L8 { 1 } else { 2 };
-        png_stream::check(path, columns, rows, bytes_per_pixel)?;
-    }
     // Memory for the pixels, and the same amount for the decoder's own strips.
     let mut limits = limits();
     limits.max_alloc = Some(ABOUT_PIXELS_BYTES.saturating_add(decoder.total_bytes().saturating_mul(2)));
     decoder.set_limits(limits).map_err(|error| image_error(path, error))?;
     let image = image::DynamicImage::from_decoder(decoder).map_err(|error| image_error(path, error))?;
+    if format == image::ImageFormat::Png {
+        let bytes_per_pixel = if color == ExtendedColorType::L8 { 1 } else { 2 };
+        png_stream::check(path, columns, rows, bytes_per_pixel)?;
+    }
     let dn = match image {
         image::DynamicImage::ImageLuma8(pixels) => pixels.into_raw().into_iter().map(u16::from).collect(),
         image::DynamicImage::ImageLuma16(pixels) => pixels.into_raw(),
