@@ -141,7 +141,7 @@ pub(super) fn t_quantile(freedom: f64, p: f64) -> f64 {
 }
 
 /// Computes the interval of a mean over clusters, Σ sum / Σ count, by Student's t with the correction for
-/// skewness of [`Residuals::reach`]. Clusters without a value are left out. `None` below [`MIN_CLUSTERS`].
+/// skewness of `Residuals::reach`. Clusters without a value are left out. `None` below [`MIN_CLUSTERS`].
 pub fn cluster_mean_interval(clusters: &[ClusterSum]) -> Option<Interval> {
     let counted = non_empty(clusters);
     if counted.len() < MIN_CLUSTERS {
@@ -153,7 +153,7 @@ pub fn cluster_mean_interval(clusters: &[ClusterSum]) -> Option<Interval> {
 
 /// Computes the interval of a rate over clusters: Wilson's interval for the number of independent trials that
 /// would scatter as much as the clusters, divided by (t/z)² because this number is itself estimated (Korn &
-/// Graubard 1998, Survey Methodology 24, 193–201); see [`independent_trials`]. `None` if there is no trial.
+/// Graubard 1998, Survey Methodology 24, 193–201); see `independent_trials`. `None` if there is no trial.
 ///
 /// With up to three failures (or successes) in these trials, Wilson's limit on their side is too near the
 /// rate: after a single failure the interval excludes rates of failure of which every sixth study has one.
