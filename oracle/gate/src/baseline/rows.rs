@@ -279,8 +279,10 @@ mod tests {
         let mut values = vec![Some(0.5); row + 2];
         values[row] = Some(f64::NAN);
         let table = sample(vec![figure("ra_rms_deg", Reduction::Rms, &values)]).table;
-        let message = refusal(&table, &vec![0; row + 2]);
-        assert!(message.contains("row 8195: `ra_rms_deg` is `NaN`, expected a finite number"), "{message}");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        let message = write(&File::create_new(&path).unwrap(), &path, &table, |_| 0).unwrap_err().to_string();
+        assert!(message.contains("column `ra_rms_deg` is not a finite number in row 8195"), "{message}");
     }
 
     #[test]
