@@ -45,11 +45,10 @@ fn wait(correct: &[bool]) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
     use crate::angles::AnswerError;
     use crate::cause::Cause;
+    use crate::hand_made::verdict_of;
 
     const CORRECT: Verdict = Verdict::Correct {
         error: AnswerError {
@@ -68,17 +67,7 @@ mod tests {
         let frames = |stretches: &&[(usize, Verdict)]| -> Vec<FrameVerdict> {
             let verdicts =
                 stretches.iter().flat_map(|(count, verdict)| std::iter::repeat_n(*verdict, *count));
-            let frame = |(number, verdict)| FrameVerdict {
-                frame: number,
-                group: Arc::from("day 1"),
-                is_warm_up: false,
-                verdict,
-                image: None,
-                n_stars: None,
-                attitude_source: None,
-                is_absent: false,
-                log_odds: None,
-            };
+            let frame = |(frame, verdict)| FrameVerdict { frame, ..verdict_of(verdict) };
             (0..).zip(verdicts).map(frame).collect()
         };
         let frames: Vec<Vec<FrameVerdict>> = sequences.iter().map(frames).collect();

@@ -1,6 +1,7 @@
 use super::*;
 use crate::hand_made::{
     CENTRE, COLUMNS, PIXEL, ROWS, detected_at, direction_at, frame, target_with, tilted, unproject,
+    verdict_of,
 };
 use crate::report::Figure;
 use contract::{Covariance2, Measurement, NoSolution, PixelPoint, Solution};
@@ -308,17 +309,7 @@ fn an_error_of_exactly_one_pixel_is_not_within_it() {
             centroid_normalised: None,
             line_of_sight_normalised: None,
         };
-        let verdict = FrameVerdict {
-            is_warm_up: false,
-            frame: 0,
-            group: "day 1".into(),
-            verdict: Verdict::Correct { error },
-            image: None,
-            n_stars: None,
-            attitude_source: None,
-            is_absent: false,
-            log_odds: None,
-        };
+        let verdict = verdict_of(Verdict::Correct { error });
         group_score(&[&[&verdict]], &[], &LIMITS).figures[names::RA_WITHIN_1PX].count
     };
     assert_eq!(with_error(Angle::from_degrees(0.024)), 0);

@@ -60,8 +60,8 @@ pub(crate) fn assess(
 /// Number of votes that outweighs any number of contrary fields.
 const DECISIVE_VOTES: i32 = 10;
 
-/// Largest roll of a target whose docking unit has not been seen, rad: 20°. The target turned by a quarter
-/// has 70° then, which no approach has.
+/// Largest roll of a target whose docking unit has not been seen, rad: 20°. Below it a
+/// target turned by a quarter has 70° or more, which is outside the domain of the method.
 const MAX_UNCONFIRMED_ROLL: f64 = 20.0 / 180.0 * std::f64::consts::PI;
 
 /// Longest time for which an orientation remains valid without new evidence, s.

@@ -96,7 +96,8 @@ const FOCAL_STEP: f64 = 0.0025;
 const REPORTED_FOCAL_ERROR: f64 = 5e-4;
 
 /// Largest angle between an attitude by stars and one of telemetry in the right convention: the error of the
-/// mounting. Others are random: 3° have a probability of 2e-5.
+/// mounting. The angle of a wrong convention is random: below θ = 3° with the probability (θ − sin θ)/π =
+/// 8e-6.
 const MAX_MOUNTING_ERROR_DEG: f64 = 3.0;
 
 /// Angle above which the mounting counts as another one, and largest scatter of a constant mounting.
