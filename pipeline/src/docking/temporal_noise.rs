@@ -107,6 +107,13 @@ struct PastField {
     dn: Vec<u16>,
 }
 
+impl PastField {
+    /// Returns the value of a pixel, DN.
+    fn value(&self, at: usize) -> f64 {
+        f64::from(self.dn[at])
+    }
+}
+
 /// Sums over the flat pixels of a field.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
@@ -141,7 +148,7 @@ impl TemporalNoise {
         let other_rows = self.last.front().filter(|other| other.lines != now.lines);
         let in_frame = other_rows
             .filter(|other| is_comparable(other, MAX_APART_S))
-            .and_then(|other| new_noise(now, other, size, full_scale));
+            .and_then(|other| new_noise(&FlatPixels::new(now, other, size, full_scale)));
         let is_live = self.live_fields >= MIN_LIVE_FIELDS;
         let is_copy = in_frame.is_some_and(|new| is_live && new.ratio < MIN_NEW_NOISE_IN_FRAME)
             || other_rows.is_some_and(|other| other.dn == now.dn);
@@ -153,7 +160,8 @@ impl TemporalNoise {
             (self.is_frozen, self.live_fields, self.was_mixed) = (false, 0, false);
             return PictureAge { is_repeated: is_copy, sigma_s: 0.0 };
         };
-        let new = new_noise(now, before, size, full_scale);
+        let flat = FlatPixels::new(now, before, size, full_scale);
+        let new = new_noise(&flat);
         let ratio = new.map(|new| new.ratio);
         self.is_frozen = match ratio {
             Some(ratio) if self.is_frozen => ratio < LIVE_NEW_NOISE,
@@ -168,7 +176,7 @@ impl TemporalNoise {
         let share = new.filter(NewNoise::may_be_mixed).and_then(|new| {
             earlier
                 .zip(first)
-                .and_then(|(earlier, first)| remaining([now, before, earlier, first], size, full_scale))
+                .and_then(|(earlier, first)| remaining(&flat, earlier, first))
                 .or(Some(1.0 - new.ratio))
         });
         let remaining_s = share.map_or(0.0, |share| sigma_s(share, now.time_s - before.time_s));
@@ -203,23 +211,19 @@ impl NewNoise {
     }
 }
 
-/// Returns the noise that is new since another field; `None` if there is too little of it.
-fn new_noise(now: &PastField, before: &PastField, size: (usize, usize), full_scale: f64) -> Option<NewNoise> {
-    let mut sums = Sums::default();
-    for_flat_pixels(now, before, size, full_scale, |at| {
-        let clipped = |difference: f64| {
-            let limit = MAX_NOISE * full_scale;
-            difference.clamp(-limit, limit)
-        };
-        let difference = clipped(value(now, at) - value(before, at));
-        let beside = 0.5 * (value(now, at - 1) + value(now, at + 1));
-        let between = clipped(value(now, at) - beside);
-        sums.pixels += 1;
+/// Returns the noise that is new since the other field of a pair; `None` if there is too little of it.
+fn new_noise(flat: &FlatPixels<'_>) -> Option<NewNoise> {
+    let (now, before, full_scale) = (flat.now, flat.before, flat.full_scale);
+    let mut sums = Sums { pixels: flat.indices.len(), ..Sums::default() };
+    for &at in &flat.indices {
+        let difference = flat.clipped(now.value(at) - before.value(at));
+        let beside = 0.5 * (now.value(at - 1) + now.value(at + 1));
+        let between = flat.clipped(now.value(at) - beside);
         sums.unchanged += usize::from(difference == 0.0);
         sums.difference += difference;
         sums.squares += difference * difference;
         sums.between_pixels += between * between;
-    });
+    }
     if sums.pixels < MIN_PIXELS {
         return None;
     }
@@ -233,22 +237,21 @@ fn new_noise(now: &PastField, before: &PastField, size: (usize, usize), full_sca
 }
 
 /// Returns the share of the picture two fields ago that remains, 1 + 2r for the correlation r of successive
-/// differences without the part of a steady motion; `None` without noise to tell. `fields` has the same rows,
-/// the latest first.
-fn remaining(fields: [&PastField; 4], size: (usize, usize), full_scale: f64) -> Option<f64> {
-    let [now, before, earlier, first] = fields;
-    let limit = MAX_NOISE * full_scale;
-    let (mut pixels, mut successive, mut apart, mut squares) = (0, 0.0, 0.0, [0.0; 2]);
-    for_flat_pixels(now, before, size, full_scale, |at| {
-        let latest = (value(now, at) - value(before, at)).clamp(-limit, limit);
-        let last = (value(before, at) - value(earlier, at)).clamp(-limit, limit);
-        let one_before = (value(earlier, at) - value(first, at)).clamp(-limit, limit);
-        pixels += 1;
+/// differences without the part of a steady motion; `None` without noise to tell. `flat` is of the field and
+/// the one before it; `earlier` and `first` precede these. All have the same rows.
+fn remaining(flat: &FlatPixels<'_>, earlier: &PastField, first: &PastField) -> Option<f64> {
+    let (now, before, full_scale) = (flat.now, flat.before, flat.full_scale);
+    let pixels = flat.indices.len();
+    let (mut successive, mut apart, mut squares) = (0.0, 0.0, [0.0; 2]);
+    for &at in &flat.indices {
+        let latest = flat.clipped(now.value(at) - before.value(at));
+        let last = flat.clipped(before.value(at) - earlier.value(at));
+        let one_before = flat.clipped(earlier.value(at) - first.value(at));
         successive += latest * last;
         apart += latest * one_before;
         squares[0] += latest * latest;
         squares[1] += last * last;
-    });
+    }
     // Differences that are not successive have no noise in common but that of what remains, whose product is
     // negative.
     let of_motion = f64::max(apart, 0.0);
@@ -262,39 +265,54 @@ fn remaining(fields: [&PastField; 4], size: (usize, usize), full_scale: f64) -> 
     is_noise.then_some(if is_significant { share } else { 0.0 })
 }
 
-fn value(field: &PastField, at: usize) -> f64 {
-    field.dn.get(at).map_or(0.0, |dn| f64::from(*dn))
+/// Pixels of a pair of fields in which differences are noise: neither black nor white nor beside an edge, in
+/// every fourth row; of those, the half with the smallest differences to their neighbours.
+struct FlatPixels<'a> {
+    now: &'a PastField,
+    before: &'a PastField,
+    /// Indices, ascending.
+    indices: Vec<usize>,
+    full_scale: f64,
 }
 
-/// Calls a function with the index of each pixel that is neither black nor white nor beside an edge, in every
-/// fourth row: of those, the half with the smallest differences to their neighbours.
-fn for_flat_pixels(
-    now: &PastField,
-    before: &PastField,
-    (columns, rows): (usize, usize),
-    full_scale: f64,
-    mut visit: impl FnMut(usize),
-) {
-    // Sums of two fields: they halve the noise and keep the picture.
-    let both = |at: usize| value(now, at) + value(before, at);
-    let slope =
-        |at: usize| (both(at + 1) - both(at - 1)).abs() + (both(at + columns) - both(at - columns)).abs();
-    let is_grey = |at: usize| (2.0 * DARKEST..2.0 * BRIGHTEST).contains(&(both(at) / full_scale));
-    let indices = move || {
-        (1..rows.saturating_sub(1))
-            .step_by(ROW_STEP)
-            .flat_map(move |row| (1..columns.saturating_sub(1)).map(move |column| row * columns + column))
-    };
-    let mut slopes: Vec<f64> = indices().filter(|at| is_grey(*at)).map(slope).collect();
-    let half = slopes.len() / 2;
-    if half == 0 {
-        return;
-    }
-    let limit = *slopes.select_nth_unstable_by(half, f64::total_cmp).1;
-    for at in indices() {
-        if is_grey(at) && slope(at) <= limit {
-            visit(at);
+impl<'a> FlatPixels<'a> {
+    fn new(
+        now: &'a PastField,
+        before: &'a PastField,
+        (columns, rows): (usize, usize),
+        full_scale: f64,
+    ) -> Self {
+        // Sums of two fields: they halve the noise and keep the picture.
+        let both = |row: usize| -> Vec<u32> {
+            let range = row * columns..(row + 1) * columns;
+            let dn = |field: &'a PastField| field.dn.get(range.clone()).unwrap_or_default();
+            dn(now).iter().zip(dn(before)).map(|(a, b)| u32::from(*a) + u32::from(*b)).collect()
+        };
+        let grey = 2.0 * DARKEST..2.0 * BRIGHTEST;
+        let mut steep: Vec<(usize, u32)> = Vec::with_capacity(columns * rows / ROW_STEP);
+        for row in (1..rows.saturating_sub(1)).step_by(ROW_STEP) {
+            let [above, middle, below] = [row - 1, row, row + 1].map(both);
+            for (column, beside) in middle.windows(3).enumerate() {
+                let [left, value, right] = *beside else { continue };
+                if grey.contains(&(f64::from(value) / full_scale)) {
+                    let column = column + 1;
+                    let slope = left.abs_diff(right) + above[column].abs_diff(below[column]);
+                    steep.push((row * columns + column, slope));
+                }
+            }
         }
+        let mut slopes: Vec<u32> = steep.iter().map(|(_, slope)| *slope).collect();
+        let half = slopes.len() / 2;
+        let limit = if half == 0 { None } else { Some(*slopes.select_nth_unstable(half).1) };
+        let is_flat = |(_, slope): &&(usize, u32)| limit.is_some_and(|limit| *slope <= limit);
+        let indices = steep.iter().filter(is_flat).map(|(at, _)| *at).collect();
+        Self { now, before, indices, full_scale }
+    }
+
+    /// Returns the difference of two values, DN, limited to what counts as noise.
+    fn clipped(&self, difference: f64) -> f64 {
+        let limit = MAX_NOISE * self.full_scale;
+        difference.clamp(-limit, limit)
     }
 }
 
