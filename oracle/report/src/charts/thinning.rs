@@ -57,7 +57,10 @@ pub(crate) fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize>
 pub(crate) fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String {
     let of = |&(count, what): &(usize, &str)| format!("{} of {count} {what}", sampled(count).len());
     let parts: Vec<String> = clouds.iter().filter(|(count, _)| *count > 0).map(of).collect();
-    let mut text = format!("Drawn: {}.", parts.join(" and "));
+    let mut text = match parts.as_slice() {
+        [] => "No measurement.".to_owned(),
+        parts => format!("Drawn: {}.", parts.join(" and ")),
+    };
     if clouds.iter().any(|(count, _)| *count > MAX_CLOUD_POINTS) {
         text.push_str(" The sample has one random point per interval and so the distribution of all points.");
         if rings {
@@ -184,6 +187,7 @@ mod tests {
     #[test]
     fn a_caption_states_the_drawn_and_the_total_number() {
         assert_eq!(thinning_caption(&[(12, "right"), (0, "wrong")], true), "Drawn: 12 of 12 right.");
+        assert_eq!(thinning_caption(&[(0, "right"), (0, "wrong")], true), "No measurement.");
         let text = thinning_caption(&[(MAX_CLOUD_POINTS + 1, "right"), (3, "wrong")], true);
         assert!(
             text.starts_with("Drawn: 2500 of 2501 right and 3 of 3 wrong. ") && text.contains("Rings"),
