@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed, uniform};
-use sobol::Sobol;
-use sobol::params::JoeKuoD6;
+
+use super::sobol::direction_numbers;
 
 /// Method of spreading the dispersed parameters over their distributions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -40,7 +40,7 @@ pub(crate) struct Design {
     /// Seed of the first replication; each further replication has a different one.
     seed: u64,
     /// Direction numbers of 64 bits, by dimension, then by bit.
-    directions: Vec<Vec<u64>>,
+    directions: Vec<[u64; 64]>,
 }
 
 impl Design {
@@ -64,12 +64,7 @@ impl Design {
         {
             return Err(format!("a multiple of {}, the number of parameters plus two", dimensions + 2));
         }
-        let directions = if of_sequence == 0 {
-            Vec::new()
-        } else {
-            Sobol::<u64>::init_direction_vals::<u32>(of_sequence, 63, &JoeKuoD6::minimal())
-        };
-        Ok(Self { kind, dimensions, points, seed, directions })
+        Ok(Self { kind, dimensions, points, seed, directions: direction_numbers(of_sequence) })
     }
 
     /// Returns the point with a given number, from 0: one number of the open unit interval per dimension.

@@ -4,6 +4,7 @@ pub(crate) mod design;
 pub(crate) mod distribution;
 pub(crate) mod file;
 pub(crate) mod overlay;
+pub(crate) mod sobol;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
