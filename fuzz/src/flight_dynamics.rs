@@ -3,13 +3,23 @@
 
 use std::path::Path;
 
+use boresight::files::FileError;
 use boresight::flight_dynamics::{
     Aem, Coverage, Epoch, InitialState, Notation, Oem, Opm, OrbitEphemeris, Spk, Tdm, Tle,
 };
 
-use crate::Sandbox;
+use crate::{Sandbox, written};
 
 const FILE: &str = "file";
+
+/// Returns what was read again.
+///
+/// # Panics
+/// If it could not be read.
+#[expect(clippy::panic, reason = "a target reports a fault by panicking")]
+fn parsed<T>(again: Result<T, FileError>) -> T {
+    again.unwrap_or_else(|error| panic!("the file was written but cannot be read: {error}"))
+}
 
 /// Ends and middle of the spans of a file.
 fn times(coverage: &[Coverage]) -> impl Iterator<Item = Epoch> {
@@ -30,7 +40,7 @@ pub(crate) fn oem(_: &Sandbox, bytes: &[u8]) {
     let Ok(oem) = Oem::parse(Path::new(FILE), text) else { return };
     evaluate(&oem.ephemeris());
     for notation in [Notation::Kvn, Notation::Xml] {
-        let _ = Oem::parse(Path::new(FILE), &oem.to_text(notation));
+        written::check_same(FILE, &oem, &parsed(Oem::parse(Path::new(FILE), &oem.to_text(notation))));
     }
 }
 
@@ -42,7 +52,7 @@ pub(crate) fn aem(_: &Sandbox, bytes: &[u8]) {
         let _ = ephemeris.rotation_at(time);
     }
     for notation in [Notation::Kvn, Notation::Xml] {
-        let _ = Aem::parse(Path::new(FILE), &aem.to_text(notation));
+        written::check_same(FILE, &aem, &parsed(Aem::parse(Path::new(FILE), &aem.to_text(notation))));
     }
 }
 
@@ -52,7 +62,7 @@ pub(crate) fn opm(_: &Sandbox, bytes: &[u8]) {
     let _ = opm.icrs_state();
     let _ = InitialState::parse(Path::new(FILE), text);
     for notation in [Notation::Kvn, Notation::Xml] {
-        let _ = Opm::parse(Path::new(FILE), &opm.to_text(notation));
+        written::check_same(FILE, &opm, &parsed(Opm::parse(Path::new(FILE), &opm.to_text(notation))));
     }
 }
 
@@ -60,7 +70,7 @@ pub(crate) fn tdm(_: &Sandbox, bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let Ok(tdm) = Tdm::parse(Path::new(FILE), text) else { return };
     for notation in [Notation::Kvn, Notation::Xml] {
-        let _ = Tdm::parse(Path::new(FILE), &tdm.to_text(notation));
+        written::check_same(FILE, &tdm, &parsed(Tdm::parse(Path::new(FILE), &tdm.to_text(notation))));
     }
 }
 

@@ -22,6 +22,13 @@ impl Sandbox {
         self.0.path()
     }
 
+    /// Returns the path of a file that does not exist; an earlier file of that name is removed.
+    pub(crate) fn fresh(&self, name: &str) -> PathBuf {
+        let path = self.path().join(name);
+        let _ = std::fs::remove_file(&path);
+        path
+    }
+
     /// Writes a file, replacing an earlier one, and creates its parent directories.
     ///
     /// # Panics

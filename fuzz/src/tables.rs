@@ -1,22 +1,27 @@
 //! Fuzz targets for tables: CSV and Parquet, and the directories that contain them.
 
+use std::fmt::Debug;
 use std::path::Path;
 
-use boresight::files::docking::{FeatureRow, read_field_measurements, read_motion};
+use boresight::files::docking::{
+    FeatureRow, FieldMeasurementWriter, MotionWriter, read_field_measurements, read_motion,
+};
 use boresight::files::{
-    Dataset, FrameCluster, Row, TableReader, read_column, read_csv_table, read_field_telemetry,
-    read_measurements, read_parquet_table, read_stars, read_telemetry,
+    Dataset, FieldRow, FieldTelemetryWriter, FileError, FrameCluster, MeasurementWriter, Row, TableReader,
+    TableWriter, TelemetryRow, TelemetryWriter, read_column, read_csv_table, read_field_telemetry,
+    read_measurements, read_parquet_table, read_stars, read_telemetry, write_csv, write_stars,
 };
 use boresight::gate::Baseline;
 use boresight::navigate::read_navigation;
 use boresight::study::CaseTable;
 use boresight::visibility::read_sky;
-use contract::Camera;
+use contract::docking::{DockingOutcome, MotionReport};
+use contract::{Camera, Outcome};
 use sha2::{Digest, Sha256};
 use sim::docking::FieldTruth;
 use sim::truth::{FrameTruth, ObjectTruth};
 
-use crate::Sandbox;
+use crate::{Sandbox, written};
 
 /// A valid baseline.
 const BASELINE: &str = include_str!("../corpus/baseline/argon.toml");
@@ -38,33 +43,91 @@ const CAMERA: Camera = Camera {
 /// Passes the bytes to every CSV reader; each reader recognises its tables by their header.
 pub(crate) fn csv(sandbox: &Sandbox, bytes: &[u8]) {
     let path = sandbox.file("a.csv", bytes);
-    let _ = read_telemetry(&path);
-    let _ = read_field_telemetry(&path);
-    let _ = read_measurements(&path, &CAMERA);
-    let _ = read_field_measurements(&path);
-    let _ = read_motion(&path);
-    let _ = read_stars(&path);
+    written_again(sandbox, &path, read_telemetry, write_telemetry);
+    written_again(sandbox, &path, read_field_telemetry, write_field_telemetry);
+    written_again(sandbox, &path, |path| read_measurements(path, &CAMERA), write_measurements);
+    written_again(sandbox, &path, read_field_measurements, write_field_measurements);
+    written_again(sandbox, &path, read_motion, write_motion);
+    written_again(sandbox, &path, read_stars, write_stars);
+    written_again(sandbox, &path, read_navigation, write_csv);
     let _ = read_sky(&path);
-    let _ = read_navigation(&path);
     let _ = read_column(&path, "value");
     let _ = read_csv_table(&path);
 }
 
+/// Reads a table; a table that is read is written and read again.
+fn written_again<R: Debug + PartialEq>(
+    sandbox: &Sandbox,
+    path: &Path,
+    read: impl Fn(&Path) -> Result<Vec<R>, FileError>,
+    write: impl Fn(&Path, &[R]) -> Result<(), FileError>,
+) {
+    if let Ok(rows) = read(path) {
+        let write = |path: &Path, rows: &Vec<R>| write(path, rows);
+        written::check(sandbox, "again.csv", &rows, write, read);
+    }
+}
+
+fn write_telemetry(path: &Path, rows: &[TelemetryRow]) -> Result<(), FileError> {
+    let mut writer = TelemetryWriter::create(path)?;
+    rows.iter().try_for_each(|row| writer.write(row))?;
+    writer.finish()
+}
+
+fn write_field_telemetry(path: &Path, rows: &[FieldRow]) -> Result<(), FileError> {
+    let mut writer = FieldTelemetryWriter::create(path)?;
+    rows.iter().try_for_each(|row| writer.write(row))?;
+    writer.finish()
+}
+
+fn write_measurements(path: &Path, rows: &[(u64, Outcome)]) -> Result<(), FileError> {
+    let mut writer = MeasurementWriter::create(path)?;
+    rows.iter().try_for_each(|(frame, outcome)| writer.write(*frame, outcome))?;
+    writer.finish()
+}
+
+fn write_field_measurements(path: &Path, rows: &[(u64, DockingOutcome)]) -> Result<(), FileError> {
+    let mut writer = FieldMeasurementWriter::create(path)?;
+    rows.iter().try_for_each(|(field, outcome)| writer.write(*field, outcome))?;
+    writer.finish()
+}
+
+fn write_motion(path: &Path, rows: &[(u64, MotionReport)]) -> Result<(), FileError> {
+    let mut writer = MotionWriter::create(path)?;
+    rows.iter().try_for_each(|(field, report)| writer.write(*field, report))?;
+    writer.finish()
+}
+
 pub(crate) fn parquet(sandbox: &Sandbox, bytes: &[u8]) {
     let path = sandbox.file("a.parquet", bytes);
-    rows::<FrameTruth>(&path);
-    rows::<ObjectTruth>(&path);
-    rows::<FieldTruth>(&path);
-    rows::<FeatureRow>(&path);
-    rows::<FrameCluster>(&path);
+    rows::<FrameTruth>(sandbox, &path);
+    rows::<ObjectTruth>(sandbox, &path);
+    rows::<FieldTruth>(sandbox, &path);
+    rows::<FeatureRow>(sandbox, &path);
+    rows::<FrameCluster>(sandbox, &path);
     let _ = CaseTable::columns_of(&path).and_then(|columns| columns.read(&path));
     let _ = read_parquet_table(&path);
 }
 
-fn rows<R: Row>(path: &Path) {
-    if let Ok(table) = TableReader::<R>::open(path) {
-        table.for_each(drop);
+fn rows<R: Row + Clone + Debug + PartialEq>(sandbox: &Sandbox, path: &Path) {
+    if let Ok(rows) = read_rows::<R>(path) {
+        let write = |path: &Path, rows: &Vec<R>| write_rows(path, rows);
+        written::check(sandbox, "again.parquet", &rows, write, read_rows);
     }
+}
+
+fn read_rows<R: Row>(path: &Path) -> Result<Vec<R>, FileError> {
+    let mut rows = Vec::new();
+    for frame in TableReader::<R>::open(path)? {
+        rows.extend(frame?.1);
+    }
+    Ok(rows)
+}
+
+fn write_rows<R: Row + Clone>(path: &Path, rows: &[R]) -> Result<(), FileError> {
+    let mut writer = TableWriter::create(path)?;
+    writer.write(rows.iter().cloned())?;
+    writer.finish()
 }
 
 pub(crate) fn baseline(sandbox: &Sandbox, bytes: &[u8]) {

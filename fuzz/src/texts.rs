@@ -1,22 +1,26 @@
 //! Fuzz targets for text: TOML, JSON, and formats specific to Boresight.
 
+use std::fmt::Debug;
 use std::path::Path;
 
-use boresight::files::CameraFile;
 use boresight::files::docking::SetupFile;
+use boresight::files::{AtomicFile, CameraFile, Failure};
 use boresight::report::{StudyResult, read_visibility};
 use boresight::run::{Options, ScenarioSource};
+use boresight::scenario::run_file::{RunFile, ScenarioFile};
 use boresight::scenario::{DockingScenario, FarRangeScenario};
 use boresight::score::Score;
 use boresight::score::docking::DockingScore;
 use boresight::study::{Study, StudyRecord};
 use boresight::toml_file;
 use boresight::visibility::Requirements;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use sim::catalog::Catalog;
 use sim::optics::{Psf, PsfConfig};
 use sim::scene::docking::TargetFile;
 
-use crate::Sandbox;
+use crate::{Sandbox, written};
 
 /// Largest number of pixels for which a simulator is built: a larger camera legitimately needs more memory
 /// and time.
@@ -25,7 +29,22 @@ const MAX_PIXELS: usize = 1 << 16;
 const MAX_FRAMES: u64 = 1 << 16;
 
 pub(crate) fn scenario(sandbox: &Sandbox, bytes: &[u8]) {
-    let _ = ScenarioSource::read(&word(&sandbox.file("scenario.toml", bytes)));
+    let Ok(source) = ScenarioSource::read(&word(&sandbox.file("scenario.toml", bytes))) else { return };
+    scenario_again::<FarRangeScenario>(sandbox, &source);
+    scenario_again::<DockingScenario>(sandbox, &source);
+}
+
+/// Writes a scenario, if it is of this world, and reads it again.
+fn scenario_again<S: ScenarioFile + PartialEq>(sandbox: &Sandbox, source: &ScenarioSource) {
+    let Ok(scenario) = source.typed::<S>("fuzz") else { return };
+    let write = |path: &Path, scenario: &S| -> Result<(), Failure> {
+        Ok(AtomicFile::with_text(path, &scenario.to_toml()?)?.commit_new()?)
+    };
+    let read = |path: &Path| -> Result<S, Failure> {
+        let text = toml_file::read_text(path).map_err(|error| Failure::Usage(error.to_string()))?;
+        Ok(S::parse(path, &text)?)
+    };
+    written::check(sandbox, "again.toml", scenario, write, read);
 }
 
 pub(crate) fn simulator(sandbox: &Sandbox, bytes: &[u8]) {
@@ -45,7 +64,18 @@ pub(crate) fn simulator(sandbox: &Sandbox, bytes: &[u8]) {
 }
 
 pub(crate) fn run_file(sandbox: &Sandbox, bytes: &[u8]) {
-    let _ = ScenarioSource::read(&word(&sandbox.file("run.toml", bytes)));
+    let path = sandbox.file("run.toml", bytes);
+    let _ = ScenarioSource::read(&word(&path));
+    run_again::<FarRangeScenario>(sandbox, &path);
+    run_again::<DockingScenario>(sandbox, &path);
+}
+
+/// Writes a `run.toml`, if it is of this world, and reads it again.
+fn run_again<S: ScenarioFile + PartialEq>(sandbox: &Sandbox, path: &Path) {
+    if let Ok(run) = RunFile::<S>::read(path) {
+        let write = |path: &Path, run: &RunFile<S>| run.write(path);
+        written::check(sandbox, "again.toml", &run, write, RunFile::read);
+    }
 }
 
 pub(crate) fn study(sandbox: &Sandbox, bytes: &[u8]) {
@@ -57,11 +87,17 @@ pub(crate) fn requirements(sandbox: &Sandbox, bytes: &[u8]) {
 }
 
 pub(crate) fn camera(sandbox: &Sandbox, bytes: &[u8]) {
-    let _ = CameraFile::read(&sandbox.file("camera.toml", bytes));
+    if let Ok(camera) = CameraFile::read(&sandbox.file("camera.toml", bytes)) {
+        let write = |path: &Path, camera: &CameraFile| camera.write(path);
+        written::check(sandbox, "again.toml", &camera, write, CameraFile::read);
+    }
 }
 
 pub(crate) fn setup(sandbox: &Sandbox, bytes: &[u8]) {
-    let _ = SetupFile::read(&sandbox.file("setup.toml", bytes));
+    if let Ok(setup) = SetupFile::read(&sandbox.file("setup.toml", bytes)) {
+        let write = |path: &Path, setup: &SetupFile| setup.write(path);
+        written::check(sandbox, "again.toml", &setup, write, SetupFile::read);
+    }
 }
 
 pub(crate) fn target(_: &Sandbox, bytes: &[u8]) {
@@ -88,14 +124,31 @@ pub(crate) fn catalogue_dat(sandbox: &Sandbox, bytes: &[u8]) {
 }
 
 pub(crate) fn json(sandbox: &Sandbox, bytes: &[u8]) {
-    let _ = StudyRecord::read(&sandbox.file("study.json", bytes));
+    if let Ok(record) = StudyRecord::read(&sandbox.file("study.json", bytes)) {
+        json_again(&record);
+    }
     sandbox.file("summary.json", bytes);
     let _ = StudyResult::read(sandbox.path());
     sandbox.file("visibility.json", bytes);
     let _ = read_visibility(sandbox.path());
     // The readers of these files need a complete run directory.
-    let _ = serde_json::from_slice::<Score>(bytes);
-    let _ = serde_json::from_slice::<DockingScore>(bytes);
+    if let Ok(score) = serde_json::from_slice::<Score>(bytes) {
+        json_again(&score);
+    }
+    if let Ok(score) = serde_json::from_slice::<DockingScore>(bytes) {
+        json_again(&score);
+    }
+}
+
+/// Writes a value as JSON and reads it again.
+///
+/// # Panics
+/// If that fails or changes the value.
+#[expect(clippy::expect_used, reason = "a target reports a fault by panicking")]
+fn json_again<T: Serialize + DeserializeOwned + Debug + PartialEq>(first: &T) {
+    let text = serde_json::to_string(first).expect("what was read can be written");
+    let second = serde_json::from_str(&text).expect("what was written can be read");
+    written::check_same("JSON", first, &second);
 }
 
 fn word(path: &Path) -> String {

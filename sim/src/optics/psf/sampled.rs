@@ -25,6 +25,9 @@ const MAX_BYTES: u64 = 1 << 26;
 /// Allowed number of cells along a side.
 const CELLS: std::ops::RangeInclusive<usize> = 3..=2048;
 
+/// Largest flux of a cell, in any unit. Sums and moments of larger numbers could overflow.
+const MAX_CELL_FLUX: f64 = 1e100;
+
 /// Reads a shape from a file, normalised to unit flux, with its centroid at the centre.
 ///
 /// # Errors
@@ -41,7 +44,7 @@ pub(super) fn sampled(path: &Path, oversampling: f64) -> Result<CumulativeFlux, 
             moment_y += cell * j as f64;
         }
     }
-    if !(flux > 0.0 && flux.is_finite()) {
+    if flux <= 0.0 {
         return Err(fail(format!("its sum is {flux}, expected more than 0")));
     }
     for cell in &mut light {
@@ -64,10 +67,10 @@ fn matrix(text: &str) -> Result<(Vec<f64>, usize), String> {
         let before = light.len();
         for (column, cell) in (1..).zip(content.split(',').map(str::trim)) {
             match cell.parse::<f64>() {
-                Ok(value) if value >= 0.0 && value.is_finite() => light.push(value),
+                Ok(value) if (0.0..=MAX_CELL_FLUX).contains(&value) => light.push(value),
                 _ => {
                     return Err(format!(
-                        "line {line}, cell {column} is `{cell}`, expected a number of 0 or more"
+                        "line {line}, cell {column} is `{cell}`, expected a number of 0 to 1e100"
                     ));
                 }
             }
