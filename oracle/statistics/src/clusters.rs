@@ -204,11 +204,28 @@ pub(super) fn independent_trials(counted: &[ClusterSum], ratio: &Ratio, size: f6
     if are_single_trials(counted) {
         return by_scatter;
     }
-    let towards_far_end = ratio.residuals.skewness() * if ratio.value < 0.5 { 1.0 } else { -1.0 };
-    let skewness = towards_far_end.max(0.0);
-    let needed = CLUSTERS_PER_SQUARED_SKEWNESS * skewness * skewness;
+    let needed = clusters_for_scatter(ratio);
     let weight = if needed > 0.0 { (counted.len() as f64 * size / needed).min(1.0) } else { 1.0 };
     1.0 / (weight / by_scatter + (1.0 - weight) / equal_clusters(counted, size))
+}
+
+/// Returns 25 g² for the skewness g of the clusters towards the far end of the scale.
+fn clusters_for_scatter(ratio: &Ratio) -> f64 {
+    let towards_far_end = ratio.residuals.skewness() * if ratio.value < 0.5 { 1.0 } else { -1.0 };
+    let skewness = towards_far_end.max(0.0);
+    CLUSTERS_PER_SQUARED_SKEWNESS * skewness * skewness
+}
+
+/// Returns the number of clusters from which the scatter of a rate follows from the clusters alone, if there
+/// are fewer: with these, the interval of [`cluster_rate_interval`] is wider than necessary. `None` if there
+/// are enough, and for clusters of one trial.
+pub fn clusters_needed(clusters: &[ClusterSum]) -> Option<u64> {
+    let counted = non_empty(clusters);
+    if are_single_trials(&counted) {
+        return None;
+    }
+    let needed = clusters_for_scatter(&Ratio::new(&counted)?).ceil();
+    (needed > counted.len() as f64).then_some(needed as u64)
 }
 
 /// Returns the number of independent trials that follows from the scatter of the clusters alone.

@@ -53,8 +53,8 @@ pub use autocorrelation::effective_size;
 pub use bound::{Bounds, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
 pub use clopper_pearson::{binomial_at_least, clopper_pearson};
 pub use clusters::{
-    ClusterSum, MIN_CLUSTERS, cluster_mean_interval, cluster_rate_interval, mean_difference_interval,
-    rate_difference_interval,
+    ClusterSum, MIN_CLUSTERS, cluster_mean_interval, cluster_rate_interval, clusters_needed,
+    mean_difference_interval, rate_difference_interval,
 };
 pub use exchange::{
     BlockEffects, Exchanges, FigureTest, JointTest, MIN_BLOCKS_OF_INTERVAL, SETS, interval_by_sets,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed, Stream};
 use statistics::{
     ClusterSum, ClusterValue, Interval, cluster_mean_interval, cluster_quantile_interval,
-    cluster_rate_interval,
+    cluster_rate_interval, clusters_needed,
 };
 
 use crate::cases::CaseFigure;
@@ -49,6 +49,12 @@ pub fn overall(name: &str, cases: &[CaseFigure], draws: &[usize]) -> Option<Esti
 pub(crate) fn share(cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
     let sums = sums(true, cases, draws);
     Some(Estimate::new(ratio(&sums)?, cluster_rate_interval(&sums)))
+}
+
+/// Returns the number of draws from which the scatter of a rate is known, if there are fewer; `None` for
+/// another figure.
+pub(crate) fn draws_needed(name: &str, cases: &[CaseFigure], draws: &[usize]) -> Option<u64> {
+    if figure_by_name(name).is_rate() { clusters_needed(&sums(true, cases, draws)) } else { None }
 }
 
 pub(crate) fn ratio(sums: &[ClusterSum]) -> Option<f64> {

@@ -12,7 +12,9 @@ use statistics::{
     ClusterSum, MIN_CLUSTERS, cluster_rank_correlation, mean_difference_interval, rate_difference_interval,
 };
 
-use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, share, sorted_quantile, stream, sums};
+use super::estimate::{
+    Estimate, RESAMPLES, draws_needed, overall, pick, quantiles, share, sorted_quantile, stream, sums,
+};
 use super::requirement::{RequirementResult, RequirementVerdict, decide, swept_words};
 use super::sensitivity::{RankCorrelation, SobolIndex, sobol_index};
 use super::stopping::{StoppingStatus, stopping_status};
@@ -36,6 +38,9 @@ pub struct FigureSummary {
     /// Wilson for the number of independent frames that follows from the scatter between the draws. For
     /// another figure: the mean over the cases, with the interval by Student's t over the draws.
     pub all: Option<Estimate>,
+    /// For a rate: number of draws from which its scatter follows from the draws, if there are fewer. A few
+    /// bad draws among good ones determine the scatter; until then the interval is wider than necessary.
+    pub draws_needed: Option<u64>,
     /// The value below which 5 % of the cases lie; its interval by fractional order statistics, absent if
     /// there are too few cases.
     pub p05: Option<Estimate>,
@@ -220,6 +225,20 @@ impl Summary {
                 harmless(&first.error)
             ));
         }
+        let needed = |(name, figure): (&String, &FigureSummary)| {
+            figure
+                .draws_needed
+                .map(|draws| format!("{} from {draws} draws", figure_by_name(name).label_without_percent()))
+        };
+        let wanted: Vec<String> = self.figures.iter().filter_map(needed).collect();
+        if !wanted.is_empty() {
+            notes.push(format!(
+                "A few of the {} draws determine the scatter of some rates, whose intervals are wider than \
+                 necessary until there are more draws: {}.",
+                self.draws,
+                wanted.join(", ")
+            ));
+        }
         notes.extend(self.points_note(
             |point| point.error_cases == point.cases,
             "without a result, because none of their cases can be run: differences and curves leave them out",
@@ -383,7 +402,14 @@ fn count_true(cases: &[bool]) -> u64 {
 fn figure(name: &str, cases: &[CaseFigure], draws: &[usize]) -> FigureSummary {
     let [p05, median, p95] = quantiles(cases, draws, [0.05, 0.5, 0.95]);
     let count = cases.iter().filter(|case| case.value.is_some()).count() as u64;
-    FigureSummary { cases: count, all: overall(name, cases, draws), p05, median, p95 }
+    FigureSummary {
+        cases: count,
+        all: overall(name, cases, draws),
+        draws_needed: draws_needed(name, cases, draws),
+        p05,
+        median,
+        p95,
+    }
 }
 
 /// Summarises a cause over the cases; `None` if it did not occur.
