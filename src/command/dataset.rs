@@ -297,15 +297,19 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
     let processed = processed?;
     output.first_failure(processed.first_failure.as_ref());
     let fields = processed.frames;
-    output.answer(
-        &json!({
-            "measurements": measurements,
-            "motion": measurements.with_file_name("motion.csv"),
-            "features": measurements.with_file_name("features.parquet"),
-            "frames": fields,
-        }),
-        format!("{fields} fields processed, outcomes in {}", measurements.display()),
-    )?;
+    let mut document = Map::from_iter([
+        ("measurements".to_owned(), json!(measurements)),
+        ("motion".to_owned(), json!(measurements.with_file_name("motion.csv"))),
+        ("features".to_owned(), json!(measurements.with_file_name("features.parquet"))),
+        ("frames".to_owned(), json!(fields)),
+    ]);
+    let mut text = format!("{fields} fields processed, outcomes in {}", measurements.display());
+    if let Some(summary) = &processed.summary {
+        document.insert(summary.key.to_owned(), json!(summary.counts));
+        text.push('\n');
+        text.push_str(&summary.text);
+    }
+    output.answer(&document, text)?;
     Ok(Answer::Yes)
 }
 

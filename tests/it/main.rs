@@ -18,6 +18,7 @@ mod docking_consistency;
 mod docking_pose;
 mod docking_sequences;
 mod docking_vision;
+mod docking_warp;
 #[cfg(unix)]
 mod external_faults;
 mod external_pipeline;

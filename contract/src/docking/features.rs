@@ -66,6 +66,22 @@ pub struct Mark {
     pub usage: MarkUse,
 }
 
+/// Displacements of the picture that the camera file does not state, as a pipeline found them: the content at
+/// (u, v) px from the principal point, without the distortion of the camera file, is displaced. 0 for a warp
+/// that was not found.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PictureWarp {
+    /// Radial distortion, px⁻²: displacement by (u, v) · radial · (u² + v²); to first order what the first
+    /// coefficient of [`crate::Camera::radial`] lacks.
+    pub radial: f64,
+    /// Bend of the columns, px⁻¹: displacement along the row by bend · v².
+    pub bend: f64,
+    /// Shear: displacement along the row by shear · v.
+    pub shear: f64,
+    /// Stretch of the columns: displacement along the column by stretch · v.
+    pub stretch: f64,
+}
+
 /// All features recognised in a field; empty if a pipeline does not report them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Features {
@@ -79,4 +95,6 @@ pub struct Features {
     pub docking_unit: Option<Circle>,
     /// The marks.
     pub marks: Vec<Mark>,
+    /// Warp of the picture that this and recent fields show.
+    pub warp: Option<PictureWarp>,
 }

@@ -13,7 +13,7 @@ mod pose;
 mod target;
 
 pub use digitiser::Digitiser;
-pub use features::{Circle, Cross, Features, Mark, MarkUse};
+pub use features::{Circle, Cross, Features, Mark, MarkUse, PictureWarp};
 pub use field::{Field, FieldTelemetry, Lines};
 pub use interface::{Docking, DockingSetup};
 pub use motion::{Motion, MotionReport};

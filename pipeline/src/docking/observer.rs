@@ -356,7 +356,7 @@ impl Observer {
                 None => DockingSolution::Measured(measurement),
             },
             paper: None,
-            features: Features { marks: fitted.marks.clone(), ..Features::default() },
+            features: Features { marks: fitted.marks.clone(), warp: fitted.warp, ..Features::default() },
             common: fitted.common,
             // If cross and marks should be visible but are not, the prediction may have led the fit to
             // another object.

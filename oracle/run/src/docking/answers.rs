@@ -4,10 +4,12 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use contract::docking::{Docking, DockingOutcome, FieldTelemetry};
+use contract::docking::{Docking, DockingOutcome, DockingSetup, FieldTelemetry};
 use files::docking::{FeatureRow, FieldMeasurementWriter, MotionWriter, outcome_as_filed, report_as_filed};
 use files::{FileError, TableWriter};
 
+use super::picture::PictureWarps;
+use crate::run_result::AnswerSummary;
 use crate::world::{Answers, paths};
 
 /// Writes measurements, motions and features.
@@ -15,6 +17,7 @@ pub struct FieldAnswers {
     measurements: FieldMeasurementWriter,
     /// Writers of the motions at the end of portions, and of the recognised features; `None` for a stream.
     more: Option<(MotionWriter, TableWriter<FeatureRow>)>,
+    warps: PictureWarps,
 }
 
 impl FieldAnswers {
@@ -24,7 +27,7 @@ impl FieldAnswers {
     /// [`FileError::Io`] when standard output cannot be written.
     pub fn stream() -> Result<Self, FileError> {
         let measurements = FieldMeasurementWriter::stream("standard output", io::stdout())?;
-        Ok(Self { measurements, more: None })
+        Ok(Self { measurements, more: None, warps: PictureWarps::default() })
     }
 }
 
@@ -39,11 +42,18 @@ impl Answers<Docking> for FieldAnswers {
         Ok(Self {
             measurements: FieldMeasurementWriter::create(measurements)?,
             more: Some((MotionWriter::create(motion)?, TableWriter::create(features)?)),
+            warps: PictureWarps::default(),
         })
     }
 
-    fn add(&mut self, field: u64, _: &FieldTelemetry, outcome: &DockingOutcome) -> Result<(), FileError> {
+    fn add(
+        &mut self,
+        field: u64,
+        telemetry: &FieldTelemetry,
+        outcome: &DockingOutcome,
+    ) -> Result<(), FileError> {
         self.measurements.write(field, outcome)?;
+        self.warps.add(telemetry, outcome);
         if let Some((motion, features)) = &mut self.more {
             if let Some(report) = &outcome.motion {
                 motion.write(field, report)?;
@@ -51,6 +61,11 @@ impl Answers<Docking> for FieldAnswers {
             features.write(FeatureRow::from_features(field, &outcome.features))?;
         }
         Ok(())
+    }
+
+    /// Returns what the camera file does not state of the picture.
+    fn summary(&self, setup: &DockingSetup) -> Option<AnswerSummary> {
+        self.warps.summary(setup)
     }
 
     fn finish(self) -> Result<(), FileError> {

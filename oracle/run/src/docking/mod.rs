@@ -6,6 +6,7 @@
 pub mod answers;
 pub mod dataset;
 mod mission;
+mod picture;
 pub mod renderer;
 
 pub use mission::{DockingMission, simulator};

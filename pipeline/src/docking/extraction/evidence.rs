@@ -60,11 +60,14 @@ pub(crate) fn evidence(lens: &Lens, target_features: &TargetFeatures, unit: &Dis
         station: None,
         docking_unit: disk(lens, unit, 0.4),
         marks: target_features.marks.marks.iter().map(|seen| seen.mark).collect(),
+        warp: None,
     }
 }
 
-/// Updates the features with the result of the best estimator: centres with perspective, and rejected marks.
+/// Updates the features with the result of the best estimator: centres with perspective, rejected marks, and
+/// the warp.
 pub(crate) fn refine(features: &mut Features, fitted: &FitResult) {
+    features.warp = fitted.warp;
     if let Some(cross) = &mut features.cross {
         cross.centre = fitted.cross_centre;
     }

@@ -32,11 +32,12 @@ mod swelling;
 mod uncertainty;
 mod unknowns;
 mod usual_residual;
+mod warp;
 
 #[cfg(test)]
 mod tests;
 
-use contract::docking::{Field, Mark, MarkUse, NoPose, Pose, PoseEstimate, TargetModel};
+use contract::docking::{Field, Mark, MarkUse, NoPose, PictureWarp, Pose, PoseEstimate, TargetModel};
 use contract::{Frame, PixelPoint};
 use nalgebra::{Matrix6, Vector3};
 
@@ -128,6 +129,8 @@ pub struct FitResult {
     pub common: Matrix6<f64>,
     /// Usage of every mark, with its centre predicted from the pose.
     pub marks: Vec<Mark>,
+    /// Warp of the picture that recent fields show and the camera file does not state.
+    pub warp: Option<PictureWarp>,
     /// True if the cross is a single patch: its arms are shorter than 15 px.
     pub is_small_cross: bool,
     /// True if the residuals of a small cross and its marks are larger than in most earlier fields: the fit
@@ -428,6 +431,7 @@ fn judge(
     Ok(FitResult {
         estimate: PoseEstimate { pose, covariance },
         common,
+        warp: known.warp,
         marks: marks(samples, scene, &pose),
         is_small_cross: samples.is_small_cross(),
         is_poor: false,

@@ -3,6 +3,7 @@
 use std::ops::AddAssign;
 
 use contract::Frame;
+use contract::docking::PictureWarp;
 use nalgebra::{Matrix6, SVector, Vector2, Vector3};
 use pulp::Arch;
 
@@ -16,6 +17,7 @@ use super::scene::Scene;
 use super::solve::{Evaluation, Images, residual};
 use super::swelling::{self, Swelling};
 use super::unknowns::{GRID, GlobalMatrix, Globals, LOCALS, POSE};
+use super::warp::{WarpHistory, WarpSums};
 use crate::docking::portions::inverse;
 use crate::docking::pose::geometry::{PoseProjection, to_pose};
 
@@ -27,6 +29,8 @@ pub(super) struct Uncertainty {
     /// Part of the covariance that is due to scene and video, and therefore common to the fields of several
     /// seconds.
     pub(super) common: GlobalMatrix,
+    /// Significant warp of the picture in recent fields.
+    pub(super) warp: Option<PictureWarp>,
     /// Knowledge of the video after this field.
     pub(super) video: VideoKnowledge,
 }
@@ -36,12 +40,13 @@ pub(super) struct Uncertainty {
 pub(super) struct VideoKnowledge {
     pub(super) swelling: Swelling,
     pub(super) response: LineResponse,
+    pub(super) warps: WarpHistory,
 }
 
 impl VideoKnowledge {
     /// Returns the knowledge that remains for the next field.
     pub(super) fn decayed(&self) -> Self {
-        Self { swelling: self.swelling.decayed(), response: self.response.decayed() }
+        Self { swelling: self.swelling.decayed(), response: self.response.decayed(), warps: self.warps }
     }
 }
 
@@ -104,6 +109,7 @@ pub(super) fn uncertainty(
         groups.clear();
     }
     responses.clear();
+    let mut warps = WarpSums::new(scene.camera.focal_px());
     let correlation = NoiseCorrelation::measure(samples, grid);
     let mut correlated = correlation.map(|correlation| CorrelatedSums::new(correlation, grid));
     let to_pose_change = inverse.fixed_rows::<POSE>(0);
@@ -137,6 +143,7 @@ pub(super) fn uncertainty(
                     levels,
                 };
                 lines.add(&of_line);
+                warps.add(pixel.u, pixel.v, shift[0], shift[1], &of_line);
                 if let Some(correlated) = &mut correlated {
                     let score = (slopes - patch.levels_by_globals.tr_mul(&levels)) * level;
                     correlated.add(pixel, to_pose_change * score);
@@ -154,6 +161,7 @@ pub(super) fn uncertainty(
         of_patches.close(patch);
         swellings.close(patch);
         responses.close(patch);
+        warps.close(patch);
         if let Some(correlated) = &mut correlated {
             correlated.close();
         }
@@ -179,7 +187,10 @@ pub(super) fn uncertainty(
     let aside_px = CROSS_SHIFT_PER_SWELLING * swelling.weighted / swelling.weight;
     by_patches += of_patches.common_covariance(crosses) * (aside_px * aside_px);
     let noise = (variance - explained_by_lines - explained_by_patches).max(MIN_NOISE_SHARE * variance);
-    let common = inverse * by_patches * inverse + by_swelling + by_response.covariance;
+    let rows = scene.camera.size_px().1;
+    let by_warp = warps.effect(&inverse, variance, &along, rows, pose.position_m.z, &known.warps);
+    let warp_covariance = by_warp.as_ref().map_or_else(GlobalMatrix::zeros, |effect| effect.covariance);
+    let common = inverse * by_patches * inverse + by_swelling + by_response.covariance + warp_covariance;
     let mut covariance = inverse * noise + inverse * by_lines * inverse + common;
     if let Some(correlated) = correlated {
         let pose = |matrix: &GlobalMatrix| Matrix6::from(matrix.fixed_view::<POSE, POSE>(0, 0));
@@ -190,7 +201,12 @@ pub(super) fn uncertainty(
         change: change + by_response.change,
         covariance,
         common,
-        video: VideoKnowledge { swelling, response: by_response.response },
+        warp: by_warp.as_ref().and_then(|effect| effect.warp),
+        video: VideoKnowledge {
+            swelling,
+            response: by_response.response,
+            warps: by_warp.map_or(known.warps, |effect| effect.history),
+        },
     })
 }
 
