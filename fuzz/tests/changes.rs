@@ -1,6 +1,6 @@
 //! Property over every reader and writer: whatever is read can be written, and is the same when it is read
-//! again. The inputs are those of the corpus with some of their numbers replaced by numbers that formats treat
-//! in different ways.
+//! again. The inputs are those of the corpus with some of their numbers replaced by numbers that formats
+//! treat in different ways.
 
 #![allow(clippy::unwrap_used, reason = "tests and their helpers fail by panicking")]
 
@@ -91,7 +91,7 @@ fn changed(bytes: &[u8], state: &mut u64) -> Vec<u8> {
 }
 
 #[test]
-fn whatever_is_read_can_be_written_and_is_the_same_when_it_is_read_again() {
+fn every_accepted_input_can_be_written_and_read_again_unchanged() {
     let sandbox = Sandbox::new().unwrap();
     let mut failures = Vec::new();
     let mut state = 40;

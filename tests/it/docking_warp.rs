@@ -5,8 +5,8 @@ use crate::support::{Bench, figure};
 /// Fields 3.7 m from the target.
 const FIELDS: &str = "21600..21624";
 
-/// Renders fields, replaces a value in the camera file, and processes them. Returns the answer as JSON, the text
-/// for the user, and the fields' NEES.
+/// Renders fields, replaces a value in the camera file, and processes them. Returns the answer as JSON, the
+/// text for the user, and the fields' NEES.
 fn processed(old: &str, new: &str) -> (serde_json::Value, String, f64) {
     let bench = Bench::new();
     bench.boresight(&format!("render docking --frames {FIELDS} --format png --out set")).done();

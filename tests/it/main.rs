@@ -43,7 +43,6 @@ mod machine_faults;
 mod mitsuba;
 mod mitsuba_live;
 mod monitor;
-mod named_suites;
 mod navigation;
 mod real_images;
 mod reference_pages;

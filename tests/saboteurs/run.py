@@ -10,7 +10,6 @@ BORESIGHT_SABOTAGE=NAME. The tree itself is not changed.
     python3 tests/saboteurs/run.py --only gain-inverted
     python3 tests/saboteurs/run.py --suites first     only until one suite catches it: for a new fault
     python3 tests/saboteurs/run.py --suites all       slow tests too
-    python3 tests/saboteurs/run.py --write            and write the table into results.md
 
 A suite is the unit tests of a crate (`sim/src`) or a module of its integration tests
 (`sim/tests/pixel_distribution`). A result for a fault is reused while the suite's executable is unchanged: an
@@ -33,8 +32,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = ROOT / "tests" / "saboteurs"
-PAGE = ROOT / "tests" / "saboteurs" / "results.md"
-BEGIN, END = "<!-- written by tests/saboteurs/run.py -->", "<!-- end -->"
 
 # All packages of the workspace are compiled and run except these: the Python package computes nothing, the
 # fuzzer only feeds the readers, and the research programs have no tests.
@@ -44,7 +41,7 @@ LEFT_OUT = {"boresight-python", "boresight-fuzz", "boresight-research"}
 FROZEN = re.compile(r"frozen")
 
 # Suites about the tree rather than its computations: the switches of the faults change it.
-OF_THE_TREE = {"tests/architecture", "tests/import_circles", "tests/named_suites", "tests/supply_chain"}
+OF_THE_TREE = {"tests/architecture", "tests/import_circles", "tests/supply_chain"}
 
 # Left out unless `--suites all`: suites about the command line, a browser or another program, and …
 SLOW_SUITES = {"tests/monitor", "tests/mitsuba", "tests/shell", "tests/bad_input"}
@@ -286,7 +283,6 @@ def main() -> int:
     parser.add_argument("--suites", choices=["first", "fast", "all"], default="fast", help="suites until one catches the fault; all but slow ones (default); all")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="threads of a suite (all processors)")
     parser.add_argument("--target-dir", type=Path, help="build directory (default: saboteurs/build in the target directory)")
-    parser.add_argument("--write", action="store_true", help="write the table into tests/saboteurs/results.md; of a run of all faults")
     parser.add_argument("cargo", nargs="*", help="further arguments of cargo, after --")
     options = parser.parse_args()
     if options.check:
@@ -295,8 +291,6 @@ def main() -> int:
     for name in options.only or []:
         if name not in known:
             parser.error(f"--only names `{name}`, expected a fault of {HERE.relative_to(ROOT)}/faults")
-    if options.only and options.write:
-        parser.error("--write needs all faults, expected it without --only")
     chosen = [known[name] for name in options.only] if options.only else list(known.values())
 
     folder = Path(os.environ.get("CARGO_TARGET_DIR") or ROOT / "target").resolve() / "saboteurs"
@@ -339,13 +333,10 @@ def main() -> int:
         missed += [] if caught else [patch.stem]
         told = ", ".join(f"{suite} ({len(names)})" for suite, names in caught.items())
         print(f"{patch.stem}: {told or 'NOT CAUGHT'}; {took:.0f} s", flush=True)
+    print(f"\n{table(rows)}")
     print(f"{len(rows) - len(missed)} of {len(rows)} faults caught, {time.monotonic() - start:.0f} s")
     if missed:
         print(f"not caught: {', '.join(missed)}")
-    if options.write:
-        page = PAGE.read_text()
-        before, after = page.split(BEGIN)[0], page.split(END)[1]
-        PAGE.write_text(f"{before}{BEGIN}\n\n{table(rows)}\n{END}{after}")
     return 1 if missed else 0
 
 

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use crate::run_result::AnswerSummary;
 
 /// Smallest displacement in the picture's corner that is worth a word, px.
-const SMALLEST_PX: f64 = 0.05;
+const MIN_SHOWN_PX: f64 = 0.05;
 
 /// Fields with a warp, and the last one of each camera.
 #[derive(Debug, Default)]
@@ -56,7 +56,7 @@ fn describe(warp: &PictureWarp, camera: &Camera) -> Vec<String> {
     let (half_columns, half_rows) = (0.5 * camera.columns as f64, 0.5 * camera.rows as f64);
     let mut words = Vec::new();
     let corner = warp.radial * (half_columns * half_columns + half_rows * half_rows);
-    if (corner * half_columns).abs() > SMALLEST_PX {
+    if (corner * half_columns).abs() > MIN_SHOWN_PX {
         words.push(format!(
             "radial distortion of {:.2} % in the corner (radial[0] {:+.1e})",
             100.0 * corner,
@@ -64,13 +64,13 @@ fn describe(warp: &PictureWarp, camera: &Camera) -> Vec<String> {
         ));
     }
     let bend_px = warp.bend * half_rows * half_rows;
-    if bend_px.abs() > SMALLEST_PX {
+    if bend_px.abs() > MIN_SHOWN_PX {
         words.push(format!("first and last rows displaced by {bend_px:.1} px along the row"));
     }
-    if (warp.shear * half_rows).abs() > SMALLEST_PX {
+    if (warp.shear * half_rows).abs() > MIN_SHOWN_PX {
         words.push(format!("columns inclined by {:.2} px per 100 rows", 100.0 * warp.shear));
     }
-    if (warp.stretch * half_rows).abs() > SMALLEST_PX {
+    if (warp.stretch * half_rows).abs() > MIN_SHOWN_PX {
         let (percent, sense) = (
             100.0 * warp.stretch.abs(),
             if warp.stretch > 0.0 { "farther apart" } else { "closer together" },

@@ -5,9 +5,9 @@
 //! remains in the residuals and shows the size of the whole. Each warp is therefore tested as an additional
 //! unknown at the solution (score test; Rao, *Linear Statistical Inference and Its Applications*, 1973,
 //! section 6e). The warps of recent fields are averaged, and their scatter decides whether the average is
-//! significant: lines that come early or late bend every field, each in another way. A significant warp biases
-//! the pose; the square of this bias is added to the covariance. A bend or a shear of the lines may also
-//! displace the picture as a whole, which no residual shows; this is assumed to be as large as the
+//! significant: lines that come early or late bend every field, each in another way. A significant warp
+//! biases the pose; the square of this bias is added to the covariance. A bend or a shear of the lines may
+//! also displace the picture as a whole, which no residual shows; this is assumed to be as large as the
 //! displacement at the picture's upper and lower edge. A stretch may be of the rows or of the columns, which
 //! have different ranges.
 
@@ -169,7 +169,8 @@ impl WarpSums {
     /// With H the information on the globals, C the change of the gradient by a unit of the warps and S the
     /// squares of their effects, the warps have the information S − Cᵀ H⁻¹ C and change the globals by
     /// −H⁻¹ C w. `along` is the change of the pose that displaces the picture by one pixel along the lines,
-    /// `rows` the number of rows of the camera, `range_m` the range of the target. Returns `None` when the pixels do not determine the warps.
+    /// `rows` the number of rows of the camera, `range_m` the range of the target. Returns `None` when the
+    /// pixels do not determine the warps.
     pub(super) fn effect(
         &self,
         inverse_information: &GlobalMatrix,
