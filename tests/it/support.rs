@@ -213,15 +213,3 @@ impl Answer {
 pub(crate) fn figure(score: &Value, name: &str) -> f64 {
     score["figures"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name} in {score}"))
 }
-
-/// Compares a page of the book with its generated text; with `REMAKE=1` in the environment, writes it.
-pub(crate) fn check_page(name: &str, new: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name);
-    if std::env::var_os("REMAKE").is_some() {
-        fs::write(&path, new).unwrap();
-        return;
-    }
-    let old = fs::read_to_string(&path).unwrap_or_default();
-    let other = old.lines().zip(new.lines()).find(|(old, new)| old != new);
-    assert!(old == new, "docs/{name} differs from the program; REMAKE=1 writes it: {other:#?}");
-}

@@ -5,7 +5,7 @@
     python3 tests/pages/run.py --program target/release/boresight --long    # the long commands too
     python3 tests/pages/run.py --list                                       # commands, and figures without a check
 
-1. Every command on a page exists: subcommand and options of `boresight` are those of docs/command-line.md,
+1. Every command on a page exists: subcommand and options of `boresight` are those of its help,
    scripts of `python3` are files of this tree, binaries, examples and test suites of `cargo` exist.
 2. Every check of checks.toml: its commands run, one after the other, in a directory of their own with the tree
    beside it, and each figure that the page prints is compared with the one in their output. A figure of a page
@@ -65,15 +65,15 @@ def words_of(command):
         return None
 
 
-def options_by_subcommand():
-    """The options of each subcommand, from the reference that the program writes."""
-    text = (ROOT / "docs/command-line.md").read_text()
-    found = {}
-    for section in re.split(r"^#+ ", text, flags=re.M)[1:]:
-        title = section.splitlines()[0].strip("` ")
-        if title.startswith("boresight"):
-            name = tuple(title.split()[1:])
-            found[name] = set(re.findall(r"(?<![\w-])(--[a-z][a-z0-9-]*)", section))
+def options_by_subcommand(program, name=()):
+    """The options of a subcommand and of those below it, from the help of the program."""
+    words = [program, *name, "--help"]
+    text = subprocess.run(words, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    found = {name: set(re.findall(r"(?<![\w-])(--[a-z][a-z0-9-]*)", text))}
+    listed = re.search(r"^Commands:\n((?:  .*\n)+)", text, flags=re.M)
+    for inner in re.findall(r"^  ([a-z][a-z-]*) ", listed[1] if listed else "", flags=re.M):
+        if inner != "help":
+            found |= options_by_subcommand(program, (*name, inner))
     return found
 
 
@@ -134,8 +134,8 @@ def fault_of_cargo(words):
     return None
 
 
-def faults_of_commands():
-    known, faults = options_by_subcommand(), []
+def faults_of_commands(program):
+    known, faults = options_by_subcommand(program), []
     for page in pages():
         for number, command in commands(page.read_text()):
             words = words_of(command)
@@ -241,9 +241,9 @@ def run(command, program, scratch):
     return subprocess.run(words, cwd=directory, env=environment, capture_output=True, text=True)
 
 
-def prove():
+def prove(program):
     """Ends the program if a wrong figure or a wrong command would pass."""
-    known = options_by_subcommand()
+    known = options_by_subcommand(program)
     wrong = [
         agree("0.31", "3.18", 0, 1),
         agree("2.0", "2.06", 0, 1),
@@ -265,8 +265,6 @@ def unchecked(checks):
     """Commands of pages that run something and that no check runs."""
     run_by_checks = {command for check in checks for command in check.commands}
     for page in pages():
-        if page.name == "command-line.md":
-            continue
         for number, command in commands(page.read_text()):
             if command not in run_by_checks and not re.search(r"\b[A-Z]{3,}\b|…", command) and len(command.split()) > 2:
                 yield f"{page.relative_to(ROOT)}:{number}: {command}"
@@ -283,10 +281,10 @@ def main():
     if options.list:
         print("\n".join(unchecked(checks)))
         return 0
-    prove()
-    faults = faults_of_commands()
-    print(f"commands of {len(pages())} pages: {len(faults)} faults", flush=True)
     program = str((pathlib.Path.cwd() / options.program).resolve())
+    prove(program)
+    faults = faults_of_commands(program)
+    print(f"commands of {len(pages())} pages: {len(faults)} faults", flush=True)
     for check in checks:
         if options.only not in check.name or check.is_long and not options.long:
             continue

@@ -1,15 +1,10 @@
-//! The tables of `docs/formats.md` agree with the tables that the crates declare.
-
-use std::fmt::Write;
-use std::path::Path;
+//! The tables of the page of formats, from the declarations of the crates.
 
 use boresight::files::{ColumnType, FieldDeclaration, csv_tables, parquet_tables};
 use boresight::gate::row_columns;
 use boresight::navigate;
 use boresight::study::case_columns;
 use boresight::visibility;
-
-use crate::support::check_page;
 
 /// Row of the page: names, type, and meaning of the columns.
 fn line(field: &FieldDeclaration, is_csv: bool) -> String {
@@ -33,8 +28,8 @@ fn line(field: &FieldDeclaration, is_csv: bool) -> String {
     format!("| {names} | {column_type}{empty} | {optional}{} |\n", field.meaning)
 }
 
-/// Page with the declared tables inserted between its marks.
-fn page(old: &str) -> String {
+/// Returns the page with the declared tables inserted after their marks.
+pub(super) fn filled(source: &str) -> Result<String, String> {
     let csv = csv_tables()
         .into_iter()
         .chain(visibility::tables())
@@ -42,20 +37,12 @@ fn page(old: &str) -> String {
         .map(|(name, fields)| (name, fields, true));
     let others = [("rows.parquet", row_columns()), ("cases.parquet", case_columns())];
     let parquet = parquet_tables().into_iter().chain(others).map(|(name, fields)| (name, fields, false));
-    let mut page = old.to_owned();
+    let mut page = source.to_owned();
     for (name, fields, is_csv) in csv.chain(parquet) {
         let mark = format!("<!-- columns of {name} -->\n");
-        let start = page.find(&mark).unwrap_or_else(|| panic!("no {mark}")) + mark.len();
-        let end = start + page[start..].find("<!-- end -->").unwrap();
-        let mut table = "\n| column | type | is |\n| --- | --- | --- |\n".to_owned();
-        fields.iter().for_each(|field| table.write_str(&line(field, is_csv)).unwrap());
-        page.replace_range(start..end, &(table + "\n"));
+        let place = page.find(&mark).ok_or_else(|| format!("docs/formats.md has no {mark}"))? + mark.len();
+        let rows: String = fields.iter().map(|field| line(field, is_csv)).collect();
+        page.insert_str(place, &format!("\n| column | type | is |\n| --- | --- | --- |\n{rows}\n"));
     }
-    page
-}
-
-#[test]
-fn the_page_of_formats_has_every_column() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/formats.md");
-    check_page("formats.md", &page(&std::fs::read_to_string(path).unwrap()));
+    Ok(page)
 }

@@ -1,42 +1,17 @@
-//! The pages `docs/command-line.md` and `docs/scenario-keys.md` are generated from the program.
+//! The page of scenario keys, from the JSON Schema of each world.
 
 use std::collections::BTreeSet;
-use std::fmt::Write;
 
 use serde_json::Value;
 
-use crate::support::{Bench, check_page};
-
-/// Names of the subcommands that a help text lists.
-fn subcommands(help: &str) -> Vec<&str> {
-    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
-    listed
-        .take_while(|line| !line.is_empty())
-        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
-        .filter(|name| !name.is_empty() && *name != "help")
-        .collect()
-}
-
-/// Appends the help of a command and of its subcommands.
-fn append_help(page: &mut String, bench: &Bench, command: &[&str]) {
-    let arguments: Vec<&str> = command.iter().copied().chain(["--help"]).collect();
-    let help = bench.boresight_words(&arguments).done().stdout;
-    let title = ["boresight"].iter().chain(command).copied().collect::<Vec<&str>>().join(" ");
-    let level = "#".repeat(2 + command.len().saturating_sub(1));
-    let lines: Vec<&str> = help.lines().map(str::trim_end).collect();
-    write!(page, "\n{level} {title}\n\n```text\n{}\n```\n", lines.join("\n")).unwrap();
-    for name in subcommands(&help) {
-        append_help(page, bench, &command.iter().copied().chain([name]).collect::<Vec<&str>>());
-    }
-}
-
-#[test]
-fn the_page_of_the_command_line_is_the_programs_help() {
-    let intro = "The help of every command, as the program prints it. \
-                 `REMAKE=1 cargo test --test it reference_pages::` writes this page.";
-    let mut page = format!("# Command line\n\n{intro}\n");
-    append_help(&mut page, &Bench::new(), &[]);
-    check_page("command-line.md", &page);
+/// Returns the section of a world: a table of keys for each table of its scenarios.
+pub(super) fn section(title: &str, schema: &Value) -> Result<String, String> {
+    let Some(Value::Object(definitions)) = schema.get("$defs") else {
+        return Err(format!("the schema of {title} has no definitions"));
+    };
+    let mut section = SchemaPage { definitions, written: BTreeSet::new(), page: format!("\n## {title}\n") };
+    section.write_object("Top level", schema, None);
+    Ok(section.page)
 }
 
 /// A JSON Schema with its definitions, and those of them that the page has already.
@@ -121,10 +96,10 @@ impl<'a> SchemaPage<'a> {
             Some(Value::Array(names)) => names.iter().filter_map(Value::as_str).collect(),
             _ => Vec::new(),
         };
-        write!(self.page, "\n### {title}\n").unwrap();
+        self.page.push_str(&format!("\n### {title}\n"));
         let description = cell(text(schema, "description"));
         if !description.is_empty() {
-            write!(self.page, "\n{description}\n").unwrap();
+            self.page.push_str(&format!("\n{description}\n"));
         }
         self.page.push_str("\n| key | type | range | default | meaning |\n| --- | --- | --- | --- | --- |\n");
         for (key, property) in properties {
@@ -141,7 +116,8 @@ impl<'a> SchemaPage<'a> {
                 meaning => meaning,
             };
             let (type_of, range) = (self.type_of(property), self.range(property));
-            writeln!(self.page, "| `{key}` | {type_of} | {range} | {default} | {} |", cell(meaning)).unwrap();
+            let meaning = cell(meaning);
+            self.page.push_str(&format!("| `{key}` | {type_of} | {range} | {default} | {meaning} |\n"));
         }
         for (key, property) in properties {
             let default = defaults.and_then(|defaults| defaults.get(key)).or_else(|| property.get("default"));
@@ -194,21 +170,4 @@ fn prefix(title: &str) -> String {
         Some(path) => format!("{path}."),
         None => String::new(),
     }
-}
-
-#[test]
-fn the_page_of_scenario_keys_is_the_schema() {
-    let intro = "Every key of a scenario file with its type, range and default, from the JSON Schema \
-                 (`boresight scenario schema`). Unknown keys are refused. \
-                 `REMAKE=1 cargo test --test it reference_pages::` writes this page.";
-    let mut page = format!("# Scenario keys\n\n{intro}\n");
-    for (world, title) in [("far_range", "Far range"), ("docking", "Docking")] {
-        let schema = Bench::new().boresight(&format!("scenario schema --world {world}")).done().json();
-        let Value::Object(definitions) = &schema["$defs"] else { panic!("no definitions") };
-        let mut section =
-            SchemaPage { definitions, written: BTreeSet::new(), page: format!("\n## {title}\n") };
-        section.write_object("Top level", &schema, None);
-        page.push_str(&section.page);
-    }
-    check_page("scenario-keys.md", &page);
 }

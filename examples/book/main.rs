@@ -1,0 +1,60 @@
+//! Writes the sources of the book, the pages of `docs/` and the reference pages that come from the program:
+//! `cargo run --example book -- target/debug/boresight OUT`.
+
+mod command_line;
+mod formats;
+mod scenario_keys;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [program, out] = arguments.as_slice() else {
+        return Err("expected two arguments: the program `boresight` and the folder to write".into());
+    };
+    let docs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/docs"));
+    let (book, pages) = (Path::new(out), Path::new(out).join("src"));
+    copy(docs, &pages)?;
+    fs::rename(pages.join("book.toml"), book.join("book.toml"))?;
+    let formats = formats::filled(&fs::read_to_string(docs.join("formats.md"))?)?;
+    fs::write(pages.join("formats.md"), formats)?;
+    fs::write(pages.join("command-line.md"), command_line::page(program)?)?;
+    let mut keys =
+        "# Scenario keys\n\nEvery key of a scenario file with its type, range and default, from the \
+                    JSON Schema (`boresight scenario schema`). Unknown keys are refused.\n"
+            .to_owned();
+    for (world, title) in [("far_range", "Far range"), ("docking", "Docking")] {
+        let schema = output(program, &["scenario", "schema", "--world", world])?;
+        keys.push_str(&scenario_keys::section(title, &serde_json::from_str(&schema)?)?);
+    }
+    fs::write(pages.join("scenario-keys.md"), keys)?;
+    Ok(())
+}
+
+/// Copies a folder with its subfolders.
+fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let target = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            copy(&entry.path(), &target)?;
+        } else {
+            fs::copy(entry.path(), target)?;
+        }
+    }
+    Ok(())
+}
+
+/// Returns the standard output of a command of the program.
+fn output(program: &str, words: &[&str]) -> Result<String, Box<dyn std::error::Error>> {
+    let answer = Command::new(program).args(words).output()?;
+    if !answer.status.success() {
+        return Err(
+            format!("{program} {}: {}", words.join(" "), String::from_utf8_lossy(&answer.stderr)).into()
+        );
+    }
+    Ok(String::from_utf8(answer.stdout)?)
+}
