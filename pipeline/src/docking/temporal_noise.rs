@@ -265,8 +265,8 @@ fn remaining(flat: &FlatPixels<'_>, earlier: &PastField, first: &PastField) -> O
     is_noise.then_some(if is_significant { share } else { 0.0 })
 }
 
-/// Pixels of a pair of fields in which differences are noise: neither black nor white nor beside an edge, in
-/// every fourth row; of those, the half with the smallest differences to their neighbours.
+/// Pixels of a pair of fields in which differences are noise: small, neither black nor white nor beside an
+/// edge, in every fourth row; of those, the half with the smallest differences to their neighbours.
 struct FlatPixels<'a> {
     now: &'a PastField,
     before: &'a PastField,
@@ -294,10 +294,13 @@ impl<'a> FlatPixels<'a> {
             let [above, middle, below] = [row - 1, row, row + 1].map(both);
             for (column, beside) in middle.windows(3).enumerate() {
                 let [left, value, right] = *beside else { continue };
-                if grey.contains(&(f64::from(value) / full_scale)) {
-                    let column = column + 1;
+                let column = column + 1;
+                let at = row * columns + column;
+                // A field that is black, or much brighter than the one before, differs by more than noise.
+                let is_noise = (now.value(at) - before.value(at)).abs() <= MAX_NOISE * full_scale;
+                if is_noise && grey.contains(&(f64::from(value) / full_scale)) {
                     let slope = left.abs_diff(right) + above[column].abs_diff(below[column]);
-                    steep.push((row * columns + column, slope));
+                    steep.push((at, slope));
                 }
             }
         }
@@ -379,6 +382,22 @@ mod tests {
         let repeated: Vec<bool> = ages(&noises).iter().map(|age| age.is_repeated).collect();
         assert_eq!(repeated.iter().filter(|is_repeated| **is_repeated).count(), 6, "{repeated:?}");
         assert!(repeated[8..14].iter().all(|is_repeated| *is_repeated), "{repeated:?}");
+    }
+
+    /// All pixels of a black field, or after a step of the brightness, differ by the same amount: this is no
+    /// lack of noise.
+    #[test]
+    fn a_live_picture_after_a_black_field_or_a_step_of_brightness_is_new() {
+        let offset = |k: usize| match k {
+            6 | 11 => -300.0,
+            14.. => 60.0,
+            _ => 0.0,
+        };
+        let noises: Vec<Vec<f64>> = (0..20)
+            .map(|k| noise(k as u64 + 1, 2.0).iter().map(|noise| noise + offset(k)).collect())
+            .collect();
+        let repeated: Vec<bool> = ages(&noises).iter().map(|age| age.is_repeated).collect();
+        assert!(repeated.iter().all(|is_repeated| !is_repeated), "{repeated:?}");
     }
 
     #[test]
