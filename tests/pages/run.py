@@ -123,7 +123,8 @@ def fault_of_cargo(words):
         if f'name = "{binary}"' not in manifests:
             return f"no binary {binary}"
     for example in following("--example"):
-        if not any(file.endswith(f"examples/{example}.rs") for file in files):
+        paths = (f"examples/{example}.rs", f"examples/{example}/main.rs")
+        if not any(file.endswith(paths) for file in files):
             return f"no example {example}"
     for bench in following("--bench"):
         if not any(re.search(rf"benches/(.*/)?{bench}\b", file) for file in files):
