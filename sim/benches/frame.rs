@@ -18,7 +18,6 @@ use std::time::Duration;
 
 use boresight_sim::draw::ExpectedImage;
 use boresight_sim::optics::{Psf, PsfConfig, Stamp};
-use boresight_sim::randomness::{Effect, Seed};
 use boresight_sim::sensor::{
     ExposureInterval, FixedPatternConfig, FlatSamplers, LineNoiseConfig, RawImage, Sensor, SensorConfig,
 };
@@ -26,6 +25,7 @@ use boresight_sim::truth::TrajectorySource;
 use boresight_sim::{PixelSelection, Simulation, Simulator};
 use contract::PixelPoint;
 use criterion::{BenchmarkId, Criterion, Throughput};
+use draws::{Effect, Seed};
 use processor_time::ProcessorTime;
 use rand::Rng;
 

@@ -35,11 +35,6 @@ pub mod exact_toml;
 )]
 mod expose;
 mod foreground;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod generator_lanes;
 mod limit;
 pub mod memo;
 #[allow(
@@ -63,7 +58,6 @@ mod painter;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod pixel_factors;
-pub mod randomness;
 pub mod regular_file;
 #[allow(
     clippy::indexing_slicing,

@@ -1,5 +1,6 @@
 //! Simulation configuration, and the checked and prepared simulator.
 
+use draws::Seed;
 use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
@@ -12,7 +13,6 @@ use crate::catalog::{Catalog, CatalogConfig, CatalogSource};
 use crate::memo::Memo;
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting};
-use crate::randomness::Seed;
 use crate::scene::{Background, BackgroundConfig, Spacecraft, StarField, TargetConfig};
 use crate::sensor::{CosmicRays, Sensor, SensorConfig};
 use crate::switch::Switch;

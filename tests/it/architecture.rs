@@ -7,32 +7,33 @@ use cargo_metadata::{Metadata, MetadataCommand, Target};
 
 /// Each crate of the project, and the project's crates that it may depend on. The pipelines depend only on
 /// the contract, and therefore cannot share code with the simulator.
-const ARROWS: [(&str, &str); 22] = [
+const ARROWS: [(&str, &str); 23] = [
     ("contract", ""),
+    ("draws", ""),
     ("navigation", "contract"),
-    ("sim", "contract"),
+    ("sim", "contract draws"),
     ("pipeline", "contract"),
-    ("statistics", "sim"),
-    ("score", "contract sim statistics"),
+    ("statistics", "draws"),
+    ("score", "contract draws sim statistics"),
     ("files", "contract pipeline score sim"),
     ("flight-dynamics", "contract files sim"),
-    ("scenario", "contract files flight-dynamics pipeline sim"),
+    ("scenario", "contract draws files flight-dynamics pipeline sim"),
     ("mitsuba", "contract files sim"),
     ("run", "contract files mitsuba pipeline scenario score sim"),
-    ("navigate", "contract files flight-dynamics navigation pipeline run scenario score sim"),
-    ("study", "contract files navigate pipeline run scenario score sim statistics"),
-    ("gate", "files navigate run scenario score sim statistics study"),
-    ("visibility", "contract files pipeline run scenario sim statistics"),
+    ("navigate", "contract draws files flight-dynamics navigation pipeline run scenario score sim"),
+    ("study", "contract draws files navigate pipeline run scenario score sim statistics"),
+    ("gate", "draws files navigate run scenario score sim statistics study"),
+    ("visibility", "contract draws files pipeline run scenario sim statistics"),
     ("show", "contract"),
     ("report", "contract files gate navigate run scenario score sim study visibility"),
     ("monitor", "contract files run scenario score sim"),
     (
         "boresight",
-        "contract files flight-dynamics gate mitsuba monitor navigate pipeline report research run scenario score show sim statistics study visibility",
+        "contract draws files flight-dynamics gate mitsuba monitor navigate pipeline report research run scenario score show sim statistics study visibility",
     ),
     ("python", "boresight contract pipeline sim"),
     ("fuzz", "boresight contract pipeline sim"),
-    ("research", "boresight contract pipeline sim"),
+    ("research", "boresight contract draws pipeline sim"),
 ];
 
 /// Returns the packages of the workspace, as declared in their manifests.

@@ -6,12 +6,12 @@ use contract::{
     AttitudeKnowledge, AttitudeSource, Calibration, Camera, CameraFrame, Direction, Frame, Icrs, ListedStar,
     Outcome, Pipeline, PixelPoint, PsfCalibration, Readout, Rotation, Setup, TargetCalibration, Telemetry,
 };
+use draws::Seed;
 use hifitime::{Duration, Epoch};
 use nalgebra::{Matrix2x3, Matrix3, Matrix4, Vector3, Vector4};
 use pipeline::far_range::{AberrationConfig, BestConfig, FarRangeConfig, FarRangePipeline};
 use sim::onboard::{RoiConfig, RoiExtractor, ScanOrder, downlink};
 use sim::optics::{Psf, PsfConfig, Stamp};
-use sim::randomness::Seed;
 use sim::sensor::{BloomingConfig, ExposureInterval, FlatSamplers, RawImage, Sensor, SensorConfig};
 
 const SIGMA_PX: f64 = 0.8;

@@ -1,5 +1,6 @@
 //! Knowledge of the chaser besides its measurements: its orbit, a prior, errors of its instruments.
 
+use draws::{Effect, Seed, Stream, normal};
 use std::f64::consts::TAU;
 
 use contract::navigation::{
@@ -12,7 +13,6 @@ use hifitime::{Duration, Epoch};
 use nalgebra::{Vector3, Vector6};
 use scenario::FarRangeScenario;
 use sim::onboard::ScanOrder;
-use sim::randomness::{Effect, Seed, Stream, normal};
 use sim::truth::{EARTH_GM_KM3_S2, State, Trajectory, clock, ephemeris};
 
 use crate::truth::Truth;

@@ -1,6 +1,7 @@
 //! Navigators on run directories: accuracy on a thinned ARGON, and input that they refuse.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
+use draws::{Effect, Seed, normal};
 use std::fs;
 use std::path::Path;
 
@@ -15,7 +16,6 @@ use files::{MeasurementWriter, TelemetryRow, TelemetryWriter};
 use nalgebra::Vector3;
 use scenario::FarRangeScenario;
 use scenario::run_file::{RunFile, ScenarioFile};
-use sim::randomness::{Effect, Seed, normal};
 use sim::truth::Schedule;
 use tempfile::TempDir;
 

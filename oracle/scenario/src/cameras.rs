@@ -16,8 +16,8 @@ pub const CAMERAS: &[BuiltIn] = &[
 mod tests {
     use super::*;
     use contract::Camera;
+    use draws::Seed;
     use serde::Deserialize;
-    use sim::randomness::Seed;
     use sim::sensor::{ExposureInterval, FlatSamplers, Sensor, SensorConfig};
 
     #[derive(Deserialize)]

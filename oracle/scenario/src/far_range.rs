@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use contract::{
     AttitudeKnowledge, Calibration, Camera, OutOfRange, PsfCalibration, Readout, TargetCalibration, bounds,
 };
+use draws::Seed;
 use files::Failure;
 use flight_dynamics::Coverage;
 use hifitime::Epoch;
@@ -14,7 +15,6 @@ use sim::Simulation;
 use sim::catalog::{CatalogConfig, CatalogSource};
 use sim::onboard::{RoiConfig, ShutterConfig};
 use sim::optics::{OpticsConfig, PsfConfig, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};
-use sim::randomness::Seed;
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::{SensorConfig, Switch};
 use sim::truth::{

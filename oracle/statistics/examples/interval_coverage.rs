@@ -11,11 +11,11 @@
 //! those that lie below it and above it, and the mean width. `until` is a study that ends when the half
 //! width is at most a fifth of the standard deviation of a draw, tested after 16 draws, 32, 48 and so on.
 
+use draws::{Effect, Seed, Stream, normal, uniform};
 use std::process::ExitCode;
 
 use boresight_statistics::{ClusterSum, Interval, cluster_mean_interval, cluster_rate_interval};
 use rand::Rng;
-use sim::randomness::{Effect, Seed, Stream, normal, uniform};
 
 const STUDIES: u64 = 4000;
 const DRAWS: [usize; 4] = [12, 20, 40, 100];

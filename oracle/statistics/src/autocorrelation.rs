@@ -75,7 +75,7 @@ fn variance_of_sequence_mean(sequence: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::wilson;
-    use sim::randomness::{Effect, Seed, Stream, normal, uniform};
+    use draws::{Effect, Seed, Stream, normal, uniform};
 
     fn stream(place: u64) -> Stream {
         Seed { seed: 1992, case: 0 }.stream(0, Effect::PixelNoise, place)

@@ -88,7 +88,7 @@ fn beta_quantile(a: f64, b: f64, p: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sim::randomness::{Effect, Seed, Stream, normal, uniform};
+    use draws::{Effect, Seed, Stream, normal, uniform};
 
     /// scipy 1.17: beta.ppf(0.05, k, n − k + 1) and beta.ppf(0.95, k + 1, n − k), as for trials without
     /// clusters.

@@ -314,7 +314,7 @@ fn ratios(pairs: &[(ClusterSum, ClusterSum)]) -> Option<(Ratio, Ratio)> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use sim::randomness::{Effect, Seed, Stream, normal, uniform};
+    use draws::{Effect, Seed, Stream, normal, uniform};
 
     /// Returns the fraction of intervals that contain the truth, over `studies` studies; studies without an
     /// interval are left out.

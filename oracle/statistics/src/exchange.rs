@@ -9,8 +9,8 @@
 //! Statistics 90, 414–427, who recommend it for few blocks). With blocks of one frame and hits as values it
 //! is McNemar's exact test.
 
+use draws::{Effect, Seed};
 use rand::Rng;
-use sim::randomness::{Effect, Seed};
 
 /// Largest number of blocks for which all exchanges are evaluated.
 const MAX_EXHAUSTED: usize = 13;
@@ -326,7 +326,7 @@ pub fn interval_by_sets(
 
 #[cfg(test)]
 mod tests {
-    use sim::randomness::{normal, uniform};
+    use draws::{normal, uniform};
 
     use super::*;
 
@@ -525,7 +525,7 @@ mod tests {
     }
 
     /// Returns the number of false alarms in 1000 sets of figures without an effect.
-    fn false_alarms(blocks: usize, draw: impl Fn(&mut sim::randomness::Stream) -> [f64; 8]) -> u32 {
+    fn false_alarms(blocks: usize, draw: impl Fn(&mut draws::Stream) -> [f64; 8]) -> u32 {
         let exchanges = Exchanges::new(blocks);
         (0..1000)
             .filter(|&trial| {
@@ -543,15 +543,15 @@ mod tests {
     /// mean.
     #[test]
     fn the_family_has_its_stated_level_with_few_blocks_and_heavy_tails() {
-        let correlated = |random: &mut sim::randomness::Stream| {
+        let correlated = |random: &mut draws::Stream| {
             let common = normal(random);
             std::array::from_fn(|_| common + 0.5 * normal(random))
         };
-        let wild = |random: &mut sim::randomness::Stream| {
+        let wild = |random: &mut draws::Stream| {
             let scale = if uniform(random) < 0.1 { 30.0 } else { 1.0 };
             std::array::from_fn(|_| scale * normal(random))
         };
-        let discrete = |random: &mut sim::randomness::Stream| {
+        let discrete = |random: &mut draws::Stream| {
             std::array::from_fn(|_| {
                 ((3.0 * uniform(random)).floor() - 1.0) * f64::from(uniform(random) < 0.2)
             })

@@ -69,7 +69,7 @@ fn sorted(sequences: &[Vec<f64>]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sim::randomness::{Effect, Seed, normal};
+    use draws::{Effect, Seed, normal};
 
     /// Two short series whose effective size is 17.201 of 20; the intervals were computed independently of
     /// this code.

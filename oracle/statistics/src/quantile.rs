@@ -55,7 +55,7 @@ pub(super) fn independent_values(sorted: &[ClusterValue], p: f64) -> Option<f64>
 mod tests {
     use super::super::clusters::tests::{check_coverage, coverage};
     use super::*;
-    use sim::randomness::{Stream, normal};
+    use draws::{Stream, normal};
 
     /// Draws clusters of `points` values each: the sum of a random number per cluster and one per value.
     fn values(random: &mut Stream, draws: usize, points: usize) -> Vec<ClusterValue> {

@@ -105,7 +105,7 @@ impl RankedValues {
 mod tests {
     use super::super::clusters::tests::{check_coverage, coverage};
     use super::*;
-    use sim::randomness::{Effect, Seed, Stream, normal};
+    use draws::{Effect, Seed, Stream, normal};
 
     /// scipy 1.17.1: `scipy.stats.spearmanr([1, 2, 3, 4, 5], [5, 6, 7, 8, 7])` gives 0.8207826816681233.
     #[test]

@@ -1,10 +1,11 @@
 //! Coverage and width of the intervals of replicated designs.
 
-use sim::randomness::{Effect, Seed, normal, uniform};
 use statistics::{
     ClusterSum, ClusterValue, Interval, cluster_quantile_interval, cluster_rank_correlation,
     mean_difference_interval, normal_quantile, rate_difference_interval,
 };
+
+use draws::{Effect, Seed, normal, uniform};
 
 use crate::cases::CaseFigure;
 use crate::definition::design::{Design, DesignKind};

@@ -1,10 +1,10 @@
 //! Time and memory of merging a million cases.
 
+use draws::{Effect, Seed, normal, uniform};
 use std::fs;
 use std::time::Instant;
 
 use run::pipeline_choice::PipelineChoice;
-use sim::randomness::{Effect, Seed, normal, uniform};
 
 use crate::campaign::Campaign;
 use crate::cases::{CaseFigure, CaseRow, CaseTable, DrawnValue};

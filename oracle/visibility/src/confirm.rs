@@ -1,6 +1,7 @@
 //! Confirmation by simulation: frames of the simulator, processed by the detector of the far-range method.
 
 use contract::{Body, CameraFrame, Frame, PipelineFactory, PixelPoint, Rotation, Setup};
+use draws::{Effect, Seed};
 use files::Failure;
 use hifitime::Epoch;
 use nalgebra::Vector3;
@@ -8,7 +9,6 @@ use pipeline::far_range::{FarRangeConfig, FarRangeFactory, ThresholdConfig};
 use rayon::prelude::*;
 use scenario::FarRangeScenario;
 use sim::onboard::ShutterConfig;
-use sim::randomness::{Effect, Seed};
 use sim::scene::TargetConfig;
 use sim::sensor::Switch;
 use sim::truth::{

@@ -1,5 +1,6 @@
 //! Random approaches measured by the built-in pipeline.
 
+use draws::{Effect, Seed, Stream, uniform};
 use std::error::Error;
 use std::path::Path;
 
@@ -10,7 +11,6 @@ use sim::SimError;
 use sim::docking::{
     CameraConfig, DockingSimulation, DockingSimulator, LensConfig, LightingConfig, SunConfig,
 };
-use sim::randomness::{Effect, Seed, Stream, uniform};
 use sim::television::{TelevisionConfig, VideoNoiseConfig};
 use sim::truth::approach::{
     Approach, ApproachConfig, ApproachState, ConstantVelocityConfig, OscillationConfig, SegmentConfig,

@@ -4,9 +4,9 @@ pub mod in_field;
 pub mod still;
 
 use contract::Camera;
+use draws::{Stream, uniform};
 use nalgebra::Vector3;
 use sim::docking::SunConfig;
-use sim::randomness::{Stream, uniform};
 
 /// Side of a pixel, µm, and size of the image: the television camera of `scenarios/docking.toml`.
 const PIXEL_UM: f64 = 8.3;

@@ -1,5 +1,6 @@
 //! Single progressive fields of random poses at one range through one lens, with blur and noise only.
 
+use draws::{Seed, Stream, uniform};
 use std::path::Path;
 
 use contract::Camera;
@@ -9,7 +10,6 @@ use sim::SimError;
 use sim::docking::{
     CameraConfig, DockingSimulation, DockingSimulator, LensConfig, LightingConfig, SunConfig,
 };
-use sim::randomness::{Seed, Stream, uniform};
 use sim::television::{Interlace, TelevisionConfig, VideoNoiseConfig};
 use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig};
 

@@ -1,5 +1,6 @@
 //! Docking simulation, checked and prepared, and the computation of a field.
 
+use draws::Seed;
 use std::path::Path;
 
 use contract::OutOfRange;
@@ -15,7 +16,6 @@ use super::lighting::LightingConfig;
 use super::truth::FieldTruth;
 use crate::SimError;
 use crate::optics::ImageBlur;
-use crate::randomness::Seed;
 use crate::scene::docking::{DockingScene, Lighting, TargetFile};
 use crate::television::{BIT_DEPTH, Caption, FieldLabel, Television, TelevisionConfig, VideoField};
 use crate::truth::approach::{Approach, ApproachState};

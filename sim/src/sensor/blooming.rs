@@ -1,12 +1,12 @@
 //! Blooming: the pixels of a frame after its overfull wells have spilt.
 
+use draws::{Stream, Streams};
 use std::ops::Range;
 
 use super::detector::Sensor;
 use super::pixels::LineOffsets;
 use super::spill::BloomingConfig;
 use crate::draw::ExpectedImage;
-use crate::randomness::{Stream, Streams};
 
 /// Inputs for filling the wells of a frame.
 pub(super) struct Overflow<'a> {
@@ -107,7 +107,7 @@ mod tests {
     use super::super::config::tests::{interval, twelve_bit};
     use super::super::{FlatSamplers, SensorConfig};
     use super::*;
-    use crate::randomness::Seed;
+    use draws::Seed;
 
     /// Only the rows near overflowing pixels are examined, extended as far as the electrons spill.
     #[test]

@@ -1,11 +1,12 @@
 //! Charge collected by a detector by the end of an exposure: photoelectrons, dark current, hot pixels,
 //! cosmic-ray hits.
 
+use draws::Seed;
+
 use super::detector::Sensor;
 use super::hot_pixels::HotPixel;
 use crate::draw::ExpectedImage;
 use crate::optics::Stamp;
-use crate::randomness::Seed;
 
 /// One opening of the shutter.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -240,8 +240,8 @@ impl SensorConfig {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::randomness::Seed;
     use crate::sensor::ExposureInterval;
+    use draws::Seed;
 
     /// Twelve-bit sensor similar to a star tracker's.
     pub(in crate::sensor) fn twelve_bit() -> SensorConfig {

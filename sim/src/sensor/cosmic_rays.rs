@@ -2,6 +2,7 @@
 
 use contract::bounds::require;
 use contract::{Camera, OutOfRange, PixelPoint};
+use draws::{Effect, Seed, Stream, normal, uniform};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -9,7 +10,6 @@ use serde::{Deserialize, Serialize};
 
 use super::poisson::poisson;
 use crate::optics::Stamp;
-use crate::randomness::{Effect, Seed, Stream, normal, uniform};
 use crate::truth::geographic;
 
 /// Charged particles that cross the detector.

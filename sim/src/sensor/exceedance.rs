@@ -188,7 +188,7 @@ mod tests {
     use super::super::config::tests::twelve_bit;
     use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram};
     use super::*;
-    use crate::randomness::{Effect, Seed, uniform};
+    use draws::{Effect, Seed, uniform};
 
     /// A gain of 1 e⁻/DN and a low read noise, so single electrons are distinguishable.
     fn distribution() -> PixelDistribution {

@@ -1,5 +1,6 @@
 //! Differences between pixels that are constant in time: response, dark current, defects.
 
+use draws::{Effect, Seed, Streams, normal};
 use std::sync::{Mutex, PoisonError};
 
 use contract::OutOfRange;
@@ -8,7 +9,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::pixel_factors::PixelFactors;
-use crate::randomness::{Effect, Seed, Streams, normal};
 
 /// Distribution of the dark currents of ordinary pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]

@@ -5,6 +5,7 @@
 //! superposition applies: Poisson(λ + s) is Poisson(λ) plus an independent n from Poisson(s). For given n its
 //! distribution is that of the flat mean plus n fixed electrons: one table for each n.
 
+use draws::{Stream, Streams};
 use std::collections::BTreeMap;
 
 use rand::Rng;
@@ -15,7 +16,6 @@ use super::mean_tables::MeanTables;
 use super::pixel_distribution::PixelDistribution;
 use super::poisson_digits::{MAX_SMALL_E, PoissonDigits, small_poisson};
 use super::ziggurat::Ziggurat;
-use crate::randomness::{Stream, Streams};
 use crate::switch::Switch;
 
 /// Cache of tables for means, kept from frame to frame. Results do not depend on the cached tables: an empty
@@ -146,8 +146,8 @@ mod tests {
     use super::super::config::tests::twelve_bit;
     use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram, two_sample_p};
     use super::*;
-    use crate::randomness::{Effect, Seed};
     use crate::sensor::SensorConfig;
+    use draws::{Effect, Seed};
 
     fn distribution(gain_e_per_dn: f64) -> PixelDistribution {
         PixelDistribution::new(&SensorConfig { gain_e_per_dn, ..twelve_bit() })

@@ -1,11 +1,11 @@
 //! Hot pixels: a fixed pattern of high dark currents.
 
 use contract::OutOfRange;
+use draws::{Effect, Seed, Stream, normal, uniform};
 use rand::Rng;
 
 use super::config::{HotPixelConfig, HotPixelDistribution};
 use super::telegraph::switches;
-use crate::randomness::{Effect, Seed, Stream, normal, uniform};
 
 /// A pixel with a high dark current.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,14 +9,14 @@
 //! cell, the digital number. The first and the last loop apply the same arithmetic to all pixels, so wide
 //! registers process many at once.
 
+use draws::Stream;
+use draws::{GeneratorLanes, LANES};
 use pulp::Simd;
 
 use super::alias::AliasTable;
 use super::pixel_distribution::PixelDistribution;
 use super::poisson_digits::by_inversion;
 use crate::draw::{PART, PIECE};
-use crate::generator_lanes::{GeneratorLanes, LANES};
-use crate::randomness::Stream;
 
 /// Tables for the means of the grid, made on first use: 3072 tables of at most
 /// [`MeanTables::MAX_TABLE_WIDTH_DN`] digital numbers, 25 MB.
@@ -369,7 +369,7 @@ mod tests {
     use super::super::config::tests::twelve_bit;
     use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram, two_sample_p};
     use super::*;
-    use crate::randomness::{Effect, Seed};
+    use draws::{Effect, Seed};
 
     /// A gain of 1 e⁻/DN and a low read noise, so single electrons are distinguishable.
     fn distribution() -> PixelDistribution {

@@ -6,7 +6,7 @@
 //! from a charge:
 //! ```
 //! use boresight_sim::draw::ExpectedImage;
-//! use boresight_sim::randomness::Seed;
+//! use draws::Seed;
 //! use boresight_sim::sensor::{ExposureInterval, FlatSamplers, RawImage, Sensor};
 //! fn right(sensor: &Sensor, image: &mut ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
 //!     let seed = Seed { seed: 1, case: 0 };
@@ -17,7 +17,7 @@
 //! A readout of photoelectrons does not compile:
 //! ```compile_fail,E0308
 //! use boresight_sim::draw::ExpectedImage;
-//! use boresight_sim::randomness::Seed;
+//! use draws::Seed;
 //! use boresight_sim::sensor::{FlatSamplers, RawImage, Sensor};
 //! fn wrong(sensor: &Sensor, image: &ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
 //!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, samplers, raw);

@@ -4,10 +4,11 @@
 //! converter rounds and clips. The distribution is implemented twice: as a sampler, and as the probability of
 //! every digital number.
 
+use draws::{Stream, normal};
+
 use super::alias::AliasTable;
 use super::config::SensorConfig;
 use super::poisson::poisson;
-use crate::randomness::{Stream, normal};
 use crate::switch::Switch;
 
 /// Parameters of a pixel's distribution other than its mean.
@@ -262,7 +263,7 @@ fn normal_cdf(z: f64) -> f64 {
 pub(super) mod tests {
     use super::super::config::tests::twelve_bit;
     use super::*;
-    use crate::randomness::{Effect, Seed};
+    use draws::{Effect, Seed};
 
     /// Number of occurrences of each number.
     pub(in crate::sensor) fn histogram(numbers: impl Iterator<Item = usize>) -> Vec<usize> {

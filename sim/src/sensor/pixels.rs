@@ -1,6 +1,8 @@
 //! Digital numbers of a frame, pixel by pixel: from tables where a table holds a pixel's distribution,
 //! otherwise in separate steps.
 
+use draws::GeneratorLanes;
+use draws::Streams;
 use rand::Rng;
 
 use super::detector::Sensor;
@@ -9,8 +11,6 @@ use super::mean_tables::{MeanTables, UniformMean, Words};
 use super::poisson_digits::PoissonDigits;
 use super::raw_image::RawImage;
 use crate::draw::{ExpectedImage, PART, PIECE};
-use crate::generator_lanes::GeneratorLanes;
-use crate::randomness::Streams;
 use crate::simd_kernel::arch;
 use crate::switch::Switch;
 
@@ -180,8 +180,8 @@ mod tests {
     use super::super::{FixedPatternConfig, LineNoiseConfig, NoiseConfig, SensorConfig};
     use super::*;
     use crate::optics::{Psf, PsfConfig, Stamp};
-    use crate::randomness::Seed;
     use contract::PixelPoint;
+    use draws::Seed;
     use sha2::{Digest, Sha256};
 
     const SEED: Seed = Seed { seed: 43, case: 0 };
@@ -273,7 +273,7 @@ mod tests {
         image.clear(sensor.sky_electrons(1.0));
         (0..40).for_each(|y| image.add_pixel(7 * y, y, libm::exp(0.3 * y as f64)));
         let charge = sensor.collect(&mut image, &interval(1.0));
-        let streams = SEED.streams(3, crate::randomness::Effect::PixelNoise);
+        let streams = SEED.streams(3, draws::Effect::PixelNoise);
         let draw = |registers: pulp::Arch| {
             let (mut raw, mut samplers) = (sensor.new_raw(), FlatSamplers::new());
             let tables = samplers.mean_tables(&sensor.distribution);

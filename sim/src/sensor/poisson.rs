@@ -1,6 +1,6 @@
 //! Poisson random numbers based on `libm`, so they are equal on every machine.
 
-use crate::randomness::{Stream, uniform};
+use draws::{Stream, uniform};
 
 /// Mean at which the method changes: PTRS needs a mean of 10 or more.
 const INVERSION_BELOW: f64 = 10.0;
@@ -58,8 +58,8 @@ fn by_rejection(mean: f64, stream: &mut Stream) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::randomness::{Effect, Seed};
     use crate::sensor::pixel_distribution::tests::{chi_square_p, histogram};
+    use draws::{Effect, Seed};
     use statrs::distribution::{Discrete, Poisson};
 
     fn stream(index: u64) -> Stream {

@@ -85,7 +85,7 @@ pub(super) fn by_inversion(mean: f64, u: f64) -> usize {
 mod tests {
     use super::super::pixel_distribution::tests::{chi_square_p, histogram};
     use super::*;
-    use crate::randomness::{Effect, Seed};
+    use draws::{Effect, Seed};
     use rand::Rng;
     use statrs::distribution::{Discrete, Poisson};
 

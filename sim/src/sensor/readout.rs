@@ -1,6 +1,7 @@
 //! Readout: from expected photoelectrons to digital numbers.
 
 use contract::OutOfRange;
+use draws::{Effect, Seed, normal};
 
 use super::blooming::Overflow;
 use super::charge::Charge;
@@ -10,7 +11,6 @@ use super::pixels::LineOffsets;
 use super::raw_image::RawImage;
 use crate::SimError;
 use crate::draw::ExpectedImage;
-use crate::randomness::{Effect, Seed, normal};
 
 impl Sensor {
     /// Draws the digital number of every pixel.

@@ -28,6 +28,8 @@
 //! are not drawn from tables: all their pixels are drawn directly.
 
 use contract::Window;
+use draws::{Effect, Seed, Streams, uniform};
+use draws::{GeneratorLanes, LANES};
 use pulp::Simd;
 
 use super::blooming::Overflow;
@@ -40,8 +42,6 @@ use super::pixel_distribution::PixelDistribution;
 use super::sparse_image::{Parts, Pixel, SparseImage, pixels};
 use crate::SimError;
 use crate::draw::{ExpectedImage, PART, PARTS, set_bits};
-use crate::generator_lanes::{GeneratorLanes, LANES};
-use crate::randomness::{Effect, Seed, Streams, uniform};
 use crate::simd_kernel::{SimdKernel, arch, run_widest};
 
 /// Inputs from which a frame is read out.

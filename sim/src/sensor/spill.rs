@@ -118,7 +118,7 @@ impl Run {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::randomness::{Effect, Seed, uniform};
+    use draws::{Effect, Seed, uniform};
     use rand::Rng;
 
     const ALL: BloomingConfig = BloomingConfig { spill_fraction: 1.0 };

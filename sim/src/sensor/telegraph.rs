@@ -1,10 +1,10 @@
 //! Random telegraph noise: hot pixels that switch between two dark currents.
 
+use draws::{Effect, Seed, Stream, uniform};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::poisson::poisson;
-use crate::randomness::{Effect, Seed, Stream, uniform};
 
 /// Random telegraph switching of a share of the hot pixels, as caused by proton damage in silicon (Hopkins &
 /// Hopkinson, "Random telegraph signals from proton-irradiated CCDs", IEEE Trans. Nucl. Sci. 40, 1993): two

@@ -1,9 +1,8 @@
 //! Normal random numbers by the ziggurat method: nearly always one word, one multiplication and one
 //! comparison.
 
+use draws::{Stream, uniform};
 use rand::Rng;
-
-use crate::randomness::{Stream, uniform};
 
 /// Number of layers of equal area that cover exp(−x²/2), x ≥ 0: 255 rectangles, and the lowest layer with the
 /// tail.
@@ -142,7 +141,7 @@ fn tail(stream: &mut Stream) -> f64 {
 mod tests {
     use super::super::pixel_distribution::tests::{chi_square_p, histogram};
     use super::*;
-    use crate::randomness::{Effect, Seed};
+    use draws::{Effect, Seed};
 
     /// Numbers drawn as in the readout: one word of a row, and further words from another address.
     fn numbers(frame: u64, n: u64) -> impl Iterator<Item = f64> {

@@ -1,13 +1,12 @@
 //! Slow drift of the camera's contrast and brightness.
 
+use draws::{Effect, Seed, uniform};
 use std::f64::consts::PI;
 
 use contract::OutOfRange;
 use contract::bounds::require;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::randomness::{Effect, Seed, uniform};
 
 /// Drift of contrast and brightness as sums of sinusoids of equal amplitude with phases drawn from the seed:
 /// a function of time without memory.

@@ -1,11 +1,11 @@
 //! Jitter of the line synchronisation: a small independent shift of each line.
 
 use contract::docking::Lines;
+use draws::{Effect, Seed, normal};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::optics::pad;
-use crate::randomness::{Effect, Seed, normal};
 use crate::simd_kernel::arch;
 
 /// Margin on each side of a line, px, and largest shift, px: eight times the largest standard deviation.

@@ -1,12 +1,11 @@
 //! Faint horizontal bands and lines: mains hum, and a random level of each line.
 
+use draws::{Effect, Seed, normal};
 use std::f64::consts::PI;
 
 use contract::docking::Lines;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::randomness::{Effect, Seed, normal};
 
 /// Levels added to every pixel of a line: a band that drifts over the picture, and a normal random number per
 /// line.

@@ -1,10 +1,9 @@
 //! Lines lost in transmission: replaced by snow or by the preceding line.
 
 use contract::docking::Lines;
+use draws::{Effect, Seed, uniform};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::randomness::{Effect, Seed, uniform};
 
 /// Loss of lines; half of the lost lines show snow, the other half the preceding line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]

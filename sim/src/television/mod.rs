@@ -20,10 +20,10 @@ mod video;
 
 use contract::docking::Lines;
 use contract::{OutOfRange, bounds};
+use draws::Seed;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::randomness::Seed;
 use crate::sensor::Ziggurat;
 pub use auto_gain::AutoGainConfig;
 use bloom::Bloom;

@@ -1,11 +1,11 @@
 //! Noise of the video signal.
 
 use contract::docking::Lines;
+use draws::{Effect, Seed};
 use rand::Rng;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::randomness::{Effect, Seed};
 use crate::sensor::Ziggurat;
 
 /// White Gaussian noise, independent from pixel to pixel.

@@ -1,11 +1,11 @@
 //! Overlay of the camera's caption generator: a reticle, the clock, the camera's name, range and range rate.
 
 use contract::docking::Lines;
+use draws::{Effect, Seed, normal};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::glyphs::{Glyphs, field_row};
-use crate::randomness::{Effect, Seed, normal};
 
 /// Number of camera rows to which the sizes below refer; they scale with the number of rows.
 const REFERENCE_ROWS: f64 = 576.0;

@@ -3,6 +3,7 @@
 
 use contract::bounds::{self, require};
 use contract::{Body, CameraFrame, Icrs, OutOfRange, Rotation};
+use draws::{Effect, Seed};
 use hifitime::{Duration, Epoch};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -13,7 +14,6 @@ use super::drift::{Drift, DriftConfig, radians_from_arcsec, turned_by, white};
 use super::guidance::Guidance;
 use super::mounting::MountingConfig;
 use super::states::States;
-use crate::randomness::{Effect, Seed};
 use crate::switch::Switch;
 
 /// Pointing of the chaser.

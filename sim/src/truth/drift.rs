@@ -1,6 +1,7 @@
 //! Slow errors about the three body axes, and noise drawn in each frame: functions of time and address,
 //! without memory.
 
+use draws::{Effect, Seed, normal};
 use std::f64::consts::PI;
 
 use contract::bounds::require;
@@ -8,8 +9,6 @@ use contract::{Angle, Body, OutOfRange, Rotation};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::randomness::{Effect, Seed, normal};
 
 /// Frame number in the address of draws that apply to the whole run; no frame has this number.
 const WHOLE_RUN: u64 = u64::MAX;

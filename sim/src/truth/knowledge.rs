@@ -1,6 +1,7 @@
 //! Knowledge of the chaser about its own attitude and velocity, with errors.
 
 use contract::{OutOfRange, Telemetry, bounds};
+use draws::{Effect, Seed};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -9,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use super::attitude::Attitude;
 use super::drift::{Drift, DriftConfig, radians_from_arcsec, turned_by, white};
 use super::trajectory::Trajectory;
-use crate::randomness::{Effect, Seed};
 
 /// First index of the velocity noise in an address; the attitude noise has indices 0 to 2.
 const VELOCITY_INDEX: u64 = 3;

@@ -1,6 +1,7 @@
 //! Manoeuvres of the chaser: as planned, as executed, as reported.
 
 use contract::{Icrs, OutOfRange, Rotation, bounds};
+use draws::{Effect, Seed, normal};
 use hifitime::{Duration, Epoch};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -8,7 +9,6 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::parse_utc_field;
 use super::orbit::{Elements, Rtn, State};
-use crate::randomness::{Effect, Seed, normal};
 
 /// Planned manoeuvre of the chaser.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

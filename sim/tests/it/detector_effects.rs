@@ -1,12 +1,12 @@
 //! Detector effects, measured from outside: in digital numbers and in the truth table.
 
-use boresight_sim::randomness::Seed;
 use boresight_sim::sensor::{
     CosmicRayConfig, ExposureInterval, FixedPatternConfig, FlatSamplers, HotPixelConfig, LineNoiseConfig,
     Sensor, SensorConfig, SouthAtlanticConfig, TelegraphConfig,
 };
 use boresight_sim::truth::{ObjectKind, geographic};
 use boresight_sim::{Exposure, Simulation};
+use draws::Seed;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::small_scene::{cosmic_rays, defective, restless, simulator, still};

@@ -7,10 +7,10 @@
 //! mean), a detector with different pixels (tables on a grid of means up to 256 e⁻, in parts above), and a
 //! detector with row offsets (electrons and noise from separate tables).
 
-use boresight_sim::randomness::{Effect, Seed, Stream, normal};
 use boresight_sim::sensor::{
     ExposureInterval, FixedPatternConfig, FlatSamplers, LineNoiseConfig, Sensor, SensorConfig, poisson,
 };
+use draws::{Effect, Seed, Stream, normal};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Read noise in electrons; the gain is 1 e⁻/DN, which resolves single electrons.

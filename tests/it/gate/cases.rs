@@ -6,7 +6,7 @@ use boresight::score::{
     WithinLimits,
 };
 use contract::{Angle, AttitudeSource};
-use sim::randomness::{Effect, Seed, Stream, normal, uniform};
+use draws::{Effect, Seed, Stream, normal, uniform};
 
 /// Size of a pixel, degrees.
 const PIXEL_DEG: f64 = 0.024;

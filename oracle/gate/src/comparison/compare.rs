@@ -426,14 +426,9 @@ mod tests {
 
     /// Returns true if an error that grows by its smallest visible change is found worse.
     fn is_visible_change_found(blocks: usize, alpha: f64, trial: u64) -> bool {
-        let random = &mut sim::randomness::Seed { seed: 3, case: trial }.stream(
-            0,
-            sim::randomness::Effect::PixelNoise,
-            0,
-        );
-        let mut scattered = |size: f64| -> Vec<f64> {
-            (0..blocks).map(|_| 10.0 + size * sim::randomness::normal(random)).collect()
-        };
+        let random = &mut draws::Seed { seed: 3, case: trial }.stream(0, draws::Effect::PixelNoise, 0);
+        let mut scattered =
+            |size: f64| -> Vec<f64> { (0..blocks).map(|_| 10.0 + size * draws::normal(random)).collect() };
         let (before, again, after) = (scattered(0.0), scattered(0.5), scattered(0.5));
         let errors = |values: &[f64], more: f64| {
             let values: Vec<_> = values.iter().map(|value| Some(value + more)).collect();

@@ -99,8 +99,8 @@ mod tests {
     use super::*;
     use crate::dependence::blocks::length_for;
     use crate::hand_made::days as table;
+    use draws::{Effect, Seed, normal};
     use score::{Reduction, Term};
-    use sim::randomness::{Effect, Seed, normal};
 
     #[test]
     fn the_memory_is_that_of_the_figure_that_remembers_longest() {

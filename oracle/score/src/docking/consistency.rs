@@ -63,8 +63,8 @@ pub fn within_3_sigma(error: f64, sigma: f64) -> Option<bool> {
 
 #[cfg(test)]
 mod tests {
+    use draws::{Effect, Seed, normal};
     use nalgebra::{Matrix1, Matrix2, Matrix3, Matrix6, Vector1, Vector2, Vector3, Vector6};
-    use sim::randomness::{Effect, Seed, normal};
 
     use super::*;
 

@@ -1,8 +1,8 @@
 //! Positions of the draws of a case in the unit cube.
 
+use draws::{Effect, Seed, uniform};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use sim::randomness::{Effect, Seed, uniform};
 
 use super::sobol::direction_numbers;
 

@@ -5,6 +5,7 @@ pub(crate) mod distribution;
 pub(crate) mod file;
 pub(crate) mod overlay;
 pub(crate) mod sobol;
+use draws::{Effect, Seed};
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -19,7 +20,6 @@ use scenario::run_file::{FileDigests, content};
 use score::navigation_figures;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-use sim::randomness::{Effect, Seed};
 
 use crate::cases::{CaseTable, DrawnValue};
 use crate::definition::design::Design;

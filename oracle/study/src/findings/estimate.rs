@@ -1,9 +1,9 @@
 //! Estimates over many cases, with their intervals.
 
+use draws::{Effect, Seed, Stream};
 use rand::Rng;
 use run::figure_by_name;
 use serde::{Deserialize, Serialize};
-use sim::randomness::{Effect, Seed, Stream};
 use statistics::{
     ClusterSum, ClusterValue, Interval, cluster_mean_interval, cluster_quantile_interval,
     cluster_rate_interval, clusters_needed,

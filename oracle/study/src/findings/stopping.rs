@@ -104,7 +104,7 @@ fn most_frequent(values: impl Iterator<Item = f64>) -> usize {
 mod tests {
     use super::*;
     use crate::cases::CaseRow;
-    use sim::randomness::{Effect, Seed, Stream, normal, uniform};
+    use draws::{Effect, Seed, Stream, normal, uniform};
 
     fn stopped(
         study: u64,

@@ -1,4 +1,5 @@
 //! Summary of a study: figures with intervals, sensitivities, the worst cases.
+use draws::{Effect, Seed};
 use std::path::Path;
 
 use files::{Failure, FileError};
@@ -7,7 +8,6 @@ use pipeline::external::protocol::harmless;
 use run::figure_by_name;
 use score::Better;
 use serde::{Deserialize, Serialize};
-use sim::randomness::{Effect, Seed};
 use statistics::{
     ClusterSum, MIN_CLUSTERS, cluster_rank_correlation, mean_difference_interval, rate_difference_interval,
 };

@@ -1,5 +1,6 @@
 //! Random poses and Sun directions, and their frames.
 
+use draws::{Effect, normal};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::fs;
@@ -10,7 +11,6 @@ use contract::docking::{Digitiser, DockingSetup, Field, Pose};
 use nalgebra::Vector3;
 use sim::SimError;
 use sim::docking::DockingSimulator;
-use sim::randomness::{Effect, normal};
 use sim::scene::docking::TargetFile;
 
 use crate::bound::{self, Bound};

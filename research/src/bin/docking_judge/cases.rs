@@ -2,10 +2,10 @@
 
 use contract::Camera;
 use contract::docking::Pose;
+use draws::Effect;
 use sim::SimError;
 use sim::docking::DockingSimulator;
 use sim::mitsuba::Crop;
-use sim::randomness::Effect;
 use sim::truth::approach::target_from_camera;
 
 use boresight_research::docking_random::still::{NOISE_DN, Row};

@@ -14,6 +14,7 @@
 mod drawing;
 mod tally;
 
+use draws::{Effect, Seed, uniform};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -22,7 +23,6 @@ use contract::PipelineFactory;
 use contract::docking::Digitiser;
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::docking::{DockingSimulation, DockingSimulator};
-use sim::randomness::{Effect, Seed, uniform};
 use sim::television::{Interlace, TelevisionConfig, VideoNoiseConfig};
 use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig};
 

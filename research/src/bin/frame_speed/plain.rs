@@ -1,13 +1,13 @@
 //! Plain frame that every simulator of the comparison can make: 160 stars on a flat background, shot, dark
 //! and read noise, 12 bit.
 
+use draws::{Effect, Seed, uniform};
 use std::error::Error;
 
 use contract::PixelPoint;
 use serde_json::{Value, json};
 use sim::draw::ExpectedImage;
 use sim::optics::{Psf, PsfConfig, Stamp};
-use sim::randomness::{Effect, Seed, uniform};
 use sim::sensor::{ExposureInterval, FixedPatternConfig, FlatSamplers, RawImage, Sensor, SensorConfig};
 
 pub(crate) const COLUMNS: usize = 752;

@@ -1,5 +1,6 @@
 //! Thermal blankets on the station's end: rings of irregular tiles with dark gaps between them.
 
+use draws::{Effect, Seed, Stream, uniform};
 use std::f64::consts::PI;
 
 use contract::OutOfRange;
@@ -11,7 +12,6 @@ use super::Facet;
 use super::checks::check_source;
 use super::docking_unit::DockingUnitTable;
 use super::shapes::{Circle, flat};
-use crate::randomness::{Effect, Seed, Stream, uniform};
 
 /// Maximum number of tiles; each tile is drawn in every image.
 const MAX_TILES: f64 = 1000.0;

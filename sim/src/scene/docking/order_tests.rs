@@ -1,9 +1,9 @@
 //! Ray tests that the order of the parts agrees with the depth of the facets.
 
+use draws::{Effect, Seed, Stream, uniform};
 use nalgebra::Vector3;
 
 use super::{DockingScene, Facet, TargetFile};
-use crate::randomness::{Effect, Seed, Stream, uniform};
 
 /// Camera distances, m, and maximum lateral offset as a share of the distance: 0.3 is 17°.
 const DISTANCES_M: [f64; 5] = [1.0, 3.0, 10.0, 60.0, 400.0];

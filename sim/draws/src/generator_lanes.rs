@@ -3,17 +3,17 @@
 
 use pulp::{Simd, WithSimd};
 
-use crate::randomness::{GOLDEN_GAMMA, Streams, split_mix};
+use crate::{GOLDEN_GAMMA, Streams, split_mix};
 
 /// Number of generators.
-pub(crate) const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 /// Eight generators xoshiro256++ (Blackman & Vigna 2019), stepped together.
 ///
 /// Word i is number i / 8 of generator i % 8. Generator 0 is the stream with this index; generator l is keyed
 /// by the four numbers 4 l … 4 l + 3 of the SplitMix64 whose first four numbers key generator 0.
 #[derive(Debug, Clone)]
-pub(crate) struct GeneratorLanes {
+pub struct GeneratorLanes {
     state: [[u64; LANES]; 4],
 }
 
@@ -21,7 +21,7 @@ impl GeneratorLanes {
     /// Creates the generators for an index of one effect in one frame. An index uses either these or its
     /// stream.
     #[inline(always)]
-    pub(crate) fn from_streams(streams: &Streams, index: u64) -> Self {
+    pub fn from_streams(streams: &Streams, index: u64) -> Self {
         let base = streams.key_at(index);
         let state = std::array::from_fn(|part| {
             std::array::from_fn(|lane| {
@@ -34,7 +34,7 @@ impl GeneratorLanes {
 
     /// Next word of every generator.
     #[inline(always)]
-    pub(crate) fn next(&mut self) -> [u64; LANES] {
+    pub fn next(&mut self) -> [u64; LANES] {
         let [s0, s1, s2, s3] = &mut self.state;
         let mut words = [0; LANES];
         for lane in 0..LANES {
@@ -55,7 +55,7 @@ impl GeneratorLanes {
     /// It must be called in a separate function ([`Simd::vectorize`]): inside a larger function the
     /// generators would not stay in registers.
     #[inline(always)]
-    pub(crate) fn steps<S: Simd>(&mut self, _: S, times: usize, mut visit: impl FnMut(usize, [u64; LANES])) {
+    pub fn steps<S: Simd>(&mut self, _: S, times: usize, mut visit: impl FnMut(usize, [u64; LANES])) {
         #[cfg(target_arch = "x86_64")]
         if std::any::TypeId::of::<S>() == std::any::TypeId::of::<pulp::x86::V3>()
             && let Some(registers) = pulp::x86::V3::try_new()
@@ -69,7 +69,7 @@ impl GeneratorLanes {
 
     /// Skips the words of `times` steps.
     #[inline(always)]
-    pub(crate) fn skip<S: Simd>(&mut self, simd: S, times: usize) {
+    pub fn skip<S: Simd>(&mut self, simd: S, times: usize) {
         struct Skip<'a>(&'a mut GeneratorLanes, usize);
         impl WithSimd for Skip<'_> {
             type Output = ();
@@ -128,7 +128,7 @@ mod avx2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::randomness::{Effect, Seed, Stream};
+    use crate::{Effect, Seed, Stream};
     use rand::Rng;
     use rand_xoshiro::rand_core::SeedableRng;
 
@@ -173,7 +173,7 @@ mod tests {
         let mut lanes = GeneratorLanes::from_streams(&streams, 99);
         let all: Vec<_> = (0..24).map(|_| lanes.next()).collect();
         let expected = [&all[..1], &all[2..10], &all[18..21]].concat();
-        for registers in crate::simd_kernel::tests::registers() {
+        for registers in registers() {
             assert_eq!(
                 registers.dispatch(Steps(GeneratorLanes::from_streams(&streams, 99))),
                 expected,
@@ -181,6 +181,19 @@ mod tests {
             );
         }
         assert_eq!(pulp::Arch::Scalar.dispatch(Steps(GeneratorLanes::from_streams(&streams, 99))), expected);
+    }
+
+    /// Returns all registers of the machine, narrowest first.
+    fn registers() -> Vec<pulp::Arch> {
+        let mut all = vec![pulp::Arch::Scalar];
+        #[cfg(target_arch = "x86_64")]
+        {
+            all.extend(pulp::x86::V3::try_new().map(pulp::Arch::V3));
+            all.extend(pulp::x86::V4::try_new().map(pulp::Arch::V4));
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        all.push(pulp::Arch::new());
+        all
     }
 
     /// Words of neighbouring lanes, and of one lane at neighbouring indices, differ in half of their bits.

@@ -6,6 +6,25 @@
 //! portable and named, so the numbers are part of Boresight's contract: a change of the numbers is a change
 //! of results.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod generator_lanes;
+
+pub use generator_lanes::{GeneratorLanes, LANES};
+
 use rand::Rng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
@@ -126,7 +145,7 @@ impl Streams {
 
     /// Returns the first uniform number of the stream at an index, without the cost of the stream.
     #[inline(always)]
-    pub(crate) fn first_uniform(&self, index: u64) -> f64 {
+    pub fn first_uniform(&self, index: u64) -> f64 {
         let key = self.key_at(index);
         // The first word of xoshiro256++ depends on the first and the fourth of the numbers that key the
         // generator.
@@ -190,7 +209,7 @@ mod tests {
         assert_eq!(draw(), draw());
     }
 
-    /// The numbers are frozen: a change here changes every result and belongs in CHANGELOG.md.
+    /// The numbers are frozen: a change here changes every result and is a change of the contract.
     #[test]
     fn the_first_number_is_frozen() {
         assert_eq!(SEED.stream(0, Effect::PixelNoise, 0).next_u64(), FIRST_OF_42);
