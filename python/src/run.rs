@@ -205,7 +205,8 @@ pub(crate) fn run(
             PipelineArgument::Python(pipeline) => factory(prepared.source.world(), pipeline)?,
         };
         let (directory, temporary) = create_directory(out.as_deref())?;
-        let frame_jobs = FrameJobs { frames, jobs, images: None, expectation: Expectation::Dropped };
+        let frame_jobs =
+            FrameJobs { frames, jobs, images: None, expectation: Expectation::Dropped, states_of: None };
         let ran = world.run(&directory, &frame_jobs, &factory, &|| ended.go_on())?;
         match ran.incomplete {
             None => Ok((directory, temporary, ran.first_failure)),

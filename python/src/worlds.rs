@@ -202,7 +202,8 @@ where
         jobs: usize,
         take: &mut dyn FnMut(PendingFrame) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let expose = |workspace: &mut W::Workspace<'_>, frame| World::expose(self, workspace, frame);
+        let state = W::State::default();
+        let expose = |workspace: &mut W::Workspace<'_>, frame| World::expose(self, workspace, frame, &state);
         let bytes = self.exposure_bytes() as u64;
         process_in_order(
             frames,
@@ -211,7 +212,7 @@ where
             || self.workspace(),
             expose,
             |exposure| {
-                let (image, telemetry, truth) = W::receive(exposure, &W::Feedback::default());
+                let (image, telemetry, truth) = W::receive(exposure, &state);
                 take(Box::new(move |py| {
                     let (truth, objects) = W::tables(truth)?;
                     let telemetry = W::Interface::telemetry(py, &telemetry)?;

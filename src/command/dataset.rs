@@ -54,6 +54,7 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
         jobs: arguments.renderer.jobs(&arguments.selection),
         images: arguments.format.clone(),
         expectation: if arguments.expected { Expectation::Kept } else { Expectation::Dropped },
+        states_of: source.directory_of_run().map(Path::to_path_buf),
     };
     if arguments.out == Path::new("-") {
         // Only the video is written, for another program that reads it during production.

@@ -108,6 +108,7 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         jobs: arguments.renderer.jobs(&arguments.selection),
         images: arguments.save_frames.clone(),
         expectation: Expectation::Dropped,
+        states_of: None,
     };
     let scratch = super::scratch_directory()?;
     let factory = prepared.factory(&choice, scratch.path())?;

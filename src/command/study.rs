@@ -433,6 +433,7 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
         jobs: default_jobs(),
         images: arguments.save_frames.clone(),
         expectation: Expectation::Dropped,
+        states_of: None,
     };
     prepared.check_frame_jobs(&frame_jobs)?;
     let directory = match &arguments.out {

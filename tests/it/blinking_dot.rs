@@ -37,6 +37,9 @@ struct Scene {
     seed: u64,
     frames: u64,
     noise_dn: u8,
+    /// True if the dot moves on by a column after each frame in which the pipeline finds it.
+    #[serde(default)]
+    flees: bool,
     blinking_dot: Detector,
 }
 
@@ -176,6 +179,7 @@ impl World for BlinkingDot {
     const HEADLINE: &'static str = "correct_rate";
     const IMAGES: CsvImages = CsvImages;
     const PICTURES: &'static str = CsvImages::WORD;
+    const IS_SEQUENTIAL: bool = true;
 
     type Scenario = Scene;
     type Config = Detector;
@@ -184,7 +188,8 @@ impl World for BlinkingDot {
     type Exposure = (Line, Dot);
     type Workspace<'a> = ();
     type Truth = Dot;
-    type Feedback = ();
+    /// Number of columns that the dot has fled.
+    type State = u64;
     type Dataset<'a> = Files;
     type Answers = CsvAnswers<Dot>;
     type Scorer<'a> = UnitScorer<Unit>;
@@ -226,18 +231,22 @@ impl World for BlinkingDot {
         Ok(())
     }
 
-    fn expose(&self, (): &mut (), number: u64) -> Result<(Line, Dot), Failure> {
+    fn expose(&self, (): &mut (), number: u64, fled: &u64) -> Result<(Line, Dot), Failure> {
         let Scene { seed, noise_dn, .. } = *self.scenario();
         let hash = |place: u64| (seed + place + 97 * number).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33;
-        let column = (!number.is_multiple_of(3)).then_some((number * 7 % 6) as u32);
+        let column = (!number.is_multiple_of(3)).then_some(((number * 7 + fled) % 6) as u32);
         let noise = |place: usize| (hash(place as u64) % (u64::from(noise_dn) + 1)) as f64;
         let light = |place: usize| if column == Some(place as u32) { 90.0 } else { 0.0 };
         let pixels_dn = std::array::from_fn(|place| noise(place) + light(place));
         Ok((Line { number, pixels_dn }, Dot { number, column }))
     }
 
-    fn receive((line, truth): (Line, Dot), (): &()) -> (Line, (), Dot) {
+    fn receive((line, truth): (Line, Dot), _: &u64) -> (Line, (), Dot) {
         (line, (), truth)
+    }
+
+    fn advance(&self, fled: u64, _: u64, answer: &Answer) -> u64 {
+        fled + u64::from(self.scenario().flees && matches!(answer, Ok(Some(_))))
     }
 
     fn write_image(image: &Line, (): &(), path: &Path) -> Result<(), String> {
@@ -364,4 +373,30 @@ fn a_separate_world_runs_through_every_command() {
     // An unknown world is rejected.
     bench.write("other.toml", SCENARIO.replace("world = \"blinking_dot\"", "world = \"blinking_dott\""));
     assert_eq!(boresight(&format!("run {} --out {}", at("other.toml"), at("other"))), 2);
+}
+
+/// A trajectory that depends on the answers: the same on any number of threads, logged, and each frame can be
+/// made again alone.
+#[test]
+fn a_frame_that_depends_on_answers_is_made_again_alone() {
+    let bench = Bench::new();
+    let at = |name: &str| bench.path(name).display().to_string();
+    bench.write("flees.toml", SCENARIO.replace("noise_dn = 40", "noise_dn = 40\nflees = true"));
+    assert_eq!(boresight(&format!("run {} --jobs 1 --out {}", at("flees.toml"), at("one"))), 0);
+    assert_eq!(boresight(&format!("run {} --jobs 3 --out {}", at("flees.toml"), at("three"))), 0);
+    let lines = bench.read("one/lines.csv");
+    assert_eq!(lines, bench.read("three/lines.csv"));
+    assert!(bench.read("one/truth/states.jsonl").starts_with("{\"frame\":2,\"state\":1}\n"));
+
+    // The trajectory is not that of a scenario whose answers nobody has given.
+    assert_eq!(boresight(&format!("render {} --out {}", at("flees.toml"), at("unanswered"))), 0);
+    assert_ne!(lines, bench.read("unanswered/lines.csv"));
+    for frame in [0, 1, 2, 100, 299] {
+        let again = format!("frame-{frame}");
+        let words =
+            format!("render {} --frames {frame}..{} --out {}", at("one/run.toml"), frame + 1, at(&again));
+        assert_eq!(boresight(&words), 0);
+        let line = bench.read(&format!("{again}/lines.csv")).lines().nth(1).unwrap().to_owned();
+        assert_eq!(Some(line.as_str()), lines.lines().nth(frame + 1), "frame {frame}");
+    }
 }

@@ -113,3 +113,22 @@ fn scenarios_of_docking_are_listed_checked_and_started() {
     assert!(schema["properties"]["approach"].is_object() && schema["properties"].get("star_list").is_none());
     assert!(bench.boresight("scenario schema").done().json()["anyOf"].is_array());
 }
+
+/// The pipeline sets the digitiser by the picture. The run logs the settings, and each field is made again
+/// alone with the one that it had.
+#[test]
+fn a_field_of_a_run_is_made_again_alone() {
+    let bench = Bench::new();
+    bench.boresight("run docking --frames 100..108 --save-frames png --out run").done();
+    assert!(bench.read("run/truth/states.jsonl").lines().count() >= 2);
+    for field in [100, 101, 107] {
+        let out = format!("field-{field}");
+        let words = format!("render run/run.toml --frames {field}..{} --format png --out {out}", field + 1);
+        bench.boresight(&words).done();
+        bench.check_same(&format!("run/frames/{field:06}.png"), &format!("{out}/frames/{field:06}.png"));
+        let row =
+            |name: &str| bench.csv(name).into_iter().find(|row| row["field"] == field.to_string()).unwrap();
+        let (first, again) = (row("run/telemetry.csv"), row(&format!("{out}/telemetry.csv")));
+        assert_eq!((&first["contrast"], &first["brightness"]), (&again["contrast"], &again["brightness"]));
+    }
+}

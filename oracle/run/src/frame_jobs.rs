@@ -1,6 +1,7 @@
 //! Selection of frames, and their production in order on several threads.
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::PathBuf;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
 use files::Failure;
@@ -16,6 +17,8 @@ pub struct FrameJobs<F> {
     pub images: Option<F>,
     /// Treatment of the noise-free expectation of every frame, in a world that has one.
     pub expectation: Expectation,
+    /// Directory of the run whose frames are rendered again, with its states; `None` for all others.
+    pub states_of: Option<PathBuf>,
 }
 
 /// Treatment of the noise-free expectation of a frame.

@@ -21,6 +21,7 @@ pub mod frame_jobs;
 pub mod plain;
 mod rows_by_number;
 mod run_result;
+pub mod state_log;
 pub mod world;
 pub mod worlds;
 

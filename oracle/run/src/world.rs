@@ -14,11 +14,13 @@ use scenario::AttitudeChoice;
 use scenario::run_file::{RunFile, ScenarioFile};
 use score::{Figure, FigureSpec, UnitTable};
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use crate::any_world::{Options, ScenarioSource};
 use crate::frame_jobs::{FrameJobs, process_in_order};
 use crate::run_result::{AnswerSummary, FirstFailure, IncompleteRun, RunResult};
+use crate::state_log::{StateLog, StateLogWriter};
 
 /// Number of consecutive failed starts of a pipeline after which a run ends.
 const MAX_FAILED_STARTS: u32 = 3;
@@ -35,9 +37,10 @@ pub type OutcomeOf<W> = <<W as World>::Interface as Interface>::Outcome;
 /// A scenario with its simulator, ready to run: the world-specific parts of a run. The run itself is the same
 /// for every world.
 ///
-/// Exposures are made on any number of threads. They are received and processed sequentially, because an
-/// outcome may change how later images are received ([`World::Feedback`]): a closed loop, whose result does
-/// not depend on the number of threads.
+/// An outcome may change the state ([`World::State`]) with which later images are received or exposed: a
+/// closed loop. Images are received and processed one after the other. Exposures that do not depend on the
+/// state are made on any number of threads; the result does not depend on their number. The states of a run
+/// are logged ([`crate::state_log`]), so that any frame can be made again alone, bit for bit.
 pub trait World: Sized + Send + Sync + 'static {
     /// Code of the world in files and on the command line. It is also the name of the built-in pipeline, and
     /// of that pipeline's table in a scenario.
@@ -55,6 +58,9 @@ pub trait World: Sized + Send + Sync + 'static {
     /// True if consecutive groups of frames are separated in time, so that errors in one group are
     /// independent of the next.
     const ARE_GROUPS_APART: bool = true;
+    /// True if an exposure depends on the state: the frames of a run are then exposed one after the other,
+    /// each with the state after the frame before. Otherwise only [`World::receive`] uses the state.
+    const IS_SEQUENTIAL: bool = false;
     /// Default image format of a rendered dataset.
     const IMAGES: Self::Images;
     /// Name of the format for viewing images.
@@ -76,8 +82,8 @@ pub trait World: Sized + Send + Sync + 'static {
         Self: 'a;
     /// Ground truth of a frame.
     type Truth;
-    /// Effect of outcomes on later images.
-    type Feedback: Clone + Default;
+    /// State that outcomes change and later images depend on; `()` for a world without a closed loop.
+    type State: Clone + Default + PartialEq + Send + Sync + Serialize + DeserializeOwned;
     /// Writes frames as a dataset.
     type Dataset<'a>: Dataset<Self>
     where
@@ -214,23 +220,28 @@ pub trait World: Sized + Send + Sync + 'static {
     /// A [`Failure`] when the workspace cannot be created.
     fn workspace(&self) -> Result<Self::Workspace<'_>, Failure>;
 
-    /// Exposes a frame; its bits do not depend on earlier exposures.
+    /// Exposes a frame in a state; its bits depend on these two alone. If exposures do not depend on the
+    /// state ([`World::IS_SEQUENTIAL`]), it is the default one.
     ///
     /// # Errors
     /// A [`Failure`] when the frame does not exist.
-    fn expose(&self, workspace: &mut Self::Workspace<'_>, frame: u64) -> Result<Self::Exposure, Failure>;
+    fn expose(
+        &self,
+        workspace: &mut Self::Workspace<'_>,
+        frame: u64,
+        state: &Self::State,
+    ) -> Result<Self::Exposure, Failure>;
 
-    /// Returns image, telemetry and ground truth of an exposure, received with the feedback of earlier
-    /// outcomes.
+    /// Returns image, telemetry and ground truth of an exposure, received in a state.
     fn receive(
         exposure: Self::Exposure,
-        feedback: &Self::Feedback,
+        state: &Self::State,
     ) -> (ImageOf<Self>, TelemetryOf<Self>, Self::Truth);
 
-    /// Returns the feedback from the next frame on, after an outcome: by default unchanged, for a world
+    /// Returns the state of the next frame, after the outcome of a frame: by default unchanged, for a world
     /// without a closed loop.
-    fn feedback(before: Self::Feedback, _outcome: &OutcomeOf<Self>) -> Self::Feedback {
-        before
+    fn advance(&self, state: Self::State, _frame: u64, _outcome: &OutcomeOf<Self>) -> Self::State {
+        state
     }
 
     /// Writes the separate files of an exposure, on the thread that made it.
@@ -296,10 +307,11 @@ pub trait World: Sized + Send + Sync + 'static {
         attitude: Option<AttitudeChoice>,
     ) -> Result<Self::Judgement, Failure>;
 
-    /// Makes frames and writes them as a dataset; `done` is called after each frame.
+    /// Makes frames and writes them as a dataset; `done` is called after each frame. The frames of a run that
+    /// is rendered again have the states of its log, all others the default state.
     ///
     /// # Errors
-    /// A [`Failure`] when a file cannot be written.
+    /// A [`Failure`] when a file cannot be written, or the log of the run cannot be read.
     fn render(
         &self,
         directory: &RunDirectory,
@@ -307,12 +319,24 @@ pub trait World: Sized + Send + Sync + 'static {
         done: impl Fn(),
     ) -> Result<(), Failure> {
         let mut dataset = self.dataset(directory, frame_jobs)?;
-        run_frames(self, directory, frame_jobs, |exposure| {
-            let (image, telemetry, truth) = Self::receive(exposure, &Self::Feedback::default());
-            dataset.add(&image, telemetry, truth)?;
-            done();
-            Ok(image)
-        })?;
+        let states: StateLog<Self::State> = match &frame_jobs.states_of {
+            Some(run) => StateLog::read(run)?,
+            None => StateLog::default(),
+        };
+        let mut number = frame_jobs.frames.start;
+        expose_in_parallel(
+            self,
+            directory,
+            frame_jobs,
+            |frame| states.at(frame),
+            |exposure| {
+                let (image, telemetry, truth) = Self::receive(exposure, &states.at(number));
+                number += 1;
+                dataset.add(&image, telemetry, truth)?;
+                done();
+                Ok(image)
+            },
+        )?;
         dataset.finish()?;
         Ok(directory.seal()?)
     }
@@ -340,8 +364,10 @@ pub trait World: Sized + Send + Sync + 'static {
             None => None,
         };
         let mut first_failure = None;
-        let ran = run_frames(self, directory, frame_jobs, |exposure| {
-            let FrameAnswer { image, telemetry, truth, outcome } = running.process(exposure)?;
+        let mut states = StateLogWriter::new(directory.path());
+        let take = |running: &mut RunningPipeline<'_, Self>, frame, exposure| {
+            let FrameAnswer { image, telemetry, truth, outcome } = running.process(frame, exposure)?;
+            states.note(frame + 1, &running.state)?;
             let number = Self::Interface::number(&image);
             first_failure = first_failure
                 .take()
@@ -354,13 +380,15 @@ pub trait World: Sized + Send + Sync + 'static {
             dataset.add(&image, telemetry, truth)?;
             go_on()?;
             running.check_starts().map(|()| image)
-        });
+        };
+        let ran = run_frames(self, directory, frame_jobs, &mut running, take);
         let incomplete = running.incomplete(&frame_jobs.frames);
         match ran {
             Err(Failure::NotStarted(_)) => {}
             ran => ran?,
         }
         dataset.finish()?;
+        states.finish()?;
         answers.finish()?;
         let mut scored = scorer.finish();
         if let Some((_, scorer)) = beside {
@@ -389,7 +417,18 @@ pub trait World: Sized + Send + Sync + 'static {
         mut take: impl FnMut(FrameAnswer<Self>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let mut running = RunningPipeline::build(self, factory)?;
-        let make = |workspace: &mut Self::Workspace<'_>, frame| self.expose(workspace, frame);
+        if Self::IS_SEQUENTIAL {
+            let mut workspace = self.workspace()?;
+            for frame in frames {
+                let exposure = self.expose(&mut workspace, frame, &running.state)?;
+                take(running.process(frame, exposure)?)?;
+                running.check_starts()?;
+            }
+            return Ok(());
+        }
+        let unused = Self::State::default();
+        let make =
+            |workspace: &mut Self::Workspace<'_>, frame| Ok((frame, self.expose(workspace, frame, &unused)?));
         let bytes = self.exposure_bytes() as u64;
         process_in_order(
             frames,
@@ -397,8 +436,8 @@ pub trait World: Sized + Send + Sync + 'static {
             bytes,
             || self.workspace(),
             make,
-            |exposure| {
-                take(running.process(exposure)?)?;
+            |(frame, exposure)| {
+                take(running.process(frame, exposure)?)?;
                 running.check_starts()
             },
         )
@@ -419,7 +458,8 @@ pub trait World: Sized + Send + Sync + 'static {
         let mut scorer = self.scorer();
         let mut workspace = self.workspace()?;
         for frame in frames.clone() {
-            let processed = running.process(self.expose(&mut workspace, frame)?)?;
+            let exposure = self.expose(&mut workspace, frame, &running.state)?;
+            let processed = running.process(frame, exposure)?;
             let failure = || FirstFailure::from_outcome::<Self::Interface>(frame, &processed.outcome);
             first_failure = first_failure.or_else(failure);
             scorer.add(&processed.truth, &processed.telemetry, &processed.outcome)?;
@@ -561,10 +601,11 @@ pub trait Judgement {
     }
 }
 
-/// A pipeline that processes a sequence.
-struct RunningPipeline<W: World> {
+/// A pipeline that processes a sequence, with the state that its outcomes change.
+struct RunningPipeline<'a, W: World> {
+    world: &'a W,
     pipeline: Processor<W>,
-    feedback: W::Feedback,
+    state: W::State,
 }
 
 enum Processor<W: World> {
@@ -572,23 +613,23 @@ enum Processor<W: World> {
     Informed(Box<dyn InformedPipeline<W>>),
 }
 
-impl<W: World> RunningPipeline<W> {
-    fn build(world: &W, factory: &dyn PipelineFactory<W::Interface>) -> Result<Self, Failure> {
+impl<'a, W: World> RunningPipeline<'a, W> {
+    fn build(world: &'a W, factory: &dyn PipelineFactory<W::Interface>) -> Result<Self, Failure> {
         let pipeline = match world.informed_pipeline()? {
             Some(informed) => Processor::Informed(informed),
             None => Processor::Own(factory.build(world.setup())?),
         };
-        Ok(Self { pipeline, feedback: W::Feedback::default() })
+        Ok(Self { world, pipeline, state: W::State::default() })
     }
 
-    fn process(&mut self, exposure: W::Exposure) -> Result<FrameAnswer<W>, Failure> {
-        let (image, telemetry, truth) = W::receive(exposure, &self.feedback);
+    fn process(&mut self, frame: u64, exposure: W::Exposure) -> Result<FrameAnswer<W>, Failure> {
+        let (image, telemetry, truth) = W::receive(exposure, &self.state);
         let outcome = match &mut self.pipeline {
             Processor::Own(pipeline) => pipeline.process(&image, &telemetry),
             Processor::Informed(pipeline) => pipeline.process(&image, &telemetry, &truth)?,
         };
         self.check_machine()?;
-        self.feedback = W::feedback(self.feedback.clone(), &outcome);
+        self.state = self.world.advance(self.state.clone(), frame, &outcome);
         Ok(FrameAnswer { image, telemetry, truth, outcome })
     }
 
@@ -642,12 +683,42 @@ struct ScoreFile<'a, S> {
     incomplete: Option<&'a IncompleteRun>,
 }
 
-/// Makes frames, saves the separate files of each, and passes them to `take`, which returns their images:
-/// later images reuse their memory.
+/// Exposes the frames of a run and passes them to `take`, which processes them and returns their images: one
+/// after the other if an exposure depends on the state.
 fn run_frames<W: World>(
     world: &W,
     directory: &RunDirectory,
     frame_jobs: &FrameJobs<W::Images>,
+    running: &mut RunningPipeline<'_, W>,
+    mut take: impl FnMut(&mut RunningPipeline<'_, W>, u64, W::Exposure) -> Result<ImageOf<W>, Failure>,
+) -> Result<(), Failure> {
+    let mut frames = frame_jobs.frames.clone();
+    if !W::IS_SEQUENTIAL {
+        return expose_in_parallel(
+            world,
+            directory,
+            frame_jobs,
+            |_| W::State::default(),
+            |exposure| take(running, frames.next().unwrap_or_default(), exposure),
+        );
+    }
+    let mut workspace = world.workspace()?;
+    for frame in frames {
+        let exposure = world.expose(&mut workspace, frame, &running.state)?;
+        world.save(&workspace, &exposure, directory, frame_jobs)?;
+        let image = take(running, frame, exposure)?;
+        W::reuse(&mut workspace, image);
+    }
+    Ok(())
+}
+
+/// Makes frames in known states on all threads, saves the separate files of each, and passes them in order to
+/// `take`, which returns their images: later images reuse their memory.
+fn expose_in_parallel<W: World>(
+    world: &W,
+    directory: &RunDirectory,
+    frame_jobs: &FrameJobs<W::Images>,
+    state_at: impl Fn(u64) -> W::State + Sync,
     mut take: impl FnMut(W::Exposure) -> Result<ImageOf<W>, Failure>,
 ) -> Result<(), Failure> {
     let spare = Mutex::new(Vec::new());
@@ -655,7 +726,7 @@ fn run_frames<W: World>(
     let make = |workspace: &mut W::Workspace<'_>, frame| {
         let reused = spares().pop();
         reused.into_iter().for_each(|image| W::reuse(workspace, image));
-        let exposure = world.expose(workspace, frame)?;
+        let exposure = world.expose(workspace, frame, &state_at(frame))?;
         world.save(workspace, &exposure, directory, frame_jobs)?;
         Ok(exposure)
     };

@@ -34,7 +34,7 @@ impl GeneratorLanes {
 
     /// Next word of every generator.
     #[inline(always)]
-    pub fn next(&mut self) -> [u64; LANES] {
+    pub fn next_words(&mut self) -> [u64; LANES] {
         let [s0, s1, s2, s3] = &mut self.state;
         let mut words = [0; LANES];
         for lane in 0..LANES {
@@ -63,7 +63,7 @@ impl GeneratorLanes {
             return avx2::steps(registers, self, times, visit);
         }
         for step in 0..times {
-            visit(step, self.next());
+            visit(step, self.next_words());
         }
     }
 
@@ -144,7 +144,7 @@ mod tests {
             .collect();
         let mut first = streams.stream_at(99);
         for _ in 0..1000 {
-            let words = lanes.next();
+            let words = lanes.next_words();
             assert_eq!(words[0], first.next_u64());
             for (word, stream) in words.iter().zip(&mut alone) {
                 assert_eq!(*word, stream.next_u64());
@@ -171,7 +171,7 @@ mod tests {
         }
         let streams = Seed { seed: 42, case: 3 }.streams(7, Effect::PixelNoise);
         let mut lanes = GeneratorLanes::from_streams(&streams, 99);
-        let all: Vec<_> = (0..24).map(|_| lanes.next()).collect();
+        let all: Vec<_> = (0..24).map(|_| lanes.next_words()).collect();
         let expected = [&all[..1], &all[2..10], &all[18..21]].concat();
         for registers in registers() {
             assert_eq!(
@@ -207,7 +207,7 @@ mod tests {
                 GeneratorLanes::from_streams(&streams, index + 1),
             );
             for _ in 0..5 {
-                let (a, b) = (here.next(), next.next());
+                let (a, b) = (here.next_words(), next.next_words());
                 for lane in 0..LANES {
                     differ += u64::from((a[lane] ^ a[(lane + 1) % LANES]).count_ones());
                     differ += u64::from((a[lane] ^ b[lane]).count_ones());

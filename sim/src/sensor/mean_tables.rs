@@ -475,7 +475,7 @@ mod tests {
                 |x| streams.stream_at(10 + x as u64),
             );
             let mut lanes = GeneratorLanes::from_streams(&streams, y);
-            let words: Vec<u64> = (0..126).flat_map(|_| lanes.next()).collect();
+            let words: Vec<u64> = (0..126).flat_map(|_| lanes.next_words()).collect();
             for (x, (dn, mean_e)) in row.iter().zip(&means).enumerate() {
                 assert_eq!(
                     *dn,

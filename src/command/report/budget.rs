@@ -68,8 +68,13 @@ fn run_stage(
     let factory = prepared.factory(&choice, scratch.path())?;
     let run = RunDirectory::create(&scratch.path().join("run"))?;
     let progress = output.progress(frames.end - frames.start, &format!("{}, true {stage}", source.name));
-    let frame_jobs =
-        FrameJobs { frames, jobs: default_jobs(), images: None, expectation: Expectation::Dropped };
+    let frame_jobs = FrameJobs {
+        frames,
+        jobs: default_jobs(),
+        images: None,
+        expectation: Expectation::Dropped,
+        states_of: None,
+    };
     let ran = prepared.run(&run, &frame_jobs, &factory, &|| {
         progress.inc(1);
         Ok(())

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::{AtomicFile, Checksums, Failure, FileError, ImageFormat};
 
 /// Files of a run that have checksums.
-const SEALED: [&str; 14] = [
+const SEALED: [&str; 15] = [
     "run.toml",
     "camera.toml",
     "setup.toml",
@@ -17,6 +17,7 @@ const SEALED: [&str; 14] = [
     "truth/objects.parquet",
     "truth/manoeuvres.csv",
     "truth/fields.parquet",
+    "truth/states.jsonl",
     "measurements.csv",
     "clusters.parquet",
     "motion.csv",

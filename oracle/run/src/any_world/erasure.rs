@@ -318,7 +318,13 @@ impl FrameJobs<String> {
     /// Returns the flight with the image format parsed for a world.
     fn parse<F: std::str::FromStr<Err = String>>(&self) -> Result<FrameJobs<F>, Failure> {
         let images = self.images.as_deref().map(str::parse).transpose().map_err(Failure::Usage)?;
-        Ok(FrameJobs { frames: self.frames.clone(), jobs: self.jobs, images, expectation: self.expectation })
+        Ok(FrameJobs {
+            frames: self.frames.clone(),
+            jobs: self.jobs,
+            images,
+            expectation: self.expectation,
+            states_of: self.states_of.clone(),
+        })
     }
 }
 

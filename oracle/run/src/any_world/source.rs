@@ -75,6 +75,11 @@ impl ScenarioSource {
         self.contents.get(&path).map(String::as_str)
     }
 
+    /// Returns the directory of the run to be repeated, if the scenario is that of a `run.toml`.
+    pub fn directory_of_run(&self) -> Option<&Path> {
+        self.file.parent().filter(|_| self.file.file_name().is_some_and(|name| name == "run.toml"))
+    }
+
     /// Returns the files with a recorded digest: those that the scenario reads, or may read with other
     /// values.
     pub fn known_files(&self) -> impl Iterator<Item = &Path> {

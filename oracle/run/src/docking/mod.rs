@@ -59,7 +59,7 @@ impl World for DockingMission {
     type Workspace<'a> = DockingWorkspace;
     type Truth = FieldTruth;
     /// Settings of the digitiser.
-    type Feedback = Digitiser;
+    type State = Digitiser;
     type Dataset<'a> = FieldDataset<'a>;
     type Answers = FieldAnswers;
     type Scorer<'a> = Scorer;
@@ -169,7 +169,7 @@ impl World for DockingMission {
             video = video.with_pixel_size(camera.pixel_width_um, camera.pixel_height_um);
         }
         let make = |workspace: &mut DockingWorkspace, field| {
-            Ok(self.expose(workspace, field)?.video.digitise(&Digitiser::default()))
+            Ok(self.expose(workspace, field, &Digitiser::default())?.video.digitise(&Digitiser::default()))
         };
         let (fields, bytes) = (frame_jobs.frames.clone(), self.exposure_bytes() as u64);
         process_in_order(
@@ -229,7 +229,12 @@ impl World for DockingMission {
         Ok(self.simulator.workspace()?)
     }
 
-    fn expose(&self, workspace: &mut DockingWorkspace, field: u64) -> Result<FieldExposure, Failure> {
+    fn expose(
+        &self,
+        workspace: &mut DockingWorkspace,
+        field: u64,
+        _: &Digitiser,
+    ) -> Result<FieldExposure, Failure> {
         self.renderer.expose(&self.simulator, &self.setup, workspace, field)
     }
 
@@ -238,8 +243,8 @@ impl World for DockingMission {
     }
 
     /// Ignores settings that the digitiser does not support.
-    fn feedback(before: Digitiser, outcome: &DockingOutcome) -> Digitiser {
-        outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(before)
+    fn advance(&self, digitiser: Digitiser, _: u64, outcome: &DockingOutcome) -> Digitiser {
+        outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(digitiser)
     }
 
     fn dataset<'a>(

@@ -88,7 +88,7 @@ impl World for FarRangeMission {
     type Workspace<'a> = sim::SimulatedCamera<'a>;
     type Truth = SceneTruth;
     /// No feedback: the camera controls its exposure time without the pipeline.
-    type Feedback = ();
+    type State = ();
     type Dataset<'a> = FrameDataset;
     type Answers = FrameAnswers;
     type Scorer<'a> = Scorer<'a>;
@@ -251,7 +251,12 @@ impl World for FarRangeMission {
         Ok(self.simulator.camera()?)
     }
 
-    fn expose(&self, camera: &mut sim::SimulatedCamera<'_>, frame: u64) -> Result<sim::Exposure, Failure> {
+    fn expose(
+        &self,
+        camera: &mut sim::SimulatedCamera<'_>,
+        frame: u64,
+        (): &(),
+    ) -> Result<sim::Exposure, Failure> {
         Ok(camera.expose(frame)?)
     }
 

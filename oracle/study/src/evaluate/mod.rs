@@ -101,7 +101,8 @@ fn run(
     };
     // The navigation reads the files of a run.
     let directory = RunDirectory::create(&scratch.join("run"))?;
-    let frame_jobs = FrameJobs { frames, jobs: 1, images: None, expectation: Expectation::Dropped };
+    let frame_jobs =
+        FrameJobs { frames, jobs: 1, images: None, expectation: Expectation::Dropped, states_of: None };
     let result = prepared.run(&directory, &frame_jobs, &factory, &|| Ok(()))?;
     let estimator = match navigator {
         StudyNavigator::Batch => Estimator::Batch,
