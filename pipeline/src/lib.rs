@@ -9,30 +9,11 @@
 //! - [`docking`]: the monitoring of a docking approach by the cross and marks of its target;
 //! - [`external`]: an external pipeline, run as a process.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 mod camera_model;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the size of a frame that the contract has checked"
-)]
 pub mod docking;
 mod error;
 pub mod external;
 
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the size of a frame that the contract has checked"
-)]
 pub mod far_range;
 
 pub use camera_model::CameraModel;

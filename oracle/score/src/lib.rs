@@ -10,17 +10,6 @@
 //! of an external pipeline therefore gets the same figures as a built-in run. Only the *cause* of a miss also
 //! uses the labelled clusters that a pipeline may report; without them the cause follows from the truth only.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 mod accumulate;
 mod angles;
 mod argon_table2;
@@ -28,10 +17,6 @@ mod cause;
 mod cluster_members;
 mod covariance;
 mod definition;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 pub mod docking;
 mod figure_spec;
 #[cfg(test)]

@@ -6,47 +6,16 @@
 //! medians the order statistics. Frames that are independent by construction use the exact bounds of Clopper
 //! and Pearson ([`clopper_pearson`]). Two runs are compared by exchanging blocks of frames ([`joint_test`]).
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 mod autocorrelation;
 mod bound;
 mod clopper_pearson;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 mod clusters;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 mod exchange;
 mod interval;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 mod location;
 mod normal_quantile;
 mod proportion;
 mod quantile;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 mod rank_correlation;
 
 pub use autocorrelation::effective_size;

@@ -17,6 +17,17 @@
 //!
 //! There is no shell: the command is split into words by the rules of POSIX quoting, and run.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 pub mod docking_protocol;
 mod exchange;
 mod group;

@@ -6,21 +6,6 @@
 //! portable and named, so the numbers are part of Boresight's contract: a change of the numbers is a change
 //! of results.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 mod generator_lanes;
 
 pub use generator_lanes::{GeneratorLanes, LANES};

@@ -2,25 +2,13 @@
 
 #[allow(clippy::module_inception, reason = "the file of the type `Catalog`, which the module is named after")]
 mod catalog;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 mod cone;
 mod config;
 mod contents;
 mod error;
 mod hex;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 mod hipparcos;
 pub mod photometry;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
 mod radial_velocity;
 mod read;
 mod star;

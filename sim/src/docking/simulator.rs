@@ -268,7 +268,6 @@ impl DockingSimulator {
     }
 
     /// Makes the field and its truth from the radiance in the workspace.
-    #[allow(clippy::expect_used, reason = "the blur keeps the rows of the field")]
     fn transmit(&self, workspace: &mut DockingWorkspace, field_state: &FieldState) -> FieldExposure {
         let (eye, pose) = (&self.eyes[field_state.camera], &field_state.state.pose);
         let sun = field_state.lighting.sun.map(|sun| sun.towards);

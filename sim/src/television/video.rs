@@ -59,7 +59,6 @@ impl VideoField {
 
     /// Returns digital numbers of eight bits: 255 × (contrast × signal + brightness), clipped to 0 to 255 and
     /// rounded, halves upwards.
-    #[allow(clippy::expect_used, reason = "the size was checked when the field was made")]
     pub fn digitise(&self, digitiser: &Digitiser) -> Field {
         let full_scale = 255.0_f32;
         let slope = full_scale * digitiser.contrast as f32;

@@ -1,5 +1,16 @@
 //! Reader of catalogue files of the user.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 mod csv;
 mod field;
 mod hip2;
