@@ -1,6 +1,6 @@
 //! Runs and scores a minimal pipeline that reports the brightest pixel as the target.
 
-use boresight::run::{FarRangeMission, ScenarioSource, World as _};
+use boresight::run::{FarRangeMission, ScenarioSource, sequence};
 use boresight::table::{TableStyle, far_range};
 use contract::{
     ContractError, FarRange, Frame, Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, PixelPoint,
@@ -41,7 +41,7 @@ impl PipelineFactory<FarRange> for BrightestFactory {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let prepared = FarRangeMission::new(&ScenarioSource::read("argon")?)?;
-    let ran = prepared.score(8000..8200, &BrightestFactory)?;
+    let ran = sequence::score(&prepared, 8000..8200, &BrightestFactory)?;
     println!("{}", far_range(&ran.scored.score, TableStyle::default()));
     Ok(())
 }

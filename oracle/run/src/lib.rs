@@ -19,8 +19,10 @@ pub mod docking;
 pub mod far_range;
 pub mod frame_jobs;
 pub mod plain;
+mod processing;
 mod rows_by_number;
 mod run_result;
+pub mod sequence;
 pub mod state_log;
 pub mod world;
 pub mod worlds;
@@ -33,9 +35,8 @@ pub use choice::renderer_choice::RendererChoice;
 pub use docking::DockingMission;
 pub use far_range::{FarRangeMission, SceneTruth};
 pub use frame_jobs::{Expectation, FrameJobs};
+pub use processing::{AnswerCount, process, process_into};
 pub use rows_by_number::RowsByNumber;
 pub use run_result::{AnswerSummary, FirstFailure, IncompleteRun, RunResult};
-pub use world::{
-    AnswerCount, FrameAnswer, Judgement, OpenDataset, World, process, process_into, refuse_attitude,
-};
+pub use world::{FrameAnswer, Judgement, OpenDataset, World, refuse_attitude};
 pub use worlds::{figure_by_name, json_schema, register, world_by_name, worlds};

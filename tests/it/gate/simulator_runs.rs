@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::docking::renderer::DockingRenderer;
-use boresight::run::{DockingMission, FarRangeMission, Judgement as _, ScenarioSource, World as _};
+use boresight::run::{DockingMission, FarRangeMission, Judgement as _, ScenarioSource, World as _, sequence};
 use boresight::scenario::FarRangeScenario;
 use boresight::score::{FrameVerdict, UnitTable};
 use contract::docking::{Docking, DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry};
@@ -35,7 +35,7 @@ pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<
         let factory = PIPELINE
             .factory::<FarRangeMission>(&prepared.scenario().far_range, &std::env::temp_dir())
             .unwrap();
-        prepared.score(0..prepared.frame_count(), factory.as_ref()).unwrap().scored.verdicts
+        sequence::score(&prepared, 0..prepared.frame_count(), factory.as_ref()).unwrap().scored.verdicts
     };
     seeds.into_par_iter().map(run).collect()
 }
@@ -46,8 +46,9 @@ pub(crate) fn docking_runs(seeds: Range<u64>, fields: Range<u64>) -> Vec<(UnitTa
         let prepared = DockingMission::new(&source("docking", seed), DockingRenderer::Fast).unwrap();
         let factory =
             PIPELINE.factory::<DockingMission>(&prepared.scenario().docking, &std::env::temp_dir()).unwrap();
-        let own = prepared.score(fields.clone(), factory.as_ref()).unwrap().scored.units();
-        let scaled = prepared.score(fields.clone(), &Scaled(factory.as_ref())).unwrap().scored.units();
+        let own = sequence::score(&prepared, fields.clone(), factory.as_ref()).unwrap().scored.units();
+        let scaled =
+            sequence::score(&prepared, fields.clone(), &Scaled(factory.as_ref())).unwrap().scored.units();
         (own, scaled)
     };
     seeds.into_par_iter().map(run).collect()

@@ -97,7 +97,7 @@ impl MonitoredWorld for DockingMission {
         let mut reporter = DockingReporter::new(self.setup(), names, context.ground.as_ref());
         match measurements {
             Measurements::Live { factory, frames, jobs } => {
-                self.follow(frames.clone(), *jobs, factory.downcast()?, |processed| {
+                run::sequence::follow(self, frames.clone(), *jobs, factory.downcast()?, |processed| {
                     let number = processed.image.number();
                     session.wait_for_goal(number)?;
                     let features = FeatureRow::from_features(number, &processed.outcome.features);

@@ -88,7 +88,7 @@ impl MonitoredWorld for FarRangeMission {
         let reporter = FarRangeReporter { camera: &self.scenario().camera, trajectory, ground, start };
         match measurements {
             Measurements::Live { factory, frames, jobs } => {
-                self.follow(frames.clone(), *jobs, factory.downcast()?, |processed| {
+                run::sequence::follow(self, frames.clone(), *jobs, factory.downcast()?, |processed| {
                     let SceneTruth { frame: truth, objects } = &processed.truth;
                     session.wait_for_goal(truth.frame)?;
                     let report = reporter.report(truth, objects, Some(&processed.outcome));

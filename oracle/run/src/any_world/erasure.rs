@@ -26,7 +26,8 @@ use crate::check::unit_mistakes::unit_mistakes;
 use crate::choice::pipeline_choice::PipelineChoice;
 use crate::frame_jobs::FrameJobs;
 use crate::run_result::RunResult;
-use crate::world::{Answers, Judgement, World, process};
+use crate::world::{Answers, Judgement, World};
+use crate::{processing::process, sequence};
 
 impl<S: Judgement + Send + 'static> AnyJudgement for S {
     fn json(&self) -> Result<String, Failure> {
@@ -272,7 +273,7 @@ impl<W: World> AnyMission for W {
         let frame_jobs: FrameJobs<W::Images> = frame_jobs.parse()?;
         let images = frame_jobs.images.unwrap_or(W::IMAGES);
         let frame_jobs = FrameJobs { images: Some(images), ..frame_jobs };
-        World::render(self, directory, &frame_jobs, done)?;
+        sequence::render(self, directory, &frame_jobs, done)?;
         Ok(W::files_for_pipelines(images))
     }
 
@@ -291,7 +292,7 @@ impl<W: World> AnyMission for W {
         factory: &AnyFactory,
         go_on: &dyn Fn() -> Result<(), Failure>,
     ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure> {
-        Ok(World::run(self, directory, &frame_jobs.parse()?, factory.downcast()?, go_on)?.boxed())
+        Ok(sequence::run(self, directory, &frame_jobs.parse()?, factory.downcast()?, go_on)?.boxed())
     }
 
     fn score(
@@ -299,7 +300,7 @@ impl<W: World> AnyMission for W {
         frames: Range<u64>,
         factory: &AnyFactory,
     ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure> {
-        Ok(World::score(self, frames, factory.downcast()?)?.boxed())
+        Ok(sequence::score(self, frames, factory.downcast()?)?.boxed())
     }
 
     fn into_any(self: Box<Self>) -> Box<dyn Any> {

@@ -304,7 +304,7 @@ pub trait AnyMission: Send + Sync {
     /// A [`Failure`] with the reason.
     fn check_frame_jobs(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure>;
 
-    /// Renders a dataset, as [`World::render`](crate::World::render); returns a description of the files that
+    /// Renders a dataset, as [`sequence::render`](crate::sequence::render); returns a description of the files that
     /// it contains for a pipeline.
     ///
     /// # Errors
@@ -328,7 +328,7 @@ pub trait AnyMission: Send + Sync {
     /// A [`Failure`] when standard output cannot be written, or the world has no stream.
     fn stream(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure>;
 
-    /// See [`World::run`](crate::World::run).
+    /// See [`sequence::run`](crate::sequence::run).
     ///
     /// # Errors
     /// A [`Failure`] when a file cannot be written or the pipeline cannot be built; the error of `go_on`.
@@ -340,7 +340,7 @@ pub trait AnyMission: Send + Sync {
         go_on: &dyn Fn() -> Result<(), Failure>,
     ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure>;
 
-    /// See [`World::score`](crate::World::score).
+    /// See [`sequence::score`](crate::sequence::score).
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
