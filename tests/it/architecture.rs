@@ -156,8 +156,8 @@ const COMPUTING: [&str; 6] = [
 /// Developers' programs, which only read their own input.
 const TOOLS: [&str; 2] = ["boresight-fuzz", "boresight-research"];
 
-/// The lints apply to the crates that read input, apart from exempt modules of arithmetic, and to the readers of
-/// the crates that compute.
+/// The lints apply to the crates that read input, apart from exempt modules of arithmetic, and to the readers
+/// of the crates that compute.
 #[test]
 fn no_reader_can_panic() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -304,8 +304,8 @@ pub trait AnyMission: Send + Sync {
     /// A [`Failure`] with the reason.
     fn check_frame_jobs(&self, frame_jobs: &FrameJobs<String>) -> Result<(), Failure>;
 
-    /// Renders a dataset, as [`sequence::render`](crate::sequence::render); returns a description of the files that
-    /// it contains for a pipeline.
+    /// Renders a dataset, as [`sequence::render`](crate::sequence::render); returns a description of the
+    /// files that it contains for a pipeline.
     ///
     /// # Errors
     /// A [`Failure`] when a file cannot be written.
