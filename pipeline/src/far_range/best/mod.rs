@@ -19,6 +19,7 @@ mod stars;
 mod start;
 mod state;
 mod target;
+mod track;
 mod tracks;
 mod unlisted_stars;
 

@@ -8,7 +8,7 @@ use super::photometry::{KnownSource, PhotometryContext, PhotometryModel, Source}
 use super::stars::ExpectedStar;
 use super::state::{BestPipeline, LastFrame, ScaleSource};
 use super::target::TargetContext;
-use super::tracks::{FrameCandidates, Sky, TargetCandidate, TrackModel};
+use super::track::{FrameCandidates, Sky, TargetCandidate, TrackModel};
 use super::unlisted_stars::UnlistedStars;
 use crate::far_range::background::Background;
 use crate::far_range::detect::{Blob, transmitted_pixels};

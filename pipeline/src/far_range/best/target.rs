@@ -8,7 +8,7 @@ use super::hypotheses::{Hypotheses, STARS};
 use super::photometry::{FittedSource, KnownSource, PhotometryContext, Source, TargetStart};
 use super::stars::image_covariance;
 use super::state::BestPipeline;
-use super::tracks::{Sky, TargetCandidate};
+use super::track::{Sky, TargetCandidate};
 use super::unlisted_stars::{STAR_EXPONENT, UnlistedStars};
 use crate::far_range::overrides::{Identity, Overrides};
 
