@@ -20,7 +20,8 @@ pub use ::mitsuba;
 pub use ::monitor;
 #[cfg(feature = "report")]
 pub use ::report;
-pub use files::{self, failure, sha256, toml_file};
+pub use config::toml_file;
+pub use files::{self, failure, sha256};
 pub use flight_dynamics;
 pub use gate;
 pub use navigate;

@@ -95,7 +95,7 @@ impl Run {
     #[getter]
     fn score<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let path = self.path.join("score.json");
-        let text = sim::regular_file::read_text(&path, MAX_SCORE_BYTES);
+        let text = config::regular_file::read_text(&path, MAX_SCORE_BYTES);
         let text = text.map_err(|error| FileError::new_err(format!("{}: {error}", path.display())))?;
         json::text_to_python(py, &text)
     }

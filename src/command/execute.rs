@@ -1,6 +1,7 @@
 //! Steps shared by `run` and `study replay`: run, report, show.
 
-use files::{Failure, FileError, RunDirectory, toml_file};
+use config::toml_file;
+use files::{Failure, FileError, RunDirectory};
 use navigate::NavigationResult;
 use run::{AnyFactory, AnyMission, FrameJobs};
 

@@ -5,9 +5,7 @@ use std::path::Path;
 use std::sync::Once;
 
 use boresight::failure::Failure;
-use boresight::files::{
-    AtomicFile, CsvLine, CsvReader, CsvWriter, FileError, RunDirectory, read_csv, table, toml_file,
-};
+use boresight::files::{AtomicFile, CsvLine, CsvReader, CsvWriter, FileError, RunDirectory, read_csv, table};
 use boresight::run::plain::{CsvAnswers, CsvImages, ScoredUnit, UnitJudgement, UnitScorer};
 use boresight::run::world::{Dataset, Scorer};
 use boresight::run::{
@@ -17,6 +15,7 @@ use boresight::run::{
 use boresight::run_file::RunFile;
 use boresight::scenario::{AttitudeChoice, scenario_file};
 use boresight::score::{Definition, Figure, FigureSpec, Reduction, UnitVerdict};
+use boresight::toml_file;
 use contract::{ContractError, Interface, Pipeline, PipelineFactory};
 use indexmap::IndexMap;
 use pipeline::external::{Protocol, WriteTime};

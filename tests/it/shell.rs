@@ -64,6 +64,9 @@ fn page(name: &str) -> String {
     whole
 }
 
+/// Pages that `examples/book` writes when the book is built.
+const GENERATED: [&str; 2] = ["command-line.md", "scenario-keys.md"];
+
 /// A missing chapter would be created empty, and a page without a chapter would never be found.
 #[test]
 fn every_page_is_a_chapter_of_the_book() {
@@ -71,6 +74,7 @@ fn every_page_is_a_chapter_of_the_book() {
     let pages: BTreeSet<String> = entries
         .map(|name| name.to_string_lossy().into_owned())
         .filter(|name| name.ends_with(".md") && name != "SUMMARY.md")
+        .chain(GENERATED.map(str::to_owned))
         .collect();
     assert_eq!(chapters(), pages);
 }
@@ -95,7 +99,7 @@ fn links_between_pages_lead_somewhere() {
         chapters.contains(file) && (anchor.is_empty() || has(page(file)))
     };
     let mut broken = Vec::new();
-    for name in &chapters {
+    for name in chapters.iter().filter(|name| !GENERATED.contains(&name.as_str())) {
         let text = page(name);
         let links = text.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next());
         let dead = links.filter(|link| !link.is_empty() && !link.contains("://") && !leads(name, link));

@@ -53,7 +53,7 @@ GROUPS = {
 # Remaining module trees of large crates, by the folder of the crate.
 PRUNED = {
     "sim": {
-        "sim/src/lib.rs": "pub mod catalog;\nmod constants;\nmod error;\npub mod optics;\npub mod regular_file;\npub mod truth;\npub use error::SimError;",
+        "sim/src/lib.rs": "pub mod catalog;\nmod constants;\nmod error;\npub mod optics;\npub mod truth;\npub use error::SimError;",
         "sim/src/optics/mod.rs": "mod projection;\npub use projection::*;",
         "sim/src/truth/mod.rs": "mod apparent;\npub mod clock;\npub mod ecliptic;\npub mod ephemeris;\nmod kepler;\nmod planets;\n"
         "pub use apparent::{Observer, StarMotion, aberrate, deflect, unaberrate};\npub use planets::{Planet, ApparentPlanet};",

@@ -14,7 +14,7 @@ use crate::error::FileLocation;
 use crate::far_range::telemetry::read_with_lines;
 use crate::frame::file::read_image;
 use crate::frame::raw_image::Size;
-use crate::toml_file::toml_table::{self, TomlTable};
+use crate::toml_table::{self, TomlTable};
 use crate::{FileError, TelemetryRow, parse_utc};
 
 /// Contents of `camera.toml`: the data that a pipeline receives before the first frame, except the stars.

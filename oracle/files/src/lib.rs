@@ -26,7 +26,7 @@ mod far_range;
 mod frame;
 mod parquet;
 mod table;
-pub mod toml_file;
+mod toml_table;
 mod video;
 
 pub use self::csv::{

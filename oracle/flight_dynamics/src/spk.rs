@@ -73,8 +73,8 @@ impl Spk {
     /// [`FileError`] for a file that is not an SPK, does not have the body, or has it relative to another
     /// centre, in another frame, in an unsupported type, or in overlapping segments.
     pub fn read(path: &Path, target: Option<i32>) -> Result<Self, FileError> {
-        let bytes =
-            sim::regular_file::read(path, MAX_BYTES).map_err(|source| FileError::io(path, "read", source))?;
+        let bytes = config::regular_file::read(path, MAX_BYTES)
+            .map_err(|source| FileError::io(path, "read", source))?;
         Self::parse(path, &bytes, target)
     }
 

@@ -69,7 +69,7 @@ impl Tle {
     /// [`FileError`] with line and field for other content, a wrong checksum, or elements outside the range
     /// of SGP4.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        let text = sim::regular_file::read_text(path, MAX_BYTES)
+        let text = config::regular_file::read_text(path, MAX_BYTES)
             .map_err(|source| FileError::io(path, "read", source))?;
         Self::parse(path, &text)
     }

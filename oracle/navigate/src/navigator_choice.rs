@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use config::toml_file;
 use contract::conformance::Violation;
 use contract::conformance::navigation::check;
 use contract::navigation::NavigatorFactory;
-use files::{Failure, format_utc, toml_file};
+use files::{Failure, format_utc};
 use navigation::{BatchFactory, SequentialFactory};
 use pipeline::external::{ExternalNavigatorFactory, Sandbox};
 

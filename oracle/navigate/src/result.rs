@@ -50,7 +50,7 @@ impl NavigationResult {
     /// [`FileError`] for a file that cannot be read, or is not such a result.
     pub fn read_figures(directory: &Path) -> Result<Self, FileError> {
         let path = directory.join(FIGURES_FILE);
-        let text = sim::regular_file::read_text(&path, MAX_BYTES).map_err(|source| FileError::Io {
+        let text = config::regular_file::read_text(&path, MAX_BYTES).map_err(|source| FileError::Io {
             path: path.clone(),
             doing: "read",
             source,

@@ -85,7 +85,7 @@ pub(super) fn rows_of_each<R: Row + Clone>(
 
 /// Reads a JSON document.
 pub(super) fn read_json<T: DeserializeOwned>(path: &Path, format: &'static str) -> Result<T, Failure> {
-    let text = sim::regular_file::read_text(path, MAX_JSON_BYTES).map_err(|source| FileError::Io {
+    let text = config::regular_file::read_text(path, MAX_JSON_BYTES).map_err(|source| FileError::Io {
         path: path.to_owned(),
         doing: "read",
         source,

@@ -68,7 +68,7 @@ impl IncompleteRun {
         if !path.is_file() {
             return Ok(None);
         }
-        let text = sim::regular_file::read_text(&path, MAX_JSON_BYTES)
+        let text = config::regular_file::read_text(&path, MAX_JSON_BYTES)
             .map_err(|source| FileError::io(&path, "read", source))?;
         let document: ScoreDocument =
             serde_json::from_str(&text).map_err(|error| FileError::format(&path, "score", error))?;

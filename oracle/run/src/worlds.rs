@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{LazyLock, PoisonError, RwLock};
 
-use files::toml_file;
+use config::toml_file;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use score::{FigureSpec, navigation_figures};
 

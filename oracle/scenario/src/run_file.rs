@@ -3,8 +3,8 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::path::Path;
 
+use config::toml_file;
 use files::sha256::sha256_hex;
-use files::toml_file;
 use files::{AtomicFile, FileError};
 use serde::{Deserialize, Serialize};
 
@@ -13,8 +13,8 @@ use crate::{FarRangeScenario, Stage};
 // Used by `scenario_file!`.
 #[doc(hidden)]
 pub use {
+    config::toml_file::{TomlError, parse},
     files::Failure,
-    files::toml_file::{TomlError, parse},
     schemars::{Schema, SchemaGenerator},
     serde_json::Value,
 };

@@ -3,7 +3,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use crate::{GOLDEN_GAMMA, Streams, split_mix};
+use crate::streams::{GOLDEN_GAMMA, Streams, split_mix};
 
 /// Number of generators.
 pub const LANES: usize = 8;

@@ -24,7 +24,7 @@ use super::contents::Exclusion;
 use super::hex::hex;
 use super::{CatalogError, CatalogStar, hipparcos, read};
 use crate::memo::Memo;
-use crate::regular_file;
+use config::regular_file;
 
 /// Stars in ascending order of id, each id once. Copies share the stars.
 #[derive(Debug, Clone)]

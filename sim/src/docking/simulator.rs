@@ -3,6 +3,7 @@
 use draws::Seed;
 use std::path::Path;
 
+use config::{exact_toml, regular_file};
 use contract::OutOfRange;
 use contract::bounds::require;
 use contract::docking::{Digitiser, DockingSetup, FieldTelemetry, Lines, TargetModel};
@@ -21,7 +22,6 @@ use crate::television::{BIT_DEPTH, Caption, FieldLabel, Television, TelevisionCo
 use crate::truth::approach::{Approach, ApproachState};
 use crate::truth::clock::{format_utc, parse_utc_field};
 use crate::vector::{Drawer, RadianceImage};
-use crate::{exact_toml, regular_file};
 
 /// Maximum size of a target file, bytes.
 const MAX_TARGET_BYTES: u64 = 4 << 20;

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use files::{AtomicFile, Failure, FileError, ReplaceableFile, RunDirectory, toml_file};
+use config::toml_file;
+use files::{AtomicFile, Failure, FileError, ReplaceableFile, RunDirectory};
 use report::{FarRangeRun, check_budget};
 use run::pipeline_choice::PipelineChoice;
 use run::{Expectation, FrameJobs, Options, ScenarioSource};

@@ -126,7 +126,7 @@ fn tables_beside_a_scenario() {
         ("1,2,3\n1,2\n1,2,3\n", "line 2 has 2 cells"),
         ("1,2,3\n1,-2,3\n1,2,3\n", "line 2, cell 2"),
         ("0,0,0\n0,0,0\n0,0,0\n", "its sum is 0"),
-        ("1e308,1e308,1e308\n1,1,1\n1,1,1\n", "its sum is inf"),
+        ("1e308,1e308,1e308\n1,1,1\n1,1,1\n", "cell 1 is `1e308`, expected a number of 0 to 1e100"),
         ("", "it has 0 rows, expected 3 to 2048"),
     ] {
         bench.write("p.csv", content);

@@ -53,7 +53,7 @@ impl ReplaceableFile<'_> {
             return refused("exists and is not a regular file");
         }
         let mut beginning = Vec::new();
-        let file = sim::regular_file::open(path).map_err(error)?;
+        let file = config::regular_file::open(path).map_err(error)?;
         file.take(BEGINNING_BYTES).read_to_end(&mut beginning).map_err(error)?;
         if !(self.matches)(&beginning) {
             return refused("exists and is a file of another kind");

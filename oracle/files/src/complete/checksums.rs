@@ -77,7 +77,7 @@ impl Checksums {
     /// [`FileError::Io`].
     pub fn check(directory: &Path, is_used: impl Fn(&str) -> bool) -> Result<(), FileError> {
         let path = directory.join(NAME);
-        let text = match sim::regular_file::read_text(&path, MAX_BYTES) {
+        let text = match config::regular_file::read_text(&path, MAX_BYTES) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
             Err(source) => return Err(FileError::io(&path, "read", source)),
@@ -136,7 +136,7 @@ fn is_sum(text: &str) -> bool {
 /// # Errors
 /// [`FileError`] for a file that cannot be read, is not a regular file or has more than 2^38 bytes.
 pub fn file_sha256(path: &Path) -> Result<Option<String>, FileError> {
-    let file = match sim::regular_file::open(path) {
+    let file = match config::regular_file::open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(FileError::io(path, "open", source)),

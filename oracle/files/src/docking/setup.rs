@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::FileError;
-use crate::toml_file::toml_table::{self, TomlTable};
+use crate::toml_table::{self, TomlTable};
 
 /// Cameras, dimensions of the target, and parameters of the built-in pipeline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

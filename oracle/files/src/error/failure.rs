@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::FileError;
-use crate::toml_file::TomlError;
+use config::toml_file::TomlError;
 
 /// Bad input or usage: any reason that keeps a command from giving a result.
 #[derive(Debug, Error)]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::toml_file::TomlError;
+use config::toml_file::TomlError;
 
 /// Location of a value in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -147,7 +147,7 @@ pub enum FileError {
 
 /// Opens a file from an untrusted source for reading; a pipe or a device is rejected.
 pub fn open_regular(path: &Path) -> Result<File, FileError> {
-    sim::regular_file::open(path).map_err(|source| FileError::io(path, "open", source))
+    config::regular_file::open(path).map_err(|source| FileError::io(path, "open", source))
 }
 
 impl FileError {

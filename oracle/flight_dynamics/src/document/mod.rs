@@ -32,7 +32,7 @@ pub(crate) fn read<T>(
     kind: Kind,
     convert: impl FnOnce(&Document<'_>) -> Result<T, FileError>,
 ) -> Result<T, FileError> {
-    let text = sim::regular_file::read_text(path, MAX_BYTES)
+    let text = config::regular_file::read_text(path, MAX_BYTES)
         .map_err(|source| FileError::io(path, "read", source))?;
     parse(path, &text, kind, convert)
 }

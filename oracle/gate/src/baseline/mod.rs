@@ -12,8 +12,9 @@ pub(crate) mod rows;
 pub(crate) mod tolerance;
 use std::path::{Path, PathBuf};
 
+use config::toml_file;
 use files::sha256::sha256_hex;
-use files::{AtomicFile, Checksums, Failure, FileError, ReplaceableFile, toml_file};
+use files::{AtomicFile, Checksums, Failure, FileError, ReplaceableFile};
 use indexmap::IndexMap;
 use score::{FigureTerms, Reduction};
 use serde::{Deserialize, Serialize};
@@ -370,7 +371,7 @@ fn is_waiting(path: &Path) -> bool {
 
 fn file_sha256(path: &Path) -> Result<String, FileError> {
     let bytes =
-        sim::regular_file::read(path, MAX_BYTES).map_err(|source| FileError::io(path, "read", source))?;
+        config::regular_file::read(path, MAX_BYTES).map_err(|source| FileError::io(path, "read", source))?;
     Ok(sha256_hex(&bytes))
 }
 

@@ -7,8 +7,8 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+use config::toml_file::TomlError;
 use contract::{Interface, PipelineFactory};
-use files::toml_file::TomlError;
 use files::{Failure, RunDirectory, format_utc};
 use indexmap::IndexMap;
 use pipeline::external::ExternalFactory;
@@ -26,8 +26,8 @@ use crate::check::unit_mistakes::unit_mistakes;
 use crate::choice::pipeline_choice::PipelineChoice;
 use crate::frame_jobs::FrameJobs;
 use crate::run_result::RunResult;
+use crate::sequence::{self, process};
 use crate::world::{Answers, Judgement, World};
-use crate::{processing::process, sequence};
 
 impl<S: Judgement + Send + 'static> AnyJudgement for S {
     fn json(&self) -> Result<String, Failure> {

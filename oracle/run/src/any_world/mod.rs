@@ -10,8 +10,8 @@ use std::fmt::Debug;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use config::toml_file::{self, TomlError};
 use contract::{Interface, OutOfRange, PipelineFactory};
-use files::toml_file::{self, TomlError};
 use files::{Failure, RunDirectory};
 use indexmap::IndexMap;
 use scenario::run_file::{RunFile, ScenarioFile};

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use files::{Failure, FileError, file_sha256, toml_file};
+use config::toml_file;
+use files::{Failure, FileError, file_sha256};
 use scenario::BUILT_IN;
 use scenario::run_file::{FileDigests, RunFile, content};
 use serde_json::Value;

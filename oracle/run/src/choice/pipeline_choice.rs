@@ -1,7 +1,8 @@
 //! Choice of the pipeline: the built-in one, or an external program.
 use std::path::{Path, PathBuf};
 
-use files::{Failure, toml_file};
+use config::toml_file;
+use files::Failure;
 use pipeline::external::Sandbox;
 use sha2::{Digest, Sha256};
 
@@ -69,7 +70,7 @@ impl PipelineChoice {
         }
         for file in words(word) {
             // A word that is not a file is a program on the search path, or an option.
-            if let Ok(bytes) = sim::regular_file::read(Path::new(&file), MAX_BYTES) {
+            if let Ok(bytes) = config::regular_file::read(Path::new(&file), MAX_BYTES) {
                 part(&bytes);
             }
         }

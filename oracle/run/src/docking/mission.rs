@@ -1,7 +1,8 @@
 //! A docking scenario that is ready to run.
 
+use config::toml_file;
 use contract::docking::DockingSetup;
-use files::{Failure, toml_file};
+use files::Failure;
 use scenario::DockingScenario;
 use scenario::run_file::RunFile;
 use sim::docking::DockingSimulator;

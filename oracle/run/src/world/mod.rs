@@ -1,13 +1,13 @@
 //! A world: the parts in which runs differ. The run itself is the same for every world ([`crate::sequence`]).
 
-mod parts;
+mod answers;
 
 use std::fmt::Debug;
 use std::path::Path;
 use std::str::FromStr;
 
 use contract::{Interface, PipelineFactory};
-use files::{Failure, RunDirectory};
+use files::{Failure, FileError, RunDirectory};
 use pipeline::external::Protocol;
 use scenario::AttitudeChoice;
 use scenario::run_file::{RunFile, ScenarioFile};
@@ -16,10 +16,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
-pub(crate) use self::parts::paths;
-pub use self::parts::{
-    Answers, Dataset, FrameAnswer, Images, InformedPipeline, Judgement, OpenDataset, Scorer,
-};
+pub(crate) use self::answers::paths;
+pub use self::answers::{Answers, Judgement};
 use crate::any_world::{Options, ScenarioSource};
 use crate::frame_jobs::FrameJobs;
 
@@ -38,7 +36,7 @@ pub type OutcomeOf<W> = <<W as World>::Interface as Interface>::Outcome;
 /// An outcome may change the state ([`World::State`]) with which later images are received or exposed: a
 /// closed loop. Images are received and processed one after the other. Exposures that do not depend on the
 /// state are made on any number of threads; the result does not depend on their number. The states of a run
-/// are logged ([`crate::state_log`]), so that any frame can be made again alone, bit for bit.
+/// are logged ([`crate::sequence`]), so that any frame can be made again alone, bit for bit.
 pub trait World: Sized + Send + Sync + 'static {
     /// Code of the world in files and on the command line. It is also the name of the built-in pipeline, and
     /// of that pipeline's table in a scenario.
@@ -304,6 +302,84 @@ pub trait World: Sized + Send + Sync + 'static {
         beside: Option<&Path>,
         attitude: Option<AttitudeChoice>,
     ) -> Result<Self::Judgement, Failure>;
+}
+
+/// A dataset for a pipeline, before its images are read.
+pub struct OpenDataset<W: World> {
+    /// Setup that a pipeline receives before the first image.
+    pub setup: SetupOf<W>,
+    /// Parameters of the built-in pipeline.
+    pub config: W::Config,
+    /// Number of images, if known.
+    pub count: Option<u64>,
+    /// Images in order.
+    pub images: Images<W>,
+}
+
+/// Images with their telemetry, read one by one.
+pub type Images<W> = Box<dyn Iterator<Item = Result<(ImageOf<W>, TelemetryOf<W>), Failure>>>;
+
+/// An image of a run with the outcome of the pipeline.
+pub struct FrameAnswer<W: World> {
+    /// Image as received.
+    pub image: ImageOf<W>,
+    /// Telemetry that the pipeline received.
+    pub telemetry: TelemetryOf<W>,
+    /// Ground truth.
+    pub truth: W::Truth,
+    /// Outcome of the pipeline.
+    pub outcome: OutcomeOf<W>,
+}
+
+/// A pipeline that also receives the truth, for the one stage whose result it replaces.
+pub trait InformedPipeline<W: World> {
+    /// Processes an image.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the truth is invalid.
+    fn process(
+        &mut self,
+        image: &ImageOf<W>,
+        telemetry: &TelemetryOf<W>,
+        truth: &W::Truth,
+    ) -> Result<OutcomeOf<W>, Failure>;
+}
+
+/// Writes the files common to a run and a rendered dataset: all except outcomes and score.
+pub trait Dataset<W: World> {
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// [`FileError`] when a file cannot be written.
+    fn add(
+        &mut self,
+        image: &ImageOf<W>,
+        telemetry: TelemetryOf<W>,
+        truth: W::Truth,
+    ) -> Result<(), FileError>;
+
+    /// Completes the files, the telemetry last: it marks the directory as a dataset.
+    ///
+    /// # Errors
+    /// [`FileError`] when a file cannot be written.
+    fn finish(self) -> Result<(), FileError>;
+}
+
+/// Scores outcomes one after the other.
+pub trait Scorer<W: World> {
+    /// Scores an outcome with the precision of a run's files.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a truth that cannot be scored.
+    fn add(
+        &mut self,
+        truth: &W::Truth,
+        telemetry: &TelemetryOf<W>,
+        outcome: &OutcomeOf<W>,
+    ) -> Result<(), Failure>;
+
+    /// Returns the score with the units from which it was counted.
+    fn finish(self) -> W::Judgement;
 }
 
 /// Refuses to grant an attitude in a world whose measurements are not lines of sight.

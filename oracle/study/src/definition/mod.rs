@@ -10,9 +10,10 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use config::toml_file;
 use contract::bounds;
 use files::sha256::hex;
-use files::{Failure, file_sha256, toml_file};
+use files::{Failure, file_sha256};
 use indexmap::IndexMap;
 use run::{AnyScenario, Options, ScenarioSource};
 use scenario::FarRangeScenario;

@@ -31,7 +31,7 @@ impl Journal {
     /// [`FileError::Io`] for a file that cannot be read or appended to.
     pub(crate) fn open(path: PathBuf, hash: &str) -> Result<(Self, Vec<CaseRow>), FileError> {
         let io = |source| FileError::io(&path, "open", source);
-        let text = match sim::regular_file::read(&path, MAX_BYTES) {
+        let text = match config::regular_file::read(&path, MAX_BYTES) {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
             Err(error) => return Err(io(error)),
@@ -63,7 +63,7 @@ impl Journal {
 
 /// Returns the number of rows of a journal that [`Journal::open`] would return.
 pub(crate) fn count(path: &Path, hash: &str) -> usize {
-    let text = sim::regular_file::read_text(path, MAX_BYTES).unwrap_or_default();
+    let text = config::regular_file::read_text(path, MAX_BYTES).unwrap_or_default();
     text.lines().filter(|line| parse(line, hash).is_some()).count()
 }
 

@@ -98,7 +98,7 @@ impl Plan {
     /// [`FileError`] when it cannot be read, and [`Failure::Usage`] when it is damaged: its content does not
     /// match its checksum.
     fn read(path: &Path) -> Result<Self, Failure> {
-        let text = sim::regular_file::read_text(path, 1 << 20)
+        let text = config::regular_file::read_text(path, 1 << 20)
             .map_err(|source| FileError::io(path, "read", source))?;
         let plan: Option<Self> = serde_json::from_str(&text).ok();
         plan.filter(|plan| plan.sha256 == plan.computed_sha256()).ok_or_else(|| {

@@ -58,7 +58,7 @@ impl StudyRecord {
     /// # Errors
     /// [`FileError`] when the file is missing or is not a record.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        let text = sim::regular_file::read_text(path, 1 << 24)
+        let text = config::regular_file::read_text(path, 1 << 24)
             .map_err(|source| FileError::io(path, "read", source))?;
         serde_json::from_str(&text).map_err(|error| FileError::format(path, "study", error))
     }

@@ -1,8 +1,9 @@
 //! Requirements that were read and checked, with their camera.
 use std::path::{Path, PathBuf};
 
+use config::toml_file;
 use contract::Camera;
-use files::{Failure, toml_file};
+use files::Failure;
 use run::ScenarioSource;
 use scenario::{BUILT_IN, BuiltIn, CAMERAS, FarRangeScenario};
 use serde::{Deserialize, Serialize};

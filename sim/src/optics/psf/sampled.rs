@@ -17,8 +17,10 @@
 
 use std::path::Path;
 
+use config::regular_file;
+
 use super::cumulative_flux::CumulativeFlux;
-use crate::{SimError, regular_file};
+use crate::SimError;
 
 /// Maximum size of a file that is read, bytes: 2048 × 2048 cells of sixteen characters.
 const MAX_BYTES: u64 = 1 << 26;

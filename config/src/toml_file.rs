@@ -1,8 +1,6 @@
 //! TOML files with explained mistakes: file, line, column, the value found, the expected value, the most
 //! similar valid name.
 
-pub(crate) mod toml_table;
-
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
@@ -13,6 +11,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
+
+use crate::{exact_toml, regular_file};
 
 /// A mistake in a TOML file, with its location.
 #[derive(Debug)]
@@ -80,7 +80,7 @@ const MAX_BYTES: u64 = 1 << 24;
 /// # Errors
 /// Those of the operating system, and for a file that is not regular, larger than 16 MiB, or not UTF-8.
 pub fn read_text(file: &Path) -> std::io::Result<String> {
-    sim::regular_file::read_text(file, MAX_BYTES)
+    regular_file::read_text(file, MAX_BYTES)
 }
 
 /// Parses `text`, the contents of `file`, as a `T`.
@@ -94,7 +94,7 @@ pub fn parse<T: DeserializeOwned + Serialize>(file: &Path, text: &str) -> Result
         let message = error.message().trim().to_owned();
         Box::new(TomlError::new(file, text, span.unwrap_or(0..0), path, message))
     };
-    let value = sim::exact_toml::from_str(text).map_err(refused)?;
+    let value = exact_toml::from_str(text).map_err(refused)?;
     let found: Value = toml::from_str(text).map(Value::Table).map_err(refused)?;
     let meant = Value::try_from(&value).ok();
     match meant.and_then(|meant| array_for_table(&found, &meant)) {
@@ -104,7 +104,7 @@ pub fn parse<T: DeserializeOwned + Serialize>(file: &Path, text: &str) -> Result
 }
 
 /// Returns the dotted path of the first array that was read as a table, with its values in the order of the
-/// keys: serde's tagged enums allow this where [`sim::exact_toml`] cannot detect it.
+/// keys: serde's tagged enums allow this where [`exact_toml`] cannot detect it.
 fn array_for_table(found: &Value, meant: &Value) -> Option<String> {
     match (found, meant) {
         (Value::Array(_), Value::Table(_)) => Some(String::new()),

@@ -1,5 +1,8 @@
 //! A sequence of frames: rendered, run and scored, followed, or only scored, in the same way for every world.
 
+mod processing;
+mod state_log;
+
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
@@ -7,10 +10,12 @@ use contract::{FailedStarts, Interface, Pipeline, PipelineFactory};
 use files::{AtomicFile, Failure, RunDirectory};
 use serde::Serialize;
 
+pub use self::processing::{AnswerCount, process, process_into};
+use self::processing::{check_machine, check_starts};
+pub use self::state_log::STATES_FILE;
+use self::state_log::{StateLog, StateLogWriter};
 use crate::frame_jobs::{FrameJobs, process_in_order};
-use crate::processing::{check_machine, check_starts};
 use crate::run_result::{FirstFailure, IncompleteRun, RunResult};
-use crate::state_log::{StateLog, StateLogWriter};
 use crate::world::{
     Answers as _, Dataset as _, FrameAnswer, ImageOf, InformedPipeline, Judgement as _, Scorer as _, World,
 };

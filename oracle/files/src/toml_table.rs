@@ -7,8 +7,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::FileLocation;
-use crate::toml_file;
 use crate::{AtomicFile, FileError};
+use config::toml_file;
 
 /// A table that is stored as a file of its own.
 pub(crate) trait TomlTable: Serialize + DeserializeOwned {

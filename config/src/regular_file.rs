@@ -1,16 +1,5 @@
 //! Files named by the user: opened or read completely if they are finite.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 use std::fs::File;
 use std::io::{Error, Read, Result};
 use std::path::Path;

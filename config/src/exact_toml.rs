@@ -2,17 +2,6 @@
 //! accepts an array instead of a table if its values are in the order of a struct's fields; serde leaves both
 //! decisions to the format. Here both are errors, with their position.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 use std::fmt;
 
 use serde::de::{
