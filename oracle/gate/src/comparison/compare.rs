@@ -2,8 +2,8 @@
 use files::Failure;
 use indexmap::IndexMap;
 use run::figure_by_name;
-use score::is_of_navigation;
-use statistics::{BlockEffects, Exchanges, joint_test};
+use score::{FigureTerms, is_of_navigation};
+use statistics::{BlockEffects, Exchanges, JointTest, joint_test};
 
 use super::comparable::{check_reported, check_units, pairs};
 use super::flips::Flips;
@@ -11,7 +11,7 @@ use super::judge::{ALPHA_OF_RUNS, Judge};
 use super::notes::{NoteInputs, notes};
 use super::options::CompareOptions;
 use crate::baseline::Baseline;
-use crate::dependence::blocks::sequences;
+use crate::dependence::blocks::{Blocks, sequences};
 use crate::dependence::effects::{FigureEffect, interval, neighbour_correlation};
 use crate::dependence::memory::Thirds;
 use crate::dependence::runs::loss_runs;
@@ -30,10 +30,8 @@ pub fn compare(
     result: &Sample,
     options: &CompareOptions,
 ) -> Result<GateReport, Failure> {
+    check_alpha(options.alpha)?;
     let alpha = options.alpha;
-    if !(alpha > 0.0 && alpha < 0.5) {
-        return Err(Failure::Usage(format!("--alpha is {alpha}, expected a number above 0 and below 0.5")));
-    }
     let identity = &baseline.sample.identity;
     let pairing = identity.pairing(&result.identity)?;
     let units = identity.kind.units(&identity.world);
@@ -45,89 +43,75 @@ pub fn compare(
         pairs.retain(|(before, _)| !is_of_navigation(&before.name));
     }
 
-    let blocks = &match pairing {
+    // 1. The blocks that are exchanged, and the effect of each figure in each block.
+    let blocks = match pairing {
         Pairing::Frames => baseline.blocks.clone(),
         Pairing::Blocks => baseline.blocks_for_other_frames(),
     };
     let exchanges = Exchanges::for_alpha(blocks.count(), alpha);
-    let thirds = Thirds::from_table(identity.kind, &identity.world, &baseline.sample.table, blocks);
-    let effects: Vec<FigureEffect> = pairs
-        .iter()
-        .map(|(before, after)| {
-            let of_baseline =
-                baseline.header.figures.get(&before.name).map_or(0.0, |figure| figure.tolerance);
-            let tolerance = options.tolerances.get(&before.name).copied().unwrap_or(of_baseline);
-            let sense = figure_by_name(&before.name).sense;
-            let effect = FigureEffect::from_runs(sense, before, after, blocks, tolerance);
-            // With the same frames, slow variations are present in both runs; with other frames, they are
-            // part of the difference.
-            match pairing {
-                Pairing::Frames => effect,
-                Pairing::Blocks if thirds.are_remembered(before, after) => effect.beyond_blocks(),
-                Pairing::Blocks => effect,
-            }
-        })
-        .collect();
-    // All changes that can shut the gate are tested jointly: every worsening, and for figures with a best
-    // value also the change to the other side.
-    let with_best_value: Vec<usize> = (0..effects.len()).filter(|i| effects[*i].has_best_value()).collect();
-    let other_side = with_best_value.iter().map(|i| effects[*i].better());
-    let worse: Vec<BlockEffects> =
-        effects.iter().map(|effect| effect.worse.clone()).chain(other_side).collect();
-    let for_the_better = |effect: &FigureEffect| {
-        let mut better = effect.better();
-        if effect.has_best_value() {
-            better.effects.fill(0.0);
-        }
-        better
-    };
-    let better: Vec<BlockEffects> = effects.iter().map(for_the_better).collect();
-    let (worse, better) = (joint_test(&worse, &exchanges, alpha), joint_test(&better, &exchanges, alpha));
+    let effects = effects(baseline, options, pairing, &pairs, &blocks);
 
-    // The cases of a study are independent draws, so their order contains no events.
-    let have_runs = pairing == Pairing::Frames && identity.kind == SourceKind::Run;
-    let units_of_baseline = &baseline.sample.table.units;
-    let loss_runs = if have_runs {
+    // 2. The joint tests of all changes, and the runs of lost frames.
+    let tests = JointTests::of_effects(&effects, &exchanges, alpha);
+    let loss_runs = if pairing == Pairing::Frames && identity.kind == SourceKind::Run {
         let sequences = sequences(identity.kind, &identity.world, &baseline.sample.table);
-        loss_runs(&pairs, units_of_baseline, &sequences, ALPHA_OF_RUNS * alpha)
+        loss_runs(&pairs, &baseline.sample.table.units, &sequences, ALPHA_OF_RUNS * alpha)
     } else {
+        // The cases of a study are independent draws, so their order contains no events.
         vec![None; pairs.len()]
     };
 
+    // 3. The verdict of each figure.
     let mut figures = IndexMap::new();
     let mut correlation: f64 = 0.0;
-    for (index, ((before, after), effect)) in pairs.iter().zip(&effects).enumerate() {
-        let other_side = with_best_value.iter().position(|i| *i == index).map(|place| effects.len() + place);
-        let loss_run = loss_runs[index].as_ref();
-        let judge = Judge { effect, worse: &worse, better: &better, index, other_side, alpha, loss_run };
-        let interval = interval(before, after, blocks, &exchanges)
-            .filter(|_| effect.blocks >= statistics::MIN_BLOCKS_OF_INTERVAL);
-        correlation = correlation.max(neighbour_correlation(&effect.worse.effects));
+    for (index, (before, after)) in pairs.iter().enumerate() {
+        let effect = &effects[index];
+        let judge = Judge {
+            effect,
+            worse: &tests.worse,
+            better: &tests.better,
+            index,
+            other_side: tests.other_side(index),
+            alpha,
+            loss_run: loss_runs[index].as_ref(),
+        };
+        let interval = if effect.blocks >= statistics::MIN_BLOCKS_OF_INTERVAL {
+            interval(before, after, &blocks, &exchanges)
+        } else {
+            None
+        };
         figures.insert(before.name.clone(), judge.report(interval.map(|i| (i.low, i.high))));
+        correlation = correlation.max(neighbour_correlation(&effect.worse.effects));
     }
     if figures.values().all(|figure| figure.verdict == FigureVerdict::TooLittleData) {
         return Err(Failure::Usage(too_little_words(baseline, &figures, blocks.count(), alpha)));
     }
-    let beyond_blocks: Vec<&str> = pairs
-        .iter()
-        .zip(&effects)
-        .filter(|(_, effect)| effect.is_beyond_blocks)
-        .map(|((before, _), _)| before.name.as_str())
-        .collect();
+
+    // 4. The report.
+    let mut beyond_blocks = Vec::new();
+    for ((before, _), effect) in pairs.iter().zip(&effects) {
+        if effect.is_beyond_blocks {
+            beyond_blocks.push(before.name.as_str());
+        }
+    }
     let out_of_reach: Vec<&str> = figures
         .iter()
         .filter(|(_, figure)| figure.is_out_of_reach(alpha))
         .map(|(name, _)| name.as_str())
         .collect();
-    let any = |is: fn(FigureVerdict) -> bool| figures.values().any(|figure| is(figure.verdict));
+    let notes = notes(&NoteInputs {
+        baseline,
+        result,
+        pairing,
+        alpha,
+        figures: &figures,
+        beyond_blocks: &beyond_blocks,
+        out_of_reach: &out_of_reach,
+        correlation,
+        blocks: blocks.count(),
+    });
     Ok(GateReport {
-        verdict: if any(FigureVerdict::is_worse) {
-            FigureVerdict::Worse
-        } else if any(|verdict| verdict == FigureVerdict::Changed) {
-            FigureVerdict::Changed
-        } else {
-            FigureVerdict::NoWorse
-        },
+        verdict: overall_verdict(&figures),
         accepted: options.accept_changed.clone(),
         name: identity.name.clone(),
         world: identity.world.clone(),
@@ -143,21 +127,95 @@ pub fn compare(
         blocks: blocks.count() as u64,
         block_length: blocks.mean_length(),
         neighbour_correlation: correlation,
-        notes: notes(&NoteInputs {
-            baseline,
-            result,
-            pairing,
-            alpha,
-            figures: &figures,
-            beyond_blocks: &beyond_blocks,
-            out_of_reach: &out_of_reach,
-            correlation,
-            blocks: blocks.count(),
-        }),
+        notes,
         figures,
         flips: (pairing == Pairing::Frames)
             .then(|| Flips::from_verdicts(&baseline.sample.table.units, &result.table.units)),
     })
+}
+
+/// Checks that the significance level leaves a gate that can shut and that does not shut by chance alone.
+fn check_alpha(alpha: f64) -> Result<(), Failure> {
+    if alpha > 0.0 && alpha < 0.5 {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!("--alpha is {alpha}, expected a number above 0 and below 0.5")))
+}
+
+/// Returns the effect of the change on each figure, block by block.
+fn effects(
+    baseline: &Baseline,
+    options: &CompareOptions,
+    pairing: Pairing,
+    pairs: &[(&FigureTerms, &FigureTerms)],
+    blocks: &Blocks,
+) -> Vec<FigureEffect> {
+    let identity = &baseline.sample.identity;
+    let thirds = Thirds::from_table(identity.kind, &identity.world, &baseline.sample.table, blocks);
+    let mut effects = Vec::with_capacity(pairs.len());
+    for (before, after) in pairs {
+        let of_baseline = baseline.header.figures.get(&before.name).map_or(0.0, |figure| figure.tolerance);
+        let tolerance = options.tolerances.get(&before.name).copied().unwrap_or(of_baseline);
+        let sense = figure_by_name(&before.name).sense;
+        let effect = FigureEffect::from_runs(sense, before, after, blocks, tolerance);
+        // With the same frames, slow variations are present in both runs; with other frames, they are part of
+        // the difference.
+        let is_beyond_blocks = pairing == Pairing::Blocks && thirds.are_remembered(before, after);
+        effects.push(if is_beyond_blocks { effect.beyond_blocks() } else { effect });
+    }
+    effects
+}
+
+/// Joint tests of all figures, for changes to the worse and to the better.
+struct JointTests {
+    /// All changes that can shut the gate: every worsening, and for figures with a best value also the change
+    /// to the other side, after those of all figures.
+    worse: JointTest,
+    better: JointTest,
+    /// Indices of the figures with a best value, in the order of their other sides in `worse`.
+    with_best_value: Vec<usize>,
+    figures: usize,
+}
+
+impl JointTests {
+    fn of_effects(effects: &[FigureEffect], exchanges: &Exchanges, alpha: f64) -> Self {
+        let mut worse: Vec<BlockEffects> = effects.iter().map(|effect| effect.worse.clone()).collect();
+        let mut better = Vec::with_capacity(effects.len());
+        let mut with_best_value = Vec::new();
+        for (index, effect) in effects.iter().enumerate() {
+            let mut other_side = effect.better();
+            if effect.has_best_value() {
+                with_best_value.push(index);
+                worse.push(other_side.clone());
+                // Beyond the best value, a figure does not become better.
+                other_side.effects.fill(0.0);
+            }
+            better.push(other_side);
+        }
+        Self {
+            worse: joint_test(&worse, exchanges, alpha),
+            better: joint_test(&better, exchanges, alpha),
+            with_best_value,
+            figures: effects.len(),
+        }
+    }
+
+    /// Returns the index in `worse` of the other side of a figure with a best value.
+    fn other_side(&self, figure: usize) -> Option<usize> {
+        let place = self.with_best_value.iter().position(|index| *index == figure)?;
+        Some(self.figures + place)
+    }
+}
+
+/// Returns the verdict of the gate: the worst of its figures.
+fn overall_verdict(figures: &IndexMap<String, FigureReport>) -> FigureVerdict {
+    if figures.values().any(|figure| figure.verdict.is_worse()) {
+        FigureVerdict::Worse
+    } else if figures.values().any(|figure| figure.verdict == FigureVerdict::Changed) {
+        FigureVerdict::Changed
+    } else {
+        FigureVerdict::NoWorse
+    }
 }
 
 /// Returns the message that no figure can be found worse, with the smallest p that one can have.

@@ -135,8 +135,8 @@ impl WarpSums {
         }
     }
 
-    /// Adds a pixel at (`u`, `v`) of the current patch; `along` and `across` are its changes by a displacement
-    /// of one pixel along and across the lines, DN.
+    /// Adds a pixel at (`u`, `v`) of the current patch; `along` and `across` are its changes by a
+    /// displacement of one pixel along and across the lines, DN.
     pub(super) fn add(&mut self, u: f64, v: f64, along: f64, across: f64, pixel: &GroupedPixel) {
         let (x, y) = (u / self.focal_px.0, v / self.focal_px.1);
         let radial = x * x + y * y;
