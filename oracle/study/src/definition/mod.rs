@@ -5,13 +5,14 @@ pub(crate) mod distribution;
 pub(crate) mod file;
 pub(crate) mod overlay;
 pub(crate) mod sobol;
-use draws::{Effect, Seed};
+mod source;
+
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use config::toml_file;
-use contract::bounds;
+use draws::{Effect, Seed};
 use files::sha256::hex;
 use files::{Failure, file_sha256};
 use indexmap::IndexMap;
@@ -19,27 +20,19 @@ use run::{AnyScenario, Options, ScenarioSource};
 use scenario::FarRangeScenario;
 use scenario::run_file::{FileDigests, content};
 use score::navigation_figures;
-use serde_json::{Value, json};
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use crate::cases::{CaseTable, DrawnValue};
 use crate::definition::design::Design;
-use crate::definition::design::DesignKind;
 use crate::definition::distribution::{Distribution, PreparedDistribution, boresight, euler_123};
 use crate::definition::file::StudyFile;
 use crate::definition::overlay::ValuePath;
+use crate::definition::source::{StudySource, SweptParameter, VariedParameter};
 use crate::findings::requirement::fraction_words;
-
-/// Keys of a scenario that cannot be varied.
-const NOT_VARIED: [&str; 4] = ["title", "world", "seed", "score"];
 
 /// Largest half width of a rate's interval in a stopping rule; any interval is narrower than a wider one.
 const MAX_RATE_HALF_WIDTH: f64 = 0.5;
-
-/// Names of the angles of an attitude given as a boresight; [`EULER_123`] has those of one given as Euler
-/// angles.
-const BORESIGHT: [&str; 3] = ["ra_deg", "dec_deg", "roll_deg"];
-const EULER_123: [&str; 3] = ["phi_deg", "theta_deg", "psi_deg"];
 
 /// A study that was read and checked.
 pub struct Study {
@@ -59,20 +52,6 @@ pub struct Study {
     hash: String,
 }
 
-/// A parameter with its distribution, ready to be drawn.
-struct VariedParameter {
-    path: ValuePath,
-    distribution: PreparedDistribution,
-    /// Paths of the three angles; only for an attitude.
-    angles: Option<[ValuePath; 3]>,
-    is_euler: bool,
-}
-
-struct SweptParameter {
-    path: ValuePath,
-    values: Vec<Value>,
-}
-
 /// A case of a study, with its scenario.
 #[derive(Debug, Clone)]
 pub struct Case {
@@ -88,9 +67,6 @@ pub struct Case {
 
 /// Number of first cases that cannot be run after which a study ends.
 pub(crate) const MAX_FAILED_CASES: u64 = 10;
-
-/// Largest number of replications of a design.
-const MAX_REPLICATIONS: u64 = 10_000;
 
 /// Values drawn for a case.
 pub(crate) struct DrawnCase {
@@ -122,109 +98,17 @@ impl Study {
             .map_err(|error| Failure::Usage(format!("study `{}` cannot be read: {error}", path.display())))?;
         let file: StudyFile = toml_file::parse(path, &text)?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        let refuse =
-            |at: &str, message: String| -> Failure { toml_file::refuse(path, &text, at, message).into() };
+        let source = StudySource { file: &file, path, text: &text, folder: &folder };
 
-        let beside = folder.join(&file.scenario);
-        let word = if scenario::BUILT_IN.iter().any(|built_in| built_in.name == file.scenario) {
-            file.scenario.clone()
-        } else {
-            beside.to_string_lossy().into_owned()
-        };
-        let mut base = match ScenarioSource::read(&word) {
-            Err(Failure::Usage(message)) => return Err(refuse("scenario", message)),
-            other => other?,
-        };
-        let mut base_values = base.scenario.to_json()?;
-        if let Some(frames) = file.warm_up_frames {
-            let score =
-                base_values.as_object_mut().map(|base| base.entry("score").or_insert_with(|| json!({})));
-            if let Some(Value::Object(score)) = score {
-                score.insert("warm_up_frames".to_owned(), frames.into());
-            }
-        }
+        let (mut base, base_values) = source.base()?;
         let identity = identity(&file, &folder, &mut base)?;
-
-        let mut vary = Vec::new();
-        let mut taken: Vec<ValuePath> = Vec::new();
-        for (i, dispersion) in file.vary.iter().enumerate() {
-            let at = |field: &str| format!("vary[{i}].{field}");
-            if let Distribution::Choice { values, .. } = &dispersion.distribution {
-                check_finite(values)
-                    .map_err(|(k, message)| refuse(&at(&format!("distribution.values[{k}]")), message))?;
-            }
-            let checked = dispersion.distribution.check(&at("distribution"));
-            checked.map_err(|error| toml_file::out_of_range(path, &text, &error))?;
-            let varied =
-                VariedParameter::new(&dispersion.path, &dispersion.distribution, &folder, &base_values)
-                    .map_err(|(field, message)| refuse(&at(field), message))?;
-            check_free(&mut taken, &varied.path).map_err(|message| refuse(&at("path"), message))?;
-            vary.push(varied);
-        }
-        let mut sweep = Vec::new();
-        for (i, swept) in file.sweep.iter().enumerate() {
-            let at = |field: &str| format!("sweep[{i}].{field}");
-            let value_path = ValuePath::parse(&swept.path).map_err(|expected| {
-                refuse(&at("path"), format!("is `{}`, expected {expected}", swept.path))
-            })?;
-            check_free(&mut taken, &value_path).map_err(|message| refuse(&at("path"), message))?;
-            if swept.values.is_empty() {
-                return Err(refuse(&at("values"), "is [], expected at least one value".to_owned()));
-            }
-            check_finite(&swept.values)
-                .map_err(|(k, message)| refuse(&at(&format!("values[{k}]")), message))?;
-            sweep.push(SweptParameter { path: value_path, values: swept.values.clone() });
-        }
-
-        let counts = sweep.iter().map(|swept| swept.values.len() as u64);
-        let Some(cells) = counts.into_iter().try_fold(1_u64, |cells, count| cells.checked_mul(count)) else {
-            return Err(refuse(
-                "sweep",
-                "has 2^64 combinations or more, expected at most the number of cases".to_owned(),
-            ));
-        };
-        let cases = file.stop.cases;
-        bounds::check(&file.stop, "stop").map_err(|error| toml_file::out_of_range(path, &text, &error))?;
-        for (i, requirement) in file.require.iter().enumerate() {
-            let at = format!("require[{i}]");
-            bounds::check(requirement, &at).map_err(|error| toml_file::out_of_range(path, &text, &error))?;
-            let has_limit = requirement.limit();
-            has_limit.map_err(|(field, message)| refuse(&format!("{at}.{field}"), message.to_owned()))?;
-        }
-        if !cases.is_multiple_of(cells) {
-            let expected = format!("is {cases}, expected a multiple of the sweep's {cells}");
-            return Err(refuse("stop.cases", expected));
-        }
-        if file.design == DesignKind::Saltelli && !sweep.is_empty() {
-            return Err(refuse("design", "is saltelli, expected another design, or no sweep".to_owned()));
-        }
-        let replications = file.replications;
-        if !(1..=MAX_REPLICATIONS).contains(&replications) {
-            return Err(refuse(
-                "replications",
-                format!("is {replications}, expected 1 to {MAX_REPLICATIONS}"),
-            ));
-        }
-        if replications > 1 && !matches!(file.design, DesignKind::LatinHypercube | DesignKind::Sobol) {
-            let message = format!(
-                "is {replications}, expected 1; only the designs latin_hypercube and sobol have replications"
-            );
-            return Err(refuse("replications", message));
-        }
-        if !(cases / cells).is_multiple_of(replications) {
-            let expected = format!(
-                "is {cases}, expected a multiple of {}: {replications} replications at the {cells} points of the sweep",
-                replications.saturating_mul(cells)
-            );
-            return Err(refuse("stop.cases", expected));
-        }
-        if file.stop.until.is_some() && file.design != DesignKind::Random {
-            let message = "applies only to the random design: the cases of other designs form one unit";
-            return Err(refuse("stop.until", message.to_owned()));
-        }
-        let dimensions = file.vary.iter().map(|dispersion| dispersion.distribution.dimensions()).sum();
-        let design = Design::new(file.design, dimensions, cases / cells / replications, file.seed)
-            .map_err(|expected| refuse("stop.cases", format!("is {cases}, expected {expected}")))?;
+        let mut taken = Vec::new();
+        let vary = source.varied_parameters(&base_values, &mut taken)?;
+        let sweep = source.swept_parameters(&mut taken)?;
+        let points = source.sweep_points(&sweep)?;
+        source.check_limits()?;
+        source.check_design(&sweep, points)?;
+        let design = source.design(points)?;
 
         let name =
             path.file_stem().map_or_else(|| "study".to_owned(), |stem| stem.to_string_lossy().into_owned());
@@ -242,23 +126,27 @@ impl Study {
             hash: String::new(),
         };
         study.hash = study.make_hash()?;
-        let world = study.scenario().world();
-        if study.file.navigate.is_some() && !world.has_scenario::<FarRangeScenario>() {
+        study.check_cases()?;
+        Ok(study)
+    }
+
+    /// Checks the study against its scenario and its first case.
+    fn check_cases(&self) -> Result<(), Failure> {
+        let world = self.scenario().world();
+        if self.file.navigate.is_some() && !world.has_scenario::<FarRangeScenario>() {
             let message =
                 format!("applies only to the far range; the scenario is of the world {}", world.code());
-            return Err(study.refuse("navigate", message));
+            return Err(self.refuse("navigate", message));
         }
-        study.check_names()?;
-        let frames = study.frames(study.first_frame_count()?)?;
-        let warm_up = study.warm_up_frames();
-        if warm_up >= frames.end - frames.start {
-            let count = frames.end - frames.start;
-            return Err(study.refuse(
-                "warm_up_frames",
-                format!("is {warm_up}, expected fewer than the {count} frames of a case"),
-            ));
+        self.check_names()?;
+        let frames = self.frames(self.first_frame_count()?)?;
+        let count = frames.end - frames.start;
+        let warm_up = self.warm_up_frames();
+        if warm_up >= count {
+            let message = format!("is {warm_up}, expected fewer than the {count} frames of a case");
+            return Err(self.refuse("warm_up_frames", message));
         }
-        Ok(study)
+        Ok(())
     }
 
     /// Returns the number of frames of the first case that can be run, among the first ten.
@@ -645,72 +533,6 @@ fn replace_paths(value: &mut Value, base: &mut ScenarioSource) {
         Value::Object(members) => members.values_mut().for_each(|value| replace_paths(value, base)),
         Value::Null | Value::Bool(_) | Value::Number(_) => {}
     }
-}
-
-impl VariedParameter {
-    fn new(path: &str, distribution: &Distribution, folder: &Path, base: &Value) -> Result<Self, Problem> {
-        let value_path = ValuePath::parse(path)
-            .map_err(|expected| ("path", format!("is `{path}`, expected {expected}")))?;
-        let mut varied = Self {
-            distribution: distribution
-                .load(folder)
-                .map_err(|error| ("distribution.path", error.to_string()))?,
-            path: value_path,
-            angles: None,
-            is_euler: false,
-        };
-        if *distribution == Distribution::IsotropicAttitude {
-            let table = varied.path.get(base);
-            let has = |names: [&str; 3]| names.iter().all(|name| table.and_then(|t| t.get(name)).is_some());
-            let names = if has(BORESIGHT) {
-                BORESIGHT
-            } else if has(EULER_123) {
-                varied.is_euler = true;
-                EULER_123
-            } else {
-                let message = format!(
-                    "is `{path}`, expected a table of the scenario with the keys {}, or {}",
-                    BORESIGHT.join(", "),
-                    EULER_123.join(", ")
-                );
-                return Err(("path", message));
-            };
-            let angle = |name: &str| ValuePath::parse(&format!("{path}.{name}"));
-            let [Ok(a), Ok(b), Ok(c)] = names.map(angle) else {
-                return Err(("path", format!("is `{path}`, expected the path of a table")));
-            };
-            varied.angles = Some([a, b, c]);
-        }
-        Ok(varied)
-    }
-}
-
-/// Field of an entry that is wrong, and the reason.
-type Problem = (&'static str, String);
-
-/// Rejects non-finite numbers: values are stored as JSON, which has null for them.
-fn check_finite(values: &[Value]) -> Result<(), (usize, String)> {
-    let message = || "is not finite, expected a finite number, or a value of another type".to_owned();
-    values.iter().position(Value::is_null).map_or(Ok(()), |place| Err((place, message())))
-}
-
-fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String> {
-    if path.text().split('.').next().is_some_and(|first| NOT_VARIED.contains(&first)) {
-        return Err(format!(
-            "is `{}`, expected a parameter of the simulation or of the pipeline: seeds already differ \
-             between cases, and all cases are scored with the same settings",
-            path.text()
-        ));
-    }
-    if let Some(other) = taken.iter().find(|other| other.overlaps(path)) {
-        return Err(format!(
-            "is `{}`, which overlaps `{}`, also set; expected separate paths",
-            path.text(),
-            other.text()
-        ));
-    }
-    taken.push(path.clone());
-    Ok(())
 }
 
 /// Converts a value to its form in a table.
