@@ -37,6 +37,10 @@ const MAX_STAR_CANDIDATES: usize = 60;
 const BLEND_PX: f64 = 5.0;
 const BLEND_FRACTION: f64 = 0.02;
 
+/// Standard deviation of the position of a star, px: of a fit, and of the brightness centre of a cluster.
+const FITTED_SIGMA_PX: f64 = 0.1;
+const CENTROID_SIGMA_PX: f64 = 0.3;
+
 impl FrameAttitude {
     /// Returns the result for a frame whose attitude neither telemetry nor stars determine.
     pub(super) fn unknown(sources: &[Source]) -> Self {
@@ -66,6 +70,66 @@ impl FrameAttitude {
             fitted: Vec::new(),
         }
     }
+}
+
+/// Inputs to the attitude of a frame.
+pub(super) struct AttitudeInput<'a> {
+    pub(super) context: PhotometryContext<'a>,
+    pub(super) sources: &'a [Source],
+    /// Length of a star's trail along columns and rows, px.
+    pub(super) trail_px: [f64; 2],
+    pub(super) start: &'a AttitudeStart,
+    pub(super) telemetry: &'a Telemetry,
+    pub(super) overrides: &'a Overrides<'a>,
+}
+
+impl AttitudeInput<'_> {
+    /// Returns the attitude with an error of the start, or the given attitude.
+    fn attitude(&self, error: &AttitudeError) -> Rotation<CameraFrame, Icrs> {
+        self.attitude_by(error.mean)
+    }
+
+    fn attitude_by(&self, error: nalgebra::Vector3<f64>) -> Rotation<CameraFrame, Icrs> {
+        self.overrides.camera_from_icrs.unwrap_or_else(|| self.start.attitude(error))
+    }
+}
+
+/// Search for the attitude of a frame: clusters, listed stars, and their matches so far.
+struct AttitudeSearch {
+    /// Indices of the sources considered, brightest first.
+    order: Vec<usize>,
+    /// The same sources as candidates for stars.
+    candidates: Vec<StarCandidate>,
+    expected: Vec<ExpectedStar>,
+    /// Pairs of a candidate and an expected star.
+    matched: Vec<(usize, usize)>,
+    /// Result of the fit to each candidate; `None` before it was tried.
+    fits: Vec<Option<Option<FittedSource>>>,
+    /// Stars that determine the attitude, and their pairs.
+    measured: Vec<StarMeasurement>,
+    of_measured: Vec<(usize, usize)>,
+    error: AttitudeError,
+    camera_from_icrs: Rotation<CameraFrame, Icrs>,
+}
+
+impl AttitudeSearch {
+    /// Returns the fitted positions, with the indices of their sources.
+    fn fitted_positions(&self) -> Vec<(usize, PixelPoint)> {
+        let mut positions = Vec::new();
+        for (fit, &i) in self.fits.iter().zip(&self.order) {
+            if let Some(fit) = fit.flatten() {
+                positions.push((i, fit.position));
+            }
+        }
+        positions
+    }
+}
+
+/// Returns the largest standard deviation of a position in the image, due to the error of the attitude, px,
+/// at a tenth of a radian from the boresight.
+fn sigma_px(error: &AttitudeError, focal_px: (f64, f64)) -> f64 {
+    let covariance = image_covariance(&error.covariance, 0.1, 0.1, focal_px);
+    covariance[(0, 0)].max(covariance[(1, 1)]).sqrt()
 }
 
 impl BestPipeline {
@@ -112,190 +176,232 @@ impl BestPipeline {
     }
 
     /// Determines the attitude of the frame and the clusters that are stars.
-    pub(super) fn attitude(
-        &mut self,
-        context: PhotometryContext<'_>,
-        sources: &[Source],
-        trail_px: [f64; 2],
-        start: &AttitudeStart,
-        telemetry: &Telemetry,
-        overrides: &Overrides<'_>,
-    ) -> FrameAttitude {
-        let prior = start.prior;
-        let of = |error: nalgebra::Vector3<f64>| match overrides.camera_from_icrs {
-            Some(given) => given,
-            None => start.attitude(error),
-        };
-        let mut camera_from_icrs = of(prior.mean);
-        let mut expected = self.expected_stars(&camera_from_icrs, telemetry, overrides);
-        if let Some(identity) = overrides.identity {
-            return self.given_attitude(context, sources, trail_px, start, overrides, identity, expected);
+    pub(super) fn attitude(&mut self, input: &AttitudeInput<'_>) -> FrameAttitude {
+        if let Some(identity) = input.overrides.identity {
+            return self.given_attitude(input, identity);
         }
-        let mut order: Vec<usize> = (0..sources.len()).filter(|&i| sources[i].spike.is_none()).collect();
-        order.sort_by(|&a, &b| sources[b].flux_e.total_cmp(&sources[a].flux_e).then(a.cmp(&b)));
-        order.truncate(MAX_STAR_CANDIDATES);
-        let candidates: Vec<StarCandidate> = order
-            .iter()
-            .map(|&i| StarCandidate {
-                position: sources[i].centre,
-                flux_e: sources[i].flux_e,
-                is_saturated: sources[i].saturated > 0,
-            })
-            .collect();
-        let (fx, fy) = self.model.focal_px();
-        let at_centre = image_covariance(&prior.covariance, 0.0, 0.0, (fx, fy));
-        let sigma_px = [at_centre[(0, 0)].sqrt(), at_centre[(1, 1)].sqrt()];
-        let sigma_roll = prior.covariance[(2, 2)].sqrt();
-        let mut matched = matches_by_offset(&candidates, &expected, sigma_px, sigma_roll);
-        let mut fits: Vec<Option<Option<FittedSource>>> = vec![None; candidates.len()];
-        let mut error = prior;
-        let (mut measured, mut of_match) = (Vec::new(), Vec::new());
+        let prior = input.start.prior;
+        let mut search = self.begin_search(input);
         // First pass with the stars that share a common offset; second pass with all stars at the positions
         // that follow.
         for _ in 0..2 {
-            measured.clear();
-            of_match.clear();
-            matched.sort_by(|a, b| candidates[b.0].flux_e.total_cmp(&candidates[a.0].flux_e).then(a.cmp(b)));
-            for &(c, s) in &matched {
-                if measured.len() >= self.config.best.max_stars as usize || is_blended(&expected, s) {
-                    continue;
-                }
-                let i = order[c];
-                let fit = *fits[c].get_or_insert_with(|| {
-                    self.fitter.point(context, &sources[i], context.detector.members(i), &self.psf, trail_px)
-                });
-                if let Some(star) = self.star_measurement(&sources[i], fit, &expected[s], overrides) {
-                    measured.push(star);
-                    of_match.push((c, s));
-                }
-            }
-            let Some(solved) = solve_attitude(&measured, &prior, of, &self.model) else { break };
-            let dropped: Vec<(usize, usize)> = of_match
-                .iter()
-                .zip(&solved.used)
-                .filter(|(_, used)| !**used)
-                .map(|(pair, _)| *pair)
-                .collect();
-            matched.retain(|pair| !dropped.contains(pair));
-            measured = retained(measured, &solved.used);
-            of_match = retained(of_match, &solved.used);
-            error = solved.error;
-            camera_from_icrs = of(error.mean);
-            for star in &mut expected {
-                if let Some(position) = self.model.project_vector(&camera_from_icrs.rotate(&star.apparent)) {
-                    star.position = position;
-                }
-            }
-            let at_centre = image_covariance(&error.covariance, 0.1, 0.1, (fx, fy));
-            let gate_px = 1.0 + 3.5 * at_centre[(0, 0)].max(at_centre[(1, 1)]).sqrt();
-            if matched.is_empty() {
+            self.measure_stars(&mut search, input);
+            let is_solved = self.solve(&mut search, input);
+            if !is_solved || search.matched.is_empty() {
                 break;
             }
-            matched = matches_at_positions(&candidates, &expected, |_| gate_px);
+            let gate_px = 1.0 + 3.5 * sigma_px(&search.error, self.model.focal_px());
+            search.matched = matches_at_positions(&search.candidates, &search.expected, |_| gate_px);
         }
-        // The fits finally decide which clusters are stars: those within four standard deviations of the
-        // position predicted by the attitude.
-        let mut star_of = vec![None; sources.len()];
-        let mut n_stars = 0;
-        for &(c, s) in &matched {
-            let position = fits[c].flatten().map_or(candidates[c].position, |fit| fit.position);
-            let at = image_covariance(&error.covariance, 0.1, 0.1, (fx, fy));
-            let limit_px =
-                4.0 * libm::hypot(
-                    at[(0, 0)].max(at[(1, 1)]).sqrt(),
-                    if fits[c].flatten().is_some() { 0.1 } else { 0.3 },
-                ) + 0.2;
-            if position.distance(expected[s].position) <= limit_px {
-                star_of[order[c]] = Some(expected[s].star.id);
-                n_stars += 1;
-            }
-        }
-        let is_star: Vec<bool> =
-            of_match.iter().map(|&(c, s)| star_of[order[c]] == Some(expected[s].star.id)).collect();
-        if is_star.contains(&false) {
-            // If a star used for the attitude is not at its predicted position, the attitude is solved again
-            // without it.
-            let measured = retained(measured, &is_star);
-            error = solve_attitude(&measured, &prior, of, &self.model).map_or(prior, |solved| solved.error);
-            camera_from_icrs = of(error.mean);
-        }
-        let at_centre = image_covariance(&error.covariance, 0.1, 0.1, (fx, fy));
-        let gate_px = 2.0 + 3.5 * at_centre[(0, 0)].max(at_centre[(1, 1)]).sqrt();
-        let is_in_image = |position: PixelPoint| context.is_well_inside(position, gate_px);
-        let is_chance = n_stars > 0
-            && !are_confirmed(&matched, &candidates, &expected, gate_px, context.threshold_e, is_in_image);
+        let (mut star_of, mut n_stars) = self.stars_of_clusters(&search, input.sources.len());
+        self.solve_without_misplaced(&mut search, &star_of, input);
+
+        // Matches that bright listed stars do not confirm are chance: the prior remains.
+        let gate_px = 2.0 + 3.5 * sigma_px(&search.error, self.model.focal_px());
+        let is_in_image = |position: PixelPoint| input.context.is_well_inside(position, gate_px);
+        let threshold_e = input.context.threshold_e;
+        let AttitudeSearch { candidates, expected, matched, .. } = &search;
+        let is_chance =
+            n_stars > 0 && !are_confirmed(matched, candidates, expected, gate_px, threshold_e, is_in_image);
         if is_chance {
-            error = prior;
-            camera_from_icrs = of(prior.mean);
-            matched.clear();
+            search.error = prior;
+            search.camera_from_icrs = input.attitude(&prior);
+            search.matched.clear();
+            search.expected = self.expected_stars(&search.camera_from_icrs, input.telemetry, input.overrides);
             star_of.fill(None);
             n_stars = 0;
-            expected = self.expected_stars(&camera_from_icrs, telemetry, overrides);
         }
-        if overrides.camera_from_icrs.is_none() && self.lost_in_space.is_none() {
-            self.mounting.update(&prior, &error);
+        let is_attitude_given = input.overrides.camera_from_icrs.is_some();
+        if !is_attitude_given && self.lost_in_space.is_none() {
+            self.mounting.update(&prior, &search.error);
         }
+        let clusters = search.candidates.len();
         if n_stars == 0
-            && overrides.camera_from_icrs.is_none()
-            && is_contradicted(&expected, candidates.len(), context.threshold_e, is_in_image)
+            && !is_attitude_given
+            && is_contradicted(&search.expected, clusters, threshold_e, is_in_image)
         {
-            return FrameAttitude::contradicted(sources);
+            return FrameAttitude::contradicted(input.sources);
         }
-        self.update_estimates(&matched, &candidates, &expected, &fits, telemetry.exposure_s);
+        self.update_estimates(&search, input.telemetry.exposure_s);
         let source = match n_stars {
             _ if is_chance => AttitudeSource::NoMatch,
             0 => AttitudeSource::NoStars,
             1 => AttitudeSource::TooFewStars,
             _ => AttitudeSource::Stars,
         };
-        let fitted =
-            fits.iter().zip(&order).filter_map(|(fit, &i)| Some((i, fit.flatten()?.position))).collect();
-        let camera_from_icrs = Some(camera_from_icrs);
-        FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected, fitted }
+        FrameAttitude {
+            camera_from_icrs: Some(search.camera_from_icrs),
+            error: search.error,
+            source,
+            star_of,
+            n_stars,
+            fitted: search.fitted_positions(),
+            expected: search.expected,
+        }
+    }
+
+    /// Begins the search with the brightest clusters and the listed stars, matched by a common offset.
+    fn begin_search(&self, input: &AttitudeInput<'_>) -> AttitudeSearch {
+        let sources = input.sources;
+        let prior = input.start.prior;
+        let mut order: Vec<usize> = (0..sources.len()).filter(|&i| sources[i].spike.is_none()).collect();
+        order.sort_by(|&a, &b| sources[b].flux_e.total_cmp(&sources[a].flux_e).then(a.cmp(&b)));
+        order.truncate(MAX_STAR_CANDIDATES);
+        let mut candidates = Vec::with_capacity(order.len());
+        for &i in &order {
+            candidates.push(StarCandidate {
+                position: sources[i].centre,
+                flux_e: sources[i].flux_e,
+                is_saturated: sources[i].saturated > 0,
+            });
+        }
+        let camera_from_icrs = input.attitude(&prior);
+        let expected = self.expected_stars(&camera_from_icrs, input.telemetry, input.overrides);
+        let at_centre = image_covariance(&prior.covariance, 0.0, 0.0, self.model.focal_px());
+        let offset_px = [at_centre[(0, 0)].sqrt(), at_centre[(1, 1)].sqrt()];
+        let sigma_roll = prior.covariance[(2, 2)].sqrt();
+        AttitudeSearch {
+            matched: matches_by_offset(&candidates, &expected, offset_px, sigma_roll),
+            fits: vec![None; candidates.len()],
+            order,
+            candidates,
+            expected,
+            measured: Vec::new(),
+            of_measured: Vec::new(),
+            error: prior,
+            camera_from_icrs,
+        }
+    }
+
+    /// Fits the matched clusters, brightest first, and collects those that can determine the attitude.
+    fn measure_stars(&mut self, search: &mut AttitudeSearch, input: &AttitudeInput<'_>) {
+        let AttitudeSearch { order, candidates, expected, matched, fits, measured, of_measured, .. } = search;
+        measured.clear();
+        of_measured.clear();
+        matched.sort_by(|a, b| candidates[b.0].flux_e.total_cmp(&candidates[a.0].flux_e).then(a.cmp(b)));
+        for &(c, s) in matched.iter() {
+            if measured.len() >= self.config.best.max_stars as usize || is_blended(expected, s) {
+                continue;
+            }
+            let i = order[c];
+            let fit = *fits[c].get_or_insert_with(|| self.fit(i, input));
+            if let Some(star) = self.star_measurement(&input.sources[i], fit, &expected[s], input.overrides) {
+                measured.push(star);
+                of_measured.push((c, s));
+            }
+        }
+    }
+
+    /// Solves the attitude from the measured stars, drops outliers, and moves the expected stars to their
+    /// positions by this attitude. Returns false if the stars determine no attitude.
+    fn solve(&self, search: &mut AttitudeSearch, input: &AttitudeInput<'_>) -> bool {
+        let attitude = |error| input.attitude_by(error);
+        let Some(solved) = solve_attitude(&search.measured, &input.start.prior, attitude, &self.model) else {
+            return false;
+        };
+        for (pair, is_used) in search.of_measured.iter().zip(&solved.used) {
+            if !is_used {
+                search.matched.retain(|matched| matched != pair);
+            }
+        }
+        search.measured = retained(std::mem::take(&mut search.measured), &solved.used);
+        search.of_measured = retained(std::mem::take(&mut search.of_measured), &solved.used);
+        search.error = solved.error;
+        search.camera_from_icrs = input.attitude(&search.error);
+        for star in &mut search.expected {
+            let seen = search.camera_from_icrs.rotate(&star.apparent);
+            if let Some(position) = self.model.project_vector(&seen) {
+                star.position = position;
+            }
+        }
+        true
+    }
+
+    /// Returns the star of each cluster, by the position of its fit, and the number of stars: those within
+    /// four standard deviations of the position predicted by the attitude.
+    fn stars_of_clusters(&self, search: &AttitudeSearch, clusters: usize) -> (Vec<Option<u32>>, u32) {
+        let mut star_of = vec![None; clusters];
+        let mut n_stars = 0;
+        let attitude_px = sigma_px(&search.error, self.model.focal_px());
+        for &(c, s) in &search.matched {
+            let fit = search.fits[c].flatten();
+            let position = fit.map_or(search.candidates[c].position, |fit| fit.position);
+            let centre_px = if fit.is_some() { FITTED_SIGMA_PX } else { CENTROID_SIGMA_PX };
+            let limit_px = 4.0 * libm::hypot(attitude_px, centre_px) + 0.2;
+            if position.distance(search.expected[s].position) <= limit_px {
+                star_of[search.order[c]] = Some(search.expected[s].star.id);
+                n_stars += 1;
+            }
+        }
+        (star_of, n_stars)
+    }
+
+    /// Solves the attitude again without the stars that are not at their predicted positions, if there are
+    /// any among those that determined it.
+    fn solve_without_misplaced(
+        &self,
+        search: &mut AttitudeSearch,
+        star_of: &[Option<u32>],
+        input: &AttitudeInput<'_>,
+    ) {
+        let is_at_position =
+            |&(c, s): &(usize, usize)| star_of[search.order[c]] == Some(search.expected[s].star.id);
+        let is_star: Vec<bool> = search.of_measured.iter().map(is_at_position).collect();
+        if !is_star.contains(&false) {
+            return;
+        }
+        let prior = input.start.prior;
+        let measured = retained(std::mem::take(&mut search.measured), &is_star);
+        let solved = solve_attitude(&measured, &prior, |error| input.attitude_by(error), &self.model);
+        search.error = solved.map_or(prior, |solved| solved.error);
+        search.camera_from_icrs = input.attitude(&search.error);
+    }
+
+    fn fit(&mut self, source: usize, input: &AttitudeInput<'_>) -> Option<FittedSource> {
+        let members = input.context.detector.members(source);
+        self.fitter.point(input.context, &input.sources[source], members, &self.psf, input.trail_px)
     }
 
     /// Determines the attitude with given identities of the clusters.
-    #[allow(clippy::too_many_arguments, reason = "intermediate results of one frame")]
     fn given_attitude(
         &mut self,
-        context: PhotometryContext<'_>,
-        sources: &[Source],
-        trail_px: [f64; 2],
-        start: &AttitudeStart,
-        overrides: &Overrides<'_>,
+        input: &AttitudeInput<'_>,
         identity: &dyn Fn(PixelPoint) -> Identity,
-        expected: Vec<ExpectedStar>,
     ) -> FrameAttitude {
-        let star_of: Vec<Option<u32>> = sources
-            .iter()
-            .map(|source| match identity(source.centre) {
+        let prior = input.start.prior;
+        let expected = self.expected_stars(&input.attitude(&prior), input.telemetry, input.overrides);
+        let mut star_of = Vec::with_capacity(input.sources.len());
+        for source in input.sources {
+            star_of.push(match identity(source.centre) {
                 Identity::Star(id) => Some(id),
                 _ => None,
-            })
-            .collect();
+            });
+        }
         let mut measured = Vec::new();
-        for (i, id) in star_of.iter().enumerate().filter_map(|(i, id)| Some((i, (*id)?))) {
+        for (i, id) in star_of.iter().enumerate() {
+            let Some(id) = *id else { continue };
             let Some(s) = expected.iter().position(|star| star.star.id == id) else { continue };
             if measured.len() >= self.config.best.max_stars as usize || is_blended(&expected, s) {
                 continue;
             }
-            let fit =
-                self.fitter.point(context, &sources[i], context.detector.members(i), &self.psf, trail_px);
-            measured.extend(self.star_measurement(&sources[i], fit, &expected[s], overrides));
+            let fit = self.fit(i, input);
+            measured.extend(self.star_measurement(&input.sources[i], fit, &expected[s], input.overrides));
         }
-        let of = |error: nalgebra::Vector3<f64>| match overrides.camera_from_icrs {
-            Some(given) => given,
-            None => start.attitude(error),
-        };
-        let prior = start.prior;
-        let error = solve_attitude(&measured, &prior, of, &self.model).map_or(prior, |solved| solved.error);
-        let camera_from_icrs = Some(of(error.mean));
+        let solved = solve_attitude(&measured, &prior, |error| input.attitude_by(error), &self.model);
+        let error = solved.map_or(prior, |solved| solved.error);
         if self.lost_in_space.is_none() {
             self.mounting.update(&prior, &error);
         }
         let n_stars = measured.len() as u32;
-        let source = if n_stars >= 2 { AttitudeSource::Stars } else { AttitudeSource::TooFewStars };
-        FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected, fitted: Vec::new() }
+        FrameAttitude {
+            camera_from_icrs: Some(input.attitude(&error)),
+            error,
+            source: if n_stars >= 2 { AttitudeSource::Stars } else { AttitudeSource::TooFewStars },
+            star_of,
+            n_stars,
+            expected,
+            fitted: Vec::new(),
+        }
     }
 
     /// Returns the listed stars at their expected positions for a camera attitude.
@@ -347,26 +453,19 @@ impl BestPipeline {
     }
 
     /// Updates the estimates of width and brightness scale with the stars.
-    fn update_estimates(
-        &mut self,
-        matched: &[(usize, usize)],
-        candidates: &[StarCandidate],
-        expected: &[ExpectedStar],
-        fits: &[Option<Option<FittedSource>>],
-        exposure_s: f64,
-    ) {
+    fn update_estimates(&mut self, search: &AttitudeSearch, exposure_s: f64) {
         if !self.config.best.sequence {
             return;
         }
         let mut log_ratios = Vec::new();
-        for &(c, s) in matched {
-            let Some(fit) = fits[c].flatten() else { continue };
-            if candidates[c].is_saturated {
+        for &(c, s) in &search.matched {
+            let Some(fit) = search.fits[c].flatten() else { continue };
+            if search.candidates[c].is_saturated {
                 continue;
             }
             self.psf.update_from_star(&fit.image);
             if fit.image.flux_e > 0.0 {
-                let star = &expected[s];
+                let star = &search.expected[s];
                 let unscaled = self.unscaled_flux_e(star.star.magnitude, exposure_s);
                 // An exposure of 0 s does not determine the scale.
                 let log_ratio = libm::log(fit.image.flux_e / unscaled);

@@ -2,7 +2,7 @@
 
 use contract::{Cluster, Frame, Label, NoSolution, Outcome, PixelPoint, Readout, Solution, Telemetry};
 
-use super::frame_attitude::FrameAttitude;
+use super::frame_attitude::{AttitudeInput, FrameAttitude};
 use super::hot_pixels::HotPixels;
 use super::photometry::{KnownSource, PhotometryContext, PhotometryModel, Source};
 use super::stars::ExpectedStar;
@@ -123,7 +123,9 @@ impl BestPipeline {
         let start = self.start(sources, telemetry, overrides);
         let trail_px = self.trail_px(telemetry, elapsed_s, start.as_ref());
         let attitude = match &start {
-            Some(start) => self.attitude(context, sources, trail_px, start, telemetry, overrides),
+            Some(start) => {
+                self.attitude(&AttitudeInput { context, sources, trail_px, start, telemetry, overrides })
+            }
             None => FrameAttitude::unknown(sources),
         };
         let known = self.known_sources(&attitude, trail_px);
