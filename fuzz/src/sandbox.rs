@@ -5,7 +5,11 @@ use std::path::{Path, PathBuf};
 
 /// A temporary directory, in memory if the system provides `/dev/shm`; removed on drop.
 #[derive(Debug)]
-pub struct Sandbox(tempfile::TempDir);
+pub struct Sandbox {
+    folder: tempfile::TempDir,
+    /// True if what is read is also written and read again.
+    writes: bool,
+}
 
 impl Sandbox {
     /// Creates the directory.
@@ -14,12 +18,24 @@ impl Sandbox {
     /// Those of the operating system.
     pub fn new() -> Result<Self> {
         let in_memory = Path::new("/dev/shm");
-        if in_memory.is_dir() { tempfile::tempdir_in(in_memory) } else { tempfile::tempdir() }.map(Self)
+        let folder = if in_memory.is_dir() { tempfile::tempdir_in(in_memory) } else { tempfile::tempdir() }?;
+        Ok(Self { folder, writes: true })
+    }
+
+    /// Returns the sandbox for targets that only read.
+    #[must_use]
+    pub fn reading_only(self) -> Self {
+        Self { writes: false, ..self }
+    }
+
+    /// Returns true if what is read is also written and read again.
+    pub(crate) fn writes(&self) -> bool {
+        self.writes
     }
 
     /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
-        self.0.path()
+        self.folder.path()
     }
 
     /// Returns the path of a file that does not exist; an earlier file of that name is removed.

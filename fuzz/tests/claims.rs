@@ -100,7 +100,7 @@ fn fits(side: u32, bytes: usize) -> Vec<u8> {
 #[test]
 fn a_false_size_in_a_header_allocates_nothing() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    let sandbox = Sandbox::new().unwrap();
+    let sandbox = Sandbox::new().unwrap().reading_only();
     // 16384 pixels per side is allowed for a detector: such a file must be rejected by its length.
     for side in [60_000, 16_384] {
         check(&sandbox, "png", "size", &png(side));
@@ -140,7 +140,7 @@ fn a_false_size_in_a_header_allocates_nothing() {
 #[test]
 fn no_number_of_a_file_makes_it_costly() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    let sandbox = Sandbox::new().unwrap();
+    let sandbox = Sandbox::new().unwrap().reading_only();
     // Failed assertions of the crate `parquet` are caught by the reader; printing each of them would take
     // longer than reading.
     let tell = std::panic::take_hook();
