@@ -1,6 +1,7 @@
 //! Fuzz targets for files of flight dynamics. A file that is read is also evaluated and, if it can be,
 //! written and read again.
 
+use std::fmt::Debug;
 use std::path::Path;
 
 use boresight::files::FileError;
@@ -12,13 +13,19 @@ use crate::{Sandbox, written};
 
 const FILE: &str = "file";
 
-/// Returns what was read again.
+/// Compares a file with what was read again after it was written, unless the sandbox is for reading only.
 ///
 /// # Panics
-/// If it could not be read.
+/// If it could not be read again, or is not what it was.
 #[expect(clippy::panic, reason = "a target reports a fault by panicking")]
-fn parsed<T>(again: Result<T, FileError>) -> T {
-    again.unwrap_or_else(|error| panic!("the file was written but cannot be read: {error}"))
+fn check_again<T: Debug + PartialEq>(sandbox: &Sandbox, first: &T, again: Result<T, FileError>) {
+    if !sandbox.writes() {
+        return;
+    }
+    match again {
+        Err(error) => panic!("the file was written but cannot be read: {error}"),
+        Ok(second) => written::check_same(FILE, first, &second),
+    }
 }
 
 /// Ends and middle of the spans of a file.
@@ -39,11 +46,8 @@ pub(crate) fn oem(sandbox: &Sandbox, bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let Ok(oem) = Oem::parse(Path::new(FILE), text) else { return };
     evaluate(&oem.ephemeris());
-    if !sandbox.writes() {
-        return;
-    }
     for notation in [Notation::Kvn, Notation::Xml] {
-        written::check_same(FILE, &oem, &parsed(Oem::parse(Path::new(FILE), &oem.to_text(notation))));
+        check_again(sandbox, &oem, Oem::parse(Path::new(FILE), &oem.to_text(notation)));
     }
 }
 
@@ -54,11 +58,8 @@ pub(crate) fn aem(sandbox: &Sandbox, bytes: &[u8]) {
     for time in times(&ephemeris.coverage()) {
         let _ = ephemeris.rotation_at(time);
     }
-    if !sandbox.writes() {
-        return;
-    }
     for notation in [Notation::Kvn, Notation::Xml] {
-        written::check_same(FILE, &aem, &parsed(Aem::parse(Path::new(FILE), &aem.to_text(notation))));
+        check_again(sandbox, &aem, Aem::parse(Path::new(FILE), &aem.to_text(notation)));
     }
 }
 
@@ -67,22 +68,16 @@ pub(crate) fn opm(sandbox: &Sandbox, bytes: &[u8]) {
     let Ok(opm) = Opm::parse(Path::new(FILE), text) else { return };
     let _ = opm.icrs_state();
     let _ = InitialState::parse(Path::new(FILE), text);
-    if !sandbox.writes() {
-        return;
-    }
     for notation in [Notation::Kvn, Notation::Xml] {
-        written::check_same(FILE, &opm, &parsed(Opm::parse(Path::new(FILE), &opm.to_text(notation))));
+        check_again(sandbox, &opm, Opm::parse(Path::new(FILE), &opm.to_text(notation)));
     }
 }
 
 pub(crate) fn tdm(sandbox: &Sandbox, bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let Ok(tdm) = Tdm::parse(Path::new(FILE), text) else { return };
-    if !sandbox.writes() {
-        return;
-    }
     for notation in [Notation::Kvn, Notation::Xml] {
-        written::check_same(FILE, &tdm, &parsed(Tdm::parse(Path::new(FILE), &tdm.to_text(notation))));
+        check_again(sandbox, &tdm, Tdm::parse(Path::new(FILE), &tdm.to_text(notation)));
     }
 }
 
