@@ -1,10 +1,10 @@
 //! Hostile input for every reader of the project.
 //!
 //! A [`Target`] passes bytes to the readers of its format. A reader may reject them; it must not panic,
-//! abort, hang, or allocate more memory than the bytes justify. In the tests, what it accepts is also written,
-//! and is the same when it is read again. `fuzz/corpus/` contains a directory of inputs for each target,
-//! replayed by `cargo test`; `fuzz/run` derives new inputs from them with libFuzzer, guided by coverage, on
-//! the stable compiler.
+//! abort, hang, or allocate more memory than the bytes justify. In the tests, what it accepts is also
+//! written, and is the same when it is read again. `fuzz/corpus/` contains a directory of inputs for each
+//! target, replayed by `cargo test`; `fuzz/run` derives new inputs from them with libFuzzer, guided by
+//! coverage, on the stable compiler.
 
 mod answers;
 mod flight_dynamics;
