@@ -387,7 +387,7 @@ fn a_frame_that_depends_on_answers_is_made_again_alone() {
     assert_eq!(lines, bench.read("three/lines.csv"));
     assert!(bench.read("one/truth/states.jsonl").starts_with("{\"frame\":2,\"state\":1}\n"));
 
-    // The trajectory is not that of a scenario whose answers nobody has given.
+    // Without answers the dot stays where it is.
     assert_eq!(boresight(&format!("render {} --out {}", at("flees.toml"), at("unanswered"))), 0);
     assert_ne!(lines, bench.read("unanswered/lines.csv"));
     for frame in [0, 1, 2, 100, 299] {

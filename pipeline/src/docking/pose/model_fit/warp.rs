@@ -62,7 +62,7 @@ impl WarpAverage {
     }
 
     /// Returns the average if it is significant.
-    fn significant(&self) -> Option<f64> {
+    fn significant_mean(&self) -> Option<f64> {
         let mean = self.weighted / self.information;
         // χ² of the fields about their mean, and the scatter in units of the noise's variance, at least 1.
         let squares_about_mean = (self.squares - mean * self.weighted).max(0.0);
@@ -83,7 +83,7 @@ pub(super) struct WarpHistory {
 
 impl WarpHistory {
     /// Returns the history with a field added.
-    fn with(&self, focal_px: (f64, f64), size: &Sizes, covariance: &WarpMatrix) -> Self {
+    fn with_field(&self, focal_px: (f64, f64), size: &Sizes, covariance: &WarpMatrix) -> Self {
         let mut history = if self.focal_px == focal_px { *self } else { Self::default() };
         history.focal_px = focal_px;
         for k in 0..WARPS {
@@ -183,8 +183,8 @@ impl WarpSums {
         let by_warp = inverse_information * self.scores;
         let of_unit_noise = inverse(&(self.squares - self.scores.tr_mul(&by_warp)))?;
         let size = of_unit_noise * self.seen;
-        let history = known.with(self.focal_px, &size, &(of_unit_noise * variance));
-        let significant = history.averages.map(|average| average.significant());
+        let history = known.with_field(self.focal_px, &size, &(of_unit_noise * variance));
+        let significant = history.averages.map(|average| average.significant_mean());
         let [radial, bend, shear, stretch] = significant.map(Option::unwrap_or_default);
         let bias = by_warp * Sizes::new(radial, bend, shear, stretch);
         let mut covariance = bias * bias.transpose();
@@ -225,15 +225,15 @@ mod tests {
 
     #[test]
     fn a_single_field_counts_from_nine_standard_deviations_on() {
-        assert_eq!(average([8.9]).significant(), None);
-        assert_eq!(average([9.1]).significant(), Some(9.1));
+        assert_eq!(average([8.9]).significant_mean(), None);
+        assert_eq!(average([9.1]).significant_mean(), Some(9.1));
     }
 
     #[test]
     fn a_constant_warp_is_found_below_the_noise_of_a_field() {
-        let mean = average([1.5; 60]).significant().unwrap();
+        let mean = average([1.5; 60]).significant_mean().unwrap();
         assert!((mean - 1.5).abs() < 1e-12, "{mean}");
-        assert_eq!(average([0.5; 60]).significant(), None);
+        assert_eq!(average([0.5; 60]).significant_mean(), None);
     }
 
     /// Lines that come early or late bend every field by several standard deviations, in both directions.
@@ -242,16 +242,16 @@ mod tests {
         let sizes = [6.0, -7.0, 5.0, 8.0, -4.0, -6.0, 7.0, -5.0];
         for fields in 1..200 {
             let sizes = sizes.iter().cycle().take(fields).copied();
-            assert_eq!(average(sizes).significant(), None, "{fields} fields");
+            assert_eq!(average(sizes).significant_mean(), None, "{fields} fields");
         }
     }
 
     #[test]
     fn another_lens_begins_anew() {
         let sizes = Sizes::repeat(20.0);
-        let history = WarpHistory::default().with((2900.0, 2900.0), &sizes, &WarpMatrix::identity());
-        assert_eq!(history.averages[0].significant(), Some(20.0));
-        let of_wide = history.with((1055.0, 1055.0), &Sizes::zeros(), &WarpMatrix::identity());
-        assert_eq!(of_wide.averages[0].significant(), None);
+        let history = WarpHistory::default().with_field((2900.0, 2900.0), &sizes, &WarpMatrix::identity());
+        assert_eq!(history.averages[0].significant_mean(), Some(20.0));
+        let of_wide = history.with_field((1055.0, 1055.0), &Sizes::zeros(), &WarpMatrix::identity());
+        assert_eq!(of_wide.averages[0].significant_mean(), None);
     }
 }
