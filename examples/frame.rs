@@ -1,8 +1,10 @@
 //! Renders one frame of ARGON and lists its contents: `cargo run --release --example frame`.
 
-use boresight::run::{FarRangeMission, ScenarioSource};
+use boresight::far_range::FarRangeMission;
+use boresight::run::ScenarioSource;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    boresight::register_worlds();
     let prepared = FarRangeMission::new(&ScenarioSource::read("argon")?)?;
     let exposure = prepared.simulator().camera()?.expose(8000)?;
     let frame = &exposure.frame;

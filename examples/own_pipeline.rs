@@ -1,7 +1,8 @@
 //! Runs and scores a minimal pipeline that reports the brightest pixel as the target.
 
-use boresight::run::{FarRangeMission, ScenarioSource, sequence};
-use boresight::table::{TableStyle, far_range};
+use boresight::far_range::FarRangeMission;
+use boresight::far_range_views::{TableStyle, far_range_table};
+use boresight::run::{ScenarioSource, sequence};
 use contract::{
     ContractError, FarRange, Frame, Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, PixelPoint,
     Setup, Solution, Telemetry,
@@ -40,8 +41,9 @@ impl PipelineFactory<FarRange> for BrightestFactory {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    boresight::register_worlds();
     let prepared = FarRangeMission::new(&ScenarioSource::read("argon")?)?;
     let ran = sequence::score(&prepared, 8000..8200, &BrightestFactory)?;
-    println!("{}", far_range(&ran.scored.score, TableStyle::default()));
+    println!("{}", far_range_table(&ran.scored.score, TableStyle::default()));
     Ok(())
 }

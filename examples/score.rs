@@ -3,8 +3,9 @@
 
 use std::path::Path;
 
-use boresight::run::{FarRangeMission, World as _};
-use boresight::table::{TableStyle, far_range};
+use boresight::far_range::FarRangeMission;
+use boresight::far_range_views::{TableStyle, far_range_table};
+use boresight::run::World as _;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -12,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("expected two arguments: DIRECTORY MEASUREMENTS.csv".into());
     };
     let scored = FarRangeMission::score_files(Path::new(directory), Path::new(measurements), None, None)?;
-    println!("{}", far_range(&scored.score, TableStyle::default()));
+    println!("{}", far_range_table(&scored.score, TableStyle::default()));
     let correct = &scored.score.figures["correct_rate"];
     println!("correct: {} of {} frames", correct.count, correct.of);
     Ok(())

@@ -13,6 +13,8 @@
 
 pub mod command;
 pub mod table;
+mod tables;
+mod worlds;
 
 #[cfg(feature = "mitsuba")]
 pub use ::mitsuba;
@@ -21,6 +23,10 @@ pub use ::monitor;
 #[cfg(feature = "report")]
 pub use ::report;
 pub use config::toml_file;
+pub use docking;
+pub use docking_views;
+pub use far_range;
+pub use far_range_views;
 pub use files::{self, failure, sha256};
 pub use flight_dynamics;
 pub use gate;
@@ -31,4 +37,7 @@ pub use score;
 pub use show;
 pub use statistics;
 pub use study;
+pub use tables::{csv_tables, parquet_tables, read_csv_table};
+pub use view;
 pub use visibility;
+pub use worlds::register_worlds;

@@ -1,10 +1,11 @@
 //! The tables of the page of formats, from the declarations of the crates.
 
-use boresight::files::{ColumnType, FieldDeclaration, csv_tables, parquet_tables};
+use boresight::files::{ColumnType, FieldDeclaration};
 use boresight::gate::row_columns;
 use boresight::navigate;
 use boresight::study::case_columns;
 use boresight::visibility;
+use boresight::{csv_tables, parquet_tables};
 
 /// Row of the page: names, type, and meaning of the columns.
 fn line(field: &FieldDeclaration, is_csv: bool) -> String {

@@ -36,6 +36,7 @@ impl Target {
 
     /// Passes `bytes` to the target.
     pub fn run(&self, sandbox: &Sandbox, bytes: &[u8]) {
+        boresight::register_worlds();
         (self.run)(sandbox, bytes);
     }
 

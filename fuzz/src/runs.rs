@@ -63,6 +63,7 @@ mod tests {
     /// With an invalid base run, the fuzzer would never get past its first error.
     #[test]
     fn the_assembled_run_is_valid() {
+        boresight::register_worlds();
         let sandbox = Sandbox::new().unwrap();
         for (run, files) in RUNS {
             files.iter().for_each(|(file, right)| drop(sandbox.file(&format!("{run}{file}"), right)));

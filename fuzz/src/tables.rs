@@ -3,23 +3,26 @@
 use std::fmt::Debug;
 use std::path::Path;
 
-use boresight::files::docking::{
-    FeatureRow, FieldMeasurementWriter, MotionWriter, read_field_measurements, read_motion,
+use boresight::docking::rows::{
+    FeatureRow, FieldMeasurementLine, FieldMeasurementWriter, FieldTelemetryLine, FieldTruthRow, MotionLine,
+    MotionWriter, read_field_measurements, read_motion,
+};
+use boresight::docking::rows::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
+use boresight::far_range::rows::{
+    Dataset, FrameCluster, FrameTruthRow, MeasurementLine, MeasurementWriter, ObjectTruthRow, TelemetryRow,
+    TelemetryWriter, read_measurements, read_stars, read_telemetry, write_stars,
 };
 use boresight::files::{
-    Dataset, FieldRow, FieldTelemetryWriter, FileError, FrameCluster, MeasurementWriter, Row, TableReader,
-    TableWriter, TelemetryRow, TelemetryWriter, read_column, read_csv_table, read_field_telemetry,
-    read_measurements, read_parquet_table, read_stars, read_telemetry, write_csv, write_stars,
+    FileError, Row, TableReader, TableWriter, read_column, read_parquet_table, write_csv,
 };
 use boresight::gate::Baseline;
 use boresight::navigate::read_navigation;
+use boresight::read_csv_table;
 use boresight::study::CaseTable;
 use boresight::visibility::read_sky;
 use contract::docking::{DockingOutcome, MotionReport};
 use contract::{Camera, Outcome};
 use sha2::{Digest, Sha256};
-use sim::docking::FieldTruth;
-use sim::truth::{FrameTruth, ObjectTruth};
 
 use crate::{Sandbox, written};
 
@@ -70,39 +73,42 @@ fn written_again<R: Debug + PartialEq>(
 
 fn write_telemetry(path: &Path, rows: &[TelemetryRow]) -> Result<(), FileError> {
     let mut writer = TelemetryWriter::create(path)?;
-    rows.iter().try_for_each(|row| writer.write(row))?;
+    rows.iter().try_for_each(|row| writer.line(&row.into()))?;
     writer.finish()
 }
 
 fn write_field_telemetry(path: &Path, rows: &[FieldRow]) -> Result<(), FileError> {
     let mut writer = FieldTelemetryWriter::create(path)?;
-    rows.iter().try_for_each(|row| writer.write(row))?;
+    rows.iter().try_for_each(|row| writer.line(&FieldTelemetryLine::from_row(row)))?;
     writer.finish()
 }
 
 fn write_measurements(path: &Path, rows: &[(u64, Outcome)]) -> Result<(), FileError> {
     let mut writer = MeasurementWriter::create(path)?;
-    rows.iter().try_for_each(|(frame, outcome)| writer.write(*frame, outcome))?;
+    rows.iter()
+        .try_for_each(|(frame, outcome)| writer.line(&MeasurementLine::from_outcome(*frame, outcome)))?;
     writer.finish()
 }
 
 fn write_field_measurements(path: &Path, rows: &[(u64, DockingOutcome)]) -> Result<(), FileError> {
     let mut writer = FieldMeasurementWriter::create(path)?;
-    rows.iter().try_for_each(|(field, outcome)| writer.write(*field, outcome))?;
+    rows.iter()
+        .try_for_each(|(field, outcome)| writer.line(&FieldMeasurementLine::from_outcome(*field, outcome)))?;
     writer.finish()
 }
 
 fn write_motion(path: &Path, rows: &[(u64, MotionReport)]) -> Result<(), FileError> {
     let mut writer = MotionWriter::create(path)?;
-    rows.iter().try_for_each(|(field, report)| writer.write(*field, report))?;
+    let mut lines = rows.iter().flat_map(|(field, report)| MotionLine::from_report(*field, report));
+    lines.try_for_each(|line| writer.line(&line))?;
     writer.finish()
 }
 
 pub(crate) fn parquet(sandbox: &Sandbox, bytes: &[u8]) {
     let path = sandbox.file("a.parquet", bytes);
-    rows::<FrameTruth>(sandbox, &path);
-    rows::<ObjectTruth>(sandbox, &path);
-    rows::<FieldTruth>(sandbox, &path);
+    rows::<FrameTruthRow>(sandbox, &path);
+    rows::<ObjectTruthRow>(sandbox, &path);
+    rows::<FieldTruthRow>(sandbox, &path);
     rows::<FeatureRow>(sandbox, &path);
     rows::<FrameCluster>(sandbox, &path);
     let _ = CaseTable::columns_of(&path).and_then(|columns| columns.read(&path));

@@ -3,14 +3,16 @@
 use std::fmt::Debug;
 use std::path::Path;
 
-use boresight::files::docking::SetupFile;
-use boresight::files::{AtomicFile, CameraFile, Failure};
+use boresight::docking::DockingScenario;
+use boresight::docking::rows::SetupFile;
+use boresight::docking::scoring::DockingScore;
+use boresight::far_range::FarRangeScenario;
+use boresight::far_range::rows::CameraFile;
+use boresight::far_range::scoring::Score;
+use boresight::files::{AtomicFile, Failure};
 use boresight::report::{StudyResult, read_visibility};
 use boresight::run::{Options, ScenarioSource};
 use boresight::scenario::run_file::{RunFile, ScenarioFile};
-use boresight::scenario::{DockingScenario, FarRangeScenario};
-use boresight::score::Score;
-use boresight::score::docking::DockingScore;
 use boresight::study::{Study, StudyRecord};
 use boresight::toml_file;
 use boresight::visibility::Requirements;

@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use boresight::files::docking::SetupFile;
-use boresight::files::{
-    AviCoding, AviWriter, FieldOrder, FieldSource, FileError, FrameSize, Scan, SequenceOptions, Y4mWriter,
+use boresight::docking::rows::SetupFile;
+use boresight::docking::video::{
+    AviCoding, AviWriter, FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions, Y4mWriter,
 };
+use boresight::files::FileError;
 use contract::docking::{Digitiser, DockingSetup, Field, FieldTelemetry, Lines};
 
 use crate::{Sandbox, written};

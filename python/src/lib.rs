@@ -69,7 +69,8 @@ mod _boresight {
     use pyo3::prelude::*;
 
     #[pymodule_init]
-    fn with_version(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    fn with_version_and_worlds(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        boresight::register_worlds();
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -4,11 +4,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use boresight::files::{format_utc, read_csv_table};
+use boresight::files::format_utc;
 use boresight::flight_dynamics::Epoch;
 use boresight::navigate::{
     Campaign, KnowledgeConfig, MeasurementSource, NavigatorChoice, TABLE_FILE, navigate_with,
 };
+use boresight::read_csv_table;
 use contract::ContractError;
 use contract::navigation::lines::{EstimatesLine, Line, SetupLine};
 use contract::navigation::{Answer, Event, Mode, NavigationSetup, Navigator, NavigatorFactory, NoEstimate};

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use boresight::docking::DockingScenario;
 use boresight::failure::Failure;
-use boresight::files::{Checksums, RunDirectory, read_csv_table, read_parquet_table};
+use boresight::files::{Checksums, RunDirectory, read_parquet_table};
 use boresight::pipeline_choice::PipelineChoice;
+use boresight::read_csv_table;
 use boresight::run::{Expectation, FirstFailure, FrameJobs, ScenarioSource};
-use boresight::scenario::DockingScenario;
 use pipeline::external::DEFAULT_MEMORY_MB;
 use pyo3::prelude::*;
 use tempfile::TempDir;

@@ -1,20 +1,23 @@
 //! Worlds whose frames and answers are Python values.
 
+use boresight::docking::rows::FieldTruthRow;
+use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow};
 use std::any::Any;
 use std::ops::Range;
 
 use arrow_array::RecordBatch;
+use boresight::docking::DockingMission;
 use boresight::failure::Failure;
+use boresight::far_range::{FarRangeMission, SceneTruth};
 use boresight::files::Row;
 use boresight::frame_jobs::process_in_order;
 use boresight::run::world::{ImageOf, TelemetryOf};
-use boresight::run::{AnyFactory, AnyMission, AnyWorld, DockingMission, FarRangeMission, SceneTruth, World};
+use boresight::run::{AnyFactory, AnyMission, AnyWorld, World};
 use contract::docking::{Docking, Field, FieldTelemetry as DockingTelemetry};
 use contract::{FarRange, PipelineFactory};
 use pipeline::external::Protocol;
 use pyo3::prelude::*;
 use sim::docking::FieldTruth;
-use sim::truth::{FrameTruth, ObjectTruth};
 
 use crate::arrow::batch;
 use crate::frame::{FieldTelemetry, Frame, Telemetry};
@@ -137,8 +140,10 @@ pub(crate) trait PythonWorld: World<Interface: PythonInterface, Truth: Send> {
 
 impl PythonWorld for FarRangeMission {
     fn tables(truth: SceneTruth) -> PyResult<(RecordBatch, Option<RecordBatch>)> {
-        let objects = batch(ObjectTruth::columns(&truth.objects))?;
-        Ok((batch(FrameTruth::columns(&[truth.frame]))?, Some(objects)))
+        let objects = batch(ObjectTruthRow::columns(
+            &truth.objects.into_iter().map(ObjectTruthRow).collect::<Vec<_>>(),
+        ))?;
+        Ok((batch(FrameTruthRow::columns(&[FrameTruthRow(truth.frame)]))?, Some(objects)))
     }
 
     fn expected(&self, frame: u64) -> Option<ExpectedFrame> {
@@ -155,7 +160,7 @@ impl PythonWorld for FarRangeMission {
 
 impl PythonWorld for DockingMission {
     fn tables(truth: FieldTruth) -> PyResult<(RecordBatch, Option<RecordBatch>)> {
-        Ok((batch(FieldTruth::columns(&[truth]))?, None))
+        Ok((batch(FieldTruthRow::columns(&[FieldTruthRow::from(&truth)]))?, None))
     }
 }
 

@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use contract::docking::Digitiser;
-use files::docking::SetupFile;
-use files::{
-    Checksums, Failure, FieldOrder, FieldSource, FileError, FrameSize, RunDirectory, Scan, SequenceOptions,
-};
+use docking::DockingMission;
+use docking::DockingRenderer;
+use docking::DockingScenario;
+use docking::FieldAnswers;
+use docking::rows::SetupFile;
+use docking::video::{FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions};
+use files::{Checksums, Failure, FileError, RunDirectory};
 use indicatif::ProgressBar;
 use run::any_world::ProcessingOrder;
-use run::docking::answers::FieldAnswers;
-use run::docking::renderer::DockingRenderer;
-use run::{AnyWorld, DockingMission, Expectation, FrameJobs, Options, ScenarioSource, World as _, worlds};
-use scenario::DockingScenario;
+use run::{AnyWorld, Expectation, FrameJobs, Options, ScenarioSource, World as _, worlds};
 use serde_json::{Map, Value, json};
 
 use super::Answer;

@@ -96,6 +96,7 @@ pub fn main() -> ExitCode {
 /// Runs the command with the given words, starting with the command name, and returns the exit status: 0
 /// success, 1 negative result, 2 usage error, invalid input, or a pipeline that does not start.
 pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
+    crate::register_worlds();
     let words: Vec<OsString> = words.into_iter().collect();
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,

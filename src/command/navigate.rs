@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use contract::conformance::Violation;
+use far_range::FarRangeScenario;
 use files::Failure;
 use navigate::{
     Campaign, EVERY_S, Estimator, KnowledgeConfig, MeasurementSource, NavigationResult, NavigatorChoice,
@@ -11,7 +12,6 @@ use navigate::{
 };
 use pipeline::external::{DEFAULT_MEMORY_MB, Sandbox};
 use run::{AnyWorld, ScenarioSource};
-use scenario::FarRangeScenario;
 use scenario::run_file::ScenarioFile;
 use serde_json::json;
 

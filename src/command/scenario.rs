@@ -6,10 +6,10 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Subcommand;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use files::Failure;
 use run::pipeline_choice::PipelineChoice;
-use run::worlds::FIRST;
-use run::{AnyWorld, Options, ScenarioSource, json_schema, world_by_name};
+use run::{AnyWorld, Options, ScenarioSource, first_world, json_schema, world_by_name, worlds};
 use scenario::{BUILT_IN, CAMERAS};
 use serde_json::json;
 
@@ -35,18 +35,24 @@ pub(super) enum ScenarioCommand {
     },
     /// Print the JSON Schema of scenario files
     Schema {
-        /// Only of this world: far_range or docking
-        #[arg(long, value_name = "WORLD", value_parser = world_by_name)]
+        /// Only of this world
+        #[arg(long, value_name = "WORLD", value_parser = world_parser())]
         world: Option<&'static dyn AnyWorld>,
     },
     /// Write a commented starting point to a new file
     New {
         /// TOML file to write
         file: PathBuf,
-        /// World of the scenario: far_range or docking
-        #[arg(long, value_name = "WORLD", value_parser = world_by_name, default_value = FIRST.code())]
-        world: &'static dyn AnyWorld,
+        /// World of the scenario; default: the first of the possible ones
+        #[arg(long, value_name = "WORLD", value_parser = world_parser())]
+        world: Option<&'static dyn AnyWorld>,
     },
+}
+
+/// Returns the parser of the code of a world.
+fn world_parser() -> impl TypedValueParser<Value = &'static dyn AnyWorld> {
+    let codes: Vec<&str> = worlds().into_iter().map(|world| world.code()).collect();
+    PossibleValuesParser::new(codes).try_map(|code| world_by_name(&code))
 }
 
 pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Answer, Failure> {
@@ -66,7 +72,7 @@ pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Ans
                 .map_err(|error| Failure::Usage(format!("the schema cannot be written: {error}")))?;
             output.answer(&schema, text)
         }
-        ScenarioCommand::New { file, world } => new(file, *world, output),
+        ScenarioCommand::New { file, world } => new(file, world.map_or_else(first_world, Ok)?, output),
     }?;
     Ok(Answer::Yes)
 }

@@ -1,21 +1,16 @@
 //! `boresight show`: frames of a run or dataset as one annotated picture.
 
-mod annotated_frame;
-mod docking;
-mod far_range;
 mod picture_file;
-mod source;
+
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use files::Failure;
-use run::{DockingMission, FarRangeMission, World as _};
 use serde_json::{Value, json};
 use show::{MAX_PANELS, Panel, ShowError, Stretch, encode, picture};
+use view::{AnnotatedFrame, CloseUp, Source, views_of};
 
-use self::annotated_frame::{AnnotatedFrame, PixelSource, display_name};
 use self::picture_file::PictureFile;
-use self::source::Source;
 use super::Answer;
 use super::output::Output;
 
@@ -54,23 +49,6 @@ enum ShownArea {
     Target,
 }
 
-/// Function that reads frames of a directory and makes their panels.
-type Panels = fn(&Source, &[u64]) -> Result<Vec<AnnotatedFrame>, Failure>;
-
-/// Presence of a close-up of the target in the panel of a whole frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum CloseUp {
-    Inset,
-    /// No close-up: the target soon fills the frame.
-    None,
-}
-
-/// Worlds whose frames can be drawn: one line each.
-const PANELS: [(&str, Panels, CloseUp); 2] = [
-    (FarRangeMission::CODE, far_range::panels, CloseUp::Inset),
-    (DockingMission::CODE, docking::panels, CloseUp::None),
-];
-
 pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer, Failure> {
     if arguments.frames.len() > MAX_PANELS {
         return Err(undrawn(ShowError::PanelCount(arguments.frames.len())));
@@ -78,15 +56,11 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
     let source = Source::open(&arguments.directory, arguments.measurements.as_deref())?;
     // Rejected before the work begins.
     let file = PictureFile::new(arguments.out.as_deref(), &source.directory, &arguments.frames)?;
-    let (_, panels, close_up) =
-        PANELS.iter().find(|(code, ..)| *code == source.world.code()).ok_or_else(|| {
-            Failure::Usage(format!(
-                "{}: frames of the world {} cannot be drawn",
-                source.name,
-                source.world.code()
-            ))
-        })?;
-    let mut shown = panels(&source, &arguments.frames)?;
+    let views = views_of(source.world.code()).ok_or_else(|| {
+        let code = source.world.code();
+        Failure::Usage(format!("{}: frames of the world {code} cannot be drawn", source.name))
+    })?;
+    let mut shown = (views.panels)(&source, &arguments.frames)?;
     for AnnotatedFrame { panel, frame, .. } in &mut shown {
         panel.stretch = arguments.stretch.unwrap_or(panel.stretch);
         if arguments.view == ShownArea::Target {
@@ -96,7 +70,7 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
                      frame"
                 ))
             })?;
-        } else if *close_up == CloseUp::None {
+        } else if views.close_up == CloseUp::None {
             panel.close_up = None;
         }
     }

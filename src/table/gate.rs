@@ -4,7 +4,7 @@ use gate::{Baseline, FigureReport, FigureVerdict, Flip, GateReport, Pairing};
 use pipeline::external::protocol::harmless;
 use run::figure_by_name;
 
-use crate::table::far_range::{finish, percent, plain_table};
+use view::terminal::{finish, percent, plain_table};
 
 /// Maximum number of changed units that are printed; the JSON contains all of them.
 const MAX_CHANGED_UNITS: usize = 10;

@@ -2,7 +2,7 @@
 use comfy_table::Cell;
 use navigate::{Axis, BoundReport, NavigationBudget, NavigationResult};
 
-use crate::table::far_range::{finish, percent, plain_table};
+use view::terminal::{finish, percent, plain_table};
 
 /// Number of characters of a time to the second.
 const TIME_LENGTH: usize = 19;

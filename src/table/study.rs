@@ -9,7 +9,7 @@ use study::{
     overall,
 };
 
-use crate::table::far_range::{finish, percent, plain_table};
+use view::terminal::{finish, percent, plain_table};
 
 /// Maximum number of parameters in the sensitivity table.
 const MAX_PARAMETERS: usize = 12;

@@ -2,7 +2,7 @@
 //! Markdown.
 use visibility::{Status, Verdict, VisibilityReport, digits};
 
-use crate::table::far_range::{finish, plain_table};
+use view::terminal::{finish, plain_table};
 
 /// Approximate number of points of a curve that are shown.
 const CURVE_POINTS: usize = 9;
@@ -230,5 +230,5 @@ fn thinned<T>(points: &[T]) -> impl Iterator<Item = &T> {
 }
 
 fn percent(share: f64) -> String {
-    crate::table::far_range::percent(share)
+    view::terminal::percent(share)
 }

@@ -319,6 +319,7 @@ impl Dataset<BlinkingDot> for Files {
 /// status.
 fn boresight(words: &str) -> u8 {
     static REGISTERED: Once = Once::new();
+    boresight::register_worlds();
     REGISTERED.call_once(|| register(&ErasedWorld::<BlinkingDot>::NEW));
     boresight::command::run_words(["boresight"].into_iter().chain(words.split(' ')).map(Into::into))
 }

@@ -1,10 +1,12 @@
 //! Ranges of numbers in users' files: each is declared once, is contained in the schema, and agrees with the
 //! documentation.
 
-use boresight::files::{CameraFile, docking::SetupFile};
+use boresight::docking::DockingScenario;
+use boresight::docking::rows::SetupFile;
+use boresight::far_range::FarRangeScenario;
+use boresight::far_range::rows::CameraFile;
+use boresight::run::first_world;
 use boresight::run::json_schema;
-use boresight::run::worlds::FIRST;
-use boresight::scenario::{DockingScenario, FarRangeScenario};
 use boresight::study::StudyFile;
 use boresight::visibility::RequirementFile;
 use schemars::schema_for;
@@ -138,7 +140,8 @@ fn every_angle_is_within_ten_turns() {
 
 #[test]
 fn the_schema_of_scenarios_has_the_ranges() {
-    let schema = json_schema(Some(FIRST)).to_value();
+    boresight::register_worlds();
+    let schema = json_schema(Some(first_world().unwrap())).to_value();
     let gain = &schema["$defs"]["SensorConfig"]["properties"]["gain_e_per_dn"];
     assert_eq!((gain["minimum"].as_f64(), gain["maximum"].as_f64()), (Some(0.05), Some(1e5)));
     let level = &json_schema(None).to_value()["$defs"]["DriftConfig"]["properties"]["rms_arcsec"];

@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use boresight::files::{format_utc, write_field};
-use boresight::scenario::DOCKING;
+use boresight::docking::STARTING_POINT as DOCKING;
+use boresight::docking::video::write_field;
+use boresight::files::format_utc;
 use contract::conformance;
 use contract::docking::{Docking, DockingSetup, Field, FieldTelemetry};
 use pipeline::docking::{DockingConfig, DockingFactory};

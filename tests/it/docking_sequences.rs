@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use boresight::scenario::DOCKING;
+use boresight::docking::STARTING_POINT as DOCKING;
 use image::GrayImage;
 
 use crate::support::{Bench, figure};

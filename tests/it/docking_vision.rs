@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use boresight::scenario::DOCKING;
+use boresight::docking::STARTING_POINT as DOCKING;
 use contract::PipelineFactory;
 use contract::docking::{Digitiser, DockingSolution, NoPose};
 use pipeline::docking::{DockingConfig, DockingFactory};

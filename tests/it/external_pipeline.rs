@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use boresight::far_range::FarRangeMission;
 use boresight::files::format_utc;
 use boresight::run::World;
-use boresight::run::far_range::FarRangeMission;
 use contract::{
     Calibration, Camera, Direction, FarRange, Frame, ListedStar, PipelineFactory, PixelPoint, Rotation,
     Setup, Telemetry, conformance,

@@ -1,11 +1,10 @@
 //! The written files read with independent readers: astropy, pyarrow, Pillow.
 
+use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow, TelemetryLine};
 use std::process::Command;
 
-use boresight::files::{
-    FrameHeader, ImageFormat, RunDirectory, TableWriter, TanSip, TelemetryRow, TelemetryWriter, parse_utc,
-    write_frame,
-};
+use boresight::far_range::rows::{TelemetryRow, TelemetryWriter};
+use boresight::files::{FrameHeader, ImageFormat, RunDirectory, TableWriter, TanSip, parse_utc, write_frame};
 use contract::{Angle, Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Telemetry, Window};
 use hifitime::Unit;
 use nalgebra::Vector3;
@@ -123,9 +122,9 @@ fn astropy_agrees_with_every_file() {
         for format in [ImageFormat::Fits, ImageFormat::Png] {
             write_frame(&run.frame(number, format), format, &frame, &header).unwrap();
         }
-        telemetry.write(&row).unwrap();
-        frames.write([frame_truth(&row, camera)]).unwrap();
-        objects.write(stars(number, &camera)).unwrap();
+        telemetry.line(&TelemetryLine::from(&row)).unwrap();
+        frames.write([FrameTruthRow(frame_truth(&row, camera))]).unwrap();
+        objects.write(stars(number, &camera).into_iter().map(ObjectTruthRow)).unwrap();
     }
     telemetry.finish().unwrap();
     frames.finish().unwrap();

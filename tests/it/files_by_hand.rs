@@ -1,13 +1,12 @@
 //! Files read and written only by their definitions: a mistake shared by the project's writer and reader
 //! would otherwise remain undetected.
 
+use boresight::far_range::rows::TelemetryLine;
 use std::collections::BTreeMap;
 use std::fs;
 
-use boresight::files::{
-    FrameHeader, ImageFormat, TelemetryRow, TelemetryWriter, parse_utc, read_frame, read_telemetry,
-    write_frame,
-};
+use boresight::far_range::rows::{TelemetryRow, TelemetryWriter, read_telemetry};
+use boresight::files::{FrameHeader, ImageFormat, parse_utc, read_frame, write_frame};
 use contract::{Frame, Rotation, Telemetry};
 use nalgebra::Vector3;
 use tempfile::tempdir;
@@ -46,7 +45,7 @@ fn the_telemetry_table_defines_the_measured_frames() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("telemetry.csv");
     let mut writer = TelemetryWriter::create(&path).unwrap();
-    writer.write(&row()).unwrap();
+    writer.line(&TelemetryLine::from(&row())).unwrap();
     writer.finish().unwrap();
     let text = fs::read_to_string(&path).unwrap();
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();

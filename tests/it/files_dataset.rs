@@ -1,12 +1,11 @@
 //! A dataset from writing to reading, and the invalid inputs that are rejected.
 
+use boresight::far_range::rows::TelemetryLine;
 use std::fs;
 use std::path::Path;
 
-use boresight::files::{
-    CameraFile, Dataset, FrameHeader, ImageFormat, RunDirectory, TelemetryRow, TelemetryWriter, parse_utc,
-    write_frame,
-};
+use boresight::far_range::rows::{CameraFile, Dataset, TelemetryRow, TelemetryWriter};
+use boresight::files::{FrameHeader, ImageFormat, RunDirectory, parse_utc, write_frame};
 use contract::{
     AttitudeKnowledge, Calibration, Camera, Frame, Mounting, PsfCalibration, Readout, Rotation, Telemetry,
     Window,
@@ -85,7 +84,7 @@ fn dataset(format: ImageFormat) -> (TempDir, RunDirectory) {
     let mut telemetry = TelemetryWriter::create(&run.telemetry()).unwrap();
     for number in NUMBERS {
         let row = row(number, format);
-        telemetry.write(&row).unwrap();
+        telemetry.line(&TelemetryLine::from(&row)).unwrap();
         let header = FrameHeader {
             time: row.telemetry.time,
             exposure_s: row.telemetry.exposure_s,

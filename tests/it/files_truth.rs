@@ -1,5 +1,6 @@
 //! Truth tables: exact round trips, damage, and the schema.
 
+use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -84,6 +85,10 @@ fn write<R: Row>(frames: impl IntoIterator<Item = Vec<R>>) -> (TempDir, PathBuf)
     (directory, path)
 }
 
+fn rows_of(objects: Vec<ObjectTruth>) -> Vec<ObjectTruthRow> {
+    objects.into_iter().map(ObjectTruthRow).collect()
+}
+
 fn message<R: Row>(path: &Path) -> String {
     let first_error = |reader: TableReader<R>| reader.map(|frame| frame.err()).find_map(|error| error);
     let error = match TableReader::<R>::open(path) {
@@ -96,9 +101,12 @@ fn message<R: Row>(path: &Path) -> String {
 #[test]
 fn frames_round_trip_bit_for_bit() {
     let frames: Vec<_> = (0..300).map(|i| frame(7 * i)).collect();
-    let (_directory, path) = write(frames.iter().cloned().map(|frame| vec![frame]));
-    let back: Vec<_> =
-        TableReader::<FrameTruth>::open(&path).unwrap().flat_map(|frame| frame.unwrap().1).collect();
+    let (_directory, path) = write(frames.iter().cloned().map(|frame| vec![FrameTruthRow(frame)]));
+    let back: Vec<_> = TableReader::<FrameTruthRow>::open(&path)
+        .unwrap()
+        .flat_map(|frame| frame.unwrap().1)
+        .map(|row| row.0)
+        .collect();
     assert_eq!(back, frames);
 }
 
@@ -108,12 +116,12 @@ fn objects_round_trip_bit_for_bit_over_many_batches() {
     let objects = |frame: u64| {
         if frame.is_multiple_of(3) { vec![] } else { (0..200).map(|i| object(frame, i)).collect() }
     };
-    let (_directory, path) = write((0..150).map(objects));
-    let mut reader = TableReader::<ObjectTruth>::open(&path).unwrap();
+    let (_directory, path) = write((0..150).map(|frame| rows_of(objects(frame))));
+    let mut reader = TableReader::<ObjectTruthRow>::open(&path).unwrap();
     for number in (0..150).filter(|number| number % 5 != 1) {
         let (back, expected) = (reader.rows_of(number).unwrap(), objects(number));
         assert_eq!(back.len(), expected.len());
-        for (back, expected) in back.into_iter().zip(expected) {
+        for (ObjectTruthRow(back), expected) in back.into_iter().zip(expected) {
             // A direction is converted to degrees and back: a few roundings of 360°, 1e-15 rad each.
             if let (Some(a), Some(b)) = (&back.astrometric, &expected.astrometric) {
                 assert!(a.separation(b).radians() < 1e-14);
@@ -127,20 +135,20 @@ fn objects_round_trip_bit_for_bit_over_many_batches() {
 
 #[test]
 fn an_empty_table_is_a_table() {
-    let (_directory, path) = write::<ObjectTruth>([]);
-    assert_eq!(TableReader::<ObjectTruth>::open(&path).unwrap().count(), 0);
+    let (_directory, path) = write::<ObjectTruthRow>([]);
+    assert_eq!(TableReader::<ObjectTruthRow>::open(&path).unwrap().count(), 0);
 }
 
 #[test]
 fn a_table_is_never_overwritten() {
-    let (_directory, path) = write([vec![frame(1)]]);
-    assert!(matches!(TableWriter::<FrameTruth>::create(&path), Err(FileError::OutputTaken { .. })));
+    let (_directory, path) = write([vec![FrameTruthRow(frame(1))]]);
+    assert!(matches!(TableWriter::<FrameTruthRow>::create(&path), Err(FileError::OutputTaken { .. })));
 }
 
 #[test]
 fn frames_that_go_back_are_named_by_row() {
-    let (_directory, path) = write([vec![object(4, 0), object(3, 0)]]);
-    let message = message::<ObjectTruth>(&path);
+    let (_directory, path) = write([rows_of(vec![object(4, 0), object(3, 0)])]);
+    let message = message::<ObjectTruthRow>(&path);
     assert!(message.contains("row 1: `frame` is `3`, expected 4 or more"), "{message}");
 }
 
@@ -148,10 +156,11 @@ fn frames_that_go_back_are_named_by_row() {
 fn a_number_that_is_not_one_is_named_by_row() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("table.parquet");
-    let columns = ObjectTruth::columns(&[object(1, 0), ObjectTruth { snr: f64::NAN, ..object(2, 0) }]);
+    let columns =
+        ObjectTruthRow::columns(&rows_of(vec![object(1, 0), ObjectTruth { snr: f64::NAN, ..object(2, 0) }]));
     let options = TableOptions { is_checked: false, ..TableOptions::default() };
     write_table(fs::File::create_new(&path).unwrap(), &path, &columns, options).unwrap();
-    let message = message::<ObjectTruth>(&path);
+    let message = message::<ObjectTruthRow>(&path);
     assert!(message.contains("row 1: `snr` is `NaN`, expected a finite number"), "{message}");
 }
 
@@ -160,7 +169,7 @@ fn a_number_that_is_not_one_is_not_written() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("table.parquet");
     let mut writer = TableWriter::create(&path).unwrap();
-    let rows = vec![object(1, 0), ObjectTruth { snr: f64::NAN, ..object(1, 1) }];
+    let rows = rows_of(vec![object(1, 0), ObjectTruth { snr: f64::NAN, ..object(1, 1) }]);
     let written = writer.write(rows).and_then(|()| writer.finish());
     let message = written.unwrap_err().to_string();
     assert!(message.contains("column `snr` is not a finite number"), "{message}");
@@ -199,26 +208,26 @@ impl Row for SingleColumn {
 #[test]
 fn a_missing_column_and_one_of_another_type_are_named() {
     let (_directory, path) = write([vec![MistypedColumn]]);
-    let wrong_type = message::<FrameTruth>(&path);
+    let wrong_type = message::<FrameTruthRow>(&path);
     assert!(wrong_type.contains("`frame` is `Float64`, expected type UInt64"), "{wrong_type}");
     let (_directory, path) = write([vec![SingleColumn]]);
-    let missing = message::<FrameTruth>(&path);
+    let missing = message::<FrameTruthRow>(&path);
     assert!(missing.contains("column `group` is missing; found `frame`"), "{missing}");
 }
 
 #[test]
 fn unrequested_columns_are_passed_over() {
-    let (_directory, path) = write([vec![object(1, 0), object(1, 1)]]);
+    let (_directory, path) = write([rows_of(vec![object(1, 0), object(1, 1)])]);
     assert_eq!(TableReader::<SingleColumn>::open(&path).unwrap().next().unwrap().unwrap().1.len(), 2);
 }
 
 #[test]
 fn a_table_that_is_cut_short_is_an_error() {
-    let (_directory, path) = write([(0..500).map(|i| object(1, i)).collect()]);
+    let (_directory, path) = write([rows_of((0..500).map(|i| object(1, i)).collect())]);
     let bytes = fs::read(&path).unwrap();
     for length in [0, 3, 8, bytes.len() / 2, bytes.len() - 1] {
         fs::write(&path, &bytes[..length]).unwrap();
-        assert!(message::<ObjectTruth>(&path).contains("not a readable Parquet file"));
+        assert!(message::<ObjectTruthRow>(&path).contains("not a readable Parquet file"));
     }
 }
 
@@ -226,7 +235,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(512) })]
     #[test]
     fn no_damage_makes_it_panic(changes in prop::collection::vec((any::<usize>(), any::<u8>()), 1..8), tail: bool) {
-        let (_directory, path) = write([(0..50).map(|i| object(1, i)).collect()]);
+        let (_directory, path) = write([rows_of((0..50).map(|i| object(1, i)).collect())]);
         let mut bytes = fs::read(&path).unwrap();
         for (place, value) in changes {
             // The end of the file holds its metadata, where damage has the largest effect.
@@ -235,7 +244,7 @@ proptest! {
             bytes[place] = value;
         }
         fs::write(&path, bytes).unwrap();
-        if let Ok(reader) = TableReader::<ObjectTruth>::open(&path) {
+        if let Ok(reader) = TableReader::<ObjectTruthRow>::open(&path) {
             let _ = reader.count();
         }
     }

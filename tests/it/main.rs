@@ -24,6 +24,7 @@ mod external_faults;
 mod external_pipeline;
 #[cfg(unix)]
 mod faults;
+mod figures;
 mod files_astropy;
 mod files_by_hand;
 mod files_dataset;

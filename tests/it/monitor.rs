@@ -1,6 +1,7 @@
 //! `boresight monitor`: answers of the server, its access rules, and its survival of faulty clients. Without
 //! a browser.
 
+use boresight::far_range::rows::FrameTruthRow;
 use std::io::{Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpStream};
 use std::sync::mpsc;
@@ -110,6 +111,7 @@ impl Answer {
 
 /// Feed of a built-in scenario, run with its built-in pipeline.
 fn live(name: &str, frames: std::ops::Range<u64>) -> Feed {
+    boresight::register_worlds();
     let source = ScenarioSource::read(name).unwrap();
     let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 4000, sandbox: None };
     let scratch = std::env::temp_dir();
@@ -119,6 +121,7 @@ fn live(name: &str, frames: std::ops::Range<u64>) -> Feed {
 }
 
 fn replay(directory: std::path::PathBuf) -> Feed {
+    boresight::register_worlds();
     let source = ScenarioSource::read(&directory.join("run.toml").to_string_lossy()).unwrap();
     Feed::new(source.prepare(Options::default()).unwrap(), Measurements::Replay(directory)).unwrap()
 }
@@ -197,8 +200,8 @@ fn a_run_that_is_damaged_is_not_replayed() {
     bench.write("run/measurements.csv", answers);
     bench.unseal("run");
     let path = bench.path("run/truth/frames.parquet");
-    let (_, mut truth) = TableReader::<FrameTruth>::open(&path).unwrap().next().unwrap().unwrap();
-    truth[0].frame = u64::MAX;
+    let (_, mut truth) = TableReader::<FrameTruthRow>::open(&path).unwrap().next().unwrap().unwrap();
+    truth[0].0.frame = u64::MAX;
     std::fs::remove_file(&path).unwrap();
     let mut table = TableWriter::create(&path).unwrap();
     table.write(truth).unwrap();

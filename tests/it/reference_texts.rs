@@ -1,11 +1,12 @@
 //! Every command, option, scenario key and column has a text: the reference pages of the book are made of
 //! them.
 
-use boresight::files::{FieldDeclaration, csv_tables, parquet_tables};
+use boresight::files::FieldDeclaration;
 use boresight::gate::row_columns;
 use boresight::navigate;
 use boresight::study::case_columns;
 use boresight::visibility;
+use boresight::{csv_tables, parquet_tables};
 use serde_json::Value;
 
 use crate::support::Bench;

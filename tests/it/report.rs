@@ -4,8 +4,9 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use boresight::report::{Block, FarRangeRun, FrameDetail, far_range_page};
-use boresight::score::Verdict;
+use boresight::far_range::scoring::Verdict;
+use boresight::far_range_views::report::{FarRangeRun, FrameDetail, far_range_page};
+use boresight::report::page::Block;
 use contract::Angle;
 use serde_json::Value;
 
@@ -88,6 +89,7 @@ impl PageText {
             shown += if script.contains("report-data") { "" } else { script };
             shown += text;
         }
+        boresight::register_worlds();
         let figures = run::worlds().into_iter().flat_map(|world| world.figure_names());
         for key in figures.chain(CAUSES.map(str::to_owned)).filter(|key| key.contains('_')) {
             let found = shown

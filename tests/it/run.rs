@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use boresight::files::{format_utc, parse_utc, read_telemetry};
+use boresight::far_range::rows::read_telemetry;
+use boresight::far_range::scoring::{ARGON_TABLE_2, names};
+use boresight::far_range::simulator;
+use boresight::files::{format_utc, parse_utc};
 use boresight::run::ScenarioSource;
-use boresight::run::far_range::simulator;
-use boresight::score::{ARGON_TABLE_2, names};
 use hifitime::Unit;
 use serde_json::Value;
 use sim::truth::{ObjectKind, ObjectTruth};
@@ -332,6 +333,7 @@ fn the_bare_command_runs_argon_into_a_numbered_directory() {
 
 #[test]
 fn the_schedule_of_argon_is_that_of_table_2() {
+    boresight::register_worlds();
     let source = ScenarioSource::read("argon").unwrap();
     let simulator = simulator(&source, source.typed("argon").unwrap()).unwrap();
     let schedule = simulator.schedule();

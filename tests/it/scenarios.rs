@@ -1,7 +1,8 @@
 //! `boresight scenario`: the built-in scenarios are valid, the schema describes the content of scenarios, and
 //! a new scenario runs.
 
-use boresight::scenario::{BUILT_IN, STARTING_POINT};
+use boresight::far_range::STARTING_POINT;
+use boresight::scenario::BUILT_IN;
 use serde_json::{Value, json};
 
 use crate::support::Bench;

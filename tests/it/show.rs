@@ -282,10 +282,10 @@ fn docking_features_are_drawn_at_their_positions_in_the_table() {
     assert_eq!((&frame["verdict"], &frame["stretch"]), (&"success".into(), &"full".into()));
     let panel = PanelLocation(frame["panel"].clone());
     let path = bench.path("run/features.parquet");
-    let rows: Vec<files::docking::FeatureRow> =
+    let rows: Vec<docking::rows::FeatureRow> =
         files::TableReader::open(&path).unwrap().flat_map(|rows| rows.unwrap().1).collect();
     let rows: Vec<_> = rows.into_iter().filter(|row| row.field == 21179).collect();
-    let point = |row: &files::docking::FeatureRow| PixelPoint::new(row.position[0], row.position[1]);
+    let point = |row: &docking::rows::FeatureRow| PixelPoint::new(row.position[0], row.position[1]);
     let cross = rows.iter().find(|row| row.kind == "cross").unwrap();
     let at = panel.picture_position(point(cross));
     check_at(panel.centre(&image, ORANGE, at, 16.0), at, "cross");

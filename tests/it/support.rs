@@ -1,6 +1,8 @@
 //! Common parts of the end-to-end suites: the command in a separate directory, its output, and the truth that
 //! it writes.
 
+use boresight::docking::rows::FieldTruthRow;
+use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
@@ -132,16 +134,23 @@ impl Bench {
     /// Returns the truth about each frame of a run directory.
     pub(crate) fn frames(&self, run: &str) -> Vec<FrameTruth> {
         self.table(&format!("{run}/truth/frames.parquet"))
+            .into_iter()
+            .map(|row: FrameTruthRow| row.0)
+            .collect()
     }
 
     /// Returns the truth about each field of a docking run directory.
     pub(crate) fn fields(&self, run: &str) -> Vec<FieldTruth> {
-        self.table(&format!("{run}/truth/fields.parquet"))
+        let rows: Vec<FieldTruthRow> = self.table(&format!("{run}/truth/fields.parquet"));
+        rows.into_iter().map(FieldTruth::from).collect()
     }
 
     /// Returns the truth about each object in each frame of a run directory.
     pub(crate) fn objects(&self, run: &str) -> Vec<ObjectTruth> {
         self.table(&format!("{run}/truth/objects.parquet"))
+            .into_iter()
+            .map(|row: ObjectTruthRow| row.0)
+            .collect()
     }
 
     fn table<R: Row>(&self, name: &str) -> Vec<R> {

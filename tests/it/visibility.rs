@@ -4,8 +4,8 @@
 
 use std::path::Path;
 
+use boresight::far_range::FarRangeScenario;
 use boresight::run::ScenarioSource;
-use boresight::scenario::FarRangeScenario;
 use boresight::statistics::clopper_pearson;
 use boresight::visibility::{
     Bench as TestBench, CameraConfig, CameraModel, Curves, Demand, Design, DetectionRule, MotionGuidance,
@@ -43,6 +43,7 @@ fn requirements(lines: &str) -> Requirements {
 }
 
 fn argon() -> FarRangeScenario {
+    boresight::register_worlds();
     ScenarioSource::read("argon").unwrap().typed::<FarRangeScenario>("a test").unwrap().clone()
 }
 

@@ -11,7 +11,7 @@ use crate::{AtomicFile, FileError};
 use config::toml_file;
 
 /// A table that is stored as a file of its own.
-pub(crate) trait TomlTable: Serialize + DeserializeOwned {
+pub trait TomlTable: Serialize + DeserializeOwned {
     /// Checks every value.
     fn check(&self) -> Result<(), OutOfRange>;
 }
@@ -21,7 +21,7 @@ pub(crate) trait TomlTable: Serialize + DeserializeOwned {
 /// # Errors
 /// [`FileError::Io`]; [`FileError::Toml`] with line and column for invalid TOML, for a wrong, unknown or
 /// missing field, and for a value that is not allowed.
-pub(crate) fn read<T: TomlTable>(path: &Path) -> Result<T, FileError> {
+pub fn read<T: TomlTable>(path: &Path) -> Result<T, FileError> {
     let text = toml_file::read_text(path).map_err(|source| FileError::io(path, "read", source))?;
     let table: T = toml_file::parse(path, &text).map_err(FileError::Toml)?;
     table.check().map_err(|error| FileError::Toml(toml_file::out_of_range(path, &text, &error)))?;
@@ -33,7 +33,7 @@ pub(crate) fn read<T: TomlTable>(path: &Path) -> Result<T, FileError> {
 /// # Errors
 /// [`FileError::OutputTaken`] if the file exists; [`FileError::Io`] if it cannot be written;
 /// [`FileError::Value`] for a value that could not be read back.
-pub(crate) fn write<T: TomlTable>(table: &T, path: &Path) -> Result<(), FileError> {
+pub fn write<T: TomlTable>(table: &T, path: &Path) -> Result<(), FileError> {
     table.check().map_err(|OutOfRange { path: key, value, expected }| {
         FileError::value(path, FileLocation::Whole, key, value, expected)
     })?;

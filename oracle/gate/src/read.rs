@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use config::toml_file;
+use far_range::rows::read_telemetry;
 use files::sha256::{hex, sha256_hex};
-use files::{Checksums, Failure, FileError, file_sha256, read_telemetry, table_sha256};
+use files::{Checksums, Failure, FileError, file_sha256, table_sha256};
 use navigate::{TABLE_FILE, navigation_terms, read_navigation};
 use run::{figure_by_name, world_of_run, worlds};
 use scenario::AttitudeChoice;

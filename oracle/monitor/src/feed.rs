@@ -2,11 +2,12 @@
 use std::any::Any;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::{PoisonError, RwLock};
 
 use axum::body::Bytes;
 use files::{Checksums, Failure, Row, TableReader};
 use hifitime::Epoch;
-use run::{AnyFactory, AnyMission, DockingMission, FarRangeMission, World};
+use run::{AnyFactory, AnyMission};
 use serde_json::Value;
 
 use crate::ground::GroundTrack;
@@ -16,23 +17,22 @@ use crate::session::{PictureOrder, Session};
 /// Maximum number of frames of a monitored run: the data of each are kept, some kilobytes.
 pub const MAX_FRAMES: u64 = 50_000;
 
-/// Takes a scenario if it belongs to a certain world.
-type WorldCast = fn(Box<dyn Any>) -> Result<Box<dyn MonitoredWorld>, Box<dyn Any>>;
+/// Takes a mission if it belongs to a certain world.
+pub type WorldCast = fn(Box<dyn Any>) -> Result<Box<dyn MonitoredWorld>, Box<dyn Any>>;
 
-/// Worlds that the page shows, one line each.
-const WORLDS: [(&str, WorldCast); 2] = [
-    (FarRangeMission::CODE, cast_world::<FarRangeMission>),
-    (DockingMission::CODE, cast_world::<DockingMission>),
-];
+/// Worlds that the page shows, by their codes.
+static WORLDS: RwLock<Vec<(&str, WorldCast)>> = RwLock::new(Vec::new());
 
-fn cast_world<W: MonitoredWorld + 'static>(
-    prepared: Box<dyn Any>,
-) -> Result<Box<dyn MonitoredWorld>, Box<dyn Any>> {
-    prepared.downcast::<W>().map(|prepared| prepared as Box<dyn MonitoredWorld>)
+/// Registers a world that the page shows, for the rest of the process.
+pub fn register(code: &'static str, cast: WorldCast) {
+    let mut worlds = WORLDS.write().unwrap_or_else(PoisonError::into_inner);
+    if worlds.iter().all(|(known, _)| *known != code) {
+        worlds.push((code, cast));
+    }
 }
 
 /// A scenario of a world that the page shows.
-pub(super) trait MonitoredWorld: Send + Sync {
+pub trait MonitoredWorld: Send + Sync {
     /// Returns the data that live as long as the monitor.
     fn context(&self, measurements: &Measurements) -> Result<MonitorContext, Failure>;
 
@@ -55,13 +55,13 @@ pub(super) trait MonitoredWorld: Send + Sync {
 }
 
 /// Calls a drawing function for each ordered picture in turn.
-pub(super) type Serve<'a> =
+pub type Serve<'a> =
     &'a dyn Fn(&mut dyn FnMut(&PictureOrder) -> Result<Bytes, Failure>) -> Result<(), Failure>;
 
 /// A monitored scenario with its measurements.
 pub struct Feed {
-    pub(super) world: Box<dyn MonitoredWorld>,
-    pub(super) measurements: Measurements,
+    pub(crate) world: Box<dyn MonitoredWorld>,
+    pub(crate) measurements: Measurements,
 }
 
 impl Feed {
@@ -71,13 +71,15 @@ impl Feed {
     /// [`Failure::Usage`] for a world that the page does not show.
     pub fn new(prepared: Box<dyn AnyMission>, measurements: Measurements) -> Result<Self, Failure> {
         let mut prepared = prepared.into_any();
-        for (_, take) in WORLDS {
-            match take(prepared) {
+        let worlds = WORLDS.read().unwrap_or_else(PoisonError::into_inner);
+        for (_, cast) in worlds.iter() {
+            match cast(prepared) {
                 Ok(world) => return Ok(Self { world, measurements }),
                 Err(other) => prepared = other,
             }
         }
-        let worlds = WORLDS.map(|(code, _)| code).join(" and ");
+        let codes: Vec<&str> = worlds.iter().map(|(code, _)| *code).collect();
+        let worlds = codes.join(" and ");
         Err(Failure::Usage(format!("the monitor supports only the worlds {worlds}")))
     }
 }
@@ -99,7 +101,7 @@ pub enum Measurements {
 
 impl Measurements {
     /// Returns the name of the mode on the page.
-    pub(super) fn mode(&self) -> &'static str {
+    pub fn mode(&self) -> &'static str {
         match self {
             Self::Live { .. } => "live",
             Self::Replay(_) => "replay",
@@ -108,15 +110,18 @@ impl Measurements {
 }
 
 /// Data of a feed that live as long as the monitor.
-pub(super) struct MonitorContext {
-    pub(super) ground: Option<GroundTrack>,
-    pub(super) stretch: Stretch,
-    pub(super) frames: Range<u64>,
+pub struct MonitorContext {
+    /// Orbit of the spacecraft; `None` if there is none.
+    pub ground: Option<GroundTrack>,
+    /// Grey levels of the pictures.
+    pub stretch: Stretch,
+    /// Frames of the session.
+    pub frames: Range<u64>,
 }
 
 /// Returns the frames of a live run, or those of a run directory. The frames of a directory must be
 /// consecutive, as those of a run are.
-pub(super) fn frames<R: Row>(measurements: &Measurements, table: &str) -> Result<Range<u64>, Failure> {
+pub fn frames<R: Row>(measurements: &Measurements, table: &str) -> Result<Range<u64>, Failure> {
     let frames = match measurements {
         Measurements::Live { frames, .. } => frames.clone(),
         Measurements::Replay(directory) => {
@@ -159,6 +164,6 @@ fn numbers<R: Row>(path: &Path) -> Result<Range<u64>, Failure> {
 }
 
 /// Returns the path if the file exists.
-pub(super) fn optional(path: &Path) -> Option<PathBuf> {
+pub fn optional(path: &Path) -> Option<PathBuf> {
     path.is_file().then(|| path.to_owned())
 }

@@ -2,18 +2,9 @@
 
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
-use sim::docking::DockingSimulator;
 use sim::truth::{Trajectory, clock, ephemeris, geographic};
 
 use crate::report::Ground;
-
-/// Inclination of the station's orbit, degrees: that of the International Space Station.
-const STATION_INCLINATION_DEG: f64 = 51.6;
-/// Radius of the station's orbit, km, for the altitude in early 2004, about 370 km. Only the orbital period
-/// depends on it.
-const STATION_RADIUS_KM: f64 = 6748.0;
-/// GM of the Earth, km³/s².
-const GM_KM3_S2: f64 = sim::truth::EARTH_GM_KM3_S2;
 
 /// Time span of the drawn track before and after a frame, s, and its step, s.
 const REACH_S: f64 = 3000.0;
@@ -21,7 +12,7 @@ const STEP_S: f64 = 60.0;
 
 /// Source of a spacecraft's ground track.
 #[derive(Debug, Clone)]
-pub(super) enum GroundTrack {
+pub enum GroundTrack {
     /// Trajectory of the scenario's chaser.
     Chaser(Box<Trajectory>),
     /// A circular orbit.
@@ -30,55 +21,23 @@ pub(super) enum GroundTrack {
 
 /// A circular orbit: at `epoch` the spacecraft is in the direction `radial` and moves along `ahead`.
 #[derive(Debug, Clone)]
-pub(super) struct CircularOrbit {
-    epoch: Epoch,
-    radial: Vector3<f64>,
-    ahead: Vector3<f64>,
-    rate_rad_s: f64,
+pub struct CircularOrbit {
+    /// Time at which the spacecraft is in the direction `radial`.
+    pub epoch: Epoch,
+    /// Unit vector from the centre of the Earth to the spacecraft at `epoch`, ICRS axes.
+    pub radial: Vector3<f64>,
+    /// Unit vector of its motion at `epoch`, ICRS axes.
+    pub ahead: Vector3<f64>,
+    /// Radius, km.
+    pub radius_km: f64,
+    /// Mean motion, rad/s.
+    pub rate_rad_s: f64,
 }
 
 impl GroundTrack {
-    /// Returns an orbit for a docking scenario, which defines none: a circular orbit with an inclination of
-    /// 51.6° and an altitude of about 370 km, on which the direction of the Sun at the start of the scenario
-    /// is that of the scene. The target is docked to at the aft end: y3 points backwards along the track, y2
-    /// to the zenith. Of the two possible nodes the one with the smaller right ascension is taken.
-    ///
-    /// Returns `None` on the night side, where the scene has no Sun, and if no such orbit has the Sun in this
-    /// direction.
-    pub(super) fn station(simulator: &DockingSimulator) -> Option<Self> {
-        let moment = simulator.field_state(0).ok()?;
-        let towards = moment.lighting.sun?.towards.normalize();
-        let sun = sun_direction(moment.time)?;
-        let (sin_i, cos_i) = libm::sincos(STATION_INCLINATION_DEG.to_radians());
-        // Normal of the orbit N = (sin i sin Ω, −sin i cos Ω, cos i), and y1 = −N: N · sun = −s1.
-        let sun_across = -towards.x;
-        let equatorial = (sun.x * sun.x + sun.y * sun.y).sqrt();
-        let sine = (sun_across - cos_i * sun.z) / (sin_i * equatorial);
-        if sine.abs() > 1.0 {
-            return None;
-        }
-        // N · sun = sin i · equatorial · sin(Ω − RA) + cos i · sun_z
-        let raan = libm::atan2(sun.y, sun.x) + libm::asin(sine);
-        let (sin_node, cos_node) = libm::sincos(raan);
-        let normal = Vector3::new(sin_i * sin_node, -sin_i * cos_node, cos_i);
-        let node = Vector3::new(cos_node, sin_node, 0.0);
-        let quarter = normal.cross(&node);
-        // Radial · sun = s2 and ahead · sun = −s3 give the angle in the orbital plane by which the spacecraft
-        // is ahead of the Sun.
-        let sun_angle = libm::atan2(sun.dot(&quarter), sun.dot(&node));
-        let (sin_u, cos_u) = libm::sincos(sun_angle + libm::atan2(towards.z, towards.y));
-        let rate_rad_s = (GM_KM3_S2 / (STATION_RADIUS_KM * STATION_RADIUS_KM * STATION_RADIUS_KM)).sqrt();
-        Some(Self::Circular(CircularOrbit {
-            epoch: moment.time,
-            radial: node * cos_u + quarter * sin_u,
-            ahead: quarter * cos_u - node * sin_u,
-            rate_rad_s,
-        }))
-    }
-
     /// Returns the sub-satellite point and the subsolar point; `None` outside the time span of the Earth's
     /// ephemeris.
-    pub(super) fn ground_at(&self, time: Epoch) -> Option<Ground> {
+    pub fn ground_at(&self, time: Epoch) -> Option<Ground> {
         Some(Ground {
             spacecraft: point(time, &self.position_km(time)),
             sun: point(time, &sun_direction(time)?),
@@ -87,7 +46,7 @@ impl GroundTrack {
 
     /// Returns the ground track from 50 minutes before to 50 minutes after a time: longitude and latitude,
     /// degrees.
-    pub(super) fn path(&self, time: Epoch) -> Vec<[f64; 2]> {
+    pub fn path(&self, time: Epoch) -> Vec<[f64; 2]> {
         let steps = (REACH_S / STEP_S) as i32;
         (-steps..=steps)
             .map(|step| {
@@ -97,53 +56,26 @@ impl GroundTrack {
             .collect()
     }
 
-    /// Position relative to the centre of the Earth, km, ICRS axes; for a circular orbit only its direction
+    /// Returns the position relative to the centre of the Earth, km, ICRS axes; for a circular orbit only its direction
     /// is meaningful.
-    fn position_km(&self, time: Epoch) -> Vector3<f64> {
+    pub fn position_km(&self, time: Epoch) -> Vector3<f64> {
         match self {
             Self::Chaser(trajectory) => trajectory.states_at(time).chaser.position_km,
             Self::Circular(orbit) => {
                 let (sin, cos) = libm::sincos(orbit.rate_rad_s * (time - orbit.epoch).to_seconds());
-                (orbit.radial * cos + orbit.ahead * sin) * STATION_RADIUS_KM
+                (orbit.radial * cos + orbit.ahead * sin) * orbit.radius_km
             }
         }
     }
 }
 
-/// Unit vector from the centre of the Earth towards the Sun, ICRS axes.
-fn sun_direction(time: Epoch) -> Option<Vector3<f64>> {
+/// Returns the unit vector from the centre of the Earth towards the Sun, ICRS axes; `None` outside the time
+/// span of the Earth's ephemeris.
+pub fn sun_direction(time: Epoch) -> Option<Vector3<f64>> {
     ephemeris::earth(clock::tdb_j2000_s(time)).map(|earth| earth.sun_geocentric_km().normalize())
 }
 
 fn point(time: Epoch, position_km: &Vector3<f64>) -> [f64; 2] {
     let (latitude, longitude) = geographic(time, position_km);
     [longitude.degrees(), latitude.degrees()]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use run::docking::renderer::DockingRenderer;
-    use run::{DockingMission, ScenarioSource};
-
-    #[test]
-    fn the_sun_direction_agrees_with_the_scene() {
-        let source = ScenarioSource::read("docking").unwrap();
-        let prepared = DockingMission::new(&source, DockingRenderer::Fast).unwrap();
-        let simulator = prepared.simulator();
-        let track = GroundTrack::station(simulator).unwrap();
-        let elevation = |time| track.position_km(time).normalize().dot(&sun_direction(time).unwrap());
-        let moment = simulator.field_state(0).unwrap();
-        let towards = moment.lighting.sun.unwrap().towards.normalize();
-        // The tolerance covers the rounding of about ten products.
-        assert!((elevation(moment.time) - towards.y).abs() < 1e-12);
-        // From an altitude of 370 km the Sun is visible down to 19° below the horizontal. The scene is lit
-        // until its end, so the orbit must be, too.
-        let end = simulator.field_state(simulator.field_count() - 1).unwrap().time;
-        assert!(elevation(end) > -0.32, "{}", elevation(end));
-        let GroundTrack::Circular(orbit) = &track else { panic!("a circular orbit") };
-        assert!((orbit.ahead.dot(&sun_direction(moment.time).unwrap()) + towards.z).abs() < 1e-12);
-        let normal = orbit.radial.cross(&orbit.ahead);
-        assert!((libm::acos(normal.z).to_degrees() - STATION_INCLINATION_DEG).abs() < 1e-9);
-    }
 }

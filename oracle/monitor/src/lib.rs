@@ -16,15 +16,14 @@
     )
 )]
 
-mod docking;
-mod far_range;
-mod feed;
-mod ground;
-mod plan;
-mod report;
+pub mod feed;
+pub mod ground;
+pub mod plan;
+pub mod report;
 mod server;
-mod session;
+pub mod session;
 
-pub use feed::{Feed, MAX_FRAMES, Measurements};
+pub use feed::{Feed, MAX_FRAMES, Measurements, register};
 pub use server::assets::{BUILD_COMMAND, is_page_built};
+pub use server::overview::camera;
 pub use server::serve;

@@ -14,7 +14,7 @@ const MARGIN: f64 = 0.2;
 
 /// Planned range and range rate, and the permitted range rates.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Plan {
+pub struct Plan {
     range_unit: &'static str,
     /// Points in order of time: frame, range (m or km, see `range_unit`) and range rate, m/s.
     points: Vec<(u64, f64, f64)>,
@@ -26,7 +26,7 @@ impl Plan {
     /// Creates the plan of `frames`; `at` returns range and range rate of a frame. The corridor extends from
     /// the smallest to the largest rate that the plan has within 6 % of a range, widened by a fifth and by
     /// `least_margin_m_s`.
-    pub(super) fn new(
+    pub fn new(
         range_unit: &'static str,
         frames: &std::ops::Range<u64>,
         least_margin_m_s: f64,

@@ -9,12 +9,14 @@ use std::path::Path;
 
 use contract::navigation::{ChaserOrbit, Event, LineOfSightMeasurement};
 use contract::{Body, CameraFrame, ContractError, Direction, Icrs, Rotation};
-use files::{Failure, TableReader, read_telemetry};
+use far_range::FarRangeScenario;
+use far_range::rows::read_telemetry;
+use far_range::rows::{FrameTruthRow, ObjectTruthRow};
+use files::{Failure, TableReader};
 use nalgebra::{Vector2, Vector3};
-use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use serde::{Deserialize, Serialize};
-use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
+use sim::truth::ObjectKind;
 
 use crate::campaign::Campaign;
 use crate::estimator::navigate_with;
@@ -204,15 +206,16 @@ impl Sources {
         let tangent =
             Vector2::new(camera.pixel_width_um, camera.pixel_height_um) * 1e-3 / camera.focal_length_mm;
         let mut targets = HashMap::new();
-        for frame in TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))? {
+        for frame in TableReader::<ObjectTruthRow>::open(&directory.join("truth/objects.parquet"))? {
             let (number, objects) = frame?;
-            let target = objects.into_iter().find(|object| object.kind == ObjectKind::Target);
+            let target =
+                objects.into_iter().map(|row| row.0).find(|object| object.kind == ObjectKind::Target);
             targets.extend(target.map(|target| (number, target)));
         }
         let mut frames = HashMap::new();
         let mut telemetry = read_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
-        for rows in TableReader::<FrameTruth>::open(&directory.join("truth/frames.parquet"))? {
-            for truth in rows?.1 {
+        for rows in TableReader::<FrameTruthRow>::open(&directory.join("truth/frames.parquet"))? {
+            for FrameTruthRow(truth) in rows?.1 {
                 while telemetry.next_if(|row| row.frame < truth.frame).is_some() {}
                 let Some(row) = telemetry.next_if(|row| row.frame == truth.frame) else { continue };
                 let target = targets.get(&truth.frame);

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use contract::navigation::{Event, LineOfSightMeasurement, ManoeuvreReport, NavigationSetup};
 use contract::{AttitudeSource, ContractError, Covariance2, Direction, Rotation};
+use far_range::FarRangeScenario;
 use files::{Checksums, Failure, FileError, FileLocation, refuse_unfinished};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use run::check_world_of_run;
-use scenario::FarRangeScenario;
 use scenario::run_file::{RunFile, ScenarioFile};
 use sim::truth::{Schedule, Trajectory};
 

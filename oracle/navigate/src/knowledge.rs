@@ -8,10 +8,10 @@ use contract::navigation::{
     RelativeElements, ReportedState, SlowDisplacement, SlowError,
 };
 use contract::{AttitudeKnowledge, CameraFrame, ContractError, Icrs, Rotation};
+use far_range::FarRangeScenario;
 use files::Failure;
 use hifitime::{Duration, Epoch};
 use nalgebra::{Vector3, Vector6};
-use scenario::FarRangeScenario;
 use sim::onboard::ScanOrder;
 use sim::truth::{EARTH_GM_KM3_S2, State, Trajectory, clock, ephemeris};
 

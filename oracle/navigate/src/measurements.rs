@@ -4,13 +4,11 @@ use std::path::{Path, PathBuf};
 
 use contract::navigation::LineOfSightMeasurement;
 use contract::{AttitudeSource, ContractError, Covariance2, Direction, Icrs, Solution};
-use files::{
-    Failure, FileError, FileLocation, TelemetryRow, format_utc, line_of, read_measurements, read_origins,
-    read_telemetry,
-};
+use far_range::FarRangeScenario;
+use far_range::rows::{TelemetryRow, read_measurements, read_telemetry};
+use files::{Failure, FileError, FileLocation, format_utc, line_of, read_origins};
 use flight_dynamics::Tdm;
 use hifitime::Epoch;
-use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 
 /// Name of the lines of sight of a run.

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
 use draws::{Effect, Seed, normal};
+use far_range::rows::{MeasurementLine, TelemetryLine};
 use std::fs;
 use std::path::Path;
 
@@ -12,9 +13,9 @@ use contract::{
     AttitudeSource, CameraFrame, Covariance2, Direction, Icrs, Measurement, NoSolution, Outcome, PixelPoint,
     Rotation, Solution, Telemetry,
 };
-use files::{MeasurementWriter, TelemetryRow, TelemetryWriter};
+use far_range::FarRangeScenario;
+use far_range::rows::{MeasurementWriter, TelemetryRow, TelemetryWriter};
 use nalgebra::Vector3;
-use scenario::FarRangeScenario;
 use scenario::run_file::{RunFile, ScenarioFile};
 use sim::truth::Schedule;
 use tempfile::TempDir;
@@ -66,7 +67,7 @@ fn write(directory: &Path, scenario: &FarRangeScenario, count: u64) {
             n_stars: Some(20),
             clusters: Vec::new(),
         };
-        measurements.write(frame, &outcome).unwrap();
+        measurements.line(&MeasurementLine::from_outcome(frame, &outcome)).unwrap();
         let telemetry_of_frame = Telemetry {
             time,
             exposure_s: 0.1,
@@ -74,7 +75,12 @@ fn write(directory: &Path, scenario: &FarRangeScenario, count: u64) {
             velocity_km_s: None,
         };
         telemetry
-            .write(&TelemetryRow { frame, file: None, telemetry: telemetry_of_frame, windows: None })
+            .line(&TelemetryLine::from(&TelemetryRow {
+                frame,
+                file: None,
+                telemetry: telemetry_of_frame,
+                windows: None,
+            }))
             .unwrap();
     }
     measurements.finish().unwrap();
@@ -220,7 +226,8 @@ fn wrong_input_is_refused_by_file_and_field() {
             let path = folder.join("measurements.csv");
             fs::remove_file(&path).unwrap();
             let mut measurements = MeasurementWriter::create(&path).unwrap();
-            measurements.write(0, &Outcome::without_solution(NoSolution::NoTarget)).unwrap();
+            let outcome = Outcome::without_solution(NoSolution::NoTarget);
+            measurements.line(&MeasurementLine::from_outcome(0, &outcome)).unwrap();
             measurements.finish().unwrap();
         },
         &["measurements.csv", "los_j2000_x", "at least one row"],

@@ -3,10 +3,11 @@
 //! A page ([`Page`]) depends only on the files that were read: it contains no clock time and no other input.
 //! Charts are drawn by plotly.js, which the page contains ([`Chart`]), with the numbers in a table behind
 //! each chart. Pictures ([`Picture`]) show frames that the simulator renders anew, one by one
-//! ([`FrameDetail`]). The page needs no network.
+//! . The page needs no network.
 //!
-//! - [`far_range_page`], [`docking_page`]: a run; [`study_page`]: a study; [`visibility_page`]: the
-//!   visibility requirements and their results; [`gate_page`]: the result of a gate.
+//! - [`study_page`]: a study; [`visibility_page`]: the
+//!   visibility requirements and their results; [`gate_page`]: the result of a gate. A world registers the page
+//!   of its runs ([`register`]), made of [`page`], [`charts`] and [`figures`].
 //! - [`read_report`]: the page of any directory of results; [`write_page`] writes it to a file.
 
 #![cfg_attr(
@@ -20,15 +21,11 @@
     )
 )]
 
-mod charts;
-#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
-mod docking;
-#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
-mod far_range;
-mod figures;
+pub mod charts;
+pub mod figures;
 mod gate;
-mod page;
-mod read;
+pub mod page;
+pub mod read;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod study;
 mod visibility;
@@ -37,8 +34,6 @@ mod worlds;
 use std::path::{Path, PathBuf};
 
 pub use charts::chart::Chart;
-pub use docking::{DockingRun, FieldDetail, PortionReport, docking_page};
-pub use far_range::{FarRangeRun, FrameDetail, InjectedRun, far_range_page, kept_budget};
 pub use gate::{FlippedFrames, gate_page};
 pub use page::data_table::DataTable;
 pub use page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
@@ -48,7 +43,8 @@ pub use study::{StudyResult, study_page};
 pub use visibility::{read_visibility, visibility_page};
 
 use self::figures::run_page::run_page;
-use self::read::is_far_range_run;
+pub use self::worlds::{BudgetReport, WorldReport, register};
+
 use self::worlds::world_report;
 use files::{AtomicFile, Checksums, Failure, ReplaceableFile, refuse_unfinished};
 use run::{AnyJudgement, IncompleteRun, world_of_run};
@@ -81,31 +77,30 @@ fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Resul
     Ok(page)
 }
 
-/// Refuses an error budget for results that cannot have one.
+/// Returns the error budget of a directory of results.
 ///
 /// # Errors
-/// A [`Failure`] for a directory that is not a far-range run.
-pub fn check_budget(directory: &Path) -> Result<(), Failure> {
-    if !is_far_range_run(directory)? {
-        return Err(Failure::Usage(format!(
-            "--budget applies only to far-range runs: {} is not one",
-            directory.display()
-        )));
+/// A [`Failure`] for a directory that is not a run, or a run of a world without an error budget.
+pub fn budget_of(directory: &Path) -> Result<BudgetReport, Failure> {
+    let no_budget = || {
+        let message = "--budget applies only to runs of a world whose stages can be replaced";
+        Failure::Usage(format!("{message}: {} is not one", directory.display()))
+    };
+    if ResultKind::from_directory(directory)? != ResultKind::Run {
+        return Err(no_budget());
     }
-    Ok(())
+    let world = world_of_run(&directory.join("run.toml"))?;
+    world_report(world.code()).and_then(|report| report.budget).ok_or_else(no_budget)
 }
 
-/// Returns the report of a far-range run with its error budget: `budget` lists directories of runs on the
-/// same frames, each with the truth in place of one stage's result.
+/// Returns the report of a run with its error budget: `budget` lists directories of runs on the same frames,
+/// each with the truth in place of one stage's result.
 ///
 /// # Errors
-/// Those of [`read_report`]; a [`Failure`] for a directory in `budget` with other frames, or of a run without
-/// replaced stage.
+/// Those of [`read_report`] and [`budget_of`]; a [`Failure`] for a directory in `budget` with other frames,
+/// or of a run without replaced stage.
 pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
-    check_budget(directory)?;
-    let mut run = FarRangeRun::read(directory)?;
-    run.budget = InjectedRun::read_all(budget, &run.run_file, &run.score)?;
-    far_range_page(&run, &FrameDetail::open(directory)?)
+    (budget_of(directory)?.page)(directory, budget)
 }
 
 /// Returns the report of a run that has just been scored. Scoring results are read from files only if they

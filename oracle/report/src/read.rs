@@ -4,8 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use files::{Failure, FileError, Row, TableReader};
-use run::world_of_run;
-use scenario::FarRangeScenario;
 use serde::de::DeserializeOwned;
 
 /// Maximum size of a JSON file, bytes.
@@ -53,14 +51,8 @@ impl ResultKind {
     }
 }
 
-/// Returns true if a directory is that of a far-range run.
-pub(super) fn is_far_range_run(directory: &Path) -> Result<bool, Failure> {
-    Ok(ResultKind::from_directory(directory)? == ResultKind::Run
-        && world_of_run(&directory.join("run.toml"))?.has_scenario::<FarRangeScenario>())
-}
-
 /// Returns the failure for a missing file of a run.
-pub(super) fn missing(directory: &Path, name: &str) -> Failure {
+pub fn missing(directory: &Path, name: &str) -> Failure {
     Failure::Usage(format!(
         "{}: is missing, expected the directory of a run; a rendered dataset has no results to report",
         directory.join(name).display()
@@ -69,10 +61,7 @@ pub(super) fn missing(directory: &Path, name: &str) -> Failure {
 
 /// Returns the table rows of each given frame, in the order of `frames`, read in one pass; no rows without a
 /// table.
-pub(super) fn rows_of_each<R: Row + Clone>(
-    path: Option<&Path>,
-    frames: &[u64],
-) -> Result<Vec<Vec<R>>, Failure> {
+pub fn rows_of_each<R: Row + Clone>(path: Option<&Path>, frames: &[u64]) -> Result<Vec<Vec<R>>, Failure> {
     let mut found = BTreeMap::new();
     if let Some(path) = path {
         let mut table = TableReader::<R>::open(path)?;
@@ -84,7 +73,7 @@ pub(super) fn rows_of_each<R: Row + Clone>(
 }
 
 /// Reads a JSON document.
-pub(super) fn read_json<T: DeserializeOwned>(path: &Path, format: &'static str) -> Result<T, Failure> {
+pub fn read_json<T: DeserializeOwned>(path: &Path, format: &'static str) -> Result<T, Failure> {
     let text = config::regular_file::read_text(path, MAX_JSON_BYTES).map_err(|source| FileError::Io {
         path: path.to_owned(),
         doing: "read",

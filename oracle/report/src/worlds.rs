@@ -1,31 +1,55 @@
-//! Worlds with a specific report. The report of any other world shows only figures and verdicts.
+//! Registry of worlds with a specific report. The report of any other world shows only figures and verdicts.
 
-use std::path::Path;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::{PoisonError, RwLock};
 
 use files::Failure;
-use run::{AnyJudgement, DockingMission, FarRangeMission, World};
+use run::AnyJudgement;
+use scenario::Stage;
 
 use crate::page::Page;
 use crate::page::picture::RenderedPictures;
-use crate::{docking, far_range};
 
 /// World-specific parts of a report.
-pub(crate) struct WorldReport {
-    code: &'static str,
+#[derive(Clone, Copy)]
+pub struct WorldReport {
+    /// Code of the world.
+    pub code: &'static str,
     /// Makes the page of a run directory and verifies the checksums of the files that it read. For a run of
     /// this process, the page uses the run's verdicts, which it may move out.
-    pub(crate) page: fn(&Path, Option<&mut dyn AnyJudgement>) -> Result<Page, Failure>,
+    pub page: fn(&Path, Option<&mut dyn AnyJudgement>) -> Result<Page, Failure>,
     /// Renders frames of a run directory anew.
-    pub(crate) pictures: fn(&Path, &[u64]) -> Result<RenderedPictures, Failure>,
+    pub pictures: fn(&Path, &[u64]) -> Result<RenderedPictures, Failure>,
+    /// Error budget of a run; `None` for a world without stages that can be replaced.
+    pub budget: Option<BudgetReport>,
 }
 
-/// Worlds with a specific report, one line each.
-const WORLDS: [WorldReport; 2] = [
-    WorldReport { code: FarRangeMission::CODE, page: far_range::page, pictures: far_range::pictures },
-    WorldReport { code: DockingMission::CODE, page: docking::page, pictures: docking::pictures },
-];
+/// Error budget of the runs of a world: the same frames are run again, once per stage, with the truth in
+/// place of the stage's result.
+#[derive(Clone, Copy)]
+pub struct BudgetReport {
+    /// Returns the frames of a run directory and the stages that can be replaced in it.
+    pub stages: fn(&Path) -> Result<(Range<u64>, Vec<Stage>), Failure>,
+    /// Makes the page of a run directory with its error budget, from the directories of the runs with a
+    /// replaced stage.
+    pub page: fn(&Path, &[PathBuf]) -> Result<Page, Failure>,
+}
+
+/// Registered reports, in order.
+static REPORTS: RwLock<Vec<WorldReport>> = RwLock::new(Vec::new());
+
+/// Registers the report of a world for the rest of the process. A report of a world that has one already is
+/// left as it is.
+pub fn register(report: WorldReport) {
+    let mut registered = REPORTS.write().unwrap_or_else(PoisonError::into_inner);
+    if registered.iter().all(|known| known.code != report.code) {
+        registered.push(report);
+    }
+}
 
 /// Returns the world-specific parts of a report, by the code of the world; `None` for a world without any.
 pub(crate) fn world_report(code: &str) -> Option<WorldReport> {
-    WORLDS.into_iter().find(|world| world.code == code)
+    let registered = REPORTS.read().unwrap_or_else(PoisonError::into_inner);
+    registered.iter().find(|report| report.code == code).copied()
 }

@@ -13,10 +13,8 @@
 )]
 
 pub mod any_world;
-mod check;
+pub mod check;
 mod choice;
-pub mod docking;
-pub mod far_range;
 pub mod frame_jobs;
 pub mod plain;
 mod rows_by_number;
@@ -30,11 +28,9 @@ pub use any_world::source::{check_world_of_run, world_of_run};
 pub use any_world::{AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, Options, ScenarioSource};
 pub use choice::pipeline_choice;
 pub use choice::renderer_choice::RendererChoice;
-pub use docking::DockingMission;
-pub use far_range::{FarRangeMission, SceneTruth};
 pub use frame_jobs::{Expectation, FrameJobs};
 pub use rows_by_number::RowsByNumber;
 pub use run_result::{AnswerSummary, FirstFailure, IncompleteRun, RunResult};
 pub use sequence::{AnswerCount, process, process_into};
 pub use world::{FrameAnswer, Judgement, OpenDataset, World, refuse_attitude};
-pub use worlds::{figure_by_name, json_schema, register, world_by_name, worlds};
+pub use worlds::{figure_by_name, first_world, json_schema, register, world_by_name, worlds};

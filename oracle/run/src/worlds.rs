@@ -4,25 +4,18 @@ use std::collections::HashMap;
 use std::sync::{LazyLock, PoisonError, RwLock};
 
 use config::toml_file;
+use files::Failure;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use score::{FigureSpec, navigation_figures};
 
 use crate::any_world::AnyWorld;
-use crate::any_world::erasure::ErasedWorld;
-use crate::{DockingMission, FarRangeMission};
 
-/// World of a scenario that names none.
-pub const FIRST: &dyn AnyWorld = &ErasedWorld::<FarRangeMission>::NEW;
-
-/// Built-in worlds, one line each.
-const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &ErasedWorld::<DockingMission>::NEW];
-
-/// Worlds registered by external code.
+/// Registered worlds, in order.
 static REGISTERED: RwLock<Vec<&'static dyn AnyWorld>> = RwLock::new(Vec::new());
 
 /// Figures of all worlds and of the navigation, by key.
 static FIGURES: LazyLock<RwLock<HashMap<String, FigureSpec>>> =
-    LazyLock::new(|| RwLock::new(BUILT_IN.into_iter().flat_map(by_key).chain(of_navigation()).collect()));
+    LazyLock::new(|| RwLock::new(of_navigation().collect()));
 
 fn by_key(world: &'static dyn AnyWorld) -> impl Iterator<Item = (String, FigureSpec)> {
     world.figures().into_iter().map(|figure| (figure.name.clone(), figure))
@@ -33,9 +26,13 @@ fn of_navigation() -> impl Iterator<Item = (String, FigureSpec)> {
     navigation_figures().into_iter().map(|figure| (figure.name.clone(), figure))
 }
 
-/// Registers a world for the rest of the process, as in `register(&Of::<MyWorld>::NEW)`: every command, study
-/// and gate then supports it.
+/// Registers a world for the rest of the process, as in `register(&ErasedWorld::<MyWorld>::NEW)`: every
+/// command, study and gate then supports it. The first registered world is that of scenarios that name none.
+/// A world that is registered already is left as it is.
 pub fn register(world: &'static dyn AnyWorld) {
+    if worlds().contains(&world) {
+        return;
+    }
     FIGURES.write().unwrap_or_else(PoisonError::into_inner).extend(by_key(world));
     REGISTERED.write().unwrap_or_else(PoisonError::into_inner).push(world);
 }
@@ -49,7 +46,16 @@ pub fn figure_by_name(key: &str) -> FigureSpec {
 /// Returns all worlds.
 pub fn worlds() -> Vec<&'static dyn AnyWorld> {
     let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
-    BUILT_IN.into_iter().chain(registered.iter().copied()).collect()
+    registered.clone()
+}
+
+/// Returns the world of scenarios that name none.
+///
+/// # Errors
+/// [`Failure::Usage`] if no world is registered.
+pub fn first_world() -> Result<&'static dyn AnyWorld, Failure> {
+    let no_world = || Failure::Usage("no world is registered in this process".to_owned());
+    worlds().first().copied().ok_or_else(no_world)
 }
 
 /// Returns the world with this code.

@@ -11,21 +11,14 @@
     )
 )]
 
-mod attitude;
+mod attitude_choice;
 mod builtin;
 mod cameras;
-mod coverage;
-mod docking;
-mod far_range;
 pub mod identity;
 pub mod run_file;
 mod stage;
-mod trajectory;
-mod zero;
 
-pub use builtin::{BUILT_IN, BuiltIn, DOCKING, STARTING_POINT, is_argon};
+pub use attitude_choice::AttitudeChoice;
+pub use builtin::{BUILT_IN, BuiltIn, built_in};
 pub use cameras::CAMERAS;
-pub use docking::{DockingScenario, DockingWorld};
-pub use far_range::{AttitudeChoice, FarRangeScenario, FarRangeWorld, ScoreConfig, StarListConfig};
 pub use stage::Stage;
-pub use trajectory::TrajectoryConfig;

@@ -8,7 +8,7 @@ use files::sha256::sha256_hex;
 use files::{AtomicFile, FileError};
 use serde::{Deserialize, Serialize};
 
-use crate::{FarRangeScenario, Stage};
+use crate::Stage;
 
 // Used by `scenario_file!`.
 #[doc(hidden)]
@@ -31,7 +31,7 @@ pub fn content(sha256: &str) -> String {
 /// frames.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RunFile<S = FarRangeScenario> {
+pub struct RunFile<S> {
     /// Name of the scenario.
     pub name: String,
     /// Version of Boresight that made the frames.

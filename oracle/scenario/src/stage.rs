@@ -24,6 +24,12 @@ pub enum Stage {
     Brightness,
 }
 
+impl Stage {
+    /// All stages, in the order of the pipeline.
+    pub const ALL: [Self; 6] =
+        [Self::Centroids, Self::Identities, Self::Attitude, Self::Roi, Self::Aberration, Self::Brightness];
+}
+
 impl fmt::Display for Stage {
     /// Writes the name of the stage on the command line and in files.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

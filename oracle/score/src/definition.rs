@@ -1,7 +1,7 @@
 //! Definition of a figure: the values of each frame, and their reduction to one number.
 
+use super::figure::Figure;
 use super::figure_spec::{Better, FigureSpec, Kind, Sense};
-use super::report::Figure;
 
 /// Reduction of the values of all frames to a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -231,16 +231,6 @@ mod tests {
             Reduction::ALL.map(Some)
         );
         assert_eq!(Reduction::parse("mode"), None);
-    }
-
-    #[test]
-    fn figures_of_lines_of_sight_alone_rest_on_an_attitude() {
-        for figure in crate::figures() {
-            let terms = FigureTerms::from_terms(&figure.name, Reduction::Mean, Vec::new());
-            let rests = terms.with_attitude(&figure, Some(&"true".to_owned())).attitude.is_some();
-            let is_of_lines_of_sight = ["ra_", "dec_"].iter().any(|axis| figure.name.starts_with(axis));
-            assert_eq!(rests, is_of_lines_of_sight, "{figure}");
-        }
     }
 
     #[test]

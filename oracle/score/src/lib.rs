@@ -1,41 +1,21 @@
-//! The score: a pure function of the ground truth and of a pipeline's outcomes.
+//! Figures of a score, in every world: definition, value with its interval, words and better direction.
 //!
-//! Every frame is counted exactly once and gets one [`Verdict`]. The score distinguishes two notions:
-//!
-//! - *Detected*, as counted in the far-range paper: the pipeline reports a target, rightly or wrongly. The
-//!   accuracy figures of the paper (its Table 2) are counted over these frames.
-//! - *Correct*: according to the truth table, most electrons of the chosen cluster come from the target.
-//!
-//! The verdict depends only on the truth and on the reported position and line of sight. A measurement file
-//! of an external pipeline therefore gets the same figures as a built-in run. Only the *cause* of a miss also
-//! uses the labelled clusters that a pipeline may report; without them the cause follows from the truth only.
+//! A world judges each unit (a frame, a field) by a verdict of its own; a [`Definition`] counts the verdicts
+//! to a [`Figure`]. Every unit is counted exactly once, and no number is ever NaN.
 
-mod accumulate;
-mod angles;
-mod argon_table2;
-mod cause;
-mod cluster_members;
-mod covariance;
+mod attitude_note;
 mod definition;
-pub mod docking;
+mod figure;
 mod figure_spec;
-#[cfg(test)]
-mod hand_made;
-mod report;
-mod settling;
-mod verdict;
+mod groups;
+mod normalised_error;
+mod score_error;
 
-pub use accumulate::{FarRangeJudgement, ScoreContext, ScoreError, Scorer, WARM_UP, figures};
-pub use angles::{
-    AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_note, attitude_word,
-};
-pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
-pub use cause::Cause;
-pub use cluster_members::brightest_member;
-pub use covariance::image_state::ImageState;
-pub use covariance::normalised_error::NormalisedError;
+pub use attitude_note::{attitude_note, attitude_word};
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
+pub use figure::{Figure, is_zero, warm_up_note};
 pub use figure_spec::navigation::{figures as navigation_figures, is_of_navigation};
 pub use figure_spec::{Better, FigureSpec, Kind, Sense, angle};
-pub use report::{ConsistencyRow, Figure, GroupScore, Score, ThresholdPoint, is_zero, names, warm_up_note};
-pub use verdict::{FrameVerdict, MistakenObject, Unproject, Verdict, VerdictRow};
+pub use groups::{WARM_UP, counts};
+pub use normalised_error::NormalisedError;
+pub use score_error::ScoreError;

@@ -4,8 +4,9 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
+use far_range::scoring::names;
 use files::{Cells, Column, ColumnType, FileError, ParquetFile, ParquetWriter, TableOptions};
-use score::{attitude_word, names};
+use score::attitude_word;
 
 use crate::cases::{BATCH_ROWS, CAUSE, CaseFigure, CaseTable, SET, cells, texts};
 

@@ -4,13 +4,14 @@ use std::collections::HashMap;
 use std::io::Write;
 use std::path::Path;
 
+use far_range::scoring::names;
 use files::sha256::hex;
 use files::{
     Cell, Cells, Column, ColumnType, ColumnValues, Columns, FieldDeclaration, FileError, ParquetFile, Row,
     Table, TableOptions, TextCells, table, write_table,
 };
 use indexmap::IndexMap;
-use score::{attitude_word, names};
+use score::attitude_word;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 

@@ -2,12 +2,12 @@
 
 use contract::{Body, CameraFrame, Frame, PipelineFactory, PixelPoint, Rotation, Setup};
 use draws::{Effect, Seed};
+use far_range::FarRangeScenario;
 use files::Failure;
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory, ThresholdConfig};
 use rayon::prelude::*;
-use scenario::FarRangeScenario;
 use sim::onboard::ShutterConfig;
 use sim::scene::TargetConfig;
 use sim::sensor::Switch;

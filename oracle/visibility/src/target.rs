@@ -1,10 +1,10 @@
 //! The target as the camera observes it: brightness, size, detection probability, and longest exposure
 //! without over-exposure.
 use contract::{CameraFrame, Direction, Icrs, OutOfRange, PixelPoint, Rotation, Target};
+use far_range::FarRangeScenario;
 use hifitime::{Epoch, Unit};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rayon::prelude::*;
-use scenario::FarRangeScenario;
 use sim::SimError;
 use sim::optics::ImagePoint;
 use sim::scene::{Appearance, Lighting, Spacecraft, TargetConfig};

@@ -1,7 +1,7 @@
 //! Errors compared with the stated covariances.
 
-use boresight::score::docking::ApproachParameters;
-use boresight::score::docking::consistency::{nees, within_3_sigma};
+use boresight::docking::scoring::ApproachParameters;
+use boresight::docking::scoring::consistency::{nees, within_3_sigma};
 use contract::docking::{Motion, PoseEstimate};
 use nalgebra::{Matrix6, Vector3, Vector6};
 use sim::truth::approach::ApproachState;

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use clap::ValueEnum;
 use contract::{AttitudeSource, CameraFrame, Icrs, Rotation};
-use files::{CameraFile, Failure, read_measurements, read_telemetry};
+use far_range::FarRangeScenario;
+use far_range::rows::{CameraFile, read_measurements, read_telemetry};
+use files::Failure;
 use flight_dynamics::{Aem, AemSegment, AttitudeNode, BODY_FRAME, CAMERA_FRAME};
 use hifitime::Epoch;
-use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use sim::truth::Schedule;
 

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use contract::Solution;
-use files::{CameraFile, Failure, read_measurements, read_telemetry};
+use far_range::FarRangeScenario;
+use far_range::rows::{CameraFile, read_measurements, read_telemetry};
+use files::Failure;
 use flight_dynamics::{Observation, ReferenceFrame, Tdm, TdmSegment, TimeSystem};
-use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 
 use super::parts::{CHASER, TARGET, header, telemetry_of};

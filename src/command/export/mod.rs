@@ -8,10 +8,10 @@ mod parts;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use far_range::FarRangeScenario;
 use files::{AtomicFile, Failure};
 use flight_dynamics::Notation;
 use run::check_world_of_run;
-use scenario::FarRangeScenario;
 use scenario::run_file::{RunFile, ScenarioFile};
 use serde_json::json;
 

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use clap::ValueEnum;
+use far_range::FarRangeScenario;
 use files::Failure;
 use flight_dynamics::{Interpolation, Method, Oem, OemSegment};
 use navigate::{TABLE_FILE, TargetOrbit, TargetState};
-use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use sim::truth::State;
 

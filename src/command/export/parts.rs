@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use files::{Failure, FileError, FileLocation, TableReader, TelemetryRow};
+use far_range::FarRangeScenario;
+use far_range::rows::FrameTruthRow;
+use far_range::rows::TelemetryRow;
+use files::{Failure, FileError, FileLocation, TableReader};
 use flight_dynamics::Header;
-use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use sim::truth::{FrameTruth, Schedule, clock};
 
@@ -43,8 +45,8 @@ pub(super) fn true_frames(
 ) -> Result<Vec<FrameTruth>, Failure> {
     let path = directory.join("truth/frames.parquet");
     let mut frames = Vec::new();
-    for rows in TableReader::<FrameTruth>::open(&path)? {
-        frames.extend(rows?.1);
+    for rows in TableReader::<FrameTruthRow>::open(&path)? {
+        frames.extend(rows?.1.into_iter().map(|row| row.0));
     }
     if frames.is_empty() {
         return Err(FileError::value(&path, FileLocation::Whole, "number of rows", 0, "frames").into());

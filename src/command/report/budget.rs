@@ -2,10 +2,9 @@
 //! stage's result.
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use config::toml_file;
 use files::{AtomicFile, Failure, FileError, ReplaceableFile, RunDirectory};
-use report::{FarRangeRun, check_budget};
+use report::budget_of;
 use run::pipeline_choice::PipelineChoice;
 use run::{Expectation, FrameJobs, Options, ScenarioSource};
 use scenario::Stage;
@@ -15,32 +14,14 @@ use crate::command::options::default_jobs;
 use crate::command::output::Output;
 use crate::command::scratch_directory::ScratchDirectory;
 
-/// Runs the missing stages of the error budget of a far-range run, and returns the directories. Of each
-/// stage, `run.toml` and `score.json` are kept in `budget/STAGE`: the frames are those of the run, whose
-/// truth is already stored.
+/// Runs the missing stages of the error budget of a run, and returns the directories. Of each stage,
+/// `run.toml` and `score.json` are kept in `budget/STAGE`: the frames are those of the run, whose truth is
+/// already stored.
 pub(super) fn run_budget(directory: &Path, output: &Output) -> Result<Vec<PathBuf>, Failure> {
-    check_budget(directory)?;
-    let run = FarRangeRun::read(directory)?;
-    if run.run_file.inject.is_some() {
-        return Err(Failure::Usage(
-            "--budget is all, which applies only to the report of a run without --inject".to_owned(),
-        ));
-    }
-    let (Some(first), Some(last)) = (run.truths.first(), run.truths.last()) else {
-        return Err(Failure::Usage(format!(
-            "{}: the run has no frames, expected at least one",
-            directory.display()
-        )));
-    };
-    let frames = first.frame..last.frame + 1;
+    let (frames, stages) = (budget_of(directory)?.stages)(directory)?;
     let source = ScenarioSource::read(&directory.join("run.toml").to_string_lossy())?;
-    let has_regions = run.run_file.scenario.roi.is_some();
     let mut kept = Vec::new();
-    for &stage in Stage::value_variants() {
-        // A camera without regions transmits whole images anyway.
-        if stage == Stage::Roi && !has_regions {
-            continue;
-        }
+    for stage in stages {
         let folder = directory.join("budget").join(stage.to_string());
         if !folder.join("score.json").is_file() {
             run_stage(&source, stage, frames.clone(), &folder, output)?;

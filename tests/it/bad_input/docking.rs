@@ -1,6 +1,6 @@
 //! Docking: scenarios, targets, television sequences.
 
-use boresight::scenario::DOCKING;
+use boresight::docking::STARTING_POINT as DOCKING;
 use sim::scene::docking::TargetFile;
 
 use super::check_refused;

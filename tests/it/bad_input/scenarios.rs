@@ -1,6 +1,7 @@
 //! Scenario files that are missing, malformed or out of range.
 
-use boresight::scenario::{BUILT_IN, STARTING_POINT};
+use boresight::far_range::STARTING_POINT;
+use boresight::scenario::BUILT_IN;
 
 use super::check_refused;
 use crate::support::Bench;

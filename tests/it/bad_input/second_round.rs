@@ -6,7 +6,7 @@ use crate::support::{Bench, STUDY};
 
 /// Writes a built-in scenario with one changed line.
 fn with_change(bench: &Bench, old: &str, new: &str) {
-    let text = scenario::STARTING_POINT;
+    let text = far_range::STARTING_POINT;
     assert!(text.contains(old), "`{old}`");
     bench.write("s.toml", text.replacen(old, new, 1));
 }
@@ -80,7 +80,7 @@ fn numbers_dates_and_names_of_scenarios() {
     }
     // Both are valid.
     for (old, new) in [("\n", "\r\n"), ("name = \"first orbit\"", "name = \"a\\u001b[2Jb,\\\"c\\nd\"")] {
-        bench.write("s.toml", scenario::STARTING_POINT.replace(old, new));
+        bench.write("s.toml", far_range::STARTING_POINT.replace(old, new));
         bench.boresight("scenario check s.toml").done();
     }
 }
@@ -88,7 +88,7 @@ fn numbers_dates_and_names_of_scenarios() {
 #[test]
 fn texts_that_are_no_scenario() {
     let bench = Bench::new();
-    let text = scenario::STARTING_POINT;
+    let text = far_range::STARTING_POINT;
     let utf16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
     for (content, part) in [
         (Vec::new(), "missing field `title`"),

@@ -146,6 +146,7 @@ fn a_shard_with_any_bit_flipped_is_no_shard() {
          [[vary]]\npath = \"psf.sigma_px\"\ndistribution = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
     );
     bench.boresight("study run study.toml --out study --shards 1 --no-report").done();
+    boresight::register_worlds();
     let study = Study::read(&bench.path("study.toml")).unwrap();
     let choice = PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000, sandbox: None };
     let plan = Plan::new(&study, study.hash_with(&choice), Some(1)).unwrap();

@@ -1,10 +1,11 @@
 //! Synthetic and simulated runs as input of the gate, with faults of a stated size.
 
-use boresight::gate::{Baseline, CompareOptions, Identity, Pairing, Sample, SourceKind, compare};
-use boresight::score::{
-    AnswerError, AttitudeUsed, Cause, FrameVerdict, LineOfSightError, MistakenObject, UnitTable, Verdict,
-    WithinLimits,
+use boresight::far_range::scoring::unit_table;
+use boresight::far_range::scoring::{
+    AnswerError, AttitudeUsed, Cause, FrameVerdict, LineOfSightError, MistakenObject, Verdict, WithinLimits,
 };
+use boresight::gate::{Baseline, CompareOptions, Identity, Pairing, Sample, SourceKind, compare};
+use boresight::score::UnitTable;
 use contract::{Angle, AttitudeSource};
 use draws::{Effect, Seed, Stream, normal, uniform};
 
@@ -217,7 +218,7 @@ impl Synthetic {
 pub(crate) fn sample_of(seed: u64, frames: &[FrameVerdict]) -> Sample {
     Sample::new(
         identity("far_range", seed),
-        UnitTable::from_frames(frames, &WithinLimits::from_degrees([PIXEL_DEG, 2.0 * PIXEL_DEG])),
+        unit_table(frames, &WithinLimits::from_degrees([PIXEL_DEG, 2.0 * PIXEL_DEG])),
     )
 }
 

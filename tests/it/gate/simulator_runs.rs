@@ -2,11 +2,14 @@
 
 use std::ops::Range;
 
+use boresight::docking::DockingMission;
+use boresight::docking::DockingRenderer;
+use boresight::far_range::FarRangeMission;
+use boresight::far_range::FarRangeScenario;
+use boresight::far_range::scoring::FrameVerdict;
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::run::docking::renderer::DockingRenderer;
-use boresight::run::{DockingMission, FarRangeMission, Judgement as _, ScenarioSource, World as _, sequence};
-use boresight::scenario::FarRangeScenario;
-use boresight::score::{FrameVerdict, UnitTable};
+use boresight::run::{Judgement as _, ScenarioSource, World as _, sequence};
+use boresight::score::UnitTable;
 use contract::docking::{Docking, DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry};
 use contract::{Pipeline, PipelineFactory};
 use rayon::prelude::*;
@@ -17,6 +20,7 @@ const PIPELINE: PipelineChoice =
 /// Scenario of one of the project's gates.
 fn source(name: &str, seed: u64) -> ScenarioSource {
     let path = format!("{}/scenarios/gates/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    boresight::register_worlds();
     let mut source = ScenarioSource::read(&path).unwrap();
     source.scenario.set_seed(seed);
     source

@@ -131,17 +131,17 @@ impl RunDirectory {
         self.path.join("run.toml")
     }
 
-    /// Path of `camera.toml`: see [`crate::CameraFile`].
+    /// Path of `camera.toml`: the camera of the dataset.
     pub fn camera(&self) -> PathBuf {
         self.path.join("camera.toml")
     }
 
-    /// Path of `stars.csv`: see [`crate::StarRow`].
+    /// Path of `stars.csv`: the list of stars.
     pub fn stars(&self) -> PathBuf {
         self.path.join("stars.csv")
     }
 
-    /// Path of `telemetry.csv`: see [`crate::TelemetryRow`].
+    /// Path of `telemetry.csv`: the telemetry of each image.
     pub fn telemetry(&self) -> PathBuf {
         self.path.join("telemetry.csv")
     }
@@ -180,27 +180,27 @@ impl RunDirectory {
         self.path.join("measurements.csv")
     }
 
-    /// Path of `clusters.parquet`: rows of [`crate::FrameCluster`].
+    /// Path of `clusters.parquet`: clusters of each frame.
     pub fn clusters(&self) -> PathBuf {
         self.path.join("clusters.parquet")
     }
 
-    /// Path of `setup.toml` of a docking run: see [`crate::docking::SetupFile`].
+    /// Path of `setup.toml`: the data that a pipeline receives before the first field.
     pub fn setup(&self) -> PathBuf {
         self.path.join("setup.toml")
     }
 
-    /// Path of `truth/fields.parquet` of a docking run: rows of [`sim::docking::FieldTruth`].
+    /// Path of `truth/fields.parquet`: the truth of each field.
     pub fn truth_fields(&self) -> PathBuf {
         self.path.join("truth/fields.parquet")
     }
 
-    /// Path of `motion.csv` of a docking run: the motion reported at the end of each portion.
+    /// Path of `motion.csv`: the motion reported at the end of each portion.
     pub fn motion(&self) -> PathBuf {
         self.path.join("motion.csv")
     }
 
-    /// Path of `features.parquet` of a docking run: rows of [`crate::docking::FeatureRow`].
+    /// Path of `features.parquet`: features of each field.
     pub fn features(&self) -> PathBuf {
         self.path.join("features.parquet")
     }

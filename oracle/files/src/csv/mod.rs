@@ -2,7 +2,7 @@
 
 pub(crate) mod column;
 pub(crate) mod lines;
-pub(crate) mod origin;
+pub mod origin;
 pub(crate) mod table;
 
 pub use column::read_column;

@@ -16,7 +16,7 @@ const TIME: &str = "time_utc";
 const CONFIGURATION: &str = "configuration";
 
 /// Columns that state the origin of a row.
-pub(crate) const COLUMNS: [&str; 2] = [TIME, CONFIGURATION];
+pub const COLUMNS: [&str; 2] = [TIME, CONFIGURATION];
 
 /// Origin of a measurement, as far as its row states it.
 #[derive(Debug, Clone, PartialEq)]

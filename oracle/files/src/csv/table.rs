@@ -193,17 +193,14 @@ impl CsvRow<'_> {
 
     /// Rejects a value in columns that must be empty for the row's status: the row would count as a miss, and
     /// the value would be lost silently.
-    pub(crate) fn check_empty(
-        &self,
-        columns: impl IntoIterator<Item = &'static str>,
-    ) -> Result<(), FileError> {
+    pub fn check_empty(&self, columns: impl IntoIterator<Item = &'static str>) -> Result<(), FileError> {
         let full = columns.into_iter().find(|column| !self.text(column).trim().is_empty());
         let nothing = || format!("an empty cell, because the status is `{}`", self.text("status"));
         full.map_or(Ok(()), |column| Err(self.error(column, nothing())))
     }
 
     /// Rejects negative standard deviations.
-    pub(crate) fn check_sigmas<const N: usize>(
+    pub fn check_sigmas<const N: usize>(
         &self,
         columns: [&'static str; N],
         sigmas: Option<[f64; N]>,

@@ -178,12 +178,13 @@ impl FileError {
         }
     }
 
-    pub(crate) fn contract(path: &Path, source: impl Into<contract::ContractError>) -> Self {
+    /// Creates the error for a file whose values the contract does not allow.
+    pub fn contract(path: &Path, source: impl Into<contract::ContractError>) -> Self {
         Self::Contract { path: path.to_owned(), source: source.into() }
     }
 }
 
 /// Creates a file for writing; an existing file is an error and is not overwritten.
-pub(crate) fn create_new(path: &Path) -> Result<File, FileError> {
+pub fn create_new(path: &Path) -> Result<File, FileError> {
     File::create_new(path).map_err(|source| FileError::io(path, "create", source))
 }

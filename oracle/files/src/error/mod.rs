@@ -4,4 +4,4 @@ pub mod failure;
 pub(crate) mod file_error;
 
 pub use failure::Failure;
-pub use file_error::{FileError, FileLocation, open_regular};
+pub use file_error::{FileError, FileLocation, create_new, open_regular};

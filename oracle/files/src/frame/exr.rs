@@ -11,7 +11,7 @@ use exr::prelude::{
 };
 use sim::vector::RadianceImage;
 
-use super::raw_image::{ImageMetadata, RawImage, Size, check_claim, checked_size, dn_of_all};
+use super::raw_image::{ImageMetadata, RawImage, RequiredSize, check_claim, checked_size, dn_of_all};
 use crate::error::file_error::{FileLocation, create_new};
 use crate::table::windows;
 use crate::{FileError, FrameHeader};
@@ -104,7 +104,7 @@ pub fn read_radiance(path: &Path) -> Result<RadianceImage, FileError> {
 }
 
 /// Reads a frame from an image with one channel in DN.
-pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
+pub(crate) fn read(path: &Path, size: Option<RequiredSize<'_>>) -> Result<RawImage, FileError> {
     let Channel { columns, rows, samples, own } = read_channel(path, size)?;
     let dn = dn_of_all(path, columns, samples.into_iter().map(f64::from))?;
     let field = |name: &str| {
@@ -164,7 +164,7 @@ struct Channel {
     own: String,
 }
 
-fn read_channel(path: &Path, size: Option<Size<'_>>) -> Result<Channel, FileError> {
+fn read_channel(path: &Path, size: Option<RequiredSize<'_>>) -> Result<Channel, FileError> {
     check_header(path, size)?;
     let image = exr_reader()
         .no_deep_data()
@@ -189,7 +189,7 @@ fn read_channel(path: &Path, size: Option<Size<'_>>) -> Result<Channel, FileErro
 }
 
 /// Checks the sizes that the header states before any memory is allocated for them.
-fn check_header(path: &Path, size: Option<Size<'_>>) -> Result<(), FileError> {
+fn check_header(path: &Path, size: Option<RequiredSize<'_>>) -> Result<(), FileError> {
     let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|error| exr_error(path, error))?;
     for header in &meta.headers {
         let (columns, rows) =

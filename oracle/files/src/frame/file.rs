@@ -9,7 +9,7 @@ use contract::{Frame, Window};
 use super::exr;
 use super::fits;
 use super::image16;
-use super::raw_image::{RawImage, Size};
+use super::raw_image::{RawImage, RequiredSize};
 use crate::{FileError, FrameHeader};
 
 /// Formats in which frames are written.
@@ -92,7 +92,7 @@ pub fn read_frame(
 
 /// Reads a file with one of the extensions of [`read_frame`] as a raw image. An image whose size differs from
 /// the given size is rejected before memory is allocated for it.
-pub(crate) fn read_image(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
+pub fn read_image(path: &Path, size: Option<RequiredSize<'_>>) -> Result<RawImage, FileError> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     match extension.as_str() {
         "fits" | "fit" | "fts" => fits::read(path, size),

@@ -17,7 +17,7 @@ use fitsio_pure::primary::build_primary_header;
 use fitsio_pure::value::Value;
 
 use super::fits_cards;
-use super::raw_image::{ImageMetadata, RawImage, Size, checked_size, dn_of_all};
+use super::raw_image::{ImageMetadata, RawImage, RequiredSize, checked_size, dn_of_all};
 use crate::error::file_error::{FileLocation, create_new, open_regular};
 use crate::table::time::parse_utc;
 use crate::table::windows;
@@ -49,7 +49,7 @@ pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
 /// Reads the first two-dimensional image of a FITS file: samples of 8, 16, 32 or 64 bits or floating point,
 /// with BSCALE and BZERO applied, converted by the rule of [`crate::frame::raw_image::dn`]; BLANK pixels and
 /// NaN are rejected. Tile-compressed images are not supported.
-pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
+pub(crate) fn read(path: &Path, size: Option<RequiredSize<'_>>) -> Result<RawImage, FileError> {
     let io = |source| FileError::io(path, "read", source);
     let file = open_regular(path)?;
     let length = file.metadata().map_err(io)?.len();
@@ -345,7 +345,7 @@ fn read_image(
     header: &Header<'_>,
     reader: &mut impl Read,
     bytes: u64,
-    size: Option<Size<'_>>,
+    size: Option<RequiredSize<'_>>,
 ) -> Result<RawImage, FileError> {
     let path = header.path;
     let [columns, rows, ..] = *header.axes()? else {
@@ -478,7 +478,7 @@ mod tests {
         fs::write(&path, format!("{header:2880}")).unwrap();
         let file = fs::File::options().write(true).open(&path).unwrap();
         file.set_len(2880 + 8 * 16384 * 16384).unwrap();
-        let size = Size { columns: 752, rows: 580, whose: "the size of the camera" };
+        let size = RequiredSize { columns: 752, rows: 580, whose: "the size of the camera" };
         let message = read(&path, Some(size)).unwrap_err().to_string();
         assert!(
             message.contains("16384 × 16384") && message.contains("752 × 580, the size of the camera"),

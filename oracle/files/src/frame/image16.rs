@@ -8,7 +8,7 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageBuffer, ImageDecoder, ImageEncoder, ImageReader, Limits, Luma};
 
 use super::png_stream;
-use super::raw_image::{ImageMetadata, RawImage, Size, check_claim, checked_size};
+use super::raw_image::{ImageMetadata, RawImage, RequiredSize, check_claim, checked_size};
 use crate::FileError;
 use crate::error::file_error::{FileLocation, create_new, open_regular};
 
@@ -34,7 +34,7 @@ pub(crate) fn write_png(path: &Path, frame: &Frame) -> Result<(), FileError> {
 
 /// Writes the digital numbers as grey PNG, unstretched, with 8 bits if the converter has at most 8, otherwise
 /// with 16.
-pub(crate) fn write_png_of_depth(path: &Path, frame: &Frame) -> Result<(), FileError> {
+pub fn write_png_of_depth(path: &Path, frame: &Frame) -> Result<(), FileError> {
     if frame.bit_depth() > 8 {
         return write_png(path, frame);
     }
@@ -56,7 +56,7 @@ pub(crate) fn write_png_of_depth(path: &Path, frame: &Frame) -> Result<(), FileE
 pub(crate) fn read(
     path: &Path,
     format: image::ImageFormat,
-    size: Option<Size<'_>>,
+    size: Option<RequiredSize<'_>>,
 ) -> Result<RawImage, FileError> {
     let mut decoder = decoder(path, format)?;
     let (columns, rows) = decoder.dimensions();

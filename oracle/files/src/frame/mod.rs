@@ -11,6 +11,8 @@ pub(crate) mod raw_image;
 pub(crate) mod wcs;
 
 pub use self::exr::{ExpectedImage, read_expected, read_radiance, write_expected, write_radiance};
-pub use file::{ImageFormat, read_frame, write_frame};
+pub use file::{ImageFormat, read_frame, read_image, write_frame};
 pub use header::FrameHeader;
+pub use image16::write_png_of_depth;
+pub use raw_image::{ImageMetadata, RawImage, RequiredSize, checked_size};
 pub use wcs::{Sip, SipTerm, TanSip, WcsError};

@@ -2,37 +2,41 @@
 
 use std::path::Path;
 
-use contract::{Camera, Frame, Window};
+use contract::{Camera, Frame, Telemetry, Window};
 use hifitime::Epoch;
 
+use crate::FileError;
 use crate::error::FileLocation;
 use crate::table::time::format_utc;
-use crate::{FileError, TelemetryRow};
 
 /// Pixels with the metadata in the file.
 #[derive(Debug)]
-pub(crate) struct RawImage {
-    pub(crate) columns: usize,
-    pub(crate) rows: usize,
+pub struct RawImage {
+    /// Number of columns.
+    pub columns: usize,
+    /// Number of rows.
+    pub rows: usize,
     /// Digital numbers, row by row.
-    pub(crate) dn: Vec<u16>,
+    pub dn: Vec<u16>,
     /// Bits of the converter, if stated in the file.
-    pub(crate) bit_depth: Option<u8>,
+    pub bit_depth: Option<u8>,
     /// Largest number of bits that the stored integers hold, if the file has fewer than 16.
-    pub(crate) stored_bits: Option<u8>,
+    pub stored_bits: Option<u8>,
     /// Transmitted regions, if stated in the file.
-    pub(crate) windows: Option<Vec<Window>>,
+    pub windows: Option<Vec<Window>>,
     /// Other frame data stated in the file.
-    pub(crate) metadata: ImageMetadata,
+    pub metadata: ImageMetadata,
 }
 
 /// Frame data stated in an image, each with its keyword.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct ImageMetadata {
-    pub(crate) frame: Option<(&'static str, u64)>,
+pub struct ImageMetadata {
+    /// Number of the frame.
+    pub frame: Option<(&'static str, u64)>,
     /// Middle of the exposure.
-    pub(crate) time: Option<(&'static str, Epoch)>,
-    pub(crate) exposure_s: Option<(&'static str, f64)>,
+    pub time: Option<(&'static str, Epoch)>,
+    /// Exposure time, s.
+    pub exposure_s: Option<(&'static str, f64)>,
 }
 
 impl ImageMetadata {
@@ -42,15 +46,14 @@ impl ImageMetadata {
     const EXPOSURE: f64 = 1e-5;
 
     /// Checks the stated data against a row of the telemetry, to detect images with interchanged file names.
-    pub(crate) fn check(&self, path: &Path, row: &TelemetryRow) -> Result<(), FileError> {
+    pub fn check(&self, path: &Path, number: u64, telemetry: &Telemetry) -> Result<(), FileError> {
         let refused = |field: &str, found: String, expected: String| {
             let expected =
-                format!("{expected}, the value of frame {} in the telemetry that names this file", row.frame);
+                format!("{expected}, the value of frame {number} in the telemetry that names this file");
             Err(FileError::value(path, FileLocation::Header, field, found, expected))
         };
-        let telemetry = &row.telemetry;
-        if let Some((field, frame)) = self.frame.filter(|(_, frame)| *frame != row.frame) {
-            return refused(field, frame.to_string(), row.frame.to_string());
+        if let Some((field, frame)) = self.frame.filter(|(_, frame)| *frame != number) {
+            return refused(field, frame.to_string(), number.to_string());
         }
         if let Some((field, time)) = self.time
             && (time - telemetry.time).to_seconds().abs() > Self::TIME_S
@@ -68,11 +71,13 @@ impl ImageMetadata {
 
 /// Required size of an image.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Size<'a> {
-    pub(crate) columns: usize,
-    pub(crate) rows: usize,
+pub struct RequiredSize<'a> {
+    /// Number of columns.
+    pub columns: usize,
+    /// Number of rows.
+    pub rows: usize,
     /// Source of the size, for messages: `the size in camera.toml`.
-    pub(crate) whose: &'a str,
+    pub whose: &'a str,
 }
 
 impl RawImage {
@@ -81,7 +86,7 @@ impl RawImage {
     /// from the telemetry take precedence over those in the file. A value above the full scale is rejected:
     /// it indicates a wrong bit depth, which would also make every threshold that a pipeline derives from it
     /// wrong.
-    pub(crate) fn into_frame(
+    pub fn into_frame(
         self,
         path: &Path,
         number: u64,
@@ -141,11 +146,11 @@ pub(crate) fn dn_of_all(
 
 /// Returns columns and rows as stated in a header if they match `size` or, without `size`, are in the range 1
 /// to [`Camera::MAX_SIDE_PX`]. Called before memory is allocated for the pixels.
-pub(crate) fn checked_size(
+pub fn checked_size(
     path: &Path,
     columns: u64,
     rows: u64,
-    size: Option<Size<'_>>,
+    size: Option<RequiredSize<'_>>,
 ) -> Result<(usize, usize), FileError> {
     let side = |n: u64| usize::try_from(n).ok().filter(|n| (1..=Camera::MAX_SIDE_PX).contains(n));
     let found = side(columns).zip(side(rows));
@@ -153,7 +158,7 @@ pub(crate) fn checked_size(
     found.filter(is_right).ok_or_else(|| {
         let found = format!("{columns} × {rows}");
         let expected = match size {
-            Some(Size { columns, rows, whose }) => format!("{columns} × {rows}, {whose}"),
+            Some(RequiredSize { columns, rows, whose }) => format!("{columns} × {rows}, {whose}"),
             None => format!("1 to {} pixels per side", Camera::MAX_SIDE_PX),
         };
         FileError::value(path, FileLocation::Header, "image size", found, expected)

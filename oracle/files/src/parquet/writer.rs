@@ -22,7 +22,7 @@ use super::file::damaged;
 use crate::FileError;
 use crate::table::column::{Cells, Coding, Column, ColumnValues, TextCells};
 
-/// Size of the write buffer, bytes: the crate copies columns to a file 8 KB at a time.
+/// RequiredSize of the write buffer, bytes: the crate copies columns to a file 8 KB at a time.
 const BUFFER_BYTES: usize = 1 << 18;
 
 /// Largest dictionary of a column in a row group, bytes: the dictionary of a column without repeats would

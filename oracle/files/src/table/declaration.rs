@@ -127,7 +127,8 @@ impl<const N: usize> ColumnNames<N> {
 /// Type of the cells of a field.
 type FieldCell<'a, F, const N: usize> = <<F as Field<N>>::Value as Value<N>>::Cell<'a>;
 
-/// Declares a table, for a new struct or for an existing one (`for`). Each field has its meaning as a doc
+/// Declares a table, for a new struct or for an existing one: `for` one of this crate, `struct ROW for` one of
+/// another crate, which ROW contains. Each field has its meaning as a doc
 /// comment, its type, and the names of its columns if they differ from the name of the field. `csv` makes the
 /// struct a row of a CSV, `parquet(FIELD)` a row of a Parquet file that is ordered by the field FIELD, the
 /// number of the frame or field.
@@ -157,6 +158,42 @@ macro_rules! table {
             }
         }
         $crate::table!(@$kind $row $($frame)? { $($field: $type = $crate::table!(@names $field $($names)?),)+ });
+    };
+    ($(#[$meta:meta])* $vis:vis struct $row:ident for $inner:ident: parquet($frame:ident) {
+        $($(#[doc = $meaning:literal])+ $field:ident: $type:ty $(= $names:expr)?,)+
+    }) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, PartialEq)]
+        $vis struct $row($vis $inner);
+
+        impl $crate::Table for $row {
+            fn declarations() -> Vec<$crate::FieldDeclaration> {
+                vec![$($crate::table!(@names $field $($names)?).declarations::<$type>(concat!($($meaning),+))),+]
+            }
+        }
+
+        impl $crate::Row for $row {
+            const FRAME: &'static str = stringify!($frame);
+
+            fn columns(rows: &[Self]) -> Vec<$crate::Column> {
+                let mut columns = Vec::new();
+                $(columns.extend(
+                    $crate::table!(@names $field $($names)?).columns(rows.iter().map(|row| &row.0.$field)),
+                );)+
+                columns
+            }
+
+            fn rows(columns: &$crate::Columns<'_>) -> Result<Vec<Self>, $crate::FileError> {
+                $(let mut $field = $crate::table!(@names $field $($names)?).read_columns(columns)?.into_iter();)+
+                let mut rows = Vec::with_capacity(columns.len());
+                rows.extend(std::iter::from_fn(|| Some(Self($inner { $($field: $field.next()?),+ }))));
+                Ok(rows)
+            }
+
+            fn frame(&self) -> u64 {
+                self.0.$frame
+            }
+        }
     };
     (@csv $row:ident { $($field:ident: $type:ty = $names:expr,)+ }) => {
         impl $crate::CsvLine for $row {
@@ -199,8 +236,9 @@ macro_rules! table {
 mod tests {
     use std::fs::File;
 
-    use contract::docking::Lines;
     use contract::{Body, Icrs, Rotation};
+
+    use sim::truth::ObjectKind;
 
     use super::*;
     use crate::{ColumnType, Row, Table, TableOptions, TableReader, write_table};
@@ -214,8 +252,8 @@ mod tests {
             /// a turn,
             /// of four columns
             turn: Rotation<Body, Icrs> = ["w", "x", "y", "z"],
-            /// rows of a field
-            lines: Lines,
+            /// an object
+            kind: ObjectKind,
             /// a position, or none
             place: Option<[f64; 2]> = without_dictionary(["x_px", "y_px"]),
             /// a number
@@ -227,7 +265,7 @@ mod tests {
         let turn = Rotation::from_wxyz([0.6, 0.0, 0.8, 0.0]).unwrap();
         let row = |frame| {
             let place = (frame == 2).then_some([0.1, 0.2]);
-            Turn { frame, turn, lines: Lines::Odd, place, number: 1.5 }
+            Turn { frame, turn, kind: ObjectKind::Star, place, number: 1.5 }
         };
         (1..4).map(row).collect()
     }
@@ -266,7 +304,7 @@ mod tests {
         assert_eq!(read(None).unwrap(), rows());
         let columns = Turn::columns(&[]);
         let found: Vec<_> = columns.iter().map(|column| (column.name(), column.is_nullable())).collect();
-        let required = ["frame", "w", "x", "y", "z", "lines"].map(|name| (name, false));
+        let required = ["frame", "w", "x", "y", "z", "kind"].map(|name| (name, false));
         assert_eq!(found[..6], required);
         assert_eq!(found[6..], ["x_px", "y_px", "number"].map(|name| (name, true)));
     }
@@ -282,8 +320,8 @@ mod tests {
                 "row 2: `z` is `null`, expected a value in every row",
             ),
             (
-                Some(Column::texts("lines", ["odd", "upper", "odd"])),
-                "row 1: `lines` is `upper`, expected one of the values that this column allows",
+                Some(Column::texts("kind", ["star", "upper", "star"])),
+                "row 1: `kind` is `upper`, expected one of the values that this column allows",
             ),
         ] {
             let error = read(other).unwrap_err();

@@ -142,12 +142,13 @@ impl<V: Value<N>, const N: usize> Field<N> for Option<V> {
 
 /// Implements the conversion of a type to and from cells: `$to` returns the cells, `$of` the value or a
 /// description of the expected cells.
+#[macro_export]
 macro_rules! value {
     (
         $type:ty: [$cell:ty; $n:literal] $(for<$($parameter:ident),+>)?,
         |$value:ident| $to:expr, |$cells:pat_param| $of:expr
     ) => {
-        impl$(<$($parameter),+>)? $crate::table::field::Value<$n> for $type {
+        impl$(<$($parameter),+>)? $crate::Value<$n> for $type {
             type Cell<'a> = $cell;
 
             fn to_cells(&self) -> [Self::Cell<'_>; $n] {
@@ -163,15 +164,17 @@ macro_rules! value {
 }
 
 /// Implements the conversion of types with a name for each value: `code` returns the name, `parse` reads it.
+#[macro_export]
 macro_rules! words {
     ($($type:ty),+) => {
-        $($crate::table::field::value!($type: [&'a str; 1], |value| [value.code()], |[word]| {
+        $($crate::value!($type: [&'a str; 1], |value| [value.code()], |[word]| {
             <$type>::parse(word).ok_or_else(|| "one of the values that this column allows".to_owned())
         });)+
     };
 }
 
-pub(crate) use {value, words};
+// Words of the simulator's truth.
+words!(sim::truth::Shadow, sim::truth::Visibility, sim::truth::ObjectKind);
 
 value!(bool: [bool; 1], |flag| [*flag], |[flag]| Ok(flag));
 value!(u32: [u32; 1], |count| [*count], |[count]| Ok(count));

@@ -7,7 +7,7 @@ pub(crate) mod declarations;
 pub(crate) mod field;
 pub(crate) mod time;
 pub(crate) mod unit;
-pub(crate) mod windows;
+pub mod windows;
 
 pub use batch::Columns;
 pub use column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};

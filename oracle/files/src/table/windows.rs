@@ -3,7 +3,7 @@
 use contract::{Camera, Window};
 
 /// Returns the regions as text; empty if the whole image was transmitted, `none` if nothing was.
-pub(crate) fn format(windows: Option<&[Window]>) -> String {
+pub fn format(windows: Option<&[Window]>) -> String {
     match windows {
         None => String::new(),
         Some([]) => "none".to_owned(),
@@ -12,16 +12,16 @@ pub(crate) fn format(windows: Option<&[Window]>) -> String {
 }
 
 /// Returns one region as `x y columns rows`.
-pub(crate) fn format_one(window: &Window) -> String {
+pub fn format_one(window: &Window) -> String {
     format!("{} {} {} {}", window.x, window.y, window.columns, window.rows)
 }
 
 /// Description of the input of [`parse`], for messages.
-pub(crate) const EXPECTED: &str =
+pub const EXPECTED: &str =
     "regions `x y columns rows` separated by `;`, `none`, or an empty cell for the whole image";
 
 /// Parses the output of [`format`]; the inner `Option` is `None` if the whole image was transmitted.
-pub(crate) fn parse(text: &str) -> Result<Option<Vec<Window>>, &'static str> {
+pub fn parse(text: &str) -> Result<Option<Vec<Window>>, &'static str> {
     match text.trim() {
         "" => Ok(None),
         "none" => Ok(Some(Vec::new())),
@@ -31,7 +31,7 @@ pub(crate) fn parse(text: &str) -> Result<Option<Vec<Window>>, &'static str> {
 
 /// Parses one region. No number may exceed the size of the largest detector, which excludes overflow of their
 /// sums.
-pub(crate) fn parse_one(text: &str) -> Option<Window> {
+pub fn parse_one(text: &str) -> Option<Window> {
     let mut numbers = text
         .split_ascii_whitespace()
         .map(|word| word.parse::<usize>().ok().filter(|&n| n <= Camera::MAX_SIDE_PX));

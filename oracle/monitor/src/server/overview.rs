@@ -20,7 +20,8 @@ impl Overview {
     }
 }
 
-pub(crate) fn camera(name: &str, camera: &Camera) -> Value {
+/// Returns the geometry of a camera as the page reads it.
+pub fn camera(name: &str, camera: &Camera) -> Value {
     let (focal_x_px, focal_y_px) = camera.focal_length_px();
     json!({
         "name": name,

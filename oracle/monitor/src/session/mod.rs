@@ -2,15 +2,15 @@
 //! requests of the page.
 
 pub(crate) mod painter;
-pub(crate) mod picture;
+pub mod picture;
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use axum::body::Bytes;
-use contract::docking::Digitiser;
 use files::Failure;
 use serde::Serialize;
+use serde_json::Value;
 use tokio::sync::{oneshot, watch};
 
 use crate::report::{FrameReport, Phase};
@@ -27,7 +27,7 @@ const HISTORY_POINTS: usize = 1500;
 /// One monitored run. Frames are processed in order. `goal` moves ahead of the clients, so an idle page
 /// causes no processing.
 #[derive(Debug)]
-pub(crate) struct Session {
+pub struct Session {
     frames: Range<u64>,
     state: Mutex<State>,
     /// Signals the threads: the goal has moved, a picture is to be drawn, or the session is closed.
@@ -52,14 +52,16 @@ struct State {
 struct FrameEntry {
     report: Bytes,
     phase: Phase,
-    digitiser: Digitiser,
+    settings: Value,
 }
 
 /// A request to draw a picture.
 #[derive(Debug)]
-pub(crate) struct PictureOrder {
-    pub(crate) frame: u64,
-    pub(crate) digitiser: Digitiser,
+pub struct PictureOrder {
+    /// Number of the frame.
+    pub frame: u64,
+    /// Settings with which the frame was received ([`Session::publish`]).
+    pub settings: Value,
     pub(crate) answer: oneshot::Sender<Bytes>,
 }
 
@@ -120,7 +122,7 @@ impl Session {
     ///
     /// # Errors
     /// [`Failure::Usage`] when the monitor is closed.
-    pub(crate) fn wait_for_goal(&self, frame: u64) -> Result<(), Failure> {
+    pub fn wait_for_goal(&self, frame: u64) -> Result<(), Failure> {
         let mut state = self.state();
         while frame > state.goal && !state.is_closed {
             state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
@@ -128,20 +130,21 @@ impl Session {
         if state.is_closed { Err(Failure::Usage("the monitor is closed".to_owned())) } else { Ok(()) }
     }
 
-    /// Adds the next frame.
+    /// Adds the next frame. `settings` are those with which it was received, so that its picture can be drawn
+    /// again.
     ///
     /// # Errors
     /// [`Failure::Usage`] when the report cannot be written as JSON.
-    pub(crate) fn publish(
+    pub fn publish(
         &self,
         report: &FrameReport,
-        digitiser: Digitiser,
+        settings: Value,
         picture: Option<Bytes>,
     ) -> Result<(), Failure> {
         let json = serde_json::to_vec(report)
             .map_err(|error| Failure::Usage(format!("a frame cannot be written as JSON: {error}")))?;
         let mut state = self.state();
-        state.entries.push(FrameEntry { report: json.into(), phase: report.phase, digitiser });
+        state.entries.push(FrameEntry { report: json.into(), phase: report.phase, settings });
         if let Some(picture) = picture {
             state.keep(report.frame, picture);
         }
@@ -178,7 +181,8 @@ impl Session {
             return PictureAnswer::Ready(picture.clone());
         }
         let index = frame.checked_sub(self.frames.start).and_then(|index| usize::try_from(index).ok());
-        let Some(digitiser) = index.and_then(|i| state.entries.get(i)).map(|entry| entry.digitiser) else {
+        let Some(settings) = index.and_then(|i| state.entries.get(i)).map(|entry| entry.settings.clone())
+        else {
             return PictureAnswer::NotYet;
         };
         // Orders of clients that have disconnected make room.
@@ -187,7 +191,7 @@ impl Session {
             return PictureAnswer::Busy;
         }
         let (answer, promise) = oneshot::channel();
-        state.orders.push_back(PictureOrder { frame, digitiser, answer });
+        state.orders.push_back(PictureOrder { frame, settings, answer });
         self.changed.notify_all();
         PictureAnswer::Ordered(promise)
     }
@@ -277,10 +281,9 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{CameraPose, ImageLayout, Model};
+    use crate::report::ImageLayout;
 
     fn report(frame: u64) -> FrameReport {
-        let view = CameraPose { position: [0.0; 3], axes: [[0.0; 3]; 3] };
         FrameReport {
             frame,
             time_utc: String::new(),
@@ -294,7 +297,7 @@ mod tests {
             truth_overlay: Vec::new(),
             phase: Phase { measured: Some([frame as f64, 0.0]), truth: [frame as f64, 0.0] },
             ground: None,
-            model: Model::Docking { camera: 0, measured: None, truth: view, sun: None },
+            model: Value::Null,
         }
     }
 
@@ -303,7 +306,7 @@ mod tests {
         let session = Session::new(0..10);
         let large = Bytes::from(vec![0; PICTURE_BYTES / 3]);
         for frame in 0..4 {
-            session.publish(&report(frame), Digitiser::default(), Some(large.clone())).unwrap();
+            session.publish(&report(frame), Value::Null, Some(large.clone())).unwrap();
         }
         assert!(matches!(session.picture(0), PictureAnswer::Ordered(_)));
         assert!(matches!(session.picture(3), PictureAnswer::Ready(_)));
@@ -313,7 +316,7 @@ mod tests {
     #[test]
     fn orders_are_bounded_and_those_of_clients_that_left_make_room() {
         let session = Session::new(0..2);
-        session.publish(&report(0), Digitiser::default(), None).unwrap();
+        session.publish(&report(0), Value::Null, None).unwrap();
         let promises: Vec<_> = (0..MAX_WAITING).map(|_| session.picture(0)).collect();
         assert!(matches!(session.picture(0), PictureAnswer::Busy));
         drop(promises);

@@ -3,13 +3,13 @@
 pub(crate) mod target_orbit;
 
 use contract::navigation::RelativeElements;
+use far_range::{FarRangeScenario, TrajectoryConfig};
 use files::Failure;
 use hifitime::Epoch;
 use nalgebra::{Vector3, Vector6};
 use navigation::Osculation;
 use navigation::orbit::State;
 use navigation::relative::between;
-use scenario::{FarRangeScenario, TrajectoryConfig};
 use sim::truth::{Trajectory, clock};
 
 /// True relative orbit of a run.

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use contract::navigation::Covariance6;
+use far_range::FarRangeScenario;
 use files::{Failure, FileError, FileLocation};
 use hifitime::Epoch;
 use nalgebra::{Matrix6, Vector3, Vector6};
-use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use sim::truth::State;
 

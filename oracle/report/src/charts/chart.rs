@@ -9,15 +9,15 @@ use crate::page::data_table::DataTable;
 use crate::page::script_safe::script_safe;
 
 /// Colour of true values.
-pub(crate) const TRUTH: &str = "#2f9e69";
+pub const TRUTH: &str = "#2f9e69";
 /// Colour of correct measurements.
-pub(crate) const MEASURED: &str = "#3686c9";
+pub const MEASURED: &str = "#3686c9";
 /// Colour of wrong measurements.
-pub(crate) const WRONG: &str = "#c9415a";
+pub const WRONG: &str = "#c9415a";
 /// Colour of a second quantity beside the measurement: a mean, a limit.
-pub(crate) const BESIDE: &str = "#e0752d";
+pub const BESIDE: &str = "#e0752d";
 /// Colour of reference values.
-pub(crate) const REFERENCE: &str = "#7c8792";
+pub const REFERENCE: &str = "#7c8792";
 
 /// Number of points below which each point is drawn larger and more opaque.
 const FEW_POINTS: usize = 300;
@@ -43,7 +43,7 @@ impl std::fmt::Debug for Chart {
 
 impl Chart {
     /// Creates a chart of these traces.
-    pub(crate) fn new(
+    pub fn new(
         caption: impl Into<String>,
         height_px: u32,
         data: DataTable,
@@ -67,23 +67,23 @@ impl Chart {
 }
 
 /// Rounds a number to `decimals` decimals; more would only lengthen the page.
-pub(crate) fn rounded(value: f64, decimals: i32) -> f64 {
+pub fn rounded(value: f64, decimals: i32) -> f64 {
     let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
     (value * unit).round() / unit
 }
 
 /// Escapes external text for a chart, because plotly.js interprets tags as markup.
-pub(crate) fn plain(text: &str) -> String {
+pub fn plain(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// Returns a line trace.
-pub(crate) fn line(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
+pub fn line(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
     Trace::scatter(Mode::Lines, x, y).name(plain(name)).line(Line::new(1.6).colour(colour))
 }
 
 /// Returns a trace of points.
-pub(crate) fn points(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
+pub fn points(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
     let marker = Marker::new().size(4).colour(colour).opacity(0.85);
     Trace::scatter(Mode::Markers, x, y).name(plain(name)).marker(marker)
 }
@@ -91,7 +91,7 @@ pub(crate) fn points(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str
 /// Returns a cloud of points for the given rows. If there are too many to draw, the cloud is a sample of them
 /// with the extremes of `value` as rings. `make` returns the trace of given rows; without `value` no extremes
 /// are drawn.
-pub(crate) fn cloud(
+pub fn cloud(
     name: &str,
     rows: &[usize],
     value: Option<&dyn Fn(usize) -> f64>,
@@ -115,13 +115,13 @@ pub(crate) fn cloud(
 }
 
 /// Returns a trace of points that stand out.
-pub(crate) fn crosses(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
+pub fn crosses(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
     let marker = Marker::new().size(6).colour(colour).symbol(Symbol::Cross);
     Trace::scatter(Mode::Markers, x, y).name(plain(name)).marker(marker)
 }
 
 /// Returns values with the limits of their intervals, as points with error bars; the limits are absolute.
-pub(crate) fn intervals(
+pub fn intervals(
     name: &str,
     x: impl Into<Values>,
     y: Vec<f64>,
@@ -135,7 +135,7 @@ pub(crate) fn intervals(
 }
 
 /// Returns values with the limits of their intervals along x, for names on the vertical axis.
-pub(crate) fn intervals_across(
+pub fn intervals_across(
     name: &str,
     x: Vec<f64>,
     low: &[f64],
@@ -157,38 +157,38 @@ fn bars_to(values: &[f64], low: &[f64], high: &[f64]) -> ErrorBars {
 }
 
 /// Returns the band between two lines, as two traces: the lower edge, and the upper edge with the fill.
-pub(crate) fn band(name: &str, x: Vec<f64>, low: Vec<f64>, high: Vec<f64>, fill: &str) -> [Trace; 2] {
+pub fn band(name: &str, x: Vec<f64>, low: Vec<f64>, high: Vec<f64>, fill: &str) -> [Trace; 2] {
     let edge = |x, y| Trace::scatter(Mode::Lines, x, y).line(Line::new(0.0)).name(plain(name));
     let below = edge(x.clone(), low).not_in_legend();
     [below, edge(x, high).fill_to_previous(fill)]
 }
 
 /// Returns a dashed line for a reference.
-pub(crate) fn dashed(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
+pub fn dashed(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
     let style = Line::new(1.2).colour(colour).dashed();
     Trace::scatter(Mode::Lines, x, y).name(plain(name)).line(style)
 }
 
 /// Returns a bar chart with one bar per name.
-pub(crate) fn bars(name: &str, x: &[String], y: Vec<f64>, colour: &str) -> Trace {
+pub fn bars(name: &str, x: &[String], y: Vec<f64>, colour: &str) -> Trace {
     let names: Vec<String> = x.iter().map(|x| plain(x)).collect();
     Trace::bars(names, y).name(plain(name)).marker(Marker::new().colour(colour))
 }
 
 /// Returns the layout of stacked bars.
-pub(crate) fn stacked_bars(x_title: &str, y_title: &str) -> Layout {
+pub fn stacked_bars(x_title: &str, y_title: &str) -> Layout {
     // The legend is forced: with a single kind of bar it would be hidden, and the kind unnamed.
     axes(x_title, y_title).stacked_bars(0.4).legend(true)
 }
 
 /// Returns the layout of one pair of axes.
-pub(crate) fn axes(x_title: &str, y_title: &str) -> Layout {
+pub fn axes(x_title: &str, y_title: &str) -> Layout {
     Layout::new(Axis::titled(x_title), Axis::titled(y_title))
 }
 
 /// Returns a logarithmic axis whose tick labels are complete numbers, since the default label 2 may mean 20.
 /// It has few ticks, because those below a power of ten are close together.
-pub(crate) fn log_axis(title: &str) -> Axis {
+pub fn log_axis(title: &str) -> Axis {
     Axis::titled(title).logarithmic().tick_format("~g").max_ticks(4)
 }
 
@@ -207,25 +207,26 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
 }
 
 /// Traces with a separate vertical axis, in a stack of panels over one common horizontal axis.
-pub(crate) struct Panel {
+pub struct Panel {
     /// Title of the vertical axis.
-    pub(crate) title: String,
+    pub title: String,
     /// Traces drawn in the panel.
-    pub(crate) traces: Vec<Trace>,
+    pub traces: Vec<Trace>,
     /// Limits of the vertical axis; `None`: those of the traces.
-    pub(crate) range: Option<[f64; 2]>,
+    pub range: Option<[f64; 2]>,
     /// Limits of a logarithmic vertical axis; `None` for a linear axis.
-    pub(crate) log: Option<[f64; 2]>,
+    pub log: Option<[f64; 2]>,
 }
 
 impl Panel {
-    pub(crate) fn new(title: impl Into<String>, traces: Vec<Trace>) -> Self {
+    /// Creates a value with these parts.
+    pub fn new(title: impl Into<String>, traces: Vec<Trace>) -> Self {
         Self { title: title.into(), traces, range: None, log: None }
     }
 }
 
 /// Stacks panels above each other over one common axis. Only the traces of the first panel are in the legend.
-pub(crate) fn stacked(x: Axis, panels: Vec<Panel>) -> (Vec<Trace>, Layout) {
+pub fn stacked(x: Axis, panels: Vec<Panel>) -> (Vec<Trace>, Layout) {
     let count = panels.len().max(1);
     let (height, gap) = (1.0 / count as f64, 0.035);
     let name = |index: usize| if index == 0 { "y".to_owned() } else { format!("y{}", index + 1) };

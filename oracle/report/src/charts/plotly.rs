@@ -42,7 +42,7 @@ fn numbers(values: &[f64]) -> Value {
 
 /// Values along an axis, or one per point.
 #[derive(Debug, Clone)]
-pub(crate) struct Values(Value);
+pub struct Values(Value);
 
 impl From<Vec<f64>> for Values {
     fn from(values: Vec<f64>) -> Self {
@@ -64,10 +64,14 @@ impl From<Vec<String>> for Values {
 
 /// Drawing mode of a scatter trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Mode {
+pub enum Mode {
+    /// Lines.
     Lines,
+    /// Markers.
     Markers,
+    /// Lines with markers.
     LinesAndMarkers,
+    /// Texts.
     Text,
 }
 
@@ -84,9 +88,12 @@ impl Mode {
 
 /// Shape of a marker other than a dot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Symbol {
+pub enum Symbol {
+    /// A cross.
     Cross,
+    /// A ring.
     Ring,
+    /// A square.
     Square,
 }
 
@@ -102,8 +109,10 @@ impl Symbol {
 
 /// Position of a text relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum TextPosition {
+pub enum TextPosition {
+    /// Above and to the right.
     TopRight,
+    /// To the left.
     MiddleLeft,
 }
 
@@ -118,7 +127,7 @@ impl TextPosition {
 
 /// Colour scale of a heat map, from its smallest to its largest value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ColourScale {
+pub enum ColourScale {
     /// Colours from dark blue to yellow.
     Viridis,
     /// Colours from blue through grey to red.
@@ -136,59 +145,64 @@ impl ColourScale {
 
 /// Style of a line.
 #[derive(Debug, Clone)]
-pub(crate) struct Line(Attributes);
+pub struct Line(Attributes);
 
 impl Line {
     /// Creates a solid line; `width` in px.
-    pub(crate) fn new(width: f64) -> Self {
+    pub fn new(width: f64) -> Self {
         Self(Attributes::default().with("width", number(width)))
     }
 
-    pub(crate) fn colour(self, colour: &str) -> Self {
+    /// Sets the colour.
+    pub fn colour(self, colour: &str) -> Self {
         Self(self.0.with("color", colour))
     }
 
-    pub(crate) fn dashed(self) -> Self {
+    /// Makes the line dashed.
+    pub fn dashed(self) -> Self {
         Self(self.0.with("dash", "dash"))
     }
 }
 
 /// Style of the markers of points or of bars.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Marker(Attributes);
+pub struct Marker(Attributes);
 
 impl Marker {
     /// Creates the style of dots of the default size, or of bars.
-    pub(crate) fn new() -> Self {
+    pub fn new() -> Self {
         Self::default()
     }
 
     /// Sets the diameter, px.
-    pub(crate) fn size(self, px: u32) -> Self {
+    pub fn size(self, px: u32) -> Self {
         Self(self.0.with("size", px))
     }
 
-    pub(crate) fn colour(self, colour: &str) -> Self {
+    /// Sets the colour.
+    pub fn colour(self, colour: &str) -> Self {
         Self(self.0.with("color", colour))
     }
 
-    pub(crate) fn opacity(self, opacity: f64) -> Self {
+    /// Sets the opacity, 0 to 1.
+    pub fn opacity(self, opacity: f64) -> Self {
         Self(self.0.with("opacity", number(opacity)))
     }
 
-    pub(crate) fn symbol(self, symbol: Symbol) -> Self {
+    /// Sets the symbol.
+    pub fn symbol(self, symbol: Symbol) -> Self {
         Self(self.0.with("symbol", symbol.code()))
     }
 }
 
 /// Error bars from a point to the limits of its interval.
 #[derive(Debug, Clone)]
-pub(crate) struct ErrorBars(Attributes);
+pub struct ErrorBars(Attributes);
 
 impl ErrorBars {
     /// Creates error bars of these lengths, one per point: `up` extends upwards or to the right, `down`
     /// downwards or to the left.
-    pub(crate) fn new(up: &[f64], down: &[f64]) -> Self {
+    pub fn new(up: &[f64], down: &[f64]) -> Self {
         let bars = Attributes::default().with("type", "data").with("symmetric", false).with("thickness", 1.2);
         Self(bars.with("array", numbers(up)).with("arrayminus", numbers(down)))
     }
@@ -197,29 +211,29 @@ impl ErrorBars {
 /// A series of a chart: points, a line, bars or a heat map.
 #[derive(Debug, Clone, Serialize)]
 #[serde(transparent)]
-pub(crate) struct Trace(Attributes);
+pub struct Trace(Attributes);
 
 impl Trace {
     /// All trace types that a report draws; the embedded plotly.js bundle must support them.
     #[cfg(test)]
-    pub(crate) const TRACE_TYPES: [&str; 3] = ["scatter", "bar", "heatmap"];
+    pub const TRACE_TYPES: [&str; 3] = ["scatter", "bar", "heatmap"];
 
     fn new(kind: &str, x: impl Into<Values>, y: impl Into<Values>) -> Self {
         Self(Attributes::default().with("type", kind).with("x", x.into().0).with("y", y.into().0))
     }
 
     /// Creates points, a line through them, or texts beside them.
-    pub(crate) fn scatter(mode: Mode, x: impl Into<Values>, y: impl Into<Values>) -> Self {
+    pub fn scatter(mode: Mode, x: impl Into<Values>, y: impl Into<Values>) -> Self {
         Self::new("scatter", x, y).mode(mode)
     }
 
     /// Creates vertical bars.
-    pub(crate) fn bars(x: impl Into<Values>, y: impl Into<Values>) -> Self {
+    pub fn bars(x: impl Into<Values>, y: impl Into<Values>) -> Self {
         Self::new("bar", x, y)
     }
 
     /// Creates coloured cells; `z` has a row of numbers for each `y`, and each row a number for each `x`.
-    pub(crate) fn heat_map(x: impl Into<Values>, y: impl Into<Values>, z: &[Vec<f64>]) -> Self {
+    pub fn heat_map(x: impl Into<Values>, y: impl Into<Values>, z: &[Vec<f64>]) -> Self {
         let rows: Value = z.iter().map(|row| numbers(row)).collect();
         Self::new("heatmap", x, y).with("z", rows)
     }
@@ -229,100 +243,108 @@ impl Trace {
     }
 
     /// Sets the name in the legend and on hover. Plotly.js interprets tags in it.
-    pub(crate) fn name(self, name: String) -> Self {
+    pub fn name(self, name: String) -> Self {
         self.with("name", name)
     }
 
-    pub(crate) fn mode(self, mode: Mode) -> Self {
+    /// Sets the mode.
+    pub fn mode(self, mode: Mode) -> Self {
         self.with("mode", mode.code())
     }
 
-    pub(crate) fn line(self, line: Line) -> Self {
+    /// Sets the line.
+    pub fn line(self, line: Line) -> Self {
         self.with("line", line.0.into_value())
     }
 
-    pub(crate) fn marker(self, marker: Marker) -> Self {
+    /// Sets the markers.
+    pub fn marker(self, marker: Marker) -> Self {
         self.with("marker", marker.0.into_value())
     }
 
-    pub(crate) fn opacity(self, opacity: f64) -> Self {
+    /// Sets the opacity, 0 to 1.
+    pub fn opacity(self, opacity: f64) -> Self {
         self.with("opacity", number(opacity))
     }
 
     /// Leaves the trace out of the legend.
-    pub(crate) fn not_in_legend(self) -> Self {
+    pub fn not_in_legend(self) -> Self {
         self.with("showlegend", false)
     }
 
     /// Fills the area between this line and the line of the preceding trace.
-    pub(crate) fn fill_to_previous(self, colour: &str) -> Self {
+    pub fn fill_to_previous(self, colour: &str) -> Self {
         self.with("fill", "tonexty").with("fillcolor", colour)
     }
 
-    pub(crate) fn error_x(self, bars: ErrorBars) -> Self {
+    /// Sets the error bars along x.
+    pub fn error_x(self, bars: ErrorBars) -> Self {
         self.with("error_x", bars.0.into_value())
     }
 
-    pub(crate) fn error_y(self, bars: ErrorBars) -> Self {
+    /// Sets the error bars along y.
+    pub fn error_y(self, bars: ErrorBars) -> Self {
         self.with("error_y", bars.0.into_value())
     }
 
     /// Sets a value per point that is not drawn; the hover template refers to it as `%{customdata}`.
-    pub(crate) fn custom_data(self, values: Vec<u64>) -> Self {
+    pub fn custom_data(self, values: Vec<u64>) -> Self {
         self.with("customdata", Values::from(values).0)
     }
 
     /// Sets the hover text of a point, in the template language of plotly.js.
-    pub(crate) fn hover_template(self, template: &str) -> Self {
+    pub fn hover_template(self, template: &str) -> Self {
         self.with("hovertemplate", template)
     }
 
     /// Disables the hover text of the trace.
-    pub(crate) fn no_hover(self) -> Self {
+    pub fn no_hover(self) -> Self {
         self.with("hoverinfo", "skip")
     }
 
     /// Sets a text per point.
-    pub(crate) fn texts(self, texts: Vec<String>) -> Self {
+    pub fn texts(self, texts: Vec<String>) -> Self {
         self.with("text", texts)
     }
 
-    pub(crate) fn text_position(self, position: TextPosition) -> Self {
+    /// Sets the position of the texts.
+    pub fn text_position(self, position: TextPosition) -> Self {
         self.with("textposition", position.code())
     }
 
     /// Sets the colour of the texts, and their size in px.
-    pub(crate) fn text_font(self, colour: &str, px: u32) -> Self {
+    pub fn text_font(self, colour: &str, px: u32) -> Self {
         self.with("textfont", Attributes::default().with("color", colour).with("size", px).into_value())
     }
 
     /// Sets the name of the vertical axis: `y`, `y2`, and so on.
-    pub(crate) fn y_axis(self, name: &str) -> Self {
+    pub fn y_axis(self, name: &str) -> Self {
         self.with("yaxis", name)
     }
 
     /// Sets a text per cell of a heat map.
-    pub(crate) fn cell_texts(self, texts: Vec<Vec<String>>) -> Self {
+    pub fn cell_texts(self, texts: Vec<Vec<String>>) -> Self {
         self.with("text", texts)
     }
 
-    pub(crate) fn colour_scale(self, scale: ColourScale) -> Self {
+    /// Sets the colour scale.
+    pub fn colour_scale(self, scale: ColourScale) -> Self {
         self.with("colorscale", scale.code())
     }
 
     /// Sets the title of the colour bar beside a heat map.
-    pub(crate) fn colour_bar_title(self, title: &str) -> Self {
+    pub fn colour_bar_title(self, title: &str) -> Self {
         self.with("colorbar", Attributes::default().with("title", titled(title)).into_value())
     }
 
     /// Sets the values at the ends of the colour scale; the default is the smallest and the largest value of
     /// the map.
-    pub(crate) fn colour_range(self, [low, high]: [f64; 2]) -> Self {
+    pub fn colour_range(self, [low, high]: [f64; 2]) -> Self {
         self.with("zmin", number(low)).with("zmax", number(high))
     }
 
     /// Disables the hover text of empty cells.
-    pub(crate) fn no_hover_on_gaps(self) -> Self {
+    pub fn no_hover_on_gaps(self) -> Self {
         self.with("hoverongaps", false)
     }
 }
@@ -333,16 +355,16 @@ fn titled(text: &str) -> Value {
 
 /// An axis of a chart.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Axis(Attributes);
+pub struct Axis(Attributes);
 
 impl Axis {
     /// Creates an axis without a title; its type follows from the values.
-    pub(crate) fn new() -> Self {
+    pub fn new() -> Self {
         Self::default()
     }
 
     /// Creates an axis with a title, which is left out when empty. Plotly.js interprets tags in the title.
-    pub(crate) fn titled(title: &str) -> Self {
+    pub fn titled(title: &str) -> Self {
         if title.is_empty() { Self::new() } else { Self::new().with("title", titled(title)) }
     }
 
@@ -351,57 +373,57 @@ impl Axis {
     }
 
     /// Makes the axis logarithmic. Its range is then given as logarithms to base ten.
-    pub(crate) fn logarithmic(self) -> Self {
+    pub fn logarithmic(self) -> Self {
         self.with("type", "log")
     }
 
     /// Makes the axis an axis of time; values are milliseconds of UTC since 1970-01-01.
-    pub(crate) fn with_time_axis(self) -> Self {
+    pub fn with_time_axis(self) -> Self {
         self.with("type", "date")
     }
 
     /// Sets the values at the ends of the axis, the left or bottom end first.
-    pub(crate) fn range(self, ends: [f64; 2]) -> Self {
+    pub fn range(self, ends: [f64; 2]) -> Self {
         self.with("range", numbers(&ends))
     }
 
     /// Sets the part of the chart's height or width that the axis covers, from 0 to 1.
-    pub(crate) fn domain(self, ends: [f64; 2]) -> Self {
+    pub fn domain(self, ends: [f64; 2]) -> Self {
         self.with("domain", numbers(&ends))
     }
 
     /// Sets the name of the axis that this axis is attached to.
-    pub(crate) fn anchor(self, name: &str) -> Self {
+    pub fn anchor(self, name: &str) -> Self {
         self.with("anchor", name)
     }
 
     /// Gives this axis the same length per unit as the named axis.
-    pub(crate) fn same_scale_as(self, name: &str) -> Self {
+    pub fn same_scale_as(self, name: &str) -> Self {
         self.with("scaleanchor", name)
     }
 
     /// Shortens the axis instead of its range if its scale is bound to another axis.
-    pub(crate) fn constrain_domain(self) -> Self {
+    pub fn constrain_domain(self) -> Self {
         self.with("constrain", "domain")
     }
 
     /// Sets the format of tick labels, as a d3 format.
-    pub(crate) fn tick_format(self, format: &str) -> Self {
+    pub fn tick_format(self, format: &str) -> Self {
         self.with("tickformat", format)
     }
 
     /// Sets the maximum number of ticks.
-    pub(crate) fn max_ticks(self, count: u32) -> Self {
+    pub fn max_ticks(self, count: u32) -> Self {
         self.with("nticks", count)
     }
 
     /// Sets the values with a tick.
-    pub(crate) fn ticks(self, values: &[f64]) -> Self {
+    pub fn ticks(self, values: &[f64]) -> Self {
         self.with("tickvals", numbers(values))
     }
 
     /// Hides the line, the ticks and the labels of the axis.
-    pub(crate) fn hidden(self) -> Self {
+    pub fn hidden(self) -> Self {
         self.with("visible", false)
     }
 }
@@ -409,10 +431,11 @@ impl Axis {
 /// Axes and legend of a chart.
 #[derive(Debug, Clone, Default, Serialize)]
 #[serde(transparent)]
-pub(crate) struct Layout(Attributes);
+pub struct Layout(Attributes);
 
 impl Layout {
-    pub(crate) fn new(x: Axis, y: Axis) -> Self {
+    /// Creates a value with these parts.
+    pub fn new(x: Axis, y: Axis) -> Self {
         Self::default().x_axis(x).y_axis("y", y)
     }
 
@@ -420,22 +443,23 @@ impl Layout {
         Self(self.0.with(name, value))
     }
 
-    pub(crate) fn x_axis(self, axis: Axis) -> Self {
+    /// Replaces the x axis.
+    pub fn x_axis(self, axis: Axis) -> Self {
         self.with("xaxis", axis.0.into_value())
     }
 
     /// Sets the vertical axis that traces refer to as `y`, `y2`, and so on.
-    pub(crate) fn y_axis(self, name: &str, axis: Axis) -> Self {
+    pub fn y_axis(self, name: &str, axis: Axis) -> Self {
         self.with(&name.replacen('y', "yaxis", 1), axis.0.into_value())
     }
 
     /// Shows or hides the legend; by default a chart with a single trace has none.
-    pub(crate) fn legend(self, is_shown: bool) -> Self {
+    pub fn legend(self, is_shown: bool) -> Self {
         self.with("showlegend", is_shown)
     }
 
     /// Stacks bars with the same x value, with a gap of this fraction of the bar spacing.
-    pub(crate) fn stacked_bars(self, gap: f64) -> Self {
+    pub fn stacked_bars(self, gap: f64) -> Self {
         self.with("barmode", "stack").with("bargap", number(gap))
     }
 }

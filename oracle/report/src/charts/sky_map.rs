@@ -18,7 +18,7 @@ const REACH: f64 = 1.5;
 const OF_A_LINE: usize = 60;
 
 /// Returns the map of the counted pointings; `of` is the number of all pointings.
-pub(crate) fn sky_map(counted: &[&PointingStars], of: usize) -> (Vec<Trace>, Layout) {
+pub fn sky_map(counted: &[&PointingStars], of: usize) -> (Vec<Trace>, Layout) {
     let reach = REACH * (4.0 * PI / of.max(1) as f64).sqrt();
     let pointings = Pointings::new(counted);
     let centre = |cell: usize, cells: usize| (2 * cell + 1) as f64 / cells as f64 - 1.0;

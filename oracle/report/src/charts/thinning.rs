@@ -16,7 +16,7 @@ const STRETCHES: usize = 700;
 /// Returns the indices of the points of a cloud of `count` rows that are drawn: all, or a random one of each
 /// stretch of consecutive rows, so that any part of the rows keeps its distribution. The indices ascend, and
 /// depend only on `count`.
-pub(crate) fn sampled(count: usize) -> Vec<usize> {
+pub fn sampled(count: usize) -> Vec<usize> {
     if count <= MAX_CLOUD_POINTS {
         return (0..count).collect();
     }
@@ -38,7 +38,7 @@ fn scrambled(number: u64) -> u64 {
 
 /// Returns the indices of the smallest and the largest value in each fiftieth of the rows of a sampled cloud;
 /// none for a cloud that is drawn completely.
-pub(crate) fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize> {
+pub fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize> {
     let mut kept = Vec::new();
     if count > MAX_CLOUD_POINTS {
         for part in bins(count, PARTS) {
@@ -54,7 +54,7 @@ pub(crate) fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize>
 
 /// Describes how many points of each cloud are drawn; each cloud has a count and a name of its points.
 /// `rings` is true if the extremes are drawn as rings.
-pub(crate) fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String {
+pub fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String {
     let of = |&(count, what): &(usize, &str)| format!("{} of {count} {what}", sampled(count).len());
     let parts: Vec<String> = clouds.iter().filter(|(count, _)| *count > 0).map(of).collect();
     let mut text = match parts.as_slice() {
@@ -72,7 +72,7 @@ pub(crate) fn thinning_caption(clouds: &[(usize, &str)], rings: bool) -> String 
 
 /// Returns the indices of the rows that are drawn for a curve in a plane, at even steps from 0 to `count`.
 /// The extremes of both coordinates, which are drawn for a line over time, would turn a loop into a polygon.
-pub(crate) fn evenly(count: usize) -> Vec<usize> {
+pub fn evenly(count: usize) -> Vec<usize> {
     let step = count.div_ceil(MAX_CURVE_POINTS).max(1);
     let mut kept: Vec<usize> = (0..count).step_by(step).collect();
     if kept.last().is_some_and(|&last| last + 1 < count) {
@@ -84,7 +84,7 @@ pub(crate) fn evenly(count: usize) -> Vec<usize> {
 /// Returns the indices of the rows, of `count`, that a line needs: of each stretch of consecutive rows the
 /// first, and those with the smallest and the largest value of each of the `series`. All indices are returned
 /// if they are few. The indices ascend. Values that are not finite are ignored.
-pub(crate) fn thinned(count: usize, series: &[&dyn Fn(usize) -> f64]) -> Vec<usize> {
+pub fn thinned(count: usize, series: &[&dyn Fn(usize) -> f64]) -> Vec<usize> {
     let most = STRETCHES * (1 + 2 * series.len());
     if count <= most {
         return (0..count).collect();
@@ -106,13 +106,13 @@ pub(crate) fn thinned(count: usize, series: &[&dyn Fn(usize) -> f64]) -> Vec<usi
 
 /// Returns the index range of each of at most `most` bins, which together contain all `count` indices in
 /// order.
-pub(crate) fn bins(count: usize, most: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+pub fn bins(count: usize, most: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
     let bins = count.min(most);
     (0..bins).map(move |bin| bin * count / bins..(bin + 1) * count / bins)
 }
 
 /// Returns count, minimum, mean and maximum of some values, as cells; values that are not finite are ignored.
-pub(crate) fn summary(values: impl Iterator<Item = f64>, decimals: usize) -> [String; 4] {
+pub fn summary(values: impl Iterator<Item = f64>, decimals: usize) -> [String; 4] {
     let (mut count, mut sum, mut low, mut high) = (0_u64, 0.0, f64::INFINITY, f64::NEG_INFINITY);
     for value in values.filter(|value| value.is_finite()) {
         count += 1;

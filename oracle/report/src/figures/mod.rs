@@ -1,7 +1,7 @@
 //! Figures of a score, as text and as a table.
 
-pub(crate) mod run_page;
-pub(crate) mod words;
+pub mod run_page;
+pub mod words;
 use indexmap::IndexMap;
 use run::figure_by_name;
 use score::Figure;
@@ -9,7 +9,7 @@ use score::Figure;
 use crate::page::data_table::DataTable;
 
 /// Formats a rate in percent with its interval: `93.86 (92.1–95.2)`; a dash if its denominator is 0.
-pub(crate) fn shown_percent(figure: &Figure) -> String {
+pub fn shown_percent(figure: &Figure) -> String {
     let Some(value) = figure.value else { return "–".to_owned() };
     let interval = figure.low.zip(figure.high);
     let interval = interval.map(|(low, high)| format!(" ({:.1}–{:.1})", 100.0 * low, 100.0 * high));
@@ -17,12 +17,12 @@ pub(crate) fn shown_percent(figure: &Figure) -> String {
 }
 
 /// Formats a rate with its interval for a table whose caption states percent.
-pub(crate) fn percent_cell(figure: Option<&Figure>) -> String {
+pub fn percent_cell(figure: Option<&Figure>) -> String {
     figure.map_or_else(String::new, |figure| shown_percent(figure).replacen(" %", "", 1))
 }
 
 /// Formats a number with four significant digits, or exactly if it is an integer.
-pub(crate) fn significant(value: f64) -> String {
+pub fn significant(value: f64) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
@@ -41,7 +41,7 @@ pub(crate) fn significant(value: f64) -> String {
 }
 
 /// Formats a probability in percent. A probability close to 0 or 1 is not rounded to 0 or 100 %.
-pub(crate) fn probability(value: f64) -> String {
+pub fn probability(value: f64) -> String {
     if value > 0.0 && value < 0.000_5 {
         "<\u{a0}0.1\u{a0}%".to_owned()
     } else if value < 1.0 && value > 0.999_5 {
@@ -52,19 +52,19 @@ pub(crate) fn probability(value: f64) -> String {
 }
 
 /// Formats the minimum and the maximum of some values: `2.94 to 30.83 km`.
-pub(crate) fn least_to_most(values: impl Iterator<Item = f64>, unit: &str) -> String {
+pub fn least_to_most(values: impl Iterator<Item = f64>, unit: &str) -> String {
     let (low, high) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     format!("{low:.2} to {high:.2} {unit}")
 }
 
 /// Formats a value, or a dash for `None`.
-pub(crate) fn cell(value: Option<f64>) -> String {
+pub fn cell(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), significant)
 }
 
 /// Returns a table of all figures with count and interval. Rates are fractions, as in `score.json`.
-pub(crate) fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
+pub fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
     let head = ["figure", "value", "95 % low", "95 % high", "count", "of", "independent"];
     let mut table = DataTable::new(head).caption(
         "All figures of score.json; rates are fractions from 0 to 1. Independent: effective number of \

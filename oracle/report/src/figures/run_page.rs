@@ -17,7 +17,7 @@ use crate::read::missing;
 ///
 /// # Errors
 /// A [`Failure`] that names the file which is missing or cannot be read.
-pub(crate) fn run_page(directory: &Path) -> Result<Page, Failure> {
+pub fn run_page(directory: &Path) -> Result<Page, Failure> {
     let path = directory.join("run.toml");
     let world = world_of_run(&path)?;
     let run = world.read_run(&path)?;

@@ -1,12 +1,12 @@
 //! The page: sections of text, tables, charts and pictures, as one HTML file that needs no network.
 
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
-pub(crate) mod colours;
-pub(crate) mod data_table;
+pub mod colours;
+pub mod data_table;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
-pub(crate) mod picture;
-pub(crate) mod plotly_js;
-pub(crate) mod script_safe;
+pub mod picture;
+pub mod plotly_js;
+pub mod script_safe;
 
 use askama::Template;
 use files::Failure;

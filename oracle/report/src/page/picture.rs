@@ -12,7 +12,7 @@ use image::{GrayImage, ImageFormat};
 const MAX_SAMPLES: usize = 60_000;
 
 /// Pictures of frames, and the reason if there are none.
-pub(crate) type RenderedPictures = (Vec<Picture>, Option<String>);
+pub type RenderedPictures = (Vec<Picture>, Option<String>);
 
 /// A window of a frame with marks.
 #[derive(Debug, Clone)]
@@ -145,7 +145,7 @@ impl Picture {
 
 /// Returns the window with aspect ratio 4:3 that contains all `points` with a margin of `margin_px`, limited
 /// to the detector; the whole detector if no point is on it.
-pub(crate) fn window_around(points: &[PixelPoint], margin_px: f64, columns: usize, rows: usize) -> Window {
+pub fn window_around(points: &[PixelPoint], margin_px: f64, columns: usize, rows: usize) -> Window {
     let inside: Vec<_> = points.iter().filter(|point| point.is_on_detector(columns, rows)).collect();
     let whole = Window { x: 0, y: 0, columns, rows };
     let Some(first) = inside.first() else { return whole };

@@ -12,7 +12,7 @@ static COMPRESSED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/plotly.js.z
 ///
 /// # Errors
 /// An [`io::Error`] when the executable is damaged.
-pub(crate) fn plotly_js() -> io::Result<String> {
+pub fn plotly_js() -> io::Result<String> {
     let mut script = String::new();
     ZlibDecoder::new(COMPRESSED).read_to_string(&mut script)?;
     Ok(script)

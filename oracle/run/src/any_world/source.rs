@@ -10,7 +10,7 @@ use scenario::run_file::{FileDigests, RunFile, content};
 use serde_json::Value;
 
 use crate::any_world::{AnyScenario, AnyWorld, ScenarioSource};
-use crate::worlds::world_by_name;
+use crate::worlds::{first_world, world_by_name};
 
 impl ScenarioSource {
     /// Reads the scenario `word`: a built-in name, the path of a TOML file, or of the `run.toml` of a run to
@@ -190,7 +190,7 @@ fn world_in(file: &Path, text: &str, path: &str) -> Result<&'static dyn AnyWorld
             world_by_name(word).map_err(|message| toml_file::refuse(file, text, path, message).into())
         }
         // A value of another type is reported when the complete file is read.
-        _ => Ok(crate::worlds::FIRST),
+        _ => first_world(),
     }
 }
 

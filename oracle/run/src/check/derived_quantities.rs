@@ -3,16 +3,17 @@
 use sim::optics::Projection;
 
 /// Field of view and pixel size of a camera.
-pub(crate) struct FieldOfView {
+pub struct FieldOfView {
     /// Width and height of the field of view through the principal point, degrees; `None` if the principal
     /// point is far off the detector.
-    pub(crate) field_deg: Option<[f64; 2]>,
+    pub field_deg: Option<[f64; 2]>,
     /// Width and height of a pixel at the principal point, arcseconds.
-    pub(crate) pixel_arcsec: [f64; 2],
+    pub pixel_arcsec: [f64; 2],
 }
 
 impl FieldOfView {
-    pub(crate) fn from_projection(projection: &Projection) -> Self {
+    /// Computes the field of a camera.
+    pub fn from_projection(projection: &Projection) -> Self {
         let (across, along) = projection.plate_scale_px_per_rad();
         Self {
             field_deg: projection.field().map(|field| field.map(contract::Angle::degrees)),
@@ -21,7 +22,7 @@ impl FieldOfView {
     }
 
     /// Formats the field of view and the pixel size.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let [x, y] = self.pixel_arcsec;
         let field = self.field_deg.map_or_else(String::new, |[width, height]| {
             format!("field of view {width:.3}° × {height:.3}°, ")
@@ -31,7 +32,7 @@ impl FieldOfView {
 }
 
 /// Formats a size: 872 kB, 5.6 GB.
-pub(crate) fn size(bytes: u64) -> String {
+pub fn size(bytes: u64) -> String {
     let size = bytes as f64;
     match bytes {
         0..1_000 => format!("{bytes} bytes"),

@@ -1,4 +1,6 @@
 //! Results of a scenario check in addition to its errors.
 
-pub(crate) mod derived_quantities;
+mod derived_quantities;
 pub(crate) mod unit_mistakes;
+
+pub use derived_quantities::{FieldOfView, size};

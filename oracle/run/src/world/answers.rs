@@ -62,7 +62,7 @@ pub trait Judgement {
 }
 
 /// Returns the paths of exactly as many files as a writer of outcomes has.
-pub(crate) fn paths<const N: usize>(files: &[PathBuf]) -> Result<[&Path; N], FileError> {
+pub fn paths<const N: usize>(files: &[PathBuf]) -> Result<[&Path; N], FileError> {
     let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
     let count = paths.len();
     let first = files.first().map_or_else(PathBuf::new, Clone::clone);

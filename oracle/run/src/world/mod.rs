@@ -16,8 +16,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
-pub(crate) use self::answers::paths;
-pub use self::answers::{Answers, Judgement};
+pub use self::answers::{Answers, Judgement, paths};
 use crate::any_world::{Options, ScenarioSource};
 use crate::frame_jobs::FrameJobs;
 
@@ -387,9 +386,12 @@ pub trait Scorer<W: World> {
 /// # Errors
 /// [`Failure::Usage`] when an attitude is requested.
 pub fn refuse_attitude(attitude: Option<AttitudeChoice>) -> Result<(), Failure> {
-    attitude.map_or(Ok(()), |_| Err(Failure::Usage("--attitude requires a run of the far range".to_owned())))
+    attitude.map_or(Ok(()), |_| {
+        Err(Failure::Usage("--attitude requires a world whose measurements are lines of sight".to_owned()))
+    })
 }
 
-pub(crate) fn unscorable(error: score::ScoreError) -> Failure {
+/// Returns the failure for a truth that cannot be scored.
+pub fn unscorable(error: score::ScoreError) -> Failure {
     Failure::Usage(format!("the truth cannot be scored: {error}"))
 }

@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 
 use config::toml_file;
 use draws::{Effect, Seed};
+use far_range::FarRangeScenario;
 use files::sha256::hex;
 use files::{Failure, file_sha256};
 use indexmap::IndexMap;
 use run::{AnyScenario, Options, ScenarioSource};
-use scenario::FarRangeScenario;
 use scenario::run_file::{FileDigests, content};
 use score::navigation_figures;
 use serde_json::Value;

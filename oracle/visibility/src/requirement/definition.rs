@@ -3,9 +3,10 @@ use std::path::{Path, PathBuf};
 
 use config::toml_file;
 use contract::Camera;
+use far_range::FarRangeScenario;
 use files::Failure;
 use run::ScenarioSource;
-use scenario::{BUILT_IN, BuiltIn, CAMERAS, FarRangeScenario};
+use scenario::{BUILT_IN, BuiltIn, CAMERAS};
 use serde::{Deserialize, Serialize};
 use sim::SimError;
 use sim::optics::{PsfConfig, RadiometryConfig};

@@ -79,7 +79,7 @@ fn measure(
     let text = |error: &dyn std::fmt::Display| format!("{}, pose {number}: {error}", row.name);
     let case = Case::random(row, arguments.seed, number, arguments.noise_dn).map_err(|e| text(&e))?;
     let field = case.field().map_err(|e| text(&e))?;
-    boresight::files::write_field(&folder.join(Case::file(number)), &field).map_err(|e| text(&e))?;
+    boresight::docking::video::write_field(&folder.join(Case::file(number)), &field).map_err(|e| text(&e))?;
     let setup = case.setup();
     // A new pipeline: every frame is its first one.
     let factory = DockingFactory::new(DockingConfig::default()).map_err(|e| text(&e))?;

@@ -76,7 +76,7 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
 
 /// Built-in scenario; with `wide`, seen by its wide lens only.
 fn simulation(wide: bool) -> Result<DockingSimulation, Box<dyn Error>> {
-    let mut table: toml::Table = boresight::scenario::DOCKING.parse()?;
+    let mut table: toml::Table = boresight::docking::STARTING_POINT.parse()?;
     for key in ["world", "title", "docking"] {
         table.remove(key);
     }

@@ -3,9 +3,10 @@
 use std::error::Error;
 use std::hint::black_box;
 
+use boresight::far_range::FarRangeMission;
+use boresight::far_range::FarRangeScenario;
 use boresight::run::ScenarioSource;
-use boresight::run::{FarRangeMission, World as _};
-use boresight::scenario::FarRangeScenario;
+use boresight::run::World as _;
 use contract::{Frame, Outcome, Pipeline, Rotation, Setup, Telemetry};
 use hifitime::{Epoch, Unit};
 use pipeline::far_range::{FarRangeConfig, FarRangePipeline, Mode};
@@ -59,6 +60,7 @@ impl Work {
 /// Returns all tasks that can be timed.
 pub(crate) fn works(scene: &PlainScene) -> Result<Vec<Work>, Box<dyn Error>> {
     let mut works = vec![plain("plain", scene)?, plain("plain-uneven", &scene.uneven())?];
+    boresight::register_worlds();
     let source = ScenarioSource::read("argon")?;
     let scenario = source.typed::<FarRangeScenario>("frame_speed")?;
     let whole = FarRangeScenario { roi: None, ..scenario.clone() };
@@ -90,7 +92,7 @@ fn simulator(
     source: &ScenarioSource,
     scenario: &FarRangeScenario,
 ) -> Result<&'static Simulator, Box<dyn Error>> {
-    Ok(Box::leak(Box::new(boresight::run::far_range::simulator(source, scenario)?)))
+    Ok(Box::leak(Box::new(boresight::far_range::simulator(source, scenario)?)))
 }
 
 /// Scenario with stars to V = 7 and the target with the camera of `argon`, on an uneven detector without

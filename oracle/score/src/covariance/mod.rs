@@ -1,5 +1,0 @@
-//! Consistency of stated covariances with the errors of measurements.
-
-pub(crate) mod consistency;
-pub(crate) mod image_state;
-pub(crate) mod normalised_error;

@@ -1,0 +1,31 @@
+//! The far-range world: star fields with a distant spacecraft.
+//!
+//! - [`FarRangeScenario`]: what a scenario file says.
+//! - [`rows`]: the files of a run and of a dataset: telemetry, stars, truth, outcomes, clusters.
+//! - [`scoring`]: the verdict of each frame, its cause, and the figures.
+//! - [`FarRangeMission`]: the world ([`run::World`]) with its simulator.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+pub mod rows;
+mod scenario;
+pub mod scoring;
+mod world;
+
+pub use self::scenario::{
+    FarRangeScenario, FarRangeWorld, ScoreConfig, StarListConfig, TrajectoryConfig, is_argon,
+};
+pub use self::world::star_list::star_list;
+pub use self::world::{FarRangeMission, SceneTruth, limits, simulator};
+
+/// The built-in scenario `starting-point`: small, with a comment on every line.
+pub const STARTING_POINT: &str = include_str!("../../../scenarios/starting-point.toml");

@@ -1,0 +1,273 @@
+//! Report of a far-range run: the figures of the far-range paper by name, its Table 2, causes, frames.
+
+mod approach;
+mod attitude;
+mod budget;
+mod colours;
+mod covariances;
+mod error_budget;
+mod frame_detail;
+mod image;
+mod navigation;
+mod run;
+mod series;
+mod thresholds;
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use indexmap::IndexMap;
+
+pub use error_budget::{InjectedRun, kept_budget};
+pub use frame_detail::FrameDetail;
+pub use run::FarRangeRun;
+
+use self::colours::colour_of;
+use self::run::shown_time;
+use ::report::charts::chart::{Chart, bars, rounded, stacked_bars};
+use ::report::charts::plotly::Trace;
+use ::report::figures::words::display_name;
+use ::report::figures::{figure_table, least_to_most, percent_cell, shown_percent};
+use ::report::page::data_table::DataTable;
+use ::report::page::picture::RenderedPictures;
+use ::report::page::{Page, Section};
+use ::report::{BudgetReport, WorldReport};
+use ::run::{AnyJudgement, World};
+use far_range::FarRangeMission;
+use far_range::is_argon;
+use far_range::scoring::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore};
+use files::{Checksums, Failure};
+use scenario::Stage;
+use score::{angle, attitude_note, warm_up_note};
+
+/// Returns the report of the world's runs.
+pub(crate) fn world_report() -> WorldReport {
+    WorldReport {
+        code: FarRangeMission::CODE,
+        page,
+        pictures,
+        budget: Some(BudgetReport { stages, page: page_with_budget }),
+    }
+}
+
+/// Returns the frames of a run and the stages of its pipeline whose result can be replaced by the truth.
+fn stages(directory: &Path) -> Result<(Range<u64>, Vec<Stage>), Failure> {
+    let run = FarRangeRun::read(directory)?;
+    if run.run_file.inject.is_some() {
+        return Err(Failure::Usage(
+            "--budget is all, which applies only to the report of a run without --inject".to_owned(),
+        ));
+    }
+    let (Some(first), Some(last)) = (run.truths.first(), run.truths.last()) else {
+        return Err(Failure::Usage(format!(
+            "{}: the run has no frames, expected at least one",
+            directory.display()
+        )));
+    };
+    let has_regions = run.run_file.scenario.roi.is_some();
+    // A camera without regions transmits whole images anyway.
+    let can_be_replaced = |stage: &Stage| *stage != Stage::Roi || has_regions;
+    Ok((first.frame..last.frame + 1, Stage::ALL.into_iter().filter(can_be_replaced).collect()))
+}
+
+/// Returns the page of a run with its error budget; `budget` lists directories of runs on the same frames,
+/// each with the truth in place of one stage's result.
+fn page_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
+    let mut run = FarRangeRun::read(directory)?;
+    run.budget = InjectedRun::read_all(budget, &run.run_file, &run.score)?;
+    far_range_page(&run, &FrameDetail::open(directory)?)
+}
+
+/// Returns the page of a run directory with its stored error budget; if `scored` holds the verdicts, they are
+/// used, and the page has no error budget.
+fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+    let run = match scored.and_then(|scored| scored.as_any_mut().downcast_mut::<FarRangeJudgement>()) {
+        Some(scored) => FarRangeRun::with_verdicts(directory, std::mem::take(&mut scored.verdicts))?,
+        None => {
+            let mut run = FarRangeRun::read(directory)?;
+            run.budget = InjectedRun::read_all(&kept_budget(directory), &run.run_file, &run.score)?;
+            Checksums::check(directory, |_| true)?;
+            run
+        }
+    };
+    far_range_page(&run, &FrameDetail::open(directory)?)
+}
+
+/// Returns pictures of the given frames of a run directory.
+fn pictures(directory: &Path, frames: &[u64]) -> Result<RenderedPictures, Failure> {
+    let run = FarRangeRun::read(directory)?;
+    let row = |frame: &u64| run.truths.binary_search_by_key(frame, |truth| truth.frame).ok();
+    let sheet = FrameDetail::open(directory)?;
+    let pictures = sheet.pictures(&run, &frames.iter().filter_map(row).collect::<Vec<_>>())?;
+    Ok((pictures, sheet.reason().map(str::to_owned)))
+}
+
+/// Returns the page of a far-range run; `sheet` renders its frames anew.
+///
+/// # Errors
+/// A [`Failure`] when a frame cannot be drawn, or a time of the truth is invalid.
+pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Failure> {
+    let scenario = &run.run_file.scenario;
+    let (first, last) = (&run.truths[0], &run.truths[run.truths.len() - 1]);
+    let mut warnings = Vec::new();
+    if let Some(stage) = run.run_file.inject {
+        warnings.push(format!(
+            "The truth replaced {stage}: this is a result of the other stages, not of the whole pipeline."
+        ));
+    }
+    let fact = |name, value: String| (name, value);
+    let shown = |name: &str| run.score.figures.get(name).map_or_else(String::new, shown_percent);
+    let lead = format!(
+        "{} frames: the target was detected in {} of them, in {} correctly and in {} wrongly.",
+        run.score.frames,
+        shown("hit_rate"),
+        shown("correct_rate"),
+        shown("wrong_rate")
+    );
+    let mut sections = vec![
+        figures_section(run),
+        image::sample(run, sheet)?,
+        image::track(run),
+        approach::relative_position(run)?,
+        series::errors(run),
+        image::regions(run, sheet)?,
+        series::stars(run),
+        attitude::mounting(run),
+        attitude::aberration(run)?,
+        navigation::errors(run),
+        thresholds::thresholds(&run.score),
+        covariances::covariances(&run.score),
+        causes(run),
+        budget::budget(run),
+        image::frames(run, sheet)?,
+    ];
+    sections.retain(|section| !section.blocks.is_empty());
+    Ok(Page {
+        title: scenario.title.clone(),
+        kind: "Far range: a run",
+        version: run.run_file.version.clone(),
+        lead: [lead]
+            .into_iter()
+            .chain(warm_up_note(run.score.warm_up_frames, "frames"))
+            .chain(attitude_note(run.score.attitude.as_deref()))
+            .collect(),
+        warnings,
+        facts: vec![
+            fact("Scenario", run.run_file.name.clone()),
+            fact("Seed", scenario.seed.to_string()),
+            fact("Frames", format!("{} to {}", first.frame, last.frame)),
+            fact("From (UTC)", shown_time(first)),
+            fact("To (UTC)", shown_time(last)),
+            fact("Range", least_to_most(run.truths.iter().map(|truth| truth.range_km), "km")),
+            fact("Camera", format!("{} × {} px", scenario.camera.columns, scenario.camera.rows)),
+            fact("Boresight", run.run_file.version.clone()),
+        ],
+        sections,
+        data: serde_json::json!({ "score": run.score }),
+    })
+}
+
+/// Returns Table 2, with the paper's values if the frames are those of the paper, and all figures.
+fn figures_section(run: &FarRangeRun) -> Section {
+    let score = &run.score;
+    let published = is_argon(&run.run_file.scenario).then_some(&ARGON_TABLE_2);
+    let attitude = score.attitude.as_deref().filter(|attitude| *attitude != AttitudeUsed::Own.code());
+    let attitude = attitude.map_or_else(String::new, |attitude| format!(" (attitude: {attitude})"));
+    let groups: Vec<&String> = score.groups.keys().collect();
+    let is_whole = published.is_some_and(|table| score.frames == u64::from(table.images[5]));
+    let mut head = vec![String::new()];
+    head.extend(groups.iter().map(|group| (*group).clone()));
+    head.push("all".to_owned());
+    let mut table = DataTable::new(head)
+        .caption("Percent, with 95 % intervals; rates of errors refer to the frames with a detected target.");
+    let columns = || {
+        score
+            .groups
+            .values()
+            .map(|group| (group.frames, &group.figures))
+            .chain([(score.frames, &score.figures)])
+    };
+    let row = |name: &str, cells: Vec<String>| [name.to_owned()].into_iter().chain(cells).collect::<Vec<_>>();
+    table.push(row("images", columns().map(|(frames, _)| frames.to_string()).collect()));
+    for ((name, rates), label) in
+        ARGON_TABLE_2.rates().into_iter().zip(["hit rate", "RA error", "RA error", "Dec error", "Dec error"])
+    {
+        let ours = columns().map(|(_, figures)| percent_cell(figures.get(name)));
+        let limit = score.figures.get(name).and_then(|figure| figure.limit_deg);
+        let label =
+            limit.map_or_else(|| label.to_owned(), |limit| format!("{label} < {}{attitude}", angle(limit)));
+        table.push(row(&label, ours.collect()));
+        if published.is_some() {
+            // A group corresponds to the paper's day of the same name; the column `all` corresponds to the
+            // paper's only if every frame was processed.
+            let day = |group: &&String| {
+                let number = group.strip_prefix("day ").and_then(|number| number.parse::<usize>().ok());
+                number.filter(|number| (1..=5).contains(number)).map(|number| rates[number - 1])
+            };
+            let cells = groups.iter().map(day).chain([is_whole.then_some(rates[5])]);
+            let cells = cells.map(|rate| rate.map_or_else(|| "–".to_owned(), |rate| format!("{rate:.2}")));
+            table.push(row("— published", cells.collect()));
+        }
+    }
+    let title = if published.is_some() { "Table 2, with published values" } else { "Table 2" };
+    let mut section = Section::new("table-2", title);
+    if published.is_some() {
+        section = section.text(
+            "Published: Benninghoff, Tzschichholz, Boge and Gaias, the ARGON experiment of PRISMA, 23–27 \
+             April 2012, their Table 2; its figures are for whole days.",
+        );
+    }
+    if let Some(distance) = published.and_then(|table| table.distance(score)) {
+        section = section.text(format!(
+            "The 30 cells differ from the published values by {:.1} points on average, {:.1} at most.",
+            distance.mean_points, distance.worst_points
+        ));
+    }
+    section.table(table).folded("All figures", figure_table(&score.figures))
+}
+
+/// Returns the section on misses and wrong measurements by cause.
+fn causes(run: &FarRangeRun) -> Section {
+    let score = &run.score;
+    let groups: Vec<&String> = score.groups.keys().collect();
+    let mut section = Section::new("causes", "Causes of misses and of wrong measurements");
+    type Counts = fn(&GroupScore) -> &IndexMap<String, u64>;
+    let kinds: [(&str, &IndexMap<String, u64>, Counts); 2] = [
+        ("Misses", &score.misses, |group| &group.misses),
+        ("Wrong measurements", &score.wrong, |group| &group.wrong),
+    ];
+    for (title, all, of) in kinds {
+        if all.is_empty() {
+            section = section.text(format!("{title}: none."));
+            continue;
+        }
+        let mut head = vec!["cause".to_owned()];
+        head.extend(groups.iter().map(|group| (*group).clone()));
+        head.push("all".to_owned());
+        let mut data = DataTable::new(head);
+        let mut traces: Vec<Trace> = Vec::new();
+        for (cause, total) in all {
+            let counts: Vec<u64> =
+                score.groups.values().map(|group| of(group).get(cause).copied().unwrap_or(0)).collect();
+            let mut cells = vec![display_name(cause)];
+            cells.extend(counts.iter().map(u64::to_string));
+            cells.push(total.to_string());
+            data.push(cells);
+            let percent = counts
+                .iter()
+                .zip(score.groups.values())
+                .map(|(count, group)| rounded(100.0 * *count as f64 / group.frames.max(1) as f64, 3));
+            let names: Vec<String> = groups.iter().map(|group| (*group).clone()).collect();
+            let bars = bars(&display_name(cause), &names, percent.collect(), colour_of(cause));
+            traces.push(bars.hover_template("%{x}: %{y} %"));
+        }
+        section = section.chart(Chart::new(
+            format!("{title} by cause, percent of the frames in each group."),
+            340,
+            data,
+            traces,
+            stacked_bars("", "% of frames"),
+        ));
+    }
+    section
+}
