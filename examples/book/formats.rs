@@ -2,10 +2,8 @@
 
 use boresight::files::{ColumnType, FieldDeclaration};
 use boresight::gate::row_columns;
-use boresight::navigate;
 use boresight::study::case_columns;
-use boresight::visibility;
-use boresight::{csv_tables, parquet_tables};
+use boresight::{csv_tables, navigate, parquet_tables, visibility};
 
 /// Row of the page: names, type, and meaning of the columns.
 fn line(field: &FieldDeclaration, is_csv: bool) -> String {

@@ -4,10 +4,10 @@ use std::fmt::Debug;
 use std::path::Path;
 
 use boresight::docking::rows::{
-    FeatureRow, FieldMeasurementLine, FieldMeasurementWriter, FieldTelemetryLine, FieldTruthRow, MotionLine,
-    MotionWriter, read_field_measurements, read_motion,
+    FeatureRow, FieldMeasurementLine, FieldMeasurementWriter, FieldRow, FieldTelemetryLine,
+    FieldTelemetryWriter, FieldTruthRow, MotionLine, MotionWriter, read_field_measurements,
+    read_field_telemetry, read_motion,
 };
-use boresight::docking::rows::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
 use boresight::far_range::rows::{
     Dataset, FrameCluster, FrameTruthRow, MeasurementLine, MeasurementWriter, ObjectTruthRow, TelemetryRow,
     TelemetryWriter, read_measurements, read_stars, read_telemetry, write_stars,

@@ -13,15 +13,14 @@ use pipeline::external::DEFAULT_MEMORY_MB;
 use pyo3::prelude::*;
 use tempfile::TempDir;
 
-use crate::arguments;
 use crate::arrow::batch;
 use crate::errors::{BoresightError, FileError, file_error, raised, refused};
-use crate::json;
 use crate::python_pipeline::PythonPipeline;
 use crate::scenario::Scenario;
 use crate::table::Table;
 use crate::wait::Interruption;
 use crate::worlds::factory;
+use crate::{arguments, json};
 
 /// Maximum size of a score.json that is read, bytes.
 const MAX_SCORE_BYTES: u64 = 1 << 26;

@@ -1,13 +1,13 @@
 //! Worlds whose frames and answers are Python values.
 
-use boresight::docking::rows::FieldTruthRow;
-use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow};
 use std::any::Any;
 use std::ops::Range;
 
 use arrow_array::RecordBatch;
 use boresight::docking::DockingMission;
+use boresight::docking::rows::FieldTruthRow;
 use boresight::failure::Failure;
+use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow};
 use boresight::far_range::{FarRangeMission, SceneTruth};
 use boresight::files::Row;
 use boresight::frame_jobs::process_in_order;

@@ -1,16 +1,17 @@
 //! Steps shared by `run` and `study replay`: run, report, show.
 
 use config::toml_file;
+use far_range_views::navigation_table;
 use files::{Failure, FileError, RunDirectory};
 use navigate::NavigationResult;
 use run::{AnyFactory, AnyMission, FrameJobs};
 
 use super::Answer;
+use super::far_range::EstimatorName;
 use super::interrupt::report_interruption;
-use super::navigate::EstimatorName;
 use super::output::Output;
 use super::report::write_beside_run;
-use crate::table::{navigation_table, score_table};
+use crate::table::score_table;
 
 /// Options for presenting a run.
 pub(super) struct Presentation<'a> {

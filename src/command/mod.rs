@@ -4,14 +4,14 @@
 mod answer;
 mod cluster;
 mod dataset;
+mod docking;
 mod execute;
-mod export;
+mod far_range;
 mod gate;
 mod interrupt;
 #[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 mod missing_feature;
 mod monitor;
-mod navigate;
 mod options;
 mod output;
 mod report;
@@ -22,14 +22,12 @@ mod scratch_directory;
 mod shell;
 mod show;
 mod study;
-mod visibility;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+use answer::Answer;
 use clap::{CommandFactory, Parser, Subcommand};
 use files::Failure;
-
-use answer::Answer;
 use interrupt::{clean_up_when_interrupted, scratch_directory};
 #[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 use missing_feature::missing_feature;
@@ -62,7 +60,7 @@ enum Command {
     Study(study::StudyCommand),
     /// Find cameras that detect enough stars and the target: verify requirements, find exposure, aperture or
     /// field
-    Visibility(visibility::VisibilityArguments),
+    Visibility(far_range::VisibilityArguments),
     /// Test whether a result is worse than a baseline; exit status 1 if it is
     Gate(gate::GateArguments),
     /// Write the content of a result directory as one HTML file: charts, tables, frames; needs no network
@@ -70,9 +68,9 @@ enum Command {
     /// Draw frames of a run or dataset: pixels, truth, answer, regions, scale bar and legend as one PNG
     Show(show::ShowArguments),
     /// Write truth or measurements of a far-range run as a message of CCSDS: OEM, AEM or TDM
-    Export(export::ExportArguments),
+    Export(far_range::ExportArguments),
     /// Determine the relative orbit from the lines of sight of a far-range run, and compare it with the truth
-    Navigate(navigate::NavigateArguments),
+    Navigate(far_range::NavigateArguments),
     /// Serve an operator's page on loopback: camera, ground track, phase chart, model and parameters
     #[command(
         after_help = "SCENARIO may be the directory of a run, which is replayed with its pictures rendered \
@@ -119,12 +117,12 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Process(arguments) => dataset::process(&arguments, &output),
         Command::Score(arguments) => score::score(&arguments, &output),
         Command::Study(command) => study::study(&command, &output),
-        Command::Visibility(arguments) => visibility::visibility(&arguments, &output),
+        Command::Visibility(arguments) => far_range::visibility(&arguments, &output),
         Command::Gate(arguments) => gate::gate(&arguments, &output),
         Command::Report(arguments) => report::report(&arguments, &output),
         Command::Show(arguments) => show::show(&arguments, &output),
-        Command::Export(arguments) => export::export(&arguments, &output),
-        Command::Navigate(arguments) => navigate::navigate(&arguments, &output),
+        Command::Export(arguments) => far_range::export(&arguments, &output),
+        Command::Navigate(arguments) => far_range::navigate(&arguments, &output),
         Command::Monitor(arguments) => monitor::monitor(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
         Command::Completions(arguments) => shell::completions(&arguments, Arguments::command(), &output),

@@ -8,9 +8,10 @@ use run::{Expectation, FrameJobs, Options};
 use scenario::Stage;
 
 use super::Answer;
+use super::docking::RendererOptions;
 use super::execute::{Presentation, execute};
-use super::navigate::EstimatorName;
-use super::options::{AttitudeOption, PipelineOptions, RendererOptions, Selection, output_path};
+use super::far_range::EstimatorName;
+use super::options::{AttitudeOption, PipelineOptions, Selection, output_path};
 use super::output::Output;
 
 /// Parent directory of numbered run directories if `--out` is not given.

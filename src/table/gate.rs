@@ -3,7 +3,6 @@ use comfy_table::{Attribute, Cell};
 use gate::{Baseline, FigureReport, FigureVerdict, Flip, GateReport, Pairing};
 use pipeline::external::protocol::harmless;
 use run::figure_by_name;
-
 use view::terminal::{finish, percent, plain_table};
 
 /// Maximum number of changed units that are printed; the JSON contains all of them.

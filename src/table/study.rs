@@ -8,7 +8,6 @@ use study::{
     CaseFigure, CaseRow, Estimate, RankCorrelation, RequirementVerdict, StoppingStatus, Study, Summary,
     overall,
 };
-
 use view::terminal::{finish, percent, plain_table};
 
 /// Maximum number of parameters in the sensitivity table.

@@ -7,7 +7,7 @@ use cargo_metadata::{Metadata, MetadataCommand, Target};
 
 /// Each crate of the project, and the project's crates that it may depend on. The pipelines depend only on
 /// the contract, and therefore cannot share code with the simulator.
-const ARROWS: [(&str, &str); 24] = [
+const ARROWS: [(&str, &str); 29] = [
     ("contract", ""),
     ("config", "contract"),
     ("draws", ""),
@@ -15,22 +15,33 @@ const ARROWS: [(&str, &str); 24] = [
     ("sim", "config contract draws"),
     ("pipeline", "contract"),
     ("statistics", "draws"),
-    ("score", "contract draws sim statistics"),
-    ("files", "config contract pipeline score sim"),
+    ("score", "contract statistics"),
+    ("files", "config contract sim"),
     ("flight-dynamics", "config contract files sim"),
-    ("scenario", "config contract draws files flight-dynamics pipeline sim"),
-    ("mitsuba", "contract files sim"),
-    ("run", "config contract files mitsuba pipeline scenario score sim"),
-    ("navigate", "config contract draws files flight-dynamics navigation pipeline run scenario score sim"),
-    ("study", "config contract draws files navigate pipeline run scenario score statistics"),
-    ("gate", "config draws files navigate run scenario score statistics study"),
-    ("visibility", "config contract draws files pipeline run scenario sim statistics"),
+    ("scenario", "config contract draws files sim"),
+    ("run", "config contract files pipeline scenario score sim"),
+    ("study", "config contract draws files pipeline run scenario score statistics"),
+    ("gate", "config draws files run scenario score statistics study"),
     ("show", "contract"),
-    ("report", "config contract files gate navigate run scenario score sim study visibility"),
-    ("monitor", "contract files run scenario score sim"),
+    ("view", "contract files run show"),
+    ("report", "config contract files gate run scenario score sim study"),
+    ("monitor", "contract files run sim"),
+    ("mitsuba", "contract files sim"),
+    ("docking", "config contract draws files mitsuba pipeline run scenario score sim statistics"),
+    ("docking-views", "contract docking files monitor pipeline report run scenario score show sim view"),
+    ("far-range", "config contract draws files flight-dynamics pipeline run scenario score sim statistics"),
+    (
+        "navigate",
+        "config contract draws far-range files flight-dynamics navigation pipeline run scenario score sim",
+    ),
+    ("visibility", "config contract draws far-range files pipeline run scenario sim statistics"),
+    (
+        "far-range-views",
+        "contract far-range files monitor navigate pipeline report run scenario score show sim statistics view visibility",
+    ),
     (
         "boresight",
-        "config contract draws files flight-dynamics gate mitsuba monitor navigate pipeline report research run scenario score show sim statistics study visibility",
+        "config contract docking docking-views draws far-range far-range-views files flight-dynamics gate mitsuba monitor navigate pipeline report research run scenario score show sim statistics study view visibility",
     ),
     ("python", "boresight config contract pipeline sim"),
     ("fuzz", "boresight contract pipeline sim"),
@@ -71,7 +82,7 @@ fn dependencies_point_down_and_nowhere_else() {
     assert_eq!(arrows, expected);
 }
 
-/// Maximum number of modules at the root of a crate of `oracle/`, or of the package itself: files that share
+/// Maximum number of modules at the root of a crate of `oracle/` or `worlds/`, or of the package itself: files that share
 /// an idea are in a directory.
 const MAX_MODULES: usize = 12;
 
@@ -79,8 +90,9 @@ const MAX_MODULES: usize = 12;
 fn the_root_of_a_crate_reads_like_a_table_of_contents() {
     let mut crates = 0;
     for package in workspace().packages {
-        let of_the_oracle = package.manifest_path.starts_with(concat!(env!("CARGO_MANIFEST_DIR"), "/oracle"));
-        if !of_the_oracle && package.name.as_str() != "boresight" {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let is_above = ["oracle", "worlds"].map(|folder| root.join(folder));
+        if !is_above.iter().any(|folder| package.manifest_path.starts_with(folder)) && package.name.as_str() != "boresight" {
             continue;
         }
         let library = package.targets.iter().find(|target| target.is_lib()).expect("a library");
@@ -90,7 +102,7 @@ fn the_root_of_a_crate_reads_like_a_table_of_contents() {
         assert!(modules <= MAX_MODULES, "{}: {modules} modules at its root", package.name);
         crates += 1;
     }
-    assert_eq!(crates, 15, "crates of the oracle, and the package itself");
+    assert_eq!(crates, 20, "crates of the oracle and of the worlds, and the package itself");
 }
 
 /// Arrow took a fifth of the release build. The tables are flat; only Python needs Arrow, to pass them on.
@@ -212,43 +224,57 @@ fn an_exemption_is_found_however_it_is_written() {
     assert!(std::panic::catch_unwind(|| exempt_modules(&file)).is_err(), "a file cannot exempt itself");
 }
 
-/// Files that may name more than one world: one table of worlds per crate, and tables of contents.
-const TABLES_OF_WORLDS: [&str; 9] = [
-    "oracle/monitor/src/feed.rs",
-    "oracle/report/src/worlds.rs",
-    "oracle/run/src/lib.rs",
-    "oracle/run/src/worlds.rs",
-    "oracle/scenario/src/builtin.rs",
-    "oracle/scenario/src/lib.rs",
-    "python/src/worlds.rs",
-    "src/command/show.rs",
-    "src/table/figures.rs",
+/// Folders whose code knows no world: a world is a folder of `worlds/`, its simulator and its pipelines.
+const KNOW_NO_WORLD: [&str; 5] = ["config", "contract", "navigation", "oracle", "src"];
+
+/// Files of these folders that may name a world, each with the reason. A file or folder that is named for a
+/// world may, too: it holds the world's part of an interface or of the command.
+const LISTS_OF_WORLDS: [(&str, &str); 10] = [
+    ("contract/src/conformance/mod.rs", "modules of the interfaces of pipelines"),
+    ("contract/src/lib.rs", "modules of the interfaces of pipelines"),
+    ("oracle/scenario/src/builtin.rs", "names of files in scenarios/"),
+    ("oracle/scenario/src/cameras.rs", "names of files in scenarios/cameras/"),
+    ("src/command/dataset.rs", "options of sequences and renderers"),
+    ("src/command/mod.rs", "commands that only one world has"),
+    ("src/command/run.rs", "option --renderer, navigation after a run"),
+    ("src/lib.rs", "crates under one name"),
+    ("src/tables.rs", "list of the tables"),
+    ("src/worlds.rs", "list of the worlds"),
 ];
 
-/// Returns true if a file names types or words of both built-in worlds.
-fn names_both_worlds(text: &str) -> bool {
-    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
-    let lines: Vec<&str> = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
-    [("FarRange", "\"far_range\""), ("Docking", "\"docking\"")].iter().all(|(prefix, word)| {
-        let types = ["Mission", "Scenario", "Judgement"].map(|kind| format!("{prefix}{kind}"));
-        lines.iter().any(|line| line.contains(word) || types.iter().any(|name| line.contains(name)))
+/// Returns the first line of code, comments and tests apart, that names a world.
+fn line_that_names_a_world(text: &str) -> Option<&str> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    code.lines().find(|line| {
+        let line = line.trim_start().to_lowercase();
+        let names = ["far_range", "farrange", "far-range", "far range", "docking"];
+        !line.starts_with("//") && names.iter().any(|name| line.contains(name))
     })
 }
 
+/// Returns true if a file, or a folder that contains it, is named for a world.
+fn is_of_a_world(name: &str) -> bool {
+    name.split('/').any(|part| matches!(part.trim_end_matches(".rs"), "far_range" | "docking"))
+}
+
 #[test]
-fn worlds_are_listed_in_their_tables_alone() {
+fn only_its_own_folders_name_a_world() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut listed: Vec<String> = ["src", "oracle", "python/src"]
-        .iter()
-        .flat_map(|folder| sources(&root.join(folder)))
-        .filter(|path| names_both_worlds(&read(path)))
-        .map(|path| path.strip_prefix(root).expect("a file of ours").display().to_string())
-        .filter(|name| !is_test(name) && !name.ends_with("hand_made.rs"))
-        .collect();
-    listed.sort();
-    assert_eq!(listed, TABLES_OF_WORLDS, "a world belongs in the table of its crate");
-    assert!(names_both_worlds("match world {\n    \"far_range\" => 1,\n    \"docking\" => 2,\n}"));
-    assert!(!names_both_worlds("// \"far_range\"\nlet of: DockingMission;"));
+    let mut naming = BTreeMap::new();
+    for path in KNOW_NO_WORLD.iter().flat_map(|folder| sources(&root.join(folder))) {
+        let name = path.strip_prefix(root).expect("a file of ours").to_string_lossy().replace('\\', "/");
+        if is_of_a_world(&name) || is_test(&name) || name.ends_with("hand_made.rs") {
+            continue;
+        }
+        if let Some(line) = line_that_names_a_world(&read(&path)) {
+            naming.insert(name, line.trim().to_owned());
+        }
+    }
+    let found: Vec<&str> = naming.keys().map(String::as_str).collect();
+    assert_eq!(found, LISTS_OF_WORLDS.map(|(name, _)| name), "{naming:#?}");
+    assert!(line_that_names_a_world("match world {\n    \"far_range\" => 1,\n}").is_some());
+    assert!(line_that_names_a_world("// \"far_range\"\nlet of: Mission;").is_none());
+    assert!(is_of_a_world("src/command/docking/mod.rs") && !is_of_a_world("oracle/run/src/world/mod.rs"));
 }
 
 fn read(path: &Path) -> String {

@@ -1,9 +1,10 @@
 //! The written files read with independent readers: astropy, pyarrow, Pillow.
 
-use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow, TelemetryLine};
 use std::process::Command;
 
-use boresight::far_range::rows::{TelemetryRow, TelemetryWriter};
+use boresight::far_range::rows::{
+    FrameTruthRow, ObjectTruthRow, TelemetryLine, TelemetryRow, TelemetryWriter,
+};
 use boresight::files::{FrameHeader, ImageFormat, RunDirectory, TableWriter, TanSip, parse_utc, write_frame};
 use contract::{Angle, Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Telemetry, Window};
 use hifitime::Unit;

@@ -1,11 +1,10 @@
 //! Files read and written only by their definitions: a mistake shared by the project's writer and reader
 //! would otherwise remain undetected.
 
-use boresight::far_range::rows::TelemetryLine;
 use std::collections::BTreeMap;
 use std::fs;
 
-use boresight::far_range::rows::{TelemetryRow, TelemetryWriter, read_telemetry};
+use boresight::far_range::rows::{TelemetryLine, TelemetryRow, TelemetryWriter, read_telemetry};
 use boresight::files::{FrameHeader, ImageFormat, parse_utc, read_frame, write_frame};
 use contract::{Frame, Rotation, Telemetry};
 use nalgebra::Vector3;

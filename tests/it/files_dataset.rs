@@ -1,10 +1,9 @@
 //! A dataset from writing to reading, and the invalid inputs that are rejected.
 
-use boresight::far_range::rows::TelemetryLine;
 use std::fs;
 use std::path::Path;
 
-use boresight::far_range::rows::{CameraFile, Dataset, TelemetryRow, TelemetryWriter};
+use boresight::far_range::rows::{CameraFile, Dataset, TelemetryLine, TelemetryRow, TelemetryWriter};
 use boresight::files::{FrameHeader, ImageFormat, RunDirectory, parse_utc, write_frame};
 use contract::{
     AttitudeKnowledge, Calibration, Camera, Frame, Mounting, PsfCalibration, Readout, Rotation, Telemetry,

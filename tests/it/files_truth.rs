@@ -1,9 +1,9 @@
 //! Truth tables: exact round trips, damage, and the schema.
 
-use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow};
 use boresight::files::{
     Column, Columns, FileError, Row, TableOptions, TableReader, TableWriter, parse_utc, write_table,
 };

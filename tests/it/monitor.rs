@@ -1,19 +1,18 @@
 //! `boresight monitor`: answers of the server, its access rules, and its survival of faulty clients. Without
 //! a browser.
 
-use boresight::far_range::rows::FrameTruthRow;
 use std::io::{Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpStream};
 use std::sync::mpsc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use boresight::far_range::rows::FrameTruthRow;
 use boresight::files::{TableReader, TableWriter};
 use boresight::monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::{Options, ScenarioSource};
 use serde_json::Value;
-use sim::truth::FrameTruth;
 
 use crate::support::Bench;
 

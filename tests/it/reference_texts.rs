@@ -3,10 +3,8 @@
 
 use boresight::files::FieldDeclaration;
 use boresight::gate::row_columns;
-use boresight::navigate;
 use boresight::study::case_columns;
-use boresight::visibility;
-use boresight::{csv_tables, parquet_tables};
+use boresight::{csv_tables, navigate, parquet_tables, visibility};
 use serde_json::Value;
 
 use crate::support::Bench;

@@ -3,11 +3,12 @@
 use std::fs;
 use std::path::Path;
 
-use crate::support::Bench;
 use contract::PixelPoint;
 use image::RgbImage;
 use serde_json::Value;
 use sim::truth::{ObjectKind, Visibility};
+
+use crate::support::Bench;
 
 /// Colours of marks, as in the legend.
 const ORANGE: [u8; 3] = [255, 176, 64];

@@ -1,14 +1,14 @@
 //! Common parts of the end-to-end suites: the command in a separate directory, its output, and the truth that
 //! it writes.
 
-use boresight::docking::rows::FieldTruthRow;
-use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use boresight::docking::rows::FieldTruthRow;
+use boresight::far_range::rows::{FrameTruthRow, ObjectTruthRow};
 use boresight::files::{Row, TableReader};
 use boresight::scenario::BUILT_IN;
 use serde_json::Value;

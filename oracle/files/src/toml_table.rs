@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use config::toml_file;
 use contract::OutOfRange;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::FileLocation;
 use crate::{AtomicFile, FileError};
-use config::toml_file;
 
 /// A table that is stored as a file of its own.
 pub trait TomlTable: Serialize + DeserializeOwned {

@@ -3,11 +3,9 @@
 use std::path::Path;
 
 use config::toml_file;
-use far_range::rows::read_telemetry;
 use files::sha256::{hex, sha256_hex};
 use files::{Checksums, Failure, FileError, file_sha256, table_sha256};
-use navigate::{TABLE_FILE, navigation_terms, read_navigation};
-use run::{figure_by_name, world_of_run, worlds};
+use run::{figure_by_name, navigation_of, world_of_run, worlds};
 use scenario::AttitudeChoice;
 use scenario::identity::split;
 use scenario::run_file::RunFile;
@@ -97,19 +95,10 @@ fn run(directory: &Path, path: &Path, attitude: Option<AttitudeChoice>) -> Resul
         scenario: split.scenario,
     };
     let mut units = scored.units();
-    units.figures.extend(navigation(directory)?);
-    Ok(Sample::new(identity, units))
-}
-
-/// Returns the figures of the navigation of a run, per frame; none if the run has no `navigation.csv`.
-fn navigation(directory: &Path) -> Result<Vec<FigureTerms>, Failure> {
-    let table = directory.join(TABLE_FILE);
-    if !table.is_file() {
-        return Ok(Vec::new());
+    if let Some(navigation) = navigation_of(world.code()) {
+        units.figures.extend((navigation.terms)(directory)?);
     }
-    let telemetry = read_telemetry(&directory.join("telemetry.csv"))?;
-    let times: Vec<_> = telemetry.iter().map(|row| row.telemetry.time).collect();
-    Ok(navigation_terms(&read_navigation(&table)?, &times))
+    Ok(Sample::new(identity, units))
 }
 
 /// Returns the sorted names of all truth files, each with the digest of its content.

@@ -2,12 +2,10 @@
 //!
 //! A page ([`Page`]) depends only on the files that were read: it contains no clock time and no other input.
 //! Charts are drawn by plotly.js, which the page contains ([`Chart`]), with the numbers in a table behind
-//! each chart. Pictures ([`Picture`]) show frames that the simulator renders anew, one by one
-//! . The page needs no network.
+//! each chart. Pictures ([`Picture`]) show frames that the simulator renders anew, one by one. The page needs no network.
 //!
-//! - [`study_page`]: a study; [`visibility_page`]: the
-//!   visibility requirements and their results; [`gate_page`]: the result of a gate. A world registers the page
-//!   of its runs ([`register`]), made of [`page`], [`charts`] and [`figures`].
+//! - [`study_page`]: a study; [`gate_page`]: the result of a gate. A world registers the page of its runs ([`register`]),
+//!   made of [`page`], [`charts`] and [`figures`].
 //! - [`read_report`]: the page of any directory of results; [`write_page`] writes it to a file.
 
 #![cfg_attr(
@@ -28,7 +26,6 @@ pub mod page;
 pub mod read;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod study;
-mod visibility;
 mod worlds;
 
 use std::path::{Path, PathBuf};
@@ -40,14 +37,14 @@ pub use page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
 pub use page::{Block, Page, Section};
 pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
-pub use visibility::{read_visibility, visibility_page};
 
 use self::figures::run_page::run_page;
-pub use self::worlds::{BudgetReport, WorldReport, register};
+pub use self::worlds::{BudgetReport, OtherReport, WorldReport, register, register_other};
 
-use self::worlds::world_report;
 use files::{AtomicFile, Checksums, Failure, ReplaceableFile, refuse_unfinished};
 use run::{AnyJudgement, IncompleteRun, world_of_run};
+
+use self::worlds::world_report;
 
 /// Returns the report of a directory of results, with the error budget that is stored there.
 ///
@@ -57,7 +54,7 @@ pub fn read_report(directory: &Path) -> Result<Page, Failure> {
     let page = match ResultKind::from_directory(directory)? {
         ResultKind::Run => return page_of_run(directory, None),
         ResultKind::Study => study_page(&StudyResult::read(directory)?),
-        ResultKind::Visibility => visibility_page(&read_visibility(directory)?),
+        ResultKind::Other(other) => (other.page)(directory)?,
     };
     Checksums::check(directory, |_| true)?;
     Ok(page)
@@ -86,7 +83,7 @@ pub fn budget_of(directory: &Path) -> Result<BudgetReport, Failure> {
         let message = "--budget applies only to runs of a world whose stages can be replaced";
         Failure::Usage(format!("{message}: {} is not one", directory.display()))
     };
-    if ResultKind::from_directory(directory)? != ResultKind::Run {
+    if !matches!(ResultKind::from_directory(directory)?, ResultKind::Run) {
         return Err(no_budget());
     }
     let world = world_of_run(&directory.join("run.toml"))?;

@@ -6,18 +6,20 @@ use std::path::Path;
 use files::{Failure, FileError, Row, TableReader};
 use serde::de::DeserializeOwned;
 
+use crate::worlds::{OtherReport, other_reports};
+
 /// Maximum size of a JSON file, bytes.
 const MAX_JSON_BYTES: u64 = 1 << 28;
 
 /// Kind of a directory of results.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub enum ResultKind {
     /// A run, with `run.toml`.
     Run,
     /// A study, with `summary.json`.
     Study,
-    /// Results of visibility requirements, with `visibility.json`.
-    Visibility,
+    /// Other results, registered by a world.
+    Other(OtherReport),
 }
 
 impl ResultKind {
@@ -29,8 +31,8 @@ impl ResultKind {
         let has = |name: &str| directory.join(name).is_file();
         if has("run.toml") {
             Ok(Self::Run)
-        } else if has("visibility.json") {
-            Ok(Self::Visibility)
+        } else if let Some(other) = other_reports().into_iter().find(|other| has(other.file)) {
+            Ok(Self::Other(other))
         } else if has("summary.json") {
             Ok(Self::Study)
         } else if has("study.json") || has("study.toml") {
@@ -40,10 +42,17 @@ impl ResultKind {
                 directory.display()
             )))
         } else if directory.is_dir() {
+            let mut files = vec!["`run.toml`", "`summary.json`"];
+            let others = other_reports();
+            let names: Vec<String> = others.iter().map(|other| format!("`{}`", other.file)).collect();
+            files.extend(names.iter().map(String::as_str));
+            let mut results = vec!["a run", "a study"];
+            results.extend(others.iter().map(|other| other.results));
             Err(Failure::Usage(format!(
-                "{}: no `run.toml`, `summary.json` or `visibility.json` in it, expected the directory of a \
-                 run, of a study or of `boresight visibility --out`",
-                directory.display()
+                "{}: none of {} in it, expected the directory of {}",
+                directory.display(),
+                files.join(", "),
+                results.join(", or ")
             )))
         } else {
             Err(Failure::Usage(format!("{}: expected a directory of results", directory.display())))

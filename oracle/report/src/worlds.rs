@@ -36,6 +36,33 @@ pub struct BudgetReport {
     pub page: fn(&Path, &[PathBuf]) -> Result<Page, Failure>,
 }
 
+/// Report of other results than runs, studies and gates.
+#[derive(Clone, Copy)]
+pub struct OtherReport {
+    /// File by which a directory of these results is recognised.
+    pub file: &'static str,
+    /// Name of the results in messages, with its article.
+    pub results: &'static str,
+    /// Makes the page of a directory.
+    pub page: fn(&Path) -> Result<Page, Failure>,
+}
+
+/// Registered reports of other results, in order.
+static OTHERS: RwLock<Vec<OtherReport>> = RwLock::new(Vec::new());
+
+/// Registers a report of other results for the rest of the process.
+pub fn register_other(report: OtherReport) {
+    let mut registered = OTHERS.write().unwrap_or_else(PoisonError::into_inner);
+    if registered.iter().all(|known| known.file != report.file) {
+        registered.push(report);
+    }
+}
+
+/// Returns the registered reports of other results.
+pub(crate) fn other_reports() -> Vec<OtherReport> {
+    OTHERS.read().unwrap_or_else(PoisonError::into_inner).clone()
+}
+
 /// Registered reports, in order.
 static REPORTS: RwLock<Vec<WorldReport>> = RwLock::new(Vec::new());
 

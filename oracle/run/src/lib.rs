@@ -16,6 +16,7 @@ pub mod any_world;
 pub mod check;
 mod choice;
 pub mod frame_jobs;
+mod navigation;
 pub mod plain;
 mod rows_by_number;
 mod run_result;
@@ -29,6 +30,7 @@ pub use any_world::{AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld,
 pub use choice::pipeline_choice;
 pub use choice::renderer_choice::RendererChoice;
 pub use frame_jobs::{Expectation, FrameJobs};
+pub use navigation::{NavigationFigure, WorldNavigation, navigation_of, register_navigation};
 pub use rows_by_number::RowsByNumber;
 pub use run_result::{AnswerSummary, FirstFailure, IncompleteRun, RunResult};
 pub use sequence::{AnswerCount, process, process_into};

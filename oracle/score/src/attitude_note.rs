@@ -1,5 +1,8 @@
 //! Words for the attitude that lines of sight are based on.
 
+/// Figure that counts the detections with a line of sight, of all detections.
+pub const LINE_OF_SIGHT_RATE: &str = "line_of_sight_rate";
+
 /// Returns the attitude that the lines of sight of a run are based on: `own`, `telemetry`, `true`; `own and
 /// …` if measurements differ, `none` if no measurement has a line of sight. `own` is true if there are
 /// detections with a line of sight of the pipeline, `centroids` if there are detections with only a centroid;

@@ -11,7 +11,7 @@ mod groups;
 mod normalised_error;
 mod score_error;
 
-pub use attitude_note::{attitude_note, attitude_word};
+pub use attitude_note::{LINE_OF_SIGHT_RATE, attitude_note, attitude_word};
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 pub use figure::{Figure, is_zero, warm_up_note};
 pub use figure_spec::navigation::{figures as navigation_figures, is_of_navigation};

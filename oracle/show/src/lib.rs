@@ -28,7 +28,7 @@ mod png_file;
 pub use error::{MAX_PANELS, ShowError};
 pub use layout::view::Placement;
 pub use layout::{PanelLayout, Picture, picture};
-pub use panel::class::Class;
+pub use panel::class::{Class, Colour, Symbol};
 pub use panel::stretch::Stretch;
 pub use panel::{Mark, Panel, Pixels, PlateScale, Reduction, Shape, Table, Tone, Verdict};
 pub use png_file::{encode, is_boresight_picture};

@@ -4,9 +4,8 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use far_range::scoring::names;
 use files::{Cells, Column, ColumnType, FileError, ParquetFile, ParquetWriter, TableOptions};
-use score::attitude_word;
+use score::{LINE_OF_SIGHT_RATE, attitude_word};
 
 use crate::cases::{BATCH_ROWS, CAUSE, CaseFigure, CaseTable, SET, cells, texts};
 
@@ -173,7 +172,7 @@ impl CaseFile {
 
     /// Returns the attitude that the lines of sight of the cases depend on, as [`CaseTable::attitude`] does.
     pub(crate) fn attitude(&self, granted: Option<&str>) -> Result<Option<String>, FileError> {
-        let Some(figure) = self.figure(names::LINE_OF_SIGHT_RATE)? else { return Ok(None) };
+        let Some(figure) = self.figure(LINE_OF_SIGHT_RATE)? else { return Ok(None) };
         let (own, of) = figure.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
         Ok(attitude_word(own > 0, of > own, granted))
     }

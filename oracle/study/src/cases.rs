@@ -4,14 +4,13 @@ use std::collections::HashMap;
 use std::io::Write;
 use std::path::Path;
 
-use far_range::scoring::names;
 use files::sha256::hex;
 use files::{
     Cell, Cells, Column, ColumnType, ColumnValues, Columns, FieldDeclaration, FileError, ParquetFile, Row,
     Table, TableOptions, TextCells, table, write_table,
 };
 use indexmap::IndexMap;
-use score::attitude_word;
+use score::{LINE_OF_SIGHT_RATE, attitude_word};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -327,7 +326,7 @@ impl CaseTable {
     /// Returns the attitude that the lines of sight of the cases depend on, if it follows from the recorded
     /// figures ([`score::attitude_word`]); `granted` is the attitude that the scenario grants to centroids.
     pub fn attitude(&self, granted: Option<&str>) -> Option<String> {
-        let figure = self.figure(names::LINE_OF_SIGHT_RATE)?;
+        let figure = self.figure(LINE_OF_SIGHT_RATE)?;
         let (own, of) = figure.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
         attitude_word(own > 0, of > own, granted)
     }
@@ -404,7 +403,7 @@ mod tests {
             };
             let table = CaseTable {
                 drawn: IndexMap::new(),
-                figures: vec![names::LINE_OF_SIGHT_RATE.to_owned()],
+                figures: vec![LINE_OF_SIGHT_RATE.to_owned()],
                 causes: Vec::new(),
                 rows: counts.iter().map(row).collect(),
             };

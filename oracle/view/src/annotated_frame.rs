@@ -54,7 +54,7 @@ impl AnnotatedFrame {
     pub fn document(&self, place: &PanelLayout) -> Value {
         let mut drawn: BTreeMap<&str, usize> = BTreeMap::new();
         for mark in self.panel.marks.iter().filter(|mark| place.frame.shows(mark.at)) {
-            *drawn.entry(mark.class.code()).or_default() += 1;
+            *drawn.entry(mark.class.code).or_default() += 1;
         }
         let meets = |region: &&Window| {
             let view = &self.panel.view;
@@ -63,7 +63,7 @@ impl AnnotatedFrame {
                 || apart(region.y, region.rows, view.y, view.rows))
         };
         if let Some(regions) = &self.panel.regions {
-            drawn.insert(Class::Region.code(), regions.iter().filter(meets).count());
+            drawn.insert(Class::REGION.code, regions.iter().filter(meets).count());
         }
         json!({
             "frame": self.frame,

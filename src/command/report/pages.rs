@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use far_range_views::report::visibility_page;
 use files::Failure;
 use gate::GateReport;
 use report::{
-    FlippedFrames, Page, REPORTS, gate_page, read_report, read_run_report, report_with_budget,
-    visibility_page, write_page,
+    FlippedFrames, Page, REPORTS, gate_page, read_report, read_run_report, report_with_budget, write_page,
 };
 use run::AnyJudgement;
 use visibility::VisibilityReport;

@@ -1,8 +1,8 @@
 //! Synthetic and simulated runs as input of the gate, with faults of a stated size.
 
-use boresight::far_range::scoring::unit_table;
 use boresight::far_range::scoring::{
     AnswerError, AttitudeUsed, Cause, FrameVerdict, LineOfSightError, MistakenObject, Verdict, WithinLimits,
+    unit_table,
 };
 use boresight::gate::{Baseline, CompareOptions, Identity, Pairing, Sample, SourceKind, compare};
 use boresight::score::UnitTable;

@@ -2,11 +2,9 @@
 
 use std::ops::Range;
 
-use boresight::docking::DockingMission;
-use boresight::docking::DockingRenderer;
-use boresight::far_range::FarRangeMission;
-use boresight::far_range::FarRangeScenario;
+use boresight::docking::{DockingMission, DockingRenderer};
 use boresight::far_range::scoring::FrameVerdict;
+use boresight::far_range::{FarRangeMission, FarRangeScenario};
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::{Judgement as _, ScenarioSource, World as _, sequence};
 use boresight::score::UnitTable;

@@ -1,14 +1,13 @@
 //! Docking world: an approach imaged by a television camera.
 
 use pipeline::docking::DockingConfig;
+use scenario::scenario_file;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::docking::{CameraConfig, DockingSimulation, LensConfig, LightingConfig};
 use sim::scene::docking::TargetFile;
 use sim::television::TelevisionConfig;
 use sim::truth::approach::ApproachConfig;
-
-use scenario::scenario_file;
 
 /// A docking scenario, in the form of its TOML file. Units are in the names; unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,13 +1,11 @@
 //! Error type of reading and writing files.
 
-use std::fmt;
 use std::fs::File;
-use std::io;
 use std::path::{Path, PathBuf};
-
-use thiserror::Error;
+use std::{fmt, io};
 
 use config::toml_file::TomlError;
+use thiserror::Error;
 
 /// Location of a value in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

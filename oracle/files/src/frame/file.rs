@@ -6,10 +6,8 @@ use std::str::FromStr;
 
 use contract::{Frame, Window};
 
-use super::exr;
-use super::fits;
-use super::image16;
 use super::raw_image::{RawImage, RequiredSize};
+use super::{exr, fits, image16};
 use crate::{FileError, FrameHeader};
 
 /// Formats in which frames are written.

@@ -1,16 +1,21 @@
 //! Choice of the renderer: that of the world, or another.
-#[cfg(feature = "mitsuba")]
-use mitsuba::MitsubaOptions;
+
+use std::any::Any;
+use std::fmt;
 
 /// A renderer with its options; a world refuses a renderer that cannot draw its scenes.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub enum RendererChoice {
     /// Renderer of the world.
     #[default]
     BuiltIn,
-    /// Mitsuba 3.
-    #[cfg(feature = "mitsuba")]
-    Mitsuba(Box<MitsubaOptions>),
+    /// A renderer that some worlds support.
+    Other {
+        /// Name on the command line.
+        word: &'static str,
+        /// Options, of a type that the world knows.
+        options: Box<dyn Any + Send>,
+    },
 }
 
 impl RendererChoice {
@@ -18,8 +23,13 @@ impl RendererChoice {
     pub fn word(&self) -> Option<&'static str> {
         match self {
             Self::BuiltIn => None,
-            #[cfg(feature = "mitsuba")]
-            Self::Mitsuba(_) => Some("mitsuba"),
+            Self::Other { word, .. } => Some(word),
         }
+    }
+}
+
+impl fmt::Debug for RendererChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word().unwrap_or("built-in"))
     }
 }

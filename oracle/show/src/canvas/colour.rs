@@ -14,15 +14,15 @@ pub(crate) const GREY: Rgb = [150, 154, 162];
 /// Outlines under marks and text.
 pub(crate) const BLACK: Rgb = [0, 0, 0];
 
-/// True position of the target; the recognised cross.
+/// Marks in orange, such as the target.
 pub(crate) const ORANGE: Rgb = [255, 176, 64];
-/// Stars; the circle of marks.
+/// Marks in blue, such as stars.
 pub(crate) const BLUE: Rgb = [96, 200, 255];
-/// Planets and the Moon; the docking unit.
+/// Marks in violet, such as planets.
 pub(crate) const VIOLET: Rgb = [212, 140, 240];
-/// Hot pixels; rejected marks.
+/// Marks in red, such as hot pixels.
 pub(crate) const RED: Rgb = [255, 92, 104];
-/// Cosmic-ray hits; partial measurements.
+/// Marks in yellow; partial measurements.
 pub(crate) const YELLOW: Rgb = [236, 222, 96];
 /// Measurements of the pipeline.
 pub(crate) const GREEN: Rgb = [110, 236, 130];

@@ -57,7 +57,7 @@ pub(crate) fn write(
         let Some(area) = areas.into_iter().find(is_free) else { continue };
         let (left, top) = (area.left as usize, area.top as usize);
         canvas.text(left + 1, top + 1, label, Font::Label, BLACK);
-        canvas.text(left, top, label, Font::Label, mark.class.colour());
+        canvas.text(left, top, label, Font::Label, mark.class.rgb());
         taken.push(area);
     }
 }

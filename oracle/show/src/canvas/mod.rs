@@ -169,7 +169,7 @@ impl Canvas {
         if !(at.0.is_finite() && at.1.is_finite()) {
             return;
         }
-        for (colour, width) in [([12, 12, 12], LINE + 2.0), (mark.class.colour(), LINE)] {
+        for (colour, width) in [([12, 12, 12], LINE + 2.0), (mark.class.rgb(), LINE)] {
             match mark.shape {
                 Shape::Cross { arm } => self.open_cross(at, [(1.0, 0.0), (0.0, 1.0)], arm, colour, width),
                 Shape::Saltire { arm } => {

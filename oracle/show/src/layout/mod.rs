@@ -210,7 +210,7 @@ fn in_corner(window: Window, frame: &Placement, marks: &[Mark]) -> Placement {
             (-reach..fitted.width as f64 + reach).contains(&x)
                 && (-reach..fitted.height as f64 + reach).contains(&y)
         });
-        shown.map(|mark| if matches!(mark.class, Class::Target | Class::Answer) { 1000 } else { 1 }).sum()
+        shown.map(|mark| if [Class::TARGET, Class::ANSWER].contains(&mark.class) { 1000 } else { 1 }).sum()
     };
     let corners = [(near_x, near_y), (far_x, near_y), (near_x, far_y)];
     let (left, top) = corners.into_iter().min_by_key(|corner| covered(*corner)).unwrap_or((near_x, near_y));
@@ -392,12 +392,12 @@ mod tests {
             scale: PlateScale { focal_length_px: 2347.0, range_m: None },
             marks: vec![
                 mark(
-                    Class::Target,
+                    Class::TARGET,
                     0.3 * columns as f64,
                     0.4 * rows as f64,
                     Shape::Around { radius_px: 2.0, least: 12.0 },
                 ),
-                mark(Class::Answer, 0.7 * columns as f64, 0.4 * rows as f64, Shape::Cross { arm: 9.0 }),
+                mark(Class::ANSWER, 0.7 * columns as f64, 0.4 * rows as f64, Shape::Cross { arm: 9.0 }),
             ],
             title: "hand-made, frame 12".to_owned(),
             short_title: "frame 12".to_owned(),

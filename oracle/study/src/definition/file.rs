@@ -71,6 +71,16 @@ pub enum StudyNavigator {
     Sequential,
 }
 
+impl StudyNavigator {
+    /// Returns the name of the estimator.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Batch => "batch",
+            Self::Sequential => "sequential",
+        }
+    }
+}
+
 const fn default_replications() -> u64 {
     1
 }

@@ -13,11 +13,10 @@ use std::path::{Path, PathBuf};
 
 use config::toml_file;
 use draws::{Effect, Seed};
-use far_range::FarRangeScenario;
 use files::sha256::hex;
 use files::{Failure, file_sha256};
 use indexmap::IndexMap;
-use run::{AnyScenario, Options, ScenarioSource};
+use run::{AnyScenario, Options, ScenarioSource, navigation_of};
 use scenario::run_file::{FileDigests, content};
 use score::navigation_figures;
 use serde_json::Value;
@@ -133,9 +132,8 @@ impl Study {
     /// Checks the study against its scenario and its first case.
     fn check_cases(&self) -> Result<(), Failure> {
         let world = self.scenario().world();
-        if self.file.navigate.is_some() && !world.has_scenario::<FarRangeScenario>() {
-            let message =
-                format!("applies only to the far range; the scenario is of the world {}", world.code());
+        if self.file.navigate.is_some() && navigation_of(world.code()).is_none() {
+            let message = format!("the world {} of the scenario has no relative navigation", world.code());
             return Err(self.refuse("navigate", message));
         }
         self.check_names()?;

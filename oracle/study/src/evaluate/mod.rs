@@ -6,15 +6,12 @@ pub(crate) mod study_pipeline;
 use std::path::Path;
 
 use files::{Failure, FileError, RunDirectory};
-use navigate::{
-    EVERY_S, Estimator, KnowledgeConfig, MeasurementSource, NavigationFigure, navigation_figures,
-    requested_estimates,
+use run::{
+    AnyJudgement, Expectation, FirstFailure, FrameJobs, NavigationFigure, Options, RunResult, navigation_of,
 };
-use run::{AnyJudgement, Expectation, FirstFailure, FrameJobs, Options, RunResult};
 use score::WARM_UP;
 
 use crate::cases::{CaseFigure, CaseRow};
-use crate::definition::file::StudyNavigator;
 use crate::definition::{Case, Study};
 use crate::evaluate::study_pipeline::StudyPipeline;
 
@@ -96,7 +93,8 @@ fn run(
     let factory = pipeline.factory(case.source.scenario.as_ref(), scratch)?;
     let prepared = case.source.prepare(Options::default())?;
     let frames = study.frames(prepared.frame_count())?;
-    let Some(navigator) = study.file.navigate else {
+    let navigation = study.file.navigate.zip(navigation_of(study.scenario().world().code()));
+    let Some((estimator, navigation)) = navigation else {
         return Ok((prepared.score(frames, &factory)?, Vec::new()));
     };
     // The navigation reads the files of a run.
@@ -104,26 +102,8 @@ fn run(
     let frame_jobs =
         FrameJobs { frames, jobs: 1, images: None, expectation: Expectation::Dropped, states_of: None };
     let result = prepared.run(&directory, &frame_jobs, &factory, &|| Ok(()))?;
-    let estimator = match navigator {
-        StudyNavigator::Batch => Estimator::Batch,
-        StudyNavigator::Sequential => Estimator::Sequential,
-    };
-    let navigated = match navigate(directory.path(), estimator) {
-        // Measurements without a usable line of sight determine no orbit; the case counts with all its times.
-        Err(Failure::File(FileError::Value { .. }) | Failure::Contract(_)) => {
-            let of = requested_estimates(directory.path(), EVERY_S)?;
-            vec![NavigationFigure { name: "navigation_estimate_rate", value: Some(0.0), count: 0, of }]
-        }
-        other => other?,
-    };
+    let navigated = (navigation.figures)(directory.path(), estimator.code())?;
     std::fs::remove_dir_all(directory.path())
         .map_err(|source| FileError::io(directory.path(), "remove", source))?;
     Ok((result, navigated))
-}
-
-fn navigate(directory: &Path, estimator: Estimator) -> Result<Vec<NavigationFigure>, Failure> {
-    let source = MeasurementSource::default();
-    let campaign = navigate::Campaign::open(directory, &KnowledgeConfig::default(), &source)?;
-    let result = navigate::navigate(&campaign, estimator, EVERY_S)?;
-    navigation_figures(&campaign, &result)
 }

@@ -17,16 +17,15 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use boresight_research::docking_random::still::{NOISE_DN, Row};
+use bound::Bound;
 use contract::PipelineFactory;
 use contract::docking::{DockingSolution, FieldTelemetry, Pose, PoseEstimate};
+use frames::{Case, ROWS};
 use pipeline::CameraModel;
 use pipeline::docking::model_fit::ModelFit;
 use pipeline::docking::{DockingConfig, DockingFactory};
 use rayon::prelude::*;
-
-use boresight_research::docking_random::still::{NOISE_DN, Row};
-use bound::Bound;
-use frames::{Case, ROWS};
 use table::{Answer, Line};
 
 struct Arguments {

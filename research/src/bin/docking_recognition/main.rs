@@ -14,18 +14,17 @@
 mod drawing;
 mod tally;
 
-use draws::{Effect, Seed, uniform};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use contract::PipelineFactory;
 use contract::docking::Digitiser;
+use draws::{Effect, Seed, uniform};
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::docking::{DockingSimulation, DockingSimulator};
 use sim::television::{Interlace, TelevisionConfig, VideoNoiseConfig};
 use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig};
-
 use tally::{Entry, Tally};
 
 struct Arguments {

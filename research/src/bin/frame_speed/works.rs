@@ -3,10 +3,8 @@
 use std::error::Error;
 use std::hint::black_box;
 
-use boresight::far_range::FarRangeMission;
-use boresight::far_range::FarRangeScenario;
-use boresight::run::ScenarioSource;
-use boresight::run::World as _;
+use boresight::far_range::{FarRangeMission, FarRangeScenario};
+use boresight::run::{ScenarioSource, World as _};
 use contract::{Frame, Outcome, Pipeline, Rotation, Setup, Telemetry};
 use hifitime::{Epoch, Unit};
 use pipeline::far_range::{FarRangeConfig, FarRangePipeline, Mode};

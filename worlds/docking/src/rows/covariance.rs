@@ -1,9 +1,7 @@
 //! Symmetric 6 × 6 matrix as 21 cells of a table: the upper triangle, row by row.
 
+use files::{CsvRow, FileError};
 use nalgebra::{Matrix6, Vector6};
-
-use files::CsvRow;
-use files::FileError;
 
 /// Number of cells in the upper triangle.
 pub(crate) const CELLS: usize = 21;

@@ -2,7 +2,6 @@
 //! Coordinates are camera pixels.
 
 use contract::docking::{Circle, Features};
-
 use files::{nullable, table};
 
 table! {

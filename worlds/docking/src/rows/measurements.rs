@@ -5,15 +5,11 @@ use std::path::Path;
 use contract::docking::{
     DockingOutcome, DockingSolution, FailedCheck, Features, FieldMeasurement, NoPose, PoseEstimate,
 };
+use files::{Atom, CsvLine, CsvReader, CsvRow, CsvWriter, FileError, optional, origin, table};
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::covariance::{self, CELLS};
 use super::pose::{self, POSE, PoseCells};
-use files::Atom;
-use files::FileError;
-use files::origin;
-use files::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use files::{optional, table};
 
 const SIGMA: [&str; 6] =
     ["sigma_d1_m", "sigma_d2_m", "sigma_d3_m", "sigma_phi1_deg", "sigma_phi2_deg", "sigma_phi3_deg"];

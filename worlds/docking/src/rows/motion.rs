@@ -3,15 +3,13 @@
 
 use std::path::Path;
 
-use crate::scoring::ApproachParameters;
 use contract::docking::{Motion, MotionReport, Pose};
+use files::{CsvLine, CsvReader, CsvRow, CsvWriter, FileError, optional, table};
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use super::covariance::{self, CELLS, upper_triangle};
 use super::pose::{self, angle_as_filed};
-use files::FileError;
-use files::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use files::{optional, table};
+use crate::scoring::ApproachParameters;
 
 const SIGMA: [&str; 7] = [
     "sigma_rho_m",

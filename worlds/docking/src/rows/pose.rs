@@ -1,9 +1,8 @@
 //! Poses in files: position in metres, angles in degrees.
 
 use contract::docking::Pose;
-use nalgebra::Vector3;
-
 use files::value;
+use nalgebra::Vector3;
 
 /// Columns of a pose.
 pub(crate) const POSE: [&str; 6] = ["d1_m", "d2_m", "d3_m", "phi1_deg", "phi2_deg", "phi3_deg"];

@@ -4,12 +4,11 @@ use std::path::Path;
 
 use contract::docking::{DockingSetup, TargetModel};
 use contract::{Camera, OutOfRange, bounds};
+use files::FileError;
+use files::toml_table::{self, TomlTable};
 use pipeline::docking::DockingConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use files::FileError;
-use files::toml_table::{self, TomlTable};
 
 /// Cameras, dimensions of the target, and parameters of the built-in pipeline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

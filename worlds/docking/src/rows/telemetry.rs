@@ -3,10 +3,7 @@
 use std::path::Path;
 
 use contract::docking::{Digitiser, FieldTelemetry, Lines};
-
-use files::FileError;
-use files::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use files::{optional, table};
+use files::{CsvLine, CsvReader, CsvRow, CsvWriter, FileError, optional, table};
 
 table! {
     /// A row of `telemetry.csv`.

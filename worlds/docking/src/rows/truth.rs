@@ -2,14 +2,13 @@
 
 use contract::PixelPoint;
 use contract::docking::Lines;
+use files::{table, value, words};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use sim::docking::{FieldTruth, GlintImage};
 use sim::television::VideoTruth;
 
 use super::pose::{self, POSE, PoseCells};
-use files::table;
-use files::{value, words};
 
 /// Returns the truth as it would be read back from the file: angles are converted twice, which may change
 /// their last bit. The score of a run is computed from this truth, which makes it bit-identical to a score of

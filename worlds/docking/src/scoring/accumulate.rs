@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use contract::docking::{DockingOutcome, DockingSetup, FailedCheck, Motion, MotionReport};
+use score::{Better, Figure, FigureSpec, FigureTerms, ScoreError, UnitTable, UnitVerdict, WARM_UP, counts};
 
 use super::bins::{bin, group_name, lens_names};
 use super::cause::MissCause;
@@ -15,8 +16,6 @@ use super::portions::{MotionVerdict, PortionVerdict};
 use super::report::{DockingGroup, DockingScore, names};
 use super::truth::{TargetVisibility, TrueField};
 use super::verdict::{GrossError, Verdict, gross};
-use score::{Better, Figure, FigureSpec, FigureTerms, ScoreError, UnitTable, UnitVerdict};
-use score::{WARM_UP, counts};
 
 /// Inputs of the score of a docking run besides the fields.
 #[derive(Debug, Clone)]

@@ -1,12 +1,13 @@
 //! Figures of a docking score, from the verdicts on fields and on the portions that they end.
 
+use score::{Better, Definition, Reduction};
+
 use super::consistency::{WITHIN_3_SIGMA, within_3_sigma};
 use super::errors::PoseErrors;
 use super::field_verdict::FieldVerdict;
 use super::portions::{MotionVerdict, PortionVerdict};
 use super::report::names;
 use super::verdict::Verdict;
-use score::{Better, Definition, Reduction};
 
 /// A unit: its name in keys, and its symbol.
 type Unit = (&'static str, &'static str);

@@ -1,9 +1,8 @@
 //! Content of `score.json` of a docking run.
 
 use indexmap::IndexMap;
-use serde::{Deserialize, Serialize};
-
 use score::Figure;
+use serde::{Deserialize, Serialize};
 
 /// Names of the docking figures that other code uses; `docs/formats.md` lists all of them.
 pub mod names {

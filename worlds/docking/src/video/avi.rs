@@ -3,6 +3,7 @@
 //! The file is read from front to back; its index is neither needed nor used. Parts after the first (`RIFF
 //! AVIX` in files over 1 GB, OpenDML) are read in sequence.
 
+use files::FileError;
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
@@ -12,7 +13,6 @@ use super::avi_header::{self, Coding, VideoStream};
 use super::input::Input;
 use super::riff::{Chunk, Item, Walker};
 use super::video_frame::VideoFrame;
-use files::FileError;
 
 /// Iterator over the frames of an AVI file.
 pub(super) struct AviReader {

@@ -1,8 +1,9 @@
 //! Header of an AVI file: video stream, image size, frame rate and pixel format.
 
+use files::FileError;
+
 use super::luma::{Layout, UncompressedFormat, grey_of_bgr};
 use super::riff::{Chunk, FourCc, Item, Walker};
-use files::FileError;
 
 /// Storage format of a frame.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,12 +5,11 @@ use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use contract::docking::Field;
+use files::{FileError, FileLocation, PartialFiles, create_new};
 use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 
 use super::weaver::Weaver;
-use files::{FileError, PartialFiles};
-use files::{FileLocation, create_new};
 
 /// Storage format of frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,14 +5,10 @@ use std::path::{Path, PathBuf};
 
 use contract::Camera;
 use contract::docking::{DockingSetup, Field, FieldTelemetry};
+use files::{FileError, FileLocation, RequiredSize, locate_alone, locate_image, read_image, refuse_twice};
 
 use super::video_frame::{Format, VideoFrame};
 use crate::rows::telemetry::FieldRow;
-use files::FileError;
-use files::FileLocation;
-use files::RequiredSize;
-use files::read_image;
-use files::{locate_alone, locate_image, refuse_twice};
 
 /// A field of a directory, whose image has not been read yet.
 pub(super) struct ListedField {

@@ -3,8 +3,7 @@
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use files::FileError;
-use files::open_regular;
+use files::{FileError, open_regular};
 
 /// A source of bytes that is read once, from front to back.
 pub(super) struct Input {

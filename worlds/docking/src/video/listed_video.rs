@@ -4,12 +4,11 @@ use std::path::{Path, PathBuf};
 
 use contract::Frame;
 use contract::docking::{DockingSetup, Field, FieldTelemetry, Lines};
+use files::{FileError, FileLocation};
 
 use super::folder::camera_of;
 use super::video_frame::{VideoFrame, take_rows};
 use crate::rows::telemetry::FieldRow;
-use files::FileError;
-use files::FileLocation;
 
 /// File names of a video with telemetry, in the order of the search.
 const NAMES: [&str; 2] = ["fields.avi", "fields.y4m"];

@@ -33,9 +33,7 @@ pub use y4m_writer::Y4mWriter;
 use std::path::Path;
 
 use contract::docking::Field;
-
-use files::FileError;
-use files::write_png_of_depth;
+use files::{FileError, write_png_of_depth};
 
 /// Writes the image of a field as grey PNG, with 8 bits if its digitiser has at most 8, otherwise with 16.
 /// Values are in DN and unstretched.

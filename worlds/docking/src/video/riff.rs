@@ -3,8 +3,9 @@
 //! The size of a chunk must fit in the list around it, so no chunk extends beyond its list. The walker
 //! allocates no memory: the caller that requests the bytes of a chunk limits their number.
 
-use super::input::Input;
 use files::FileError;
+
+use super::input::Input;
 
 /// Four letters that identify a chunk or a kind of list.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use contract::docking::{Digitiser, DockingSetup, Field, FieldTelemetry};
+use files::{FileError, FileLocation};
 
 use super::avi::AviReader;
 use super::folder;
@@ -13,8 +14,6 @@ use super::listed_video::{ListedVideo, video_of};
 use super::stream::StreamReader;
 use super::video_frame::{FieldOrder, Format, Scan, VideoFrame};
 use crate::rows::telemetry::{FieldRow, read_with_lines};
-use files::FileError;
-use files::FileLocation;
 
 /// Default frame rate of a sequence, frames per second: 625-line television.
 const DEFAULT_RATE_HZ: f64 = 25.0;

@@ -1,9 +1,10 @@
 //! Frames without a container: YUV4MPEG2 (Y4M) and raw bytes. Both can be live: a frame is returned as soon
 //! as its last byte has arrived, without waiting for further bytes.
 
+use files::FileError;
+
 use super::input::Input;
 use super::video_frame::{FieldOrder, Scan, VideoFrame};
-use files::FileError;
 
 /// Iterator over the frames of a Y4M stream (8 bits, mono, 4:2:0, 4:2:2 or 4:4:4) or of raw grey bytes. The
 /// plane Y of Y4M is used unscaled.

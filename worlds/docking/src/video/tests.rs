@@ -10,13 +10,13 @@ use contract::docking::{
     Digitiser, DockingSetup, Field, FieldTelemetry, Lines, Outline, StandOffCross, TargetModel,
 };
 use contract::{Camera, Frame};
+use files::FileError;
 use proptest::prelude::*;
 use tempfile::tempdir;
 
 use super::input::Input;
 use super::*;
 use crate::rows::{FieldRow, FieldTelemetryLine, FieldTelemetryWriter};
-use files::FileError;
 
 type Item = Result<(Field, FieldTelemetry), FileError>;
 

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use contract::docking::{Field, Lines};
+use files::{FileError, FileLocation};
 
 use super::video_frame::weave;
-use files::FileError;
-use files::FileLocation;
 
 /// Interleaves fields, which come in pairs of an even and an odd field in either order, to frames of 8 bits.
 pub(super) struct Weaver {

@@ -5,11 +5,10 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use contract::docking::{Field, Lines};
+use files::{FileError, PartialFiles, create_new};
 
 use super::avi_writer::check_frames;
 use super::weaver::Weaver;
-use files::create_new;
-use files::{FileError, PartialFiles};
 
 /// Writer of fields as Y4M. The two fields of a frame are interleaved in one image.
 pub struct Y4mWriter {

@@ -1,18 +1,19 @@
 //! Output files of a pipeline: `measurements.csv`, `motion.csv` and `features.parquet`, or a stream of
 //! measurements.
 
-use crate::rows::FieldMeasurementLine;
-use crate::rows::MotionLine;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::rows::{FeatureRow, FieldMeasurementWriter, MotionWriter, outcome_as_filed, report_as_filed};
 use contract::docking::{Docking, DockingOutcome, DockingSetup, FieldTelemetry};
 use files::{FileError, TableWriter};
-
-use super::picture::PictureWarps;
 use run::AnswerSummary;
 use run::world::{Answers, paths};
+
+use super::picture::PictureWarps;
+use crate::rows::{
+    FeatureRow, FieldMeasurementLine, FieldMeasurementWriter, MotionLine, MotionWriter, outcome_as_filed,
+    report_as_filed,
+};
 
 /// Writes measurements, motions and features.
 pub struct FieldAnswers {

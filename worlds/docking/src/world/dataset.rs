@@ -1,18 +1,15 @@
 //! Files common to a docking run and a rendered dataset: images, telemetry and truth.
 
-use crate::rows::FieldTelemetryLine;
-use crate::rows::FieldTruthRow;
-use crate::rows::SetupFile;
-use crate::rows::{FieldRow, FieldTelemetryWriter};
-use crate::scenario::DockingScenario;
-use crate::video::{AviCoding, AviWriter, Y4mWriter, write_field};
 use contract::docking::{DockingSetup, Field, FieldTelemetry};
 use files::{Failure, FileError, ImageFormat, RunDirectory, TableWriter};
+use run::world::Dataset;
 use scenario::run_file::RunFile;
 use sim::docking::FieldTruth;
 
 use super::DockingMission;
-use run::world::Dataset;
+use crate::rows::{FieldRow, FieldTelemetryLine, FieldTelemetryWriter, FieldTruthRow, SetupFile};
+use crate::scenario::DockingScenario;
+use crate::video::{AviCoding, AviWriter, Y4mWriter, write_field};
 
 /// Quality of Motion-JPEG, whose error is below the noise of a field.
 const JPEG_QUALITY: u8 = 95;

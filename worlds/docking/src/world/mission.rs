@@ -1,15 +1,15 @@
 //! A docking scenario that is ready to run.
 
-use crate::scenario::DockingScenario;
 use config::toml_file;
 use contract::docking::DockingSetup;
 use files::Failure;
+use run::any_world::ScenarioSource;
 use scenario::run_file::RunFile;
 use sim::docking::DockingSimulator;
 use sim::scene::docking::TargetFile;
 
 use super::renderer::DockingRenderer;
-use run::any_world::ScenarioSource;
+use crate::scenario::DockingScenario;
 
 /// A docking scenario with its simulator, ready to run.
 pub struct DockingMission {

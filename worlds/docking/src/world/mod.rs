@@ -15,15 +15,16 @@ pub use mission::{DockingMission, simulator};
 use std::fmt::Debug;
 use std::path::Path;
 
-use crate::rows::{FieldRow, read_field_telemetry};
-use crate::rows::{SetupFile, read_field_measurements, read_motion, truth_as_filed};
-use crate::scoring::{DockingContext, DockingScore, DockingScorer, GrossError, MissCause, TrueField, names};
-use crate::video::{FieldSource, SequenceOptions, Y4mWriter, write_field};
 use contract::docking::{Digitiser, Docking, DockingOutcome, DockingSetup, Field, FieldTelemetry};
 use contract::{Camera, PipelineFactory};
 use files::{Failure, RunDirectory, TableReader};
 use indexmap::IndexMap;
 use pipeline::docking::{DockingConfig, DockingFactory};
+use run::RowsByNumber;
+use run::any_world::{Options, ScenarioSource};
+use run::check::{FieldOfView, size};
+use run::frame_jobs::{Expectation, FrameJobs, process_in_order};
+use run::world::{self, OpenDataset, World, refuse_attitude, unscorable};
 use scenario::AttitudeChoice;
 use scenario::run_file::RunFile;
 use score::{Figure, FigureSpec, UnitTable};
@@ -34,12 +35,12 @@ use sim::optics::Projection;
 use self::answers::{FieldAnswers, answer_as_filed};
 use self::dataset::{FieldDataset, FieldImages};
 use self::renderer::DockingRenderer;
+use crate::rows::{
+    FieldRow, SetupFile, read_field_measurements, read_field_telemetry, read_motion, truth_as_filed,
+};
 use crate::scenario::DockingScenario;
-use run::RowsByNumber;
-use run::any_world::{Options, ScenarioSource};
-use run::check::{FieldOfView, size};
-use run::frame_jobs::{Expectation, FrameJobs, process_in_order};
-use run::world::{self, OpenDataset, World, refuse_attitude, unscorable};
+use crate::scoring::{DockingContext, DockingScore, DockingScorer, GrossError, MissCause, TrueField, names};
+use crate::video::{FieldSource, SequenceOptions, Y4mWriter, write_field};
 
 impl World for DockingMission {
     const STARTING_POINT: &'static str = crate::STARTING_POINT;

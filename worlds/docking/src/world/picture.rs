@@ -3,7 +3,6 @@
 use contract::Camera;
 use contract::docking::{DockingOutcome, DockingSetup, FieldTelemetry, PictureWarp};
 use indexmap::IndexMap;
-
 use run::AnswerSummary;
 
 /// Smallest displacement in the picture's corner that is worth a word, px.

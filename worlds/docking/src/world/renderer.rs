@@ -1,12 +1,13 @@
 //! Renderer of a docking scene: the fast renderer, or Mitsuba, its reference.
+use std::any::Any;
+
 use contract::docking::DockingSetup;
 use files::Failure;
 #[cfg(feature = "mitsuba")]
 use mitsuba::{MitsubaOptions, MitsubaRenderer, VARIANT, VERSION};
+use run::RendererChoice;
 use scenario::run_file::MitsubaRecord;
 use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure};
-
-use run::RendererChoice;
 
 /// Renderer of the radiance at the detector. The television chain after it is the same, including every
 /// random draw.
@@ -36,9 +37,19 @@ impl DockingRenderer {
     pub fn new(choice: RendererChoice) -> Result<Self, Failure> {
         match choice {
             RendererChoice::BuiltIn => Ok(Self::Fast),
-            #[cfg(feature = "mitsuba")]
-            RendererChoice::Mitsuba(options) => Self::mitsuba(*options),
+            RendererChoice::Other { word, options } => Self::other(word, options),
         }
+    }
+
+    /// Creates the renderer with this name and options of its type.
+    fn other(word: &str, options: Box<dyn Any + Send>) -> Result<Self, Failure> {
+        #[cfg(feature = "mitsuba")]
+        let options = match options.downcast::<MitsubaOptions>() {
+            Ok(options) => return Self::mitsuba(*options),
+            Err(options) => options,
+        };
+        drop(options);
+        Err(Failure::Usage(format!("--renderer {word} cannot draw docking scenes")))
     }
 
     /// Creates a Mitsuba renderer with these options; Mitsuba is not searched for yet.

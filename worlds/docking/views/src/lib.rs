@@ -12,6 +12,7 @@
     )
 )]
 
+mod classes;
 #[cfg(feature = "monitor")]
 mod monitor;
 mod panels;

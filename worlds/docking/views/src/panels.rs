@@ -2,16 +2,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::classes::{CIRCLE, CROSS, DOCKING_UNIT, REJECTED_MARK, STATION, TRUE_CENTRE, USED_MARK};
 use contract::docking::{
     Digitiser, DockingOutcome, DockingSetup, DockingSolution, Field, Lines, Pose, PoseEstimate,
 };
 use contract::{PixelPoint, Window};
-use docking::DockingRenderer;
-use docking::DockingScenario;
-use docking::rows::{FeatureRow, SetupFile, read_field_measurements};
-use docking::rows::{FieldRow, read_field_telemetry};
+use docking::rows::{
+    FeatureRow, FieldRow, FieldTruthRow, SetupFile, read_field_measurements, read_field_telemetry,
+};
 use docking::scoring::{DockingContext, DockingScorer, TrueField, lens_names};
 use docking::video::{FieldOrder, FieldSource, Scan, SequenceOptions, read_listed_field};
+use docking::{DockingRenderer, DockingScenario};
 use files::{Failure, format_utc};
 use run::ScenarioSource;
 use scenario::run_file::RunFile;
@@ -20,8 +21,6 @@ use show::{
     Class, Mark, Panel, Pixels, PlateScale, Reduction, Shape, Stretch, Table, Tone, Verdict as Words,
 };
 use sim::docking::FieldTruth;
-
-use docking::rows::FieldTruthRow;
 use view::{AnnotatedFrame, Bounds, PixelSource, Source, display_name, not_stored, rows_of, time_words};
 
 /// Videos of a directory whose telemetry lists no images.
@@ -270,7 +269,7 @@ impl FieldRecord<'_> {
         let truth = self.truth.as_ref();
         let centre = |at: Option<PixelPoint>| {
             let shape = Shape::Saltire { arm: 9.0 };
-            at.map(|at| Mark { at, shape, class: Class::TrueCentre, label: None })
+            at.map(|at| Mark { at, shape, class: TRUE_CENTRE, label: None })
         };
         let circle = self.features.iter().find(|row| row.kind == "circle").and_then(|row| row.radius_px);
         // Marks of neighbouring features leave a gap between them, even if the target is small.
@@ -471,12 +470,12 @@ fn feature_mark(row: &FeatureRow, half: f64) -> Option<Mark> {
     let circle =
         || row.radius_px.filter(|radius| radius.is_finite()).map(|radius_px| Shape::Circle { radius_px });
     let (shape, class) = match (row.kind.as_str(), row.usage.as_str()) {
-        ("cross", _) => (Shape::Cross { arm: 15.0 }, Class::Cross),
-        ("circle", _) => (circle()?, Class::Circle),
-        ("station", _) => (circle()?, Class::Station),
-        ("docking_unit", _) => (circle()?, Class::DockingUnit),
-        ("mark", "used") => (Shape::Square { half }, Class::UsedMark),
-        ("mark", "rejected") => (Shape::Square { half }, Class::RejectedMark),
+        ("cross", _) => (Shape::Cross { arm: 15.0 }, CROSS),
+        ("circle", _) => (circle()?, CIRCLE),
+        ("station", _) => (circle()?, STATION),
+        ("docking_unit", _) => (circle()?, DOCKING_UNIT),
+        ("mark", "used") => (Shape::Square { half }, USED_MARK),
+        ("mark", "rejected") => (Shape::Square { half }, REJECTED_MARK),
         _ => return None,
     };
     Some(Mark { at, shape, class, label: None })

@@ -5,7 +5,6 @@ use contract::docking::FailedCheck;
 use docking::scoring::{DockingGroup, DockingScore, GrossError, MissCause, names};
 use indexmap::IndexMap;
 use score::{Figure, warm_up_note};
-
 use view::terminal::{finish, percent, plain_table, share};
 
 /// Returns the score of a docking run as text: single fields, estimates at the end of portions, misses and

@@ -1,12 +1,7 @@
 //! `clusters.parquet`: a pipeline's classification of each cluster, in addition to `measurements.csv`.
 
 use contract::{Cluster, Label, PixelPoint};
-
-use files::Column;
-use files::Columns;
-use files::FileError;
-use files::Row;
-use files::{table, without_dictionary};
+use files::{Column, Columns, FileError, Row, table, without_dictionary};
 
 /// A cluster with its frame number.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,6 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use contract::{Calibration, Camera, Frame, Mounting, OutOfRange, Readout, Telemetry, bounds};
+use files::toml_table::{self, TomlTable};
+use files::{
+    FileError, FileLocation, RequiredSize, locate_alone, locate_image, parse_utc, read_image, refuse_twice,
+};
 use hifitime::Epoch;
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
@@ -12,12 +16,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::rows::TelemetryRow;
 use crate::rows::telemetry::read_with_lines;
-use files::FileLocation;
-use files::RequiredSize;
-use files::read_image;
-use files::toml_table::{self, TomlTable};
-use files::{FileError, parse_utc};
-use files::{locate_alone, locate_image, refuse_twice};
 
 /// Contents of `camera.toml`: the data that a pipeline receives before the first frame, except the stars.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

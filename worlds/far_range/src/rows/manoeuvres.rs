@@ -2,13 +2,9 @@
 
 use std::path::Path;
 
+use files::{FileError, format_utc, table, write_csv};
 use nalgebra::Vector3;
 use sim::truth::ManoeuvreTruth;
-
-use files::FileError;
-use files::format_utc;
-use files::table;
-use files::write_csv;
 
 table! {
     /// A row of `truth/manoeuvres.csv`.

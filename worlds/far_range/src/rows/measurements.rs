@@ -7,12 +7,7 @@ use contract::{
     AttitudeSource, Camera, CameraFrame, Covariance2, Direction, Icrs, Measurement, NoSolution, OutOfRange,
     Outcome, PixelPoint, Rotation, Solution,
 };
-
-use files::Atom;
-use files::FileError;
-use files::origin;
-use files::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use files::{optional, table};
+use files::{Atom, CsvLine, CsvReader, CsvRow, CsvWriter, FileError, optional, origin, table};
 
 const POSITION: [&str; 2] = ["x_px", "y_px"];
 const LINE_OF_SIGHT: [&str; 3] = ["los_j2000_x", "los_j2000_y", "los_j2000_z"];

@@ -3,10 +3,7 @@
 use std::path::Path;
 
 use contract::{Angle, Direction, ListedStar};
-
-use files::FileError;
-use files::table;
-use files::{CsvLine, CsvReader, write_csv};
+use files::{CsvLine, CsvReader, FileError, table, write_csv};
 
 table! {
     /// A star of the list: catalogued position in ICRS with proper motion applied, without aberration.

@@ -3,13 +3,10 @@
 use std::path::Path;
 
 use contract::{Body, Icrs, Rotation, Telemetry, Window};
+use files::{
+    CsvLine, CsvReader, CsvRow, CsvWriter, FileError, format_utc, optional, parse_utc, table, windows,
+};
 use nalgebra::Vector3;
-
-use files::FileError;
-use files::windows;
-use files::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use files::{format_utc, parse_utc};
-use files::{optional, table};
 
 /// Columns of the velocity components.
 const VELOCITY: [&str; 3] = ["v_orbital_j2000_x_km_s", "v_orbital_j2000_y_km_s", "v_orbital_j2000_z_km_s"];

@@ -6,11 +6,10 @@
 //! accurate to 1e-13 degrees.
 
 use contract::{Body, CameraFrame, Direction, Icrs, PixelPoint, Rotation, Target};
+use files::{table, without_dictionary};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
-
-use files::{table, without_dictionary};
 
 table! {
     /// A row of `truth/frames.parquet`.

@@ -29,9 +29,10 @@ use sim::truth::{
 pub use self::published::is_argon;
 pub use self::trajectory::TrajectoryConfig;
 
+use scenario::{AttitudeChoice, scenario_file};
+
 use self::attitude::{attitude_profile, attitude_remarks};
 use self::coverage::{NeededTimes, Reach};
-use scenario::{AttitudeChoice, scenario_file};
 
 /// A far-range scenario, in the form of its TOML file. Units are in the names; unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -6,7 +6,10 @@ use std::sync::Arc;
 
 use contract::{Angle, AttitudeSource, Outcome};
 use indexmap::IndexMap;
-use score::{ScoreError, WARM_UP, attitude_word, counts};
+use score::{
+    Better, Definition, FigureSpec, FigureTerms, Reduction, ScoreError, UnitTable, UnitVerdict, WARM_UP,
+    attitude_word, counts,
+};
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 
 use self::threshold_curve::threshold_curve;
@@ -18,8 +21,6 @@ use super::verdict::{FrameVerdict, MistakenObject, Unproject, Verdict, judge};
 use crate::scoring::covariance::consistency;
 use crate::scoring::covariance::image_state::ImageState;
 use crate::scoring::{GroupScore, Score, names};
-use score::{Better, FigureSpec};
-use score::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
 
 /// Inputs of the score besides the frames.
 pub struct ScoreContext<'a> {

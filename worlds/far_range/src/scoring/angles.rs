@@ -2,9 +2,8 @@
 
 use contract::{Angle, Camera, CameraFrame, Covariance2, Direction, Icrs, Measurement, PixelPoint, Rotation};
 use nalgebra::Vector3;
-use sim::truth::FrameTruth;
-
 use score::NormalisedError;
+use sim::truth::FrameTruth;
 
 /// Angular limits of "within one pixel" and "within two": an error is within a limit if it is strictly
 /// smaller.

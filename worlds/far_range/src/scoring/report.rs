@@ -17,7 +17,7 @@ pub mod names {
     /// Wrong measurements in frames without a visible target, as a fraction of these frames.
     pub const FALSE_ALARM_RATE: &str = "false_alarm_rate";
     /// Frames whose measurement states a line of sight, as a fraction of the detected frames.
-    pub const LINE_OF_SIGHT_RATE: &str = "line_of_sight_rate";
+    pub const LINE_OF_SIGHT_RATE: &str = score::LINE_OF_SIGHT_RATE;
     /// Frames with an |RA error| below the limit of one pixel, as a fraction of the detected frames with a
     /// line of sight.
     pub const RA_WITHIN_1PX: &str = "ra_within_1px";

@@ -1,9 +1,9 @@
 //! Number of frames that a pipeline takes to settle.
 
+use score::{Better, Figure, FigureSpec};
+
 use super::verdict::{FrameVerdict, Verdict};
 use crate::scoring::names;
-use score::Figure;
-use score::{Better, FigureSpec};
 
 /// Number of consecutive correct measurements that show that a pipeline has settled. A pipeline that is right
 /// by chance in 80 % of the frames starts with such a run once in a hundred times, one that is right in 99 %

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use contract::{AttitudeSource, CameraFrame, Direction, NoSolution, Outcome, PixelPoint};
+use score::NormalisedError;
 use serde::Serialize;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 
@@ -10,7 +11,6 @@ use super::angles::{AnswerError, GrantedAttitude, LineOfSightError};
 use super::cause::{Cause, Detector, cause};
 use super::cluster_members::{brightest, members, target, transmitted_electrons};
 use crate::scoring::covariance::image_state::ImageState;
-use score::NormalisedError;
 
 /// Inverse projection of the true camera: the direction whose image is at a given point, `None` if there is
 /// none.

@@ -1,16 +1,15 @@
 //! Output files of a pipeline: `measurements.csv` and `clusters.parquet`.
 
-use crate::rows::MeasurementLine;
 use std::path::{Path, PathBuf};
 
-use crate::rows::{FrameCluster, MeasurementWriter};
 use contract::{AttitudeSource, FarRange, Outcome, Setup, Telemetry};
 use files::{FileError, TableWriter};
 use indexmap::IndexMap;
 use pipeline::far_range::{UnmatchedFrame, find_mistake};
-
 use run::AnswerSummary;
 use run::world::{Answers, paths};
+
+use crate::rows::{FrameCluster, MeasurementLine, MeasurementWriter};
 
 /// Writes measurements, and the labels of clusters.
 pub struct FrameAnswers {

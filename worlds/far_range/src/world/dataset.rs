@@ -1,21 +1,21 @@
 //! Files common to a run and a rendered dataset: all except measurements and score.
 
-use crate::rows::FrameTruthRow;
-use crate::rows::ObjectTruthRow;
-use crate::rows::TelemetryLine;
-use crate::rows::{CameraFile, StarRow, TelemetryRow, TelemetryWriter, write_manoeuvres, write_stars};
-use crate::scenario::FarRangeScenario;
 use contract::{Camera, CameraFrame, Direction, Frame, Telemetry};
 use files::{
     Failure, FileError, FrameHeader, ImageFormat, RunDirectory, TableWriter, TanSip, format_utc, write_frame,
 };
 use hifitime::Epoch;
+use run::world::Dataset;
 use scenario::run_file::RunFile;
 use sim::truth::{FrameTruth, ManoeuvreTruth, Observer};
 use sim::{Exposure, Simulator};
 
 use super::{FarRangeMission, SceneTruth};
-use run::world::Dataset;
+use crate::rows::{
+    CameraFile, FrameTruthRow, ObjectTruthRow, StarRow, TelemetryLine, TelemetryRow, TelemetryWriter,
+    write_manoeuvres, write_stars,
+};
+use crate::scenario::FarRangeScenario;
 
 /// Writes `run.toml`, `camera.toml`, `stars.csv`, `truth/manoeuvres.csv`, then frame by frame `telemetry.csv`
 /// and the truth tables.

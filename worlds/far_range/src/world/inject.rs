@@ -1,14 +1,14 @@
 //! Error budget: the result of one stage is replaced by the truth, which shows the error contribution of that
 //! stage.
-use crate::scoring::brightest_member;
 use contract::{Direction, Frame, Icrs, ListedStar, Outcome, PixelPoint, Setup, Telemetry};
 use files::Failure;
 use pipeline::far_range::{FarRangeConfig, FarRangePipeline, Identity, Overrides};
+use run::world::InformedPipeline;
 use scenario::Stage;
 use sim::truth::{ObjectKind, Observer};
 
 use super::{FarRangeMission, SceneTruth};
-use run::world::InformedPipeline;
+use crate::scoring::brightest_member;
 
 /// The built-in pipeline with the result of one stage replaced by the truth.
 #[derive(Debug)]

@@ -3,21 +3,20 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use crate::rows::StarRow;
 use contract::{ListedStar, Setup, bounds};
 use files::Failure;
 use hifitime::Epoch;
+use run::any_world::ScenarioSource;
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, Stage};
-
-use crate::scenario::FarRangeScenario;
 use sim::Simulator;
 use sim::catalog::{CatalogConfig, CatalogSource};
 use sim::memo::Memo;
 use sim::truth::{FrameTruth, ObjectTruth};
 
 use super::star_list::star_list;
-use run::any_world::ScenarioSource;
+use crate::rows::StarRow;
+use crate::scenario::FarRangeScenario;
 
 /// A far-range scenario with its simulator and star list, ready to run.
 pub struct FarRangeMission {

@@ -6,18 +6,13 @@ mod inject;
 mod mission;
 pub(crate) mod star_list;
 
-use crate::rows::FrameTruthRow;
-use crate::rows::ObjectTruthRow;
+use crate::rows::{FrameTruthRow, ObjectTruthRow};
 use crate::scoring::unit_table;
 pub use mission::{FarRangeMission, SceneTruth, simulator};
 
 use std::fmt::Debug;
 use std::path::Path;
 
-use crate::rows::{
-    Dataset, FrameCluster, StarRow, TelemetryRow, outcome_as_filed, read_measurements, read_stars,
-    read_telemetry,
-};
 use contract::{
     Body, CameraFrame, FarRange, Frame, Icrs, Outcome, PipelineFactory, Rotation, Setup, Telemetry,
 };
@@ -26,6 +21,11 @@ use files::{
 };
 use indexmap::IndexMap;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory, Mode};
+use run::RowsByNumber;
+use run::any_world::{Options, ScenarioSource};
+use run::check::{FieldOfView, size};
+use run::frame_jobs::{Expectation, FrameJobs};
+use run::world::{self, InformedPipeline, OpenDataset, World, unscorable};
 use scenario::AttitudeChoice;
 use scenario::run_file::RunFile;
 use score::{Figure, FigureSpec, ScoreError, UnitTable};
@@ -40,15 +40,14 @@ use self::answers::FrameAnswers;
 use self::dataset::{FrameDataset, save_image};
 use self::inject::InjectedPipeline;
 use self::star_list::star_list;
+use crate::rows::{
+    Dataset, FrameCluster, StarRow, TelemetryRow, outcome_as_filed, read_measurements, read_stars,
+    read_telemetry,
+};
 use crate::scenario::{FarRangeScenario, is_argon};
 use crate::scoring::{
     ARGON_TABLE_2, Cause, FarRangeJudgement, GrantedAttitude, Score, ScoreContext, WithinLimits, names,
 };
-use run::RowsByNumber;
-use run::any_world::{Options, ScenarioSource};
-use run::check::{FieldOfView, size};
-use run::frame_jobs::{Expectation, FrameJobs};
-use run::world::{self, InformedPipeline, OpenDataset, World, unscorable};
 
 /// Signal-to-noise ratio of the faintest star that a check reports.
 const LIMITING_SNR: f64 = 5.0;

@@ -3,11 +3,12 @@
 //! The list is made on ground from the catalogue. Only proper motion is applied, up to one epoch, by the
 //! plain formula of an ephemeris table (linear in the angles). The simulator's truth is rigorous; the
 //! difference is part of the error that the oracle measures.
-use crate::rows::StarRow;
 use contract::Angle;
 use hifitime::Epoch;
 use sim::catalog::{Catalog, CatalogStar};
 use sim::truth::clock;
+
+use crate::rows::StarRow;
 
 /// Julian years from the catalogue's epoch J1991.25 to J2000.0.
 const CATALOG_EPOCH_TO_J2000_YR: f64 = 8.75;

@@ -12,6 +12,7 @@
     )
 )]
 
+mod classes;
 #[cfg(feature = "monitor")]
 mod monitor;
 mod panels;
@@ -25,11 +26,15 @@ use far_range::scoring::FarRangeJudgement;
 use run::{AnyJudgement, ErasedWorld, World};
 use view::{CloseUp, WorldViews};
 
-pub use self::table::{TableStyle, far_range_table};
+pub use self::table::{
+    TableStyle, bound_table, budget_table, far_range_table, navigation_table, visibility_markdown,
+    visibility_table,
+};
 
 /// Registers the world and its views for the rest of the process.
 pub fn register() {
     run::register(&ErasedWorld::<FarRangeMission>::NEW);
+    navigate::register();
     let code = FarRangeMission::CODE;
     view::register(WorldViews {
         code,
@@ -38,7 +43,10 @@ pub fn register() {
         close_up: CloseUp::Inset,
     });
     #[cfg(feature = "report")]
-    ::report::register(report::world_report());
+    {
+        ::report::register(report::world_report());
+        ::report::register_other(report::visibility_report());
+    }
     #[cfg(feature = "monitor")]
     ::monitor::register(code, monitor::cast);
 }

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::classes::{COSMIC_RAY, HOT_PIXEL, PLANET, STAR};
 use contract::{Camera, Cluster, Frame, Outcome, PixelPoint, Telemetry, Window};
 use far_range::FarRangeScenario;
 use far_range::rows::{
@@ -18,7 +19,6 @@ use show::{
 use sim::Simulator;
 use sim::optics::Projection;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility};
-
 use view::{AnnotatedFrame, Bounds, PixelSource, Source, display_name, not_stored, rows_of, time_words};
 
 /// Distance to the target within which a region or a measurement is included in the close-up, px.
@@ -230,14 +230,14 @@ impl FrameRecord {
         marks.extend(self.target_position().map(|at| Mark {
             at,
             shape: around(radius_px, 13.0),
-            class: Class::Target,
+            class: Class::TARGET,
             label: None,
         }));
         let cross = Shape::Cross { arm: 11.0 };
         marks.extend(self.answer_position().map(|at| Mark {
             at,
             shape: cross,
-            class: Class::Answer,
+            class: Class::ANSWER,
             label: None,
         }));
         marks
@@ -348,11 +348,11 @@ impl FrameRecord {
 fn object_mark(object: &ObjectTruth) -> Option<Mark> {
     let (class, least, label) = match object.kind {
         ObjectKind::Target => return None,
-        ObjectKind::Star => (Class::Star, 7.0, Some(format!("HIP {}", object.id))),
-        ObjectKind::Planet => (Class::Planet, 9.0, Some(planet(object.id))),
-        ObjectKind::Moon => (Class::Planet, 9.0, Some("Moon".to_owned())),
-        ObjectKind::HotPixel => (Class::HotPixel, 6.0, None),
-        ObjectKind::CosmicRay => (Class::CosmicRay, 6.0, None),
+        ObjectKind::Star => (STAR, 7.0, Some(format!("HIP {}", object.id))),
+        ObjectKind::Planet => (PLANET, 9.0, Some(planet(object.id))),
+        ObjectKind::Moon => (PLANET, 9.0, Some("Moon".to_owned())),
+        ObjectKind::HotPixel => (HOT_PIXEL, 6.0, None),
+        ObjectKind::CosmicRay => (COSMIC_RAY, 6.0, None),
     };
     Some(Mark {
         at: object.position,

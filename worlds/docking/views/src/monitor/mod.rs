@@ -10,12 +10,14 @@ mod station_orbit;
 use std::any::Any;
 use std::path::Path;
 
+use ::monitor::camera;
+use ::monitor::feed::{Measurements, MonitorContext, MonitoredWorld, Serve, frames, optional};
+use ::monitor::plan::Plan;
+use ::monitor::session::Session;
+use ::monitor::session::picture::Stretch;
 use contract::docking::Digitiser;
-use docking::DockingMission;
-use docking::DockingScenario;
-use docking::rows::FieldTruthRow;
-use docking::rows::read_field_telemetry;
-use docking::rows::{FeatureRow, read_field_measurements, read_motion};
+use docking::rows::{FeatureRow, FieldTruthRow, read_field_measurements, read_field_telemetry, read_motion};
+use docking::{DockingMission, DockingScenario};
 use files::{Failure, TableReader};
 use hifitime::Epoch;
 use run::World;
@@ -26,11 +28,6 @@ use sim::docking::FieldTruth;
 
 use self::report::DockingReporter;
 use self::station_orbit::station;
-use ::monitor::camera;
-use ::monitor::feed::{Measurements, MonitorContext, MonitoredWorld, Serve, frames, optional};
-use ::monitor::plan::Plan;
-use ::monitor::session::Session;
-use ::monitor::session::picture::Stretch;
 
 /// Smallest half width of the corridor, m/s.
 const MARGIN_M_S: f64 = 0.05;

@@ -1,18 +1,17 @@
 //! Reports of docking fields for the monitor.
 use std::collections::BTreeMap;
 
+use ::monitor::ground::GroundTrack;
+use ::monitor::report::{CameraPose, Fact, FrameReport, ImageLayout, Parameter, Phase, Shape};
 use contract::docking::{DockingOutcome, DockingSetup, DockingSolution, Lines, Motion, Pose};
+use docking::DockingMission;
 use docking::rows::FeatureRow;
 use docking::scoring::ApproachParameters;
 use files::format_utc;
-use sim::docking::FieldTruth;
-use sim::truth::approach::target_from_camera;
-
-use ::monitor::ground::GroundTrack;
-use ::monitor::report::{CameraPose, Fact, FrameReport, ImageLayout, Parameter, Phase, Shape};
-use docking::DockingMission;
 use run::World;
 use serde_json::json;
+use sim::docking::FieldTruth;
+use sim::truth::approach::target_from_camera;
 
 /// Arm length of a cross of unknown size, px of the image.
 const PLAIN_ARM_PX: f64 = 14.0;

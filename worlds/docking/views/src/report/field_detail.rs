@@ -2,19 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
+use ::report::figures::words::{capital, display_name};
+use ::report::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
+use ::report::read::rows_of_each;
 use contract::docking::{DockingOutcome, DockingSetup, DockingSolution};
 use contract::{PixelPoint, Window};
-use docking::DockingRenderer;
 use docking::rows::FeatureRow;
-use docking::simulator;
+use docking::{DockingRenderer, simulator};
 use files::Failure;
 use run::ScenarioSource;
 use sim::docking::{DockingSimulator, FieldTruth};
 
 use super::DockingRun;
-use ::report::figures::words::{capital, display_name};
-use ::report::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
-use ::report::read::rows_of_each;
 
 /// Smallest width of a picture, px.
 const MIN_PICTURE_WIDTH_PX: f64 = 160.0;

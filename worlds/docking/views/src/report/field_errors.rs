@@ -1,14 +1,14 @@
 //! Errors of single fields against the truth.
 
-use contract::docking::DockingOutcome;
-
-use super::limits::{limits, note_outside, outside};
-use super::run::DockingRun;
 use ::report::charts::chart::{Chart, MEASURED, Panel, WRONG, cloud, crosses, points, rounded, stacked};
 use ::report::charts::plotly::Axis;
 use ::report::charts::thinning::{bins, sampled, summary, thinning_caption};
 use ::report::page::Section;
 use ::report::page::data_table::DataTable;
+use contract::docking::DockingOutcome;
+
+use super::limits::{limits, note_outside, outside};
+use super::run::DockingRun;
 
 /// Number of rows of the table behind the chart.
 const TABLE_BINS: usize = 60;

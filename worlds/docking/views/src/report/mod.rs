@@ -14,7 +14,6 @@ use indexmap::IndexMap;
 pub use field_detail::FieldDetail;
 pub use run::{DockingRun, PortionReport};
 
-use self::colours::colour_of;
 use ::report::WorldReport;
 use ::report::charts::chart::{BESIDE, Chart, MEASURED, bars, rounded, stacked_bars};
 use ::report::charts::plotly::Trace;
@@ -28,6 +27,8 @@ use docking::DockingMission;
 use docking::scoring::DockingGroup;
 use files::{Checksums, Failure};
 use score::{Figure, UnitVerdict, warm_up_note};
+
+use self::colours::colour_of;
 
 /// Returns the report of the world's runs.
 pub(crate) fn world_report() -> WorldReport {

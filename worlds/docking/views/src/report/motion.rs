@@ -1,11 +1,5 @@
 //! Reported motion at the end of portions: its parameters and their accuracy.
 
-use contract::docking::{Motion, Pose};
-use docking::scoring::ApproachParameters;
-use nalgebra::Vector3;
-
-use super::limits::{limits, note_outside, outside};
-use super::run::{DockingRun, PortionReport};
 use ::report::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, band, cloud, line, points, rounded, stacked,
 };
@@ -13,6 +7,12 @@ use ::report::charts::plotly::{Axis, Trace};
 use ::report::charts::thinning::{bins, summary, thinned, thinning_caption};
 use ::report::page::Section;
 use ::report::page::data_table::DataTable;
+use contract::docking::{Motion, Pose};
+use docking::scoring::ApproachParameters;
+use nalgebra::Vector3;
+
+use super::limits::{limits, note_outside, outside};
+use super::run::{DockingRun, PortionReport};
 
 /// Number of rows of the tables behind the charts.
 const TABLE_BINS: usize = 60;

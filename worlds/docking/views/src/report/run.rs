@@ -12,20 +12,16 @@
 )]
 use std::path::Path;
 
+use ::report::read::{missing, read_json};
 use contract::docking::{DockingOutcome, Motion};
-use docking::DockingMission;
-use docking::DockingScenario;
-use docking::rows::FieldTruthRow;
-use docking::rows::{FieldRow, read_field_telemetry};
-use docking::rows::{read_field_measurements, read_motion};
+use docking::rows::{FieldRow, FieldTruthRow, read_field_measurements, read_field_telemetry, read_motion};
 use docking::scoring::DockingScore;
+use docking::{DockingMission, DockingScenario};
 use files::{Failure, TableReader};
 use run::{Judgement as _, World as _};
 use scenario::run_file::RunFile;
 use score::UnitVerdict;
 use sim::docking::FieldTruth;
-
-use ::report::read::{missing, read_json};
 
 /// Results of a docking run, read from its directory.
 pub struct DockingRun {

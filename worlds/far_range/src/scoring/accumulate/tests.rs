@@ -1,10 +1,11 @@
+use contract::{Covariance2, Measurement, NoSolution, PixelPoint, Solution};
+use score::Figure;
+
 use super::*;
 use crate::scoring::hand_made::{
     CENTRE, COLUMNS, PIXEL, ROWS, detected_at, direction_at, frame, target_with, tilted, unproject,
     verdict_of,
 };
-use contract::{Covariance2, Measurement, NoSolution, PixelPoint, Solution};
-use score::Figure;
 
 /// Limits of the paper, which also are one and two square pixels of the hand-made camera.
 const LIMITS: WithinLimits = WithinLimits { ra_deg: [0.024, 0.048], dec_deg: [0.024, 0.048] };

@@ -1,14 +1,12 @@
 //! Consistency of the errors of correct measurements with their stated covariances.
 
 use contract::AttitudeSource;
+use score::{Better, Definition, NormalisedError, Reduction};
 
 use super::image_state::ImageState;
 use crate::scoring::angles::AnswerError;
 use crate::scoring::verdict::{FrameVerdict, Verdict};
 use crate::scoring::{ConsistencyRow, names};
-use score::Better;
-use score::NormalisedError;
-use score::{Definition, Reduction};
 
 /// Fractions of normally distributed errors within one and three standard deviations.
 const NORMAL_SHARES: [(&str, f64, f64); 2] = [("1", 1.0, 0.6827), ("3", 3.0, 0.9973)];

@@ -5,8 +5,13 @@ mod report;
 use std::any::Any;
 use std::path::Path;
 
-use far_range::rows::{FrameCluster, read_measurements};
-use far_range::rows::{FrameTruthRow, ObjectTruthRow};
+use ::monitor::camera;
+use ::monitor::feed::{Measurements, MonitorContext, MonitoredWorld, Serve, frames, optional};
+use ::monitor::ground::GroundTrack;
+use ::monitor::plan::Plan;
+use ::monitor::session::Session;
+use ::monitor::session::picture::Stretch;
+use far_range::rows::{FrameCluster, FrameTruthRow, ObjectTruthRow, read_measurements};
 use far_range::{FarRangeMission, SceneTruth};
 use files::{Failure, TableReader};
 use hifitime::Epoch;
@@ -15,12 +20,6 @@ use serde_json::{Value, json};
 use sim::truth::ObjectTruth;
 
 use self::report::{FarRangeReporter, range_and_rate};
-use ::monitor::camera;
-use ::monitor::feed::{Measurements, MonitorContext, MonitoredWorld, Serve, frames, optional};
-use ::monitor::ground::GroundTrack;
-use ::monitor::plan::Plan;
-use ::monitor::session::Session;
-use ::monitor::session::picture::Stretch;
 
 /// Playback rate of a sequence, frames per second; the true cadence is many seconds per frame.
 const RATE_HZ: f64 = 25.0;

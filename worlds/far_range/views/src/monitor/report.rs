@@ -1,15 +1,14 @@
 //! Reports of far-range frames for the monitor.
+use ::monitor::ground::GroundTrack;
+use ::monitor::report::{CameraPose, Fact, FrameReport, ImageLayout, Parameter, Phase, Shape};
 use contract::{Camera, Label, Outcome, Solution};
+use far_range::FarRangeMission;
 use files::format_utc;
 use hifitime::Epoch;
 use nalgebra::Vector3;
-use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Trajectory, Visibility};
-
-use ::monitor::ground::GroundTrack;
-use ::monitor::report::{CameraPose, Fact, FrameReport, ImageLayout, Parameter, Phase, Shape};
-use far_range::FarRangeMission;
 use run::World;
 use serde_json::{Value, json};
+use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Trajectory, Visibility};
 
 /// Half side of the box around a cluster, px.
 const CLUSTER_PX: f64 = 5.0;

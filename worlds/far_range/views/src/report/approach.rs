@@ -1,13 +1,13 @@
 //! Position of the chaser: the relative orbit.
 
-use files::Failure;
-
-use super::run::{FarRangeRun, shown_time};
 use ::report::charts::chart::{Chart, MEASURED, Panel, line, rounded, stacked};
 use ::report::charts::plotly::Axis;
 use ::report::charts::thinning::{bins, evenly};
 use ::report::page::Section;
 use ::report::page::data_table::DataTable;
+use files::Failure;
+
+use super::run::{FarRangeRun, shown_time};
 
 /// Number of rows of the table behind the chart.
 const TABLE_BINS: usize = 60;

@@ -1,16 +1,16 @@
 //! Attitude of the camera, and the effect of aberration on it.
 
-use contract::{Body, CameraFrame, Direction, Rotation};
-use files::Failure;
-use sim::truth::Observer;
-
-use super::run::{FarRangeRun, broken, by_bins, shown_time_ms, time_axis};
 use ::report::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, cloud, line, points, rounded, stacked,
 };
 use ::report::charts::thinning::{bins, thinned, thinning_caption};
 use ::report::page::Section;
 use ::report::page::data_table::DataTable;
+use contract::{Body, CameraFrame, Direction, Rotation};
+use files::Failure;
+use sim::truth::Observer;
+
+use super::run::{FarRangeRun, broken, by_bins, shown_time_ms, time_axis};
 
 /// Number of rows of the table behind the chart of aberration corrections.
 const TABLE_BINS: usize = 60;

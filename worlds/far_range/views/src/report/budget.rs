@@ -1,15 +1,15 @@
 //! Error budget: runs on the same frames with the result of one stage replaced by the truth, beside the run
 //! without replacement.
 
-use far_range::scoring::{Score, names};
-use run::figure_by_name;
-
-use super::FarRangeRun;
 use ::report::charts::chart::{BESIDE, Chart, MEASURED, axes, intervals, rounded};
 use ::report::charts::plotly::Trace;
 use ::report::figures::{cell, percent_cell};
 use ::report::page::Section;
 use ::report::page::data_table::DataTable;
+use far_range::scoring::{Score, names};
+use run::figure_by_name;
+
+use super::FarRangeRun;
 
 /// Returns the section on the error contribution of each stage.
 pub(super) fn budget(run: &FarRangeRun) -> Section {

@@ -1,14 +1,13 @@
 //! Consistency of the stated covariances, by group, state of the image and source of the attitude.
 
-use far_range::scoring::{Score, names};
-use indexmap::IndexMap;
-use run::figure_by_name;
-use score::Figure;
-
 use ::report::figures::words::display_name;
 use ::report::figures::{cell, percent_cell};
 use ::report::page::Section;
 use ::report::page::data_table::DataTable;
+use far_range::scoring::{Score, names};
+use indexmap::IndexMap;
+use run::figure_by_name;
+use score::Figure;
 
 /// Figures of consistency, in the order of the columns.
 const FIGURES: [&str; 6] = [

@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use ::report::read::{missing, read_json};
+use ::run::world_of_run;
 use far_range::FarRangeScenario;
 use far_range::scoring::Score;
 use files::Failure;
 use scenario::Stage;
 use scenario::run_file::RunFile;
-
-use ::report::read::{missing, read_json};
-use ::run::world_of_run;
 
 /// A run on the same frames in which the result of one stage was replaced by the truth.
 pub struct InjectedRun {

@@ -3,6 +3,10 @@
 
 use std::path::Path;
 
+use ::report::figures::least_to_most;
+use ::report::figures::words::display_name;
+use ::report::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch, window_around};
+use ::report::read::rows_of_each;
 use contract::{Cluster, Label, Outcome, PixelPoint, Window};
 use far_range::rows::FrameCluster;
 use far_range::scoring::{FrameVerdict, Verdict};
@@ -13,10 +17,6 @@ use sim::truth::{ObjectKind, ObjectTruth, Visibility};
 use sim::{Exposure, Simulator};
 
 use super::run::{FarRangeRun, shown_time};
-use ::report::figures::least_to_most;
-use ::report::figures::words::display_name;
-use ::report::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch, window_around};
-use ::report::read::rows_of_each;
 
 /// The simulator of a run, and the file of the pipeline's clusters.
 pub struct FrameDetail {

@@ -3,6 +3,10 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
+use ::report::charts::chart::{Chart, MEASURED, TRUTH, WRONG, cloud, crosses, line, points, rounded};
+use ::report::charts::plotly::{Axis, Layout, Trace};
+use ::report::charts::thinning::{bins, evenly, sampled, thinning_caption};
+use ::report::page::Section;
 use contract::Outcome;
 use far_range::scoring::{Cause, Verdict};
 use files::Failure;
@@ -10,10 +14,6 @@ use sim::truth::{Elements, State};
 
 use super::FrameDetail;
 use super::run::{FarRangeRun, by_bins};
-use ::report::charts::chart::{Chart, MEASURED, TRUTH, WRONG, cloud, crosses, line, points, rounded};
-use ::report::charts::plotly::{Axis, Layout, Trace};
-use ::report::charts::thinning::{bins, evenly, sampled, thinning_caption};
-use ::report::page::Section;
 
 /// Margin around the detector, so that a mark at its edge is drawn completely, px.
 const ROOM_PX: f64 = 8.0;

@@ -11,7 +11,9 @@ mod image;
 mod navigation;
 mod run;
 mod series;
+mod sky_map;
 mod thresholds;
+mod visibility;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -21,9 +23,8 @@ use indexmap::IndexMap;
 pub use error_budget::{InjectedRun, kept_budget};
 pub use frame_detail::FrameDetail;
 pub use run::FarRangeRun;
+pub use visibility::{read_visibility, visibility_page};
 
-use self::colours::colour_of;
-use self::run::shown_time;
 use ::report::charts::chart::{Chart, bars, rounded, stacked_bars};
 use ::report::charts::plotly::Trace;
 use ::report::figures::words::display_name;
@@ -31,14 +32,25 @@ use ::report::figures::{figure_table, least_to_most, percent_cell, shown_percent
 use ::report::page::data_table::DataTable;
 use ::report::page::picture::RenderedPictures;
 use ::report::page::{Page, Section};
-use ::report::{BudgetReport, WorldReport};
+use ::report::{BudgetReport, OtherReport, WorldReport};
 use ::run::{AnyJudgement, World};
-use far_range::FarRangeMission;
-use far_range::is_argon;
 use far_range::scoring::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore};
+use far_range::{FarRangeMission, is_argon};
 use files::{Checksums, Failure};
 use scenario::Stage;
 use score::{angle, attitude_note, warm_up_note};
+
+use self::colours::colour_of;
+use self::run::shown_time;
+
+/// Returns the report of visibility requirements.
+pub(crate) fn visibility_report() -> OtherReport {
+    OtherReport {
+        file: "visibility.json",
+        results: "`boresight visibility --out`",
+        page: |directory| Ok(visibility_page(&read_visibility(directory)?)),
+    }
+}
 
 /// Returns the report of the world's runs.
 pub(crate) fn world_report() -> WorldReport {

@@ -1,13 +1,13 @@
 //! Errors of the relative navigation over time.
 
-use navigate::NavigationRow;
-
-use super::run::{FarRangeRun, axis_time, time_axis};
 use ::report::charts::chart::{BESIDE, Chart, MEASURED, Panel, TRUTH, band, line, rounded, stacked};
 use ::report::charts::plotly::Trace;
 use ::report::charts::thinning::{bins, evenly};
 use ::report::page::Section;
 use ::report::page::data_table::DataTable;
+use navigate::NavigationRow;
+
+use super::run::{FarRangeRun, axis_time, time_axis};
 
 /// Number of rows of the table behind the chart.
 const TABLE_BINS: usize = 60;

@@ -13,12 +13,14 @@
 
 use std::path::Path;
 
+use ::report::charts::plotly::Axis;
+use ::report::charts::thinning::{bins, summary};
+use ::report::page::data_table::DataTable;
+use ::report::read::{missing, read_json};
 use contract::Outcome;
-use far_range::FarRangeMission;
-use far_range::FarRangeScenario;
-use far_range::rows::FrameTruthRow;
-use far_range::rows::{TelemetryRow, read_measurements, read_telemetry};
+use far_range::rows::{FrameTruthRow, TelemetryRow, read_measurements, read_telemetry};
 use far_range::scoring::{FrameVerdict, Score};
+use far_range::{FarRangeMission, FarRangeScenario};
 use files::{Failure, TableReader, format_utc};
 use hifitime::{Epoch, Unit};
 use navigate::{NavigationRow, TABLE_FILE, read_navigation};
@@ -27,10 +29,6 @@ use scenario::run_file::RunFile;
 use sim::truth::{FrameTruth, clock};
 
 use super::error_budget::InjectedRun;
-use ::report::charts::plotly::Axis;
-use ::report::charts::thinning::{bins, summary};
-use ::report::page::data_table::DataTable;
-use ::report::read::{missing, read_json};
 
 /// Number of rows of the table behind a long series.
 const TABLE_BINS: usize = 60;

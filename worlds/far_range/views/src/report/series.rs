@@ -1,15 +1,15 @@
 //! Measurements over time: errors, stars.
 
-use far_range::limits;
-use far_range::scoring::Verdict;
-use score::angle;
-
-use super::run::{FarRangeRun, axis_time, broken, by_bins, time_axis};
 use ::report::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, cloud, crosses, dashed, line, points, rounded, stacked,
 };
 use ::report::charts::thinning::{sampled, thinned, thinning_caption};
 use ::report::page::Section;
+use far_range::limits;
+use far_range::scoring::Verdict;
+use score::angle;
+
+use super::run::{FarRangeRun, axis_time, broken, by_bins, time_axis};
 
 /// Number of images in the moving mean of Fig. 7.
 const MEAN_OF: usize = 100;

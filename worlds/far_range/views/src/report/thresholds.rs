@@ -1,11 +1,10 @@
 //! Rates by a threshold on the odds that the measurements state.
 
-use far_range::scoring::{Score, ThresholdPoint};
-
 use ::report::charts::chart::{BESIDE, Chart, MEASURED, WRONG, axes, line};
 use ::report::charts::plotly::Trace;
 use ::report::page::Section;
 use ::report::page::data_table::DataTable;
+use far_range::scoring::{Score, ThresholdPoint};
 
 /// Rate of a point of the curve.
 type Rate = fn(&ThresholdPoint) -> Option<f64>;

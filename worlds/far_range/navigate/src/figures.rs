@@ -1,39 +1,24 @@
 //! Figures of a navigation, as studies and gates use them.
 
+use contract::navigation::Event;
 use files::Failure;
 use hifitime::Epoch;
 use navigation::{BatchConfig, Bound};
+use run::NavigationFigure;
 use score::{FigureTerms, Reduction, Term};
-
-use contract::navigation::Event;
 
 use crate::campaign::Campaign;
 use crate::result::NavigationResult;
 use crate::row::NavigationRow;
 
-/// Value of a figure, with its numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NavigationFigure {
-    /// Name of the figure, one of [`score::navigation_figures`].
-    pub name: &'static str,
-    /// Value; `None` without an estimate.
-    pub value: Option<f64>,
-    /// Numerator of a rate; 0 for an amount.
-    pub count: u64,
-    /// Number of values that the figure is computed from.
-    pub of: u64,
+fn rate(name: &'static str, count: u64, of: u64) -> NavigationFigure {
+    NavigationFigure { name, value: (of > 0).then(|| count as f64 / of as f64), count, of }
 }
 
-impl NavigationFigure {
-    fn rate(name: &'static str, count: u64, of: u64) -> Self {
-        Self { name, value: (of > 0).then(|| count as f64 / of as f64), count, of }
-    }
-
-    fn mean(name: &'static str, values: &[f64]) -> Self {
-        let of = values.len() as u64;
-        let value = (of > 0).then(|| values.iter().sum::<f64>() / of as f64);
-        Self { name, value, count: 0, of }
-    }
+fn mean(name: &'static str, values: &[f64]) -> NavigationFigure {
+    let of = values.len() as u64;
+    let value = (of > 0).then(|| values.iter().sum::<f64>() / of as f64);
+    NavigationFigure { name, value, count: 0, of }
 }
 
 /// Computes the figures of a navigation, with the bound of the campaign at the times of its estimates.
@@ -54,7 +39,7 @@ pub fn navigation_figures(
         rows.iter().filter_map(|(_, error, _)| error.get(axis).map(|error| error * error)).collect()
     };
     let rms = |name: &'static str, squares: &[f64]| {
-        let mean = NavigationFigure::mean(name, squares);
+        let mean = mean(name, squares);
         NavigationFigure { value: mean.value.map(f64::sqrt), ..mean }
     };
     let axes = rows.iter().flat_map(|(_, error, sigma)| error.iter().zip(sigma));
@@ -72,18 +57,18 @@ pub fn navigation_figures(
     let convergence_s: Vec<f64> = result.score.convergence_s.into_iter().collect();
     let over_bound = squares_over_bound(campaign, &rows)?;
     Ok(vec![
-        NavigationFigure::rate("navigation_estimate_rate", estimates, result.rows.len() as u64),
+        rate("navigation_estimate_rate", estimates, result.rows.len() as u64),
         rms("navigation_r_rms_m", &squares(0)),
         rms("navigation_t_rms_m", &squares(1)),
         rms("navigation_n_rms_m", &squares(2)),
-        NavigationFigure::rate("navigation_within_3_sigma", within, 3 * estimates),
-        NavigationFigure::mean("navigation_position_nees_mean", &nees(|row| row.nees_position, 3.0)),
-        NavigationFigure::mean("navigation_state_nees_mean", &nees(|row| row.nees_state, 6.0)),
+        rate("navigation_within_3_sigma", within, 3 * estimates),
+        mean("navigation_position_nees_mean", &nees(|row| row.nees_position, 3.0)),
+        mean("navigation_state_nees_mean", &nees(|row| row.nees_state, 6.0)),
         rms("navigation_range_rms_percent", &range),
-        NavigationFigure::mean("navigation_convergence_s", &convergence_s),
-        NavigationFigure::mean("navigation_r_square_over_bound", &over_bound[0]),
-        NavigationFigure::mean("navigation_t_square_over_bound", &over_bound[1]),
-        NavigationFigure::mean("navigation_n_square_over_bound", &over_bound[2]),
+        mean("navigation_convergence_s", &convergence_s),
+        mean("navigation_r_square_over_bound", &over_bound[0]),
+        mean("navigation_t_square_over_bound", &over_bound[1]),
+        mean("navigation_n_square_over_bound", &over_bound[2]),
     ])
 }
 

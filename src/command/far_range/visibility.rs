@@ -3,18 +3,18 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use far_range_views::{visibility_markdown, visibility_table};
 use files::Failure;
 use pipeline::external::protocol::harmless;
 use visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, assess, write_report};
 
-use super::Answer;
-use super::options::output_path;
-use super::output::Output;
-use super::report::{check_option, write_visibility, write_visibility_beside};
-use crate::table::{visibility_markdown, visibility_table};
+use crate::command::Answer;
+use crate::command::options::output_path;
+use crate::command::output::Output;
+use crate::command::report::{check_option, write_visibility, write_visibility_beside};
 
 #[derive(Debug, Args)]
-pub(super) struct VisibilityArguments {
+pub(in crate::command) struct VisibilityArguments {
     /// A built-in requirement file (`--list`) or a TOML file (docs/visibility.md)
     #[arg(required_unless_present_any = ["schema", "list"])]
     requirement: Option<String>,
@@ -41,7 +41,10 @@ pub(super) struct VisibilityArguments {
 
 /// Runs the command; exit status 0 if every requirement is met, 1 if a requirement is not met or cannot be
 /// met.
-pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Result<Answer, Failure> {
+pub(in crate::command) fn visibility(
+    arguments: &VisibilityArguments,
+    output: &Output,
+) -> Result<Answer, Failure> {
     if arguments.schema {
         let schema = schemars::schema_for!(RequirementFile);
         let text = serde_json::to_string_pretty(&schema)

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use contract::conformance::Violation;
 use far_range::FarRangeScenario;
+use far_range_views::{bound_table, budget_table, navigation_table};
 use files::Failure;
 use navigate::{
     Campaign, EVERY_S, Estimator, KnowledgeConfig, MeasurementSource, NavigationResult, NavigatorChoice,
@@ -15,12 +16,11 @@ use run::{AnyWorld, ScenarioSource};
 use scenario::run_file::ScenarioFile;
 use serde_json::json;
 
-use super::Answer;
-use super::interrupt::{clean_up_when_interrupted, scratch_directory};
-use super::options::output_path;
-use super::output::Output;
-use super::report::write_beside_results;
-use crate::table::{bound_table, budget_table, navigation_table};
+use crate::command::Answer;
+use crate::command::interrupt::{clean_up_when_interrupted, scratch_directory};
+use crate::command::options::output_path;
+use crate::command::output::Output;
+use crate::command::report::write_beside_results;
 
 /// Number of intervals of a bound's table.
 const BOUND_INTERVALS: u32 = 12;
@@ -29,7 +29,7 @@ const BOUND_INTERVALS: u32 = 12;
 const REPORT: &str = "report.html";
 
 #[derive(Debug, Args)]
-pub(super) struct NavigateArguments {
+pub(in crate::command) struct NavigateArguments {
     /// Directory of a far-range run; with --bound also a built-in scenario or a TOML file
     #[arg(value_name = "RUN|SCENARIO", required_unless_present = "conformance")]
     input: Option<PathBuf>,
@@ -110,7 +110,7 @@ impl NavigatorOptions {
 
 /// Name of a built-in navigator.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum EstimatorName {
+pub(in crate::command) enum EstimatorName {
     /// Least squares over all measurements
     #[default]
     Batch,
@@ -130,7 +130,7 @@ impl EstimatorName {
     ///
     /// # Errors
     /// [`Failure::Usage`] that names the world.
-    pub(super) fn check_world(world: &dyn AnyWorld) -> Result<(), Failure> {
+    pub(in crate::command) fn check_world(world: &dyn AnyWorld) -> Result<(), Failure> {
         if world.code() == FarRangeScenario::WORLD {
             return Ok(());
         }
@@ -146,7 +146,7 @@ impl EstimatorName {
     ///
     /// # Errors
     /// The errors of the command `navigate`.
-    pub(super) fn navigate_run(self, directory: &Path) -> Result<NavigationResult, Failure> {
+    pub(in crate::command) fn navigate_run(self, directory: &Path) -> Result<NavigationResult, Failure> {
         let campaign = Campaign::open(directory, &KnowledgeConfig::default(), &MeasurementSource::default())?;
         let result = navigate::navigate(&campaign, self.estimator(), EVERY_S)?;
         result.write(directory)?;
@@ -155,7 +155,10 @@ impl EstimatorName {
 }
 
 /// Runs the command; exit status 1 if there is no estimate at any time.
-pub(super) fn navigate(arguments: &NavigateArguments, output: &Output) -> Result<Answer, Failure> {
+pub(in crate::command) fn navigate(
+    arguments: &NavigateArguments,
+    output: &Output,
+) -> Result<Answer, Failure> {
     let mut knowledge = KnowledgeConfig::default();
     if arguments.no_prior {
         knowledge.prior_sigma_m = None;

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use far_range::FarRangeScenario;
-use far_range::rows::FrameTruthRow;
-use far_range::rows::TelemetryRow;
+use far_range::rows::{FrameTruthRow, TelemetryRow};
 use files::{Failure, FileError, FileLocation, TableReader};
 use flight_dynamics::Header;
 use scenario::run_file::RunFile;

@@ -1,7 +1,6 @@
 //! Text output of relative navigation for a user.
 use comfy_table::Cell;
 use navigate::{Axis, BoundReport, NavigationBudget, NavigationResult};
-
 use view::terminal::{finish, percent, plain_table};
 
 /// Number of characters of a time to the second.

@@ -19,12 +19,12 @@ use self::attitude::{AttitudeFrame, attitude_count, measured_attitude, true_atti
 use self::directions::tdm;
 use self::orbit::{Spacecraft, estimated_orbit, state_count, true_orbit};
 use self::parts::Export;
-use super::Answer;
-use super::options::output_path;
-use super::output::Output;
+use crate::command::Answer;
+use crate::command::options::output_path;
+use crate::command::output::Output;
 
 #[derive(Debug, Args)]
-pub(super) struct ExportArguments {
+pub(in crate::command) struct ExportArguments {
     /// Directory of a far-range run
     #[arg(value_name = "RUN")]
     directory: PathBuf,
@@ -108,7 +108,7 @@ impl ExportArguments {
     }
 }
 
-pub(super) fn export(arguments: &ExportArguments, output: &Output) -> Result<Answer, Failure> {
+pub(in crate::command) fn export(arguments: &ExportArguments, output: &Output) -> Result<Answer, Failure> {
     arguments.check_options()?;
     let ExportArguments { directory, format, estimates, navigation, object, step_s, frame, notation, out } =
         arguments;

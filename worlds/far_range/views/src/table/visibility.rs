@@ -1,8 +1,7 @@
 //! Text output of requirements for a user: the verification table and the curves, for the terminal and as
 //! Markdown.
-use visibility::{Status, Verdict, VisibilityReport, digits};
-
 use view::terminal::{finish, plain_table};
+use visibility::{Status, Verdict, VisibilityReport, digits};
 
 /// Approximate number of points of a curve that are shown.
 const CURVE_POINTS: usize = 9;

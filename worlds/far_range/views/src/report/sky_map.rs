@@ -3,11 +3,10 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
+use ::report::charts::chart::{REFERENCE, rounded};
+use ::report::charts::plotly::{Axis, ColourScale, Layout, Line, Mode, TextPosition, Trace};
+use ::visibility::PointingStars;
 use contract::{Direction, Icrs};
-use visibility::PointingStars;
-
-use super::chart::{REFERENCE, rounded};
-use super::plotly::{Axis, ColourScale, Layout, Line, Mode, TextPosition, Trace};
 
 /// Rows of cells of the map; it has twice as many columns.
 const CELLS_UP: usize = 90;
@@ -18,7 +17,7 @@ const REACH: f64 = 1.5;
 const OF_A_LINE: usize = 60;
 
 /// Returns the map of the counted pointings; `of` is the number of all pointings.
-pub fn sky_map(counted: &[&PointingStars], of: usize) -> (Vec<Trace>, Layout) {
+pub(super) fn sky_map(counted: &[&PointingStars], of: usize) -> (Vec<Trace>, Layout) {
     let reach = REACH * (4.0 * PI / of.max(1) as f64).sqrt();
     let pointings = Pointings::new(counted);
     let centre = |cell: usize, cells: usize| (2 * cell + 1) as f64 / cells as f64 - 1.0;

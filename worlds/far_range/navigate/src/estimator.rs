@@ -132,7 +132,7 @@ pub fn navigate_with(
 ///
 /// # Errors
 /// A [`Failure`] for a `telemetry.csv` that cannot be read.
-pub fn requested_estimates(directory: &Path, every_s: f64) -> Result<u64, Failure> {
+pub(crate) fn requested_estimates(directory: &Path, every_s: f64) -> Result<u64, Failure> {
     let telemetry = far_range::rows::read_telemetry(&directory.join("telemetry.csv"))?;
     let (Some(first), Some(last)) = (telemetry.first(), telemetry.last()) else { return Ok(0) };
     let intervals = (last.telemetry.time - first.telemetry.time).to_seconds() / every_s;

@@ -19,7 +19,7 @@ use crate::requirement::{CameraTable, DetectionRule, RequirementFile, SkyTime, T
 /// Requirement files that are embedded in the binary, by name.
 pub const BUILT_IN_REQUIREMENTS: &[BuiltIn] = &[BuiltIn {
     name: "uasc-far-range",
-    text: include_str!("../../../../scenarios/requirements/uasc-far-range.toml"),
+    text: include_str!("../../../../../scenarios/requirements/uasc-far-range.toml"),
 }];
 
 /// Requirements that were read and checked.

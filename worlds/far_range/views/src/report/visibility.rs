@@ -2,20 +2,20 @@
 
 use std::path::Path;
 
-use files::Failure;
-use visibility::{SimulatedRate, VisibilityReport, read_sky};
-
-use crate::charts::chart::{
+use ::report::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, axes, dashed, intervals, line, log_axis, rounded,
     stacked,
 };
-use crate::charts::plotly::{Axis, Layout, Marker, Mode, Symbol};
-use crate::charts::sky_map::sky_map;
-use crate::charts::thinning::{bins, summary};
-use crate::figures::{cell, probability, significant};
-use crate::page::data_table::DataTable;
-use crate::page::{Page, Section};
-use crate::read::read_json;
+use ::report::charts::plotly::{Axis, Layout, Marker, Mode, Symbol};
+use ::report::charts::thinning::{bins, summary};
+use ::report::figures::{cell, probability, significant};
+use ::report::page::data_table::DataTable;
+use ::report::page::{Page, Section};
+use ::report::read::read_json;
+use ::visibility::{SimulatedRate, VisibilityReport, read_sky};
+use files::Failure;
+
+use super::sky_map::sky_map;
 
 /// Reads a directory written by `boresight visibility --out`.
 ///

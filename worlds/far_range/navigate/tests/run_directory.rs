@@ -1,8 +1,6 @@
 //! Navigators on run directories: accuracy on a thinned ARGON, and input that they refuse.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
-use draws::{Effect, Seed, normal};
-use far_range::rows::{MeasurementLine, TelemetryLine};
 use std::fs;
 use std::path::Path;
 
@@ -13,8 +11,9 @@ use contract::{
     AttitudeSource, CameraFrame, Covariance2, Direction, Icrs, Measurement, NoSolution, Outcome, PixelPoint,
     Rotation, Solution, Telemetry,
 };
+use draws::{Effect, Seed, normal};
 use far_range::FarRangeScenario;
-use far_range::rows::{MeasurementWriter, TelemetryRow, TelemetryWriter};
+use far_range::rows::{MeasurementLine, MeasurementWriter, TelemetryLine, TelemetryRow, TelemetryWriter};
 use nalgebra::Vector3;
 use scenario::run_file::{RunFile, ScenarioFile};
 use sim::truth::Schedule;
@@ -25,7 +24,7 @@ const SIGMA_RAD: f64 = 10.0 / 206_264.8;
 
 /// ARGON with a frame every 300 s in place of 15 s.
 fn argon() -> FarRangeScenario {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/argon.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../scenarios/argon.toml");
     let mut scenario = FarRangeScenario::parse(&path, &fs::read_to_string(&path).unwrap()).unwrap();
     for group in &mut scenario.schedule {
         group.cadence_s *= 20.0;

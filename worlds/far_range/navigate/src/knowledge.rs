@@ -1,6 +1,5 @@
 //! Knowledge of the chaser besides its measurements: its orbit, a prior, errors of its instruments.
 
-use draws::{Effect, Seed, Stream, normal};
 use std::f64::consts::TAU;
 
 use contract::navigation::{
@@ -8,6 +7,7 @@ use contract::navigation::{
     RelativeElements, ReportedState, SlowDisplacement, SlowError,
 };
 use contract::{AttitudeKnowledge, CameraFrame, ContractError, Icrs, Rotation};
+use draws::{Effect, Seed, Stream, normal};
 use far_range::FarRangeScenario;
 use files::Failure;
 use hifitime::{Duration, Epoch};

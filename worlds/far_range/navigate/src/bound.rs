@@ -1,11 +1,10 @@
 //! Bound of a campaign: what its measurements, manoeuvres and prior can determine.
 
+use contract::navigation::Event;
 use files::{Failure, format_utc};
 use hifitime::Epoch;
 use navigation::{BatchConfig, Bound};
 use serde::{Deserialize, Serialize};
-
-use contract::navigation::Event;
 
 use crate::campaign::Campaign;
 use crate::estimator::times;

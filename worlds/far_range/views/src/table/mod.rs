@@ -1,0 +1,9 @@
+//! Tables for the terminal, one module per kind of result.
+
+mod navigation;
+mod score;
+mod visibility;
+
+pub use navigation::{bound_table, budget_table, navigation_table};
+pub use score::{TableStyle, far_range_table};
+pub use visibility::{visibility_markdown, visibility_table};
