@@ -6,6 +6,7 @@
 //! results.
 #![allow(clippy::unwrap_used, reason = "a benchmark ends by panicking")]
 
+use proptest::prelude::Rng;
 #[path = "../tests/it/argon.rs"]
 mod argon;
 #[path = "../../benches/support/processor_time.rs"]
@@ -27,7 +28,6 @@ use contract::PixelPoint;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use draws::{Effect, Seed};
 use processor_time::ProcessorTime;
-use rand::Rng;
 
 const SEED: Seed = Seed { seed: 1, case: 0 };
 /// Sizes of frames, thousands of pixels; 436 is the size in the scenario `argon`.

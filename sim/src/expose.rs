@@ -3,19 +3,18 @@
 use contract::{Frame, OutOfRange, Telemetry, Window};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
+use optics::{ImagePoint, Stamp};
+use render::draw::ExpectedImage;
+use render::painter::Painter;
+use scene::{CameraMotion, Source, planets};
+use sensor::onboard::{RoiExtractor, downlink_in};
+use sensor::{CosmicRayHit, ExposureInterval, FlatSamplers, FrameCharge, Sensor, SparseImage};
+use truth::{FrameTruth, ObjectKind, ObjectTruth, SimError, Switch, Visibility, clock, shadow};
 
-use crate::draw::ExpectedImage;
+use crate::Simulator;
 use crate::foreground::ForegroundBodies;
-use crate::onboard::{RoiExtractor, downlink_in};
-use crate::optics::{ImagePoint, Stamp};
-use crate::painter::Painter;
-use crate::scene::{CameraMotion, Source, planets};
 use crate::scene_state::SceneState;
 use crate::scene_view::{FrameViews, SceneView};
-use crate::sensor::{CosmicRayHit, ExposureInterval, FlatSamplers, FrameCharge, Sensor, SparseImage};
-use crate::switch::Switch;
-use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility, clock, shadow};
-use crate::{SimError, Simulator};
 
 /// Maximum number of points in the image of a source: those of its body multiplied by those of its trail.
 const POINTS: usize = 1 << 18;

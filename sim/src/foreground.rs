@@ -1,11 +1,11 @@
 //! Occultation of stars and planets.
 
 use contract::{Direction, Icrs};
+use scene::{Background, Outline, earth::EarthDisk, moon::LitMoon};
+use truth::Observer;
 
 use crate::Simulator;
-use crate::scene::{Background, Outline, earth::EarthDisk, moon::LitMoon};
 use crate::scene_state::SceneState;
-use crate::truth::Observer;
 
 /// Bodies of a scene that can occult stars and planets: the Earth if its light is in the scene, the Moon, and
 /// the target.

@@ -1,9 +1,9 @@
 //! Magnitude of the faintest star that a camera detects.
 
 use contract::PixelPoint;
+use optics::{Psf, Stamp};
 
 use crate::Simulator;
-use crate::optics::{Psf, Stamp};
 
 /// Limits of the searched magnitudes.
 const MAX_MAGNITUDE: f64 = 40.0;

@@ -3,12 +3,11 @@
 use contract::{Body, CameraFrame, Direction, Icrs, PixelPoint, Rotation, Target};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
+use optics::Projection;
+use scene::{Appearance, CameraMotion, Lighting, Source, moon::LitMoon};
+use truth::{ObjectKind, Observer, SimError, States, Switch, clock, shadow};
 
-use crate::optics::Projection;
-use crate::scene::{Appearance, CameraMotion, Lighting, Source, moon::LitMoon};
-use crate::switch::Switch;
-use crate::truth::{ObjectKind, Observer, States, clock, shadow};
-use crate::{SimError, Simulator};
+use crate::Simulator;
 
 /// State of the scene at one instant.
 pub(crate) struct SceneState {

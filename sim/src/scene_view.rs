@@ -4,15 +4,14 @@
 use std::collections::BTreeSet;
 
 use hifitime::{Epoch, Unit};
+use optics::Psf;
+use scene::{BackgroundField, CameraMotion, Source, planets};
+use sensor::InterlaceConfig;
+use truth::{ObjectKind, SimError, Switch, clock};
 
+use crate::Simulator;
 use crate::foreground::ForegroundBodies;
-use crate::optics::Psf;
-use crate::scene::{BackgroundField, CameraMotion, Source, planets};
 use crate::scene_state::SceneState;
-use crate::sensor::InterlaceConfig;
-use crate::switch::Switch;
-use crate::truth::{ObjectKind, clock};
-use crate::{SimError, Simulator};
 
 /// Scene in front of the camera during an exposure.
 pub(crate) struct SceneView {

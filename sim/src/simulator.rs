@@ -1,24 +1,21 @@
 //! Simulation configuration, and the checked and prepared simulator.
 
-use draws::Seed;
 use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
 use contract::{Body, Camera, CameraFrame, OutOfRange, Rotation};
+use draws::Seed;
 use hifitime::Unit;
-
-use crate::SimError;
-use crate::catalog::{Catalog, CatalogConfig, CatalogSource};
-use crate::memo::Memo;
-use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
-use crate::optics::{OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting};
-use crate::scene::{Background, BackgroundConfig, Spacecraft, StarField, TargetConfig};
-use crate::sensor::{CosmicRays, Sensor, SensorConfig};
-use crate::switch::Switch;
-use crate::truth::{
+use optics::{OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting};
+use scene::{Background, BackgroundConfig, Spacecraft, StarField, TargetConfig};
+use sensor::onboard::{RoiConfig, Shutter, ShutterConfig};
+use sensor::{CosmicRays, Sensor, SensorConfig};
+use truth::catalog::{Catalog, CatalogConfig, CatalogSource};
+use truth::memo::Memo;
+use truth::{
     Attitude, AttitudeConfig, AttitudeProfile, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig,
-    Observer, Schedule, Trajectory, TrajectorySource,
+    Observer, Schedule, SimError, Switch, Trajectory, TrajectorySource,
 };
 
 /// Complete input of the simulator.

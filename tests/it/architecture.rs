@@ -7,12 +7,17 @@ use cargo_metadata::{Metadata, MetadataCommand, Target};
 
 /// Each crate of the project, and the project's crates that it may depend on. The pipelines depend only on
 /// the contract, and therefore cannot share code with the simulator.
-const ARROWS: [(&str, &str); 29] = [
+const ARROWS: [(&str, &str); 34] = [
     ("contract", ""),
     ("config", "contract"),
     ("draws", ""),
     ("navigation", "contract"),
-    ("sim", "config contract draws"),
+    ("truth", "config contract draws"),
+    ("optics", "config contract truth"),
+    ("scene", "contract draws optics truth"),
+    ("render", "contract optics scene truth"),
+    ("sensor", "config contract draws optics render truth"),
+    ("sim", "config contract draws optics render scene sensor truth"),
     ("pipeline", "contract"),
     ("statistics", "draws"),
     ("score", "contract statistics"),
@@ -82,8 +87,8 @@ fn dependencies_point_down_and_nowhere_else() {
     assert_eq!(arrows, expected);
 }
 
-/// Maximum number of modules at the root of a crate of `oracle/` or `worlds/`, or of the package itself: files that share
-/// an idea are in a directory.
+/// Maximum number of modules at the root of a crate of `oracle/` or `worlds/`, or of the package itself:
+/// files that share an idea are in a directory.
 const MAX_MODULES: usize = 12;
 
 #[test]
@@ -92,7 +97,9 @@ fn the_root_of_a_crate_reads_like_a_table_of_contents() {
     for package in workspace().packages {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let is_above = ["oracle", "worlds"].map(|folder| root.join(folder));
-        if !is_above.iter().any(|folder| package.manifest_path.starts_with(folder)) && package.name.as_str() != "boresight" {
+        if !is_above.iter().any(|folder| package.manifest_path.starts_with(folder))
+            && package.name.as_str() != "boresight"
+        {
             continue;
         }
         let library = package.targets.iter().find(|target| target.is_lib()).expect("a library");
@@ -157,13 +164,18 @@ const NO_READERS: [(&str, &str); 1] = [("sim/src/docking/simulator.rs", "passes 
 
 /// Crates that compute: their readers of input deny the lints, file by file. The other crates deny them as a
 /// whole.
-const COMPUTING: [&str; 6] = [
+const COMPUTING: [&str; 11] = [
     "boresight-draws",
     "boresight-navigation",
+    "boresight-optics",
     "boresight-pipeline",
+    "boresight-render",
+    "boresight-scene",
     "boresight-score",
+    "boresight-sensor",
     "boresight-sim",
     "boresight-statistics",
+    "boresight-truth",
 ];
 
 /// Developers' programs, which only read their own input.

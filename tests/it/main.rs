@@ -34,7 +34,6 @@ mod frozen;
 mod gate;
 mod golden_docking;
 mod identity;
-mod import_circles;
 mod inject;
 mod input_mistakes;
 #[cfg(unix)]

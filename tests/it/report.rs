@@ -325,7 +325,7 @@ fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
     bench.boresight("report plain --budget nowhere").refused(&["nowhere/run.toml"]);
     bench.boresight("run docking --frames 24000..24001 --out docking --no-report").done();
     bench.boresight("report plain --budget docking").refused(&["docking/run.toml", "`scenario.world`"]);
-    bench.boresight("report docking --budget roi").refused(&["--budget", "far-range", "docking"]);
+    bench.boresight("report docking --budget roi").refused(&["--budget", "runs of far_range", "docking"]);
 }
 
 #[test]
@@ -357,7 +357,7 @@ fn the_runs_of_an_error_budget_are_flown_once_and_kept() {
     bench.boresight("report run --budget all --budget attitude").refused(&["--budget", "only `all`"]);
     bench.boresight("report attitude --budget all").refused(&["--budget is all", "without --inject"]);
     bench.boresight("run docking --frames 24000..24001 --out docking --no-report").done();
-    bench.boresight("report docking --budget all").refused(&["--budget", "far-range", "docking"]);
+    bench.boresight("report docking --budget all").refused(&["--budget", "runs of far_range", "docking"]);
 }
 
 #[test]

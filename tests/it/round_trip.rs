@@ -236,10 +236,10 @@ fn a_run_keeps_the_attitude_that_it_grants() {
     assert!(score["figures"]["ra_rms_deg"]["of"].as_u64() > Some(0), "{score}");
     assert_eq!(bench.boresight("score run run/measurements.csv --json").done().json(), score);
     assert!(bench.read("run/report.html").contains("by the attitude `telemetry`"));
-    let message = "requires a run of the far range";
+    let message = "requires a world whose measurements are lines of sight";
     bench
         .boresight("run docking --frames 0..2 --attitude true --out other")
-        .refused(&["--attitude requires a run of the far range"]);
+        .refused(&["--attitude requires a world whose measurements are lines of sight"]);
     bench.boresight("run docking --frames 0..2 --no-report --out docking").done();
     bench.boresight("score docking docking/measurements.csv --attitude true").refused(&[message]);
 }

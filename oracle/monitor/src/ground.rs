@@ -56,8 +56,8 @@ impl GroundTrack {
             .collect()
     }
 
-    /// Returns the position relative to the centre of the Earth, km, ICRS axes; for a circular orbit only its direction
-    /// is meaningful.
+    /// Returns the position relative to the centre of the Earth, km, ICRS axes; for a circular orbit only its
+    /// direction is meaningful.
     pub fn position_km(&self, time: Epoch) -> Vector3<f64> {
         match self {
             Self::Chaser(trajectory) => trajectory.states_at(time).chaser.position_km,

@@ -2,10 +2,11 @@
 //!
 //! A page ([`Page`]) depends only on the files that were read: it contains no clock time and no other input.
 //! Charts are drawn by plotly.js, which the page contains ([`Chart`]), with the numbers in a table behind
-//! each chart. Pictures ([`Picture`]) show frames that the simulator renders anew, one by one. The page needs no network.
+//! each chart. Pictures ([`Picture`]) show frames that the simulator renders anew, one by one. The page needs
+//! no network.
 //!
-//! - [`study_page`]: a study; [`gate_page`]: the result of a gate. A world registers the page of its runs ([`register`]),
-//!   made of [`page`], [`charts`] and [`figures`].
+//! - [`study_page`]: a study; [`gate_page`]: the result of a gate. A world registers the page of its runs
+//!   ([`register`]), made of [`page`], [`charts`] and [`figures`].
 //! - [`read_report`]: the page of any directory of results; [`write_page`] writes it to a file.
 
 #![cfg_attr(
@@ -39,12 +40,12 @@ pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
 
 use self::figures::run_page::run_page;
-pub use self::worlds::{BudgetReport, OtherReport, WorldReport, register, register_other};
+pub use self::worlds::{BudgetPlan, BudgetReport, OtherReport, WorldReport, register, register_other};
 
 use files::{AtomicFile, Checksums, Failure, ReplaceableFile, refuse_unfinished};
 use run::{AnyJudgement, IncompleteRun, world_of_run};
 
-use self::worlds::world_report;
+use self::worlds::{world_report, worlds_with_budget};
 
 /// Returns the report of a directory of results, with the error budget that is stored there.
 ///
@@ -80,8 +81,11 @@ fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Resul
 /// A [`Failure`] for a directory that is not a run, or a run of a world without an error budget.
 pub fn budget_of(directory: &Path) -> Result<BudgetReport, Failure> {
     let no_budget = || {
-        let message = "--budget applies only to runs of a world whose stages can be replaced";
-        Failure::Usage(format!("{message}: {} is not one", directory.display()))
+        let worlds = worlds_with_budget().join(" and ");
+        Failure::Usage(format!(
+            "--budget applies only to runs of {worlds}: {} is not one",
+            directory.display()
+        ))
     };
     if !matches!(ResultKind::from_directory(directory)?, ResultKind::Run) {
         return Err(no_budget());

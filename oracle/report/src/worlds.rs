@@ -29,8 +29,8 @@ pub struct WorldReport {
 /// place of the stage's result.
 #[derive(Clone, Copy)]
 pub struct BudgetReport {
-    /// Returns the frames of a run directory and the stages that can be replaced in it.
-    pub stages: fn(&Path) -> Result<(Range<u64>, Vec<Stage>), Failure>,
+    /// Returns what can be replaced in a run directory.
+    pub plan: fn(&Path) -> Result<BudgetPlan, Failure>,
     /// Makes the page of a run directory with its error budget, from the directories of the runs with a
     /// replaced stage.
     pub page: fn(&Path, &[PathBuf]) -> Result<Page, Failure>,
@@ -63,6 +63,15 @@ pub(crate) fn other_reports() -> Vec<OtherReport> {
     OTHERS.read().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
+/// Frames of a run and the stages of its pipeline whose result can be replaced by the truth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BudgetPlan {
+    /// Frames.
+    pub frames: Range<u64>,
+    /// Stages, in the order of the pipeline.
+    pub stages: Vec<Stage>,
+}
+
 /// Registered reports, in order.
 static REPORTS: RwLock<Vec<WorldReport>> = RwLock::new(Vec::new());
 
@@ -73,6 +82,12 @@ pub fn register(report: WorldReport) {
     if registered.iter().all(|known| known.code != report.code) {
         registered.push(report);
     }
+}
+
+/// Returns the codes of the worlds whose runs have an error budget.
+pub(crate) fn worlds_with_budget() -> Vec<&'static str> {
+    let registered = REPORTS.read().unwrap_or_else(PoisonError::into_inner);
+    registered.iter().filter(|report| report.budget.is_some()).map(|report| report.code).collect()
 }
 
 /// Returns the world-specific parts of a report, by the code of the world; `None` for a world without any.

@@ -3,12 +3,12 @@
 use contract::bounds::{self, require};
 use contract::{Camera, OutOfRange};
 use schemars::JsonSchema;
+use sensor::television::{TelevisionConfig, can_be_written};
 use serde::{Deserialize, Serialize};
+use truth::approach::ApproachConfig;
+use truth::clock::parse_utc_field;
 
 use super::lighting::LightingConfig;
-use crate::television::{TelevisionConfig, can_be_written};
-use crate::truth::approach::ApproachConfig;
-use crate::truth::clock::parse_utc_field;
 
 /// Maximum length of a camera name, characters.
 const MAX_NAME: usize = 16;

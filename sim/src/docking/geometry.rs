@@ -5,14 +5,14 @@ use std::f64::consts::PI;
 use contract::docking::{Pose, TargetModel};
 use contract::{Camera, Direction, PixelPoint};
 use nalgebra::Vector3;
+use optics::Projection;
+use scene::docking::{DockingScene, Floodlight, Lighting, Sun};
+use sensor::television::SunImage;
+use truth::SimError;
+use truth::approach::target_from_camera;
 
 use super::glint::{GlintConfig, GlintImage};
 use super::occlusion::{NearbyOccluders, Occluders, Region};
-use crate::SimError;
-use crate::optics::Projection;
-use crate::scene::docking::{DockingScene, Floodlight, Lighting, Sun};
-use crate::television::SunImage;
-use crate::truth::approach::target_from_camera;
 
 /// Angular radius of the Sun at 1 au, rad (959.63″, Auwers 1891, as in the Astronomical Almanac).
 const SUN_RADIUS_RAD: f64 = 959.63 / 3600.0 * PI / 180.0;

@@ -6,10 +6,9 @@ use contract::bounds::require;
 use contract::docking::Lines;
 use contract::{OutOfRange, PixelPoint};
 use nalgebra::Vector3;
+use scene::docking::Sun;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::scene::docking::Sun;
 
 /// Shiny fitting too small to be resolved. Seen from the distance D, its signal is (irradiance) ×
 /// `strength_m2` × exp(−δ²/2w²)/D², with δ the angle from its normal to the bisector of the directions to Sun

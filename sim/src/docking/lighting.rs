@@ -4,12 +4,12 @@ use contract::OutOfRange;
 use contract::bounds::{self, require};
 use contract::docking::Pose;
 use nalgebra::{Rotation3, Unit, Vector3};
+use scene::docking::{Facet, Floodlight, Lighting, Part, Sun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use truth::approach::target_from_camera;
 
 use super::glint::GlintConfig;
-use crate::scene::docking::{Facet, Floodlight, Lighting, Part, Sun};
-use crate::truth::approach::target_from_camera;
 
 /// Maximum distance of a shade's corners from its plane, m.
 const FLATNESS_M: f64 = 1e-6;

@@ -17,4 +17,4 @@ pub use lighting::{FloodlightConfig, LightingConfig, ShadeConfig, SunConfig};
 pub use simulator::{DockingSimulator, DockingWorkspace, FieldExposure, FieldState};
 pub use truth::FieldTruth;
 
-pub use crate::television::VideoField;
+pub use sensor::television::VideoField;

@@ -2,8 +2,7 @@
 //! Sun.
 
 use nalgebra::Vector3;
-
-use crate::scene::docking::{Facet, Part};
+use scene::docking::{Facet, Part};
 
 /// Minimum distance at which a facet can hide a point, m: a point on a surface is not hidden by that surface.
 const CLEARANCE_M: f64 = 1e-6;

@@ -1,27 +1,26 @@
 //! Docking simulation, checked and prepared, and the computation of a field.
 
-use draws::Seed;
 use std::path::Path;
 
 use config::{exact_toml, regular_file};
 use contract::OutOfRange;
 use contract::bounds::require;
 use contract::docking::{Digitiser, DockingSetup, FieldTelemetry, Lines, TargetModel};
+use draws::Seed;
 use hifitime::{Duration, Epoch};
+use optics::ImageBlur;
+use render::vector::{Drawer, RadianceImage};
+use scene::docking::{DockingScene, Lighting, TargetFile};
+use sensor::television::{BIT_DEPTH, Caption, FieldLabel, Television, TelevisionConfig, VideoField};
+use truth::SimError;
+use truth::approach::{Approach, ApproachState};
+use truth::clock::{format_utc, parse_utc_field};
 
-use super::DockingSimulation;
 use super::config::CameraConfig;
 use super::geometry::{Eye, TargetGeometry};
-use super::glint;
 use super::lighting::LightingConfig;
 use super::truth::FieldTruth;
-use crate::SimError;
-use crate::optics::ImageBlur;
-use crate::scene::docking::{DockingScene, Lighting, TargetFile};
-use crate::television::{BIT_DEPTH, Caption, FieldLabel, Television, TelevisionConfig, VideoField};
-use crate::truth::approach::{Approach, ApproachState};
-use crate::truth::clock::{format_utc, parse_utc_field};
-use crate::vector::{Drawer, RadianceImage};
+use super::{DockingSimulation, glint};
 
 /// Maximum size of a target file, bytes.
 const MAX_TARGET_BYTES: u64 = 4 << 20;

@@ -4,9 +4,9 @@ use contract::PixelPoint;
 use contract::docking::{Lines, Pose};
 use hifitime::Epoch;
 use nalgebra::Vector3;
+use sensor::television::VideoTruth;
 
 use super::GlintImage;
-use crate::television::VideoTruth;
 
 /// Truth of one field, at the time of the field; one row of a truth table. Coordinates are pixels of the
 /// camera, also for a field; the frames are those of [`Pose`].

@@ -1,5 +1,6 @@
 //! Detector effects, measured from outside: in digital numbers and in the truth table.
 
+use boresight_sim::scene::TargetConfig;
 use boresight_sim::sensor::{
     CosmicRayConfig, ExposureInterval, FixedPatternConfig, FlatSamplers, HotPixelConfig, LineNoiseConfig,
     Sensor, SensorConfig, SouthAtlanticConfig, TelegraphConfig,
@@ -268,7 +269,7 @@ fn with_all_effects_the_table_holds_the_electrons_of_each_object() {
     let mut with = defective(still());
     with.sensor.frame_transfer_s = 0.0;
     let mut without = with.clone();
-    without.target = boresight_sim::scene::TargetConfig::LambertSphere { radius_m: 0.1, albedo: 0.0 };
+    without.target = TargetConfig::LambertSphere { radius_m: 0.1, albedo: 0.0 };
     let sum = |simulation: &Simulation| {
         let simulator = simulator(simulation);
         let mut camera = simulator.camera().unwrap();

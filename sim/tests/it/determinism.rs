@@ -1,6 +1,7 @@
 //! A scenario produces the same bits on every machine, in any order, on any thread, and with any other
 //! effects switched on or off.
 
+use boresight_sim::scene::TargetConfig;
 use boresight_sim::sensor::Switch;
 use boresight_sim::truth::{ControlConfig, FrameTruth, KnowledgeConfig, ObjectKind, ObjectTruth};
 use boresight_sim::{Exposure, Simulation, Simulator};
@@ -201,7 +202,7 @@ fn without_hot_pixels_no_other_pixel_and_no_other_number_changes() {
 #[test]
 fn without_the_target_only_the_pixels_under_it_change() {
     let (with, mut without) = (still(), still());
-    without.target = boresight_sim::scene::TargetConfig::LambertSphere { radius_m: 0.1, albedo: 0.0 };
+    without.target = TargetConfig::LambertSphere { radius_m: 0.1, albedo: 0.0 };
     let (with, without) = (one(&with, 5), one(&without, 5));
     let target = with.objects[0].clone();
     assert_eq!((target.kind, without.objects[0].kind), (ObjectKind::Target, ObjectKind::Star));

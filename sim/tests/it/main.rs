@@ -24,6 +24,7 @@ mod interlace;
 mod moon_in_field;
 mod pixel_distribution;
 mod planets;
+mod registers;
 mod sparse;
 mod switching;
 mod target_body;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use config::toml_file;
 use files::{AtomicFile, Failure, FileError, ReplaceableFile, RunDirectory};
-use report::budget_of;
+use report::{BudgetPlan, budget_of};
 use run::pipeline_choice::PipelineChoice;
 use run::{Expectation, FrameJobs, Options, ScenarioSource};
 use scenario::Stage;
@@ -18,7 +18,7 @@ use crate::command::scratch_directory::ScratchDirectory;
 /// `run.toml` and `score.json` are kept in `budget/STAGE`: the frames are those of the run, whose truth is
 /// already stored.
 pub(super) fn run_budget(directory: &Path, output: &Output) -> Result<Vec<PathBuf>, Failure> {
-    let (frames, stages) = (budget_of(directory)?.stages)(directory)?;
+    let BudgetPlan { frames, stages } = (budget_of(directory)?.plan)(directory)?;
     let source = ScenarioSource::read(&directory.join("run.toml").to_string_lossy())?;
     let mut kept = Vec::new();
     for stage in stages {

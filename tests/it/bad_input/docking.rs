@@ -35,7 +35,7 @@ fn a_world_that_is_unknown_gets_the_nearest() {
     );
     for command in ["scenario schema", "scenario new mine.toml"] {
         let words = format!("{command} --world dokcing");
-        check_refused(&Bench::new(), &words, &["--world", "`dokcing`", "did you mean `docking`?"]);
+        check_refused(&Bench::new(), &words, &["--world", "'dokcing'", "a similar value exists: 'docking'"]);
     }
 }
 

@@ -127,11 +127,11 @@ impl<const N: usize> ColumnNames<N> {
 /// Type of the cells of a field.
 type FieldCell<'a, F, const N: usize> = <<F as Field<N>>::Value as Value<N>>::Cell<'a>;
 
-/// Declares a table, for a new struct or for an existing one: `for` one of this crate, `struct ROW for` one of
-/// another crate, which ROW contains. Each field has its meaning as a doc
-/// comment, its type, and the names of its columns if they differ from the name of the field. `csv` makes the
-/// struct a row of a CSV, `parquet(FIELD)` a row of a Parquet file that is ordered by the field FIELD, the
-/// number of the frame or field.
+/// Declares a table, for a new struct or for an existing one: `for` one of this crate, `struct ROW for` one
+/// of another crate, which ROW contains. Each field has its meaning as a doc comment, its type, and the names
+/// of its columns if they differ from the name of the field. `csv` makes the struct a row of a CSV,
+/// `parquet(FIELD)` a row of a Parquet file that is ordered by the field FIELD, the number of the frame or
+/// field.
 #[macro_export]
 macro_rules! table {
     (@names $field:ident) => {

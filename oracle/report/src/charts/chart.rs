@@ -219,7 +219,7 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// Creates a value with these parts.
+    /// Creates a panel with a title and its traces.
     pub fn new(title: impl Into<String>, traces: Vec<Trace>) -> Self {
         Self { title: title.into(), traces, range: None, log: None }
     }

@@ -434,7 +434,7 @@ impl Axis {
 pub struct Layout(Attributes);
 
 impl Layout {
-    /// Creates a value with these parts.
+    /// Creates a layout with these axes.
     pub fn new(x: Axis, y: Axis) -> Self {
         Self::default().x_axis(x).y_axis("y", y)
     }

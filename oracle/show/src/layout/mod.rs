@@ -8,9 +8,8 @@ use contract::Window;
 use serde::Serialize;
 
 use crate::canvas::colour::{BACKGROUND, GREEN, GREY, ORANGE, RED, Rgb, SLATE, WHITE, YELLOW};
-use crate::canvas::label;
 use crate::canvas::text::Font;
-use crate::canvas::{Area, CLOSE, Canvas};
+use crate::canvas::{Area, CLOSE, Canvas, label};
 use crate::layout::scale_bar::ScaleBar;
 use crate::layout::view::Placement;
 use crate::panel::class::Class;

@@ -1,11 +1,11 @@
 use contract::docking::Pose;
 use contract::{Camera, PixelPoint};
 use nalgebra::Vector3;
+use sensor::television::{Interlace, VideoNoiseConfig};
+use truth::approach::{ApproachConfig, ConstantVelocityConfig};
 
 use super::*;
 use crate::docking::{FloodlightConfig, GlintConfig, LensConfig, ShadeConfig, SunConfig};
-use crate::television::{Interlace, VideoNoiseConfig};
-use crate::truth::approach::{ApproachConfig, ConstantVelocityConfig};
 
 const FOCAL_PX: f64 = 1000.0;
 
@@ -228,7 +228,7 @@ fn the_sun_in_the_field_is_reported_unless_the_station_hides_it() {
             lighting: LightingConfig { sun: sun(azimuth, elevation), ..LightingConfig::default() },
             ..simulation()
         };
-        simulation.television.sun_glare = Some(crate::television::SunGlareConfig::default());
+        simulation.television.sun_glare = Some(sensor::television::SunGlareConfig::default());
         exposed(&simulation, 0)
     };
     // The Sun is behind the station, 7° to the side and 5° above the axis; from 1500 m the station extends 2°
@@ -274,7 +274,7 @@ fn a_glint_is_drawn_at_its_true_position_and_blooms() {
     let at = |exposure: &FieldExposure, dx: usize| exposure.video.signal()[115 * 384 + 220 + dx];
     assert!(at(&plain, 0) < 0.1 && at(&shining, 0) > 1.2);
     assert_eq!(at(&plain, 12), at(&shining, 12));
-    let blooming = with(vec![glint], Some(crate::television::BloomConfig::default()));
+    let blooming = with(vec![glint], Some(sensor::television::BloomConfig::default()));
     assert!(at(&blooming, 12) > at(&shining, 12));
 }
 

@@ -80,9 +80,9 @@ pub struct FieldSource(Box<dyn Iterator<Item = Result<(Field, FieldTelemetry), F
 impl FieldSource {
     /// Opens a sequence:
     ///
-    /// - a directory with a `telemetry.csv` ([`crate::rows::FieldRow`]): the fields that the table lists, with
-    ///   their images or, if the table names none, those of `fields.avi` or `fields.y4m`; `options` do not
-    ///   apply;
+    /// - a directory with a `telemetry.csv` ([`crate::rows::FieldRow`]): the fields that the table lists,
+    ///   with their images or, if the table names none, those of `fields.avi` or `fields.y4m`; `options` do
+    ///   not apply;
     /// - another directory: its images `*.png`, as whole frames in the order of their names;
     /// - `-`: standard input, Y4M or, with `options.raw`, raw frames. Works for live input: a field is
     ///   returned as soon as the last byte of its frame has arrived, and a pipe that is closed between two

@@ -1,5 +1,5 @@
-//! The docking world as its users see it: the printed table, annotated pictures, the report and the page of the
-//! monitor. [`register`] makes the world and its views known to all commands.
+//! The docking world as its users see it: the printed table, annotated pictures, the report and the page of
+//! the monitor. [`register`] makes the world and its views known to all commands.
 
 #![cfg_attr(
     not(test),

@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::classes::{CIRCLE, CROSS, DOCKING_UNIT, REJECTED_MARK, STATION, TRUE_CENTRE, USED_MARK};
 use contract::docking::{
     Digitiser, DockingOutcome, DockingSetup, DockingSolution, Field, Lines, Pose, PoseEstimate,
 };
@@ -17,11 +16,11 @@ use files::{Failure, format_utc};
 use run::ScenarioSource;
 use scenario::run_file::RunFile;
 use score::UnitVerdict;
-use show::{
-    Class, Mark, Panel, Pixels, PlateScale, Reduction, Shape, Stretch, Table, Tone, Verdict as Words,
-};
+use show::{Mark, Panel, Pixels, PlateScale, Reduction, Shape, Stretch, Table, Tone, Verdict as Words};
 use sim::docking::FieldTruth;
 use view::{AnnotatedFrame, Bounds, PixelSource, Source, display_name, not_stored, rows_of, time_words};
+
+use crate::classes::{CIRCLE, CROSS, DOCKING_UNIT, REJECTED_MARK, STATION, TRUE_CENTRE, USED_MARK};
 
 /// Videos of a directory whose telemetry lists no images.
 const VIDEOS: [&str; 2] = ["fields.avi", "fields.y4m"];

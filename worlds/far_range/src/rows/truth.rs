@@ -18,8 +18,8 @@ table! {
         frame: u64,
         /// name of the frame's group (day, portion)
         group: String,
-        /// middle of the exposure; for an interlaced frame the middle between its fields, to which the whole row
-        /// refers
+        /// middle of the exposure; for an interlaced frame the middle between its fields, to which the whole
+        /// row refers
         time: Epoch = ["time_utc"],
         /// exposure time, s
         exposure_s: f64,
@@ -44,8 +44,8 @@ table! {
         shadow: Shadow,
         /// fraction of the Sun's disk seen from the target, 0 to 1
         sunlit_fraction: f64,
-        /// photoelectrons per second and pixel from zodiacal light, faint stars and stray light: mean over the
-        /// detector, without the sensor's constant
+        /// photoelectrons per second and pixel from zodiacal light, faint stars and stray light: mean over
+        /// the detector, without the sensor's constant
         background_e_per_s: f64,
         /// electrons that the frame transfer adds to a pixel in this exposure: mean over the detector, for a
         /// uniform response; 0 without `frame_transfer_s`
@@ -68,14 +68,15 @@ table! {
         frame: u64,
         /// `target`, `star`, `planet`, `moon`, `hot_pixel` or `cosmic_ray`
         kind: ObjectKind,
-        /// 0 for the target; catalogue number for a star; number from the Sun outwards (1 to 8) for a planet; 0
-        /// for the Moon; row × columns + column for a hot pixel; number in the frame for a cosmic-ray hit
+        /// 0 for the target; catalogue number for a star; number from the Sun outwards (1 to 8) for a planet;
+        /// 0 for the Moon; row × columns + column for a hot pixel; number in the frame for a cosmic-ray hit
         id: u32,
         /// flux-weighted centre of the object's noise-free image; may be off the detector; for an interlaced
         /// frame the middle between the centres in its fields
         position: PixelPoint = without_dictionary(["x_px", "y_px"]),
         /// astrometric direction: proper motion and parallax applied, no aberration, no deflection; for the
-        /// target the line of sight, for the Moon the centre of its disk; null for a hot pixel or cosmic-ray hit
+        /// target the line of sight, for the Moon the centre of its disk; null for a hot pixel or cosmic-ray
+        /// hit
         astrometric: Option<Direction<Icrs>> = without_dictionary(["ra_deg", "dec_deg"]),
         /// V magnitude; null for a hot pixel or cosmic-ray hit
         magnitude: Option<f64>,
@@ -83,15 +84,15 @@ table! {
         electrons: f64 = without_dictionary(["electrons"]),
         /// expected electrons in the brightest pixel of the object in this exposure, before saturation
         peak_electrons: f64 = without_dictionary(["peak_electrons"]),
-        /// √(Σ s²/(s + b + σ²)) over the object's pixels, the signal-to-noise ratio of a matched filter: s the
-        /// object's electrons, b sky and dark current, σ² the variance of the readout: noise of pixel, row and
-        /// column, and gain²/12 of the converter
+        /// √(Σ s²/(s + b + σ²)) over the object's pixels, the signal-to-noise ratio of a matched filter: s
+        /// the object's electrons, b sky and dark current, σ² the variance of the readout: noise of pixel,
+        /// row and column, and gain²/12 of the converter
         snr: f64 = without_dictionary(["snr"]),
-        /// distance from the centre to the farthest pixel centre where s exceeds √(b + σ²), before blooming; at
-        /// least 0.5
+        /// distance from the centre to the farthest pixel centre where s exceeds √(b + σ²), before blooming;
+        /// at least 0.5
         radius_px: f64,
-        /// additional distance beyond `radius_px` along the columns, up or down, whichever is larger, at which s
-        /// exceeds √(b + σ²) after blooming of the object itself; 0 without blooming
+        /// additional distance beyond `radius_px` along the columns, up or down, whichever is larger, at
+        /// which s exceeds √(b + σ²) after blooming of the object itself; 0 without blooming
         bloom_px: f64,
         /// fraction of the object's electrons outside the transmitted regions, 0 to 1; 0 without regions
         cut: f64,

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::classes::{COSMIC_RAY, HOT_PIXEL, PLANET, STAR};
 use contract::{Camera, Cluster, Frame, Outcome, PixelPoint, Telemetry, Window};
 use far_range::FarRangeScenario;
 use far_range::rows::{
@@ -20,6 +19,8 @@ use sim::Simulator;
 use sim::optics::Projection;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility};
 use view::{AnnotatedFrame, Bounds, PixelSource, Source, display_name, not_stored, rows_of, time_words};
+
+use crate::classes::{COSMIC_RAY, HOT_PIXEL, PLANET, STAR};
 
 /// Distance to the target within which a region or a measurement is included in the close-up, px.
 const NEAR_PX: f64 = 40.0;

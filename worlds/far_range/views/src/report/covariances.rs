@@ -66,6 +66,7 @@ mod tests {
 
     #[test]
     fn a_figure_has_its_interval_and_none_without_a_value() {
+        crate::register();
         let nees = Figure::mean(&[vec![0.5, 1.5, 1.0, 2.0]]);
         let text = figure_text(names::CENTROID_NEES_MEAN, Some(&nees));
         assert!(text.starts_with("1.250 (") && text.ends_with(')'), "{text}");

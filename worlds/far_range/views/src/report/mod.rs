@@ -15,7 +15,6 @@ mod sky_map;
 mod thresholds;
 mod visibility;
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
@@ -32,7 +31,7 @@ use ::report::figures::{figure_table, least_to_most, percent_cell, shown_percent
 use ::report::page::data_table::DataTable;
 use ::report::page::picture::RenderedPictures;
 use ::report::page::{Page, Section};
-use ::report::{BudgetReport, OtherReport, WorldReport};
+use ::report::{BudgetPlan, BudgetReport, OtherReport, WorldReport};
 use ::run::{AnyJudgement, World};
 use far_range::scoring::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore};
 use far_range::{FarRangeMission, is_argon};
@@ -58,12 +57,12 @@ pub(crate) fn world_report() -> WorldReport {
         code: FarRangeMission::CODE,
         page,
         pictures,
-        budget: Some(BudgetReport { stages, page: page_with_budget }),
+        budget: Some(BudgetReport { plan, page: page_with_budget }),
     }
 }
 
 /// Returns the frames of a run and the stages of its pipeline whose result can be replaced by the truth.
-fn stages(directory: &Path) -> Result<(Range<u64>, Vec<Stage>), Failure> {
+fn plan(directory: &Path) -> Result<BudgetPlan, Failure> {
     let run = FarRangeRun::read(directory)?;
     if run.run_file.inject.is_some() {
         return Err(Failure::Usage(
@@ -79,7 +78,8 @@ fn stages(directory: &Path) -> Result<(Range<u64>, Vec<Stage>), Failure> {
     let has_regions = run.run_file.scenario.roi.is_some();
     // A camera without regions transmits whole images anyway.
     let can_be_replaced = |stage: &Stage| *stage != Stage::Roi || has_regions;
-    Ok((first.frame..last.frame + 1, Stage::ALL.into_iter().filter(can_be_replaced).collect()))
+    let stages = Stage::ALL.into_iter().filter(can_be_replaced).collect();
+    Ok(BudgetPlan { frames: first.frame..last.frame + 1, stages })
 }
 
 /// Returns the page of a run with its error budget; `budget` lists directories of runs on the same frames,

@@ -1,0 +1,62 @@
+//! Drawing of the image of one source: its body, moved along its trail, through the point-spread function.
+
+use contract::PixelPoint;
+use optics::{self, ImagePoint, Psf, Stamp};
+use scene::Source;
+
+/// Point-spread function with the buffers that sources reuse.
+#[derive(Debug)]
+pub struct Painter {
+    psf: Psf,
+    /// Points of the body in the middle of the exposure.
+    body: Vec<ImagePoint>,
+    trail: Vec<ImagePoint>,
+    points: Vec<ImagePoint>,
+}
+
+impl Painter {
+    /// Creates a painter with a point-spread function.
+    pub fn new(psf: Psf) -> Self {
+        Self { psf, body: Vec::new(), trail: Vec::new(), points: Vec::new() }
+    }
+
+    /// Point-spread function of the painter.
+    pub fn psf(&self) -> &Psf {
+        &self.psf
+    }
+
+    /// Draws into `stamp` the image of a source that gives `electrons` to a detector of (columns, rows).
+    /// `resolve` appends the points of its body, with shares adding up to 1; it receives the number of points
+    /// of the trail, at each of which the whole body is drawn.
+    pub fn paint(
+        &mut self,
+        source: &Source,
+        electrons: f64,
+        resolve: impl FnOnce(usize, &mut Vec<ImagePoint>),
+        detector: (usize, usize),
+        stamp: &mut Stamp,
+    ) {
+        let Self { psf, body, trail, points } = self;
+        let [begin, end] = source.ends;
+        trail.clear();
+        optics::trail(begin, source.position, end, trail);
+        body.clear();
+        resolve(trail.len(), body);
+        carry_along(body, source.position, trail, points);
+        psf.stamp_extended(points, electrons, Psf::FLOOR_E, detector, stamp);
+    }
+}
+
+/// Computes the points of an image that moves as a whole: each point of the `body` along the `trail` of
+/// `centre`.
+fn carry_along(body: &[ImagePoint], centre: PixelPoint, trail: &[ImagePoint], points: &mut Vec<ImagePoint>) {
+    points.clear();
+    for along in trail {
+        points.extend(body.iter().map(|point| {
+            // Measured from the trail outwards: a point at the centre is exactly on the trail.
+            let (dx, dy) = (point.position.x - centre.x, point.position.y - centre.y);
+            let position = PixelPoint::new(along.position.x + dx, along.position.y + dy);
+            ImagePoint { position, share: along.share * point.share }
+        }));
+    }
+}

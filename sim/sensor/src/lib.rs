@@ -1,0 +1,72 @@
+//! The sensor: expected photoelectrons → charge → digital numbers.
+//!
+//! Each stage is a separate type: [`render::draw::ExpectedImage`] holds photoelectrons, [`Charge`] adds the
+//! electrons that the detector itself collects (dark current, hot pixels) and each pixel's response,
+//! [`RawImage`] holds digital numbers. A charge can be obtained only from an image, and digital numbers only
+//! from a charge:
+//! ```
+//! use boresight_render::draw::ExpectedImage;
+//! use draws::Seed;
+//! use boresight_sensor::{ExposureInterval, FlatSamplers, RawImage, Sensor};
+//! fn right(sensor: &Sensor, image: &mut ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
+//!     let seed = Seed { seed: 1, case: 0 };
+//!     let charge = sensor.collect(image, &ExposureInterval { seed, middle_s: 0.0, exposure_s: 0.5 });
+//!     let _ = sensor.read_out(&charge, &seed, 0, samplers, raw);
+//! }
+//! ```
+//! A readout of photoelectrons does not compile:
+//! ```compile_fail,E0308
+//! use boresight_render::draw::ExpectedImage;
+//! use draws::Seed;
+//! use boresight_sensor::{FlatSamplers, RawImage, Sensor};
+//! fn wrong(sensor: &Sensor, image: &ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
+//!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, samplers, raw);
+//! }
+//! ```
+
+mod alias;
+mod blooming;
+mod charge;
+mod config;
+mod cosmic_rays;
+mod detector;
+mod exceedance;
+mod fixed_pattern;
+mod flat_samplers;
+mod hot_pixels;
+mod interlace;
+mod mean_tables;
+pub mod onboard;
+mod pixel_distribution;
+mod pixels;
+mod poisson;
+mod poisson_digits;
+mod raw_image;
+mod readout;
+mod sparse;
+mod sparse_image;
+mod spill;
+mod telegraph;
+pub mod television;
+mod ziggurat;
+
+pub use charge::{Charge, ExposureInterval};
+pub use config::{
+    HotPixelConfig, HotPixelDistribution, LineNoiseConfig, NoiseConfig, SensorConfig, TemperatureConfig,
+};
+pub use cosmic_rays::{CosmicRayConfig, SouthAtlanticConfig};
+pub use cosmic_rays::{CosmicRayHit, CosmicRays};
+pub use detector::Sensor;
+pub use fixed_pattern::{DarkCurrentDistribution, FixedPatternConfig};
+pub use flat_samplers::FlatSamplers;
+pub use hot_pixels::HotPixel;
+pub use interlace::{InterlaceConfig, RowParity};
+pub use poisson::poisson;
+pub use raw_image::RawImage;
+pub use sparse::FrameCharge;
+pub use sparse_image::SparseImage;
+pub use spill::BloomingConfig;
+pub use telegraph::TelegraphConfig;
+pub(crate) use ziggurat::Ziggurat;
+
+pub use truth::Switch;

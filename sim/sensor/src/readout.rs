@@ -1,0 +1,322 @@
+//! Readout: from expected photoelectrons to digital numbers.
+
+use contract::OutOfRange;
+use draws::{Effect, Seed, normal};
+use render::draw::ExpectedImage;
+use truth::SimError;
+
+use super::blooming::Overflow;
+use super::charge::Charge;
+use super::detector::Sensor;
+use super::flat_samplers::FlatSamplers;
+use super::pixels::LineOffsets;
+use super::raw_image::RawImage;
+
+impl Sensor {
+    /// Draws the digital number of every pixel.
+    ///
+    /// Each row has one stream, at the address of its row number, from which each pixel takes 64 bits, or 32
+    /// with a high flat level, or 192 if rows and columns have offsets (or if a high level is not flat).
+    /// These bits give the number of nearly every pixel. A pixel with a large signal, or whose bits are not
+    /// sufficient, is drawn at its own address, rows + index, so the content of one pixel never changes the
+    /// draw of another.
+    ///
+    /// # Errors
+    /// [`SimError::OutOfRange`] if the image does not have the sensor's size.
+    pub fn read_out(
+        &self,
+        charge: &Charge<'_>,
+        seed: &Seed,
+        frame: u64,
+        samplers: &mut FlatSamplers,
+        raw: &mut RawImage,
+    ) -> Result<(), SimError> {
+        let expected = charge.expected();
+        self.check_size(expected)?;
+        (raw.columns, raw.rows, raw.bit_depth) = (self.columns, self.rows, self.config().bit_depth);
+        raw.dn.resize(self.columns * self.rows, 0);
+        let streams = seed.streams(frame, Effect::PixelNoise);
+        let offsets = self.line_offsets(seed, frame);
+        match &offsets {
+            None if self.has_tables_for(expected) => {
+                self.draw_with_mean_tables(expected, &streams, samplers, raw)
+            }
+            None if !expected.has_field() => self.draw_flat(expected, &streams, samplers, raw),
+            _ => self.draw_in_parts(expected, offsets.as_ref(), &streams, samplers, raw),
+        }
+        if let Some(blooming) = &self.config().blooming {
+            let overflow = Overflow { blooming, expected, offsets: offsets.as_ref(), streams: &streams };
+            self.bloom(&overflow, |index, dn| raw.dn[index] = dn);
+        }
+        Ok(())
+    }
+
+    /// Rejects an image that does not have the sensor's size.
+    pub(super) fn check_size(&self, expected: &ExpectedImage) -> Result<(), OutOfRange> {
+        if expected.size() == (self.columns, self.rows) {
+            return Ok(());
+        }
+        Err(OutOfRange::new(
+            "size of the expected image",
+            format!("{:?}", expected.size()),
+            "the columns and rows of the sensor",
+        ))
+    }
+
+    /// Offsets that the readout adds to rows and columns: noise of this frame, and fixed offsets. `None` if
+    /// there are neither.
+    fn line_offsets(&self, seed: &Seed, frame: u64) -> Option<LineOffsets> {
+        let (row_e, column_e) = self.line_noise_e();
+        let fixed_e = &self.pattern().column_offsets_e;
+        let noise = |sigma_e: f64, effect: Effect, place: usize| {
+            if sigma_e > 0.0 { sigma_e * normal(&mut seed.stream(frame, effect, place as u64)) } else { 0.0 }
+        };
+        self.has_line_offsets().then(|| LineOffsets {
+            rows: (0..self.rows).map(|y| noise(row_e, Effect::RowNoise, y)).collect(),
+            columns: (0..self.columns)
+                .map(|x| noise(column_e, Effect::ColumnNoise, x) + fixed_e.get(x).copied().unwrap_or(0.0))
+                .collect(),
+        })
+    }
+
+    /// Standard deviations of the simulated noise of rows and of columns, electrons.
+    fn line_noise_e(&self) -> (f64, f64) {
+        let read = self.config().noise.read;
+        (read.apply(self.config().line_noise.row_e), read.apply(self.config().line_noise.column_e))
+    }
+
+    /// Returns true if the readout adds offsets to rows or columns.
+    pub(super) fn has_line_offsets(&self) -> bool {
+        let (row_e, column_e) = self.line_noise_e();
+        row_e > 0.0 || column_e > 0.0 || !self.pattern().column_offsets_e.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::config::tests::{interval, twelve_bit};
+    use super::super::{BloomingConfig, LineNoiseConfig, SensorConfig};
+    use super::*;
+    use contract::PixelPoint;
+    use optics::{Psf, PsfConfig, Stamp};
+    use sha2::{Digest, Sha256};
+    use truth::Switch;
+
+    const SEED: Seed = Seed { seed: 42, case: 0 };
+
+    /// Returns a frame of 65 × 48 pixels with stars of the given electrons along a diagonal.
+    fn frame(config: &SensorConfig, number: u64, stars_e: &[f64]) -> RawImage {
+        let sensor = Sensor::new(config, 65, 48).unwrap();
+        let mut psf = Psf::new(&PsfConfig::Gaussian { sigma_px: 0.8 }).unwrap();
+        let mut image = sensor.new_expected();
+        image.clear(sensor.sky_electrons(0.5));
+        let mut stamp = Stamp::new();
+        for (i, electrons) in stars_e.iter().enumerate() {
+            let centre = PixelPoint::new(8.3 + 12.0 * i as f64, 6.8 + 10.0 * i as f64);
+            psf.stamp(centre, *electrons, Psf::FLOOR_E, image.size(), &mut stamp);
+            image.add(&stamp);
+        }
+        let mut raw = sensor.new_raw();
+        let charge = sensor.collect(&mut image, &interval(0.5));
+        sensor.read_out(&charge, &SEED, number, &mut FlatSamplers::new(), &mut raw).unwrap();
+        raw
+    }
+
+    fn hash(raw: &RawImage) -> String {
+        let bytes: Vec<u8> = raw.dn.iter().flat_map(|dn| dn.to_le_bytes()).collect();
+        Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// The pixel values are frozen: they must be equal on every machine, and a change here changes every
+    /// result and must be recorded in CHANGELOG.md.
+    #[test]
+    fn the_pixels_of_a_small_frame_are_frozen() {
+        let raw = frame(&twelve_bit(), 7, &[500.0, 5e3, 5e4, 5e5]);
+        assert_eq!(hash(&raw), GOLDEN);
+    }
+
+    const GOLDEN: &str = "14710d24be20b2d3f794b9804dfc42bf931c6d78db574d9da1156e822e091255";
+
+    #[test]
+    fn a_star_changes_no_pixel_but_its_own() {
+        let (without, with) = (frame(&twelve_bit(), 1, &[]), frame(&twelve_bit(), 1, &[5e3]));
+        for (index, (a, b)) in without.dn.iter().zip(&with.dn).enumerate() {
+            let distance =
+                PixelPoint::new((index % 65) as f64, (index / 65) as f64).distance(PixelPoint::new(8.3, 6.8));
+            // exp(−d²/2σ²) of 5,000 e⁻ is below the floor of 0.01 e⁻ from 4.2 px on; the corner of a pixel
+            // adds to that.
+            assert!(a == b || distance < 5.0, "{index}");
+        }
+        assert_ne!(without, with);
+    }
+
+    #[test]
+    fn hot_pixels_stay_and_their_noise_does_not() {
+        let mut config = twelve_bit();
+        config.hot_pixels.median_e_per_s = 20_000.0;
+        let sensor = Sensor::new(&config, 65, 48).unwrap();
+        let hot: Vec<usize> = sensor.hot_pixels().iter().map(|pixel| pixel.y * 65 + pixel.x).collect();
+        let frames: Vec<RawImage> = (0..20).map(|number| frame(&config, number, &[])).collect();
+        for (pixel, index) in sensor.hot_pixels().iter().zip(&hot) {
+            let expected_e = 20.0 + 0.5 * pixel.rate_e_per_s;
+            let mean_dn = frames.iter().map(|raw| f64::from(raw.dn[*index])).sum::<f64>() / 20.0;
+            let error_e = ((expected_e + 225.0) / 20.0).sqrt();
+            // Five standard errors of twenty frames, plus 3 e⁻ for the rounding of the converter.
+            assert!(
+                ((mean_dn - 50.3) * 10.0 - expected_e.min(40_000.0)).abs() < 5.0 * error_e + 3.0,
+                "{pixel:?}"
+            );
+        }
+        assert_ne!(frames[0], frames[1]);
+        config.hot_pixels.seed += 1;
+        assert_ne!(Sensor::new(&config, 65, 48).unwrap().hot_pixels(), sensor.hot_pixels());
+    }
+
+    /// Flat frames with increasing exposure: the variance grows with the mean by 1/gain (Janesick's photon
+    /// transfer).
+    #[test]
+    fn the_slope_of_variance_over_mean_is_one_over_the_gain() {
+        let config = SensorConfig {
+            gain_e_per_dn: 4.0,
+            background_e_per_s: 2000.0,
+            dark_current_e_per_s: 0.0,
+            hot_pixels: Default::default(),
+            ..twelve_bit()
+        };
+        let sensor = Sensor::new(&config, 512, 512).unwrap();
+        let (mut image, mut raw, mut samplers) =
+            (sensor.new_expected(), sensor.new_raw(), FlatSamplers::new());
+        let mut moments = |exposure_s: f64| {
+            let (mut sum, mut squares, mut n) = (0.0, 0.0, 0.0);
+            for number in 0..4 {
+                image.clear(sensor.sky_electrons(exposure_s));
+                let charge = sensor.collect(&mut image, &interval(exposure_s));
+                sensor.read_out(&charge, &SEED, number + 1000, &mut samplers, &mut raw).unwrap();
+                for dn in &raw.dn {
+                    let dn = f64::from(*dn) - 50.0;
+                    (sum, squares, n) = (sum + dn, squares + dn * dn, n + 1.0);
+                }
+            }
+            let mean = sum / n;
+            (mean, squares / n - mean * mean)
+        };
+        let ((low_mean, low_variance), (high_mean, high_variance)) = (moments(0.05), moments(4.0));
+        let slope = (high_variance - low_variance) / (high_mean - low_mean);
+        // A million pixels determine a variance to sqrt(2/n) = 0.14 %; half a percent is three and a half
+        // times that.
+        assert!((slope * 4.0 - 1.0).abs() < 0.005, "slope {slope}");
+        // At the lower end: 100 e⁻ and 15² e⁻² over 4², plus 1/12 for rounding.
+        assert!((low_variance / (325.0 / 16.0 + 1.0 / 12.0) - 1.0).abs() < 0.007, "{low_variance}");
+    }
+
+    #[test]
+    fn pixels_without_charge_spread_by_the_noise_of_the_readout() {
+        let silent = SensorConfig {
+            read_noise_e: 6.0,
+            background_e_per_s: 0.0,
+            dark_current_e_per_s: 0.0,
+            hot_pixels: Default::default(),
+            ..twelve_bit()
+        };
+        let dn = frame(&silent, 5, &[]).dn;
+        let mean = dn.iter().map(|&dn| f64::from(dn)).sum::<f64>() / dn.len() as f64;
+        let variance = dn.iter().map(|&dn| (f64::from(dn) - mean) * (f64::from(dn) - mean)).sum::<f64>();
+        let spread_e = 10.0 * (variance / dn.len() as f64).sqrt();
+        // 3120 pixels determine a standard deviation to 1.3 %; without the rounding it would be 10 % smaller.
+        let expected_e = Sensor::new(&silent, 65, 48).unwrap().readout_noise_e();
+        assert!((spread_e / expected_e - 1.0).abs() < 0.045, "{spread_e}, expected {expected_e}");
+        let lines = LineNoiseConfig { row_e: 3.0, column_e: 2.0 };
+        let noise_e =
+            Sensor::new(&SensorConfig { line_noise: lines, ..silent }, 65, 48).unwrap().readout_noise_e();
+        assert!((noise_e - (36.0 + 9.0 + 4.0 + 100.0 / 12.0_f64).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_bit_depth_reaches_its_full_scale_and_no_more() {
+        for bit_depth in 8..=16 {
+            let config = SensorConfig { bit_depth, full_well_e: 1e8, ..twelve_bit() };
+            let raw = frame(&config, 3, &[1e9]);
+            assert_eq!(raw.dn.iter().max(), Some(&config.full_scale_dn()));
+        }
+    }
+
+    #[test]
+    fn without_shot_and_read_noise_the_frame_is_the_expectation() {
+        let mut config = twelve_bit();
+        (config.noise.shot, config.noise.read) = (Switch::Off, Switch::Off);
+        config.hot_pixels.count = 0;
+        let raw = frame(&config, 3, &[]);
+        // 20 e⁻ (sky 15, dark 5) at 10 e⁻/DN over a bias of 50.3, rounded.
+        assert!(raw.dn.iter().all(|dn| *dn == 52));
+    }
+
+    fn blooming(config: SensorConfig, spill_fraction: f64) -> SensorConfig {
+        SensorConfig { blooming: Some(BloomingConfig { spill_fraction }), ..config }
+    }
+
+    #[test]
+    fn blooming_changes_nothing_but_columns_that_overflow_and_keeps_their_charge() {
+        // Without read noise and with one electron per digital number, the digital numbers are the electrons.
+        let config = SensorConfig {
+            bit_depth: 16,
+            gain_e_per_dn: 1.0,
+            bias_dn: 0.0,
+            full_well_e: 5000.0,
+            read_noise_e: 0.0,
+            ..twelve_bit()
+        };
+        let stars_e = [1e3, 1e4, 6e4];
+        let deep = SensorConfig { full_well_e: 60_000.0, ..config.clone() };
+        let (without, bloomed) = (frame(&deep, 1, &stars_e), frame(&blooming(config, 1.0), 1, &stars_e));
+        let mut changed = vec![];
+        for x in 0..65 {
+            let column =
+                |raw: &RawImage| -> Vec<u16> { raw.dn.iter().skip(x).step_by(65).copied().collect() };
+            let (before, after) = (column(&without), column(&bloomed));
+            assert!(after.iter().all(|&e| e <= 5000));
+            if before != after {
+                changed.push(x);
+                let full = after.iter().filter(|&&e| e == 5000).count();
+                let over = before.iter().filter(|&&e| e > 5000).count();
+                assert!(over > 0 && full > over);
+                // A flat pixel that receives charge is redrawn at its own address: at most as many pixels as
+                // are full, each with twice the variance of its 20 electrons.
+                let sum = |column: &[u16]| column.iter().map(|&e| f64::from(e)).sum::<f64>();
+                let tolerance = 5.0 * (2.0 * 20.0 * (full + 2) as f64).sqrt();
+                assert!((sum(&before) - sum(&after)).abs() < tolerance, "column {x}");
+            }
+        }
+        // The brightest star, at x = 32.3.
+        assert_eq!(changed, [32, 33]);
+    }
+
+    #[test]
+    fn an_overflowing_flat_frame_is_full_with_drains_and_without() {
+        let config =
+            SensorConfig { full_well_e: 10.0, gain_e_per_dn: 1.0, read_noise_e: 0.0, ..twelve_bit() };
+        // 20 e⁻ per pixel in a full well of 10: one pixel in 200 collects fewer than 10, and a neighbour
+        // fills it.
+        let raw = frame(&blooming(config.clone(), 1.0), 1, &[]);
+        assert!(raw.dn.iter().all(|&dn| dn == 60));
+        let drained = frame(&blooming(config.clone(), 0.0), 1, &[]);
+        let lacking = drained.dn.iter().filter(|&&dn| dn < 60).count() as f64 / drained.dn.len() as f64;
+        // P(N < 10) at a mean of 20 is 0.0050; 3120 pixels determine it to 0.0013.
+        assert!((lacking - 0.005).abs() < 0.005, "{lacking}");
+        assert!(drained.dn.iter().all(|&dn| dn <= 60));
+    }
+
+    #[test]
+    fn a_frame_that_does_not_overflow_is_the_same_with_blooming() {
+        let stars_e = [500.0, 5e3, 5e4];
+        assert_eq!(frame(&twelve_bit(), 4, &stars_e), frame(&blooming(twelve_bit(), 1.0), 4, &stars_e));
+    }
+
+    #[test]
+    fn an_image_of_another_size_is_refused() {
+        let sensor = Sensor::new(&twelve_bit(), 65, 48).unwrap();
+        let mut image = ExpectedImage::new(64, 48);
+        let charge = sensor.collect(&mut image, &interval(1.0));
+        let mut raw = sensor.new_raw();
+        assert!(sensor.read_out(&charge, &SEED, 0, &mut FlatSamplers::new(), &mut raw).is_err());
+    }
+}
