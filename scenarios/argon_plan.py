@@ -23,7 +23,7 @@ import math
 import sys
 from datetime import datetime, timedelta, timezone
 
-GM, RE, J2 = 398600.4415, 6378.1363, 1.0826266835e-3  # EGM96, as in sim/src/truth/orbit.rs
+GM, RE, J2 = 398600.4415, 6378.1363, 1.0826266835e-3  # EGM96, as in sim/truth/src/orbit.rs
 EPOCH = datetime(2012, 4, 23, tzinfo=timezone.utc)
 DAY = 86400.0
 

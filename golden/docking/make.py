@@ -1,6 +1,6 @@
 """Makes golden/docking/*.exr: docking scenes rendered by Mitsuba.
 
-This project's exporter (sim/src/mitsuba), which the suite mitsuba_live compares with closed forms, writes the
+This project's exporter (sim/render/src/mitsuba), which the suite mitsuba_live compares with closed forms, writes the
 scenes for Mitsuba; Mitsuba alone computes the radiance. Needs cargo, and Mitsuba 3.9.1 on the PATH or in
 BORESIGHT_MITSUBA. Takes some ten minutes of four cores.
 

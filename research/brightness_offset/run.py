@@ -10,7 +10,7 @@ from 0.1 to 0.6, in a random attitude. Nothing is measured in the Earth's shadow
 
 For elevations of the Sun above the plane of the orbit, the program prints root mean squares over the class of the
 constant part of the offset, of its first two harmonics of the revolution and of the remainder, along R and N of the
-orbit, in half the largest side or the sphere's radius, and the law that `oracle/navigate/src/knowledge.rs` states.
+orbit, in half the largest side or the sphere's radius, and the law that `worlds/far_range/navigate/src/knowledge.rs` states.
 """
 
 import argparse
@@ -20,7 +20,7 @@ import random
 PHASES = 72
 EARTH_OVER_ORBIT = 6378.0 / 7130.0
 HARMONICS = 2
-# The law of oracle/navigate/src/knowledge.rs.
+# The law of worlds/far_range/navigate/src/knowledge.rs.
 CONSTANT, CONSTANT_BY_SIN = (0.15, 0.1), (0.0, 0.54)
 BY_COS = ((0.47, 0.14, 0.08), (0.24, 0.1, 0.06))
 # Weight of the condition that coefficients are of the size of the target: harmonics of an arc are not unique.

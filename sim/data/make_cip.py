@@ -8,7 +8,7 @@ origin's locator; radians, time TT.
 
 Layout: little-endian f64, no header. PIECES records, each for PIECE_DAYS days from START_JD on, of TERMS
 coefficients of X, TERMS of Y and LOCATOR_TERMS of Z (the constant term first). Argument of the polynomials: -1 at
-the start of a piece, +1 at its end. sim/src/truth/numerical/orientation.rs holds the same constants.
+the start of a piece, +1 at its end. sim/truth/src/numerical/orientation.rs holds the same constants.
 
 The limit of 1e-10 rad is 0.7 mm at the Earth's surface and 20 microarcseconds; pole offsets observed since 2000
 reach 500 microarcseconds.

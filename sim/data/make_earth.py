@@ -8,7 +8,7 @@ unit km.
 
 Layout: little-endian f64, no header. PIECES records, each for PIECE_DAYS days from START_JD on, of 3 x
 EARTH_TERMS coefficients (Earth x, then y, then z, the constant term first) and 3 x SUN_TERMS (the Sun's).
-Argument of the polynomials: -1 at the start of a piece, +1 at its end. sim/src/truth/ephemeris.rs holds the
+Argument of the polynomials: -1 at the start of a piece, +1 at its end. sim/truth/src/ephemeris.rs holds the
 same constants.
 
 Reason for 32 days and 18 terms: the Moon moves the Earth by 4700 km and 12 m/s every 27.3 days, and the last

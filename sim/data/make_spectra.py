@@ -8,7 +8,7 @@ Institute distributes them (pickles_uk_N.fits), and the extraterrestrial column 
 
 Layout: little-endian f64, no header. One record a star of SEQUENCE: B-V, V-I (synthetic, mag), then BINS
 means of the spectral irradiance of a star of V = 0; and a last record of BINS alone, the Sun at 1 au. W m^-2
-nm^-1; bins of BIN_NM from START_NM on. sim/src/optics/radiometry/spectra.rs holds the same constants.
+nm^-1; bins of BIN_NM from START_NM on. sim/optics/src/radiometry/spectra.rs holds the same constants.
 
 V, B-V and V-I are those of Bessell (1990, PASP 102, 1181), Table 2, as energy weights: magnitude 0 is the
 mean irradiance of Bessell, Castelli & Plez (1998, A&A 333, 231), Table A2. Dwarfs to G8, giants beyond: among

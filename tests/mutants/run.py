@@ -36,7 +36,7 @@ GROUPS = {
     "contract": ("boresight-contract", ["contract/src/camera.rs"], [], ["camera"], []),
     "sim": (
         "boresight-sim",
-        ["sim/src/optics/projection.rs", "sim/src/truth/apparent.rs"],
+        ["sim/optics/src/projection.rs", "sim/truth/src/apparent.rs"],
         ["golden_apparent"],
         ["projection", "apparent"],
         [],
@@ -54,8 +54,8 @@ GROUPS = {
 PRUNED = {
     "sim": {
         "sim/src/lib.rs": "pub mod catalog;\nmod constants;\nmod error;\npub mod optics;\npub mod truth;\npub use error::SimError;",
-        "sim/src/optics/mod.rs": "mod projection;\npub use projection::*;",
-        "sim/src/truth/mod.rs": "mod apparent;\npub mod clock;\npub mod ecliptic;\npub mod ephemeris;\nmod kepler;\nmod planets;\n"
+        "sim/optics/src/mod.rs": "mod projection;\npub use projection::*;",
+        "sim/truth/src/mod.rs": "mod apparent;\npub mod clock;\npub mod ecliptic;\npub mod ephemeris;\nmod kepler;\nmod planets;\n"
         "pub use apparent::{Observer, StarMotion, aberrate, deflect, unaberrate};\npub use planets::{Planet, ApparentPlanet};",
     },
     "pipeline": {

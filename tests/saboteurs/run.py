@@ -41,7 +41,7 @@ LEFT_OUT = {"boresight-python", "boresight-fuzz", "boresight-research"}
 FROZEN = re.compile(r"frozen")
 
 # Suites about the tree rather than its computations: the switches of the faults change it.
-OF_THE_TREE = {"tests/architecture", "tests/import_circles", "tests/supply_chain"}
+OF_THE_TREE = {"tests/architecture", "tests/supply_chain"}
 
 # Left out unless `--suites all`: suites about the command line, a browser or another program, and …
 SLOW_SUITES = {"tests/monitor", "tests/mitsuba", "tests/shell", "tests/bad_input"}
