@@ -30,6 +30,7 @@ pub use far_range_views;
 pub use files::{self, failure, sha256};
 pub use flight_dynamics;
 pub use gate;
+pub use middle_range;
 pub use navigate;
 pub use run::{self, frame_jobs, pipeline_choice};
 pub use scenario::{self, run_file};

@@ -10,5 +10,6 @@ pub fn register_worlds() {
     REGISTERED.call_once(|| {
         far_range_views::register();
         docking_views::register();
+        middle_range::register();
     });
 }

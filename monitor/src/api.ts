@@ -9,7 +9,7 @@ export interface Camera {
 }
 
 export interface Session {
-  world: "docking" | "far_range";
+  world: "docking" | "far_range" | "middle_range";
   title: string;
   seed: number;
   mode: "live" | "replay";
@@ -65,7 +65,8 @@ export interface View {
 
 export type Model =
   | { world: "docking"; camera: number; measured: View | null; truth: View; sun: Vector | null }
-  | { world: "far_range"; measured: View | null; truth: View; sun: Vector; line_of_sight: Vector | null };
+  | { world: "far_range"; measured: View | null; truth: View; sun: Vector; line_of_sight: Vector | null }
+  | { world: "middle_range"; truth: View; radius_km: number; sun: Vector };
 
 export interface Report {
   frame: number;

@@ -40,6 +40,10 @@ const LEGENDS: Record<Session["world"], [string, string, boolean][]> = {
     ["unlinked", "unlinked", false],
     ["truth", "truth", true],
   ],
+  middle_range: [
+    ["target", "disk", true],
+    ["truth", "truth", true],
+  ],
 };
 
 /** Figures that are drawn thicker. */
@@ -119,7 +123,7 @@ export class CameraPanel {
     const labelled = [...places.map((shape) => [shape, TRUTH] as const), ...found.map((shape) => [shape, null] as const)];
     this.labels(labelled, scale, columns);
     context.restore();
-    if (this.session.world === "far_range") {
+    if (this.session.world !== "docking") {
       this.magnify(scale);
     }
     // Published for tests and scripts: camera pixel (x, y) is at left + scale x, top + scale y.

@@ -5,6 +5,7 @@ import { CameraPanel } from "./camera-panel.js";
 import { element, onResize } from "./canvas.js";
 import { DockingModel } from "./docking-model.js";
 import { FarRangeModel } from "./far-range-model.js";
+import { MiddleRangeModel } from "./middle-range-model.js";
 import { GroundPanel } from "./ground-panel.js";
 import { ParameterPanel } from "./parameter-panel.js";
 import { PhasePanel } from "./phase-panel.js";
@@ -33,7 +34,9 @@ async function start(): Promise<void> {
   const model =
     session.world === "docking"
       ? new DockingModel(session, await api.scene(), redraw)
-      : new FarRangeModel(session, redraw);
+      : session.world === "far_range"
+        ? new FarRangeModel(session, redraw)
+        : new MiddleRangeModel(session, redraw);
   let latest: api.Frame | null = null;
 
   const waiting = element("#waiting");

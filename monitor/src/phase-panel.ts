@@ -98,8 +98,9 @@ export class PhasePanel {
     const upTo = (points: Moment[]): Moment[] => points.filter(([frame]) => frame <= now);
     this.line(chart, this.session.plan.points, colour("dim"), 1, [3, 3]);
     const measured = upTo(this.history.measured);
-    // A camera in the far range measures directions: the range there is the orbit's.
-    const isOrbit = this.session.world === "far_range";
+    // A camera in the far range measures directions: the range there is the orbit's. In the middle range the
+    // chart has no measured rates.
+    const isOrbit = this.session.world !== "docking";
     if (isOrbit || this.truth) {
       this.line(chart, upTo(this.history.truth), isOrbit ? colour("accent") : colour("truth"), 1.5, []);
     }

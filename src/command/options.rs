@@ -112,7 +112,7 @@ pub(super) struct AttitudeOption {
 /// Parses the path of a command's output; rejects `-`, which means standard output elsewhere.
 pub(super) fn output_path() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|word| match word.to_str() {
-        Some("-") => Err("expected a path: only `render` and `process` of docking write to standard output \
+        Some("-") => Err("expected a path: only `render` and `process` of videos write to standard output \
             (a file named - is ./-)"),
         Some("") => Err("expected a name"),
         _ => Ok(PathBuf::from(word)),

@@ -17,9 +17,7 @@ use super::Answer;
 use super::options::output_path;
 use super::output::Output;
 
-pub(super) use pages::{
-    write_beside_results, write_beside_run, write_gate, write_visibility, write_visibility_beside,
-};
+pub(super) use pages::{write_beside_results, write_beside_run, write_gate};
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {

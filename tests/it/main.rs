@@ -57,5 +57,6 @@ mod show;
 mod study;
 mod study_dask;
 mod study_rows;
+mod study_scale;
 mod supply_chain;
 mod visibility;

@@ -229,7 +229,11 @@ figures = [{figures}]
         "docking.toml",
         STUDY.replace("argon", "docking").replace("title", "navigate = 'batch'\ntitle"),
     );
-    bench.boresight("study run docking.toml --out docking").refused(&["navigate", "far range", "docking"]);
+    bench.boresight("study run docking.toml --out docking").refused(&[
+        "navigate",
+        "no relative navigation",
+        "docking",
+    ]);
     // Two runs of the same frames, each with its navigation.
     bench.scenario("best.toml", "argon", |scenario| {
         scenario.insert("far_range".into(), "mode = 'best'".parse::<toml::Table>().unwrap().into());

@@ -35,4 +35,6 @@ pub use rows_by_number::RowsByNumber;
 pub use run_result::{AnswerSummary, FirstFailure, IncompleteRun, RunResult};
 pub use sequence::{AnswerCount, process, process_into};
 pub use world::{FrameAnswer, Judgement, OpenDataset, World, refuse_attitude};
-pub use worlds::{figure_by_name, first_world, json_schema, register, world_by_name, worlds};
+pub use worlds::{
+    figure_by_name, first_world, json_schema, register, register_figures, world_by_name, worlds,
+};

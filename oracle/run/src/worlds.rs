@@ -17,10 +17,6 @@ static REGISTERED: RwLock<Vec<&'static dyn AnyWorld>> = RwLock::new(Vec::new());
 static FIGURES: LazyLock<RwLock<HashMap<String, FigureSpec>>> =
     LazyLock::new(|| RwLock::new(of_navigation().collect()));
 
-fn by_key(world: &'static dyn AnyWorld) -> impl Iterator<Item = (String, FigureSpec)> {
-    world.figures().into_iter().map(|figure| (figure.name.clone(), figure))
-}
-
 /// Figures of the relative navigation, which is a step after a run.
 fn of_navigation() -> impl Iterator<Item = (String, FigureSpec)> {
     navigation_figures().into_iter().map(|figure| (figure.name.clone(), figure))
@@ -33,8 +29,14 @@ pub fn register(world: &'static dyn AnyWorld) {
     if worlds().contains(&world) {
         return;
     }
-    FIGURES.write().unwrap_or_else(PoisonError::into_inner).extend(by_key(world));
+    register_figures(world.figures());
     REGISTERED.write().unwrap_or_else(PoisonError::into_inner).push(world);
+}
+
+/// Registers figures, by their keys, for the rest of the process.
+pub fn register_figures(figures: Vec<FigureSpec>) {
+    let mut known = FIGURES.write().unwrap_or_else(PoisonError::into_inner);
+    known.extend(figures.into_iter().map(|figure| (figure.name.clone(), figure)));
 }
 
 /// Returns the figure with this key, of any world; [`FigureSpec::unknown`] for a key that no world has.

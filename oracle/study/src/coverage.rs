@@ -1,11 +1,10 @@
 //! Coverage and width of the intervals of replicated designs.
 
+use draws::{Effect, Seed, normal, uniform};
 use statistics::{
     ClusterSum, ClusterValue, Interval, cluster_quantile_interval, cluster_rank_correlation,
     mean_difference_interval, normal_quantile, rate_difference_interval,
 };
-
-use draws::{Effect, Seed, normal, uniform};
 
 use crate::cases::CaseFigure;
 use crate::definition::design::{Design, DesignKind};
@@ -60,6 +59,7 @@ fn replications(cases: &[SweptCase]) -> Vec<usize> {
 }
 
 fn of_all(name: &str, figures: &[CaseFigure], cases: &[SweptCase]) -> Option<Interval> {
+    crate::figures_of_tests::register();
     let all = overall(name, figures, &replications(cases))?;
     Some(Interval { low: all.low?, high: all.high? })
 }

@@ -31,9 +31,9 @@ mod cases;
 mod coverage;
 mod definition;
 mod evaluate;
-mod findings;
 #[cfg(test)]
-mod scale;
+mod figures_of_tests;
+mod findings;
 mod shard;
 
 pub use campaign::{Campaign, CaseOutcome};

@@ -1,17 +1,19 @@
 //! `boresight visibility`: selection of a camera.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use far_range_views::{visibility_markdown, visibility_table};
 use files::Failure;
 use pipeline::external::protocol::harmless;
-use visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, assess, write_report};
+use visibility::{
+    BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, VisibilityReport, assess, write_report,
+};
 
 use crate::command::Answer;
 use crate::command::options::output_path;
 use crate::command::output::Output;
-use crate::command::report::{check_option, write_visibility, write_visibility_beside};
+use crate::command::report::{check_option, write_beside_results};
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct VisibilityArguments {
@@ -78,10 +80,10 @@ pub(in crate::command) fn visibility(
     progress.finish_and_clear();
     if let Some(folder) = &arguments.out {
         write_report(&report, &visibility_markdown(&report), folder)?;
-        write_visibility_beside(&report, folder, output);
+        write_beside_results(folder, output);
     }
     if let Some(path) = &arguments.report {
-        write_visibility(&report, path)?;
+        write_page(&report, path)?;
     }
     let mut text = visibility_table(&report, output.is_terminal());
     if let Some(folder) = &arguments.out {
@@ -90,4 +92,15 @@ pub(in crate::command) fn visibility(
     output.answer(&report, text.trim_end())?;
     let all_met = report.requirements.iter().all(|verdict| verdict.status.is_met());
     Ok(if all_met { Answer::Yes } else { Answer::No })
+}
+
+/// Writes the report of an assessment of requirements to `path`.
+#[cfg(feature = "report")]
+fn write_page(report: &VisibilityReport, path: &Path) -> Result<(), Failure> {
+    report::write_page(&far_range_views::report::visibility_page(report), path).map(|_| ())
+}
+
+#[cfg(not(feature = "report"))]
+fn write_page(_: &VisibilityReport, _: &Path) -> Result<(), Failure> {
+    Err(crate::command::missing_feature("report"))
 }

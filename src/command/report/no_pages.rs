@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use files::Failure;
 use gate::GateReport;
 use run::AnyJudgement;
-use visibility::VisibilityReport;
 
 use crate::command::missing_feature;
 use crate::command::output::Output;
@@ -23,14 +22,6 @@ pub(in crate::command) fn write_beside_run(_: &Path, _: &mut dyn AnyJudgement, o
 
 pub(in crate::command) fn write_beside_results(_: &Path, output: &Output) {
     note(output);
-}
-
-pub(in crate::command) fn write_visibility_beside(_: &VisibilityReport, _: &Path, output: &Output) {
-    note(output);
-}
-
-pub(in crate::command) fn write_visibility(_: &VisibilityReport, _: &Path) -> Result<(), Failure> {
-    Err(missing_feature("report"))
 }
 
 pub(in crate::command) fn write_gate(_: &GateReport, _: &Path, _: &Path) -> Result<(), Failure> {

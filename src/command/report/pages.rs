@@ -2,14 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use far_range_views::report::visibility_page;
 use files::Failure;
 use gate::GateReport;
 use report::{
     FlippedFrames, Page, REPORTS, gate_page, read_report, read_run_report, report_with_budget, write_page,
 };
 use run::AnyJudgement;
-use visibility::VisibilityReport;
 
 use super::budget::run_budget;
 use crate::command::output::Output;
@@ -49,23 +47,6 @@ pub(in crate::command) fn write_beside_run(directory: &Path, scored: &mut dyn An
 /// Writes the report of a directory of complete results into it.
 pub(in crate::command) fn write_beside_results(directory: &Path, output: &Output) {
     write_beside(read_report(directory), directory, output);
-}
-
-/// Writes the report of an assessment of requirements into the directory of its other files.
-pub(in crate::command) fn write_visibility_beside(
-    report: &VisibilityReport,
-    directory: &Path,
-    output: &Output,
-) {
-    write_beside(Ok(visibility_page(report)), directory, output);
-}
-
-/// Writes the report of an assessment of requirements to `path`.
-///
-/// # Errors
-/// A [`Failure`] when the file cannot be written.
-pub(in crate::command) fn write_visibility(report: &VisibilityReport, path: &Path) -> Result<(), Failure> {
-    write_page(&visibility_page(report), path).map(|_| ())
 }
 
 /// Writes the report of a gate to `path`, with the frames of `result` whose verdicts changed.

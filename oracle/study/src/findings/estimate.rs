@@ -126,6 +126,7 @@ mod tests {
     fn a_rate_over_single_frames_has_wilsons_interval() {
         let cases: Vec<CaseFigure> = (0..29).map(|k| case(u64::from(k == 3), 1)).collect();
         let draws: Vec<usize> = (0..29).collect();
+        crate::figures_of_tests::register();
         let got = overall("hit_rate", &cases, &draws).unwrap();
         // Newcombe (1998), Table I: 1 of 29.
         assert!(

@@ -333,6 +333,7 @@ mod tests {
     use super::*;
 
     fn required(figure: &str, limit: Limit, of: RequiredStatistic) -> StudyRequirement {
+        crate::figures_of_tests::register();
         let (at_least, at_most) = match limit {
             Limit::AtLeast(limit) => (Some(limit), None),
             Limit::AtMost(limit) => (None, Some(limit)),

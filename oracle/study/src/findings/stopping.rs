@@ -112,6 +112,7 @@ mod tests {
         points: u64,
         case: impl Fn(&mut Stream, &mut dyn FnMut(CaseFigure)),
     ) -> (u64, f64) {
+        crate::figures_of_tests::register();
         let until = Until { figure: figure.to_owned(), half_width };
         let mut stopping = StoppingRule::from_rule(Some(&until), points, 4000 * points);
         let mut table = CaseTable::from_rows(&[figure], Vec::new());

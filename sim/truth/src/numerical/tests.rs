@@ -5,7 +5,7 @@ use crate::orbit::Elements;
 use crate::states::{OrbitConfig, burns};
 
 fn orbit() -> OrbitConfig {
-    toml::from_str(include_str!("../../../tests/it/eclipsed_orbit.toml")).unwrap()
+    toml::from_str(include_str!("../../tests/it/eclipsed_orbit.toml")).unwrap()
 }
 
 fn initial(orbit: &OrbitConfig) -> InitialStates {

@@ -15,7 +15,6 @@
     )
 )]
 
-mod after_run;
 mod bound;
 mod budget;
 mod campaign;
@@ -29,11 +28,11 @@ mod row;
 mod score;
 mod truth;
 
-pub use after_run::register;
 pub use bound::{BoundAt, BoundReport, bound_of};
 pub use budget::{BudgetPart, NavigationBudget, navigation_budget};
 pub use campaign::Campaign;
 pub use estimator::{EVERY_S, Estimator, navigate, navigate_with};
+pub use figures::after_run::register;
 pub use figures::{navigation_figures, navigation_terms};
 pub use knowledge::KnowledgeConfig;
 pub use measurements::MeasurementSource;

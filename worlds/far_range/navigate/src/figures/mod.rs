@@ -1,5 +1,7 @@
 //! Figures of a navigation, as studies and gates use them.
 
+pub(crate) mod after_run;
+
 use contract::navigation::Event;
 use files::Failure;
 use hifitime::Epoch;

@@ -1,14 +1,12 @@
 //! Time and memory of merging a million cases.
 
-use draws::{Effect, Seed, normal, uniform};
 use std::fs;
 use std::time::Instant;
 
-use run::pipeline_choice::PipelineChoice;
-
-use crate::campaign::Campaign;
-use crate::cases::{CaseFigure, CaseRow, CaseTable, DrawnValue};
-use crate::definition::Study;
+use boresight::pipeline_choice::PipelineChoice;
+use boresight::run::figure_by_name;
+use boresight::study::{Campaign, CaseFigure, CaseRow, CaseTable, DrawnValue, Study};
+use draws::{Effect, Seed, normal, uniform};
 
 const STUDY: &str = r#"
 title = "Scale"
@@ -33,7 +31,7 @@ fn row(table: &CaseTable, case: u64) -> CaseRow {
     let mut random = Seed { seed: 3, case }.stream(0, Effect::StudyParameter, 0);
     let drawn = [0.6 + 0.4 * uniform(&mut random), 5.0 + 40.0 * uniform(&mut random)];
     let mut figure = |name: &String| {
-        if run::figure_by_name(name).is_rate() {
+        if figure_by_name(name).is_rate() {
             let count = (0..10).filter(|_| uniform(&mut random) < 0.9 - 0.2 * drawn[0]).count() as u64;
             CaseFigure { value: Some(count as f64 / 10.0), count, of: 10 }
         } else {
@@ -66,7 +64,7 @@ fn forget_peak() {
     fs::write("/proc/self/clear_refs", "5").unwrap();
 }
 
-/// `cargo test --release -p boresight-study a_merge_of_many_cases -- --ignored --nocapture`; `SCALE_CASES`
+/// `cargo test --release --test it study_scale:: -- --ignored --nocapture`; `SCALE_CASES`
 /// sets another number of cases.
 #[test]
 #[ignore = "minutes"]
@@ -75,6 +73,7 @@ fn a_merge_of_many_cases_keeps_little_of_each() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scale.toml");
     fs::write(&path, STUDY.replace("CASES", &cases.to_string())).unwrap();
+    boresight::register_worlds();
     let study = Study::read(&path).unwrap();
     let choice = PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000, sandbox: None };
     let campaign = Campaign::open(&study, &choice, &folder.path().join("out"), None).unwrap();

@@ -5,14 +5,14 @@ use std::fs;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use boresight_sim::catalog::CatalogStar;
-use boresight_sim::truth::{Observer, StarMotion, clock, ephemeris};
+use boresight_truth::catalog::CatalogStar;
+use boresight_truth::{Observer, StarMotion, clock, ephemeris};
 use nalgebra::Vector3;
 
 const MAS_PER_RADIAN: f64 = 180.0 * 3_600.0 * 1_000.0 / std::f64::consts::PI;
 
 fn golden(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../golden/apparent").join(name)
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../golden/apparent").join(name)
 }
 
 fn read(name: &str) -> Vec<u8> {

@@ -3,11 +3,11 @@
 
 use std::fs;
 
-use boresight_sim::optics::{KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig};
+use boresight_optics::{KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig};
 
 /// Returns the rows of a file of golden/radiometry/, without the header.
 fn rows(name: &str) -> Vec<Vec<String>> {
-    let path = format!("{}/../golden/radiometry/{name}", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../../golden/radiometry/{name}", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(path).unwrap();
     text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }

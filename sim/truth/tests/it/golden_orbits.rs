@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use boresight_sim::sensor::Switch;
-use boresight_sim::truth::{
+use boresight_truth::Switch;
+use boresight_truth::{
     DragConfig, GravityConfig, GroupConfig, NumericalConfig, OrbitConfig, RadiationConfig, Schedule,
     Trajectory, TrajectorySource,
 };
@@ -40,7 +40,7 @@ fn forces(case: &str) -> NumericalConfig {
 
 #[test]
 fn each_force_moves_the_spacecraft_as_orekit_has_it() {
-    let path = format!("{}/../golden/orbits/orbits.csv", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../../golden/orbits/orbits.csv", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(path).unwrap();
     let five_days = GroupConfig {
         name: "five days".into(),

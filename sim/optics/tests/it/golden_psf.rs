@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use boresight_sim::optics::{Psf, PsfConfig, Stamp};
+use boresight_optics::{Psf, PsfConfig, Stamp};
 use contract::PixelPoint;
 
 /// A line of stamps.csv; its columns are documented in golden/psf/make_stamps.py.
@@ -17,7 +17,7 @@ struct Reference {
 }
 
 fn references() -> Vec<Reference> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../golden/psf/stamps.csv");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../golden/psf/stamps.csv");
     let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("the reference is missing: {error}"));
     text.lines().map(reference).collect()
 }

@@ -2,12 +2,12 @@
 
 use std::fs;
 
-use boresight_sim::truth::moon::moon_position_km;
+use boresight_truth::moon::moon_position_km;
 use nalgebra::Vector3;
 
 #[test]
 fn the_moon_is_where_de421_has_it() {
-    let path = format!("{}/../golden/moon/moon_de421.csv", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../../golden/moon/moon_de421.csv", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(path).unwrap();
     let (mut rows, mut worst_deg, mut worst_km) = (0, 0.0_f64, 0.0_f64);
     for line in text.lines().skip(1) {
