@@ -44,8 +44,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIO = ROOT / "scenarios" / "argon.toml"
 
-# Benninghoff et al., Table 2, percent: days 1 to 5. worlds/far_range/src/scoring/argon_table2.rs has it too; a test
-# compares both.
+# Benninghoff et al., Table 2, percent: days 1 to 5. worlds/far_range/src/scoring/argon_table2.rs has it
+# too; a test compares both.
 TABLE_2 = {
     "hit_rate": [94.92, 94.99, 92.22, 92.63, 96.41],
     "ra_within_1px": [83.50, 83.95, 85.63, 87.30, 84.96],

@@ -8,6 +8,7 @@ use files::{Column, FieldDeclaration, FileError};
 pub fn csv_tables() -> Vec<(&'static str, Vec<FieldDeclaration>)> {
     let mut tables = far_range::rows::csv_tables();
     tables.extend(docking::rows::csv_tables());
+    tables.extend(middle_range::csv_tables());
     tables
 }
 
@@ -16,6 +17,7 @@ pub fn csv_tables() -> Vec<(&'static str, Vec<FieldDeclaration>)> {
 pub fn parquet_tables() -> Vec<(&'static str, Vec<FieldDeclaration>)> {
     let mut tables = far_range::rows::parquet_tables();
     tables.extend(docking::rows::parquet_tables());
+    tables.extend(middle_range::parquet_tables());
     tables
 }
 

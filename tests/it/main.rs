@@ -38,6 +38,7 @@ mod inject;
 mod input_mistakes;
 #[cfg(unix)]
 mod machine_faults;
+mod middle_range;
 #[cfg(unix)]
 mod mitsuba;
 mod mitsuba_live;

@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-/// Number of values in an [`Eight`]: as many as the widest existing registers hold.
+/// Number of values in an `Eight`: as many as the widest existing registers hold.
 pub const LANES: usize = 8;
 
 /// Work done in loops over many numbers.

@@ -1,4 +1,4 @@
-//! The Earth as an occulting disk. Its contribution to stray light is in [`super::background`].
+//! The Earth as an occulting disk. Its contribution to stray light is in `super::background`.
 
 use contract::{Direction, Icrs};
 use nalgebra::Vector3;

@@ -104,7 +104,7 @@ pub struct FrameTruth {
     pub background_e_per_s: f64,
     /// Electrons of smear per pixel, mean over the detector, for a uniform pixel response: the signal that a
     /// frame-transfer CCD collects while its image moves. The electrons of objects exclude smear. 0 without
-    /// [`sensor::SensorConfig::frame_transfer_s`].
+    /// `sensor::SensorConfig::frame_transfer_s`.
     pub smear_e_per_px: f64,
     /// True attitude of the target's body; `None` for a target without a body.
     pub target_from_icrs: Option<Rotation<Target, Icrs>>,

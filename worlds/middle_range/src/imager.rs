@@ -189,8 +189,8 @@ mod tests {
         Imager::new(&scenario).unwrap()
     }
 
-    /// The mean of n·s over the disk of a Lambert sphere at full phase is 2/3 from afar, and to first order more
-    /// by half its radius over its distance: √(1 − u²) + u² R/d at u radii from the centre.
+    /// The mean of n·s over the disk of a Lambert sphere at full phase is 2/3 from afar, and to first order
+    /// more by half its radius over its distance: √(1 − u²) + u² R/d at u radii from the centre.
     #[test]
     fn a_full_sphere_has_two_thirds_of_the_light_of_a_disk() {
         let imager = imager(|scenario| {

@@ -1,9 +1,9 @@
 //! The middle range: a body that the camera resolves, at kilometres to tens of metres; its image is a disk in
 //! sunlight. The exposure of a frame depends on the answers before it, a closed loop.
 //!
-//! The body is a Lambert sphere and the imager has no optics but a pinhole with distortion: a seam for a world
-//! with meshes, point-spread functions and poses, complete in everything around it: scenario, pipelines built
-//! in and external, scores, studies, gates, report and monitor.
+//! The body is a Lambert sphere and the imager has no optics but a pinhole with distortion: a seam for a
+//! world with meshes, point-spread functions and poses, complete in everything around it: scenario, pipelines
+//! built in and external, scores, studies, gates, report and monitor.
 
 #![cfg_attr(
     not(test),
@@ -31,7 +31,7 @@ use ::run::ErasedWorld;
 use ::run::plain::Plain;
 
 pub use self::pipeline::{LimbConfig, MiddleRangeSetup};
-pub use self::rows::{Answer, Truth};
+pub use self::rows::{Answer, Truth, csv_tables, parquet_tables};
 pub use self::scenario::{ApproachConfig, BodyConfig, ExposureConfig, MiddleRangeScenario, MiddleRangeWorld};
 pub use self::world::MiddleRange;
 

@@ -24,8 +24,8 @@ pub struct LimbConfig {
     /// Threshold of the limb above the bias, in standard deviations of the read noise, 3 to 1000.
     #[schemars(range(min = 3, max = 1000))]
     pub threshold_sigma: f64,
-    /// Systematic error of the limb's place, px, 0.01 to 10: pixels, and the darkness of the limb of a Lambert
-    /// sphere.
+    /// Systematic error of the limb's place, px, 0.01 to 10: pixels, and the darkness of the limb of a
+    /// Lambert sphere.
     #[schemars(range(min = 0.01, max = 10))]
     pub limb_error_px: f64,
 }
@@ -89,8 +89,8 @@ impl LimbPipeline {
         points
     }
 
-    /// Returns the ends of the longest run above the threshold in a line of pixels; a run at the border of the
-    /// image has no end there.
+    /// Returns the ends of the longest run above the threshold in a line of pixels; a run at the border of
+    /// the image has no end there.
     fn ends(&self, line: &[f64]) -> [Option<f64>; 2] {
         let mut longest = 0..0;
         let mut start = 0;
@@ -112,8 +112,8 @@ impl LimbPipeline {
     }
 
     /// Returns where a line of pixels reaches half the level of the body's edge, from the pixel `outside` in
-    /// steps of `step`, between pixels by linear interpolation. The level is that of the pixel [`DEPTH`] steps
-    /// inside.
+    /// steps of `step`, between pixels by linear interpolation. The level is that of the pixel [`DEPTH`]
+    /// steps inside.
     fn edge(&self, line: &[f64], outside: usize, step: isize) -> Option<f64> {
         let at = |steps: isize| line.get(outside.checked_add_signed(steps * step)?).copied();
         let background_dn = self.setup.readout.bias_dn;
@@ -190,8 +190,8 @@ impl PlainPipeline<Answer> for LimbPipeline {
 }
 
 impl Circle {
-    /// Fits a circle to points: algebraically (Kåsa 1976), then by the least squares of the distances, without
-    /// outliers. `None` for too few points, or points on a line.
+    /// Fits a circle to points: algebraically (Kåsa 1976), then by the least squares of the distances,
+    /// without outliers. `None` for too few points, or points on a line.
     fn fit(points: &[[f64; 2]]) -> Option<Self> {
         let mut kept = points.to_vec();
         let mut circle = Self::algebraic(&kept)?;

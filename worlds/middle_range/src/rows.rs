@@ -1,7 +1,7 @@
 //! Truth of a frame, and answer of a pipeline.
 
 use contract::PixelPoint;
-use files::table;
+use files::{FieldDeclaration, Table, table};
 use serde::Deserialize;
 
 table! {
@@ -42,4 +42,14 @@ table! {
         /// largest digital number of the image, by which the exposure is controlled
         peak_dn: f64,
     }
+}
+
+/// Returns the fields of each CSV table with its name in `docs/formats.md`.
+pub fn csv_tables() -> Vec<(&'static str, Vec<FieldDeclaration>)> {
+    vec![("measurements.csv of the middle range", Answer::declarations())]
+}
+
+/// Returns the fields of each Parquet table with its name in `docs/formats.md`.
+pub fn parquet_tables() -> Vec<(&'static str, Vec<FieldDeclaration>)> {
+    vec![("truth/frames.parquet of the middle range", Truth::declarations())]
 }

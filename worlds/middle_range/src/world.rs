@@ -35,7 +35,8 @@ impl MiddleRange {
         self.imager.range_km(frame)
     }
 
-    /// Returns the directions from the camera to the body and from the body to the Sun, in the camera's frame.
+    /// Returns the directions from the camera to the body and from the body to the Sun, in the camera's
+    /// frame.
     #[cfg(feature = "monitor")]
     pub(crate) fn directions(&self, frame: u64) -> ([f64; 3], [f64; 3]) {
         self.imager.directions(frame)

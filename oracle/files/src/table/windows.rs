@@ -20,7 +20,7 @@ pub fn format_one(window: &Window) -> String {
 pub const EXPECTED: &str =
     "regions `x y columns rows` separated by `;`, `none`, or an empty cell for the whole image";
 
-/// Parses the output of [`format`]; the inner `Option` is `None` if the whole image was transmitted.
+/// Parses the output of `format`; the inner `Option` is `None` if the whole image was transmitted.
 pub fn parse(text: &str) -> Result<Option<Vec<Window>>, &'static str> {
     match text.trim() {
         "" => Ok(None),

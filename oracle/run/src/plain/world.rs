@@ -166,7 +166,8 @@ impl<P: PlainWorld> World for Plain<P> {
     }
 }
 
-/// Reads the truth of a run directory with the answers in the table `measurements`, in the order of the frames.
+/// Reads the truth of a run directory with the answers in the table `measurements`, in the order of the
+/// frames.
 ///
 /// # Errors
 /// A [`Failure`] for a file that cannot be read, or an answer to a frame that the truth does not contain.

@@ -1,7 +1,7 @@
 //! Docking scene: a station's end with its docking unit and target, as flat facets, and its illumination.
 //!
 //! All coordinates are in the target frame (origin at the disk's centre, y3 along its normal away from the
-//! station, m). The two renderers, [`render::vector`] and Mitsuba, draw the same facets.
+//! station, m). The two renderers, `render::vector` and Mitsuba, draw the same facets.
 
 mod blankets;
 mod body;

@@ -113,7 +113,7 @@ pub struct Score {
     pub figures: IndexMap<String, Figure>,
     /// Scores of each group (day, portion).
     pub groups: IndexMap<String, GroupScore>,
-    /// Number of misses by [`crate::Cause::code`]; causes that did not occur are left out.
+    /// Number of misses by `crate::Cause::code`; causes that did not occur are left out.
     pub misses: IndexMap<String, u64>,
     /// Number of wrong measurements, by the cause that kept the target from being chosen.
     pub wrong: IndexMap<String, u64>,
@@ -134,7 +134,7 @@ pub struct Score {
 pub struct ConsistencyRow {
     /// Criterion that divides the frames into classes: `image` or `attitude`.
     pub by: String,
-    /// Class: [`crate::ImageState::code`] for `image`; [`contract::AttitudeSource::code`] or `unstated` for
+    /// Class: `crate::ImageState::code` for `image`; [`contract::AttitudeSource::code`] or `unstated` for
     /// `attitude`.
     pub value: String,
     /// Number of correct measurements of this class with a covariance.

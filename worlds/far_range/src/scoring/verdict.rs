@@ -206,7 +206,7 @@ pub struct VerdictRow<'a> {
     pub ra_error_deg: Option<f64>,
     /// Error of the line of sight across rows, degrees, if there is a line of sight.
     pub dec_error_deg: Option<f64>,
-    /// [`crate::AttitudeUsed::code`] of the attitude that the line of sight depends on.
+    /// `crate::AttitudeUsed::code` of the attitude that the line of sight depends on.
     pub line_of_sight: Option<&'static str>,
     /// Number of identified stars; empty if there is no outcome for the frame.
     pub n_stars: Option<u32>,
