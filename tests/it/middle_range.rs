@@ -31,7 +31,7 @@ fn a_sphere_is_measured_from_two_kilometres_to_a_hundred_metres() {
     bench.check_same("answers.csv", "run/measurements.csv");
     assert_eq!(bench.boresight("score run answers.csv --json").done().json(), score);
 
-    // A pipeline with another threshold is compared with the baseline.
+    // A run is no worse than itself as a baseline.
     bench.boresight("gate baseline run --out baseline --reason first").done();
     bench.boresight("gate baseline run").done();
 }
@@ -60,12 +60,7 @@ fn the_monitor_shows_it() {
     boresight::register_worlds();
     let source = ScenarioSource::read("middle-range").unwrap();
     let mission = source.prepare(Options::default()).unwrap();
-    let choice = boresight::pipeline_choice::PipelineChoice {
-        word: None,
-        timeout_s: 10.0,
-        memory_mb: 4000,
-        sandbox: None,
-    };
+    let choice = PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000, sandbox: None };
     let factory = mission.factory(&choice, std::path::Path::new("")).unwrap();
     Feed::new(mission, Measurements::Live { factory, frames: 0..3, jobs: 1 }).unwrap();
 }

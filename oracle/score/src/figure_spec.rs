@@ -67,10 +67,10 @@ impl FigureSpec {
         self.sense.kind == Kind::Rate
     }
 
-    /// Returns the label for values that are written with a percent sign: without the unit %, with any other
-    /// unit.
+    /// Returns the label for a table: without the unit for a rate, whose values have a percent sign, with the
+    /// unit for an amount.
     pub fn label_without_percent(&self) -> String {
-        if self.unit == Some("%") { self.words.clone() } else { self.to_string() }
+        if self.is_rate() { self.words.clone() } else { self.to_string() }
     }
 }
 
@@ -91,6 +91,15 @@ pub fn angle(degrees: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_label_in_a_table_has_the_unit_of_an_amount() {
+        let relative =
+            FigureSpec { unit: Some("%"), ..FigureSpec::amount("range", "range RMS", Better::Less) };
+        assert_eq!(relative.label_without_percent(), "range RMS, %");
+        let rate = Sense { kind: Kind::Rate, better: Better::More };
+        assert_eq!(FigureSpec { sense: rate, ..relative }.label_without_percent(), "range RMS");
+    }
 
     #[test]
     fn a_limit_has_three_digits() {

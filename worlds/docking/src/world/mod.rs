@@ -70,7 +70,10 @@ impl World for DockingMission {
     fn prepare(source: &ScenarioSource, _: &DockingScenario, options: Options) -> Result<Self, Failure> {
         refuse_attitude(options.attitude)?;
         match options.inject {
-            Some(stage) => Err(Failure::Usage(format!("--inject {stage} requires a far-range scenario"))),
+            Some(stage) => Err(Failure::Usage(format!(
+                "--inject {stage} does not apply to the world {}, which has no stages to replace",
+                Self::CODE
+            ))),
             None => Self::new(source, DockingRenderer::new(options.renderer)?),
         }
     }
