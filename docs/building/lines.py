@@ -12,7 +12,7 @@ import pathlib
 import re
 import sys
 
-CRATES = ("contract", "sim", "pipeline", "oracle", "src", "python", "fuzz")
+CRATES = ("contract", "config", "sim", "pipeline", "navigation", "oracle", "worlds", "src", "python", "fuzz")
 SKIPPED = {"tests", "benches", "target", "node_modules", "examples"}
 
 
@@ -40,7 +40,7 @@ def main() -> None:
             parts = path.relative_to(root).parts
             if SKIPPED & set(parts) or path.name == "tests.rs":
                 continue
-            name = "/".join(parts[:2]) if parts[0] == "oracle" else parts[0]
+            name = "/".join(parts[:2]) if parts[0] in ("oracle", "worlds") else parts[0]
             counts[name] += lines(path.read_text())
     for name, count in sorted(counts.items()):
         print(f"{count:6} {name}")

@@ -5,6 +5,7 @@ use boresight::docking::DockingScenario;
 use boresight::docking::rows::SetupFile;
 use boresight::far_range::FarRangeScenario;
 use boresight::far_range::rows::CameraFile;
+use boresight::middle_range::MiddleRangeScenario;
 use boresight::run::{first_world, json_schema};
 use boresight::study::StudyFile;
 use boresight::visibility::RequirementFile;
@@ -17,6 +18,7 @@ fn numbers() -> Vec<(String, Field)> {
     let schemas = [
         schema_for!(FarRangeScenario),
         schema_for!(DockingScenario),
+        schema_for!(MiddleRangeScenario),
         schema_for!(TargetFile),
         schema_for!(CameraFile),
         schema_for!(SetupFile),

@@ -1,5 +1,10 @@
 //! Hand-made test data: samples of consecutive, all correct frames of one day, and reports.
+use std::sync::Once;
+
+use docking::DockingMission;
+use far_range::FarRangeMission;
 use indexmap::IndexMap;
+use run::ErasedWorld;
 use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 use toml::Table;
 
@@ -10,7 +15,17 @@ use crate::identity::{Identity, Pairing, SourceKind};
 use crate::report::{FigureReport, FigureVerdict, GateReport};
 use crate::sample::Sample;
 
+/// Registers the worlds whose figures the tests use, for the rest of the process.
+pub(super) fn register_worlds() {
+    static REGISTERED: Once = Once::new();
+    REGISTERED.call_once(|| {
+        run::register(&ErasedWorld::<FarRangeMission>::NEW);
+        run::register(&ErasedWorld::<DockingMission>::NEW);
+    });
+}
+
 pub(super) fn identity() -> Identity {
+    register_worlds();
     Identity {
         kind: SourceKind::Run,
         world: "far_range".to_owned(),
@@ -39,6 +54,7 @@ pub(super) fn unit(number: u64, verdict: &str, cause: Option<&str>) -> UnitVerdi
 
 /// A figure in which every unit has at most one value.
 pub(super) fn figure(name: &str, reduction: Reduction, values: &[Option<f64>]) -> FigureTerms {
+    register_worlds();
     let term = |value: &Option<f64>| value.map_or(Term::default(), |sum| Term { sum, count: 1 });
     FigureTerms::from_terms(name, reduction, values.iter().map(term).collect())
 }
@@ -125,6 +141,7 @@ pub(super) const AFTER: [u8; 12] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 0];
 
 /// Units in groups of the given sizes, numbered consecutively, all correct.
 pub(super) fn days(groups: &[(&str, u64)]) -> UnitTable {
+    register_worlds();
     let mut number = 0;
     let mut units = Vec::new();
     for (group, count) in groups {

@@ -231,6 +231,7 @@ mod tests {
 
     #[test]
     fn units_are_called_frames_fields_or_cases() {
+        crate::hand_made::register_worlds();
         assert_eq!(SourceKind::Run.units("far_range"), "frames");
         assert_eq!(SourceKind::Run.units("docking"), "fields");
         assert_eq!(["far_range", "docking"].map(|world| SourceKind::Study.units(world)), ["cases"; 2]);

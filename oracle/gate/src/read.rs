@@ -207,6 +207,7 @@ mod tests {
     /// number of correct frames.
     #[test]
     fn the_cases_of_a_study_are_units() {
+        crate::hand_made::register_worlds();
         let figure = |value, count, of| CaseFigure { value, count, of };
         let table = CaseTable {
             drawn: indexmap::IndexMap::new(),

@@ -18,8 +18,8 @@ use super::{OpticsConfig, Projection};
 ///
 /// ```
 /// use boresight_optics::{OpticsConfig, Vignetting};
-/// use boresight_sensor::Switch;
 /// use contract::{Camera, PixelPoint};
+/// use truth::Switch;
 /// let camera = Camera {
 ///     columns: 752, rows: 580, focal_length_mm: 20.187, pixel_width_um: 8.6, pixel_height_um: 8.3,
 ///     principal_x_px: 395.0, principal_y_px: 288.0, radial: [0.0; 3], tangential: [0.0; 2],

@@ -5,9 +5,9 @@
 //! [`RawImage`] holds digital numbers. A charge can be obtained only from an image, and digital numbers only
 //! from a charge:
 //! ```
-//! use boresight_render::draw::ExpectedImage;
-//! use draws::Seed;
 //! use boresight_sensor::{ExposureInterval, FlatSamplers, RawImage, Sensor};
+//! use draws::Seed;
+//! use render::draw::ExpectedImage;
 //! fn right(sensor: &Sensor, image: &mut ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
 //!     let seed = Seed { seed: 1, case: 0 };
 //!     let charge = sensor.collect(image, &ExposureInterval { seed, middle_s: 0.0, exposure_s: 0.5 });
@@ -16,9 +16,9 @@
 //! ```
 //! A readout of photoelectrons does not compile:
 //! ```compile_fail,E0308
-//! use boresight_render::draw::ExpectedImage;
-//! use draws::Seed;
 //! use boresight_sensor::{FlatSamplers, RawImage, Sensor};
+//! use draws::Seed;
+//! use render::draw::ExpectedImage;
 //! fn wrong(sensor: &Sensor, image: &ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
 //!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, samplers, raw);
 //! }

@@ -95,7 +95,7 @@ impl Observer {
     /// let observer = Observer::new(time, Vector3::new(7_100.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 7.5))?;
     /// // The Earth carries the spacecraft along at 30 km/s.
     /// assert!((20.0..40.0).contains(&observer.barycentric_velocity_km_s().norm()));
-    /// # Ok::<(), boresight_sim::SimError>(())
+    /// # Ok::<(), boresight_truth::SimError>(())
     /// ```
     pub fn new(
         time: Epoch,

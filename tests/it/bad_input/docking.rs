@@ -84,7 +84,7 @@ fn a_mistake_in_a_target_file_has_its_position_there() {
 fn options_of_the_other_world_are_refused() {
     let bench = Bench::new();
     for (words, parts) in [
-        ("run docking --inject roi --out a", ["--inject roi", "far-range"]),
+        ("run docking --inject roi --out a", ["--inject roi", "docking"]),
         ("run docking --pipeline far_range --out a", ["`far_range`", "`docking`"]),
         ("run docking --save-frames fits --out a", ["--save-frames: `fits`", "png, avi, mjpeg or y4m"]),
         ("render docking --format exr --out a", ["--format: `exr`", "png, avi, mjpeg or y4m"]),

@@ -160,6 +160,7 @@ mod tests {
     /// Returns a figure that is best when small, with ten blocks, which changes from 2 in the baseline to
     /// `result`.
     fn effect(result: f64) -> FigureEffect {
+        crate::hand_made::register_worlds();
         FigureEffect {
             sense: figure_by_name("ra_rms_deg").sense,
             baseline: Some(2.0),
@@ -297,6 +298,7 @@ mod tests {
     /// A loss of δ of n has a scatter of √(δ/n) in addition to the standard error e: δ = z √(e² + δ/n).
     #[test]
     fn the_smallest_visible_loss_of_a_rate_includes_its_scatter() {
+        crate::hand_made::register_worlds();
         for (standard_error, result_of) in [(0.25, 50), (0.01, 7), (0.0, 400)] {
             let effect = FigureEffect {
                 sense: figure_by_name("hit_rate").sense,

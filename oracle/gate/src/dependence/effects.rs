@@ -269,6 +269,7 @@ mod tests {
     use statistics::Exchanges;
 
     fn effect(name: &str, reduction: Reduction, a: &[Option<f64>], b: &[Option<f64>]) -> FigureEffect {
+        crate::hand_made::register_worlds();
         let blocks = Blocks::every(a.len(), 2);
         FigureEffect::from_runs(
             figure_by_name(name).sense,

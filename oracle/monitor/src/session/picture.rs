@@ -41,7 +41,8 @@ mod tests {
 
     #[test]
     fn the_stretch_rises_from_black_at_the_bias_to_white_at_full_scale() {
-        let (bias_dn, full_scale_dn) = (40.0, 16_383);
+        // The detector of ARGON.
+        let (bias_dn, full_scale_dn) = (40.0, 4095);
         let Stretch(table) = Stretch::from_range(bias_dn, full_scale_dn);
         assert_eq!((table[0], table[bias_dn as usize]), (0, 0));
         assert_eq!((table.len(), table.last()), (usize::from(full_scale_dn) + 1, Some(&255)));

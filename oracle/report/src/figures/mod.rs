@@ -91,6 +91,8 @@ pub fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
 
 #[cfg(test)]
 mod tests {
+    use score::{Better, FigureSpec, Kind, Sense};
+
     use super::*;
 
     #[test]
@@ -108,6 +110,11 @@ mod tests {
 
     #[test]
     fn every_figure_is_read_with_its_unit() {
+        let sense = Sense { kind: Kind::Rate, better: Better::More };
+        run::register_figures(vec![
+            FigureSpec { unit: Some("°"), ..FigureSpec::amount("ra_rms_deg", "RA RMS", Better::Less) },
+            FigureSpec { unit: Some("%"), sense, ..FigureSpec::amount("hit_rate", "hit rate", Better::More) },
+        ]);
         let figures = ["ra_rms_deg", "hit_rate", "stars_mean"];
         let figures = figures.map(|name| (name.to_owned(), Figure::mean(&[vec![0.5, 1.0]])));
         let labels: Vec<String> =

@@ -41,7 +41,7 @@ use crate::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
 /// psf.stamp(PixelPoint::new(50.2, 49.7), 1e5, Psf::FLOOR_E, (100, 100), &mut stamp);
 /// let drawn: f64 = stamp.rows().flat_map(|(_, _, row)| row).sum();
 /// assert!(drawn > 0.999e5 && drawn < 1e5);
-/// # Ok::<(), boresight_sim::SimError>(())
+/// # Ok::<(), truth::SimError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Psf {

@@ -89,7 +89,7 @@ impl RadiometryConfig {
 /// assert!((1.5e6..2.5e6).contains(&zero_point_e_per_s));
 /// // Of two stars of the same V, silicon sees the red one brighter.
 /// assert!(radiometry.zero_point_e_per_s(Some(1.5), Some(2.5)) > 2.0 * zero_point_e_per_s);
-/// # Ok::<(), boresight_sim::SimError>(())
+/// # Ok::<(), truth::SimError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Radiometry {

@@ -51,7 +51,7 @@ impl Catalog {
     /// velocities of near and fast stars (`radial_velocity.rs` lists them and their sources).
     ///
     /// ```
-    /// use boresight_sim::catalog::Catalog;
+    /// use boresight_truth::catalog::Catalog;
     /// let catalog = Catalog::hipparcos2();
     /// let pollux = catalog.star(37826).expect("Pollux is HIP 37826");
     /// assert!((pollux.v_mag() - 1.14).abs() < 0.02);

@@ -88,7 +88,7 @@ fn check_possible(truth: &FrameTruth, objects: &[ObjectTruth]) -> Result<(), Sco
 /// Scores the frames of a far-range run one after the other.
 ///
 /// ```
-/// use boresight_score::{ScoreContext, Scorer, WithinLimits};
+/// use boresight_far_range::scoring::{ScoreContext, Scorer, WithinLimits};
 /// let context = ScoreContext {
 ///     scenario: "argon".to_owned(),
 ///     seed: 1,
