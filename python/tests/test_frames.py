@@ -18,7 +18,7 @@ def argon():
 
 def test_a_scenario_says_what_it_is(argon):
     assert (argon.name, argon.world, argon.seed, argon.frame_count) == ("argon", "far_range", 20120423, 16077)
-    assert boresight.Scenario.builtin_names() == ["argon", "argon-numerical", "docking", "starting-point"]
+    assert boresight.Scenario.builtin_names() == ["argon", "argon-numerical", "docking", "middle-range", "starting-point"]
     assert argon.setup["camera"]["columns"] == 752
 
 
