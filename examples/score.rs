@@ -5,7 +5,7 @@ use std::path::Path;
 
 use boresight::far_range::FarRangeMission;
 use boresight::far_range_views::{TableStyle, far_range_table};
-use boresight::run::World as _;
+use boresight::run::WorldScore as _;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

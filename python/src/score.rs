@@ -85,7 +85,7 @@ fn score_json(
     read_text(&run_file).map_err(unreadable)?;
     let world = world_of_run(&run_file)?;
     let neighbouring_file = || {
-        let path = measurements.with_file_name(world.evidence_file()?);
+        let path = measurements.with_file_name(world.facts().evidence_file?);
         path.is_file().then_some(path)
     };
     let json = world.score(directory, measurements, neighbouring_file().as_deref(), attitude)?.json()?;

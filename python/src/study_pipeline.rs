@@ -59,7 +59,7 @@ impl PythonStudyPipeline {
 }
 
 impl StudyPipeline for PythonStudyPipeline {
-    fn check(&self, _: &dyn AnyScenario) -> Result<(), Failure> {
+    fn check(&self, _: &AnyScenario) -> Result<(), Failure> {
         Ok(())
     }
 
@@ -78,7 +78,7 @@ impl StudyPipeline for PythonStudyPipeline {
         )
     }
 
-    fn factory(&self, scenario: &dyn AnyScenario, _: &Path) -> Result<AnyFactory, Failure> {
+    fn factory(&self, scenario: &AnyScenario, _: &Path) -> Result<AnyFactory, Failure> {
         factory(scenario.world(), self.clone_for_thread())
     }
 }

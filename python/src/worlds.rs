@@ -12,7 +12,7 @@ use boresight::far_range::{FarRangeMission, SceneTruth};
 use boresight::files::Row;
 use boresight::frame_jobs::process_in_order;
 use boresight::run::world::{ImageOf, TelemetryOf};
-use boresight::run::{AnyFactory, AnyMission, AnyWorld, World};
+use boresight::run::{AnyFactory, AnyMission, AnyWorld, World, WorldFrames};
 use contract::docking::{Docking, Field, FieldTelemetry as DockingTelemetry};
 use contract::{FarRange, PipelineFactory};
 use pipeline::external::Protocol;
@@ -60,7 +60,7 @@ pub(crate) fn prepare_for_python(
     world: &dyn AnyWorld,
     prepared: Box<dyn AnyMission>,
 ) -> Result<Box<dyn AnyPythonWorld>, Failure> {
-    let mut prepared = prepared.into_any();
+    let mut prepared: Box<dyn Any> = prepared;
     for entry in world_entries::<NoCallable>() {
         match (entry.take)(prepared) {
             Ok(taken) => return Ok(taken),
@@ -208,7 +208,8 @@ where
         take: &mut dyn FnMut(PendingFrame) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let state = W::State::default();
-        let expose = |workspace: &mut W::Workspace<'_>, frame| World::expose(self, workspace, frame, &state);
+        let expose =
+            |workspace: &mut W::Workspace<'_>, frame| WorldFrames::expose(self, workspace, frame, &state);
         let bytes = self.exposure_bytes() as u64;
         process_in_order(
             frames,

@@ -105,7 +105,8 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
         return Err(FileError::Io { path: path.clone(), doing: "open", source }.into());
     }
     let sequence = &arguments.sequence;
-    let dataset = worlds().into_iter().find(|world| !is_stream && path.join(world.setup_file()).exists());
+    let dataset =
+        worlds().into_iter().find(|world| !is_stream && path.join(world.facts().setup_file).exists());
     let is_sequence = dataset.is_none_or(is_docking);
     let is_plain = sequence.given().is_none() && arguments.out.as_deref() != Some(Path::new("-"));
     match dataset {

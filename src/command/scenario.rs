@@ -112,7 +112,7 @@ fn camera(name: &str, output: &Output) -> Result<(), Failure> {
 fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Answer, Failure> {
     let checked = ScenarioSource::read(scenario).and_then(|source| {
         let prepared = source.prepare(Options::default())?;
-        source.world().check_choice(source.scenario.as_ref(), choice)?;
+        source.world().check_choice(&source.scenario, choice)?;
         if choice.is_built_in(source.world().code()) {
             source.world().check_built_in(&source)?;
         }

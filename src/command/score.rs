@@ -40,8 +40,8 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
         ("--motion", "motion.csv", &arguments.motion),
     ] {
         if let Some(given) = given {
-            if world.evidence_file() != Some(name) {
-                let other = worlds().into_iter().find(|world| world.evidence_file() == Some(name));
+            if world.facts().evidence_file != Some(name) {
+                let other = worlds().into_iter().find(|world| world.facts().evidence_file == Some(name));
                 let code = other.map_or("another world", |world| world.code());
                 return Err(Failure::Usage(format!(
                     "{option} applies only to runs of {}",
@@ -52,7 +52,7 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
         }
     }
     let neighbouring_file = || {
-        let path = arguments.measurements.with_file_name(world.evidence_file()?);
+        let path = arguments.measurements.with_file_name(world.facts().evidence_file?);
         path.is_file().then_some(path)
     };
     let evidence = evidence.or_else(neighbouring_file);

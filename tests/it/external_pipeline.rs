@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use boresight::far_range::FarRangeMission;
 use boresight::files::format_utc;
-use boresight::run::World;
+use boresight::run::WorldPipelines as _;
 use contract::{
     Calibration, Camera, Direction, FarRange, Frame, ListedStar, PipelineFactory, PixelPoint, Rotation,
     Setup, Telemetry, conformance,

@@ -60,7 +60,7 @@ fn run(directory: &Path, path: &Path, attitude: Option<AttitudeChoice>) -> Resul
     let world = world_of_run(path)?;
     let RunFile { name, version, catalog_sha256, inject, files, mitsuba, scenario, .. } =
         world.read_run(path)?;
-    let evidence = world.evidence_file().map(|name| directory.join(name)).filter(|path| path.is_file());
+    let evidence = world.facts().evidence_file.map(|name| directory.join(name)).filter(|path| path.is_file());
     let scored =
         world.score(directory, &directory.join("measurements.csv"), evidence.as_deref(), attitude)?;
     let mut digest = FrameDigest::default();
@@ -171,7 +171,7 @@ fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
         let terms = table.rows.iter().map(|row| term(row.figures[index])).collect();
         FigureTerms::from_terms(name, reduction, terms).with_attitude(&figure, attitude)
     };
-    let headlines: Vec<&str> = worlds().into_iter().map(|world| world.headline()).collect();
+    let headlines: Vec<&str> = worlds().into_iter().map(|world| world.facts().headline).collect();
     let verdict = table.figures.iter().position(|name| headlines.contains(&name.as_str()));
     let units = table.rows.iter().zip(table.draws()).map(|(row, draw)| UnitVerdict {
         number: row.case,

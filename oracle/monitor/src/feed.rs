@@ -70,7 +70,7 @@ impl Feed {
     /// # Errors
     /// [`Failure::Usage`] for a world that the page does not show.
     pub fn new(prepared: Box<dyn AnyMission>, measurements: Measurements) -> Result<Self, Failure> {
-        let mut prepared = prepared.into_any();
+        let mut prepared: Box<dyn Any> = prepared;
         let worlds = WORLDS.read().unwrap_or_else(PoisonError::into_inner);
         for (_, cast) in worlds.iter() {
             match cast(prepared) {

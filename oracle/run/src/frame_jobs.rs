@@ -21,6 +21,24 @@ pub struct FrameJobs<F> {
     pub states_of: Option<PathBuf>,
 }
 
+impl<F> FrameJobs<F> {
+    /// Refuses to keep the noise-free expectation in a world that has none.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] if it is requested.
+    pub fn refuse_expectation(&self, world: &str) -> Result<(), Failure> {
+        match self.expectation {
+            Expectation::Kept => {
+                let message = format!(
+                    "--expected requires a world with noise-free images, which {world} does not have"
+                );
+                Err(Failure::Usage(message))
+            }
+            Expectation::Dropped => Ok(()),
+        }
+    }
+}
+
 /// Treatment of the noise-free expectation of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Expectation {

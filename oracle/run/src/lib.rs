@@ -24,9 +24,10 @@ pub mod sequence;
 pub mod world;
 pub mod worlds;
 
-pub use any_world::erasure::ErasedWorld;
 pub use any_world::source::{check_world_of_run, world_of_run};
-pub use any_world::{AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, Options, ScenarioSource};
+pub use any_world::{
+    AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, ErasedWorld, Options, ScenarioSource,
+};
 pub use choice::pipeline_choice;
 pub use choice::renderer_choice::RendererChoice;
 pub use frame_jobs::{Expectation, FrameJobs};
@@ -34,7 +35,10 @@ pub use navigation::{NavigationFigure, WorldNavigation, navigation_of, register_
 pub use rows_by_number::RowsByNumber;
 pub use run_result::{AnswerSummary, FirstFailure, IncompleteRun, RunResult};
 pub use sequence::{AnswerCount, process, process_into};
-pub use world::{FrameAnswer, Judgement, OpenDataset, World, refuse_attitude};
+pub use world::{
+    FrameAnswer, Judgement, OpenDataset, World, WorldFacts, WorldFiles, WorldFrames, WorldPipelines,
+    WorldScenario, WorldScore, refuse_attitude,
+};
 pub use worlds::{
     figure_by_name, first_world, json_schema, register, register_figures, world_by_name, worlds,
 };

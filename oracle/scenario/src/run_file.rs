@@ -1,4 +1,5 @@
 //! `run.toml`: the data needed to repeat a run.
+use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::path::Path;
@@ -19,7 +20,7 @@ pub use {
     serde_json::Value,
 };
 
-/// SHA-256 of the files that a scenario reads, hexadecimal, by their roles ([`ScenarioFile::paths`]).
+/// SHA-256 of the files that a scenario reads, hexadecimal, by their roles ([`ScenarioValues::paths`]).
 pub type FileDigests = BTreeMap<String, String>;
 
 /// Returns the digest text that replaces a file's path where only its content matters.
@@ -67,50 +68,8 @@ pub struct MitsubaRecord {
     pub rays_per_px: u32,
 }
 
-/// A scenario of one world in the form of its files. [`scenario_file!`](crate::scenario_file) implements it.
-///
-/// Reading a scenario is the largest code of the program. These methods are not generic, so that the code is
-/// compiled in the crate of the type, once per world, and not in every crate that reads a run.
-pub trait ScenarioFile: Clone + Debug + Send + Sync + 'static {
-    /// Code of the world: the key `world` of its files.
-    const WORLD: &'static str;
-
-    /// Parses the text of a scenario, which was read from `file`.
-    ///
-    /// # Errors
-    /// A [`TomlError`] with the location of the first mistake.
-    fn parse(file: &Path, text: &str) -> Result<Self, Box<TomlError>>;
-
-    /// Parses the text of a `run.toml`, which was read from `file`.
-    ///
-    /// # Errors
-    /// A [`TomlError`] with the location of the first mistake.
-    fn parse_run(file: &Path, text: &str) -> Result<RunFile<Self>, Box<TomlError>>;
-
-    /// Returns the scenario as TOML, including defaults.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`] for a value that TOML cannot express.
-    fn to_toml(&self) -> Result<String, Failure>;
-
-    /// Returns the text of a `run.toml`.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`] for a value that TOML cannot express.
-    fn run_to_toml(run: &RunFile<Self>) -> Result<String, Failure>;
-
-    /// Returns all values of the scenario, including defaults.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`] when the values cannot be written as JSON.
-    fn to_json(&self) -> Result<Value, Failure>;
-
-    /// Returns the JSON Schema of the scenario's files.
-    fn schema(generator: SchemaGenerator) -> Schema;
-
-    /// Returns the JSON Schema of the scenario's files as a part of another schema.
-    fn subschema(generator: &mut SchemaGenerator) -> Schema;
-
+/// Values of a scenario of any world. [`scenario_file!`](crate::scenario_file) implements it.
+pub trait ScenarioValues: Any + Debug + Send + Sync {
     /// Returns the title of the scenario, one line.
     fn title(&self) -> &str;
 
@@ -125,50 +84,66 @@ pub trait ScenarioFile: Clone + Debug + Send + Sync + 'static {
     fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
         Vec::new()
     }
+
+    /// Returns the scenario as TOML, including defaults.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a value that TOML cannot express.
+    fn to_toml(&self) -> Result<String, Failure>;
+
+    /// Returns all values of the scenario, including defaults.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when the values cannot be written as JSON.
+    fn to_json(&self) -> Result<Value, Failure>;
+
+    /// Returns a boxed copy.
+    fn boxed(&self) -> Box<dyn ScenarioValues>;
+}
+
+/// A scenario of one world in the form of its files. [`scenario_file!`](crate::scenario_file) implements it.
+///
+/// Reading a scenario is the largest code of the program. These methods are not generic, so that the code is
+/// compiled in the crate of the type, once per world, and not in every crate that reads a run.
+pub trait ScenarioFile: ScenarioValues + Clone {
+    /// Code of the world: the key `world` of its files.
+    const WORLD: &'static str;
+    /// Commented scenario as a starting point for the user.
+    const STARTING_POINT: &'static str;
+
+    /// Parses the text of a scenario, which was read from `file`.
+    ///
+    /// # Errors
+    /// A [`TomlError`] with the location of the first mistake.
+    fn parse(file: &Path, text: &str) -> Result<Self, Box<TomlError>>;
+
+    /// Parses the text of a `run.toml`, which was read from `file`.
+    ///
+    /// # Errors
+    /// A [`TomlError`] with the location of the first mistake.
+    fn parse_run(file: &Path, text: &str) -> Result<RunFile<Self>, Box<TomlError>>;
+
+    /// Returns the text of a `run.toml`.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a value that TOML cannot express.
+    fn run_to_toml(run: &RunFile<Self>) -> Result<String, Failure>;
+
+    /// Returns the JSON Schema of the scenario's files.
+    fn schema(generator: SchemaGenerator) -> Schema;
+
+    /// Returns the JSON Schema of the scenario's files as a part of another schema.
+    fn subschema(generator: &mut SchemaGenerator) -> Schema;
 }
 
 /// Implements [`ScenarioFile`](crate::run_file::ScenarioFile) for a type with serde's traits, `JsonSchema`
-/// and fields `title` and `seed`: `scenario_file!(MyScenario, "my_world")`. For a scenario that reads files,
-/// a method returns their paths: `scenario_file!(MyScenario, "my_world", paths_of_files)`.
+/// and fields `title` and `seed`: `scenario_file!(MyScenario, "my_world", STARTING_POINT)`, where the last is
+/// a commented scenario. For a scenario that reads files, a method returns their paths:
+/// `scenario_file!(MyScenario, "my_world", STARTING_POINT, paths_of_files)`.
 #[macro_export]
 macro_rules! scenario_file {
-    ($scenario:ty, $world:literal $(, $paths:ident)?) => {
-        impl $crate::run_file::ScenarioFile for $scenario {
-            const WORLD: &'static str = $world;
-
-            fn parse(file: &::std::path::Path, text: &str) -> Result<Self, Box<$crate::run_file::TomlError>> {
-                $crate::run_file::parse(file, text)
-            }
-
-            fn parse_run(
-                file: &::std::path::Path,
-                text: &str,
-            ) -> Result<$crate::run_file::RunFile<Self>, Box<$crate::run_file::TomlError>> {
-                $crate::run_file::parse(file, text)
-            }
-
-            fn to_toml(&self) -> Result<String, $crate::run_file::Failure> {
-                $crate::run_file::to_toml(self)
-            }
-
-            fn run_to_toml(
-                run: &$crate::run_file::RunFile<Self>,
-            ) -> Result<String, $crate::run_file::Failure> {
-                $crate::run_file::to_toml(run)
-            }
-
-            fn to_json(&self) -> Result<$crate::run_file::Value, $crate::run_file::Failure> {
-                $crate::run_file::to_json(self)
-            }
-
-            fn schema(generator: $crate::run_file::SchemaGenerator) -> $crate::run_file::Schema {
-                generator.into_root_schema_for::<Self>()
-            }
-
-            fn subschema(generator: &mut $crate::run_file::SchemaGenerator) -> $crate::run_file::Schema {
-                generator.subschema_for::<Self>()
-            }
-
+    ($scenario:ty, $world:literal, $start:expr $(, $paths:ident)?) => {
+        impl $crate::run_file::ScenarioValues for $scenario {
             fn title(&self) -> &str {
                 &self.title
             }
@@ -184,6 +159,48 @@ macro_rules! scenario_file {
             $(fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
                 self.$paths()
             })?
+
+            fn to_toml(&self) -> Result<String, $crate::run_file::Failure> {
+                $crate::run_file::to_toml(self)
+            }
+
+            fn to_json(&self) -> Result<$crate::run_file::Value, $crate::run_file::Failure> {
+                $crate::run_file::to_json(self)
+            }
+
+            fn boxed(&self) -> Box<dyn $crate::run_file::ScenarioValues> {
+                Box::new(self.clone())
+            }
+        }
+
+        impl $crate::run_file::ScenarioFile for $scenario {
+            const WORLD: &'static str = $world;
+            const STARTING_POINT: &'static str = $start;
+
+            fn parse(file: &::std::path::Path, text: &str) -> Result<Self, Box<$crate::run_file::TomlError>> {
+                $crate::run_file::parse(file, text)
+            }
+
+            fn parse_run(
+                file: &::std::path::Path,
+                text: &str,
+            ) -> Result<$crate::run_file::RunFile<Self>, Box<$crate::run_file::TomlError>> {
+                $crate::run_file::parse(file, text)
+            }
+
+            fn run_to_toml(
+                run: &$crate::run_file::RunFile<Self>,
+            ) -> Result<String, $crate::run_file::Failure> {
+                $crate::run_file::to_toml(run)
+            }
+
+            fn schema(generator: $crate::run_file::SchemaGenerator) -> $crate::run_file::Schema {
+                generator.into_root_schema_for::<Self>()
+            }
+
+            fn subschema(generator: &mut $crate::run_file::SchemaGenerator) -> $crate::run_file::Schema {
+                generator.subschema_for::<Self>()
+            }
         }
     };
 }

@@ -27,7 +27,7 @@ impl Source {
     pub fn open(directory: &Path, measurements: Option<&Path>) -> Result<Self, Failure> {
         let has = |name: &str| directory.join(name).is_file();
         let run = directory.join("run.toml");
-        let of_dataset = worlds().into_iter().find(|world| has(world.setup_file()));
+        let of_dataset = worlds().into_iter().find(|world| has(world.facts().setup_file));
         let world = if has("run.toml") {
             world_of_run(&run)?
         } else if let Some(world) = of_dataset {

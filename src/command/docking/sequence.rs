@@ -8,7 +8,7 @@ use docking::rows::SetupFile;
 use docking::video::{FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions};
 use docking::{DockingMission, DockingRenderer, DockingScenario, FieldAnswers};
 use files::Failure;
-use run::{AnyWorld, ScenarioSource, World as _};
+use run::{AnyWorld, ScenarioSource, WorldFrames as _, WorldScenario as _};
 use serde_json::{Map, json};
 
 use crate::command::Answer;

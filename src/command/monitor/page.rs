@@ -96,7 +96,7 @@ fn replay(directory: &Path) -> Result<(String, Feed), Failure> {
         )));
     }
     let source = ScenarioSource::read(&run.to_string_lossy())?;
-    let truth = source.world().truth_file();
+    let truth = source.world().facts().truth_file;
     // A table has its final name only when it is complete.
     if let Some(missing) =
         [truth, "telemetry.csv", "measurements.csv"].iter().find(|name| !directory.join(name).is_file())

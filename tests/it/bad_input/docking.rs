@@ -88,7 +88,7 @@ fn options_of_the_other_world_are_refused() {
         ("run docking --pipeline far_range --out a", ["`far_range`", "`docking`"]),
         ("run docking --save-frames fits --out a", ["--save-frames: `fits`", "png, avi, mjpeg or y4m"]),
         ("render docking --format exr --out a", ["--format: `exr`", "png, avi, mjpeg or y4m"]),
-        ("render docking --expected --out a", ["--expected", "far-range"]),
+        ("render docking --expected --out a", ["--expected", "docking"]),
         ("render docking --format avi --out -", ["--out -", "y4m"]),
         ("render docking --format avi --out a", ["fields", "mjpeg"]),
         ("run argon --renderer mitsuba --out a", ["--renderer mitsuba", "docking"]),

@@ -26,7 +26,7 @@ pub(super) struct Scene {
     blinking_dot: Detector,
 }
 
-scenario_file!(Scene, "blinking_dot");
+scenario_file!(Scene, "blinking_dot", SCENARIO);
 
 /// Parameters of the built-in pipeline, which measures the brightest pixel above a threshold.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize, JsonSchema)]
@@ -65,7 +65,6 @@ impl PlainPipeline<Found> for Detector {
 pub(super) struct BlinkingDot(Scene);
 
 impl PlainWorld for BlinkingDot {
-    const STARTING_POINT: &'static str = SCENARIO;
     const SETUP_FILE: &'static str = "dot.toml";
     type Scenario = Scene;
     type Setup = Detector;

@@ -6,7 +6,7 @@ use boresight::docking::{DockingMission, DockingRenderer};
 use boresight::far_range::scoring::FrameVerdict;
 use boresight::far_range::{FarRangeMission, FarRangeScenario};
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::run::{Judgement as _, ScenarioSource, World as _, sequence};
+use boresight::run::{Judgement as _, ScenarioSource, WorldFrames as _, WorldScenario as _, sequence};
 use boresight::score::UnitTable;
 use contract::docking::{Docking, DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry};
 use contract::{Pipeline, PipelineFactory};
@@ -29,7 +29,7 @@ fn source(name: &str, seed: u64) -> ScenarioSource {
 pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<FrameVerdict>> {
     let run = |seed: u64| {
         let mut source = source("argon", seed);
-        let scenario = source.scenario.as_any_mut().downcast_mut::<FarRangeScenario>().unwrap();
+        let scenario = source.scenario.values_mut::<FarRangeScenario>().unwrap();
         let mut place = 0..;
         scenario.schedule.retain(|_| place.next().unwrap() % 6 < stretches);
         scenario.schedule.iter_mut().for_each(|stretch| stretch.count = frames);

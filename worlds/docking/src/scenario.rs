@@ -69,7 +69,7 @@ pub enum DockingWorld {
     Docking,
 }
 
-scenario_file!(DockingScenario, "docking", paths_of_files);
+scenario_file!(DockingScenario, "docking", crate::STARTING_POINT, paths_of_files);
 
 impl DockingScenario {
     fn paths_of_files(&mut self) -> Vec<(&'static str, &mut String)> {

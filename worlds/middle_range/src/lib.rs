@@ -44,5 +44,5 @@ pub fn register() {
     #[cfg(feature = "report")]
     ::report::register(report::world_report());
     #[cfg(feature = "monitor")]
-    ::monitor::register(<Plain<MiddleRange> as run::World>::CODE, monitor::cast);
+    ::monitor::register(<Plain<MiddleRange> as run::WorldScenario>::CODE, monitor::cast);
 }

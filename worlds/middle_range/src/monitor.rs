@@ -12,8 +12,8 @@ use ::monitor::session::picture::Stretch;
 use contract::Camera;
 use files::{Failure, format_utc};
 use hifitime::{Epoch, Unit};
-use run::World;
 use run::plain::{Plain, PlainWorld, Scored, read_scored};
+use run::{WorldFrames as _, WorldScenario as _};
 use serde_json::{Value, json};
 
 use crate::rows::{Answer, Truth};
@@ -106,7 +106,7 @@ impl MonitoredWorld for Monitored {
         Ok(MonitorContext {
             ground: None,
             stretch: Stretch::from_range(sensor.bias_dn, sensor.full_scale_dn()),
-            frames: frames::<Truth>(measurements, Plain::<MiddleRange>::TRUTH_FILE)?,
+            frames: frames::<Truth>(measurements, Plain::<MiddleRange>::FACTS.truth_file)?,
         })
     }
 

@@ -12,7 +12,7 @@ use ::report::page::{Page, Section};
 use contract::{PixelPoint, Window};
 use files::Failure;
 use run::plain::{Plain, PlainWorld, Scored, read_scored};
-use run::{AnyJudgement, Options, ScenarioSource, World};
+use run::{AnyJudgement, Options, ScenarioSource, WorldScenario as _};
 
 use crate::world::{MiddleRange, range_error};
 

@@ -34,7 +34,7 @@ pub struct MiddleRangeScenario {
     pub middle_range: LimbConfig,
 }
 
-scenario_file!(MiddleRangeScenario, "middle_range");
+scenario_file!(MiddleRangeScenario, "middle_range", crate::STARTING_POINT);
 
 /// World of a [`MiddleRangeScenario`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -44,7 +44,6 @@ impl MiddleRange {
 }
 
 impl PlainWorld for MiddleRange {
-    const STARTING_POINT: &'static str = crate::STARTING_POINT;
     const SETUP_FILE: &'static str = "middle.toml";
 
     type Scenario = MiddleRangeScenario;

@@ -78,7 +78,7 @@ impl Blocks {
 /// sequence. In docking, only a gap does: an approach is one sequence, and its groups are ranges. In a study,
 /// the cases of a draw are a sequence.
 pub(crate) fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec<Range<usize>> {
-    let are_groups_apart = world_by_name(world).is_ok_and(|world| world.are_groups_apart());
+    let are_groups_apart = world_by_name(world).is_ok_and(|world| world.facts().are_groups_apart);
     let go_together = |before: &UnitVerdict, this: &UnitVerdict| {
         let is_same_group = before.group == this.group;
         match kind {

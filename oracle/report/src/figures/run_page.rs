@@ -25,7 +25,7 @@ pub fn run_page(directory: &Path) -> Result<Page, Failure> {
     if !measurements.is_file() {
         return Err(missing(directory, "measurements.csv"));
     }
-    let evidence = world.evidence_file().map(|name| directory.join(name)).filter(|path| path.is_file());
+    let evidence = world.facts().evidence_file.map(|name| directory.join(name)).filter(|path| path.is_file());
     let scored = world.score(directory, &measurements, evidence.as_deref(), None)?;
     Checksums::check(directory, |_| true)?;
     let units = scored.units().units;

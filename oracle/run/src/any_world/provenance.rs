@@ -75,7 +75,7 @@ fn check_record_beside(world: &dyn AnyWorld, directory: &Path, answers: &Path) -
 }
 
 /// Returns all values that the frames of a run depend on.
-fn frames(world: &dyn AnyWorld, run: &RunFile<Box<dyn AnyScenario>>) -> Result<Table, Failure> {
+fn frames(world: &dyn AnyWorld, run: &RunFile<AnyScenario>) -> Result<Table, Failure> {
     let text = run.scenario.to_toml()?;
     let unreadable = |error| Failure::Usage(format!("the scenario cannot be read again: {error}"));
     let mut scenario = split(world.code(), text.parse().map_err(unreadable)?, &run.files)?.scenario;
@@ -106,7 +106,7 @@ fn check_origins(world: &dyn AnyWorld, directory: &Path, answers: &Path) -> Resu
         return Ok(());
     }
     let hash = world.read_run(&directory.join("run.toml"))?.hash;
-    let times = times(world, &directory.join(world.truth_file()))?;
+    let times = times(world, &directory.join(world.facts().truth_file))?;
     for origin in origins {
         let refuse = |column: &str, found: &str, expected: &str| {
             FileError::value(answers, FileLocation::Line(origin.line), column, found, expected)
@@ -119,7 +119,7 @@ fn check_origins(world: &dyn AnyWorld, directory: &Path, answers: &Path) -> Resu
             && (found - *expected).to_seconds().abs() > TIME_TOLERANCE_S
         {
             let [found, expected] = [found, *expected].map(files::format_utc);
-            let expected = format!("{expected} within a millisecond, as in {}", world.truth_file());
+            let expected = format!("{expected} within a millisecond, as in {}", world.facts().truth_file);
             return Err(refuse("time_utc", &found, &expected).into());
         }
     }

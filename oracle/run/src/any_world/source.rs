@@ -4,13 +4,88 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use config::toml_file;
+use contract::OutOfRange;
 use files::{Failure, FileError, file_sha256};
 use scenario::BUILT_IN;
-use scenario::run_file::{FileDigests, RunFile, content};
+use scenario::run_file::{FileDigests, RunFile, ScenarioFile, content};
 use serde_json::Value;
+use sim::SimError;
 
-use crate::any_world::{AnyScenario, AnyWorld, ScenarioSource};
+use super::{AnyMission, AnyScenario, AnyWorld, Options};
 use crate::worlds::{first_world, world_by_name};
+
+/// A scenario that was read, with its text to locate mistakes found later. [`ScenarioSource::prepare`] checks
+/// its values.
+#[derive(Debug, Clone)]
+pub struct ScenarioSource {
+    /// Name of the built-in scenario, or of the file without its extension.
+    pub name: String,
+    /// Directory that relative paths in the scenario refer to.
+    pub folder: PathBuf,
+    /// Scenario with its world.
+    pub scenario: AnyScenario,
+    file: PathBuf,
+    text: String,
+    /// SHA-256 of the files at the time when the scenario was read, by absolute path. A file that changes
+    /// before it is used is refused.
+    contents: BTreeMap<PathBuf, String>,
+}
+
+impl ScenarioSource {
+    /// Returns the world of the scenario.
+    pub fn world(&self) -> &'static dyn AnyWorld {
+        self.scenario.world()
+    }
+
+    /// Checks all values of the scenario and prepares its simulator.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the location of the first invalid value, or for an option that the world does not
+    /// support.
+    pub fn prepare(&self, options: Options) -> Result<Box<dyn AnyMission>, Failure> {
+        self.world().prepare(self, options)
+    }
+
+    /// Returns the scenario with its type `S`, for an operation that only the world of `S` supports.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when the scenario is of another world; `what` names the operation.
+    pub fn typed<S: ScenarioFile>(&self, what: &str) -> Result<&S, Failure> {
+        self.scenario.values().ok_or_else(|| {
+            Failure::Usage(format!(
+                "{what}: scenario `{}` belongs to another world, expected a scenario of {}",
+                self.name,
+                S::WORLD
+            ))
+        })
+    }
+
+    /// Adds the location in the file to an error about a value that the simulator refuses.
+    pub fn explain(&self, error: SimError) -> Failure {
+        match error {
+            SimError::OutOfRange(error) => self.out_of_range(&error),
+            error => error.into(),
+        }
+    }
+
+    /// Adds the location in the file to an error about a value in the table `table` of the scenario.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the location of the value.
+    pub fn check_part(&self, table: &str, checked: Result<(), OutOfRange>) -> Result<(), Failure> {
+        checked.map_err(|error| self.out_of_range(&error.under(table)))
+    }
+
+    /// Adds the location in the file to an error about a value outside its range.
+    pub fn out_of_range(&self, error: &OutOfRange) -> Failure {
+        toml_file::out_of_range(&self.file, &self.text, error).into()
+    }
+
+    /// Returns the failure for a value at a path of the scenario.
+    pub fn refuse(&self, path: &str, message: String) -> Failure {
+        toml_file::refuse(&self.file, &self.text, path, message).into()
+    }
+}
 
 impl ScenarioSource {
     /// Reads the scenario `word`: a built-in name, the path of a TOML file, or of the `run.toml` of a run to
@@ -113,7 +188,7 @@ impl ScenarioSource {
 
     /// Returns the scenario with the path of every file replaced by the digest of its content at the time
     /// when the scenario was read.
-    pub fn identity(&self) -> Box<dyn AnyScenario> {
+    pub fn identity(&self) -> AnyScenario {
         let mut scenario = self.scenario.clone();
         for (_, path) in scenario.paths() {
             if let Some(sha256) = self.contents.get(&self.folder.join(&*path)) {
@@ -123,7 +198,7 @@ impl ScenarioSource {
         scenario
     }
 
-    /// Returns the scenario with other values, in the form of [`AnyScenario::to_json`], and another seed.
+    /// Returns the scenario with other values, in the form of [`ScenarioValues::to_json`](scenario::run_file::ScenarioValues::to_json), and another seed.
     /// `label` is the origin named in error messages.
     ///
     /// # Errors

@@ -26,8 +26,6 @@ pub use self::world::{Plain, read_scored};
 
 /// A world of images, each with a row of truth and a row of the answer.
 pub trait PlainWorld: Sized + Send + Sync + 'static {
-    /// Commented scenario as a starting point for the user.
-    const STARTING_POINT: &'static str;
     /// File of a dataset with the data that a pipeline receives before the first frame, unique to the world.
     const SETUP_FILE: &'static str;
 

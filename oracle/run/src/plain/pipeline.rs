@@ -67,7 +67,7 @@ impl<P> BuiltIn<P> {
 
 impl<P: PlainWorld> PipelineFactory<Plain<P>> for BuiltIn<P> {
     fn name(&self) -> String {
-        <Plain<P> as crate::World>::CODE.to_owned()
+        <Plain<P> as crate::WorldScenario>::CODE.to_owned()
     }
 
     fn build(&self, setup: &P::Setup) -> Result<Box<dyn Pipeline<Plain<P>>>, ContractError> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use contract::{Frame, PipelineFactory};
+use contract::Frame;
 use files::{Failure, RunDirectory, TableReader, write_png_of_depth};
 use scenario::AttitudeChoice;
 use scenario::run_file::RunFile;
@@ -14,9 +14,12 @@ use super::pipeline::BuiltIn;
 use super::scoring::{CORRECT_RATE, UnitJudgement, UnitScorer, definitions};
 use super::{Answer, PlainWorld, Scored};
 use crate::any_world::{Options, ScenarioSource};
-use crate::frame_jobs::{Expectation, FrameJobs};
+use crate::frame_jobs::FrameJobs;
 use crate::rows_by_number::RowsByNumber;
-use crate::world::{OpenDataset, Scorer as _, World, refuse_attitude};
+use crate::world::{
+    FactoryOf, OpenDataset, Scorer as _, WorldFacts, WorldFiles, WorldFrames, WorldPipelines, WorldScenario,
+    WorldScore, refuse_attitude,
+};
 
 /// A plain world with a scenario, ready to run.
 pub struct Plain<P: PlainWorld> {
@@ -32,63 +35,15 @@ impl<P: PlainWorld> Plain<P> {
     }
 }
 
-impl<P: PlainWorld> World for Plain<P> {
-    const STARTING_POINT: &'static str = P::STARTING_POINT;
-    const SETUP_FILE: &'static str = P::SETUP_FILE;
-    const TRUTH_FILE: &'static str = "truth/frames.parquet";
-    const HEADLINE: &'static str = CORRECT_RATE;
-    const IMAGES: PngImages = PngImages;
-    const PICTURES: &'static str = PngImages::WORD;
+impl<P: PlainWorld> WorldFrames for Plain<P> {
     /// A state may change any exposure.
     const IS_SEQUENTIAL: bool = size_of::<P::State>() > 0;
 
-    type Scenario = P::Scenario;
-    type Config = ();
     type Interface = Self;
-    type Images = PngImages;
     type Exposure = (Frame, P::Truth);
     type Workspace<'a> = ();
     type Truth = P::Truth;
     type State = P::State;
-    type Dataset<'a> = PlainDataset<P>;
-    type Answers = PlainAnswers<P>;
-    type Scorer<'a> = UnitScorer<P>;
-    type Judgement = UnitJudgement;
-
-    fn prepare(source: &ScenarioSource, scenario: &P::Scenario, options: Options) -> Result<Self, Failure> {
-        refuse_attitude(options.attitude)?;
-        let other = options.inject.map(|stage| format!("--inject {stage}"));
-        if let Some(option) = other.or_else(|| Some(format!("--renderer {}", options.renderer.word()?))) {
-            return Err(Failure::Usage(format!("the world {} has no {option}", Self::CODE)));
-        }
-        let world = P::new(scenario).map_err(|error| source.out_of_range(&error))?;
-        let run_file = RunFile::new(&source.name, scenario, source.files()?, None, None)?;
-        let setup = world.setup();
-        Ok(Self { world, run_file, setup })
-    }
-
-    fn run_file(&self) -> &RunFile<P::Scenario> {
-        &self.run_file
-    }
-
-    fn config(_: &P::Scenario) -> &() {
-        &()
-    }
-
-    fn built_in((): &()) -> Result<Box<dyn PipelineFactory<Self> + Send>, Failure> {
-        Ok(Box::new(BuiltIn::<P>::NEW))
-    }
-
-    fn check_frame_jobs(&self, frame_jobs: &FrameJobs<PngImages>) -> Result<(), Failure> {
-        if frame_jobs.expectation == Expectation::Kept {
-            return Err(Failure::Usage(format!("the world {} has no --expected", Self::CODE)));
-        }
-        P::pipeline(&self.setup).map(drop).map_err(Failure::from)
-    }
-
-    fn figures() -> Vec<FigureSpec> {
-        definitions::<P>().into_iter().map(|definition| definition.figure).collect()
-    }
 
     fn frame_count(&self) -> u64 {
         self.world.frame_count()
@@ -121,9 +76,70 @@ impl<P: PlainWorld> World for Plain<P> {
             Err(_) => state,
         }
     }
+}
+
+impl<P: PlainWorld> WorldScenario for Plain<P> {
+    const FACTS: WorldFacts = WorldFacts {
+        setup_file: P::SETUP_FILE,
+        truth_file: "truth/frames.parquet",
+        evidence_file: None,
+        headline: CORRECT_RATE,
+        are_groups_apart: true,
+        pictures: PngImages::WORD,
+    };
+
+    type Scenario = P::Scenario;
+
+    fn prepare(source: &ScenarioSource, scenario: &P::Scenario, options: Options) -> Result<Self, Failure> {
+        refuse_attitude(options.attitude)?;
+        let other = options.inject.map(|stage| format!("--inject {stage}"));
+        if let Some(option) = other.or_else(|| Some(format!("--renderer {}", options.renderer.word()?))) {
+            return Err(Failure::Usage(format!("the world {} has no {option}", Self::CODE)));
+        }
+        let world = P::new(scenario).map_err(|error| source.out_of_range(&error))?;
+        let run_file = RunFile::new(&source.name, scenario, source.files()?, None, None)?;
+        let setup = world.setup();
+        Ok(Self { world, run_file, setup })
+    }
+
+    fn run_file(&self) -> &RunFile<P::Scenario> {
+        &self.run_file
+    }
+}
+
+impl<P: PlainWorld> WorldPipelines for Plain<P> {
+    type Config = ();
+
+    fn config(_: &P::Scenario) -> &() {
+        &()
+    }
+
+    fn built_in((): &()) -> Result<FactoryOf<Self>, Failure> {
+        Ok(Box::new(BuiltIn::<P>::NEW))
+    }
 
     fn write_image(frame: &Frame, (): &(), path: &Path) -> Result<(), String> {
         write_png_of_depth(path, frame).map_err(|error| error.to_string())
+    }
+}
+
+impl<P: PlainWorld> WorldFiles for Plain<P> {
+    const IMAGES: PngImages = PngImages;
+
+    type Images = PngImages;
+    type Dataset<'a> = PlainDataset<P>;
+
+    fn check_frame_jobs(&self, frame_jobs: &FrameJobs<PngImages>) -> Result<(), Failure> {
+        frame_jobs.refuse_expectation(Self::CODE)?;
+        P::pipeline(&self.setup).map(drop).map_err(Failure::from)
+    }
+
+    fn dataset<'a>(
+        &'a self,
+        directory: &'a RunDirectory,
+        frame_jobs: &FrameJobs<PngImages>,
+    ) -> Result<PlainDataset<P>, Failure> {
+        PlainDataset::create(self, directory, frame_jobs.images)
     }
 
     fn save(
@@ -139,16 +155,18 @@ impl<P: PlainWorld> World for Plain<P> {
         Ok(())
     }
 
-    fn dataset<'a>(
-        &'a self,
-        directory: &'a RunDirectory,
-        frame_jobs: &FrameJobs<PngImages>,
-    ) -> Result<PlainDataset<P>, Failure> {
-        PlainDataset::create(self, directory, frame_jobs.images)
-    }
-
     fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure> {
         open::<P>(directory)
+    }
+}
+
+impl<P: PlainWorld> WorldScore for Plain<P> {
+    type Answers = PlainAnswers<P>;
+    type Scorer<'a> = UnitScorer<P>;
+    type Judgement = UnitJudgement;
+
+    fn figures() -> Vec<FigureSpec> {
+        definitions::<P>().into_iter().map(|definition| definition.figure).collect()
     }
 
     fn scorer(&self) -> UnitScorer<P> {
@@ -172,7 +190,7 @@ impl<P: PlainWorld> World for Plain<P> {
 /// # Errors
 /// A [`Failure`] for a file that cannot be read, or an answer to a frame that the truth does not contain.
 pub fn read_scored<P: PlainWorld>(directory: &Path, measurements: &Path) -> Result<Vec<Scored<P>>, Failure> {
-    let truth = directory.join(Plain::<P>::TRUTH_FILE);
+    let truth = directory.join(Plain::<P>::FACTS.truth_file);
     let answers = read_answers::<P::Answer>(measurements)?;
     let mut answers = RowsByNumber::new(answers, measurements, "frame", &truth);
     let mut scored = Vec::new();

@@ -283,8 +283,8 @@ impl Study {
     }
 
     /// Returns the scenario from which the cases are derived.
-    pub fn scenario(&self) -> &dyn AnyScenario {
-        self.base.scenario.as_ref()
+    pub fn scenario(&self) -> &AnyScenario {
+        &self.base.scenario
     }
 
     /// Returns the frames of every case, for a scenario with `count` frames.
@@ -361,7 +361,7 @@ impl Study {
 
     /// Returns the figure that ranks cases from good to bad.
     pub fn worst_by(&self) -> String {
-        let headline = || self.scenario().world().headline().to_owned();
+        let headline = || self.scenario().world().facts().headline.to_owned();
         self.file.record.worst_by.clone().unwrap_or_else(headline)
     }
 

@@ -90,7 +90,7 @@ fn run(
     pipeline: &dyn StudyPipeline,
     scratch: &Path,
 ) -> Result<Evaluated, Failure> {
-    let factory = pipeline.factory(case.source.scenario.as_ref(), scratch)?;
+    let factory = pipeline.factory(&case.source.scenario, scratch)?;
     let prepared = case.source.prepare(Options::default())?;
     let frames = study.frames(prepared.frame_count())?;
     let navigation = study.file.navigate.zip(navigation_of(study.scenario().world().code()));

@@ -18,7 +18,7 @@ pub trait StudyPipeline: Sync {
     ///
     /// # Errors
     /// A [`Failure`] that states the expected world.
-    fn check(&self, scenario: &dyn AnyScenario) -> Result<(), Failure>;
+    fn check(&self, scenario: &AnyScenario) -> Result<(), Failure>;
 
     /// Returns the SHA-256 of everything that the pipeline's outcomes depend on, as far as it can be
     /// determined, which keeps rows of two pipelines apart. `None` for the built-in pipeline of a world,
@@ -33,7 +33,7 @@ pub trait StudyPipeline: Sync {
     ///
     /// # Errors
     /// A [`Failure`] when the world of the scenario has no such pipeline.
-    fn factory(&self, scenario: &dyn AnyScenario, scratch: &Path) -> Result<AnyFactory, Failure>;
+    fn factory(&self, scenario: &AnyScenario, scratch: &Path) -> Result<AnyFactory, Failure>;
 }
 
 impl Study {
@@ -47,7 +47,7 @@ impl Study {
 }
 
 impl StudyPipeline for PipelineChoice {
-    fn check(&self, scenario: &dyn AnyScenario) -> Result<(), Failure> {
+    fn check(&self, scenario: &AnyScenario) -> Result<(), Failure> {
         scenario.world().check_choice(scenario, self)
     }
 
@@ -63,11 +63,11 @@ impl StudyPipeline for PipelineChoice {
         words.extend(["--hash".to_owned(), hash]);
         let world = study.scenario().world();
         words.extend(self.arguments(world.code()));
-        words.extend(["--save-frames", world.pictures()].map(str::to_owned));
+        words.extend(["--save-frames", world.facts().pictures].map(str::to_owned));
         command_line(&words)
     }
 
-    fn factory(&self, scenario: &dyn AnyScenario, scratch: &Path) -> Result<AnyFactory, Failure> {
+    fn factory(&self, scenario: &AnyScenario, scratch: &Path) -> Result<AnyFactory, Failure> {
         scenario.world().factory(scenario, self, scratch)
     }
 }

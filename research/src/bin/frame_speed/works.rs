@@ -4,7 +4,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use boresight::far_range::{FarRangeMission, FarRangeScenario};
-use boresight::run::{ScenarioSource, World as _};
+use boresight::run::{ScenarioSource, WorldFrames as _};
 use contract::{Frame, Outcome, Pipeline, Rotation, Setup, Telemetry};
 use hifitime::{Epoch, Unit};
 use pipeline::far_range::{FarRangeConfig, FarRangePipeline, Mode};

@@ -22,7 +22,7 @@ pub mod report;
 mod table;
 
 use docking::DockingMission;
-use run::{AnyJudgement, ErasedWorld, World};
+use run::{AnyJudgement, ErasedWorld, WorldScenario as _};
 use view::{CloseUp, WorldViews};
 
 pub use self::table::docking_table;
@@ -45,6 +45,6 @@ pub fn register() {
 
 /// Returns the printed table of a scored run of this world.
 fn printed_table(scored: &dyn AnyJudgement, styled: bool) -> Option<String> {
-    let scored = scored.as_any().downcast_ref::<docking::DockingJudgement>()?;
+    let scored = scored.typed::<docking::DockingJudgement>()?;
     Some(docking_table(&scored.score, styled))
 }

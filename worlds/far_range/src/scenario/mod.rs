@@ -181,7 +181,7 @@ const GREY_REFLECTANCE: f64 = 0.25;
 /// Colour B − V of the Sun, mag (Ramírez et al. 2012, ApJ 752, 5: 0.653).
 const SUN_B_MINUS_V: f64 = 0.653;
 
-scenario_file!(FarRangeScenario, "far_range", paths_of_files);
+scenario_file!(FarRangeScenario, "far_range", crate::STARTING_POINT, paths_of_files);
 
 impl FarRangeScenario {
     fn paths_of_files(&mut self) -> Vec<(&'static str, &mut String)> {

@@ -23,7 +23,7 @@ mod table;
 
 use far_range::FarRangeMission;
 use far_range::scoring::FarRangeJudgement;
-use run::{AnyJudgement, ErasedWorld, World};
+use run::{AnyJudgement, ErasedWorld, WorldScenario as _};
 use view::{CloseUp, WorldViews};
 
 pub use self::table::{
@@ -53,7 +53,7 @@ pub fn register() {
 
 /// Returns the printed table of a scored run of this world.
 fn printed_table(scored: &dyn AnyJudgement, styled: bool) -> Option<String> {
-    let scored = scored.as_any().downcast_ref::<FarRangeJudgement>()?;
+    let scored = scored.typed::<FarRangeJudgement>()?;
     let best_mode = scored.best_mode.as_deref();
     let style = TableStyle { styled, reference: scored.published, best_mode, ..TableStyle::default() };
     Some(far_range_table(&scored.score, style))

@@ -20,7 +20,7 @@ use docking::rows::{FeatureRow, FieldTruthRow, read_field_measurements, read_fie
 use docking::{DockingMission, DockingScenario};
 use files::{Failure, TableReader};
 use hifitime::Epoch;
-use run::World;
+use run::{WorldFrames as _, WorldScenario as _};
 use scenario::run_file::RunFile;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -46,7 +46,7 @@ impl MonitoredWorld for Monitored {
         Ok(MonitorContext {
             ground: station(self.0.simulator()),
             stretch: Stretch::plain(),
-            frames: frames::<FieldTruthRow>(measurements, DockingMission::TRUTH_FILE)?,
+            frames: frames::<FieldTruthRow>(measurements, DockingMission::FACTS.truth_file)?,
         })
     }
 

@@ -8,7 +8,7 @@ use docking::DockingMission;
 use docking::rows::FeatureRow;
 use docking::scoring::ApproachParameters;
 use files::format_utc;
-use run::World;
+use run::WorldScenario as _;
 use serde_json::json;
 use sim::docking::FieldTruth;
 use sim::truth::approach::target_from_camera;

@@ -22,7 +22,7 @@ use ::report::figures::{cell, figure_table, least_to_most, percent_cell, shown_p
 use ::report::page::data_table::DataTable;
 use ::report::page::picture::RenderedPictures;
 use ::report::page::{Page, Section};
-use ::run::{AnyJudgement, World};
+use ::run::{AnyJudgement, WorldScenario as _};
 use docking::DockingMission;
 use docking::scoring::DockingGroup;
 use files::{Checksums, Failure};

@@ -18,7 +18,7 @@ use docking::rows::{FieldRow, FieldTruthRow, read_field_measurements, read_field
 use docking::scoring::DockingScore;
 use docking::{DockingMission, DockingScenario};
 use files::{Failure, TableReader};
-use run::{Judgement as _, World as _};
+use run::{Judgement as _, WorldScore as _};
 use scenario::run_file::RunFile;
 use score::UnitVerdict;
 use sim::docking::FieldTruth;

@@ -15,7 +15,7 @@ use far_range::rows::{FrameCluster, FrameTruthRow, ObjectTruthRow, read_measurem
 use far_range::{FarRangeMission, SceneTruth};
 use files::{Failure, TableReader};
 use hifitime::Epoch;
-use run::World;
+use run::WorldScenario as _;
 use serde_json::{Value, json};
 use sim::truth::ObjectTruth;
 
@@ -43,7 +43,7 @@ impl MonitoredWorld for Monitored {
         Ok(MonitorContext {
             ground: Some(GroundTrack::Chaser(Box::new(scenario.trajectory()?))),
             stretch: Stretch::from_range(scenario.sensor.bias_dn, scenario.sensor.full_scale_dn()),
-            frames: frames::<FrameTruthRow>(measurements, FarRangeMission::TRUTH_FILE)?,
+            frames: frames::<FrameTruthRow>(measurements, FarRangeMission::FACTS.truth_file)?,
         })
     }
 

@@ -6,7 +6,7 @@ use far_range::FarRangeMission;
 use files::format_utc;
 use hifitime::Epoch;
 use nalgebra::Vector3;
-use run::World;
+use run::WorldScenario as _;
 use serde_json::{Value, json};
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Trajectory, Visibility};
 

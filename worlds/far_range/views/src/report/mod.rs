@@ -32,7 +32,7 @@ use ::report::page::data_table::DataTable;
 use ::report::page::picture::RenderedPictures;
 use ::report::page::{Page, Section};
 use ::report::{BudgetPlan, BudgetReport, OtherReport, WorldReport};
-use ::run::{AnyJudgement, World};
+use ::run::{AnyJudgement, WorldScenario as _};
 use far_range::scoring::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore};
 use far_range::{FarRangeMission, is_argon};
 use files::{Checksums, Failure};
@@ -93,7 +93,7 @@ fn page_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failur
 /// Returns the page of a run directory with its stored error budget; if `scored` holds the verdicts, they are
 /// used, and the page has no error budget.
 fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
-    let run = match scored.and_then(|scored| scored.as_any_mut().downcast_mut::<FarRangeJudgement>()) {
+    let run = match scored.and_then(|scored| scored.typed_mut::<FarRangeJudgement>()) {
         Some(scored) => FarRangeRun::with_verdicts(directory, std::mem::take(&mut scored.verdicts))?,
         None => {
             let mut run = FarRangeRun::read(directory)?;

@@ -24,7 +24,7 @@ use far_range::{FarRangeMission, FarRangeScenario};
 use files::{Failure, TableReader, format_utc};
 use hifitime::{Epoch, Unit};
 use navigate::{NavigationRow, TABLE_FILE, read_navigation};
-use run::World as _;
+use run::WorldScore as _;
 use scenario::run_file::RunFile;
 use sim::truth::{FrameTruth, clock};
 
