@@ -2,7 +2,7 @@
 
 use contract::{
     AttitudeSource, Body, CameraFrame, Cluster, Frame, Icrs, Label, ListedStar, Measurement, NoSolution,
-    Outcome, Rotation, Setup, Solution, Telemetry,
+    Outcome, PixelPoint, Rotation, Setup, Solution, Telemetry,
 };
 use hifitime::Epoch;
 
@@ -211,6 +211,34 @@ enum PriorIdentity {
     Nothing,
 }
 
+/// A cluster of a frame after the examination of its motion.
+struct ExaminedCluster {
+    blob: Blob,
+    /// Centre in the previous frame; `None` if the cluster is not linked.
+    previous: Option<PixelPoint>,
+    track: Track,
+    label: Label,
+}
+
+impl ExaminedCluster {
+    fn motion(&self) -> ClusterMotion {
+        ClusterMotion {
+            centre: self.blob.centre,
+            previous: self.previous,
+            is_candidate: self.label == Label::Candidate,
+        }
+    }
+
+    fn cluster(&self, is_target: bool) -> Cluster {
+        Cluster {
+            position: self.blob.centre,
+            size: self.blob.size,
+            pixels: self.blob.pixels,
+            label: if is_target { Label::Target } else { self.label },
+        }
+    }
+}
+
 impl PaperPipeline {
     /// Processes a frame like [`contract::Pipeline::process`], with results of single steps supplied from
     /// outside; for an error budget.
@@ -223,99 +251,51 @@ impl PaperPipeline {
         if let Some(reason) = unusable_reason(frame, telemetry, &self.model) {
             return Outcome::without_solution(NoSolution::Failed(reason));
         }
-        let attitude = |mounting: &MountingFilter| {
-            overrides
-                .camera_from_icrs
-                .unwrap_or_else(|| mounting.camera_from_body() * telemetry.body_from_icrs)
-        };
+        let predicted_attitude = self.attitude(telemetry, overrides);
+
+        // Clusters of bright pixels (section 2.1).
         let mut blobs = match self.detect(frame) {
             Ok(blobs) => blobs,
             Err(reason) => {
                 return Outcome {
-                    camera_from_icrs: Some(attitude(&self.mounting)),
+                    camera_from_icrs: Some(predicted_attitude),
                     attitude_source: Some(AttitudeSource::NoStars),
                     ..Outcome::without_solution(reason)
                 };
             }
         };
-        if let Some(centroid) = overrides.centroid {
-            for blob in &mut blobs {
-                if let Some(centre) = centroid(blob.centre) {
-                    *blob = Blob { centre, ..*blob };
-                }
-            }
-        }
+        replace_centres(&mut blobs, overrides);
 
-        let identities = self.identify(&blobs, &attitude(&self.mounting), overrides);
-        let seen: Vec<(Blob, ListedStar)> = blobs
-            .iter()
-            .zip(&identities)
-            .filter_map(|(blob, identities)| match *identities {
-                PriorIdentity::Star { listed: Some(star), .. } => Some((*blob, star)),
-                _ => None,
-            })
-            .collect();
+        // Stars and marked hotspots, at the predicted attitude; then the attitude from the stars (2.4).
+        let identities = self.identify(&blobs, &predicted_attitude, overrides);
+        let seen = listed_stars(&blobs, &identities);
         let attitude_source = self.calibrate(&seen, telemetry, overrides);
-        let camera_from_icrs = attitude(&self.mounting);
+        let camera_from_icrs = self.attitude(telemetry, overrides);
 
+        // Motion from the previous frame (2.2); a cluster that does not move is a hotspot.
         let linked = self.link(&blobs, telemetry, &camera_from_icrs);
         let has_previous = linked.is_some();
-        let ClusterLinks { dt_s, before } = linked.unwrap_or_else(|| ClusterLinks::none(blobs.len()));
-        let centres_before: Vec<_> = before.iter().map(|before| Some(before.as_ref()?.centre)).collect();
-        let n_max = self.config.hotspots.n_max();
-        let tracks: Vec<Track> = blobs
-            .iter()
-            .zip(&identities)
-            .zip(before)
-            .map(|((blob, identities), before)| {
-                let is_star = matches!(identities, PriorIdentity::Star { .. });
-                match before {
-                    Some(track) => track.extended(blob, is_star, dt_s, n_max),
-                    None => Track::new(blob, is_star),
-                }
-            })
-            .collect();
+        let links = linked.unwrap_or_else(|| ClusterLinks::none(blobs.len()));
+        let examined = self.examine(&blobs, &identities, links);
 
-        let labels: Vec<Label> = (0..blobs.len())
-            .map(|i| match identities[i] {
-                PriorIdentity::Star { id, .. } => Label::Star(id),
-                PriorIdentity::Hotspot => Label::Hotspot,
-                PriorIdentity::Nothing if self.hotspots.is_hotspot(&tracks[i]) => Label::Hotspot,
-                _ if centres_before[i].is_some() => Label::Candidate,
-                _ => Label::Unlinked,
-            })
-            .collect();
-        let movers: Vec<ClusterMotion> = blobs
-            .iter()
-            .zip(&centres_before)
-            .zip(&labels)
-            .map(|((blob, &previous), label)| ClusterMotion {
-                centre: blob.centre,
-                previous,
-                is_candidate: *label == Label::Candidate,
-            })
-            .collect();
-        let target = select_target(&movers);
-
-        let solution = match target {
-            Some(i) => Solution::Detected(Measurement::new(
-                blobs[i].centre,
-                line_of_sight(blobs[i].centre, &camera_from_icrs, &self.model),
+        // The target moves unlike all others (2.3).
+        let motions: Vec<ClusterMotion> = examined.iter().map(ExaminedCluster::motion).collect();
+        let target = select_target(&motions);
+        let solution = match target.map(|index| blobs[index].centre) {
+            Some(centre) => Solution::Detected(Measurement::new(
+                centre,
+                line_of_sight(centre, &camera_from_icrs, &self.model),
             )),
             None if has_previous => Solution::NoSolution(NoSolution::NoTarget),
             None => Solution::NoSolution(NoSolution::NoPreviousFrame),
         };
-        let clusters = blobs
-            .iter()
-            .zip(labels)
-            .enumerate()
-            .map(|(i, (blob, label))| Cluster {
-                position: blob.centre,
-                size: blob.size,
-                pixels: blob.pixels,
-                label: if target == Some(i) { Label::Target } else { label },
-            })
-            .collect();
+
+        let mut clusters = Vec::with_capacity(examined.len());
+        let mut tracks = Vec::with_capacity(examined.len());
+        for (index, cluster) in examined.into_iter().enumerate() {
+            clusters.push(cluster.cluster(target == Some(index)));
+            tracks.push(cluster.track);
+        }
         self.previous = Some(PreviousFrame {
             time: telemetry.time,
             body_from_icrs: telemetry.body_from_icrs,
@@ -330,4 +310,63 @@ impl PaperPipeline {
             clusters,
         }
     }
+
+    /// Returns the attitude of the camera: the measured attitude of the body with the present estimate of the
+    /// mounting, or that of an override.
+    fn attitude(&self, telemetry: &Telemetry, overrides: &Overrides<'_>) -> Rotation<CameraFrame, Icrs> {
+        match overrides.camera_from_icrs {
+            Some(given) => given,
+            None => self.mounting.camera_from_body() * telemetry.body_from_icrs,
+        }
+    }
+
+    /// Extends the track of each cluster by this frame, and labels the cluster by its identity and track.
+    fn examine(
+        &mut self,
+        blobs: &[Blob],
+        identities: &[PriorIdentity],
+        links: ClusterLinks,
+    ) -> Vec<ExaminedCluster> {
+        let n_max = self.config.hotspots.n_max();
+        let mut examined = Vec::with_capacity(blobs.len());
+        for (index, before) in links.before.into_iter().enumerate() {
+            let (blob, identity) = (&blobs[index], identities[index]);
+            let is_star = matches!(identity, PriorIdentity::Star { .. });
+            let previous = before.as_ref().map(|track| track.centre);
+            let track = match before {
+                Some(track) => track.extended(blob, is_star, links.dt_s, n_max),
+                None => Track::new(blob, is_star),
+            };
+            let label = match identity {
+                PriorIdentity::Star { id, .. } => Label::Star(id),
+                PriorIdentity::Hotspot => Label::Hotspot,
+                PriorIdentity::Nothing if self.hotspots.is_hotspot(&track) => Label::Hotspot,
+                _ if previous.is_some() => Label::Candidate,
+                _ => Label::Unlinked,
+            };
+            examined.push(ExaminedCluster { blob: *blob, previous, track, label });
+        }
+        examined
+    }
+}
+
+/// Replaces the centres that an override gives.
+fn replace_centres(blobs: &mut [Blob], overrides: &Overrides<'_>) {
+    let Some(given) = overrides.centroid else { return };
+    for blob in blobs {
+        if let Some(centre) = given(blob.centre) {
+            blob.centre = centre;
+        }
+    }
+}
+
+/// Returns the clusters that are stars of the star list, each with its star.
+fn listed_stars(blobs: &[Blob], identities: &[PriorIdentity]) -> Vec<(Blob, ListedStar)> {
+    let mut seen = Vec::new();
+    for (index, identity) in identities.iter().enumerate() {
+        if let PriorIdentity::Star { listed: Some(star), .. } = *identity {
+            seen.push((blobs[index], star));
+        }
+    }
+    seen
 }

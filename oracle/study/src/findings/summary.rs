@@ -287,81 +287,20 @@ impl Summary {
         path: &Path,
         cases: &CaseFile,
     ) -> Result<Self, Failure> {
-        let (seed, required) = (study.file.seed, &study.file.require);
-        let points = Points::new(study, cases)?;
-        let mut sweep: Vec<SweepPoint> =
-            points.at.iter().enumerate().map(|(point, at)| points.summary(point, at, cases)).collect();
-        let pairs = points.pairs();
-        let mut differences: Vec<Vec<SweepDifference>> = vec![Vec::new(); pairs.len()];
-        // By point (a single entry for all cases without a sweep), then by requirement.
-        let mut decided: Vec<Vec<Option<RequirementResult>>> =
-            vec![vec![None; required.len()]; sweep.len().max(1)];
-        let (mut figures, mut waited_for) = (IndexMap::new(), None);
-        let (mut correlations, mut indices) = (Vec::new(), Vec::new());
-        let mut parameters = Vec::new();
-        for name in cases.drawn_columns() {
-            parameters.extend(cases.numbers(name)?.map(|numbers| (name, numbers)));
-        }
+        let mut found = Findings::new(study, cases)?;
         for (place, name) in cases.figures().iter().enumerate() {
             let values = cases.figure(name)?.unwrap_or_default();
-            figures.insert(name.clone(), figure(name, &values, &cases.draws));
-            for (point, summary) in sweep.iter_mut().enumerate() {
-                let (values, draws) = (points.pick(point, &values), points.pick(point, &cases.draws));
-                summary.figures.insert(name.clone(), figure(name, &values, &draws));
-            }
-            for (pair, found) in pairs.iter().zip(&mut differences) {
-                let [first, second] =
-                    pair.map(|point| (points.pick(point, &values), points.pick(point, &cases.draws)));
-                let [from, to] = pair.map(|point| points.at.get(point).cloned().unwrap_or_default());
-                let difference = difference(name, [&first, &second]);
-                found.extend(difference.map(|(difference, draws)| SweepDifference {
-                    figure: name.clone(),
-                    from,
-                    to,
-                    difference,
-                    draws,
-                }));
-            }
-            for (number, requirement) in
-                required.iter().enumerate().filter(|(_, required)| required.figure == *name)
-            {
-                for (point, decided) in decided.iter_mut().enumerate() {
-                    let (at, rows) = match points.at.get(point) {
-                        Some(at) => (at.clone(), points.pick(point, &points.rows)),
-                        None => (IndexMap::new(), (0..values.len()).collect()),
-                    };
-                    let (values, draws): (Vec<CaseFigure>, Vec<usize>) = rows
-                        .into_iter()
-                        .filter(|&row| !cases.has_error[row])
-                        .map(|row| (values[row], cases.draws[row]))
-                        .unzip();
-                    decided[number] = decide(requirement, &values, &draws, &at);
-                }
-            }
-            if let Some(until) = study.file.stop.until.as_ref().filter(|until| until.figure == *name) {
-                waited_for = Some(stopping_status(until, &values, &cases.draws));
-            }
-            correlations.extend(correlations_of(name, &values, &parameters, &cases.draws));
-            if study.file.design == DesignKind::Saltelli {
-                indices.extend(indices_of(name, place, &values, cases, seed));
-            }
+            found.add_figure(place, name, &values);
         }
-        let mut causes = IndexMap::new();
         for name in cases.causes() {
-            let counts = cases.cause(name)?;
-            causes.extend(cause(&counts, &cases.draws).map(|cause| (name.clone(), cause)));
-            for (point, summary) in sweep.iter_mut().enumerate() {
-                let (counts, draws) = (points.pick(point, &counts), points.pick(point, &cases.draws));
-                summary.causes.extend(cause(&counts, &draws).map(|cause| (name.clone(), cause)));
-            }
+            found.add_cause(name, &cases.cause(name)?);
         }
-        let sort = |causes: &mut IndexMap<String, CauseSummary>| {
-            causes.sort_by(|_, a, _, b| b.frames.cmp(&a.frames))
-        };
-        sort(&mut causes);
-        sweep.iter_mut().for_each(|point| sort(&mut point.causes));
+        found.sort_causes();
+        let Findings { sweep, differences, decided, figures, causes, waited_for, .. } = found;
         let worst_by = study.worst_by();
-        let (worst, worst_of) = worst(cases, &worst_by, seed, |case| pipeline.replay(study, path, case))?;
+        let replay = |case| pipeline.replay(study, path, case);
+        let (worst, worst_of) = worst(cases, &worst_by, study.file.seed, replay)?;
+        let case_error = |(case, error): &(u64, String)| CaseError { case: *case, error: error.clone() };
         Ok(Self {
             study: study.name.clone(),
             title: study.file.title.clone(),
@@ -376,22 +315,148 @@ impl Summary {
             is_narrow_enough: waited_for == Some(StoppingStatus::NarrowEnough),
             waited: waited_for,
             error_cases: count_true(&cases.has_error),
-            errors: cases
-                .errors
-                .iter()
-                .map(|(case, error)| CaseError { case: *case, error: error.clone() })
-                .collect(),
+            errors: cases.errors.iter().map(case_error).collect(),
             requirements: decided.into_iter().flatten().flatten().collect(),
             figures,
             causes,
             differences: differences.into_iter().flatten().collect(),
             sweep,
-            correlations,
-            indices,
+            correlations: found.correlations,
+            indices: found.indices,
             worst,
             worst_of,
             worst_by,
         })
+    }
+}
+
+/// Findings of a study, figure by figure.
+struct Findings<'a> {
+    study: &'a Study,
+    cases: &'a CaseFile,
+    points: Points,
+    /// Drawn numbers of each parameter that has numbers.
+    parameters: Vec<(&'a String, Vec<f64>)>,
+    sweep: Vec<SweepPoint>,
+    /// Pairs of points that differ in one value.
+    pairs: Vec<[usize; 2]>,
+    /// Differences of the figures by pair.
+    differences: Vec<Vec<SweepDifference>>,
+    /// By point (a single entry for all cases without a sweep), then by requirement.
+    decided: Vec<Vec<Option<RequirementResult>>>,
+    figures: IndexMap<String, FigureSummary>,
+    causes: IndexMap<String, CauseSummary>,
+    waited_for: Option<StoppingStatus>,
+    correlations: Vec<RankCorrelation>,
+    indices: Vec<SobolIndex>,
+}
+
+impl<'a> Findings<'a> {
+    fn new(study: &'a Study, cases: &'a CaseFile) -> Result<Self, Failure> {
+        let points = Points::new(study, cases)?;
+        let mut sweep = Vec::with_capacity(points.at.len());
+        for (point, at) in points.at.iter().enumerate() {
+            sweep.push(points.summary(point, at, cases));
+        }
+        let mut parameters = Vec::new();
+        for name in cases.drawn_columns() {
+            parameters.extend(cases.numbers(name)?.map(|numbers| (name, numbers)));
+        }
+        let pairs = points.pairs();
+        Ok(Self {
+            study,
+            cases,
+            parameters,
+            differences: vec![Vec::new(); pairs.len()],
+            pairs,
+            decided: vec![vec![None; study.file.require.len()]; sweep.len().max(1)],
+            sweep,
+            points,
+            figures: IndexMap::new(),
+            causes: IndexMap::new(),
+            waited_for: None,
+            correlations: Vec::new(),
+            indices: Vec::new(),
+        })
+    }
+
+    /// Adds a figure, the one at `place` among all, with its value in each case.
+    fn add_figure(&mut self, place: usize, name: &str, values: &[CaseFigure]) {
+        let draws = &self.cases.draws;
+        self.figures.insert(name.to_owned(), figure(name, values, draws));
+        for (point, summary) in self.sweep.iter_mut().enumerate() {
+            let at_point = figure(name, &self.points.pick(point, values), &self.points.pick(point, draws));
+            summary.figures.insert(name.to_owned(), at_point);
+        }
+        self.add_differences(name, values);
+        self.decide_requirements(name, values);
+        let until = self.study.file.stop.until.as_ref().filter(|until| until.figure == *name);
+        if let Some(until) = until {
+            self.waited_for = Some(stopping_status(until, values, draws));
+        }
+        self.correlations.extend(correlations_of(name, values, &self.parameters, draws));
+        if self.study.file.design == DesignKind::Saltelli {
+            self.indices.extend(indices_of(name, place, values, self.cases, self.study.file.seed));
+        }
+    }
+
+    /// Adds the difference of a figure between the points of each pair.
+    fn add_differences(&mut self, name: &str, values: &[CaseFigure]) {
+        for (index, pair) in self.pairs.iter().enumerate() {
+            let of_pair = pair
+                .map(|point| (self.points.pick(point, values), self.points.pick(point, &self.cases.draws)));
+            let [from, to] = pair.map(|point| self.points.at.get(point).cloned().unwrap_or_default());
+            let [first, second] = &of_pair;
+            if let Some((difference, draws)) = difference(name, [first, second]) {
+                let figure = name.to_owned();
+                self.differences[index].push(SweepDifference { figure, from, to, difference, draws });
+            }
+        }
+    }
+
+    /// Decides the requirements on a figure, at each point. Cases that cannot be run do not count.
+    fn decide_requirements(&mut self, name: &str, values: &[CaseFigure]) {
+        for (number, requirement) in self.study.file.require.iter().enumerate() {
+            if requirement.figure != *name {
+                continue;
+            }
+            for (point, decided) in self.decided.iter_mut().enumerate() {
+                let (at, rows) = match self.points.at.get(point) {
+                    Some(at) => (at.clone(), self.points.pick(point, &self.points.rows)),
+                    None => (IndexMap::new(), (0..values.len()).collect()),
+                };
+                let (mut counted, mut draws) = (Vec::new(), Vec::new());
+                for row in rows {
+                    if !self.cases.has_error[row] {
+                        counted.push(values[row]);
+                        draws.push(self.cases.draws[row]);
+                    }
+                }
+                decided[number] = decide(requirement, &counted, &draws, &at);
+            }
+        }
+    }
+
+    /// Adds a cause with its count in each case.
+    fn add_cause(&mut self, name: &str, counts: &[CaseFigure]) {
+        let draws = &self.cases.draws;
+        if let Some(all) = cause(counts, draws) {
+            self.causes.insert(name.to_owned(), all);
+        }
+        for (point, summary) in self.sweep.iter_mut().enumerate() {
+            let at_point = cause(&self.points.pick(point, counts), &self.points.pick(point, draws));
+            if let Some(at_point) = at_point {
+                summary.causes.insert(name.to_owned(), at_point);
+            }
+        }
+    }
+
+    /// Sorts causes by their number of frames, the most frequent first.
+    fn sort_causes(&mut self) {
+        let of_points = self.sweep.iter_mut().map(|point| &mut point.causes);
+        for causes in of_points.chain([&mut self.causes]) {
+            causes.sort_by(|_, a, _, b| b.frames.cmp(&a.frames));
+        }
     }
 }
 

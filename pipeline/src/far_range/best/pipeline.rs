@@ -7,7 +7,7 @@ use super::hot_pixels::HotPixels;
 use super::photometry::{KnownSource, PhotometryContext, PhotometryModel, Source};
 use super::stars::ExpectedStar;
 use super::state::{BestPipeline, LastFrame, ScaleSource};
-use super::target::TargetContext;
+use super::target::{CandidateImage, TargetContext};
 use super::track::{FrameCandidates, Sky, TargetCandidate, TrackModel};
 use super::unlisted_stars::UnlistedStars;
 use crate::far_range::background::Background;
@@ -141,64 +141,58 @@ impl BestPipeline {
         };
         let mut images = self.candidates(inputs, overrides);
         let candidates: Vec<TargetCandidate> = images.iter().map(|image| image.candidate).collect();
-        let track_model = TrackModel {
-            max_speed_px_per_s: self.config.best.max_speed_px_per_s,
-            clutter_per_px2: (candidates.len() as f64 + 1.0)
-                / transmitted_pixels(context.frame).max(1) as f64,
-            threshold_e_per_s: context.threshold_e / exposure_s,
-        };
-        let sky = Sky { camera_from_icrs: attitude.camera_from_icrs, model: &self.model };
-        let attitude_variance_px2 =
-            candidates.iter().map(|candidate| candidate.attitude_variance_px2).fold(0.0, f64::max);
-        self.tracks.update(&FrameCandidates {
-            candidates: &candidates,
-            model: &track_model,
-            sky,
-            attitude_variance_px2,
-        });
+        self.update_tracks(&candidates, &inputs);
         self.last = Some(LastFrame { time: telemetry.time, camera_from_icrs: attitude.camera_from_icrs });
 
-        let chosen = self
-            .tracks
-            .by_odds()
-            .find_map(|track| Some((track.candidate?, track.log_odds())))
-            // An object whose centre is off the detector is none that can be measured.
-            .filter(|&(c, _)| candidates.get(c).is_some_and(|c| self.model.is_on_detector(c.position)))
-            .filter(|(_, log_odds)| *log_odds >= self.config.best.min_log_odds);
-        let log_odds = chosen.map(|(_, log_odds)| log_odds);
-        let chosen = chosen.map(|(candidate, _)| candidate);
-        let solution = match chosen.and_then(|c| images.get_mut(c)) {
+        let chosen = self.chosen_candidate(&candidates);
+        let solution = match chosen.and_then(|chosen| images.get_mut(chosen.index)) {
             Some(image) => {
                 self.fit_candidate(inputs, image);
+                let log_odds = chosen.map(|chosen| chosen.log_odds);
                 Solution::Detected(self.measurement(image, inputs, overrides, log_odds))
             }
             None if sources.is_empty() => Solution::NoSolution(NoSolution::EmptyFrame),
             None => Solution::NoSolution(NoSolution::NoTarget),
         };
-        let target_cluster = chosen.and_then(|c| images.get(c)?.cluster);
-        let mut positions: Vec<PixelPoint> = sources.iter().map(|source| source.centre).collect();
-        let targets = images.iter().filter_map(|image| Some((image.cluster?, image.fit.as_ref()?.position)));
-        for (i, position) in attitude.fitted.iter().copied().chain(targets) {
-            positions[i] = position;
-        }
-        let clusters = sources.iter().enumerate().map(|(i, source)| Cluster {
-            position: positions[i],
-            size: source.blob.size,
-            pixels: source.blob.pixels,
-            label: match attitude.star_of[i] {
-                _ if target_cluster == Some(i) => Label::Target,
-                Some(id) => Label::Star(id),
-                None if source.spike.is_some() => Label::Hotspot,
-                None => Label::Candidate,
-            },
-        });
+        let target_cluster = chosen.and_then(|chosen| images.get(chosen.index)?.cluster);
         Outcome {
             solution,
             camera_from_icrs: attitude.camera_from_icrs,
             attitude_source: Some(attitude.source),
             n_stars: Some(attitude.n_stars),
-            clusters: clusters.collect(),
+            clusters: labelled_clusters(sources, &attitude, &images, target_cluster),
         }
+    }
+
+    /// Extends the tracks of possible targets by the candidates of a frame.
+    fn update_tracks(&mut self, candidates: &[TargetCandidate], inputs: &TargetContext<'_>) {
+        let threshold_e = inputs.context.threshold_e;
+        let transmitted_px = transmitted_pixels(inputs.context.frame).max(1) as f64;
+        let track_model = TrackModel {
+            max_speed_px_per_s: self.config.best.max_speed_px_per_s,
+            clutter_per_px2: (candidates.len() as f64 + 1.0) / transmitted_px,
+            threshold_e_per_s: threshold_e / inputs.exposure_s,
+        };
+        let mut attitude_variance_px2: f64 = 0.0;
+        for candidate in candidates {
+            attitude_variance_px2 = attitude_variance_px2.max(candidate.attitude_variance_px2);
+        }
+        self.tracks.update(&FrameCandidates {
+            candidates,
+            model: &track_model,
+            sky: Sky { camera_from_icrs: inputs.attitude.camera_from_icrs, model: &self.model },
+            attitude_variance_px2,
+        });
+    }
+
+    /// Returns the candidate of the track with the highest odds; `None` if they are too low, or if its centre
+    /// is off the detector: such an object cannot be measured.
+    fn chosen_candidate(&self, candidates: &[TargetCandidate]) -> Option<ChosenCandidate> {
+        let (index, log_odds) =
+            self.tracks.by_odds().find_map(|track| Some((track.candidate?, track.log_odds())))?;
+        let is_on_detector = self.model.is_on_detector(candidates.get(index)?.position);
+        (is_on_detector && log_odds >= self.config.best.min_log_odds)
+            .then_some(ChosenCandidate { index, log_odds })
     }
 
     /// Returns the distribution of the stars in a frame that are not identified. Without an attitude every
@@ -233,6 +227,48 @@ impl BestPipeline {
         };
         attitude.expected.iter().filter_map(known).collect()
     }
+}
+
+/// Candidate that a frame's measurement is made of.
+#[derive(Debug, Clone, Copy)]
+struct ChosenCandidate {
+    index: usize,
+    /// Logarithm of the odds that its track is the target.
+    log_odds: f64,
+}
+
+/// Returns the clusters of a frame with their labels, at the fitted positions where there are any.
+fn labelled_clusters(
+    sources: &[Source],
+    attitude: &FrameAttitude,
+    images: &[CandidateImage],
+    target_cluster: Option<usize>,
+) -> Vec<Cluster> {
+    let mut positions: Vec<PixelPoint> = sources.iter().map(|source| source.centre).collect();
+    for (index, position) in &attitude.fitted {
+        positions[*index] = *position;
+    }
+    for image in images {
+        if let (Some(index), Some(fit)) = (image.cluster, &image.fit) {
+            positions[index] = fit.position;
+        }
+    }
+    let mut clusters = Vec::with_capacity(sources.len());
+    for (index, source) in sources.iter().enumerate() {
+        let label = match attitude.star_of[index] {
+            _ if target_cluster == Some(index) => Label::Target,
+            Some(id) => Label::Star(id),
+            None if source.spike.is_some() => Label::Hotspot,
+            None => Label::Candidate,
+        };
+        clusters.push(Cluster {
+            position: positions[index],
+            size: source.blob.size,
+            pixels: source.blob.pixels,
+            label,
+        });
+    }
+    clusters
 }
 
 #[cfg(test)]

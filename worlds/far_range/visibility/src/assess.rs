@@ -11,7 +11,7 @@ use statistics::clopper_pearson;
 
 use crate::confirm::{Bench, StarFrame};
 use crate::design::binding::binding_of;
-use crate::design::inverse::{FoundValue, Search, search};
+use crate::design::inverse::{Search, search};
 use crate::design::{Design, DesignPerformance, design_with};
 use crate::report::{SearchResult, SimulatedRate, Status, Verdict, VisibilityReport, curves};
 use crate::requirement::definition::Requirements;
@@ -202,84 +202,63 @@ impl<'a> Assessment<'a> {
             found: None,
             binds: None,
         };
-        let FoundValue { value, goal, threshold_value, failing_value, is_monotone } =
-            match search(self.requirements, self.design, demand, find)? {
-                Search::Impossible { best_value, best_probability, binds } => {
-                    return Ok(Verdict {
-                        reached: best_probability,
-                        evidence: format!(
-                            "{parameter} {} to {} {unit}: at most {:.1} %, at {} {unit}",
-                            digits(find.from),
-                            digits(find.to),
-                            100.0 * best_probability,
-                            digits(best_value)
-                        ),
-                        binds: Some(binds),
-                        ..verdict
-                    });
-                }
-                Search::Found(found) => found,
-            };
-        let value = self.polished(demand, find, value, asked)?;
+        let found = match search(self.requirements, self.design, demand, find)? {
+            Search::Impossible { best_value, best_probability, binds } => {
+                return Ok(Verdict {
+                    reached: best_probability,
+                    evidence: format!(
+                        "{parameter} {} to {} {unit}: at most {:.1} %, at {} {unit}",
+                        digits(find.from),
+                        digits(find.to),
+                        100.0 * best_probability,
+                        digits(best_value)
+                    ),
+                    binds: Some(binds),
+                    ..verdict
+                });
+            }
+            Search::Found(found) => found,
+        };
+
+        // The value itself, and the next one that fails.
+        let value = self.polished(demand, find, found.value, asked)?;
         let (reached, simulated) = self.at_value(demand, find.parameter, value)?;
-        let (failing, failing_simulated) = match failing_value {
+        let (failing_probability, failing_simulated) = match found.failing_value {
             Some(failing) => {
                 let (reached, simulated) = self.at_value(demand, find.parameter, failing)?;
                 (Some(reached.probability), simulated)
             }
             None => (None, None),
         };
-        let status = status(asked, reached.probability, simulated.as_ref());
+        let result = SearchResult {
+            parameter: parameter.into(),
+            unit: unit.into(),
+            value,
+            probability: reached.probability,
+            aimed: found.goal,
+            threshold_value: found.threshold_value,
+            simulated,
+            failing_value: found.failing_value,
+            failing_probability,
+            failing_simulated,
+            is_monotone: found.is_monotone,
+        };
+
+        // The margin is that of the given camera.
         let own = match find.parameter {
             Parameter::ExposureS => Some(file.exposure.nominal_s),
             other => self.requirements.camera.value(other),
         };
-        let mut evidence = format!(
-            "{parameter} {} {unit}: {:.1} %, {}{}",
-            digits(value),
-            100.0 * reached.probability,
-            simulation_text(simulated.as_ref(), reached.probability),
-            frames_in_words(status, asked, reached.probability, simulated.as_ref())
-        );
-        if goal > asked {
-            let (goal, asked) = (100.0 * goal, 100.0 * asked);
-            let frames = file.confirm.frames;
-            evidence.push_str(&format!(
-                "; searched for {goal:.1} %, at which {frames} frames prove the required {asked:.1} %"
-            ));
-        }
-        if let (Some(value), Some(probability)) = (failing_value, failing) {
-            let evidence_text = simulation_text(failing_simulated.as_ref(), probability);
-            evidence.push_str(&format!(
-                "; {} {unit}: {:.1} %, {evidence_text}",
-                digits(value),
-                100.0 * probability
-            ));
-        }
-        if !is_monotone {
-            evidence.push_str("; not met everywhere beyond this value");
-        }
+        let margin = own.map(|own| if find.want == Extreme::Largest { value - own } else { own - value });
+        let status = status(asked, reached.probability, simulated.as_ref());
         Ok(Verdict {
             status,
             reached: reached.probability,
-            // Margin of the given camera.
-            margin: own.map(|own| if find.want == Extreme::Largest { value - own } else { own - value }),
-            evidence,
+            margin,
+            evidence: found_in_words(&result, status, asked, file.confirm.frames),
             simulated,
             binds: (status == Status::NotMet).then(|| REFUTED.to_owned()),
-            found: Some(SearchResult {
-                parameter: parameter.into(),
-                unit: unit.into(),
-                value,
-                probability: reached.probability,
-                aimed: goal,
-                threshold_value,
-                simulated,
-                failing_value,
-                failing_probability: failing,
-                failing_simulated,
-                is_monotone,
-            }),
+            found: Some(result),
             ..verdict
         })
     }
@@ -463,6 +442,34 @@ impl<'a> Assessment<'a> {
             (_, None) => percent,
         }
     }
+}
+
+/// Returns the evidence of a value that a search found, in words. `frames` is the number of simulated frames
+/// that confirm it.
+fn found_in_words(found: &SearchResult, status: Status, asked: f64, frames: u32) -> String {
+    let SearchResult { parameter, unit, probability, simulated, .. } = found;
+    let mut words = format!(
+        "{parameter} {} {unit}: {:.1} %, {}{}",
+        digits(found.value),
+        100.0 * probability,
+        simulation_text(simulated.as_ref(), *probability),
+        frames_in_words(status, asked, *probability, simulated.as_ref())
+    );
+    if found.aimed > asked {
+        let (aimed, asked) = (100.0 * found.aimed, 100.0 * asked);
+        words.push_str(&format!(
+            "; searched for {aimed:.1} %, at which {frames} frames prove the required {asked:.1} %"
+        ));
+    }
+    if let (Some(value), Some(probability)) = (found.failing_value, found.failing_probability) {
+        let simulated = simulation_text(found.failing_simulated.as_ref(), probability);
+        let percent = 100.0 * probability;
+        words.push_str(&format!("; {} {unit}: {percent:.1} %, {simulated}", digits(value)));
+    }
+    if !found.is_monotone {
+        words.push_str("; not met everywhere beyond this value");
+    }
+    words
 }
 
 /// Formats a number to three significant digits.

@@ -22,6 +22,7 @@ mod gaussian;
 mod groups;
 mod line_response;
 mod noise_correlation;
+mod plate_map;
 mod sampled;
 mod sampled_marks;
 mod samples;

@@ -14,12 +14,10 @@ use pulp::{Arch, Simd, WithSimd};
 use super::blur::Blur;
 use super::chunk::{CHUNK, IdealPositions};
 use super::coverage::MarkImage;
+use super::plate_map::{CELLS, PixelSum, PlateMap, PlatePixel};
 use super::sampled::Tables;
 use crate::CameraModel;
 use crate::docking::pose::geometry::PoseProjection;
-
-/// Number of cells of the plate's map per side.
-const CELLS: usize = 64;
 
 /// Approximate number of pixels of the plate that are used.
 const PLATE_PIXELS: f64 = 6000.0;
@@ -59,16 +57,6 @@ const STEP: f64 = 1e-3;
 /// Number of directions in the search.
 const DIRECTIONS: u32 = 192;
 
-/// Pixel of the plate, clear of marks, cross and rim, with the cross's blurred signal subtracted.
-#[derive(Debug, Clone, Copy)]
-struct PlatePixel {
-    u: f64,
-    v: f64,
-    y1: f64,
-    y2: f64,
-    dn: f64,
-}
-
 /// Accumulated evidence at one position: Σ s w and Σ w, with s the plate's step there and w its weight, in
 /// variances of a pixel.
 #[derive(Debug, Clone, Copy, Default)]
@@ -95,8 +83,7 @@ struct SunEstimate {
 #[derive(Debug, Default)]
 pub(super) struct ShadowFinder {
     pixels: Vec<PlatePixel>,
-    /// Sums over the cells above and to the left: count and DN.
-    sums: Vec<(f64, f64)>,
+    map: PlateMap,
     /// Evidence for each position, direction by direction, from this field and from all fields.
     field: Vec<Evidence>,
     evidence: Vec<Evidence>,
@@ -354,114 +341,158 @@ impl ShadowFinder {
         (self.pixels.len() >= 50).then_some(())
     }
 
-    /// Finds the direction that best explains the plate's pixels in this field and previous ones, by sums
-    /// over rectangles of a map of the plate. Also returns the remaining variance of a pixel, DN².
+    /// Finds the direction that best explains the plate's pixels in this field and previous ones. Also
+    /// returns the remaining variance of a pixel, DN².
     fn search(&mut self, target: &TargetModel) -> Option<(SunEstimate, f64)> {
-        let radius = target.plate_radius_m;
-        let cell = 2.0 * radius / CELLS as f64;
-        let width = CELLS + 1;
-        self.sums.clear();
-        self.sums.resize(width * width, (0.0, 0.0));
-        let place = |y: f64| (((y + radius) / cell) as usize).min(CELLS - 1) + 1;
-        for pixel in &self.pixels {
-            let sum = &mut self.sums[place(pixel.y2) * width + place(pixel.y1)];
-            *sum = (sum.0 + 1.0, sum.1 + pixel.dn);
-        }
-        for row in 1..width {
-            let mut along = (0.0, 0.0);
-            for column in 1..width {
-                let here = self.sums[row * width + column];
-                along = (along.0 + here.0, along.1 + here.1);
-                let above = self.sums[(row - 1) * width + column];
-                self.sums[row * width + column] = (along.0 + above.0, along.1 + above.1);
-            }
-        }
-        let n = self.pixels.len() as f64;
-        let sum: f64 = self.pixels.iter().map(|p| p.dn).sum();
-        let squares: f64 = self.pixels.iter().map(|p| p.dn * p.dn).sum();
-        let variance = (squares - sum * sum / n) / n;
-        let edge = |y: f64| ((y + radius) / cell + 0.5).clamp(0.0, CELLS as f64) as usize;
-        let sums = &self.sums;
-        let within = |(left, right): (usize, usize), (bottom, top): (usize, usize)| {
-            let at = |row: usize, column: usize| sums[row * width + column];
-            let (a, b, c, d) = (at(top, right), at(bottom, right), at(top, left), at(bottom, left));
-            (a.0 - b.0 - c.0 + d.0, a.1 - b.1 - c.1 + d.1)
+        self.map.fill(target.plate_radius_m, &self.pixels);
+        let positions = Positions::new(target, &self.map);
+        let best_of_field = self.evaluate(target, &positions);
+        let remaining = (self.map.variance() - best_of_field / self.map.total().count).max(1e-3);
+        let best = self.accumulate(remaining)?;
+        let placed = match self.sun_estimate {
+            Some(estimate) if self.is_as_good(&estimate, &positions, best.gain) => estimate,
+            _ => positions.sun_at(best.position),
         };
-        let (half, length) = (0.5 * target.cross.width_m, target.cross.half_length_m);
-        let side = 0.25 * target.cross.post_width_m;
-        let reach = ((radius + length) / cell) as usize;
-        let mut best_of_field = 0.0f64;
-        let mut along = Vec::with_capacity(CELLS / 2 + 1);
+        Some((placed, remaining))
+    }
+
+    /// Computes the evidence of this field for a shadow at each position. Returns the largest variance that
+    /// one position explains, DN².
+    fn evaluate(&mut self, target: &TargetModel, positions: &Positions) -> f64 {
+        let (map, total) = (&self.map, self.map.total());
+        let mut best: f64 = 0.0;
+        let mut post = Vec::with_capacity(CELLS / 2 + 1);
         self.field.clear();
-        for direction in 0..DIRECTIONS {
-            let (s, c) = libm::sincos(f64::from(direction) * TAU / f64::from(DIRECTIONS));
-            // Sums of the post's shadow from its foot up to each distance, by its two halves.
-            along.clear();
-            along.push((0.0, 0.0));
-            let mut of_post = (0.0, 0.0);
-            for step in 0..CELLS / 2 {
-                let distance = (step as f64 + 0.5) * cell;
-                for half_post in [-side, side] {
-                    let column = place(c * distance - s * half_post);
-                    let row = place(s * distance + c * half_post);
-                    let sum = within((column - 1, column), (row - 1, row));
-                    of_post = (of_post.0 + sum.0, of_post.1 + sum.1);
-                }
-                along.push(of_post);
-            }
-            // The bars hide its end.
-            let end = |a: f64, b: f64| (a / c.abs()).min(b / s.abs());
-            let hidden = (end(half, length).max(end(length, half)) / cell) as usize;
-            for distance in 0..=reach {
-                let (x, y) = (c * distance as f64 * cell, s * distance as f64 * cell);
-                let span = |at: f64, half: f64| (edge(at - half), edge(at + half));
-                let (across, down) = (span(x, half), span(y, half));
-                let (v, h) = (within(across, span(y, length)), within(span(x, length), down));
-                let both = within(across, down);
-                let post = along[distance.saturating_sub(hidden).min(CELLS / 2)];
-                let inside = (v.0 + h.0 - both.0 + post.0, v.1 + h.1 - both.1 + post.1);
-                let outside = (n - inside.0, sum - inside.1);
+        for direction in 0..DIRECTIONS as usize {
+            let (sine, cosine) = Positions::direction(direction);
+            sum_post(target, map, sine, cosine, &mut post);
+            let hidden = hidden_cells(target, map, sine, cosine);
+            for distance in 0..=positions.reach {
+                let along_m = distance as f64 * map.cell_m();
+                let (x_m, y_m) = (cosine * along_m, sine * along_m);
+                let post = post[distance.saturating_sub(hidden).min(CELLS / 2)];
+                let shadowed = sum_bars(target, map, x_m, y_m) + post;
+                let lit = total - shadowed;
                 let mut here = Evidence::default();
-                if inside.0 >= MIN_PIXELS_PER_SIDE && outside.0 >= MIN_PIXELS_PER_SIDE {
-                    here.weight = inside.0 * outside.0 / n;
-                    here.step = (outside.1 / outside.0 - inside.1 / inside.0) * here.weight;
-                    best_of_field = best_of_field.max(here.explained_variance());
+                if shadowed.count >= MIN_PIXELS_PER_SIDE && lit.count >= MIN_PIXELS_PER_SIDE {
+                    here.weight = shadowed.count * lit.count / total.count;
+                    here.step = (lit.dn / lit.count - shadowed.dn / shadowed.count) * here.weight;
+                    best = best.max(here.explained_variance());
                 }
                 self.field.push(here);
             }
         }
-        let left = (variance - best_of_field / n).max(1e-3);
+        best
+    }
+
+    /// Adds the evidence of this field, in variances of a pixel, to that of previous ones. Returns the best
+    /// position; `None` if a lit plate explains the pixels as well.
+    fn accumulate(&mut self, variance: f64) -> Option<BestPosition> {
         self.evidence.resize(self.field.len(), Evidence::default());
-        let mut best = (0.0, 0);
-        for (place, (sum, here)) in self.evidence.iter_mut().zip(&self.field).enumerate() {
-            sum.step = RETENTION * sum.step + here.step / left;
-            sum.weight = RETENTION * sum.weight + here.weight / left;
+        let mut best = BestPosition { gain: 0.0, position: 0 };
+        for (position, sum) in self.evidence.iter_mut().enumerate() {
+            let here = self.field[position];
+            sum.step = RETENTION * sum.step + here.step / variance;
+            sum.weight = RETENTION * sum.weight + here.weight / variance;
             // Takes the farthest of equivalent positions: invisible bars are not on the plate.
-            if sum.explained_variance() >= best.0 {
-                best = (sum.explained_variance(), place);
+            if sum.explained_variance() >= best.gain {
+                best = BestPosition { gain: sum.explained_variance(), position };
             }
         }
-        if best.0 < MIN_GAIN {
-            return None;
-        }
-        let height = target.cross.height_m - 0.5 * target.cross.thickness_m;
-        let is_as_good = |placed: &SunEstimate| {
-            let centre = placed.tangents * -height;
-            let turns = libm::atan2(centre.y, centre.x) / TAU;
-            let direction =
-                (turns * f64::from(DIRECTIONS)).round().rem_euclid(f64::from(DIRECTIONS)) as usize;
-            let distance = ((centre.norm() / cell).round() as usize).min(reach);
-            self.evidence[direction * (reach + 1) + distance].explained_variance()
-                >= MIN_RELATIVE_GAIN * best.0
-        };
-        let placed = self.sun_estimate.filter(is_as_good).unwrap_or_else(|| {
-            let (direction, distance) = (best.1 / (reach + 1), best.1 % (reach + 1));
-            let (s, c) = libm::sincos(direction as f64 * TAU / f64::from(DIRECTIONS));
-            let centre = Vector2::new(c, s) * (distance as f64 * cell);
-            SunEstimate { tangents: centre / -height, information: Matrix2::zeros() }
-        });
-        Some((placed, left))
+        (best.gain >= MIN_GAIN).then_some(best)
     }
+
+    /// Returns true if a previous direction explains the pixels about as well as the best position.
+    fn is_as_good(&self, estimate: &SunEstimate, positions: &Positions, best_gain: f64) -> bool {
+        let gain = self.evidence[positions.nearest(estimate)].explained_variance();
+        gain >= MIN_RELATIVE_GAIN * best_gain
+    }
+}
+
+/// Best position of a search.
+struct BestPosition {
+    /// Gain of the shadow there, in variances of a pixel.
+    gain: f64,
+    position: usize,
+}
+
+/// Positions of the shadow's centre on the plate: [`DIRECTIONS`] directions from the cross's foot, each with
+/// distances of whole cells.
+struct Positions {
+    /// Largest distance, cells.
+    reach: usize,
+    cell_m: f64,
+    /// Height of the cross's underside over the plate, m.
+    height_m: f64,
+}
+
+impl Positions {
+    fn new(target: &TargetModel, map: &PlateMap) -> Self {
+        let cell_m = map.cell_m();
+        Self {
+            reach: ((target.plate_radius_m + target.cross.half_length_m) / cell_m) as usize,
+            cell_m,
+            height_m: target.cross.height_m - 0.5 * target.cross.thickness_m,
+        }
+    }
+
+    /// Returns sine and cosine of a direction.
+    fn direction(direction: usize) -> (f64, f64) {
+        libm::sincos(direction as f64 * TAU / f64::from(DIRECTIONS))
+    }
+
+    /// Returns the direction of the Sun that puts the shadow at a position.
+    fn sun_at(&self, position: usize) -> SunEstimate {
+        let (direction, distance) = (position / (self.reach + 1), position % (self.reach + 1));
+        let (sine, cosine) = Self::direction(direction);
+        let centre = Vector2::new(cosine, sine) * (distance as f64 * self.cell_m);
+        SunEstimate { tangents: centre / -self.height_m, information: Matrix2::zeros() }
+    }
+
+    /// Returns the position nearest to the shadow by the Sun in a direction.
+    fn nearest(&self, estimate: &SunEstimate) -> usize {
+        let centre = estimate.tangents * -self.height_m;
+        let turns = libm::atan2(centre.y, centre.x) / TAU;
+        let directions = f64::from(DIRECTIONS);
+        let direction = (turns * directions).round().rem_euclid(directions) as usize;
+        let distance = ((centre.norm() / self.cell_m).round() as usize).min(self.reach);
+        direction * (self.reach + 1) + distance
+    }
+}
+
+/// Sums the pixels in the shadow of the post, from its foot up to each distance in cells.
+fn sum_post(target: &TargetModel, map: &PlateMap, sine: f64, cosine: f64, post: &mut Vec<PixelSum>) {
+    let side_m = 0.25 * target.cross.post_width_m;
+    post.clear();
+    post.push(PixelSum::default());
+    let mut sum = PixelSum::default();
+    for step in 0..CELLS / 2 {
+        let along_m = (step as f64 + 0.5) * map.cell_m();
+        // The two halves of its width.
+        for half_m in [-side_m, side_m] {
+            let (x_m, y_m) = (cosine * along_m - sine * half_m, sine * along_m + cosine * half_m);
+            sum = sum + map.cell_at(x_m, y_m);
+        }
+        post.push(sum);
+    }
+}
+
+/// Returns the length of the post's shadow that the bars' shadow hides in a direction, cells.
+fn hidden_cells(target: &TargetModel, map: &PlateMap, sine: f64, cosine: f64) -> usize {
+    let (half_m, length_m) = (0.5 * target.cross.width_m, target.cross.half_length_m);
+    let by_vertical_m = (half_m / cosine.abs()).min(length_m / sine.abs());
+    let by_horizontal_m = (length_m / cosine.abs()).min(half_m / sine.abs());
+    (by_vertical_m.max(by_horizontal_m) / map.cell_m()) as usize
+}
+
+/// Sums the pixels in the shadow of the two bars, whose centre is at (`x_m`, `y_m`).
+fn sum_bars(target: &TargetModel, map: &PlateMap, x_m: f64, y_m: f64) -> PixelSum {
+    let (half_m, length_m) = (0.5 * target.cross.width_m, target.cross.half_length_m);
+    let narrow_x = map.span(x_m, half_m);
+    let narrow_y = map.span(y_m, half_m);
+    let vertical = map.within(narrow_x, map.span(y_m, length_m));
+    let horizontal = map.within(map.span(x_m, length_m), narrow_y);
+    vertical + horizontal - map.within(narrow_x, narrow_y)
 }
 
 /// Returns the image points of pixels.
