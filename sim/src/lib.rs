@@ -7,12 +7,16 @@
 pub mod docking;
 mod expose;
 mod foreground;
+mod frame_readout;
 mod limit;
+mod object_descriptions;
+mod scene_painter;
 mod scene_state;
 mod scene_view;
 mod simulator;
 
-pub use expose::{Exposure, PixelSelection, SimulatedCamera};
+pub use expose::{Exposure, SimulatedCamera};
+pub use frame_readout::PixelSelection;
 pub use optics;
 pub use render::{draw, mitsuba, vector};
 pub use scene;
