@@ -25,8 +25,8 @@ impl ObjectDescriptions {
         Self { hot: Vec::new(), hit: Stamp::new(), bloomed: Stamp::new() }
     }
 
-    /// Appends the hot pixels to the sources of a frame. The sensor itself collects their electrons; the stamps
-    /// only describe them.
+    /// Appends the hot pixels to the sources of a frame. The sensor itself collects their electrons; the
+    /// stamps only describe them.
     pub(crate) fn add_hot_pixels(
         &mut self,
         simulator: &Simulator,
