@@ -1,12 +1,12 @@
-//! Scene in front of the camera during an exposure: of a whole frame, or of each field of an interlaced
-//! frame.
+//! Scene in front of the camera during an exposure: of a whole frame, of each field of an interlaced frame,
+//! or of the first and the last row of a rolling shutter.
 
 use std::collections::BTreeSet;
 
 use hifitime::{Epoch, Unit};
 use optics::Psf;
 use scene::{BackgroundField, CameraMotion, Source, planets};
-use sensor::InterlaceConfig;
+use sensor::{InterlaceConfig, RollingShutterConfig};
 use truth::{ObjectKind, SimError, Switch, clock};
 
 use crate::Simulator;
@@ -31,6 +31,9 @@ pub(crate) enum FrameViews {
     /// The scenes at the middle of each field, with the same sources in the same order as at the middle of
     /// the frame.
     Fields(InterlaceConfig, Box<[SceneView; 2]>),
+    /// The scenes at mid-exposure of the first and of the last row of a rolling shutter, with the same
+    /// sources in the same order as at the middle of the frame.
+    Rows(Box<[SceneView; 2]>),
 }
 
 impl SceneView {
@@ -45,30 +48,47 @@ impl SceneView {
         number: u64,
     ) -> Result<(Self, FrameViews), SimError> {
         let mut middle = Self::without_sources(simulator, time, state, exposure_s, number)?;
-        let Some(interlace) = simulator.sensor.config().interlace else {
+        let sensor = simulator.sensor.config();
+        let (_, rows) = simulator.projection.detector();
+        let rolling_offsets_s = |rolling: RollingShutterConfig| rolling.offsets_s(rows);
+        let offsets_s = match sensor.interlace {
+            Some(interlace) => Some(interlace.offsets_s()),
+            None => sensor.rolling_shutter.map(rolling_offsets_s),
+        };
+        let Some([first_s, second_s]) = offsets_s else {
             middle.find_sources(simulator, psf, exposure_s);
             return Ok((middle, FrameViews::Single));
         };
-        let [first_s, second_s] = interlace.offsets_s();
-        let field = |offset_s: f64| {
-            let time = time + offset_s * Unit::Second;
-            Self::without_sources(
-                simulator,
-                time,
-                SceneState::compute_at(simulator, time, number)?,
-                exposure_s,
-                number,
-            )
-        };
-        let (mut first, mut second) = (field(first_s)?, field(second_s)?);
-        // An object at the edge may contribute in only one field: each view searches the area of all three.
+        let (mut first, mut second) = (
+            middle.at_offset(simulator, first_s, exposure_s, number)?,
+            middle.at_offset(simulator, second_s, exposure_s, number)?,
+        );
+        // An object at the edge may contribute at only one of the times: each view searches the area of all
+        // three.
         let cameras = [middle.camera, first.camera, second.camera];
         for view in [&mut middle, &mut first, &mut second] {
             cameras.iter().for_each(|other| view.camera.widen_to(other));
             view.find_sources(simulator, psf, exposure_s);
         }
         retain_common([&mut middle.sources, &mut first.sources, &mut second.sources]);
-        Ok((middle, FrameViews::Fields(interlace, Box::new([first, second]))))
+        let views = Box::new([first, second]);
+        Ok(match sensor.interlace {
+            Some(interlace) => (middle, FrameViews::Fields(interlace, views)),
+            None => (middle, FrameViews::Rows(views)),
+        })
+    }
+
+    /// Returns the view of an exposure `offset_s` after this one, before its sources are found.
+    fn at_offset(
+        &self,
+        simulator: &Simulator,
+        offset_s: f64,
+        exposure_s: f64,
+        number: u64,
+    ) -> Result<Self, SimError> {
+        let time = self.time + offset_s * Unit::Second;
+        let state = SceneState::compute_at(simulator, time, number)?;
+        Self::without_sources(simulator, time, state, exposure_s, number)
     }
 
     /// Writes the background of every pixel, electrons per second, row by row; returns false if there is
@@ -95,6 +115,9 @@ impl SceneView {
     /// Finds all sources and the background that contribute electrons on the detector during the exposure.
     fn find_sources(&mut self, simulator: &Simulator, psf: &Psf, exposure_s: f64) {
         let Self { time, state, camera, sources, background } = self;
+        if let Some(vibration) = &simulator.vibration {
+            camera.widen_by(vibration.reach());
+        }
         let reach_px = |rate_e_per_s: f64| psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E);
         if state.target_position.is_some() {
             sources.push(state.target);

@@ -8,7 +8,7 @@ use contract::{Body, Camera, CameraFrame, OutOfRange, Rotation};
 use draws::Seed;
 use hifitime::Unit;
 use optics::{OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting};
-use scene::{Background, BackgroundConfig, Spacecraft, StarField, TargetConfig};
+use scene::{Background, BackgroundConfig, Spacecraft, StarField, TargetConfig, Vibration};
 use sensor::onboard::{RoiConfig, Shutter, ShutterConfig};
 use sensor::{CosmicRays, Sensor, SensorConfig};
 use truth::catalog::{Catalog, CatalogConfig, CatalogSource};
@@ -85,6 +85,7 @@ pub struct Simulator {
     pub(crate) solar_system: Switch,
     pub(crate) radiometry: Radiometry,
     pub(crate) background: Option<Background>,
+    pub(crate) vibration: Option<Vibration>,
 }
 
 impl Simulator {
@@ -116,6 +117,10 @@ impl Simulator {
                 .into());
             }
         }
+        let attitude = Attitude::new(&simulation.attitude, &simulation.mounting, seed)?
+            .with_profile(simulation.attitude_profile.clone(), trajectory.epoch())?;
+        let camera_from_body = simulation.mounting.actual.camera_from_body();
+        let vibration = Vibration::new(attitude.vibration_rad(), &camera_from_body, &projection)?;
         simulation.catalog.check()?;
         let catalog = Catalog::load(&simulation.catalog, folder)?;
         Ok(Self {
@@ -128,12 +133,12 @@ impl Simulator {
             .map(|background| background.vignetted(&vignetting)),
             stars: star_field(simulation, &catalog, &radiometry),
             catalog,
-            attitude: Attitude::new(&simulation.attitude, &simulation.mounting, seed)?
-                .with_profile(simulation.attitude_profile.clone(), trajectory.epoch())?,
+            attitude,
             trajectory,
             schedule,
             knowledge: Knowledge::new(&simulation.knowledge, seed)?,
-            camera_from_body: simulation.mounting.actual.camera_from_body(),
+            camera_from_body,
+            vibration,
             projection,
             vignetting,
             psf: Psf::load(&simulation.psf, folder)?
@@ -165,6 +170,7 @@ impl Simulator {
             .with_profile(simulation.attitude_profile.clone(), trajectory.epoch())?;
         let knowledge = Knowledge::new(&simulation.knowledge, seed)?;
         let camera_from_body = simulation.mounting.actual.camera_from_body();
+        self.vibration = Vibration::new(attitude.vibration_rad(), &camera_from_body, &self.projection)?;
         (self.seed, self.target, self.camera_from_body) = (seed, target, camera_from_body);
         (self.trajectory, self.schedule, self.shutter) = (trajectory, schedule, shutter);
         (self.attitude, self.knowledge) = (attitude, knowledge);
@@ -223,7 +229,7 @@ fn flight(
     let schedule = Schedule::new(&simulation.schedule)?;
     let trajectory = Trajectory::from_source(&simulation.trajectory, simulation.seed, &schedule)?;
     let shutter = Shutter::new(&simulation.shutter, sensor.saturation_e())?;
-    let half_interval_s = sensor.interlace.map_or(0.0, |interlace| interlace.offsets_s()[1]);
+    let half_interval_s = sensor.half_interval_s(simulation.camera.rows);
     shutter.check_interval(schedule.shortest_interval_s())?;
     cosmic_rays.map_or(Ok(()), |rays| rays.check_hits(shutter.longest_s()))?;
     check_times(&schedule, &trajectory, shutter.lag_s(), half_interval_s)?;
@@ -233,8 +239,8 @@ fn flight(
 }
 
 /// Checks that the chaser's position and velocity allow observations at the extreme times: at the time that
-/// the shutter control uses for the first frame, and at the first and last frame, whose fields are exposed
-/// `half_interval_s` before and after. All other times lie between.
+/// the shutter control uses for the first frame, and at the first and last frame, whose fields or rows are
+/// exposed up to `half_interval_s` before and after. All other times lie between.
 fn check_times(
     schedule: &Schedule,
     trajectory: &Trajectory,

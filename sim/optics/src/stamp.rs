@@ -63,20 +63,38 @@ impl Stamp {
     /// are taken from `first`, all other rows from `second`. Its centre is the midpoint of their centres.
     pub fn weave(&mut self, first: &Self, second: &Self, in_first: impl Fn(usize) -> bool) {
         let fields = [(first, true), (second, false)];
-        let windows = || fields.iter().filter_map(|(stamp, _)| stamp.window());
-        let x = windows().map(|w| w.x).min().unwrap_or(0);
-        let y = windows().map(|w| w.y).min().unwrap_or(0);
-        let right = windows().map(|w| w.x + w.columns).max().unwrap_or(0);
-        let bottom = windows().map(|w| w.y + w.rows).max().unwrap_or(0);
+        let (x, y) = covered(&[first, second]);
         let middle = |a: f64, b: f64| 0.5 * (a + b);
         let centre =
             PixelPoint::new(middle(first.centre.x, second.centre.x), middle(first.centre.y, second.centre.y));
-        self.reset(centre, (x, right), (y, bottom));
+        self.reset(centre, x, y);
         for (stamp, is_first) in fields {
             for (start, row, electrons) in stamp.rows().filter(|(_, row, _)| in_first(*row) == is_first) {
                 let at = (row - self.y) * self.stride + start - self.x;
                 self.electrons[at..at + electrons.len()].copy_from_slice(electrons);
             }
+        }
+    }
+
+    /// Turns this stamp into the image of an object that moves while its rows are exposed one after another.
+    /// `images` are the images at the times of the rows `centre` − `span`, `centre` and `centre` + `span`;
+    /// each row is interpolated between them by a parabola. Its centre is that of the second image.
+    pub fn interpolate_rows(&mut self, images: [&Self; 3], centre: f64, span: f64) {
+        let (x, y) = covered(&images);
+        self.reset(images[1].centre, x, y);
+        for (index, image) in images.into_iter().enumerate() {
+            for (start, row, electrons) in image.rows() {
+                let t = (row as f64 - centre) / span;
+                let weight = [0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)][index];
+                let at = (row - self.y) * self.stride + start - self.x;
+                for (i, value) in electrons.iter().enumerate() {
+                    self.electrons[at + i] += weight * value;
+                }
+            }
+        }
+        // The parabola may fall below zero at the edge of an image.
+        for value in &mut self.electrons {
+            *value = value.max(0.0);
         }
     }
 
@@ -277,6 +295,19 @@ fn first_and_last_above(row: &[f64], limit: f64) -> Option<(usize, usize)> {
     let first = i * LANES + chunks[i].iter().position(above)?;
     let last = j * LANES + chunks[j].iter().rposition(above)?;
     Some((first, last))
+}
+
+/// Returns the columns and the rows, from the first to the one after the last, that stamps cover together.
+fn covered(stamps: &[&Stamp]) -> ((usize, usize), (usize, usize)) {
+    let mut windows = stamps.iter().filter_map(|stamp| stamp.window());
+    let Some(first) = windows.next() else { return ((0, 0), (0, 0)) };
+    let mut x = (first.x, first.x + first.columns);
+    let mut y = (first.y, first.y + first.rows);
+    for window in windows {
+        x = (x.0.min(window.x), x.1.max(window.x + window.columns));
+        y = (y.0.min(window.y), y.1.max(window.y + window.rows));
+    }
+    (x, y)
 }
 
 #[cfg(test)]

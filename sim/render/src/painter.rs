@@ -8,16 +8,26 @@ use scene::Source;
 #[derive(Debug)]
 pub struct Painter {
     psf: Psf,
+    blur: Vec<ImagePoint>,
     /// Points of the body in the middle of the exposure.
     body: Vec<ImagePoint>,
     trail: Vec<ImagePoint>,
+    /// Points of the trail, each blurred.
+    blurred: Vec<ImagePoint>,
     points: Vec<ImagePoint>,
 }
 
 impl Painter {
     /// Creates a painter with a point-spread function.
     pub fn new(psf: Psf) -> Self {
-        Self { psf, body: Vec::new(), trail: Vec::new(), points: Vec::new() }
+        Self {
+            psf,
+            blur: Vec::new(),
+            body: Vec::new(),
+            trail: Vec::new(),
+            blurred: Vec::new(),
+            points: Vec::new(),
+        }
     }
 
     /// Point-spread function of the painter.
@@ -25,24 +35,35 @@ impl Painter {
         &self.psf
     }
 
+    /// Displacements of the blur of the following images, px, with shares adding up to 1; none without a
+    /// blur.
+    pub fn blur_mut(&mut self) -> &mut Vec<ImagePoint> {
+        &mut self.blur
+    }
+
     /// Draws into `stamp` the image of a source that gives `electrons` to a detector of (columns, rows).
-    /// `resolve` appends the points of its body, with shares adding up to 1; it receives the number of points
-    /// of the trail, at each of which the whole body is drawn.
+    /// `resolve` appends the points of its body about `centre`, with shares adding up to 1; it receives the
+    /// number of points of the trail, at each of which the whole body is drawn.
     pub fn paint(
         &mut self,
         source: &Source,
+        centre: PixelPoint,
         electrons: f64,
         resolve: impl FnOnce(usize, &mut Vec<ImagePoint>),
         detector: (usize, usize),
         stamp: &mut Stamp,
     ) {
-        let Self { psf, body, trail, points } = self;
+        let Self { psf, blur, body, trail, blurred, points } = self;
         let [begin, end] = source.ends;
         trail.clear();
         optics::trail(begin, source.position, end, trail);
+        if !blur.is_empty() {
+            carry_along(blur, PixelPoint::new(0.0, 0.0), trail, blurred);
+            std::mem::swap(trail, blurred);
+        }
         body.clear();
         resolve(trail.len(), body);
-        carry_along(body, source.position, trail, points);
+        carry_along(body, centre, trail, points);
         psf.stamp_extended(points, electrons, Psf::FLOOR_E, detector, stamp);
     }
 }

@@ -34,6 +34,11 @@ impl CameraMotion {
             [begin, end, other.middle.angle_to(&self.middle)].into_iter().fold(self.elsewhere, larger);
     }
 
+    /// Extends the range of attitudes by a rotation within the exposure.
+    pub fn widen_by(&mut self, rotation: Angle) {
+        self.elsewhere = Angle::from_radians(self.reach().radians() + rotation.radians());
+    }
+
     /// Largest displacement of a distant object's image by the rotation, px.
     pub(crate) fn reach_px(&self, projection: &Projection) -> f64 {
         let (x_px_per_rad, y_px_per_rad) = projection.plate_scale_px_per_rad();

@@ -12,6 +12,7 @@ pub mod planets;
 mod source;
 mod spacecraft;
 mod star_field;
+mod vibration;
 
 pub use background::{Background, BackgroundConfig, BackgroundField, EarthLightConfig, StrayLightConfig};
 pub use camera_motion::CameraMotion;
@@ -19,3 +20,4 @@ pub use source::Source;
 pub use spacecraft::Outline;
 pub use spacecraft::{Appearance, BoxConfig, Lighting, PlateConfig, Spacecraft, SurfaceConfig, TargetConfig};
 pub use star_field::StarField;
+pub use vibration::Vibration;

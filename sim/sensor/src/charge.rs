@@ -94,8 +94,7 @@ impl Sensor {
             Some(telegraph) => {
                 let stream_index = (pixel.y * self.size().0 + pixel.x) as u64;
                 let half_s = 0.5 * interval.exposure_s;
-                let middle_s =
-                    interval.middle_s + self.config().interlace.map_or(0.0, |i| i.offset_s(pixel.y));
+                let middle_s = interval.middle_s + self.config().offset_s(pixel.y, self.size().1);
                 let (from_s, to_s) = (middle_s - half_s, middle_s + half_s);
                 electrons * telegraph.mean_level(&interval.seed, stream_index, from_s, to_s)
             }

@@ -9,6 +9,7 @@ use truth::Switch;
 use super::cosmic_rays::CosmicRayConfig;
 use super::fixed_pattern::FixedPatternConfig;
 use super::interlace::InterlaceConfig;
+use super::rolling_shutter::RollingShutterConfig;
 use super::spill::BloomingConfig;
 use super::telegraph::TelegraphConfig;
 
@@ -176,6 +177,9 @@ pub struct SensorConfig {
     /// Interlaced readout; without the table all rows are exposed simultaneously.
     #[serde(default)]
     pub interlace: Option<InterlaceConfig>,
+    /// Rolling shutter; without the table all rows are exposed simultaneously.
+    #[serde(default)]
+    pub rolling_shutter: Option<RollingShutterConfig>,
 }
 
 /// Ideal detector as a starting point: 16 bits, one electron per digital number, photoelectrons only, no read
@@ -200,6 +204,7 @@ impl Default for SensorConfig {
             line_noise: LineNoiseConfig::default(),
             cosmic_rays: None,
             interlace: None,
+            rolling_shutter: None,
         }
     }
 }
@@ -215,7 +220,25 @@ impl SensorConfig {
         let full_scale_dn = f64::from(self.full_scale_dn());
         let expected = "0 or more, and less than the largest digital number, 2^bit_depth - 1";
         require("sensor.bias_dn", self.bias_dn, expected, |v| v < full_scale_dn)?;
+        if let Some(rolling) = &self.rolling_shutter {
+            rolling.check(self.interlace.is_some(), self.frame_transfer_s)?;
+        }
         self.cosmic_rays.as_ref().map_or(Ok(()), CosmicRayConfig::check)
+    }
+
+    /// Returns mid-exposure of a row, counted from 0, of a detector with `rows` rows, s from the time of the
+    /// frame.
+    pub fn offset_s(&self, row: usize, rows: usize) -> f64 {
+        let of_field = self.interlace.map_or(0.0, |interlace| interlace.offset_s(row));
+        of_field + self.rolling_shutter.map_or(0.0, |rolling| rolling.offset_s(row as f64, rows))
+    }
+
+    /// Longest time from the time of a frame to mid-exposure of one of its rows, s; 0 if all rows are exposed
+    /// simultaneously.
+    pub fn half_interval_s(&self, rows: usize) -> f64 {
+        let of_fields = self.interlace.map_or(0.0, |interlace| interlace.offsets_s()[1]);
+        let of_rows = self.rolling_shutter.map_or(0.0, |rolling| rolling.offsets_s(rows)[1].abs());
+        of_fields.max(of_rows)
     }
 
     /// Largest digital number, 2^bits − 1.

@@ -75,7 +75,7 @@ impl Ziggurat {
     pub(crate) fn draw(&self, word: u64, more: impl FnOnce() -> Stream) -> f64 {
         let layer = &self.layers[(word % LAYERS as u64) as usize];
         let x = signed_unit(word) * layer.width;
-        if x.abs() < layer.inner { x } else { self.draw_on(word, &mut more()) }
+        if x.abs() < layer.inner { x } else { self.draw_after_miss(word, &mut more()) }
     }
 
     /// Draws a number, as [`Ziggurat::draw`] does, from a 32-bit word: the lowest eight bits select the
@@ -87,13 +87,13 @@ impl Ziggurat {
         if steps.abs() < layer.sure {
             steps * layer.width
         } else {
-            self.draw_on(widened(word), &mut more()) as f32
+            self.draw_after_miss(widened(word), &mut more()) as f32
         }
     }
 
     /// Draws the number when the first word lies outside the sure part of its layer.
     #[cold]
-    fn draw_on(&self, mut word: u64, stream: &mut Stream) -> f64 {
+    fn draw_after_miss(&self, mut word: u64, stream: &mut Stream) -> f64 {
         loop {
             let index = (word % LAYERS as u64) as usize;
             let layer = &self.layers[index];

@@ -20,6 +20,7 @@ mod moon_in_field;
 mod pixel_distribution;
 mod planets;
 mod registers;
+mod rolling_shutter;
 mod sparse;
 mod switching;
 mod target_body;
@@ -28,6 +29,7 @@ mod truth_table;
 mod vector_edges;
 mod vector_shadows;
 mod vector_witness;
+mod vibration;
 mod whole_sky;
 
 use boresight_sim::Simulation;

@@ -104,7 +104,11 @@ pub(crate) fn restless() -> Simulation {
     simulation.schedule[0].cadence_s = 15.0;
     simulation.attitude = AttitudeConfig {
         guidance: Guidance::LocalOrbital { phi_deg: 0.1, theta_deg: -0.2, psi_deg: 3.0 },
-        control: ControlConfig { drift: slow(60.0), jitter_arcsec: [3.0, 5.0, 7.0] },
+        control: ControlConfig {
+            drift: slow(60.0),
+            jitter_arcsec: [3.0, 5.0, 7.0],
+            ..ControlConfig::default()
+        },
         motion_smear: Switch::On,
     };
     simulation.knowledge = KnowledgeConfig {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use boresight_sim::scene::{BackgroundConfig, BoxConfig, SurfaceConfig, TargetConfig};
-use boresight_sim::sensor::{InterlaceConfig, LineNoiseConfig, RowParity, Switch};
+use boresight_sim::sensor::{InterlaceConfig, LineNoiseConfig, RollingShutterConfig, RowParity, Switch};
 use boresight_sim::truth::ObjectKind::{self, CosmicRay, HotPixel, Moon, Planet, Star, Target};
 use boresight_sim::truth::TargetAttitudeConfig;
 use boresight_sim::{Exposure, Simulation};
@@ -107,6 +107,15 @@ fn switching_an_effect_leaves_every_other_draw_as_it_was() {
     for (name, switch, touched) in switches {
         check(&all, name, switch, touched);
     }
+    let mut vibrating = all.clone();
+    vibrating.attitude.control.vibration_arcsec = [60.0; 3];
+    check(&vibrating, "vibration", |s| s.attitude.control.vibration_arcsec = [0.0; 3], &sky);
+    let mut rolling = all.clone();
+    rolling.sensor.interlace = None;
+    rolling.sensor.frame_transfer_s = 0.0;
+    rolling.sensor.rolling_shutter = Some(RollingShutterConfig { row_time_s: 0.001 });
+    let touched = [Target, Star, Planet, Moon, HotPixel];
+    check(&rolling, "rolling shutter", |s| s.sensor.rolling_shutter = None, &touched);
     // Direction of Saturn in that spring.
     all.solar_system = Switch::On;
     all.attitude = looking_at(203.4, -6.8);

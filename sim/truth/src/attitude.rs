@@ -43,6 +43,11 @@ pub struct ControlConfig {
     #[serde(default)]
     #[schemars(inner(range(min = 0, max = 36000)))]
     pub jitter_arcsec: [f64; 3],
+    /// Standard deviation of the vibration about x, y, z within an exposure, arcsec, 0 (the default: none) to
+    /// 36000. Its periods are much shorter than the exposure, so that it blurs images and displaces none.
+    #[serde(default)]
+    #[schemars(inner(range(min = 0, max = 36000)))]
+    pub vibration_arcsec: [f64; 3],
 }
 
 impl AttitudeConfig {
@@ -68,6 +73,7 @@ pub struct Attitude {
     body_from_camera: Rotation<Body, CameraFrame>,
     drift: Drift,
     jitter_rad: Vector3<f64>,
+    vibration_rad: Vector3<f64>,
     motion_smear: Switch,
     seed: Seed,
     /// Attitude that replaces guidance, and the origin of the states' times.
@@ -87,6 +93,7 @@ impl Attitude {
             body_from_camera: mounting.nominal.camera_from_body().inverse(),
             drift: Drift::new(&config.control.drift, seed, Effect::AttitudeControl),
             jitter_rad: radians_from_arcsec(config.control.jitter_arcsec),
+            vibration_rad: radians_from_arcsec(config.control.vibration_arcsec),
             motion_smear: config.motion_smear,
             seed,
             profile: None,
@@ -111,6 +118,11 @@ impl Attitude {
     /// Switch of the smear of images by motion.
     pub fn motion_smear(&self) -> Switch {
         self.motion_smear
+    }
+
+    /// Standard deviation of the vibration about the body axes within an exposure, rad.
+    pub fn vibration_rad(&self) -> Vector3<f64> {
+        self.vibration_rad
     }
 
     /// Returns the true attitude in `frame`, taken when chaser and target are at `states`.
@@ -171,6 +183,7 @@ pub(crate) mod tests {
         let control = ControlConfig {
             drift: DriftConfig { rms_arcsec: [60.0; 3], periods_s: vec![97.0, 613.0, 5939.0] },
             jitter_arcsec: [5.0, 10.0, 20.0],
+            ..ControlConfig::default()
         };
         AttitudeConfig { control, ..quiet() }
     }

@@ -23,15 +23,9 @@ pub struct ManoeuvreConfig {
     /// Duration, s, 0 (the default: an impulse) to 36000. The manoeuvre is centred on its time; the
     /// acceleration is constant along the chaser's axes R, T, N of each instant. Only with a numerical
     /// trajectory.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default)]
     #[schemars(range(min = 0, max = 36000))]
     pub duration_s: f64,
-}
-
-/// Returns true for the default, which resolved scenarios omit.
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde calls")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }
 
 /// Random errors of manoeuvres, each drawn anew for each manoeuvre.

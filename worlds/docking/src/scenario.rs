@@ -37,7 +37,7 @@ pub struct DockingScenario {
     #[serde(default)]
     pub television: TelevisionConfig,
     /// Scoring of outcomes, without effect on the simulation.
-    #[serde(default, skip_serializing_if = "DockingScoreConfig::is_default")]
+    #[serde(default)]
     pub score: DockingScoreConfig,
     /// Parameters of the pipeline `docking`.
     #[serde(default)]
@@ -50,15 +50,9 @@ pub struct DockingScenario {
 pub struct DockingScoreConfig {
     /// Number of first fields, in which the pipeline starts up. They form a separate group, `warm-up`; all
     /// other figures except the latency exclude them.
-    #[serde(default, skip_serializing_if = "score::is_zero")]
+    #[serde(default)]
     #[schemars(range(min = 0, max = 1_u64 << 40))]
     pub warm_up_frames: u64,
-}
-
-impl DockingScoreConfig {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 /// World of a [`DockingScenario`].

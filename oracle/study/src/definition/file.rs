@@ -40,7 +40,7 @@ pub struct StudyFile {
     /// of Sobol's sequence are divided. The scatter of the replications gives the intervals; a mean needs at
     /// least five. A single replication has no scatter, and its intervals are as wide as those of independent
     /// draws.
-    #[serde(default = "default_replications", skip_serializing_if = "is_default")]
+    #[serde(default = "default_replications")]
     #[schemars(range(min = 1, max = 10_000))]
     pub replications: u64,
     /// Parameters that vary according to a distribution.
@@ -83,11 +83,6 @@ impl StudyNavigator {
 
 const fn default_replications() -> u64 {
     1
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
-const fn is_default(replications: &u64) -> bool {
-    *replications == 1
 }
 
 /// A parameter that varies.

@@ -70,6 +70,7 @@ impl CrossTable {
         let post = post.into_iter().take(POST_SIDES).collect();
         let part =
             |name: &str, facets| Part { name: name.to_owned(), facets, casts_shadow: true, visible: true };
+        // Back to front.
         [
             part("post", post),
             part("cross edges", wall(&outline, back_m, self.height_m, self.reflectance)),

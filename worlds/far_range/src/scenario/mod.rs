@@ -39,8 +39,7 @@ use self::coverage::{NeededTimes, Reach};
 #[serde(deny_unknown_fields)]
 pub struct FarRangeScenario {
     /// Code of the world, "far_range", which is the default.
-    // Never written, so that resolved scenarios and their hashes are the same as before other worlds existed.
-    #[serde(default, skip_serializing)]
+    #[serde(default)]
     pub world: FarRangeWorld,
     /// Title of the scenario, one line.
     pub title: String,
@@ -56,9 +55,7 @@ pub struct FarRangeScenario {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orbit: Option<OrbitConfig>,
     /// Origin of the motion of chaser and target; absent: the mean elements of `[orbit]`.
-    // Not written when it is the default, so that resolved scenarios and their hashes are the same as before
-    // the table existed.
-    #[serde(default, skip_serializing_if = "TrajectoryConfig::is_default")]
+    #[serde(default)]
     pub trajectory: TrajectoryConfig,
     /// Times of the images, group by group.
     pub schedule: Vec<GroupConfig>,
@@ -96,13 +93,11 @@ pub struct FarRangeScenario {
     #[serde(default = "off")]
     pub solar_system: Switch,
     /// Scoring of outcomes, without effect on the simulation.
-    // Not written when it has default values, so that resolved scenarios and their hashes are the same as
-    // before the table existed.
-    #[serde(default, skip_serializing_if = "ScoreConfig::is_default")]
+    #[serde(default)]
     pub score: ScoreConfig,
     /// Calibration given to the pipeline, which overrides the values derived from the tables above; absent:
     /// all values are derived.
-    #[serde(default, skip_serializing_if = "is_nothing_stated")]
+    #[serde(default)]
     pub calibration: Calibration,
     /// Parameters of the pipeline `far_range`.
     #[serde(default)]
@@ -124,16 +119,12 @@ pub struct ScoreConfig {
     pub attitude: Option<AttitudeChoice>,
     /// Number of first frames, in which the pipeline starts up. They form a separate group, `warm-up`; all
     /// other figures exclude them.
-    #[serde(default, skip_serializing_if = "score::is_zero")]
+    #[serde(default)]
     #[schemars(range(min = 0, max = 1_u64 << 40))]
     pub warm_up_frames: u64,
 }
 
 impl ScoreConfig {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
     /// Checks all values.
     ///
     /// # Errors
@@ -152,10 +143,6 @@ pub enum FarRangeWorld {
     /// Star fields with a distant spacecraft.
     #[default]
     FarRange,
-}
-
-fn is_nothing_stated(calibration: &Calibration) -> bool {
-    *calibration == Calibration::default()
 }
 
 fn off() -> Switch {

@@ -94,11 +94,6 @@ impl Default for TrajectoryConfig {
 }
 
 impl TrajectoryConfig {
-    /// Returns true for the default, which resolved scenarios omit.
-    pub(crate) fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
     /// Returns the paths of the files that the table names, with their roles.
     pub(crate) fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
         match self {
