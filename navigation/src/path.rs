@@ -145,7 +145,7 @@ impl Path {
         sign: f64,
     ) -> Option<Leg> {
         let EstimatedImpulse { seconds, dv_m_s, columns } = impulse;
-        let mut sensitivity = self.sensitivity(leg, *seconds);
+        let mut sensitivity = self.element_sensitivity(leg, *seconds);
         let (near, far) = if sign > 0.0 {
             (reference.orbit_before(*seconds)?, reference.orbit(*seconds)?)
         } else {
@@ -164,7 +164,7 @@ impl Path {
     }
 
     /// Derivatives of the elements at a time within a leg.
-    fn sensitivity(&self, leg: &Leg, seconds: f64) -> Matrix6xX<f64> {
+    fn element_sensitivity(&self, leg: &Leg, seconds: f64) -> Matrix6xX<f64> {
         let dt = seconds - leg.drift.anchor_s;
         let mut sensitivity = leg.drift.partials.transition(dt) * &leg.sensitivity;
         if let Some(column) = self.drag_column {
@@ -186,7 +186,7 @@ impl Path {
 
     /// Returns the derivatives of the elements at a time with respect to the parameters, 6 × parameters.
     pub(crate) fn sensitivity_at(&self, seconds: f64) -> Option<Matrix6xX<f64>> {
-        Some(self.sensitivity(self.leg(seconds)?, seconds))
+        Some(self.element_sensitivity(self.leg(seconds)?, seconds))
     }
 
     /// Writes H S(t) to `row` for a row H of derivatives with respect to the elements at a time.

@@ -153,7 +153,7 @@ fn setup(prior: bool) -> NavigationSetup {
 }
 
 /// Line of sight of a chaser on a polar circular orbit to a target ahead on the same orbit, with a
-/// deterministic error of some arcseconds.
+/// deterministic error of up to an arc minute.
 fn sight(number: u64) -> LineOfSightMeasurement {
     let seconds = INTERVAL_S * number as f64;
     let u = LATITUDE_RATE * seconds;

@@ -44,9 +44,10 @@ pub fn cluster_mean_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) 
 }
 
 /// Computes the bounds of the quantile `p` of values in clusters, sorted by value: order statistics of the
-/// number of independent values that would scatter about the quantile as much as the clusters do, rounded
-/// outwards. Infinities at the ends may stand for missing values. A bound beyond the smallest or the largest
-/// value is absent; at a `size` above 1 it is that value.
+/// number of independent values that would scatter about the quantile as much as the clusters do. Infinities
+/// at the ends may stand for missing values. A bound is absent if that number of values, multiplied by
+/// `size`, has no order statistic with the confidence; one that lies beyond the given values is the outermost
+/// value.
 pub fn cluster_quantile_bounds(
     sorted: &[ClusterValue],
     p: f64,

@@ -183,7 +183,7 @@ impl<'a> Campaign<'a> {
 
     /// Returns the error for the missing shards, of which `first` is known to be missing. `first` is not read
     /// again: another process may have written it since, and the table would still lack it.
-    fn missing(&self, first: u64) -> Result<Failure, Failure> {
+    fn missing_shards(&self, first: u64) -> Result<Failure, Failure> {
         let shards = self.store.plan().shards;
         let mut missing = vec![first.to_string()];
         for shard in first + 1..=shards {
@@ -211,7 +211,7 @@ impl<'a> Campaign<'a> {
             for some in shards.chunks(4 * rayon::current_num_threads()) {
                 let tables: Result<Vec<_>, Failure> = some.par_iter().map(read).collect();
                 for (shard, table) in some.iter().zip(tables?) {
-                    let Some(mut table) = table else { return Err(self.missing(*shard)?) };
+                    let Some(mut table) = table else { return Err(self.missing_shards(*shard)?) };
                     let enough = stopping.add(&table);
                     if let Some(count) = enough {
                         table.rows.retain(|row| row.case < count);

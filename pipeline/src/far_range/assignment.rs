@@ -23,6 +23,7 @@ pub(super) struct AllowedPair {
 /// the result does not depend on the order of additions.
 pub(super) fn assign(rows: usize, columns: usize, pairs: &[AllowedPair]) -> Vec<Option<usize>> {
     let mut column_of_row = vec![None; rows];
+    // In each component: as many links as possible, and among those the least sum of costs.
     for component in components(rows, columns, pairs) {
         match component.as_slice() {
             [only] => column_of_row[only.row] = Some(only.column),

@@ -242,6 +242,8 @@ impl Distortion {
     /// number stays far below this limit.
     const MAX_STEPS: usize = 100;
 
+    /// Returns the distorted offset from the principal point, px, of an undistorted one. The coefficients are
+    /// those of powers of pixels.
     fn distort(&self, Offset { u, v }: Offset) -> Offset {
         let [k1, k2, k3] = self.radial;
         let [p1, p2] = self.tangential;

@@ -263,13 +263,13 @@ impl SampledOrbit {
         let inside = time_s.clamp(start, end);
         let begun = self.segments.partition_point(|segment| segment.usable_s[0] <= inside);
         let state = self.segments[begun.saturating_sub(1)].state_at(inside);
-        if inside == time_s { state } else { continued(state, time_s - inside) }
+        if inside == time_s { state } else { with_secular_drift(state, time_s - inside) }
     }
 }
 
 /// Returns a state `seconds` later (earlier if negative) on its Keplerian orbit with secular drift; a state
 /// without supported elements moves along a line.
-pub(super) fn continued(state: State, seconds: f64) -> State {
+pub(super) fn with_secular_drift(state: State, seconds: f64) -> State {
     match Elements::from_state(&state) {
         Some(elements) => elements.propagate(seconds).state(),
         None => State { position_km: state.position_km + state.velocity_km_s * seconds, ..state },

@@ -309,6 +309,7 @@ impl Trajectory {
     /// elements. `None` if a state has no supported elements.
     pub fn relative_elements(&self, time: Epoch) -> Option<RelativeElements> {
         let time_s = self.seconds(time);
+        // At an impulse, the motion is that just after it.
         if let Motion::MeanElements(motion) = &self.motion {
             let (chaser, target) = motion.elements(time_s);
             return Some(RelativeElements::between(&chaser, &target));

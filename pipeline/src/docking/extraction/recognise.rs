@@ -89,6 +89,7 @@ impl Recognition<'_> {
         overview: &Overview,
         predicted: Option<&Prediction>,
     ) -> Result<TargetFeatures, NoPose> {
+        // The fastest way first; the others see a target that it misses.
         let ways: [&dyn Fn() -> Vec<Candidate>; 3] = [
             &|| candidates::by_regions(overview, self.lens),
             &|| candidates::by_edges(overview, self.lens, &self.config.edges),
@@ -117,6 +118,8 @@ impl Recognition<'_> {
         self.first_success(&ways, None)
     }
 
+    /// Returns the target that the first successful way finds. A prediction selects one of several targets;
+    /// without it, several are an error.
     fn first_success(
         &self,
         ways: &[&dyn Fn() -> Vec<Candidate>],

@@ -106,15 +106,22 @@ where
     /// The part is zero unless a component scatters by significantly less than its variance. The features of
     /// a small target are narrower than pixels and lines; their errors count as common as far as no scatter
     /// has been measured yet.
-    pub(crate) fn common_part(&self, common: &SMatrix<f64, N, N>, is_small: bool) -> SMatrix<f64, N, N> {
+    pub(crate) fn common_part(
+        &self,
+        common: &SMatrix<f64, N, N>,
+        is_small_target: bool,
+    ) -> SMatrix<f64, N, N> {
         let Some(Measurement { covariance, .. }) = self.last.back() else { return SMatrix::zeros() };
         let chance = COMPONENT_CHANCE * (COMPONENT_MEMORY / self.component_weight.max(1.0)).sqrt();
         let shares = SVector::<f64, N>::from_fn(|i, _| {
             let scatter = self.component_sums[i] / self.component_weight;
-            let lack = match is_small {
-                true => 1.0 - self.component_sums[i] / (self.component_weight + UNSEEN_FIELDS),
-                false if scatter < 1.0 - chance => 1.0 - scatter,
-                false => 0.0,
+            // Share of the variance that does not scatter.
+            let lack = if is_small_target {
+                1.0 - self.component_sums[i] / (self.component_weight + UNSEEN_FIELDS)
+            } else if scatter < 1.0 - chance {
+                1.0 - scatter
+            } else {
+                0.0
             };
             (lack - common[(i, i)] / covariance[(i, i)]).max(0.0).sqrt()
         });

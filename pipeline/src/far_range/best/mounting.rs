@@ -82,13 +82,14 @@ impl MountingFilter {
         }
     }
 
-    /// Returns the prior error of a frame's attitude.
+    /// Returns the prior error of a frame's attitude, about the axes of the camera.
     pub(super) fn prior(&self) -> AttitudeError {
-        let mounting = self.nominal.matrix();
+        let camera_from_body = self.nominal.matrix();
+        // The constant and the slow error, about the axes of the body.
         let (mean, covariance) = self.systematic();
         AttitudeError {
-            mean: mounting * mean,
-            covariance: mounting * (covariance + self.white) * mounting.transpose(),
+            mean: camera_from_body * mean,
+            covariance: camera_from_body * (covariance + self.white) * camera_from_body.transpose(),
         }
     }
 

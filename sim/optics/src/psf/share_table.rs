@@ -81,13 +81,14 @@ impl ShareTable {
         }
     }
 
-    /// Performs [`ShareTable::fill`] for pixels that are partly outside the table.
+    /// Performs [`ShareTable::fill`] for pixels that are partly outside the table; they have no share of the
+    /// flux. `offset` is that of the phase from the nearest node.
     #[cold]
-    fn fill_clipped(&self, rows: &[f64], d: f64, from: isize, shares: &mut [f64]) {
+    fn fill_clipped(&self, rows: &[f64], offset: f64, from: isize, shares: &mut [f64]) {
         for (share, at) in shares.iter_mut().zip(from..) {
             *share = match usize::try_from(at) {
                 Ok(at) if at < self.width => {
-                    (0..TERMS).rev().fold(0.0, |sum, term| sum * d + rows[term * self.width + at])
+                    (0..TERMS).rev().fold(0.0, |sum, term| sum * offset + rows[term * self.width + at])
                 }
                 _ => 0.0,
             };

@@ -31,7 +31,7 @@ use self::sky::Sky;
 use super::clock::format_utc;
 use super::manoeuvre::Burn;
 use super::orbit::{EGM96_RADIUS_KM, State};
-use super::sampled::continued;
+use super::sampled::with_secular_drift;
 use super::states::{States, seconds_between};
 use crate::Switch;
 use crate::memo::Memo;
@@ -314,7 +314,7 @@ impl NumericalStates {
         let inside = time_s.clamp(start, end);
         let at = |knots: &[Knot]| {
             let state = interpolated(knots, inside);
-            if inside == time_s { state } else { continued(state, time_s - inside) }
+            if inside == time_s { state } else { with_secular_drift(state, time_s - inside) }
         };
         States { time_s, chaser: at(&self.chaser), target: at(&self.target) }
     }

@@ -116,7 +116,7 @@ impl DockingScorer {
             .and_then(|measurement| measurement.paper)
             .map(|pose| PoseErrors::new(&pose, &truth.pose));
         let range_m = truth.pose.position_m.norm();
-        let portion = self.portion(truth, measurement.is_some(), report);
+        let portion = self.judge_portion(truth, measurement.is_some(), report);
         let is_resolved = self.geometry.resolves(truth.camera, &truth.pose);
         let is_clear = truth.visibility == TargetVisibility::Full && is_resolved;
         let first = self.verdicts.first().map_or(truth.field, |first| first.field);
@@ -141,14 +141,17 @@ impl DockingScorer {
         Ok(())
     }
 
-    fn portion(
+    /// Counts a field of the current portion, and judges the motion that it reports, which ends the portion.
+    fn judge_portion(
         &mut self,
         truth: &TrueField,
         is_measured: bool,
         report: Option<&MotionReport>,
     ) -> Option<PortionVerdict> {
         let clock = &mut self.portions;
-        if clock.fields > 0 || is_measured {
+        // A portion begins with its first measured field.
+        let has_begun = clock.fields > 0;
+        if has_begun || is_measured {
             clock.fields += 1;
         }
         if is_measured {

@@ -149,7 +149,7 @@ impl NavigationScore {
             elements_m: components(&estimated, &RelativeElements::NAMES, |row| {
                 row.elements_error_m.zip(row.elements_sigma_m)
             }),
-            position_rms_by_day_m: by_day(&estimated),
+            position_rms_by_day_m: position_rms_by_day_m(&estimated),
             nees_state_per_dimension: mean(&estimated, |row| Some(row.nees_state? / 6.0)),
             nees_position_per_dimension: mean(&estimated, |row| Some(row.nees_position? / 3.0)),
             nees_elements_per_dimension: mean(&estimated, |row| Some(row.nees_elements? / 6.0)),
@@ -181,7 +181,8 @@ fn components<const N: usize>(
     names.iter().enumerate().filter_map(axis).collect()
 }
 
-fn by_day(rows: &[&NavigationRow]) -> IndexMap<String, [f64; 3]> {
+/// Returns the RMS of the position error along R, T and N, m, by day (the date of UTC).
+fn position_rms_by_day_m(rows: &[&NavigationRow]) -> IndexMap<String, [f64; 3]> {
     let mut days: IndexMap<String, (f64, [f64; 3])> = IndexMap::new();
     for row in rows {
         let Some(errors) = row.position_error_m else { continue };

@@ -209,7 +209,7 @@ impl TargetObservation<'_> {
 
 /// Returns the longest exposure that does not over-expose the target, s, for each aspect, in ascending order;
 /// not limited to the exposures that the camera can command.
-pub(super) fn longest_exposures_s(
+pub(super) fn longest_unsaturated_exposures_s(
     camera: &CameraModel,
     target: &TargetModel,
     aspects: &[Aspect],
@@ -224,7 +224,7 @@ pub(super) fn longest_exposures_s(
 
 /// Returns the longest exposure, s, that does not over-expose the target with a given probability, from
 /// sorted exposures.
-pub(super) fn longest_with(sorted_s: &[f64], probability: f64) -> f64 {
+pub(super) fn longest_with_probability(sorted_s: &[f64], probability: f64) -> f64 {
     // Number of aspects that may be over-exposed.
     let spared = ((1.0 - probability) * sorted_s.len() as f64 + 1e-9).floor() as usize;
     sorted_s.get(spared.min(sorted_s.len().saturating_sub(1))).copied().unwrap_or(0.0)

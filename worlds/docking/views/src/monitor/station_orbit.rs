@@ -24,7 +24,8 @@ pub(super) fn station(simulator: &DockingSimulator) -> Option<GroundTrack> {
     let towards = moment.lighting.sun?.towards.normalize();
     let sun = sun_direction(moment.time)?;
     let (sin_i, cos_i) = libm::sincos(STATION_INCLINATION_DEG.to_radians());
-    // Normal of the orbit N = (sin i sin Ω, −sin i cos Ω, cos i), and y1 = −N: N · sun = −s1.
+    // `towards` = (s1, s2, s3) along the target's axes y1, y2, y3. Normal of the orbit
+    // N = (sin i sin Ω, −sin i cos Ω, cos i), and y1 = −N: N · sun = −s1.
     let sun_across = -towards.x;
     let equatorial = (sun.x * sun.x + sun.y * sun.y).sqrt();
     let sine = (sun_across - cos_i * sun.z) / (sin_i * equatorial);
@@ -32,6 +33,7 @@ pub(super) fn station(simulator: &DockingSimulator) -> Option<GroundTrack> {
         return None;
     }
     // N · sun = sin i · equatorial · sin(Ω − RA) + cos i · sun_z
+    // The smaller of the two solutions, asin and π − asin.
     let raan = libm::atan2(sun.y, sun.x) + libm::asin(sine);
     let (sin_node, cos_node) = libm::sincos(raan);
     let normal = Vector3::new(sin_i * sin_node, -sin_i * cos_node, cos_i);

@@ -20,7 +20,9 @@ use crate::requirement::{
 };
 use crate::sky::Sky;
 use crate::sky::star_count::{Curves, StarCount, over_sky, star_trail_px};
-use crate::target::{Aspect, TargetModel, TargetObservation, longest_exposures_s, longest_with};
+use crate::target::{
+    Aspect, TargetModel, TargetObservation, longest_unsaturated_exposures_s, longest_with_probability,
+};
 
 /// Number of ranges that are evaluated within an interval, both ends included.
 const RANGES: usize = 7;
@@ -258,12 +260,13 @@ impl<'a> Design<'a> {
 
     /// Returns the longest exposure that does not over-expose the target with a given probability at a range,
     /// s, in every group; not limited to the exposures that the camera can command.
-    pub fn longest_s(&self, groups: &[AspectGroup], range_km: f64, probability: f64) -> f64 {
+    pub fn longest_unsaturated_s(&self, groups: &[AspectGroup], range_km: f64, probability: f64) -> f64 {
         let Some(target) = &self.target else { return f64::INFINITY };
         let exposure = &self.requirements.file.exposure;
         let longest = groups.iter().map(|group| {
-            let sorted = longest_exposures_s(&self.camera, target, &group.aspects, range_km, exposure);
-            longest_with(&sorted, probability)
+            let sorted =
+                longest_unsaturated_exposures_s(&self.camera, target, &group.aspects, range_km, exposure);
+            longest_with_probability(&sorted, probability)
         });
         longest.fold(f64::INFINITY, f64::min)
     }
@@ -305,8 +308,8 @@ impl<'a> Design<'a> {
             Demand::ExposureWindow { from_km, to_km, phase_max_deg, n_min, probability } => {
                 let groups = self.groups(*phase_max_deg);
                 let required = probability.unwrap_or(file.probability);
-                let ranges =
-                    between(*from_km, *to_km, RANGES).map(|r| (self.longest_s(&groups, r, required), r));
+                let ranges = between(*from_km, *to_km, RANGES)
+                    .map(|r| (self.longest_unsaturated_s(&groups, r, required), r));
                 let (longest_s, range_km) =
                     ranges.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, *from_km));
                 if longest_s < file.exposure.min_s {

@@ -212,8 +212,8 @@ pub(crate) fn exposure_window(
     let half_s = shortest_for_stars(requirements, design, 0.5)?;
     let mut points: Vec<WindowPoint> = Vec::new();
     for range_km in between(far_km, near_km, POINTS) {
-        let longest_s = design.longest_s(&groups, range_km, file.probability);
-        let median_s = design.longest_s(&groups, range_km, 0.5).clamp(min_s, max_s);
+        let longest_s = design.longest_unsaturated_s(&groups, range_km, file.probability);
+        let median_s = design.longest_unsaturated_s(&groups, range_km, 0.5).clamp(min_s, max_s);
         // At far ranges the camera's longest exposure applies to many successive points.
         let (stars, probability) = match points.last().filter(|last| last.median_s == median_s) {
             Some(last) => (last.stars, last.probability),
@@ -254,7 +254,7 @@ fn closes(
     probability: f64,
 ) -> Option<f64> {
     let needed_s = needed_s?;
-    let is_open = |range_km| design.longest_s(groups, range_km, probability) >= needed_s;
+    let is_open = |range_km| design.longest_unsaturated_s(groups, range_km, probability) >= needed_s;
     if is_open(near_km) || !is_open(far_km) {
         return None;
     }
