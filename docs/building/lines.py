@@ -32,6 +32,15 @@ def lines(text: str) -> int:
     return count
 
 
+def room(parts: tuple[str, ...]) -> str:
+    """Returns the room of a file: its crate, its folder in a folder of crates, or its part of the pipelines."""
+    if parts[0] in ("oracle", "worlds", "sim"):
+        return "/".join(parts[:2])
+    if parts[0] == "pipeline" and len(parts) > 3:
+        return "/".join(parts[:3])
+    return parts[0]
+
+
 def main() -> None:
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
     counts: collections.Counter[str] = collections.Counter()
@@ -40,8 +49,7 @@ def main() -> None:
             parts = path.relative_to(root).parts
             if SKIPPED & set(parts) or path.name == "tests.rs":
                 continue
-            name = "/".join(parts[:2]) if parts[0] in ("oracle", "worlds") else parts[0]
-            counts[name] += lines(path.read_text())
+            counts[room(parts)] += lines(path.read_text())
     for name, count in sorted(counts.items()):
         print(f"{count:6} {name}")
     print(f"{sum(counts.values()):6} all")
