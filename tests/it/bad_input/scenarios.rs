@@ -74,7 +74,7 @@ fn an_unknown_key_gets_the_nearest_name() {
 #[test]
 fn a_missing_key_is_named_with_its_table() {
     // The reported location is that of the table.
-    check_mistake("sigma_px = 0.8\n", "", &["mine.toml:43:1: psf", "`sigma_px`"]);
+    check_mistake("sigma_px = 0.8\n", "", &["mine.toml:44:1: psf", "`sigma_px`"]);
 }
 
 #[test]
