@@ -61,10 +61,24 @@ pub(crate) fn parse<T>(
         }
         convert(&document)
     };
+    check_characters(path, text)?;
     if text.trim_start().starts_with('<') {
         let tree = xml::tree(path, text, kind)?;
         checked(xml::document(path, text, &tree, kind)?)
     } else {
         checked(kvn::document(path, text, kind)?)
     }
+}
+
+/// Refuses control characters, which no value of either notation contains and a writer could not repeat. Tabs
+/// are accepted as blanks.
+fn check_characters(path: &Path, text: &str) -> Result<(), FileError> {
+    for (line, number) in text.lines().zip(1..) {
+        if let Some(found) = line.chars().find(|found| found.is_control() && *found != '\t') {
+            let found = format!("the control character {}", found.escape_unicode());
+            let place = FileLocation::Line(number);
+            return Err(FileError::value(path, place, "text", &found, "printable characters and blanks"));
+        }
+    }
+    Ok(())
 }

@@ -154,6 +154,12 @@ fn a_bad_oem_is_refused_by_line_field_and_value() {
             ", line 8: `REF_FRAME` is `ITRF2000`, expected ICRF, GCRF, EME2000 or TEME",
         ),
         (1, "EME2000", "TOD", ", line 21: `REF_FRAME` is `TOD`, expected ICRF"),
+        (
+            0,
+            "= EARTH",
+            "= EA\u{7}RTH",
+            ", line 7: `text` is `the control character \\u{7}`, expected printable",
+        ),
         (0, "= EARTH", "= MARS", ", line 7: `CENTER_NAME` is `MARS`, expected EARTH"),
         (
             0,
@@ -398,6 +404,7 @@ fn every_truncation_is_refused_or_leaves_the_segments_whole() {
 #[test]
 fn a_bad_aem_is_refused_by_line_field_and_value() {
     for (from, to, parts) in [
+        ("EME2000", "EME\u{85}2000", ", line 7: `text` is `the control character \\u{85}`"),
         ("EME2000", "ITRF", ", line 7: `REF_FRAME_A` is `ITRF`, expected ICRF, GCRF, EME2000 or TEME"),
         (
             "SC_BODY_1",
