@@ -6,11 +6,12 @@ use optics::{ImagePoint, Projection};
 
 /// Largest blur, px, one standard deviation. A wider one is a motion, which the guidance or the drift of a
 /// scenario describes.
-const MAX_BLUR_PX: f64 = 8.0;
-/// Distance between the points of a blur, in standard deviations and in pixels: the smaller counts. With a
-/// point-spread function of 0.4 px or wider, sum and integral differ by less than 1e-4 of the peak.
+const MAX_BLUR_PX: f64 = 4.0;
+/// Distance h between the points of a blur, in standard deviations and in pixels: the smaller counts. Sum and
+/// integral differ by 2 exp(−2π² s²/h²) of the peak, where 1/s² = 1/σ² + 1/p² and p is the width of the
+/// point-spread function with that of a pixel, 0.29 px: 4e-4 for a Gaussian of 0.4 px, less for wider ones.
 const SPACING_SIGMA: f64 = 0.8;
-const SPACING_PX: f64 = 0.4;
+const SPACING_PX: f64 = 0.6;
 /// Distance from the centre up to which a blur has points, standard deviations.
 const REACH_SIGMA: f64 = 4.0;
 
@@ -30,7 +31,7 @@ impl Vibration {
     /// Creates a vibration of these standard deviations about the body axes, rad; `None` if all are zero.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a blur of more than 8 px on the detector.
+    /// [`OutOfRange`] for a blur of more than 4 px on the detector.
     pub fn new(
         sigma_rad: Vector3<f64>,
         camera_from_body: &Rotation<CameraFrame, Body>,
@@ -246,9 +247,9 @@ mod tests {
         assert_eq!(Vibration::new(Vector3::zeros(), &none, &projection()).unwrap(), None);
         let error = Vibration::new(Vector3::new(1e-3, 0.0, 0.0), &none, &projection()).unwrap_err();
         assert!(error.to_string().starts_with("attitude.control.vibration_arcsec is 206."), "{error}");
-        assert!(error.to_string().contains("at most 8 px"), "{error}");
-        // About the boresight the corners are blurred most: 71 px by 0.15 rad.
-        assert!(Vibration::new(Vector3::new(0.0, 0.0, 0.1), &none, &projection()).is_ok());
-        assert!(Vibration::new(Vector3::new(0.0, 0.0, 0.15), &none, &projection()).is_err());
+        assert!(error.to_string().contains("at most 4 px"), "{error}");
+        // About the boresight the corners, 71 px away, are blurred most.
+        assert!(Vibration::new(Vector3::new(0.0, 0.0, 0.05), &none, &projection()).is_ok());
+        assert!(Vibration::new(Vector3::new(0.0, 0.0, 0.07), &none, &projection()).is_err());
     }
 }

@@ -151,5 +151,5 @@ fn a_vibration_that_is_a_motion_is_refused() {
     simulation.attitude.control.vibration_arcsec = [0.0, 3600.0, 0.0];
     let error = Simulator::new(&simulation, std::path::Path::new("")).unwrap_err().to_string();
     assert!(error.contains("attitude.control.vibration_arcsec is 3600"), "{error}");
-    assert!(error.contains("a blur of at most 8 px"), "{error}");
+    assert!(error.contains("a blur of at most 4 px"), "{error}");
 }
