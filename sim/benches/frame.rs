@@ -20,7 +20,8 @@ use std::time::Duration;
 use boresight_sim::draw::ExpectedImage;
 use boresight_sim::optics::{Psf, PsfConfig, Stamp};
 use boresight_sim::sensor::{
-    ExposureInterval, FixedPatternConfig, FlatSamplers, LineNoiseConfig, RawImage, Sensor, SensorConfig,
+    ExposureInterval, FixedPatternConfig, FrameCharge, LineNoiseConfig, PixelSampler, RawImage, Sensor,
+    SensorConfig,
 };
 use boresight_sim::truth::TrajectorySource;
 use boresight_sim::{PixelSelection, Simulation, Simulator};
@@ -84,7 +85,7 @@ struct Camera {
     stamp: Stamp,
     image: ExpectedImage,
     raw: RawImage,
-    samplers: FlatSamplers,
+    sampler: PixelSampler,
     frame: u64,
 }
 
@@ -97,7 +98,7 @@ impl Camera {
             stamp: Stamp::new(),
             image: sensor.new_expected(),
             raw: sensor.new_raw(),
-            samplers: FlatSamplers::new(),
+            sampler: sensor.new_sampler(),
             frame: 0,
             sensor,
         })
@@ -119,7 +120,8 @@ impl Camera {
     fn collect_and_read_out(&mut self) {
         self.frame += 1;
         let charge = self.sensor.collect(&mut self.image, &OPENING);
-        self.sensor.read_out(&charge, &SEED, self.frame, &mut self.samplers, &mut self.raw).unwrap();
+        let collected = FrameCharge { charge: &charge, seed: SEED, frame: self.frame };
+        self.sensor.read_out(&collected, &mut self.sampler, &mut self.raw).unwrap();
     }
 }
 
@@ -184,12 +186,13 @@ fn stages(c: &mut Criterion<ProcessorTime>) {
             });
         });
         group.bench_function(BenchmarkId::new("reading out", name), |b| {
-            let Camera { sensor, image, raw, samplers, .. } = &mut *camera.borrow_mut();
+            let Camera { sensor, image, raw, sampler, .. } = &mut *camera.borrow_mut();
             let charge = sensor.collect(image, &OPENING);
             let mut number = 0;
             b.iter(|| {
                 number += 1;
-                sensor.read_out(&charge, &SEED, number, samplers, raw).unwrap();
+                let collected = FrameCharge { charge: &charge, seed: SEED, frame: number };
+                sensor.read_out(&collected, sampler, raw).unwrap();
             });
         });
     }

@@ -2,7 +2,7 @@
 
 use contract::Window;
 use sensor::onboard::RoiExtractor;
-use sensor::{FlatSamplers, FrameCharge, RawImage, SparseImage};
+use sensor::{FrameCharge, PixelSampler, RawImage, SparseImage};
 use truth::SimError;
 
 use crate::Simulator;
@@ -22,7 +22,7 @@ pub enum PixelSelection {
 /// Readout of frames with the on-board functions, and the buffers that frames reuse.
 #[derive(Debug)]
 pub(crate) struct FrameReadout {
-    samplers: FlatSamplers,
+    sampler: PixelSampler,
     raw: SparseImage,
     pub(crate) pixel_selection: PixelSelection,
     regions: Option<RoiExtractor>,
@@ -32,7 +32,7 @@ impl FrameReadout {
     pub(crate) fn new(simulator: &Simulator) -> Result<Self, SimError> {
         let (columns, rows) = simulator.projection.detector();
         Ok(Self {
-            samplers: FlatSamplers::new(),
+            sampler: simulator.sensor.new_sampler(),
             raw: simulator.sensor.new_sparse(),
             pixel_selection: PixelSelection::Needed,
             regions: simulator.roi.as_ref().map(|roi| RoiExtractor::new(roi, columns, rows)).transpose()?,
@@ -53,7 +53,7 @@ impl FrameReadout {
         if let Some(regions) = &self.regions {
             let threshold_dn = regions.threshold_dn();
             self.read_out_above(simulator, threshold_dn, charge)?;
-            return Ok(self.extract_regions(simulator, charge));
+            return self.extract_regions(simulator, charge);
         }
         match simulator.zero_suppression_dn {
             Some(floor_dn) => {
@@ -61,8 +61,7 @@ impl FrameReadout {
                 self.raw.suppress(floor_dn);
             }
             None => {
-                let (samplers, image) = (&mut self.samplers, self.raw.full_image());
-                simulator.sensor.read_out(charge.charge, &charge.seed, charge.frame, samplers, image)?;
+                simulator.sensor.read_out(charge, &mut self.sampler, self.raw.full_image())?;
             }
         }
         Ok(None)
@@ -76,19 +75,24 @@ impl FrameReadout {
         charge: &FrameCharge<'_>,
     ) -> Result<(), SimError> {
         let sensor = &simulator.sensor;
-        sensor.read_out_above(floor_dn, charge, &mut self.samplers, &mut self.raw)?;
+        sensor.read_out_above(floor_dn, charge, &mut self.sampler, &mut self.raw)?;
         if self.pixel_selection == PixelSelection::All {
             let (columns, rows) = self.raw.raw().size();
             let whole = [Window { x: 0, y: 0, columns, rows }];
-            sensor.read_out_windows(&whole, charge, &mut self.samplers, &mut self.raw);
+            sensor.read_out_windows(&whole, charge, &mut self.sampler, &mut self.raw)?;
         }
         Ok(())
     }
 
     /// Finds the regions that the camera keeps, and reads out all their pixels.
-    fn extract_regions(&mut self, simulator: &Simulator, charge: &FrameCharge<'_>) -> Option<Vec<Window>> {
-        let windows = self.regions.as_mut()?.extract_from(self.raw.raw(), self.raw.runs());
-        simulator.sensor.read_out_windows(&windows, charge, &mut self.samplers, &mut self.raw);
-        Some(windows)
+    fn extract_regions(
+        &mut self,
+        simulator: &Simulator,
+        charge: &FrameCharge<'_>,
+    ) -> Result<Option<Vec<Window>>, SimError> {
+        let Some(regions) = &mut self.regions else { return Ok(None) };
+        let windows = regions.extract_from(self.raw.raw(), self.raw.runs());
+        simulator.sensor.read_out_windows(&windows, charge, &mut self.sampler, &mut self.raw)?;
+        Ok(Some(windows))
     }
 }

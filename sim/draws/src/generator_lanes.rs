@@ -1,7 +1,7 @@
 //! Random words for bulk draws: eight generators side by side, which a machine with wide registers steps
 //! together.
 
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 use crate::streams::{GOLDEN_GAMMA, Streams, split_mix};
 
@@ -64,22 +64,6 @@ impl GeneratorLanes {
         }
         for step in 0..times {
             visit(step, self.next_words());
-        }
-    }
-
-    /// Skips the words of `times` steps.
-    #[inline(always)]
-    pub fn skip<S: Simd>(&mut self, simd: S, times: usize) {
-        struct Skip<'a>(&'a mut GeneratorLanes, usize);
-        impl WithSimd for Skip<'_> {
-            type Output = ();
-            #[inline(always)]
-            fn with_simd<S: Simd>(self, simd: S) {
-                self.0.steps(simd, self.1, |_, _| ());
-            }
-        }
-        if times > 0 {
-            simd.vectorize(Skip(self, times));
         }
     }
 }
@@ -153,9 +137,9 @@ mod tests {
     }
 
     #[test]
-    fn steps_and_skips_are_the_same_on_all_registers() {
+    fn steps_are_the_same_on_all_registers() {
         struct Steps(GeneratorLanes);
-        impl WithSimd for Steps {
+        impl pulp::WithSimd for Steps {
             type Output = Vec<[u64; LANES]>;
             fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
                 let mut words_of_steps = Vec::new();
@@ -164,7 +148,7 @@ mod tests {
                         assert!(step < times);
                         words_of_steps.push(words);
                     });
-                    self.0.skip(simd, times);
+                    self.0.steps(simd, times, |_, _| ());
                 }
                 words_of_steps
             }

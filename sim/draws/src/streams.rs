@@ -56,6 +56,8 @@ pub enum Effect {
     /// Selection of the dark pixels above the floor of a camera that reads no lower values, and the redrawn
     /// values of dark pixels that must not exceed it.
     Exceedance = 47,
+    /// Further numbers of the few pixels for which the words at their own address are not sufficient.
+    PixelReserve = 48,
     /// Values of a study's dispersed parameters (addressed with the study's seed and the case).
     StudyParameter = 60,
     /// Shifts and permutations of a study's design (addressed with the study's seed).
@@ -134,11 +136,22 @@ impl Streams {
         split_mix(self.key ^ index)
     }
 
-    /// Returns a word of 64 random bits at an index, without the cost of a generator. The word is not a
-    /// number of the stream at this index; an index uses either its stream or its word.
+    /// Returns the first of the words at an index.
     pub fn word(&self, index: u64) -> u64 {
-        // Applied twice: after one step the inputs of neighbouring indices would differ only in a bit or two.
-        split_mix(split_mix(self.key ^ index))
+        let [word] = self.words(index);
+        word
+    }
+
+    /// Returns `N` words of 64 random bits at an index, without the cost of a generator: the first numbers of
+    /// the SplitMix64 that keys the stream of this index. An index uses either its stream or its words.
+    #[inline(always)]
+    pub fn words<const N: usize>(&self, index: u64) -> [u64; N] {
+        let key = self.key_at(index);
+        let mut words = [0; N];
+        for (number, word) in (0..).zip(&mut words) {
+            *word = split_mix(key.wrapping_add(GOLDEN_GAMMA.wrapping_mul(number)));
+        }
+        words
     }
 }
 
@@ -222,25 +235,24 @@ mod tests {
         assert_eq!(streams.stream_at(99).next_u64(), SEED.stream(7, Effect::PixelNoise, 99).next_u64());
     }
 
-    /// Bits of words at neighbouring indices, and at one index in neighbouring frames, differ in half the
-    /// cases.
+    /// Bits of words at one index, at neighbouring indices, and at one index in neighbouring frames, differ
+    /// in half the cases.
     #[test]
     fn neighbouring_words_share_no_bits_but_by_chance() {
         let n = 20_000;
-        let mut differ = [[0_u32; 64]; 2];
+        let mut differ = [[0_u32; 64]; 3];
         for index in 0..n {
-            let word = SEED.streams(1, Effect::PixelNoise).word(index);
-            let others = [
-                SEED.streams(1, Effect::PixelNoise).word(index + 1),
-                SEED.streams(2, Effect::PixelNoise).word(index),
-            ];
+            let [word, next] = SEED.streams(1, Effect::PixelNoise).words(index);
+            let [of_neighbour] = SEED.streams(1, Effect::PixelNoise).words(index + 1);
+            let [of_next_frame] = SEED.streams(2, Effect::PixelNoise).words(index);
+            let others = [next, of_neighbour, of_next_frame];
             for (counts, other) in differ.iter_mut().zip(others) {
                 for (bit, count) in counts.iter_mut().enumerate() {
                     *count += ((word ^ other) >> bit & 1) as u32;
                 }
             }
         }
-        // Binomial with standard deviation sqrt(n)/2 = 71; the limit is five of them for 128 counts.
+        // Binomial with standard deviation sqrt(n)/2 = 71; the limit is five of them for 192 counts.
         for count in differ.into_iter().flatten() {
             assert!((f64::from(count) - n as f64 / 2.0).abs() < 354.0, "{count} of {n}");
         }

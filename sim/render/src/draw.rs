@@ -13,15 +13,13 @@ use optics::simd_kernel::{F64x8, LANES, SimdKernel, run_widest};
 use optics::smooth_field::SmoothField;
 use pulp::Simd;
 
-/// Number of pixels in a piece of a row, the unit in which images are examined, with one word of bits per
-/// piece.
-pub const PIECE: usize = u64::BITS as usize;
+/// Number of pixels in a tile, the part of a row that is drawn as one: about the width of a star.
+pub const TILE: usize = 16;
 
-/// Number of pixels in a part of a piece, the unit in which partial frames are drawn: about the width of a
-/// star.
-pub const PART: usize = 16;
-/// Number of parts in a piece.
-pub const PARTS: usize = PIECE / PART;
+/// Number of pixels in a piece of a row, for which an upper bound is kept, with one word of bits per piece.
+const PIECE: usize = u64::BITS as usize;
+/// Number of tiles in a piece.
+const TILES: usize = PIECE / TILE;
 
 /// Expected photoelectrons of a frame: a flat level, the non-uniform background, the images of objects, and
 /// single pixels.
@@ -263,6 +261,15 @@ impl ExpectedImage {
         }
     }
 
+    /// Electrons of all pixels above the background, row by row.
+    pub fn signal(&self) -> Vec<f64> {
+        let mut signal_e = vec![0.0; self.columns * self.rows];
+        for (y, row) in signal_e.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            self.add_signal(0, y, row);
+        }
+        signal_e
+    }
+
     /// Expected electrons of all pixels, row by row, including background.
     pub fn iter(&self) -> impl Iterator<Item = f64> {
         (0..self.rows).flat_map(|y| {
@@ -274,63 +281,43 @@ impl ExpectedImage {
 
     /// Computes the expected electrons of the pixels of a row, including background; `out` is as long as a
     /// row.
-    #[inline(always)]
     pub fn row(&self, y: usize, out: &mut [f64]) {
-        self.span::<{ 16 * PIECE }>(0, y, out);
+        self.span(0, y, out);
     }
 
-    /// Computes part `p` of `N` pixels of a row, like [`ExpectedImage::row`]; `out` is as long as the part.
+    /// Computes the expected electrons of the pixels of row `y` from column `x` on, including background.
     #[inline(always)]
-    pub fn part<const N: usize>(&self, y: usize, p: usize, out: &mut [f64]) {
-        self.span::<N>(p * N, y, out);
-    }
-
-    /// Returns true if row `y` contains drawn pixels.
-    #[inline(always)]
-    pub fn is_row_lit(&self, y: usize) -> bool {
-        let words = &self.is_single[y * self.words_per_row..(y + 1) * self.words_per_row];
-        self.objects.are_in_row(y) || any(words)
-    }
-
-    /// Marks each group of `N` pixels of row `y` that contains drawn pixels.
-    pub fn lit_parts<const N: usize>(&self, y: usize, is_lit: &mut [bool]) {
-        is_lit.fill(false);
-        self.objects.for_each_span(y, |from, to| is_lit[from / N..to.div_ceil(N)].fill(true));
-        let words = &self.is_single[y * self.words_per_row..(y + 1) * self.words_per_row];
-        for (word, is_lit) in words.iter().zip(is_lit.chunks_mut(PIECE / N)).filter(|(word, _)| **word != 0) {
-            for (i, is_lit) in is_lit.iter_mut().enumerate() {
-                *is_lit |= word >> (i * N) & (u64::MAX >> (PIECE - N)) != 0;
-            }
-        }
-    }
-
-    /// Computes the expected electrons of the pixels of row `y` from column `x` on, `N` pixels at a time.
-    #[inline(always)]
-    fn span<const N: usize>(&self, x: usize, y: usize, out: &mut [f64]) {
+    pub fn span(&self, x: usize, y: usize, out: &mut [f64]) {
         self.background.span(x, y, self.columns, out);
-        for (i, out) in out.chunks_mut(N).enumerate() {
+        let end = x + out.len();
+        for p in x / PIECE..end.div_ceil(PIECE) {
+            if !self.is_lit(y, p) {
+                continue;
+            }
             // In the order of the computation of one pixel: the sum of all signal, added to the background.
-            let mut signal_e = [0.0; N];
-            let signal_e = &mut signal_e[..out.len()];
-            self.add_signal(x + i * N, y, signal_e);
-            for (out, signal_e) in out.iter_mut().zip(signal_e) {
+            let (from, to) = ((p * PIECE).max(x), ((p + 1) * PIECE).min(end));
+            let mut signal_e = [0.0; PIECE];
+            let signal_e = &mut signal_e[..to - from];
+            self.add_signal(from, y, signal_e);
+            for (out, signal_e) in out[from - x..to - x].iter_mut().zip(signal_e) {
                 *out += *signal_e;
             }
         }
     }
 
-    /// Pixels of piece `p` of row `y`, as indices into the image.
-    pub(crate) fn piece_pixels(&self, y: usize, p: usize) -> Range<usize> {
-        y * self.columns + p * PIECE..y * self.columns + ((p + 1) * PIECE).min(self.columns)
+    /// Sets for each tile of row `y` from tile `first` on whether all its pixels have the flat level.
+    pub fn mark_flat_tiles(&self, y: usize, first: usize, is_flat: &mut [bool]) {
+        let is_even = !self.has_field();
+        for (tile, is_flat) in (first..).zip(is_flat) {
+            *is_flat = is_even && !self.is_lit(y, tile / TILES);
+        }
     }
 
-    /// Drawn pixels of piece `p` of row `y`, one bit each, and their electrons above the background.
+    /// Returns true if objects or single pixels may change the electrons in piece `p` of row `y`.
     #[inline(always)]
-    pub(crate) fn signal_in(&self, y: usize, p: usize) -> (u64, [f64; PIECE]) {
-        let mut signal_e = [0.0; PIECE];
-        self.add_signal(p * PIECE, y, &mut signal_e[..self.piece_pixels(y, p).len()]);
-        let lit = signal_e.iter().enumerate().fold(0, |lit, (i, &e)| lit | u64::from(e > 0.0) << i);
-        (lit | self.is_single[y * self.words_per_row + p], signal_e)
+    fn is_lit(&self, y: usize, p: usize) -> bool {
+        let piece = y * self.words_per_row + p;
+        (self.peaks[piece] != 0.0) | (self.is_single[piece] != 0)
     }
 
     /// Upper bound of the background electrons in row `y`.
@@ -339,10 +326,28 @@ impl ExpectedImage {
         self.background.row_bound_e(y, self.columns)
     }
 
-    /// Parts of piece `p` of row `y` whose drawn signal may bring a pixel above `limit_e`, over a background
-    /// of at most `bound_e`, which is at most `limit_e`: one bit per part, the lowest first.
+    /// Passes to `visit` the tiles of row `y` in which the signal may bring a pixel above `limit_e`, over a
+    /// background of at most `bound_e`, which is at most `limit_e`: the number of a tile, and one bit for
+    /// this and each of the next tiles, the lowest first.
     #[inline(always)]
-    pub fn parts_that_may_rise_above<S: Simd>(
+    pub fn for_tiles_that_may_rise_above<S: Simd>(
+        &self,
+        simd: S,
+        y: usize,
+        bound_e: f64,
+        limit_e: f64,
+        mut visit: impl FnMut(usize, u64),
+    ) {
+        for p in 0..self.words_per_row {
+            if self.is_lit(y, p) {
+                visit(p * TILES, self.tiles_that_may_rise_above(simd, y, p, bound_e, limit_e));
+            }
+        }
+    }
+
+    /// Tiles of piece `p` of row `y`, as for [`ExpectedImage::for_tiles_that_may_rise_above`].
+    #[inline(always)]
+    fn tiles_that_may_rise_above<S: Simd>(
         &self,
         simd: S,
         y: usize,
@@ -355,11 +360,12 @@ impl ExpectedImage {
         }
         // The stored bound adds the peaks of objects that lie side by side, so the signal is computed.
         let mut signal_e = [0.0; PIECE];
-        self.add_signal(p * PIECE, y, &mut signal_e[..self.piece_pixels(y, p).len()]);
-        signal_e.as_chunks::<PART>().0.iter().enumerate().fold(0, |parts, (i, part)| {
-            let eights = part.as_chunks::<LANES>().0.iter().map(|eight| F64x8::from_array(simd, eight));
+        let pixels = PIECE.min(self.columns - p * PIECE);
+        self.add_signal(p * PIECE, y, &mut signal_e[..pixels]);
+        signal_e.as_chunks::<TILE>().0.iter().enumerate().fold(0, |tiles, (i, tile)| {
+            let eights = tile.as_chunks::<LANES>().0.iter().map(|eight| F64x8::from_array(simd, eight));
             let peak_e = eights.fold(F64x8::splat(simd, 0.0), F64x8::max).largest();
-            parts | u64::from(bound_e + peak_e > limit_e) << i
+            tiles | u64::from(bound_e + peak_e > limit_e) << i
         })
     }
 
@@ -384,7 +390,7 @@ impl ExpectedImage {
         // Only drawn pixels can be above the limit here.
         let simd = pulp::Scalar::new();
         for y in 0..self.rows {
-            let may_rise = |&p: &usize| self.parts_that_may_rise_above(simd, y, p, bound_e, limit_e) != 0;
+            let may_rise = |&p: &usize| self.tiles_that_may_rise_above(simd, y, p, bound_e, limit_e) != 0;
             for p in (0..self.words_per_row).filter(may_rise) {
                 let piece = columns.iter_mut().enumerate().skip(p * PIECE).take(PIECE);
                 piece
@@ -393,21 +399,6 @@ impl ExpectedImage {
             }
         }
         columns
-    }
-
-    /// Index (row by row) and electrons above the background of every drawn pixel, in the order of the image.
-    pub fn object_pixels(&self) -> impl Iterator<Item = (usize, f64)> {
-        let pieces = (0..self.rows).flat_map(|y| (0..self.words_per_row).map(move |p| (y, p)));
-        pieces
-            .filter(|(y, p)| {
-                self.peaks[y * self.words_per_row + p] != 0.0
-                    || self.is_single[y * self.words_per_row + p] != 0
-            })
-            .flat_map(|(y, p)| {
-                let (lit, signal_e) = self.signal_in(y, p);
-                let first = self.piece_pixels(y, p).start;
-                set_bits(lit).map(move |bit| (first + bit, signal_e[bit]))
-            })
     }
 }
 
@@ -477,20 +468,25 @@ mod tests {
         image.add(&stamp);
     }
 
+    /// Spans that begin and end within a piece, over objects that begin and end within others.
     #[test]
-    fn every_pixel_off_the_flat_level_is_listed_once_and_in_order() {
+    fn a_span_has_the_electrons_of_its_pixels() {
         let mut image = ExpectedImage::new(150, 70);
         image.clear(5.0);
         for (x, y) in [(64.0, 30.0), (66.0, 31.0), (0.0, 0.0), (149.0, 69.0), (127.5, 5.0)] {
             star(&mut image, x, y);
         }
         image.add_pixel(63, 60, 7.0);
-        let indices: Vec<usize> = image.object_pixels().map(|(index, _)| index).collect();
-        assert!(indices.windows(2).all(|pair| pair[0] < pair[1]));
-        let differ: Vec<usize> =
-            image.iter().enumerate().filter(|(_, e)| *e != 5.0).map(|(i, _)| i).collect();
-        assert_eq!(indices, differ);
         assert_eq!(image.electrons_at(63, 60), 12.0);
+        for (y, from, to) in
+            [(30, 0, 150), (31, 60, 70), (0, 3, 4), (69, 100, 150), (5, 128, 129), (60, 16, 64)]
+        {
+            let mut span = vec![0.0; to - from];
+            image.span(from, y, &mut span);
+            let pixels: Vec<f64> = (from..to).map(|x| image.electrons_at(x, y)).collect();
+            assert_eq!(span, pixels);
+            assert!(span.iter().any(|electrons| *electrons > 5.0), "{y}");
+        }
     }
 
     #[test]

@@ -2,42 +2,36 @@
 
 use std::ops::Range;
 
-use draws::{Stream, Streams};
-use render::draw::ExpectedImage;
-
 use super::detector::Sensor;
-use super::pixels::LineOffsets;
+use super::pixel_sampler::PixelSampler;
+use super::readout::PixelInputs;
+use super::sparse_image::Pixel;
 use super::spill::BloomingConfig;
 
 /// Inputs for filling the wells of a frame.
 pub(super) struct Overflow<'a> {
     pub(super) blooming: &'a BloomingConfig,
-    pub(super) expected: &'a ExpectedImage,
-    /// Readout offsets of rows and columns.
-    pub(super) offsets: Option<&'a LineOffsets>,
-    /// Random streams of the pixel noise.
-    pub(super) streams: &'a Streams,
+    pub(super) inputs: &'a PixelInputs<'a>,
+    pub(super) sampler: &'a mut PixelSampler,
 }
 
 impl Sensor {
-    /// Redraws the columns with pixels that may exceed the full well, and passes the index and the digital
-    /// number of each pixel that differs to `put`.
+    /// Redraws the columns with pixels that may exceed the full well, and passes each pixel that differs to
+    /// `put`.
     ///
-    /// Electrons are drawn, then they spill, then they are read out. Each pixel is drawn at the address
-    /// rows + index, the address of the earlier draw of a pixel with signal. Pixels that neither overflow nor
-    /// receive electrons keep their value.
-    pub(super) fn bloom(&self, overflow: &Overflow<'_>, mut put: impl FnMut(usize, u16)) {
-        let Overflow { blooming, expected, offsets, streams } = *overflow;
+    /// Electrons are drawn, then they spill, then they are read out. Each pixel is drawn with the words at
+    /// its own address. Pixels that neither overflow nor receive electrons keep their number.
+    pub(super) fn bloom(&self, overflow: &mut Overflow<'_>, mut put: impl FnMut(Pixel)) {
+        let PixelInputs { expected, offsets, streams, .. } = overflow.inputs;
         let threshold_e = self.distribution.may_overflow_from_e();
         let above = expected.rows_above(threshold_e);
         let mut part = ColumnPart::default();
         for (x, above) in above.into_iter().enumerate().filter(|(_, above)| above.start < above.end) {
-            let stream = |y: usize| streams.stream_at((self.rows + y * self.columns + x) as u64);
             let mut margin = MARGIN;
             loop {
                 part.rows = above.start.saturating_sub(margin)..(above.end + margin).min(self.rows);
-                part.fill(self, x, expected, stream);
-                blooming.spill(&mut part.held, self.distribution.full_well_e());
+                part.fill(self, x, overflow);
+                overflow.blooming.spill(&mut part.held, self.distribution.full_well_e());
                 if !part.leaves(self) {
                     break;
                 }
@@ -46,12 +40,10 @@ impl Sensor {
             for (i, y) in part.rows.clone().enumerate() {
                 // Pixels that may overflow were drawn earlier without spilling, perhaps from a table.
                 if part.held[i] != part.collected[i] || part.means_e[i] > threshold_e {
-                    let mut stream = stream(y);
-                    // The collected electrons are redrawn only to advance the stream to the draw of the read
-                    // noise.
-                    self.distribution.collect(part.means_e[i], &mut stream);
-                    let offset_e = offsets.map_or(0.0, |offsets| offsets.offset_at(x, y));
-                    put(y * self.columns + x, self.distribution.convert(part.held[i], offset_e, &mut stream));
+                    let index = y * self.columns + x;
+                    let offset_e = offsets.as_ref().map_or(0.0, |offsets| offsets.offset_at(x, y));
+                    let words = streams.pixel_words(index);
+                    put(Pixel { index, dn: overflow.sampler.convert(part.held[i], offset_e, &words) });
                 }
             }
         }
@@ -75,23 +67,17 @@ struct ColumnPart {
 
 impl ColumnPart {
     /// Draws the electrons collected by the pixels of column `x`, before spilling.
-    fn fill(
-        &mut self,
-        sensor: &Sensor,
-        x: usize,
-        expected: &ExpectedImage,
-        stream: impl Fn(usize) -> Stream,
-    ) {
-        let Self { rows, means_e, collected, held } = self;
-        means_e.clear();
-        means_e.extend(rows.clone().map(|y| expected.electrons_at(x, y).max(0.0)));
-        collected.clear();
-        let drawn = rows
-            .clone()
-            .zip(&*means_e)
-            .map(|(y, &mean_e)| sensor.distribution.collect(mean_e, &mut stream(y)));
-        collected.extend(drawn);
-        held.clone_from(collected);
+    fn fill(&mut self, sensor: &Sensor, x: usize, overflow: &mut Overflow<'_>) {
+        let PixelInputs { expected, streams, .. } = overflow.inputs;
+        self.means_e.clear();
+        self.collected.clear();
+        for y in self.rows.clone() {
+            let mean_e = expected.electrons_at(x, y).max(0.0);
+            let words = streams.pixel_words(y * sensor.columns + x);
+            self.means_e.push(mean_e);
+            self.collected.push(overflow.sampler.collect(mean_e, &words));
+        }
+        self.held.clone_from(&self.collected);
     }
 
     /// Returns true if electrons spill to an end of the rows that is not an end of the column.
@@ -106,7 +92,7 @@ impl ColumnPart {
 #[cfg(test)]
 mod tests {
     use super::super::config::tests::{interval, twelve_bit};
-    use super::super::{FlatSamplers, SensorConfig};
+    use super::super::{FrameCharge, SensorConfig};
     use super::*;
     use draws::Seed;
 
@@ -129,7 +115,8 @@ mod tests {
             image.add_pixel(2, row, 5000.0 * 399.0);
             let charge = sensor.collect(&mut image, &interval(1.0));
             let seed = Seed { seed: 61, case: 0 };
-            sensor.read_out(&charge, &seed, 0, &mut FlatSamplers::new(), &mut raw).unwrap();
+            let collected = FrameCharge { charge: &charge, seed, frame: 0 };
+            sensor.read_out(&collected, &mut sensor.new_sampler(), &mut raw).unwrap();
             let full: Vec<usize> = (0..600).filter(|y| raw.dn()[y * 5 + 2] > 400).collect();
             assert!(full.first().unwrap().abs_diff(first) <= 1, "{full:?}");
             assert!(full.is_sorted_by(|a, b| a + 1 == *b), "{full:?}");

@@ -5,22 +5,23 @@
 //! [`RawImage`] holds digital numbers. A charge can be obtained only from an image, and digital numbers only
 //! from a charge:
 //! ```
-//! use boresight_sensor::{ExposureInterval, FlatSamplers, RawImage, Sensor};
+//! use boresight_sensor::{ExposureInterval, FrameCharge, PixelSampler, RawImage, Sensor};
 //! use draws::Seed;
 //! use render::draw::ExpectedImage;
-//! fn right(sensor: &Sensor, image: &mut ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
+//! fn right(sensor: &Sensor, image: &mut ExpectedImage, sampler: &mut PixelSampler, raw: &mut RawImage) {
 //!     let seed = Seed { seed: 1, case: 0 };
 //!     let charge = sensor.collect(image, &ExposureInterval { seed, middle_s: 0.0, exposure_s: 0.5 });
-//!     let _ = sensor.read_out(&charge, &seed, 0, samplers, raw);
+//!     let _ = sensor.read_out(&FrameCharge { charge: &charge, seed, frame: 0 }, sampler, raw);
 //! }
 //! ```
 //! A readout of photoelectrons does not compile:
 //! ```compile_fail,E0308
-//! use boresight_sensor::{FlatSamplers, RawImage, Sensor};
+//! use boresight_sensor::{FrameCharge, PixelSampler, RawImage, Sensor};
 //! use draws::Seed;
 //! use render::draw::ExpectedImage;
-//! fn wrong(sensor: &Sensor, image: &ExpectedImage, samplers: &mut FlatSamplers, raw: &mut RawImage) {
-//!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, samplers, raw);
+//! fn wrong(sensor: &Sensor, image: &ExpectedImage, sampler: &mut PixelSampler, raw: &mut RawImage) {
+//!     let seed = Seed { seed: 1, case: 0 };
+//!     let _ = sensor.read_out(&FrameCharge { charge: image, seed, frame: 0 }, sampler, raw);
 //! }
 //! ```
 
@@ -29,26 +30,28 @@ mod blooming;
 mod charge;
 mod config;
 mod cosmic_rays;
+mod dark_pixels;
 mod detector;
+mod direct_sampler;
 mod exceedance;
 mod fixed_pattern;
-mod flat_samplers;
 mod hot_pixels;
 mod interlace;
 mod mean_tables;
 pub mod onboard;
 mod pixel_distribution;
-mod pixels;
+mod pixel_sampler;
+mod pixel_words;
 mod poisson;
 mod poisson_digits;
 mod raw_image;
 mod readout;
 mod rolling_shutter;
-mod sparse;
 mod sparse_image;
 mod spill;
 mod telegraph;
 pub mod television;
+mod tiles;
 mod ziggurat;
 
 pub use charge::{Charge, ExposureInterval};
@@ -59,13 +62,13 @@ pub use cosmic_rays::{CosmicRayConfig, SouthAtlanticConfig};
 pub use cosmic_rays::{CosmicRayHit, CosmicRays};
 pub use detector::Sensor;
 pub use fixed_pattern::{DarkCurrentDistribution, FixedPatternConfig};
-pub use flat_samplers::FlatSamplers;
 pub use hot_pixels::HotPixel;
 pub use interlace::{InterlaceConfig, RowParity};
+pub use pixel_sampler::PixelSampler;
 pub use poisson::poisson;
 pub use raw_image::RawImage;
+pub use readout::FrameCharge;
 pub use rolling_shutter::RollingShutterConfig;
-pub use sparse::FrameCharge;
 pub use sparse_image::SparseImage;
 pub use spill::BloomingConfig;
 pub use telegraph::TelegraphConfig;

@@ -2,26 +2,29 @@
 //!
 //! Poisson(λ) is Poisson(λₖ) plus an independent n from Poisson(λ − λₖ), where λₖ is the next lower mean of a
 //! fixed grid. The grid is so fine that n is nearly always 0: the digital number is then drawn from the table
-//! of λₖ. For n of 1 and 2 there are separate tables; the few larger n are drawn with the direct sampler, at
-//! the pixel's own address.
+//! of λₖ. For n of 1 and 2 there are separate tables; the few larger n are drawn in steps, at the pixel's own
+//! address.
 //!
-//! Pixels are drawn in pieces, with three short loops over each piece: the index of each pixel's cell, the
+//! Pixels are drawn in batches, with three short loops over each batch: the index of each pixel's cell, the
 //! cell, the digital number. The first and the last loop apply the same arithmetic to all pixels, so wide
 //! registers process many at once.
 
-use draws::{GeneratorLanes, LANES, Stream};
-use pulp::Simd;
-use render::draw::{PART, PIECE};
+use std::ops::Range;
+
+use draws::{GeneratorLanes, LANES};
+use pulp::{Arch, Simd};
+use render::draw::TILE;
+use truth::Switch;
 
 use super::alias::AliasTable;
 use super::pixel_distribution::PixelDistribution;
 use super::poisson_digits::by_inversion;
 
 /// Tables for the means of the grid, made on first use: 3072 tables of at most
-/// [`MeanTables::MAX_TABLE_WIDTH_DN`] digital numbers, 25 MB.
+/// [`MeanTables::MAX_TABLE_WIDTH_DN`] digital numbers, 25 MB. The numbers do not depend on which tables are
+/// made already.
 #[derive(Debug, Clone)]
 pub(super) struct MeanTables {
-    distribution: PixelDistribution,
     /// Binary logarithm of the number of cells of a table.
     log2_cells: u32,
     /// Packed cells of the tables, by mean in quarters of an electron, then by n; 0 in tables that are not
@@ -29,180 +32,110 @@ pub(super) struct MeanTables {
     cells: Vec<u64>,
 }
 
-/// Upper end of the grid, electrons.
-const END_E: f64 = 256.0;
 /// Number of tables per mean: with 0, 1 and 2 extra electrons.
 const TABLES_PER_MEAN: usize = 3;
 /// Number of tables of the grid.
-const TABLES: usize = 4 * END_E as usize * TABLES_PER_MEAN;
+const TABLES: usize = 4 * MeanTables::END_E as usize * TABLES_PER_MEAN;
 /// Upper end of the grid, in quarters of an electron.
-const QUARTERS: f32 = 4.0 * END_E as f32;
+const QUARTERS: f32 = 4.0 * MeanTables::END_E as f32;
 const TWO_TO_23: f32 = 8_388_608.0;
 const TWO_TO_24: f32 = 16_777_216.0;
 
+/// Pixel that no table holds: a Poisson number of mean `node_e` plus `extra_e` electrons.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Untabulated {
+    pub(super) node_e: f64,
+    pub(super) extra_e: f64,
+}
+
 impl MeanTables {
+    /// Upper end of the grid, electrons: pixels of larger means are drawn directly.
+    pub(super) const END_E: f64 = 256.0;
     /// Maximum number of digital numbers in a table.
     const MAX_TABLE_WIDTH_DN: f64 = 1024.0;
 
-    /// Creates the grid without any tables.
-    pub(super) fn new(distribution: &PixelDistribution) -> Self {
+    /// Creates the grid without any tables. Returns `None` if tables do not fit the distribution: they would
+    /// be too wide, or there is no shot noise.
+    pub(super) fn new(distribution: &PixelDistribution) -> Option<Self> {
+        let width_dn = distribution.width_dn(Self::END_E);
+        if distribution.shot == Switch::Off || width_dn > Self::MAX_TABLE_WIDTH_DN {
+            return None;
+        }
         // A distribution covers as many numbers as its width, and one more at each end; n shifts it by up to
         // two electrons without widening it.
-        let cells = (distribution.width_dn(END_E).clamp(0.0, Self::MAX_TABLE_WIDTH_DN) as usize + 3)
-            .next_power_of_two();
-        Self {
-            distribution: *distribution,
-            log2_cells: cells.trailing_zeros(),
-            cells: vec![0; (TABLES + 1) * cells],
-        }
+        let cells = (width_dn.max(0.0) as usize + 3).next_power_of_two();
+        Some(Self { log2_cells: cells.trailing_zeros(), cells: vec![0; (TABLES + 1) * cells] })
     }
 
-    /// Mean from which on pixels are not drawn from the grid, electrons; 0 if the tables of this distribution
-    /// would be too wide.
-    pub(super) fn end_e(distribution: &PixelDistribution) -> f64 {
-        if distribution.width_dn(END_E) <= Self::MAX_TABLE_WIDTH_DN { END_E } else { 0.0 }
-    }
-
-    /// Draws the pixels of a row, each with its mean, electrons (a negative mean counts as 0), from the words
-    /// of `lanes`, one per pixel. `pixel_stream` returns the stream at a pixel's own address.
-    #[inline(always)]
-    pub(super) fn draw_row<S: Simd>(
-        &mut self,
-        simd: S,
-        means_e: &[f64],
-        mut lanes: GeneratorLanes,
-        row: &mut [u16],
-        pixel_stream: impl Fn(usize) -> Stream,
-    ) {
-        let mut words = Words::<PIECE>::new();
-        for (p, (row, means_e)) in row.chunks_mut(PIECE).zip(means_e.chunks(PIECE)).enumerate() {
-            words.draw(simd, &mut lanes);
-            self.draw_piece(means_e, &words, row, |i| pixel_stream(p * PIECE + i));
-        }
-    }
-
-    /// Draws at most `N` adjacent pixels of a row from their words; see [`MeanTables::draw_row`].
-    #[inline(always)]
-    pub(super) fn draw_piece<const N: usize>(
-        &mut self,
-        means_e: &[f64],
-        words: &Words<N>,
-        piece: &mut [u16],
-        pixel_stream: impl Fn(usize) -> Stream,
-    ) {
-        let mut means = [0.0; N];
-        for (mean, &mean_e) in means.iter_mut().zip(means_e) {
-            *mean = mean_e.max(0.0) as f32;
-        }
-        let mut places = [0; N];
-        for i in 0..N {
-            places[i] =
-                self.table_cell(TableChoice::from_mean(means[i], words.upper[i]).table(), words.lower[i]);
-        }
-        self.pick(&places, words, means_e, piece, pixel_stream);
-    }
-
-    /// [`MeanTables::draw_piece`] for a piece whose pixels, except in the lit parts, have the mean `even`:
-    /// the same numbers in less time.
-    #[inline(always)]
-    pub(super) fn draw_mostly_even_piece(
-        &mut self,
-        even: &UniformMean,
-        is_lit: &[bool],
-        means_e: &[f64],
-        words: &Words<PIECE>,
-        piece: &mut [u16],
-        pixel_stream: impl Fn(usize) -> Stream,
-    ) {
-        let mut places = [0; PIECE];
-        for (i, index) in places.iter_mut().enumerate() {
-            *index = self.table_cell(even.table(words.upper[i]), words.lower[i]);
-        }
-        for (part, _) in is_lit.iter().enumerate().filter(|(_, is_lit)| **is_lit) {
-            let pixels = part * PART..((part + 1) * PART).min(means_e.len());
-            for i in pixels {
-                let choice = TableChoice::from_mean(means_e[i].max(0.0) as f32, words.upper[i]);
-                places[i] = self.table_cell(choice.table(), words.lower[i]);
+    /// Draws the pixels of the first `tiles` tiles of a batch from their means and words. Tiles that are
+    /// marked as flat have the mean `flat`.
+    pub(super) fn draw_batch(&self, registers: Arch, batch: &mut Batch, flat: &FlatMean, tiles: usize) {
+        let mut tile = 0;
+        while tile < tiles {
+            let (is_flat, from) = (batch.is_flat[tile], tile);
+            while tile < tiles && batch.is_flat[tile] == is_flat {
+                tile += 1;
             }
+            let pixels = from * TILE..tile * TILE;
+            let flat = is_flat.then_some(flat);
+            registers.dispatch(ChooseTables { tables: self, flat, batch, pixels });
         }
-        self.pick(&places, words, means_e, piece, pixel_stream);
+        registers.dispatch(LookUp { tables: self, batch, pixels: tiles * TILE });
     }
 
-    /// Sets the numbers of a piece from the indices of their cells; pixels whose cell has no number are drawn
-    /// from their mean.
-    #[inline(always)]
-    fn pick<const N: usize>(
+    /// Draws the digital number of a pixel with a mean of `mean_e` electrons from its word, from a table that
+    /// is made if it is missing: the highest 24 bits of the word determine n, its lower half the number.
+    ///
+    /// # Errors
+    /// The pixel, if no table holds its distribution.
+    pub(super) fn draw(
         &mut self,
-        places: &[u32; N],
-        words: &Words<N>,
-        means_e: &[f64],
-        piece: &mut [u16],
-        pixel_stream: impl Fn(usize) -> Stream,
-    ) {
-        // The address of the tables is loaded once per piece, not per pixel.
-        let all = self.cells.as_slice();
-        let Some(last) = all.len().checked_sub(1) else { return };
-        let mut cells = [0; N];
-        for i in 0..N {
-            cells[i] = all[(places[i] as usize).min(last)];
-        }
-        let (mut levels, mut pairs) = ([0; N], [0; N]);
-        for i in 0..N {
-            (levels[i], pairs[i]) = halves(cells[i]);
-        }
-        let mut numbers = [0; N];
-        for i in 0..N {
-            numbers[i] = self.number(levels[i], pairs[i], words.lower[i]) as u16;
-        }
-        piece.copy_from_slice(&numbers[..piece.len()]);
-        if cells.iter().fold(false, |open, &cell| open | is_open(cell)) {
-            for (i, (number, mean_e)) in piece.iter_mut().zip(means_e).enumerate() {
-                if is_open(cells[i]) {
-                    *number = self.draw(*mean_e, words.word(i), || pixel_stream(i));
-                }
-            }
-        }
-    }
-
-    /// Draws the digital number of a pixel with a mean of `mean_e` electrons from a uniform word: its highest
-    /// 24 bits determine n, its lower half the digital number. `pixel_stream` returns the stream at
-    /// the pixel's own address.
-    fn draw(&mut self, mean_e: f64, word: u64, pixel_stream: impl FnOnce() -> Stream) -> u16 {
-        let mean = mean_e.max(0.0) as f32;
-        let choice = TableChoice::from_mean(mean, (word >> 32) as u32);
-        let index = self.table_cell(choice.table(), word as u32) as usize;
+        distribution: &PixelDistribution,
+        mean_e: f64,
+        word: u64,
+    ) -> Result<u16, Untabulated> {
+        let (lower, upper) = halves(word);
+        let choice = TableChoice::from_mean(mean_e.max(0.0) as f32, upper);
+        let index = self.table_cell(choice.table(), lower) as usize;
         let cell = self.cells.get(index).copied().unwrap_or(0);
-        if is_open(cell) {
-            return self.draw_open(mean_e, choice, word, pixel_stream());
+        if !is_open(cell) {
+            let (level, pair) = halves(cell);
+            return Ok(self.number(level, pair, lower) as u16);
         }
-        let (level, pair) = halves(cell);
-        self.number(level, pair, word as u32) as u16
-    }
-
-    /// Does the work of [`MeanTables::draw`] for a pixel without a table, or whose table is not made yet.
-    #[cold]
-    fn draw_open(&mut self, mean_e: f64, choice: TableChoice, word: u64, mut pixel_stream: Stream) -> u16 {
         if choice.quarters >= QUARTERS as i32 {
-            return self.distribution.sample(mean_e, 0.0, &mut pixel_stream);
+            return Err(Untabulated { node_e: mean_e, extra_e: 0.0 });
         }
         let node_e = 0.25 * f64::from(choice.quarters);
         if choice.more >= TABLES_PER_MEAN as i32 {
-            let u = ((word >> 32) as f64 + 0.5) * (1.0 / 4_294_967_296.0);
+            let u = (f64::from(upper) + 0.5) * (1.0 / 4_294_967_296.0);
             let n = by_inversion(f64::from(choice.rest), u).max(TABLES_PER_MEAN);
-            return self.distribution.sample_more(node_e, n as f64, &mut pixel_stream);
+            return Err(Untabulated { node_e, extra_e: n as f64 });
         }
-        let distribution = self.distribution.probabilities(node_e, choice.more as u32);
-        let table =
-            AliasTable::with_cells(1 << self.log2_cells, distribution.first_dn, &distribution.probabilities);
-        let start = (choice.table() as usize) << self.log2_cells;
+        Ok(self.make_table(distribution, node_e, choice).draw(lower))
+    }
+
+    /// Makes the table of a choice and stores it.
+    #[cold]
+    fn make_table(
+        &mut self,
+        distribution: &PixelDistribution,
+        node_e: f64,
+        choice: TableChoice,
+    ) -> AliasTable {
+        let distribution = distribution.probabilities(node_e, choice.more as u32);
+        let cells = 1 << self.log2_cells;
+        let table = AliasTable::with_cells(cells, distribution.first_dn, &distribution.probabilities);
+        let start = choice.table() as usize * cells;
         // A distribution with more numbers than a table has cells is not stored: it is recomputed on every
         // draw.
-        if table.packed().len() == 1 << self.log2_cells
-            && let Some(cells) = self.cells.get_mut(start..start + (1 << self.log2_cells))
+        if table.packed().len() == cells
+            && let Some(stored) = self.cells.get_mut(start..start + cells)
         {
-            cells.iter_mut().zip(table.packed()).for_each(|(cell, packed)| *cell = packed);
+            for (cell, packed) in stored.iter_mut().zip(table.packed()) {
+                *cell = packed;
+            }
         }
-        table.draw(word as u32)
+        table
     }
 
     /// Index of the cell that the lower half of a word selects in a table.
@@ -219,48 +152,160 @@ impl MeanTables {
     }
 }
 
-/// Words of `N` adjacent pixels, one per pixel, split into halves: a register holds twice as many 32-bit
-/// numbers.
-pub(super) struct Words<const N: usize> {
-    upper: [u32; N],
-    lower: [u32; N],
+/// Task of choosing the table and the cell of some pixels of a batch.
+struct ChooseTables<'a> {
+    tables: &'a MeanTables,
+    /// Common mean of the pixels, if they have one.
+    flat: Option<&'a FlatMean>,
+    batch: &'a mut Batch,
+    pixels: Range<usize>,
 }
 
-impl<const N: usize> Words<N> {
-    /// Creates words that are not drawn yet.
-    pub(super) fn new() -> Self {
-        Self { upper: [0; N], lower: [0; N] }
-    }
+impl pulp::WithSimd for ChooseTables<'_> {
+    type Output = ();
 
-    /// Draws the next words of a row.
     #[inline(always)]
-    pub(super) fn draw<S: Simd>(&mut self, simd: S, lanes: &mut GeneratorLanes) {
-        simd.vectorize(DrawWords { words: self, lanes });
-    }
-
-    fn word(&self, i: usize) -> u64 {
-        u64::from(self.upper[i]) << 32 | u64::from(self.lower[i])
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { tables, flat, batch, pixels } = self;
+        let Batch { means_e, means, words, places, .. } = batch;
+        let (words, places) = (&words[pixels.clone()], &mut places[pixels.clone()]);
+        if let Some(flat) = flat {
+            for i in 0..places.len() {
+                let (lower, upper) = halves(words[i]);
+                places[i] = tables.table_cell(flat.table(upper), lower);
+            }
+            return;
+        }
+        let (means_e, means) = (&means_e[pixels.clone()], &mut means[pixels]);
+        for i in 0..means.len() {
+            means[i] = means_e[i].max(0.0) as f32;
+        }
+        for i in 0..places.len() {
+            let (lower, upper) = halves(words[i]);
+            places[i] = tables.table_cell(TableChoice::from_mean(means[i], upper).table(), lower);
+        }
     }
 }
 
-/// Arguments of [`Words::draw`] for vectorised code.
-struct DrawWords<'a, const N: usize> {
-    words: &'a mut Words<N>,
+/// Task of reading the chosen cells and the digital numbers in them.
+struct LookUp<'a> {
+    tables: &'a MeanTables,
+    batch: &'a mut Batch,
+    pixels: usize,
+}
+
+impl pulp::WithSimd for LookUp<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { tables, batch, pixels } = self;
+        let Batch { words, places, cells, numbers, has_open, .. } = batch;
+        let (words, places) = (&words[..pixels], &places[..pixels]);
+        let (cells, numbers) = (&mut cells[..pixels], &mut numbers[..pixels]);
+        let all = tables.cells.as_slice();
+        let Some(last) = all.len().checked_sub(1) else { return };
+        for i in 0..pixels {
+            cells[i] = all[(places[i] as usize).min(last)];
+        }
+        for i in 0..pixels {
+            let (level, pair) = halves(cells[i]);
+            numbers[i] = tables.number(level, pair, words[i] as u32) as u16;
+        }
+        for (cells, has_open) in cells.as_chunks::<TILE>().0.iter().zip(has_open) {
+            *has_open = cells.iter().fold(false, |open, &cell| open | is_open(cell));
+        }
+    }
+}
+
+/// Pixels that are drawn together, tile after tile.
+///
+/// First all their means are computed, then their words, then their numbers. Each of these reads a different
+/// area of memory, and several accesses of one kind overlap in time.
+pub(super) struct Batch {
+    /// Expected electrons.
+    pub(super) means_e: [f64; Batch::PIXELS],
+    /// Expected electrons with the precision of the tables.
+    means: [f32; Batch::PIXELS],
+    /// Tiles whose pixels all have the flat mean of the frame.
+    pub(super) is_flat: [bool; Batch::TILES],
+    /// Words, one per pixel.
+    words: [u64; Batch::PIXELS],
+    /// Indices of the cells of the tables, and the cells.
+    places: [u32; Batch::PIXELS],
+    cells: [u64; Batch::PIXELS],
+    /// Tiles with pixels whose number is not in a table yet.
+    has_open: [bool; Batch::TILES],
+    /// Digital numbers, where they are in a table.
+    pub(super) numbers: [u16; Batch::PIXELS],
+}
+
+impl Batch {
+    /// Number of tiles.
+    pub(super) const TILES: usize = 32;
+    /// Number of pixels.
+    const PIXELS: usize = Self::TILES * TILE;
+
+    /// Creates a batch of pixels that are not drawn yet.
+    pub(super) fn new() -> Self {
+        Self {
+            means_e: [0.0; Self::PIXELS],
+            means: [0.0; Self::PIXELS],
+            is_flat: [false; Self::TILES],
+            words: [0; Self::PIXELS],
+            places: [0; Self::PIXELS],
+            cells: [0; Self::PIXELS],
+            has_open: [false; Self::TILES],
+            numbers: [0; Self::PIXELS],
+        }
+    }
+
+    /// Draws the words of adjacent tiles of a row for some tiles of the batch, after those of `skipped`
+    /// tiles.
+    pub(super) fn draw_words(
+        &mut self,
+        registers: Arch,
+        tiles: Range<usize>,
+        skipped: usize,
+        lanes: &mut GeneratorLanes,
+    ) {
+        let words = &mut self.words[tiles.start * TILE..tiles.end * TILE];
+        registers.dispatch(DrawWords { words, skipped: skipped * TILE / LANES, lanes });
+    }
+
+    /// Word of pixel `i`.
+    pub(super) fn word(&self, i: usize) -> u64 {
+        self.words[i]
+    }
+
+    /// Returns one bit for each pixel of a tile of the batch whose number is not in a table yet; it is drawn
+    /// by [`MeanTables::draw`].
+    pub(super) fn open_pixels(&self, tile: usize) -> u64 {
+        if !self.has_open[tile] {
+            return 0;
+        }
+        let cells = &self.cells[tile * TILE..(tile + 1) * TILE];
+        cells.iter().enumerate().fold(0, |open, (i, &cell)| open | u64::from(is_open(cell)) << i)
+    }
+}
+
+/// Arguments of [`Batch::draw_words`] for vectorised code.
+struct DrawWords<'a> {
+    words: &'a mut [u64],
+    /// Steps of the generators before the first word.
+    skipped: usize,
     lanes: &'a mut GeneratorLanes,
 }
 
-impl<const N: usize> pulp::WithSimd for DrawWords<'_, N> {
+impl pulp::WithSimd for DrawWords<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { words: Words { upper, lower }, lanes } = self;
-        let (upper, lower) = (upper.as_chunks_mut::<LANES>().0, lower.as_chunks_mut::<LANES>().0);
-        lanes.steps(simd, N / LANES, |step, words| {
-            for lane in 0..LANES {
-                (lower[step][lane], upper[step][lane]) = halves(words[lane]);
-            }
-        });
+        let Self { words, skipped, lanes } = self;
+        lanes.steps(simd, skipped, |_, _| ());
+        let eights = words.as_chunks_mut::<LANES>().0;
+        lanes.steps(simd, eights.len(), |step, words| eights[step] = words);
     }
 }
 
@@ -310,29 +355,32 @@ impl TableChoice {
     }
 }
 
-/// Precomputed [`Choice`] for many pixels with a common mean.
+/// Choice of the table for the many pixels with a common mean, prepared once.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct UniformMean {
+pub(super) struct FlatMean {
     /// Index of the table with 0 extra electrons.
     first: u32,
     /// Values of a word's 24 bits from which on there are at least 1, 2 and 3 extra electrons.
     steps: [i32; TABLES_PER_MEAN],
 }
 
-impl UniformMean {
-    /// Creates the choice for a mean from 0 to [`MeanTables::end_e`], electrons.
+impl FlatMean {
+    /// Prepares the choice for a mean, electrons.
     pub(super) fn new(mean_e: f64) -> Self {
         let (quarters, rest) = grid_node(mean_e.max(0.0) as f32);
         // A float represents 24 bits exactly, so a comparison of integers equals a comparison of shares.
         let steps = n_at_most(rest).map(|share| (f64::from(share) * f64::from(TWO_TO_24)).ceil() as i32);
+        // From the upper end of the grid on, this is one past the last table.
         Self { first: (quarters * TABLES_PER_MEAN as i32) as u32, steps }
     }
 
+    /// Index of the table for the upper half of a word.
     #[inline(always)]
     fn table(&self, upper: u32) -> u32 {
         let u = (upper >> 8) as i32;
-        let [one, two, three] = self.steps.map(|step| u >= step);
-        if three { TABLES as u32 } else { self.first + u32::from(one) + u32::from(two) }
+        let [one, two, three] = self.steps;
+        // Three or more lead beyond the last table.
+        self.first + u32::from(u >= one) + u32::from(u >= two) + u32::from(u >= three) * TABLES as u32
     }
 }
 
@@ -366,7 +414,9 @@ fn n_at_most(rest: f32) -> [f32; TABLES_PER_MEAN] {
 mod tests {
     use super::super::SensorConfig;
     use super::super::config::tests::twelve_bit;
-    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram, two_sample_p};
+    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram};
+    use super::super::pixel_sampler::PixelSampler;
+    use super::super::pixel_words::PixelStreams;
     use super::*;
     use draws::{Effect, Seed};
 
@@ -375,55 +425,70 @@ mod tests {
         PixelDistribution::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() })
     }
 
+    /// Sampler of the pixels of one row of many.
+    struct Row {
+        sampler: PixelSampler,
+        streams: PixelStreams,
+        batch: Batch,
+    }
+
+    impl Row {
+        fn new(seed: u64, frame: u64) -> Self {
+            let seed = Seed { seed, case: 0 };
+            let streams = PixelStreams::new(&seed, frame, Batch::PIXELS, 1 << 20);
+            Self { sampler: PixelSampler::new(&distribution()), streams, batch: Batch::new() }
+        }
+
+        /// Draws row `y` of pixels whose means are set, or are all `flat_e`.
+        fn draw(&mut self, y: usize, flat_e: Option<f64>) -> [u16; Batch::PIXELS] {
+            let mut lanes = self.streams.row_words(Arch::Scalar, y);
+            self.batch.draw_words(Arch::Scalar, 0..Batch::TILES, 0, &mut lanes);
+            self.batch.is_flat.fill(flat_e.is_some());
+            if let Some(flat_e) = flat_e {
+                self.batch.means_e.fill(flat_e);
+            }
+            let flat = FlatMean::new(flat_e.unwrap_or(0.0));
+            self.sampler.draw_batch(Arch::Scalar, &mut self.batch, &flat, Batch::TILES);
+            let mut numbers = self.batch.numbers;
+            for (i, dn) in numbers.iter_mut().enumerate() {
+                if self.batch.open_pixels(i / TILE) >> (i % TILE) & 1 == 1 {
+                    let own_words = self.streams.pixel_words(y * Batch::PIXELS + i);
+                    *dn = self.sampler.draw_open(self.batch.means_e[i], self.batch.word(i), &own_words);
+                }
+            }
+            numbers
+        }
+    }
+
     #[test]
-    fn pixels_of_different_means_follow_the_distribution_of_the_direct_sampler() {
-        let distribution = distribution();
-        let mut tables = MeanTables::new(&distribution);
-        for (frame, mean_e) in
-            [0.0, 0.1, 0.3, 1.0, 17.99, 63.99, 64.0, 65.49, 201.7, 255.99].into_iter().enumerate()
+    fn pixels_of_different_means_follow_their_distributions() {
+        for (frame, mean_e) in [0.0, 0.1, 0.3, 1.0, 17.99, 63.99, 64.0, 65.49, 201.7, 255.99, 256.0, 300.3]
+            .into_iter()
+            .enumerate()
         {
-            let streams = Seed { seed: 23, case: 0 }.streams(frame as u64, Effect::PixelNoise);
-            let n = 300_000;
-            let drawn = histogram((0..n).map(|index| {
-                usize::from(tables.draw(mean_e, streams.word(index), || streams.stream_at(n + index)))
-            }));
-            let p = chi_square_p(&drawn, &from_zero(&distribution.probabilities(mean_e, 0)));
+            let mut row = Row::new(23, frame as u64);
+            let drawn = histogram((0..600).flat_map(|y| row.draw(y, Some(mean_e))).map(usize::from));
+            let p = chi_square_p(&drawn, &from_zero(&distribution().probabilities(mean_e, 0)));
             assert!(p > 1e-4, "mean {mean_e}: p = {p}");
-            let mut stream = streams.stream_at(2 * n);
-            let sampled =
-                histogram((0..n).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
-            let p = two_sample_p(&drawn, &sampled);
-            assert!(p > 1e-4, "mean {mean_e}: p = {p} against the sampler");
         }
     }
 
     /// Checks means half-way between the nodes of the grid, where n is least certain. Pearson's test against
     /// the exact distribution, its tails merged to an expected count of ten; one row of draws at a time.
     fn assert_the_distribution_midway(draws: usize) {
-        let distribution = distribution();
-        let mut tables = MeanTables::new(&distribution);
-        let mut row = vec![0; 1000];
         let mut after = 0.0;
         for i in 0..20_u64 {
             // At most one mean per quarter.
             let quarters = (4.0 * 0.1 * libm::pow(2550.0, i as f64 / 19.0)).floor().max(after);
             after = quarters + 1.0;
             let mean_e = 0.25 * quarters + 0.125;
-            let streams = Seed { seed: 26, case: i }.streams(0, Effect::PixelNoise);
-            let means = vec![mean_e; row.len()];
+            let mut row = Row::new(26, i);
+            row.batch.means_e.fill(mean_e);
             let mut counts = vec![0; 4096];
-            for y in 0..(draws / row.len()) as u64 {
-                let pixel_stream = |x: usize| streams.stream_at((1 << 40) + (y << 10) + x as u64);
-                tables.draw_row(
-                    pulp::Scalar::new(),
-                    &means,
-                    GeneratorLanes::from_streams(&streams, y),
-                    &mut row,
-                    pixel_stream,
-                );
-                row.iter().for_each(|&dn| counts[usize::from(dn)] += 1);
+            for y in 0..draws / Batch::PIXELS {
+                row.draw(y, None).iter().for_each(|&dn| counts[usize::from(dn)] += 1);
             }
-            let p = chi_square_p(&counts, &from_zero(&distribution.probabilities(mean_e, 0)));
+            let p = chi_square_p(&counts, &from_zero(&distribution().probabilities(mean_e, 0)));
             // Twenty tests.
             assert!(p > 1e-4, "mean {mean_e}: p = {p}");
         }
@@ -434,7 +499,7 @@ mod tests {
         assert_the_distribution_midway(1_000_000);
     }
 
-    /// Full version: `cargo test --release -p boresight-sim --lib midway -- --ignored`, 15 s of CPU time.
+    /// Full version: `cargo test --release -p boresight-sensor --lib midway -- --ignored`, 15 s of CPU time.
     #[test]
     #[ignore = "2e9 draws: for a scheduled job"]
     fn midway_between_nodes_the_distribution_is_exact_in_a_hundred_million_draws() {
@@ -442,53 +507,49 @@ mod tests {
     }
 
     #[test]
-    fn caching_changes_nothing() {
-        let distribution = distribution();
-        let mut kept = MeanTables::new(&distribution);
-        let streams = Seed { seed: 24, case: 0 }.streams(0, Effect::PixelNoise);
-        let mean_e = |index: u64| index as f64 * 0.0937;
-        let draw = |tables: &mut MeanTables, index: u64| {
-            tables.draw(mean_e(index), streams.word(index), || streams.stream_at(index))
-        };
-        let all: Vec<u16> = (0..2700).map(|index| draw(&mut kept, index)).collect();
-        for index in (0..2700).step_by(61) {
-            assert_eq!(draw(&mut MeanTables::new(&distribution), index), all[index as usize]);
+    fn tables_that_are_made_already_change_nothing() {
+        let mut kept = Row::new(24, 0);
+        for (i, mean_e) in kept.batch.means_e.iter_mut().enumerate() {
+            *mean_e = i as f64 * 0.527 - 2.0;
+        }
+        let means_e = kept.batch.means_e;
+        let first = kept.draw(7, None);
+        assert_eq!(kept.draw(7, None), first);
+        for i in (0..Batch::PIXELS).step_by(61) {
+            let mut fresh = Row::new(24, 0);
+            fresh.batch.means_e[i] = means_e[i];
+            assert_eq!(fresh.draw(7, None)[i], first[i], "{i}");
         }
     }
 
-    /// Pieces, the last of them short, give the same numbers as single pixels, without tables and with
-    /// tables.
     #[test]
-    fn a_row_is_drawn_as_its_pixels_are() {
-        let distribution = distribution();
-        let (mut by_row, mut one_by_one) = (MeanTables::new(&distribution), MeanTables::new(&distribution));
-        let streams = Seed { seed: 25, case: 0 }.streams(0, Effect::PixelNoise);
-        let means: Vec<f64> = (0..1003).map(|x| f64::from(x) * 0.31 - 2.0).collect();
-        let mut row = vec![0; means.len()];
-        for y in [0, 0, 1] {
-            by_row.draw_row(
-                pulp::Scalar::new(),
-                &means,
-                GeneratorLanes::from_streams(&streams, y),
-                &mut row,
-                |x| streams.stream_at(10 + x as u64),
-            );
-            let mut lanes = GeneratorLanes::from_streams(&streams, y);
-            let words: Vec<u64> = (0..126).flat_map(|_| lanes.next_words()).collect();
-            for (x, (dn, mean_e)) in row.iter().zip(&means).enumerate() {
-                assert_eq!(
-                    *dn,
-                    one_by_one.draw(*mean_e, words[x], || streams.stream_at(10 + x as u64)),
-                    "{x}"
-                );
+    fn a_flat_tile_is_drawn_as_its_pixels_are() {
+        for mean_e in [0.0, 3.1, 20.0, 20.13, 255.99, 256.0, 400.0] {
+            let (mut flat, mut each) = (Row::new(25, 0), Row::new(25, 0));
+            each.batch.means_e.fill(mean_e);
+            for y in 0..50 {
+                assert_eq!(flat.draw(y, Some(mean_e)), each.draw(y, None), "mean {mean_e}");
             }
         }
     }
 
     #[test]
+    fn words_after_skipped_tiles_are_those_of_the_row() {
+        let streams = Seed { seed: 27, case: 0 }.streams(0, Effect::PixelNoise);
+        let (mut whole, mut part) = (Batch::new(), Batch::new());
+        let lanes = GeneratorLanes::from_streams(&streams, 3);
+        whole.draw_words(Arch::Scalar, 0..8, 0, &mut lanes.clone());
+        part.draw_words(Arch::new(), 1..3, 5, &mut lanes.clone());
+        assert_eq!(part.words[TILE..3 * TILE], whole.words[5 * TILE..7 * TILE]);
+    }
+
+    #[test]
     fn wide_tables_are_not_made() {
-        assert_eq!(MeanTables::end_e(&distribution()), END_E);
+        assert!(MeanTables::new(&distribution()).is_some());
         let wide = SensorConfig { gain_e_per_dn: 0.05, ..twelve_bit() };
-        assert_eq!(MeanTables::end_e(&PixelDistribution::new(&wide)), 0.0);
+        assert!(MeanTables::new(&PixelDistribution::new(&wide)).is_none());
+        let mut silent = twelve_bit();
+        silent.noise.shot = Switch::Off;
+        assert!(MeanTables::new(&PixelDistribution::new(&silent)).is_none());
     }
 }

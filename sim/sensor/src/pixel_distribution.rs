@@ -1,15 +1,13 @@
 //! Distribution of one pixel: from its expected electrons to its digital number.
 //!
 //! Collected electrons are Poisson distributed and limited to the full well; the read noise is normal; the
-//! converter rounds and clips. The distribution is implemented twice: as a sampler, and as the probability of
-//! every digital number.
+//! converter rounds and clips. The distribution is implemented twice: as the probability of every digital
+//! number, and in steps ([`DirectSampler`](super::direct_sampler::DirectSampler)).
 
-use draws::{Stream, normal};
 use truth::Switch;
 
 use super::alias::AliasTable;
 use super::config::SensorConfig;
-use super::poisson::poisson;
 
 /// Parameters of a pixel's distribution other than its mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,41 +42,6 @@ impl PixelDistribution {
             shot: config.noise.shot,
             full_scale_dn: config.full_scale_dn(),
         }
-    }
-
-    /// Draws the digital number of a pixel with a mean of `mean_e` electrons, plus `offset_e` electrons added
-    /// by the readout.
-    pub(super) fn sample(&self, mean_e: f64, offset_e: f64, stream: &mut Stream) -> u16 {
-        // With a mean twelve standard deviations above the full well, the well is full except with a
-        // probability of 10^-32; an unbounded mean would exceed the range of the sampler.
-        let surely_full = self.full_well_e + 12.0 * self.full_well_e.sqrt() + 144.0;
-        let collected_e = if mean_e < surely_full { self.collect(mean_e, stream) } else { mean_e };
-        self.convert(collected_e.min(self.full_well_e), offset_e, stream)
-    }
-
-    /// Draws the electrons that a pixel collects, before the limit of the full well: the first half of
-    /// [`PixelDistribution::sample`].
-    pub(super) fn collect(&self, mean_e: f64, stream: &mut Stream) -> f64 {
-        // Beyond the range of the sampler the shot noise is less than 3e-8 of the mean.
-        const SAMPLER_RANGE_E: f64 = 1e15;
-        match self.shot {
-            Switch::On if mean_e < SAMPLER_RANGE_E => poisson(mean_e, stream),
-            Switch::On | Switch::Off => mean_e,
-        }
-    }
-
-    /// Draws the digital number of a pixel that collects a Poisson number of mean `mean_e` plus `extra_e`
-    /// fixed electrons.
-    pub(super) fn sample_more(&self, mean_e: f64, extra_e: f64, stream: &mut Stream) -> u16 {
-        let collected_e = self.collect(mean_e, stream) + extra_e;
-        self.convert(collected_e.min(self.full_well_e), 0.0, stream)
-    }
-
-    /// Draws the digital number of a pixel that holds `held_e` electrons: the second half of
-    /// [`PixelDistribution::sample`].
-    pub(super) fn convert(&self, held_e: f64, offset_e: f64, stream: &mut Stream) -> u16 {
-        let normal = if self.read_noise_e > 0.0 { normal(stream) } else { 0.0 };
-        self.read(held_e, normal, offset_e)
     }
 
     /// Returns the digital number for the electrons that a pixel collected, limited to the full well, with
@@ -262,8 +225,18 @@ fn normal_cdf(z: f64) -> f64 {
 #[cfg(test)]
 pub(super) mod tests {
     use super::super::config::tests::twelve_bit;
+    use super::super::direct_sampler::DirectSampler;
+    use super::super::pixel_words::PixelStreams;
     use super::*;
-    use draws::{Effect, Seed};
+    use draws::Seed;
+
+    /// Counts the numbers of `count` pixels of one mean that are drawn directly.
+    fn sampled(distribution: &PixelDistribution, mean_e: f64, frame: u64, count: usize) -> Vec<usize> {
+        let streams = PixelStreams::new(&Seed { seed: 5, case: 0 }, frame, count, 1);
+        let mut sampler = DirectSampler::default();
+        let mut draw = |index| sampler.draw(distribution, mean_e, 0.0, &streams.pixel_words(index));
+        histogram((0..count).map(|index| usize::from(draw(index))))
+    }
 
     /// Number of occurrences of each number.
     pub(crate) fn histogram(numbers: impl Iterator<Item = usize>) -> Vec<usize> {
@@ -281,17 +254,6 @@ pub(super) mod tests {
     pub(crate) fn chi_square_tail(chi2: f64, degrees_of_freedom: f64) -> f64 {
         use statrs::distribution::{ChiSquared, ContinuousCDF};
         ChiSquared::new(degrees_of_freedom).unwrap().sf(chi2)
-    }
-
-    /// Chi-square test of two histograms of equally many draws, over the bins with at least 20 draws in both
-    /// together.
-    pub(crate) fn two_sample_p(a: &[usize], b: &[usize]) -> f64 {
-        let (mut chi2, mut bins) = (0.0, 0.0);
-        for (a, b) in a.iter().zip(b).filter(|(a, b)| *a + *b >= 20) {
-            chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
-            bins += 1.0;
-        }
-        chi_square_tail(chi2, bins)
     }
 
     /// Pearson's test of counts against probabilities; bins are merged until each has an expected count of
@@ -382,10 +344,8 @@ pub(super) mod tests {
 
     #[test]
     fn the_sampler_follows_the_probabilities() {
-        let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 0);
-        for (distribution, mean_e) in distributions() {
-            let counts =
-                histogram((0..50_000).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
+        for (frame, (distribution, mean_e)) in (0..).zip(distributions()) {
+            let counts = sampled(&distribution, mean_e, frame, 50_000);
             let p = chi_square_p(&counts, &from_zero(&distribution.probabilities(mean_e, 0)));
             // Thirty tests: one in 3,000 random seeds would fail by chance, but the seed is fixed.
             assert!(p > 1e-5, "{distribution:?}, mean {mean_e}: p = {p}");
@@ -394,24 +354,20 @@ pub(super) mod tests {
 
     #[test]
     fn a_full_well_and_a_full_converter_saturate() {
-        let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 1);
         for bit_depth in 8..=16 {
             let config = SensorConfig { bit_depth, full_well_e: 1e9, ..twelve_bit() };
             for mean_e in [1e8, 1e12, 1e300] {
-                assert_eq!(
-                    PixelDistribution::new(&config).sample(mean_e, 0.0, &mut stream),
-                    config.full_scale_dn()
-                );
+                let counts = sampled(&PixelDistribution::new(&config), mean_e, 1, 1);
+                assert_eq!(counts.len() - 1, usize::from(config.full_scale_dn()));
             }
         }
         let config = SensorConfig { full_well_e: 5000.0, ..twelve_bit() };
         let distribution = PixelDistribution::new(&config);
-        let counts = histogram((0..20_000).map(|_| usize::from(distribution.sample(1e6, 0.0, &mut stream))));
+        let counts = sampled(&distribution, 1e6, 1, 20_000);
         // Exactly five thousand electrons, plus the read noise.
         let full = PixelDistribution { shot: Switch::Off, ..distribution }.probabilities(5000.0, 0);
         assert!(chi_square_p(&counts, &from_zero(&full)) > 1e-4);
-        let half_full =
-            histogram((0..20_000).map(|_| usize::from(distribution.sample(5000.0, 0.0, &mut stream))));
+        let half_full = sampled(&distribution, 5000.0, 1, 20_000);
         assert!(chi_square_p(&half_full, &from_zero(&distribution.probabilities(5000.0, 0))) > 1e-4);
     }
 
@@ -420,10 +376,8 @@ pub(super) mod tests {
         let config =
             SensorConfig { non_linearity: 0.2, full_well_e: 2000.0, gain_e_per_dn: 3.0, ..twelve_bit() };
         let distribution = PixelDistribution::new(&config);
-        let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 3);
         for mean_e in [50.0, 1000.0, 2000.0] {
-            let counts =
-                histogram((0..50_000).map(|_| usize::from(distribution.sample(mean_e, 0.0, &mut stream))));
+            let counts = sampled(&distribution, mean_e, 3, 50_000);
             let probabilities = from_zero(&distribution.probabilities(mean_e, 0));
             assert!(chi_square_p(&counts, &probabilities) > 1e-4, "mean {mean_e}");
             // e − 1e-4 e² of a Poisson number: ⟨e²⟩ = λ² + λ. The full well truncates the last mean.
@@ -438,9 +392,8 @@ pub(super) mod tests {
         let mut config = twelve_bit();
         (config.noise.shot, config.noise.read) = (Switch::Off, Switch::Off);
         let distribution = PixelDistribution::new(&config);
-        let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 2);
         // 1234.5/10 + 50.3 + 0.5 = 174.25.
-        assert_eq!(distribution.sample(1234.5, 0.0, &mut stream), 174);
+        assert_eq!(sampled(&distribution, 1234.5, 2, 1).len() - 1, 174);
         assert_eq!(
             distribution.probabilities(1234.5, 0),
             DnDistribution { first_dn: 174, probabilities: vec![1.0] }

@@ -1,66 +1,161 @@
 //! Readout: from expected photoelectrons to digital numbers.
 
-use contract::OutOfRange;
-use draws::{Effect, Seed, normal};
-use render::draw::ExpectedImage;
+use contract::{OutOfRange, Window};
+use draws::{Effect, GeneratorLanes, Seed, normal};
+use optics::simd_kernel::{arch, run_widest};
+use pulp::{Arch, Simd, WithSimd};
+use render::draw::{ExpectedImage, TILE, set_bits};
 use truth::SimError;
 
 use super::blooming::Overflow;
 use super::charge::Charge;
+use super::dark_pixels::{DarkPixelScan, DarkPixels, Redraw};
 use super::detector::Sensor;
-use super::flat_samplers::FlatSamplers;
-use super::pixels::LineOffsets;
+use super::mean_tables::{Batch, FlatMean};
+use super::pixel_sampler::PixelSampler;
+use super::pixel_words::PixelStreams;
 use super::raw_image::RawImage;
+use super::sparse_image::{Pixel, SparseImage};
+use super::tiles::{TileRun, tile_pixels};
+
+/// Inputs from which a frame is read out.
+pub struct FrameCharge<'a> {
+    /// Charge of the pixels.
+    pub charge: &'a Charge<'a>,
+    /// Seed of the readout.
+    pub seed: Seed,
+    /// Number of the frame.
+    pub frame: u64,
+}
+
+/// Everything that determines the digital numbers of a frame, apart from the detector.
+pub(super) struct PixelInputs<'a> {
+    pub(super) expected: &'a ExpectedImage,
+    /// Electrons that the readout adds to rows and columns; `None` if it adds none.
+    pub(super) offsets: Option<LineOffsets>,
+    pub(super) streams: PixelStreams,
+    /// Choice of the table for pixels of the flat level.
+    flat: FlatMean,
+}
+
+/// Electrons that the readout adds to each row and to each column of a frame.
+pub(super) struct LineOffsets {
+    rows: Vec<f64>,
+    columns: Vec<f64>,
+}
+
+impl LineOffsets {
+    /// Offset of one pixel, electrons.
+    #[inline(always)]
+    pub(super) fn offset_at(&self, x: usize, y: usize) -> f64 {
+        self.rows[y] + self.columns[x]
+    }
+}
 
 impl Sensor {
+    /// Returns a sampler for the pixels of this detector.
+    pub fn new_sampler(&self) -> PixelSampler {
+        PixelSampler::new(&self.distribution)
+    }
+
+    /// Returns a raw image with no pixels drawn.
+    pub fn new_sparse(&self) -> SparseImage {
+        SparseImage::new(self.new_raw())
+    }
+
     /// Draws the digital number of every pixel.
-    ///
-    /// Each row has one stream, at the address of its row number, from which each pixel takes 64 bits, or 32
-    /// with a high flat level, or 192 if rows and columns have offsets (or if a high level is not flat).
-    /// These bits give the number of nearly every pixel. A pixel with a large signal, or whose bits are not
-    /// sufficient, is drawn at its own address, rows + index, so the content of one pixel never changes the
-    /// draw of another.
     ///
     /// # Errors
     /// [`SimError::OutOfRange`] if the image does not have the sensor's size.
     pub fn read_out(
         &self,
-        charge: &Charge<'_>,
-        seed: &Seed,
-        frame: u64,
-        samplers: &mut FlatSamplers,
+        collected: &FrameCharge<'_>,
+        sampler: &mut PixelSampler,
         raw: &mut RawImage,
     ) -> Result<(), SimError> {
-        let expected = charge.expected();
-        self.check_size(expected)?;
+        let inputs = self.pixel_inputs(collected)?;
+        sampler.set_distribution(&self.distribution);
         (raw.columns, raw.rows, raw.bit_depth) = (self.columns, self.rows, self.config().bit_depth);
         raw.dn.resize(self.columns * self.rows, 0);
-        let streams = seed.streams(frame, Effect::PixelNoise);
-        let offsets = self.line_offsets(seed, frame);
-        match &offsets {
-            None if self.has_tables_for(expected) => {
-                self.draw_with_mean_tables(expected, &streams, samplers, raw)
-            }
-            None if !expected.has_field() => self.draw_flat(expected, &streams, samplers, raw),
-            _ => self.draw_in_parts(expected, offsets.as_ref(), &streams, samplers, raw),
-        }
-        if let Some(blooming) = &self.config().blooming {
-            let overflow = Overflow { blooming, expected, offsets: offsets.as_ref(), streams: &streams };
-            self.bloom(&overflow, |index, dn| raw.dn[index] = dn);
-        }
+        let runs = TileRun::of_image(self.columns, self.rows);
+        let dark = DarkPixels::default();
+        TileLoop { registers: arch(), inputs: &inputs, dark: &dark, sampler, raw }.draw(&runs);
+        self.spill_overflow(&inputs, sampler, |pixel| raw.dn[pixel.index] = pixel.dn);
         Ok(())
     }
 
-    /// Rejects an image that does not have the sensor's size.
-    pub(super) fn check_size(&self, expected: &ExpectedImage) -> Result<(), OutOfRange> {
-        if expected.size() == (self.columns, self.rows) {
-            return Ok(());
+    /// Draws every pixel whose digital number is above `floor_dn`.
+    ///
+    /// # Errors
+    /// See [`Sensor::read_out`].
+    pub fn read_out_above(
+        &self,
+        floor_dn: u16,
+        collected: &FrameCharge<'_>,
+        sampler: &mut PixelSampler,
+        image: &mut SparseImage,
+    ) -> Result<(), SimError> {
+        let inputs = self.pixel_inputs(collected)?;
+        sampler.set_distribution(&self.distribution);
+        image.clear();
+        if inputs.offsets.is_none() && sampler.has_tables() {
+            image.dark.set_floor(&self.distribution, floor_dn);
+            let candidates = collected.seed.streams(collected.frame, Effect::Exceedance);
+            let SparseImage { dark, wanted, .. } = image;
+            run_widest(DarkPixelScan { expected: inputs.expected, candidates, dark, wanted });
+        } else {
+            image.wanted.add_window(&Window { x: 0, y: 0, columns: self.columns, rows: self.rows });
         }
-        Err(OutOfRange::new(
-            "size of the expected image",
-            format!("{:?}", expected.size()),
-            "the columns and rows of the sensor",
-        ))
+        draw_new_tiles(&inputs, sampler, image);
+        self.spill_overflow(&inputs, sampler, |pixel| image.bloomed.push(pixel));
+        image.set_single_pixels();
+        Ok(())
+    }
+
+    /// Draws all pixels in some windows of a frame whose pixels above a floor were drawn by
+    /// [`Sensor::read_out_above`].
+    ///
+    /// # Errors
+    /// See [`Sensor::read_out`].
+    pub fn read_out_windows(
+        &self,
+        windows: &[Window],
+        collected: &FrameCharge<'_>,
+        sampler: &mut PixelSampler,
+        image: &mut SparseImage,
+    ) -> Result<(), SimError> {
+        for window in windows {
+            image.wanted.add_window(window);
+        }
+        draw_new_tiles(&self.pixel_inputs(collected)?, sampler, image);
+        image.set_single_pixels();
+        Ok(())
+    }
+
+    /// Passes every pixel that overflows or receives overflowing charge to `put`.
+    fn spill_overflow(&self, inputs: &PixelInputs<'_>, sampler: &mut PixelSampler, put: impl FnMut(Pixel)) {
+        if let Some(blooming) = &self.config().blooming {
+            self.bloom(&mut Overflow { blooming, inputs, sampler }, put);
+        }
+    }
+
+    /// Collects what determines the digital numbers of a frame.
+    fn pixel_inputs<'a>(&self, collected: &FrameCharge<'a>) -> Result<PixelInputs<'a>, OutOfRange> {
+        let &FrameCharge { charge, seed, frame } = collected;
+        let expected = charge.expected();
+        if expected.size() != (self.columns, self.rows) {
+            return Err(OutOfRange::new(
+                "size of the expected image",
+                format!("{:?}", expected.size()),
+                "the columns and rows of the sensor",
+            ));
+        }
+        Ok(PixelInputs {
+            expected,
+            offsets: self.line_offsets(&seed, frame),
+            streams: PixelStreams::new(&seed, frame, self.columns, self.rows),
+            flat: FlatMean::new(expected.flat_e()),
+        })
     }
 
     /// Offsets that the readout adds to rows and columns: noise of this frame, and fixed offsets. `None` if
@@ -86,10 +181,180 @@ impl Sensor {
     }
 
     /// Returns true if the readout adds offsets to rows or columns.
-    pub(super) fn has_line_offsets(&self) -> bool {
+    fn has_line_offsets(&self) -> bool {
         let (row_e, column_e) = self.line_noise_e();
         row_e > 0.0 || column_e > 0.0 || !self.pattern().column_offsets_e.is_empty()
     }
+}
+
+/// Draws the wanted tiles that are not drawn yet.
+fn draw_new_tiles(inputs: &PixelInputs<'_>, sampler: &mut PixelSampler, image: &mut SparseImage) {
+    let SparseImage { raw, drawn, wanted, runs, dark, .. } = image;
+    runs.clear();
+    drawn.take_new(wanted, runs);
+    TileLoop { registers: arch(), inputs, dark, sampler, raw }.draw(runs);
+}
+
+/// Loop over the tiles of a frame: the only place that knows in which order pixels are drawn.
+struct TileLoop<'a> {
+    /// Registers that process many pixels at once; they change no bit.
+    registers: Arch,
+    inputs: &'a PixelInputs<'a>,
+    dark: &'a DarkPixels,
+    sampler: &'a mut PixelSampler,
+    raw: &'a mut RawImage,
+}
+
+/// Generators of the words of a row, and the tile that their next words belong to.
+struct RowWords {
+    y: usize,
+    next: usize,
+    lanes: GeneratorLanes,
+}
+
+impl TileLoop<'_> {
+    /// Draws the tiles of some runs, batch by batch.
+    fn draw(&mut self, runs: &[TileRun]) {
+        let mut batch = Batch::new();
+        let lanes = self.inputs.streams.row_words(self.registers, 0);
+        let mut row = RowWords { y: 0, next: 0, lanes };
+        let has_tables = self.inputs.offsets.is_none() && self.sampler.has_tables();
+        let mut rest = runs;
+        while !rest.is_empty() {
+            let (runs, others) = rest.split_at(runs_in_a_batch(rest));
+            rest = others;
+            self.set_means(runs, &mut batch);
+            if has_tables {
+                self.draw_words(runs, &mut row, &mut batch);
+                let tiles = runs.iter().map(|run| run.tiles).sum();
+                self.sampler.draw_batch(self.registers, &mut batch, &self.inputs.flat, tiles);
+                self.set_numbers(runs, &batch);
+            } else {
+                self.draw_directly(runs, &batch);
+            }
+        }
+    }
+
+    /// Computes the expected electrons of the pixels of some runs, and marks the tiles where they are flat.
+    fn set_means(&self, runs: &[TileRun], batch: &mut Batch) {
+        let expected = self.inputs.expected;
+        let mut tile = 0;
+        for run in runs {
+            let columns = run.columns(self.raw.columns);
+            let means_e = &mut batch.means_e[tile * TILE..][..columns.len()];
+            self.registers.dispatch(Span { expected, x: columns.start, y: run.y, means_e });
+            expected.mark_flat_tiles(run.y, run.first, &mut batch.is_flat[tile..tile + run.tiles]);
+            tile += run.tiles;
+        }
+    }
+
+    /// Draws the words of the pixels of some runs.
+    fn draw_words(&self, runs: &[TileRun], row: &mut RowWords, batch: &mut Batch) {
+        let mut tile = 0;
+        for run in runs {
+            if row.y != run.y {
+                let lanes = self.inputs.streams.row_words(self.registers, run.y);
+                *row = RowWords { y: run.y, next: 0, lanes };
+            }
+            batch.draw_words(self.registers, tile..tile + run.tiles, run.first - row.next, &mut row.lanes);
+            row.next = run.first + run.tiles;
+            tile += run.tiles;
+        }
+    }
+
+    /// Sets the numbers of some runs to those of a batch, and draws the pixels that are not in a table.
+    fn set_numbers(&mut self, runs: &[TileRun], batch: &Batch) {
+        let streams = &self.inputs.streams;
+        let mut tile = 0;
+        for run in runs {
+            for tile_of_row in run.first..run.first + run.tiles {
+                let pixels = tile_pixels(self.raw.columns, run.y, tile_of_row);
+                let (first, in_batch) = (pixels.start, tile * TILE);
+                let numbers = &mut self.raw.dn[pixels];
+                numbers.copy_from_slice(&batch.numbers[in_batch..in_batch + numbers.len()]);
+                let means_e = &batch.means_e[in_batch..in_batch + numbers.len()];
+                for i in set_bits(batch.open_pixels(tile)) {
+                    // The last tile may extend beyond its row.
+                    if let (Some(dn), Some(&mean_e)) = (numbers.get_mut(i), means_e.get(i)) {
+                        let own_words = streams.pixel_words(first + i);
+                        *dn = self.sampler.draw_open(mean_e, batch.word(in_batch + i), &own_words);
+                    }
+                }
+                let mut redraw = Redraw { sampler: self.sampler, streams };
+                self.dark.keep_below_floor(run.y, first, means_e, numbers, &mut redraw);
+                tile += 1;
+            }
+        }
+    }
+
+    /// Draws the numbers of some runs in the steps of the detector.
+    fn draw_directly(&mut self, runs: &[TileRun], batch: &Batch) {
+        let mut tile = 0;
+        for run in runs {
+            let columns = run.columns(self.raw.columns);
+            let means_e = &batch.means_e[tile * TILE..][..columns.len()];
+            let first = run.y * self.raw.columns + columns.start;
+            let numbers = &mut self.raw.dn[first..first + columns.len()];
+            let (inputs, sampler) = (self.inputs, &mut *self.sampler);
+            self.registers.dispatch(DirectRun { inputs, run, first, means_e, sampler, numbers });
+            tile += run.tiles;
+        }
+    }
+}
+
+/// Task of drawing the pixels of a run in the steps of the detector.
+struct DirectRun<'a> {
+    inputs: &'a PixelInputs<'a>,
+    run: &'a TileRun,
+    /// Index of the first pixel in the image.
+    first: usize,
+    means_e: &'a [f64],
+    sampler: &'a mut PixelSampler,
+    numbers: &'a mut [u16],
+}
+
+impl WithSimd for DirectRun<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let PixelInputs { offsets, streams, .. } = self.inputs;
+        let first_column = self.run.first * TILE;
+        for (i, (dn, &mean_e)) in self.numbers.iter_mut().zip(self.means_e).enumerate() {
+            let offset_e =
+                offsets.as_ref().map_or(0.0, |offsets| offsets.offset_at(first_column + i, self.run.y));
+            *dn = self.sampler.draw_directly(mean_e, offset_e, &streams.pixel_words(self.first + i));
+        }
+    }
+}
+
+/// Task of computing the expected electrons of adjacent pixels of a row.
+struct Span<'a> {
+    expected: &'a ExpectedImage,
+    x: usize,
+    y: usize,
+    means_e: &'a mut [f64],
+}
+
+impl WithSimd for Span<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.expected.span(self.x, self.y, self.means_e);
+    }
+}
+
+/// Number of runs, from the first on, whose tiles fit a batch: at least one.
+fn runs_in_a_batch(runs: &[TileRun]) -> usize {
+    let mut tiles = 0;
+    for (i, run) in runs.iter().enumerate() {
+        tiles += run.tiles;
+        if tiles > Batch::TILES {
+            return i;
+        }
+    }
+    runs.len()
 }
 
 #[cfg(test)]
@@ -118,7 +383,8 @@ mod tests {
         }
         let mut raw = sensor.new_raw();
         let charge = sensor.collect(&mut image, &interval(0.5));
-        sensor.read_out(&charge, &SEED, number, &mut FlatSamplers::new(), &mut raw).unwrap();
+        let collected = FrameCharge { charge: &charge, seed: SEED, frame: number };
+        sensor.read_out(&collected, &mut sensor.new_sampler(), &mut raw).unwrap();
         raw
     }
 
@@ -135,7 +401,7 @@ mod tests {
         assert_eq!(hash(&raw), GOLDEN);
     }
 
-    const GOLDEN: &str = "14710d24be20b2d3f794b9804dfc42bf931c6d78db574d9da1156e822e091255";
+    const GOLDEN: &str = "4f66bd5db1ea5f0985117ec90f3c23d76845d16d3e866e7da5d0805507812c93";
 
     #[test]
     fn a_star_changes_no_pixel_but_its_own() {
@@ -184,14 +450,15 @@ mod tests {
             ..twelve_bit()
         };
         let sensor = Sensor::new(&config, 512, 512).unwrap();
-        let (mut image, mut raw, mut samplers) =
-            (sensor.new_expected(), sensor.new_raw(), FlatSamplers::new());
+        let (mut image, mut raw, mut sampler) =
+            (sensor.new_expected(), sensor.new_raw(), sensor.new_sampler());
         let mut moments = |exposure_s: f64| {
             let (mut sum, mut squares, mut n) = (0.0, 0.0, 0.0);
             for number in 0..4 {
                 image.clear(sensor.sky_electrons(exposure_s));
                 let charge = sensor.collect(&mut image, &interval(exposure_s));
-                sensor.read_out(&charge, &SEED, number + 1000, &mut samplers, &mut raw).unwrap();
+                let collected = FrameCharge { charge: &charge, seed: SEED, frame: number + 1000 };
+                sensor.read_out(&collected, &mut sampler, &mut raw).unwrap();
                 for dn in &raw.dn {
                     let dn = f64::from(*dn) - 50.0;
                     (sum, squares, n) = (sum + dn, squares + dn * dn, n + 1.0);
@@ -317,6 +584,7 @@ mod tests {
         let mut image = ExpectedImage::new(64, 48);
         let charge = sensor.collect(&mut image, &interval(1.0));
         let mut raw = sensor.new_raw();
-        assert!(sensor.read_out(&charge, &SEED, 0, &mut FlatSamplers::new(), &mut raw).is_err());
+        let collected = FrameCharge { charge: &charge, seed: SEED, frame: 0 };
+        assert!(sensor.read_out(&collected, &mut sensor.new_sampler(), &mut raw).is_err());
     }
 }

@@ -1,30 +1,28 @@
-//! Raw image that is drawn in parts.
+//! Raw image of which only some tiles are drawn.
 
-use render::draw::{PART, set_bits};
+use render::draw::TILE;
 
-use super::exceedance::DarkLimit;
+use super::dark_pixels::DarkPixels;
 use super::raw_image::RawImage;
+use super::tiles::{TileRun, TileSet, tile_pixels};
 
-/// Raw image of which only some parts of rows, 16 pixels each, are drawn. Reused from frame to frame.
+/// Raw image of which only some tiles, 16 pixels of a row each, are drawn. Reused from frame to frame.
 #[derive(Debug)]
 pub struct SparseImage {
     /// The image. Pixels that are not drawn are 0, except those above the floor.
     pub(super) raw: RawImage,
-    /// Parts in which all pixels are drawn.
-    pub(super) drawn: Parts,
-    /// Parts to be drawn.
-    pub(super) requested: Parts,
-    /// Row and number of each part to draw in one pass.
-    pub(super) to_draw: Vec<(usize, usize)>,
-    /// Parts in which single pixels were set.
-    touched: Parts,
-    /// Limit of dark pixels in each row; empty if all pixels are drawn directly.
-    pub(super) limits: Vec<DarkLimit>,
+    /// Tiles in which all pixels are drawn.
+    pub(super) drawn: TileSet,
+    /// Tiles that the camera examines.
+    pub(super) wanted: TileSet,
+    /// Tiles to draw in one pass.
+    pub(super) runs: Vec<TileRun>,
+    /// Tiles in which single pixels were set.
+    touched: TileSet,
     /// Dark pixels above the floor.
-    pub(super) exceeding: Vec<Pixel>,
+    pub(super) dark: DarkPixels,
     /// Pixels that overflow or receive overflowing charge, all of them set in the image.
     pub(super) bloomed: Vec<Pixel>,
-    pub(super) floor_dn: u16,
 }
 
 /// Pixel, given by its index in the image, and its digital number.
@@ -34,68 +32,23 @@ pub(super) struct Pixel {
     pub(super) dn: u16,
 }
 
-/// Set of parts of the rows of an image: one bit per part, in separate words for each row.
-#[derive(Debug, Clone)]
-pub(super) struct Parts {
-    words: Vec<u64>,
-    words_per_row: usize,
-}
-
-impl Parts {
-    /// Parts per word: one bit each.
-    pub(super) const OF_A_WORD: usize = u64::BITS as usize;
-
-    /// Returns the empty set for an image of `columns` × `rows`.
-    fn empty(columns: usize, rows: usize) -> Self {
-        let words_per_row = columns.div_ceil(PART).div_ceil(Self::OF_A_WORD);
-        Self { words: vec![0; words_per_row * rows], words_per_row }
-    }
-
-    /// Words of a row.
-    #[inline(always)]
-    pub(super) fn row(&self, y: usize) -> &[u64] {
-        &self.words[y * self.words_per_row..(y + 1) * self.words_per_row]
-    }
-
-    #[inline(always)]
-    pub(super) fn row_mut(&mut self, y: usize) -> &mut [u64] {
-        &mut self.words[y * self.words_per_row..(y + 1) * self.words_per_row]
-    }
-
-    /// Adds the parts of row `y` given by `bits`, whose lowest bit is part `part`; all of them must be in one
-    /// word.
-    #[inline(always)]
-    pub(super) fn add(&mut self, y: usize, part: usize, bits: u64) {
-        self.words[y * self.words_per_row + part / Self::OF_A_WORD] |= bits << (part % Self::OF_A_WORD);
-    }
-
-    /// Adds the parts of row `y` that contain pixels of the columns `from` to `to`.
-    pub(super) fn add_columns(&mut self, y: usize, from: usize, to: usize) {
-        for part in from / PART..to.div_ceil(PART) {
-            self.add(y, part, 1);
-        }
-    }
-}
-
 impl SparseImage {
     /// Creates an image in `raw` with no pixels drawn.
     pub(super) fn new(raw: RawImage) -> Self {
-        let none = Parts::empty(raw.columns, raw.dn.len() / raw.columns.max(1));
+        let none = TileSet::empty(raw.columns, raw.dn.len() / raw.columns.max(1));
         Self {
             raw,
             drawn: none.clone(),
-            requested: none.clone(),
-            to_draw: Vec::new(),
+            wanted: none.clone(),
+            runs: Vec::new(),
             touched: none,
-            limits: Vec::new(),
-            exceeding: Vec::new(),
+            dark: DarkPixels::default(),
             bloomed: Vec::new(),
-            floor_dn: 0,
         }
     }
 
-    /// Returns the image. Digital numbers equal those of the whole frame if they are above the floor or were
-    /// requested.
+    /// Returns the image. Digital numbers equal those of the whole frame if they are above the floor or in a
+    /// window that was read out.
     pub fn raw(&self) -> &RawImage {
         &self.raw
     }
@@ -108,12 +61,12 @@ impl SparseImage {
         &mut self.raw
     }
 
-    /// Returns the pixels set in the image, part by part: the index of the first pixel, and the digital
+    /// Returns the pixels set in the image, tile by tile: the index of the first pixel, and the digital
     /// numbers. All other pixels are 0.
     pub fn runs(&self) -> impl Iterator<Item = (usize, &[u16])> {
         let Self { raw, drawn, touched, .. } = self;
-        parts_in(drawn, touched).map(|(y, part)| {
-            let pixels = pixels(raw.columns, y, part);
+        drawn.union(touched).map(|(y, tile)| {
+            let pixels = tile_pixels(raw.columns, y, tile);
             (pixels.start, &raw.dn[pixels])
         })
     }
@@ -121,8 +74,8 @@ impl SparseImage {
     /// Sets all pixels to 0 that are not above a floor.
     pub fn suppress(&mut self, floor_dn: u16) {
         let Self { raw, drawn, touched, .. } = self;
-        for (y, part) in parts_in(drawn, touched) {
-            for dn in &mut raw.dn[pixels(raw.columns, y, part)] {
+        for (y, tile) in drawn.union(touched) {
+            for dn in &mut raw.dn[tile_pixels(raw.columns, y, tile)] {
                 *dn = if *dn > floor_dn { *dn } else { 0 };
             }
         }
@@ -130,72 +83,49 @@ impl SparseImage {
 
     /// Clears the image: no pixels are drawn.
     pub(super) fn clear(&mut self) {
-        let Self { raw, drawn, requested, touched, .. } = self;
-        for (y, part) in parts_in(drawn, touched) {
-            raw.dn[pixels(raw.columns, y, part)].fill(0);
+        let Self { raw, drawn, wanted, touched, .. } = self;
+        for (y, tile) in drawn.union(touched) {
+            raw.dn[tile_pixels(raw.columns, y, tile)].fill(0);
         }
-        for parts in [drawn, requested, touched] {
-            parts.words.fill(0);
+        for tiles in [drawn, wanted, touched] {
+            tiles.clear();
         }
-        self.limits.clear();
-        self.exceeding.clear();
+        self.dark.clear();
         self.bloomed.clear();
     }
 
-    /// Sets the pixels that were drawn singly, replacing those drawn in parts.
+    /// Sets the pixels that were drawn singly, replacing those drawn in tiles.
     pub(super) fn set_single_pixels(&mut self) {
         let columns = self.raw.columns;
-        for pixel in self.exceeding.iter().chain(&self.bloomed) {
+        for pixel in self.dark.exceeding.iter().chain(&self.bloomed) {
             self.raw.dn[pixel.index] = pixel.dn;
-            self.touched.add(pixel.index / columns, pixel.index % columns / PART, 1);
+            self.touched.add(pixel.index / columns, pixel.index % columns / TILE, 1);
         }
     }
-}
-
-/// Returns row and number of each part in the union of two sets.
-fn parts_in<'a>(these: &'a Parts, those: &'a Parts) -> impl Iterator<Item = (usize, usize)> + 'a {
-    let words_per_row = these.words_per_row.max(1);
-    these
-        .words
-        .iter()
-        .zip(&those.words)
-        .map(|(a, b)| a | b)
-        .enumerate()
-        .filter(|(_, word)| *word != 0)
-        .flat_map(move |(i, word)| {
-            let first = i % words_per_row * Parts::OF_A_WORD;
-            set_bits(word).map(move |bit| (i / words_per_row, first + bit))
-        })
-}
-
-/// Pixels of a part of row `y` in an image of `columns` columns, as indices into the image.
-#[inline(always)]
-pub(super) fn pixels(columns: usize, y: usize, part: usize) -> std::ops::Range<usize> {
-    y * columns + part * PART..y * columns + ((part + 1) * PART).min(columns)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Rows with more parts than a word has bits, and a short last part.
+    /// Rows with more tiles than a word has bits, and a short last tile.
     #[test]
     fn set_pixels_are_listed_part_by_part_and_cleared() {
-        let (columns, rows) = (2 * Parts::OF_A_WORD * PART + 5, 3);
+        let (columns, rows) = (2 * TileSet::OF_A_WORD * TILE + 5, 3);
         let mut image = SparseImage::new(RawImage::from_dn(columns, rows, 12, vec![0; columns * rows]));
         assert_eq!(image.runs().count(), 0);
         image.drawn.add_columns(0, columns - 6, columns);
-        image.drawn.add(1, Parts::OF_A_WORD - 4, 0b1001);
-        image.exceeding.push(Pixel { index: 2 * columns, dn: 9 });
-        image.bloomed.push(Pixel { index: columns + (Parts::OF_A_WORD - 1) * PART, dn: 70 });
+        image.drawn.add(1, TileSet::OF_A_WORD - 4, 0b1001);
+        image.dark.exceeding.push(Pixel { index: 2 * columns, dn: 9 });
+        image.bloomed.push(Pixel { index: columns + (TileSet::OF_A_WORD - 1) * TILE, dn: 70 });
         image.set_single_pixels();
         let found: Vec<_> =
-            image.runs().map(|(first, run)| (first % columns / PART, first / columns, run.len())).collect();
-        let last = 2 * Parts::OF_A_WORD;
-        let middle = Parts::OF_A_WORD;
+            image.runs().map(|(first, run)| (first % columns / TILE, first / columns, run.len())).collect();
+        let last = 2 * TileSet::OF_A_WORD;
+        let middle = TileSet::OF_A_WORD;
         assert_eq!(
             found,
-            [(last - 1, 0, PART), (last, 0, 5), (middle - 4, 1, PART), (middle - 1, 1, PART), (0, 2, PART)]
+            [(last - 1, 0, TILE), (last, 0, 5), (middle - 4, 1, TILE), (middle - 1, 1, TILE), (0, 2, TILE)]
         );
         image.suppress(50);
         assert_eq!(image.raw().dn().iter().map(|&dn| usize::from(dn)).sum::<usize>(), 70);

@@ -2,7 +2,7 @@
 
 use boresight_sim::scene::TargetConfig;
 use boresight_sim::sensor::{
-    CosmicRayConfig, ExposureInterval, FixedPatternConfig, FlatSamplers, HotPixelConfig, LineNoiseConfig,
+    CosmicRayConfig, ExposureInterval, FixedPatternConfig, FrameCharge, HotPixelConfig, LineNoiseConfig,
     Sensor, SensorConfig, SouthAtlanticConfig, TelegraphConfig,
 };
 use boresight_sim::truth::{ObjectKind, geographic};
@@ -18,14 +18,15 @@ const FIVE_SIGMA: f64 = 5.0;
 /// Returns frames of a flat sky as deviations from the bias, electrons.
 fn flat_frames(config: &SensorConfig, size: usize, frames: u64, exposure_s: f64) -> Vec<Vec<f64>> {
     let sensor = Sensor::new(config, size, size).unwrap();
-    let (mut image, mut raw, mut samplers) = (sensor.new_expected(), sensor.new_raw(), FlatSamplers::new());
+    let (mut image, mut raw, mut sampler) = (sensor.new_expected(), sensor.new_raw(), sensor.new_sampler());
     let seed = Seed { seed: 17, case: 0 };
     (0..frames)
         .map(|frame| {
             image.clear(sensor.sky_electrons(exposure_s));
             let charge = sensor
                 .collect(&mut image, &ExposureInterval { seed, middle_s: 10.0 * frame as f64, exposure_s });
-            sensor.read_out(&charge, &seed, frame, &mut samplers, &mut raw).unwrap();
+            let collected = FrameCharge { charge: &charge, seed, frame };
+            sensor.read_out(&collected, &mut sampler, &mut raw).unwrap();
             raw.dn().iter().map(|dn| (f64::from(*dn) - config.bias_dn) * config.gain_e_per_dn).collect()
         })
         .collect()

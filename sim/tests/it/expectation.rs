@@ -27,7 +27,7 @@ fn the_expected_image_holds_the_electrons_of_the_truth_table_and_the_flat_level(
             let image = camera.expected();
             let flat_e = (60.0 + 40.0) * exposure.truth.exposure_s;
             assert!((image.flat_e() / flat_e - 1.0).abs() < 1e-14);
-            let in_image: f64 = image.object_pixels().map(|(_, signal_e)| signal_e).sum();
+            let in_image: f64 = image.signal().iter().sum();
             let in_table: f64 = exposure.objects.iter().map(|object| object.electrons).sum();
             // Some thousand positive numbers are added in two different orders, with an error of 1e-13. An
             // omitted star would be detected.

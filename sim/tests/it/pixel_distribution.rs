@@ -8,7 +8,7 @@
 //! detector with row offsets (electrons and noise from separate tables).
 
 use boresight_sim::sensor::{
-    ExposureInterval, FixedPatternConfig, FlatSamplers, LineNoiseConfig, Sensor, SensorConfig, poisson,
+    ExposureInterval, FixedPatternConfig, FrameCharge, LineNoiseConfig, Sensor, SensorConfig, poisson,
 };
 use draws::{Effect, Seed, Stream, normal};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -77,13 +77,14 @@ fn exact_distribution(mean_e: f64) -> Vec<f64> {
 fn counts_of_frames(config: &SensorConfig, mean_e: f64, draws: usize, seed: Seed) -> Vec<u64> {
     let rows = draws.min(1_000_000) / COLUMNS;
     let sensor = Sensor::new(config, COLUMNS, rows).unwrap();
-    let (mut image, mut raw, mut samplers) = (sensor.new_expected(), sensor.new_raw(), FlatSamplers::new());
+    let (mut image, mut raw, mut sampler) = (sensor.new_expected(), sensor.new_raw(), sensor.new_sampler());
     let interval = ExposureInterval { seed, middle_s: 0.0, exposure_s: 1.0 };
     let mut counts = vec![0; 1 << 16];
     for frame in 0..(draws / (rows * COLUMNS)) as u64 {
         image.clear(mean_e);
         let charge = sensor.collect(&mut image, &interval);
-        sensor.read_out(&charge, &seed, frame, &mut samplers, &mut raw).unwrap();
+        let collected = FrameCharge { charge: &charge, seed, frame };
+        sensor.read_out(&collected, &mut sampler, &mut raw).unwrap();
         raw.dn().iter().for_each(|&dn| counts[usize::from(dn)] += 1);
     }
     counts

@@ -122,6 +122,28 @@ fn switching_an_effect_leaves_every_other_draw_as_it_was() {
     check(&all, "solar system", |s| s.solar_system = Switch::Off, &[Planet, Moon]);
 }
 
+/// Strengths far below what any pixel's distribution can show.
+#[test]
+fn an_effect_of_zero_strength_changes_no_pixel() {
+    let plain = still();
+    type Change = fn(&mut Simulation);
+    let effects: [(&str, Change); 7] = [
+        ("background", |s| s.background.faint_stars_s10 = 1e-12),
+        ("vibration", |s| s.attitude.control.vibration_arcsec = [1e-9; 3]),
+        ("rolling shutter", |s| s.sensor.rolling_shutter = Some(RollingShutterConfig { row_time_s: 1e-15 })),
+        ("PRNU", |s| s.sensor.fixed_pattern.prnu_fraction = 1e-13),
+        ("DSNU", |s| s.sensor.fixed_pattern.dsnu_fraction = 1e-13),
+        ("frame transfer", |s| s.sensor.frame_transfer_s = 1e-15),
+        ("lines", |s| s.sensor.line_noise = LineNoiseConfig::default()),
+    ];
+    let frame = one(&plain, 4).frame;
+    for (name, change) in effects {
+        let mut simulation = plain.clone();
+        change(&mut simulation);
+        assert!(one(&simulation, 4).frame == frame, "{name}");
+    }
+}
+
 #[test]
 fn without_the_rays_only_the_pixels_of_their_tracks_change() {
     let mut still_struck = still();

@@ -55,7 +55,7 @@ fn a_resolved_body_has_the_flux_of_its_magnitude_in_the_image_and_in_the_table()
         // Loss at the floor of the stamp: slightly more than 2π · 16 px² · 0.01 electrons.
         assert!((target.electrons - expected).abs() < 2.0 + 1e-9 * expected, "at {range_m} m");
         let (mut sum, mut x, mut y) = (0.0, 0.0, 0.0);
-        for (index, electrons) in camera.expected().object_pixels() {
+        for (index, electrons) in camera.expected().signal().into_iter().enumerate() {
             sum += electrons;
             x += electrons * (index % 160) as f64;
             y += electrons * (index / 160) as f64;

@@ -6,7 +6,7 @@ use files::Failure;
 use nalgebra::Vector3;
 use optics::Projection;
 use render::draw::ExpectedImage;
-use sensor::{ExposureInterval, FlatSamplers, Sensor};
+use sensor::{ExposureInterval, FrameCharge, Sensor};
 
 use crate::rows::Truth;
 use crate::scenario::MiddleRangeScenario;
@@ -155,7 +155,8 @@ impl Imager {
         let mut raw = self.sensor.new_raw();
         let interval = ExposureInterval { seed, middle_s: frame as f64, exposure_s };
         let charge = self.sensor.collect(image, &interval);
-        self.sensor.read_out(&charge, &seed, frame, &mut FlatSamplers::new(), &mut raw)?;
+        let collected = FrameCharge { charge: &charge, seed, frame };
+        self.sensor.read_out(&collected, &mut self.sensor.new_sampler(), &mut raw)?;
         let (columns, rows) = raw.size();
         Ok(Frame::new(frame, columns, rows, raw.bit_depth(), raw.dn().to_vec(), None)?)
     }

@@ -8,7 +8,9 @@ use contract::PixelPoint;
 use serde_json::{Value, json};
 use sim::draw::ExpectedImage;
 use sim::optics::{Psf, PsfConfig, Stamp};
-use sim::sensor::{ExposureInterval, FixedPatternConfig, FlatSamplers, RawImage, Sensor, SensorConfig};
+use sim::sensor::{
+    ExposureInterval, FixedPatternConfig, FrameCharge, PixelSampler, RawImage, Sensor, SensorConfig,
+};
 
 pub(crate) const COLUMNS: usize = 752;
 pub(crate) const ROWS: usize = 580;
@@ -92,7 +94,7 @@ impl PlainScene {
             psf: Psf::new(&PsfConfig::Gaussian { sigma_px: SIGMA_PX })?,
             image: sensor.new_expected(),
             stamp: Stamp::new(),
-            samplers: FlatSamplers::new(),
+            sampler: sensor.new_sampler(),
             raw: sensor.new_raw(),
             sensor,
         })
@@ -106,7 +108,7 @@ pub(crate) struct PlainPainter {
     psf: Psf,
     image: ExpectedImage,
     stamp: Stamp,
-    samplers: FlatSamplers,
+    sampler: PixelSampler,
     raw: RawImage,
 }
 
@@ -121,7 +123,8 @@ impl PlainPainter {
         }
         let opening = ExposureInterval { seed: SEED, middle_s: 0.0, exposure_s: EXPOSURE_S };
         let charge = self.sensor.collect(&mut self.image, &opening);
-        self.sensor.read_out(&charge, &SEED, number, &mut self.samplers, &mut self.raw)?;
+        let collected = FrameCharge { charge: &charge, seed: SEED, frame: number };
+        self.sensor.read_out(&collected, &mut self.sampler, &mut self.raw)?;
         Ok(self.raw.dn())
     }
 }

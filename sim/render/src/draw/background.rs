@@ -25,6 +25,10 @@ impl Background {
     /// Computes the background of the pixels of row `y` from column `x` on, in an image of `columns`.
     #[inline(always)]
     pub(super) fn span(&self, x: usize, y: usize, columns: usize, out: &mut [f64]) {
+        if !self.is_uneven() {
+            out.fill(self.light_e + self.dark_e);
+            return;
+        }
         let pixels = y * columns + x..y * columns + x + out.len();
         match &self.smooth {
             Some((smooth, scale)) => {

@@ -58,18 +58,6 @@ impl Objects {
         self.in_row[y].push(RowSpan { object: self.count, from, to });
     }
 
-    /// Returns true if objects cover part of row `y`.
-    #[inline(always)]
-    pub(super) fn are_in_row(&self, y: usize) -> bool {
-        !self.in_row[y].is_empty()
-    }
-
-    /// Passes to `visit` the parts of a row that objects cover, each as its first column and the column after
-    /// its last.
-    pub(super) fn for_each_span(&self, y: usize, mut visit: impl FnMut(usize, usize)) {
-        self.in_row[y].iter().for_each(|part| visit(part.from, part.to));
-    }
-
     /// Adds the electrons of all objects to the pixels of row `y` from column `x` on.
     #[inline(always)]
     pub(super) fn add_to(&self, x: usize, y: usize, out: &mut [f64]) {

@@ -7,7 +7,6 @@
 
 use contract::bounds::{self, require};
 use contract::{Camera, OutOfRange, Window};
-use render::draw::PIECE;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -107,6 +106,9 @@ struct Blob {
     peak_dn: u16,
 }
 
+/// Number of pixels of a whole image that are searched as one run.
+const RUN: usize = 64;
+
 impl RoiExtractor {
     /// Creates the extractor for a detector of `columns` × `rows`.
     ///
@@ -135,7 +137,7 @@ impl RoiExtractor {
     /// If there are too many regions, those with the brightest peaks are kept; among equal peaks, the region
     /// found first.
     pub fn extract(&mut self, image: &RawImage) -> Vec<Window> {
-        let runs = image.dn().chunks(PIECE).enumerate().map(|(p, piece)| (p * PIECE, piece));
+        let runs = image.dn().chunks(RUN).enumerate().map(|(i, run)| (i * RUN, run));
         self.extract_from(image, runs)
     }
 
