@@ -9,7 +9,6 @@
 mod beam;
 mod body;
 mod bounds;
-mod clip;
 mod coverage;
 mod lamp;
 mod loops;

@@ -13,12 +13,12 @@ use nalgebra::Vector3;
 
 use super::beam::Beam;
 use super::bounds::{Extent, Sphere};
-use super::clip::keep_above;
 use super::coverage::Window;
 use super::planes::{Plane, PreparedScene};
 use super::silhouette::Silhouette;
 use super::source::Source;
 use super::view::View;
+use scene::polygon::keep_above;
 
 impl Source {
     /// Returns the position of a caster's outline relative to a plane; `sphere` encloses the caster.
