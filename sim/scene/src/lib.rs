@@ -10,6 +10,7 @@ pub mod earth;
 pub mod moon;
 pub mod planets;
 pub mod polygon;
+pub mod shadow;
 mod source;
 mod spacecraft;
 mod star_field;

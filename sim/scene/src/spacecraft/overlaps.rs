@@ -3,6 +3,7 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::facet::Facet;
+use crate::shadow::Source;
 
 /// Number of facets up to which all are candidates: a search would cost more than it saves.
 const FEW: usize = 32;
@@ -11,15 +12,6 @@ const FEW: usize = 32;
 const NEAR_M: f64 = 1e-3;
 /// Margin of the rectangles and of the distances, as a share of their size, for rounding.
 const MARGIN: f64 = 1e-9;
-
-/// Direction in which facets are put in order.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Source {
-    /// Parallel light from this direction, a unit vector.
-    Parallel(Vector3<f64>),
-    /// A point, m, body frame.
-    Point(Vector3<f64>),
-}
 
 /// Rectangle that a facet fills across the direction of a source, and its distances towards the source.
 #[derive(Debug, Clone, Copy)]

@@ -8,8 +8,9 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::facet::Facet;
-use super::overlaps::{Overlaps, Source};
-use crate::polygon::{Bounded, Polygon, Subtraction, bounds, keep_above};
+use super::overlaps::Overlaps;
+use crate::polygon::{Bounded, Polygon, Subtraction, bounds};
+use crate::shadow::{Plane, Source};
 
 /// Sine of the elevation above a facet below which Sun or camera count as lying in the facet's plane.
 const MIN_ELEVATION_SINE: f64 = 1e-6;
@@ -47,7 +48,7 @@ pub(super) fn visible_pieces(facets: &[Facet], eye_m: Vector3<f64>, sun: Vector3
     let faces_eye = |facet: &Facet| !facet.is_of_mesh() || facet.normal.dot(&(eye_m - facet.centre)) > 0.0;
     let in_sunlight = Overlaps::new(facets, Source::Parallel(sun), faces_sun);
     let in_view = Overlaps::new(facets, Source::Point(eye_m), faces_eye);
-    let mut cover = Cover { eye_m, sun, ..Cover::default() };
+    let mut cover = Cover::default();
     let mut pieces = Vec::new();
     let (mut shading, mut hiding, mut others) = (Vec::new(), Vec::new(), Vec::new());
     for (index, facet) in facets.iter().enumerate() {
@@ -58,13 +59,19 @@ pub(super) fn visible_pieces(facets: &[Facet], eye_m: Vector3<f64>, sun: Vector3
         others.extend(shading.iter().chain(&hiding));
         others.sort_unstable();
         others.dedup();
+        // Sun and camera in the axes of the facet, whose plane is z = 0.
+        let sun = Vector3::new(sun.dot(&facet.right), sun.dot(&facet.up), sun.dot(&facet.normal));
+        let sources = [Source::Parallel(sun), Source::Point(facet.local(&eye_m))];
         let mut left = vec![Bounded::new(facet.outline())];
         for number in &others {
             let Some(other) = facets.get(*number as usize).filter(|other| !facet.is_above(other)) else {
                 continue;
             };
-            let covers = [&shading, &hiding].map(|found| found.binary_search(number).is_ok());
-            cover.subtract(&facet, other, covers, &mut left);
+            for (source, found) in sources.iter().zip([&shading, &hiding]) {
+                if found.binary_search(number).is_ok() {
+                    cover.subtract(&facet, other, source, &mut left);
+                }
+            }
             if left.is_empty() {
                 break;
             }
@@ -83,49 +90,36 @@ fn facing(facet: &Facet, eye_m: &Vector3<f64>, sun: &Vector3<f64>) -> Option<Fac
     (lit && facet.front.diffuse + facet.front.specular > 0.0).then_some(facet)
 }
 
-/// Parts of one facet that another facet shades or hides, with buffers that every pair of facets reuses.
+/// Plane of a facet in the facet's axes.
+const PLANE: Plane = Plane { normal: Vector3::new(0.0, 0.0, 1.0), offset: 0.0 };
+
+/// Part of one facet that another facet shades or hides, with buffers that every pair of facets reuses.
 #[derive(Debug, Default)]
 struct Cover {
-    eye_m: Vector3<f64>,
-    sun: Vector3<f64>,
     corners: Vec<Vector3<f64>>,
-    above: Vec<Vector3<f64>>,
-    below: Vec<Vector3<f64>>,
+    cut: Vec<Vector3<f64>>,
+    shadow: Vec<Vector3<f64>>,
     hole: Polygon,
     subtraction: Subtraction,
 }
 
 impl Cover {
-    /// Removes from the `pieces` of a facet the parts that `other` shades, if the first of `covers` is true,
-    /// and those that it hides, if the second is.
+    /// Removes from the `pieces` of a facet the parts that `other` covers along the rays of a source, which
+    /// is in the axes of the facet.
     ///
     /// A facet of a closed mesh covers others only with its front: whatever its back covers, a front of the
     /// same body covers as well, nearer to the Sun or to the camera.
-    fn subtract(&mut self, facet: &Facet, other: &Facet, covers: [bool; 2], pieces: &mut Vec<Bounded>) {
-        let [shades, hides] = covers;
+    fn subtract(&mut self, facet: &Facet, other: &Facet, source: &Source, pieces: &mut Vec<Bounded>) {
         self.corners.clear();
         self.corners.extend(other.corners_m().map(|corner| facet.local(&corner)));
-        keep_above(&self.corners, &mut self.above, |corner| corner.z - TOUCHING_M);
-        if self.above.len() < 3 {
+        source.cut_between(&mut self.corners, &PLANE, TOUCHING_M, &mut self.cut);
+        if self.cut.len() < 3 {
             return;
         }
+        source.cast(&self.cut, &PLANE, &mut self.shadow);
+        self.hole.clear();
+        self.hole.extend(self.shadow.iter().map(|corner| corner.xy()));
         let least_area = SLIVER * 4.0 * facet.half_width * facet.half_height;
-        if shades {
-            let sun = &self.sun;
-            let ray = Vector3::new(sun.dot(&facet.right), sun.dot(&facet.up), sun.dot(&facet.normal));
-            self.hole.clear();
-            self.hole.extend(self.above.iter().map(|corner| corner.xy() - ray.xy() * (corner.z / ray.z)));
-            self.subtraction.subtract(pieces, &mut self.hole, least_area);
-        }
-        if hides {
-            // Points at the camera's height above the facet hide nothing.
-            let eye = facet.local(&self.eye_m);
-            keep_above(&self.above, &mut self.below, |corner| 0.999 * eye.z - corner.z);
-            self.hole.clear();
-            let seen =
-                |corner: &Vector3<f64>| eye.xy() + (corner.xy() - eye.xy()) * (eye.z / (eye.z - corner.z));
-            self.hole.extend(self.below.iter().map(seen));
-            self.subtraction.subtract(pieces, &mut self.hole, least_area);
-        }
+        self.subtraction.subtract(pieces, &mut self.hole, least_area);
     }
 }
