@@ -273,22 +273,53 @@ fn joined_spots(mut spots: Vec<Spot>) -> Vec<Spot> {
     spots.chunk_by(|one, other| cell(one) == cell(other)).map(join).filter(|spot| spot.share > 0.0).collect()
 }
 
+/// Maximum number of cells of the image along a side, and over the body; the cells grow if more would be
+/// needed.
+const MAX_CELLS_ACROSS: f64 = 4096.0;
+const MAX_CELLS: f64 = (1 << 18) as f64;
+
 /// Replaces the points from `first` on, in each cell of the image, by four points: many facets of a mesh may
 /// share a cell.
 fn gather_by_cell(points: &mut Vec<ImagePoint>, first: usize) {
-    let mut all = points.split_off(first);
+    let all = points.split_off(first);
+    let (low, high) = bounds(&all.iter().map(|point| at(point.position)).collect::<Polygon>());
+    let size = high - low;
+    let side = (size.amax() / MAX_CELLS_ACROSS).max((size.product() / MAX_CELLS).sqrt()).max(CELL_PX);
+    let columns = (size.x / side) as usize + 1;
+    let rows = (size.y / side) as usize + 1;
     let cell = |point: &ImagePoint| {
-        let [column, row] = [point.position.x, point.position.y].map(|at| (at / CELL_PX).floor() as i64);
-        (row, column)
+        let place = (at(point.position) - low) / side;
+        (place.y as usize).min(rows - 1) * columns + (place.x as usize).min(columns - 1)
     };
-    all.sort_by_cached_key(cell);
-    for part in all.chunk_by(|one, other| cell(one) == cell(other)) {
+    // Counting sort: first the start of each cell's part, which becomes its end as the part is filled.
+    let cells: Vec<usize> = all.iter().map(cell).collect();
+    let mut ends = vec![0_usize; rows * columns + 1];
+    for cell in &cells {
+        ends[cell + 1] += 1;
+    }
+    for cell in 1..ends.len() {
+        ends[cell] += ends[cell - 1];
+    }
+    let mut sorted = all.clone();
+    for (point, cell) in all.iter().zip(cells) {
+        sorted[ends[cell]] = *point;
+        ends[cell] += 1;
+    }
+    let mut start = 0;
+    for end in ends {
+        let part = &sorted[start..end];
         if part.len() > 4 {
             points.extend(Moments::of(part).four_points());
         } else {
             points.extend(part);
         }
+        start = end;
     }
+}
+
+/// Returns a position of the image as a vector, px.
+fn at(position: PixelPoint) -> Vector2<f64> {
+    Vector2::new(position.x, position.y)
 }
 
 /// Replaces the points from `first` on by one or four points if they span little.
