@@ -24,6 +24,23 @@ FAR_RUN = ["run.toml", "score.json", "measurements.csv", "telemetry.csv", "clust
 DOCKING_RUN = ["run.toml", "setup.toml", "score.json", "measurements.csv", "motion.csv", "telemetry.csv", "features.parquet", "truth/fields.parquet"]
 
 
+# Tetrahedron with a corner at a distance of 1 m, and its material.
+MESH = """newmtl grey
+Kd 0.5 0.5 0.5
+Ks 0.1 0.1 0.1
+Ns 30
+v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+usemtl grey
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f -3 -2 -1
+"""
+
+
 def main(program):
     with tempfile.TemporaryDirectory() as folder:
         make(pathlib.Path(program).resolve(), pathlib.Path(folder))
@@ -132,6 +149,8 @@ def make(program, folder):
     keep("baseline", "argon.toml", ROOT / "golden/baselines/argon/baseline.toml")
     keep("baseline_rows", "argon.parquet", ROOT / "golden/baselines/argon/rows.parquet")
     keep("psf", "small.csv", "0,1,0\n1,4,1.5\n0,1e0,0\n")
+    keep("mesh_glb", "small.glb", ROOT / "scenarios/targets/smallsat.glb")
+    keep("mesh_obj", "small.obj", MESH)
 
     for path in sorted((ROOT / "golden/flight_dynamics").iterdir()):
         target = {"oem": "oem", "aem": "aem", "opm": "opm", "tdm": "tdm", "tle": "tle", "bsp": "spk"}.get(path.name.removesuffix(".xml").rpartition(".")[2])

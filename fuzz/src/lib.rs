@@ -66,6 +66,8 @@ pub const TARGETS: &[Target] = &[
     Target::new("fits", "FITS", images::fits),
     Target::new("http", "bytes on a connection to the monitor", server::http),
     Target::new("json", "scores, summaries, study records and reports, JSON", texts::json),
+    Target::new("mesh_glb", "meshes in binary glTF", texts::mesh_glb),
+    Target::new("mesh_obj", "meshes in Wavefront OBJ, and their materials, MTL", texts::mesh_obj),
     Target::new("oem", "orbit ephemeris messages of CCSDS", flight_dynamics::oem),
     Target::new("opm", "orbit parameter messages of CCSDS", flight_dynamics::opm),
     Target::new("parquet", "truth, features, clusters and cases, Parquet", tables::parquet),

@@ -21,6 +21,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sim::catalog::Catalog;
 use sim::optics::{Psf, PsfConfig};
+use sim::scene::TargetConfig;
 use sim::scene::docking::TargetFile;
 
 use crate::{Sandbox, written};
@@ -116,6 +117,24 @@ pub(crate) fn target(_: &Sandbox, bytes: &[u8]) {
 pub(crate) fn psf(sandbox: &Sandbox, bytes: &[u8]) {
     let path = word(&sandbox.file("psf.csv", bytes));
     let _ = Psf::new(&PsfConfig::Sampled { path, oversampling: 4.0 });
+}
+
+pub(crate) fn mesh_glb(sandbox: &Sandbox, bytes: &[u8]) {
+    let path = word(&sandbox.file("mesh.glb", bytes));
+    mesh(&format!("path = {path:?}\nradius_m = 2.07"));
+}
+
+/// The same bytes are the mesh and its materials.
+pub(crate) fn mesh_obj(sandbox: &Sandbox, bytes: &[u8]) {
+    let [mesh_path, library] = ["mesh.obj", "mesh.mtl"].map(|name| word(&sandbox.file(name, bytes)));
+    mesh(&format!("path = {mesh_path:?}\nmaterial_path = {library:?}\nradius_m = 1.0"));
+}
+
+fn mesh(keys: &str) {
+    let text = format!("kind = \"mesh\"\n{keys}");
+    if let Ok(target) = toml_file::parse::<TargetConfig>(Path::new("target.toml"), &text) {
+        let _ = target.check();
+    }
 }
 
 pub(crate) fn catalogue_csv(sandbox: &Sandbox, bytes: &[u8]) {

@@ -96,7 +96,7 @@ impl Simulator {
     pub fn new(simulation: &Simulation, folder: &Path) -> Result<Self, SimError> {
         let seed = Seed { seed: simulation.seed, case: 0 };
         let radiometry = Radiometry::new(&simulation.radiometry)?;
-        let target = Spacecraft::new(&simulation.target)?;
+        let target = Spacecraft::load(&simulation.target, folder)?;
         // Before the shutter, which requires a checked saturation of the sensor.
         simulation.sensor.check()?;
         let cosmic_rays = simulation.sensor.cosmic_rays.as_ref();
@@ -158,6 +158,7 @@ impl Simulator {
     /// Reuses the simulator for another flight: seed, orbit, schedule, attitude, knowledge, mounting, shutter
     /// and target become those of `simulation`, whose camera, detector, optics and catalogue are ignored. The
     /// result equals that of [`Simulator::new`] for the combined configuration, in a thousandth of the time.
+    /// The path of a mesh starts from the working directory.
     ///
     /// # Errors
     /// [`SimError`] for the first value that is not allowed; the simulator is then unchanged.
@@ -233,8 +234,13 @@ fn flight(
     shutter.check_interval(schedule.shortest_interval_s())?;
     cosmic_rays.map_or(Ok(()), |rays| rays.check_hits(shutter.longest_s()))?;
     check_times(&schedule, &trajectory, shutter.lag_s(), half_interval_s)?;
-    let key = (simulation.trajectory.clone(), simulation.schedule.clone(), simulation.target.clone());
-    APART.get(key, |_| check_separation(&schedule, &trajectory, target))?;
+    if let TargetConfig::Mesh(_) = simulation.target {
+        // Not cached, because the file may have changed.
+        check_separation(&schedule, &trajectory, target)?;
+    } else {
+        let key = (simulation.trajectory.clone(), simulation.schedule.clone(), simulation.target.clone());
+        APART.get(key, |_| check_separation(&schedule, &trajectory, target))?;
+    }
     Ok((trajectory, schedule, shutter))
 }
 

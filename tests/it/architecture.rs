@@ -14,7 +14,7 @@ const ARROWS: [(&str, &str); 35] = [
     ("navigation", "contract"),
     ("truth", "config contract draws"),
     ("optics", "config contract truth"),
-    ("scene", "contract draws optics truth"),
+    ("scene", "config contract draws optics truth"),
     ("render", "contract optics scene truth"),
     ("sensor", "config contract draws optics render truth"),
     ("sim", "config contract draws optics render scene sensor truth"),

@@ -346,3 +346,34 @@ fn a_catalogue_beside_the_scenario_is_found() {
     assert_eq!(check["stars"], 500);
     bench.boresight("run scenarios/mine.toml --frames 0..2 --out run").done();
 }
+
+/// Files of a mesh are found beside the scenario, are part of the hash of a run, and must not change before
+/// it is repeated.
+#[test]
+fn a_mesh_beside_the_scenario_is_found_and_is_part_of_the_hash() {
+    let bench = Bench::new();
+    let files = ["smallsat.obj", "smallsat.mtl"];
+    for file in files {
+        let path = format!("{}/scenarios/targets/{file}", env!("CARGO_MANIFEST_DIR"));
+        bench.write(&format!("scenarios/targets/{file}"), std::fs::read(path).unwrap());
+    }
+    let fragment: toml::Table = include_str!("../../docs/examples/smallsat.toml").parse().unwrap();
+    bench.scenario("scenarios/mine.toml", "starting-point", |scenario| scenario.extend(fragment));
+    bench.boresight("scenario check scenarios/mine.toml").done();
+    let hash = |run: &str| {
+        bench.boresight(&format!("run scenarios/mine.toml --frames 0..1 --out {run}")).done();
+        let record: toml::Table = bench.read(&format!("{run}/run.toml")).parse().unwrap();
+        assert!(record["files"]["target.path"].is_str() && record["files"]["target.material_path"].is_str());
+        record["hash"].as_str().unwrap().to_owned()
+    };
+    let first = hash("run");
+    let library = bench.read("scenarios/targets/smallsat.mtl");
+    bench.write("scenarios/targets/smallsat.mtl", library.replace("Kd 0.28 0.28 0.28", "Kd 0.27 0.27 0.27"));
+    assert_ne!(hash("darker"), first);
+    bench
+        .boresight("run run/run.toml --out again")
+        .refused(&["target.material_path", "the file has changed"]);
+    bench.edit("scenarios/mine.toml", "radius_m = 2.07", "radius_m = 2.2");
+    let parts = ["mine.toml", "target.radius_m", "within 1 %", "2.069831"];
+    bench.boresight("scenario check scenarios/mine.toml").found(&parts);
+}

@@ -9,6 +9,8 @@ pub mod docking;
 pub mod earth;
 pub mod moon;
 pub mod planets;
+pub mod polygon;
+pub mod shadow;
 mod source;
 mod spacecraft;
 mod star_field;
@@ -18,6 +20,9 @@ pub use background::{Background, BackgroundConfig, BackgroundField, EarthLightCo
 pub use camera_motion::CameraMotion;
 pub use source::Source;
 pub use spacecraft::Outline;
-pub use spacecraft::{Appearance, BoxConfig, Lighting, PlateConfig, Spacecraft, SurfaceConfig, TargetConfig};
+pub use spacecraft::{
+    Appearance, BoxConfig, Lighting, MaterialConfig, MeshConfig, PlateConfig, Spacecraft, SurfaceConfig,
+    TargetConfig,
+};
 pub use star_field::StarField;
 pub use vibration::Vibration;

@@ -16,6 +16,20 @@ fn tango() -> TargetConfig {
     fragment.target
 }
 
+/// The mesh of the scenario fragment from the documentation, whose paths start from `scenarios/`.
+fn smallsat() -> TargetConfig {
+    #[derive(serde::Deserialize)]
+    struct Fragment {
+        target: TargetConfig,
+    }
+    let fragment: Fragment = toml::from_str(include_str!("../../../docs/examples/smallsat.toml")).unwrap();
+    let mut target = fragment.target;
+    for (_, path) in target.paths() {
+        *path = format!("{}/../scenarios/{path}", env!("CARGO_MANIFEST_DIR"));
+    }
+    target
+}
+
 /// TANGO at `range_m` ahead, as the only object in the sky.
 fn ahead(range_m: f64, target: TargetConfig) -> Simulation {
     let mut simulation = still();
@@ -38,15 +52,19 @@ fn target(exposure: &Exposure) -> &ObjectTruth {
 }
 
 #[test]
-fn the_fragment_of_the_documentation_is_a_target() {
+fn the_fragments_of_the_documentation_are_targets() {
     tango().check().unwrap();
+    smallsat().check().unwrap();
 }
 
 #[test]
 fn a_resolved_body_has_the_flux_of_its_magnitude_in_the_image_and_in_the_table() {
-    // The body spans 30 px, 6 px, 0.2 px and 0.06 px.
-    for range_m in [60.0, 300.0, 9_000.0, 30_000.0] {
-        let simulation = ahead(range_m, tango());
+    // TANGO spans 30 px, 6 px, 0.2 px and 0.06 px, the mesh five times as many.
+    let ranges_m = [60.0, 300.0, 9_000.0, 30_000.0];
+    for (range_m, body) in
+        ranges_m.into_iter().flat_map(|range_m| [(range_m, tango()), (5.0 * range_m, smallsat())])
+    {
+        let simulation = ahead(range_m, body);
         let simulator = simulator(&simulation);
         let mut camera = simulator.camera().unwrap();
         let exposure = camera.expose(0).unwrap();

@@ -1,12 +1,11 @@
 //! Beam of light that reaches the visible part of a plane; objects outside the beam cast no visible shadow.
 
 use nalgebra::Vector3;
+use scene::shadow::{Plane, Source};
 
 use super::bounds::Sphere;
 use super::coverage::Window;
 use super::loops::Loops;
-use super::planes::Plane;
-use super::source::Source;
 use super::view::View;
 
 /// Four planes parallel to the light rays, through the borders of an image window as projected onto a plane
@@ -151,7 +150,7 @@ mod tests {
         let outer = corners.map(|[x, y]| Vector3::new(x, y, 0.0)).to_vec();
         let facet = Facet { outer, holes: Vec::new(), normal: Vector3::z(), reflectance: 0.5 };
         let part = Part { name: "ground".into(), facets: vec![facet], casts_shadow: false, visible: true };
-        PreparedScene::new(&DockingScene { parts: vec![part] }).planes.remove(0)
+        PreparedScene::new(&DockingScene { parts: vec![part] }).planes.remove(0).surface
     }
 
     /// Position of a point's shadow on the ground.

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 use scene::docking::Floodlight;
+use scene::shadow::Plane;
 
 use super::coverage::Window;
-use super::planes::Plane;
 use super::view::View;
 
 /// Illumination by a lamp of a plane that a camera sees.

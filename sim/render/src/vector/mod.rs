@@ -9,7 +9,6 @@
 mod beam;
 mod body;
 mod bounds;
-mod clip;
 mod coverage;
 mod lamp;
 mod loops;
@@ -18,12 +17,12 @@ mod planes;
 mod radiance_cache;
 mod shadow;
 mod silhouette;
-mod source;
 mod view;
 
 use contract::Camera;
 use contract::docking::Pose;
 use scene::docking::{DockingScene, Lighting};
+use scene::shadow::Source;
 use truth::SimError;
 
 use self::body::Body;
@@ -31,7 +30,6 @@ use self::coverage::Coverage;
 use self::painting::{Canvas, Painting};
 use self::planes::PreparedScene;
 use self::shadow::Shadows;
-use self::source::Source;
 use self::view::{Lens, View};
 
 /// Mean radiance over each pixel of the camera (box filter, without point-spread function), row by row; units

@@ -70,7 +70,7 @@ impl Painting {
         for index in ready.planes.clone() {
             let plane = &canvas.prepared.planes[index];
             // In this form of the condition a height that is not a number also counts as not visible.
-            let shows_front = plane.height(&view.position) > 0.0;
+            let shows_front = plane.surface.height(&view.position) > 0.0;
             if !shows_front {
                 continue;
             }
@@ -104,7 +104,7 @@ impl Painting {
     /// radiance there.
     pub(super) fn prepare_shadows(&mut self, sun: &Sun, shadows: &mut Shadows, canvas: &Canvas<'_>) {
         let window = match &self.planes[..] {
-            [seen] if sunlight(sun, &canvas.prepared.planes[seen.plane].normal) > 0.0 => {
+            [seen] if sunlight(sun, &canvas.prepared.planes[seen.plane].surface.normal) > 0.0 => {
                 let (plane, within) = (seen.plane, seen.bounds.window(canvas.coverage.full_window()));
                 within.and_then(|within| self.outline_shadows(shadows, plane, within, canvas))
             }
@@ -124,8 +124,8 @@ impl Painting {
         canvas.coverage.open(canvas.coverage.full_window());
         for seen in &self.planes {
             let plane = &canvas.prepared.planes[seen.plane];
-            let light =
-                lighting.fill_radiance + lighting.sun.map_or(0.0, |sun| sunlight(&sun, &plane.normal));
+            let light = lighting.fill_radiance
+                + lighting.sun.map_or(0.0, |sun| sunlight(&sun, &plane.surface.normal));
             for facet in &self.facets[seen.facets.clone()] {
                 let radiance = part.facets[facet.facet].reflectance * light;
                 self.add(facet, canvas.coverage, [1.0, radiance as f32]);
@@ -180,13 +180,13 @@ impl Painting {
     ) {
         let Some(sun) = &lighting.sun else { return };
         if let [seen] = &self.planes[..] {
-            let light = sunlight(sun, &canvas.prepared.planes[seen.plane].normal);
+            let light = sunlight(sun, &canvas.prepared.planes[seen.plane].surface.normal);
             self.shade_plane(light / (lighting.fill_radiance + light), canvas);
             return;
         }
         for index in 0..self.planes.len() {
             let seen = self.planes[index].clone();
-            let light = sunlight(sun, &canvas.prepared.planes[seen.plane].normal);
+            let light = sunlight(sun, &canvas.prepared.planes[seen.plane].surface.normal);
             if light <= 0.0 {
                 continue;
             }
@@ -258,7 +258,7 @@ impl Painting {
         for index in 0..self.planes.len() {
             let seen = self.planes[index].clone();
             let plane = &canvas.prepared.planes[seen.plane];
-            let is_lit = plane.height(&lamp.position_m) > 0.0;
+            let is_lit = plane.surface.height(&lamp.position_m) > 0.0;
             if !is_lit {
                 continue;
             }
@@ -272,7 +272,7 @@ impl Painting {
                 canvas.coverage.add(self.shadow.polygon(polygon), [0.0, 1.0]);
             }
             let grid = &mut self.lamp_grid;
-            grid.fill(&LampOnPlane::new(lamp, &canvas.view, plane), window);
+            grid.fill(&LampOnPlane::new(lamp, &canvas.view, &plane.surface), window);
             let (columns, image) = (canvas.columns, &mut *canvas.radiance);
             let mut row_of_lights = None;
             canvas.coverage.sweep(|row, column, run| {

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 use scene::docking::{DockingScene, Facet, Part};
+use scene::shadow::Plane;
 
 use super::bounds::{Extent, Sphere};
 use super::loops::Loops;
@@ -11,22 +12,13 @@ use super::silhouette::FacetEdges;
 
 /// Facets of one part that lie in one plane.
 #[derive(Debug, Clone)]
-pub(super) struct Plane {
+pub(super) struct PartPlane {
     /// Index of the part in the scene.
     pub(super) part: usize,
-    pub(super) normal: Vector3<f64>,
-    /// Offset of the plane, m: normal · y of its points y.
-    pub(super) offset: f64,
+    pub(super) surface: Plane,
     /// Indices of its facets in the part.
     pub(super) facets: Vec<usize>,
     pub(super) extent: Extent,
-}
-
-impl Plane {
-    /// Returns the distance of a point in front of the plane, m; negative behind it.
-    pub(super) fn height(&self, point: &Vector3<f64>) -> f64 {
-        self.normal.dot(point) - self.offset
-    }
 }
 
 /// Data of a facet that casts a shadow.
@@ -58,7 +50,7 @@ pub(super) struct PreparedPart {
 pub(super) struct PreparedScene {
     pub(super) scene: DockingScene,
     pub(super) parts: Vec<PreparedPart>,
-    pub(super) planes: Vec<Plane>,
+    pub(super) planes: Vec<PartPlane>,
 }
 
 impl PreparedScene {
@@ -112,20 +104,20 @@ fn touch(one: &Part, other: &Part) -> bool {
     one.visible && other.visible && corners(one).any(near)
 }
 
-fn planes_of(part: &Part, index_of_part: usize) -> Vec<Plane> {
-    let mut planes: Vec<Plane> = Vec::new();
+fn planes_of(part: &Part, index_of_part: usize) -> Vec<PartPlane> {
+    let mut planes: Vec<PartPlane> = Vec::new();
     for (index, facet) in part.facets.iter().enumerate() {
         let Some(point) = facet.outer.first() else { continue };
         let offset = facet.normal.dot(point);
-        let same = |plane: &&mut Plane| {
-            (plane.normal - facet.normal).norm() < SAME_PLANE && (plane.offset - offset).abs() < SAME_PLANE
+        let same = |plane: &&mut PartPlane| {
+            (plane.surface.normal - facet.normal).norm() < SAME_PLANE
+                && (plane.surface.offset - offset).abs() < SAME_PLANE
         };
         match planes.iter_mut().find(same) {
             Some(plane) => plane.facets.push(index),
-            None => planes.push(Plane {
+            None => planes.push(PartPlane {
                 part: index_of_part,
-                normal: facet.normal,
-                offset,
+                surface: Plane { normal: facet.normal, offset },
                 facets: vec![index],
                 extent: Extent { low: *point, high: *point },
             }),

@@ -13,20 +13,27 @@ use nalgebra::Vector3;
 
 use super::beam::Beam;
 use super::bounds::{Extent, Sphere};
-use super::clip::keep_above;
 use super::coverage::Window;
-use super::planes::{Plane, PreparedScene};
+use super::planes::{PartPlane, PreparedScene};
 use super::silhouette::Silhouette;
-use super::source::Source;
 use super::view::View;
+use scene::docking::Facet;
+use scene::shadow::{Plane, Source};
 
-impl Source {
+/// Position of an object relative to a plane.
+enum RelativePosition {
+    /// No part of the object is over the plane.
+    Behind,
+    /// The whole object is between plane and light; it may stand on the plane.
+    Between,
+    /// Part of the object is between plane and light.
+    Across,
+}
+
+impl RelativePosition {
     /// Returns the position of a caster's outline relative to a plane; `sphere` encloses the caster.
-    fn classify(&self, outline: &Silhouette, sphere: &Sphere, plane: &Plane) -> RelativePosition {
-        let highest = match self {
-            Self::Parallel(_) => f64::INFINITY,
-            Self::Point(position) => Shadows::MAX_HEIGHT_FRACTION * plane.height(position),
-        };
+    fn new(outline: &Silhouette, sphere: &Sphere, plane: &Plane, source: &Source) -> Self {
+        let highest = source.highest(plane);
         // The corners need no test if their sphere lies completely on one side.
         let sure = |sphere: &Sphere| {
             let height = plane.height(&sphere.centre);
@@ -53,23 +60,13 @@ impl Source {
             }
         }
         if greatest <= Shadows::TOUCHING_M {
-            RelativePosition::Behind
+            Self::Behind
         } else if lowest >= -Shadows::TOUCHING_M && greatest <= highest {
-            RelativePosition::Between
+            Self::Between
         } else {
-            RelativePosition::Across
+            Self::Across
         }
     }
-}
-
-/// Position of an object relative to a plane.
-enum RelativePosition {
-    /// No part of the object is over the plane.
-    Behind,
-    /// The whole object is between plane and light; it may stand on the plane.
-    Between,
-    /// Part of the object is between plane and light.
-    Across,
 }
 
 /// Shadow-casting outline of a part in one light.
@@ -94,9 +91,6 @@ pub(super) struct Shadows {
 impl Shadows {
     /// Height above a plane below which a point touches the plane and casts no shadow on it, m.
     const TOUCHING_M: f64 = 1e-6;
-    /// Fraction of a near light's height above a plane, above which a point casts no shadow: its shadow would
-    /// extend to infinity.
-    const MAX_HEIGHT_FRACTION: f64 = 0.999;
     /// Ratio of dark side to lit side above which the dark side casts the shadow. A sheet lit from behind has
     /// almost no lit side. A tube, such as the rim of a plate whose faces are separate parts, has both sides,
     /// and a near light sees the dark side slightly larger; but the shadow of that dark side lies within that
@@ -130,7 +124,7 @@ impl Shadows {
                 if seen > 0.0 { lit += seen } else { dark -= seen }
             }
             part_shadow.dark_side = dark > lit * Self::DARK_OVER_LIT;
-            let casts = |index: usize| source.casts_shadow(&part.facets[index], part_shadow.dark_side);
+            let casts = |index: usize| casts_shadow(&source, &part.facets[index], part_shadow.dark_side);
             part_shadow.silhouette.find(&ready.outlines, casts);
         }
     }
@@ -139,20 +133,21 @@ impl Shadows {
     /// The shadows are correct inside a window of the image, and arbitrary outside it.
     pub(super) fn find(
         &mut self,
-        plane: &Plane,
+        plane: &PartPlane,
         prepared: &PreparedScene,
         view: &View<'_>,
         window: Window,
         mut take: impl FnMut(&[Vector3<f64>]),
     ) {
-        let Some(source) = self.source.filter(|source| source.illuminates(plane)) else { return };
-        let beam = Beam::new(source, plane, view, window);
+        let surface = &plane.surface;
+        let Some(source) = self.source.filter(|source| source.illuminates(surface)) else { return };
+        let beam = Beam::new(source, surface, view, window);
         let parts = prepared.scene.parts.iter().zip(&prepared.parts).zip(&self.part_shadow);
         for (index, ((part, ready), part_shadow)) in parts.enumerate() {
             if index == plane.part || ready.casters.is_empty() || beam.misses(&ready.sphere) {
                 continue;
             }
-            match source.classify(&part_shadow.silhouette, &ready.sphere, plane) {
+            match RelativePosition::new(&part_shadow.silhouette, &ready.sphere, surface, &source) {
                 RelativePosition::Behind => {}
                 RelativePosition::Between => {
                     let outlines = &part_shadow.silhouette.loops;
@@ -165,16 +160,16 @@ impl Shadows {
                 }
                 RelativePosition::Across => {
                     for (facet, caster) in part.facets.iter().zip(&ready.casters) {
-                        let is_behind = plane.height(&caster.sphere.centre) < -caster.sphere.radius;
+                        let is_behind = surface.height(&caster.sphere.centre) < -caster.sphere.radius;
                         if is_behind
-                            || !source.casts_shadow(facet, part_shadow.dark_side)
+                            || !casts_shadow(&source, facet, part_shadow.dark_side)
                             || beam.misses(&caster.sphere)
                         {
                             continue;
                         }
                         for polygon in 0..caster.loops.len() {
                             beam.trim(&caster.loops, polygon, &mut self.trimmed);
-                            cut_between(&mut self.trimmed, plane, source, &mut self.cut);
+                            source.cut_between(&mut self.trimmed, surface, Self::TOUCHING_M, &mut self.cut);
                             if cast(&self.cut, plane, source, part_shadow.dark_side, &mut self.shadow) {
                                 take(&self.shadow);
                             }
@@ -186,44 +181,25 @@ impl Shadows {
     }
 }
 
-/// Writes the part of a polygon between plane and light to `cut`; the content of `polygon` is unspecified
-/// afterwards.
-fn cut_between(polygon: &mut Vec<Vector3<f64>>, plane: &Plane, source: Source, cut: &mut Vec<Vector3<f64>>) {
-    keep_above(polygon, cut, |point| plane.height(point) - Shadows::TOUCHING_M);
-    if let Source::Point(position) = source {
-        let highest = Shadows::MAX_HEIGHT_FRACTION * plane.height(&position);
-        std::mem::swap(polygon, cut);
-        keep_above(polygon, cut, |point| highest - plane.height(point));
-    }
+/// Returns true if a facet belongs to the side of its part that casts the shadow.
+fn casts_shadow(source: &Source, facet: &Facet, dark_side: bool) -> bool {
+    let Some(corner) = facet.outer.first() else { return false };
+    (facet.normal.dot(&source.from(corner)) <= 0.0) == dark_side
 }
 
 /// Writes the shadow of a polygon between plane and light to `shadow`; returns true if it may fall on the
 /// plane's facets. A shadow that misses the facets must not darken the pixels on their border.
 fn cast(
     polygon: &[Vector3<f64>],
-    plane: &Plane,
+    plane: &PartPlane,
     source: Source,
     dark_side: bool,
     shadow: &mut Vec<Vector3<f64>>,
 ) -> bool {
-    shadow.clear();
     if polygon.len() < 3 {
         return false;
     }
-    match source {
-        Source::Parallel(towards) => {
-            let climb = plane.normal.dot(&towards);
-            let along = |point: &Vector3<f64>| point - towards * (plane.height(point) / climb);
-            shadow.extend(polygon.iter().map(along));
-        }
-        Source::Point(position) => {
-            let height = plane.height(&position);
-            let along = |point: &Vector3<f64>| {
-                position + (point - position) * (height / (height - plane.height(point)))
-            };
-            shadow.extend(polygon.iter().map(along));
-        }
-    }
+    source.cast(polygon, &plane.surface, shadow);
     if dark_side {
         shadow.reverse();
     }

@@ -7,8 +7,8 @@ use optics::Projection;
 use truth::SimError;
 
 use super::bounds::Sphere;
-use super::clip::keep_above;
 use super::coverage::Window;
+use scene::polygon::keep_above;
 
 /// Camera without its pose.
 #[derive(Debug, Clone)]

@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use nalgebra::{Vector2, Vector3};
 
 use super::body::LitBody;
-use super::plate::{BoxConfig, Plate, PlateConfig};
+use super::facet::Facet;
+use super::plate::{BoxConfig, PlateConfig};
 use super::surface::SurfaceConfig;
 use super::*;
 
@@ -19,7 +20,7 @@ fn plate(
     size: [f64; 2],
     front: SurfaceConfig,
     back: Option<SurfaceConfig>,
-) -> Plate {
+) -> Facet {
     PlateConfig {
         centre_m: [centre[0], centre[1], z],
         normal: [0.0, 0.0, 3.0],
@@ -45,7 +46,7 @@ fn tilted(degrees: f64) -> Vector3<f64> {
 
 /// f_r cos θᵢ cos θₒ A in m²: the flux ratio times the square of a distance so large that all rays are
 /// parallel.
-fn far_light(plates: &[Plate], eye: Vector3<f64>, sun: Vector3<f64>) -> f64 {
+fn far_light(plates: &[Facet], eye: Vector3<f64>, sun: Vector3<f64>) -> f64 {
     let far_m = 1e7;
     LitBody::new(plates, eye * far_m, sun).flux_ratio() * far_m * far_m
 }
@@ -62,7 +63,7 @@ fn pinhole(eye_m: Vector3<f64>, px: f64) -> impl Fn(&Vector3<f64>) -> Option<Pix
 }
 
 /// Box with one panel in front of a face and one that protrudes, similar to TANGO.
-fn tango() -> Vec<Plate> {
+fn tango() -> Vec<Facet> {
     let foil = SurfaceConfig { diffuse: 0.25, specular: 0.2, roughness: 0.15 };
     let cells = SurfaceConfig { diffuse: 0.05, specular: 0.3, roughness: 0.05 };
     let mut plates = BoxConfig { centre_m: [0.0; 3], size_m: [0.80, 0.75, 0.32], surface: foil }
@@ -179,7 +180,7 @@ fn a_shadow_removes_its_own_area() {
     let black = SurfaceConfig { diffuse: 0.0, specular: 0.0, roughness: 0.1 };
     let ground = plate([0.0, 0.0], 0.0, [4.0, 4.0], GREY, None);
     let screen = plate([0.0, 0.0], 1.0, [1.0, 1.0], black, Some(black));
-    let light = |plates: &[Plate], eye: Vector3<f64>| far_light(plates, eye, tilted(45.0));
+    let light = |plates: &[Facet], eye: Vector3<f64>| far_light(plates, eye, tilted(45.0));
     // Seen along the sunlight, the screen hides its own shadow: one square metre of 16 is lost; from above,
     // two.
     for (eye, lost) in
@@ -194,8 +195,8 @@ fn a_shadow_removes_its_own_area() {
 /// The exact areas agree with rays from points of each plate to the Sun and to the camera.
 #[test]
 fn shadows_and_occlusions_are_those_of_rays() {
-    let plates: Vec<Plate> =
-        tango().into_iter().map(|p| Plate { front: GREY, back: p.back.map(|_| GREY), ..p }).collect();
+    let plates: Vec<Facet> =
+        tango().into_iter().map(|p| Facet { front: GREY, back: p.back.map(|_| GREY), ..p }).collect();
     let blocked = |from: &Vector3<f64>, to: &Vector3<f64>, own: usize| {
         plates.iter().enumerate().filter(|(j, _)| *j != own).any(|(_, other)| {
             let (a, b) = (other.local(from), other.local(to));

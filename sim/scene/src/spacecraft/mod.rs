@@ -1,26 +1,32 @@
 //! The target spacecraft as a source of light.
 
 mod body;
+mod facet;
+mod mesh;
 mod outline;
+mod overlaps;
 mod plate;
-mod polygon;
 mod sphere;
 mod surface;
+mod visible;
 
 #[cfg(test)]
 mod body_tests;
 
+pub use mesh::{MaterialConfig, MeshConfig};
 pub use plate::{BoxConfig, PlateConfig};
 pub use surface::SurfaceConfig;
+
+use std::path::Path;
 
 use body::LitBody;
 use contract::bounds::{self, require};
 use contract::{Icrs, OutOfRange, PixelPoint, Rotation, Target};
+use facet::Facet;
 use nalgebra::Vector3;
 use optics::{ImagePoint, SUN_V_MAG_AT_1_AU};
 pub use outline::Outline;
-use outline::Solid;
-use plate::{Brick, Plate};
+use outline::{Inside, Solid};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sphere::{LitSphere, lambert_phase};
@@ -64,15 +70,45 @@ pub enum TargetConfig {
         #[serde(default)]
         plates: Vec<PlateConfig>,
     },
+    /// Closed mesh of triangles from a file, in sunlight, with an attitude, drawn resolved.
+    Mesh(MeshConfig),
 }
 
 impl TargetConfig {
-    /// Checks every number.
+    /// Checks every number, and the file of a mesh.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first number outside its range.
+    /// [`OutOfRange`] for the first number outside its range, or a mesh that is refused.
     pub fn check(&self) -> Result<(), OutOfRange> {
         Spacecraft::new(self).map(|_| ())
+    }
+
+    /// Returns the paths of the files that the target is read from, each with its role in a scenario.
+    pub fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
+        let Self::Mesh(mesh) = self else { return Vec::new() };
+        let library = mesh.material_path.as_mut().map(|path| ("target.material_path", path));
+        std::iter::once(("target.path", &mut mesh.path)).chain(library).collect()
+    }
+
+    /// Returns the attitude of the body frame; `None` for a target without orientation (beacon or sphere).
+    pub fn attitude(&self) -> Option<&TargetAttitudeConfig> {
+        match self {
+            Self::Beacon { .. } | Self::LambertSphere { .. } => None,
+            Self::Plates { attitude, .. } | Self::Mesh(MeshConfig { attitude, .. }) => Some(attitude),
+        }
+    }
+
+    /// Returns the target with another attitude of its body frame; a target without orientation is unchanged.
+    #[must_use]
+    pub fn with_attitude(&self, attitude: TargetAttitudeConfig) -> Self {
+        let mut target = self.clone();
+        match &mut target {
+            Self::Beacon { .. } | Self::LambertSphere { .. } => {}
+            Self::Plates { attitude: own, .. } | Self::Mesh(MeshConfig { attitude: own, .. }) => {
+                *own = attitude
+            }
+        }
+        target
     }
 }
 
@@ -109,17 +145,35 @@ pub struct Spacecraft {
 
 #[derive(Debug, Clone, PartialEq)]
 enum Model {
-    Beacon { magnitude_at_1_km: f64 },
-    Sphere { radius_m: f64, albedo: f64 },
-    Plates { attitude: TargetAttitudeConfig, plates: Vec<Plate>, bricks: Vec<Brick> },
+    Beacon {
+        magnitude_at_1_km: f64,
+    },
+    Sphere {
+        radius_m: f64,
+        albedo: f64,
+    },
+    /// Plates and boxes, or a mesh.
+    Body {
+        attitude: TargetAttitudeConfig,
+        facets: Vec<Facet>,
+        inside: Inside,
+    },
 }
 
 impl Spacecraft {
-    /// Checks and prepares a target.
+    /// Checks and prepares a target; the path of a mesh starts from the working directory.
     ///
     /// # Errors
-    /// [`OutOfRange`] for the first number outside its range.
+    /// [`OutOfRange`] for the first number outside its range, or a mesh that is refused.
     pub fn new(config: &TargetConfig) -> Result<Self, OutOfRange> {
+        Self::load(config, Path::new(""))
+    }
+
+    /// Checks and prepares a target; the path of a mesh starts from `folder`.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for the first number outside its range, or a mesh that is refused.
+    pub fn load(config: &TargetConfig, folder: &Path) -> Result<Self, OutOfRange> {
         bounds::check(config, "target")?;
         let model = match config {
             &TargetConfig::Beacon { magnitude_at_1_km } => Model::Beacon { magnitude_at_1_km },
@@ -136,12 +190,14 @@ impl Spacecraft {
                 require("target.plates", all.len() as f64, "1 to 200, where a box counts as six", |n| {
                     n >= 1.0 && n <= MAX_PLATES as f64
                 })?;
-                Model::Plates {
-                    attitude: attitude.clone(),
-                    plates: all,
-                    bricks: boxes.iter().map(BoxConfig::brick).collect(),
-                }
+                let inside = Inside::Boxes(boxes.iter().map(BoxConfig::brick).collect());
+                Model::Body { attitude: attitude.clone(), facets: all, inside }
             }
+            TargetConfig::Mesh(mesh) => Model::Body {
+                attitude: mesh.attitude.clone(),
+                facets: mesh.load(folder)?,
+                inside: Inside::Mesh,
+            },
         };
         Ok(Self { model })
     }
@@ -150,7 +206,7 @@ impl Spacecraft {
     pub fn attitude(&self, states: &States) -> Option<Rotation<Target, Icrs>> {
         match &self.model {
             Model::Beacon { .. } | Model::Sphere { .. } => None,
-            Model::Plates { attitude, .. } => Some(attitude.target_from_icrs(states)),
+            Model::Body { attitude, .. } => Some(attitude.target_from_icrs(states)),
         }
     }
 
@@ -164,7 +220,7 @@ impl Spacecraft {
         let solid = match &self.model {
             Model::Beacon { .. } => return None,
             Model::Sphere { radius_m, .. } => Solid::Sphere(*radius_m),
-            Model::Plates { plates, bricks, .. } => Solid::Plates(plates, bricks),
+            Model::Body { facets, inside, .. } => Solid::Facets(facets, inside),
         };
         Some(Outline::new(solid, chaser_km, target_from_icrs.unwrap_or_else(Rotation::identity)))
     }
@@ -205,10 +261,10 @@ impl Spacecraft {
                 let lit = LitSphere::new(*radius_m, eye_m, sun).map_or(LitShape::Point, LitShape::Sphere);
                 Appearance { magnitude: lighting.magnitude(flux_ratio), lit }
             }
-            Model::Plates { plates, .. } => {
+            Model::Body { facets, .. } => {
                 let turn = target_from_icrs.unwrap_or_else(Rotation::identity);
                 let sun = turn.rotate(&lighting.sun_km).normalize();
-                let lit = LitBody::new(plates, turn.rotate(&lighting.chaser_km) * 1000.0, sun);
+                let lit = LitBody::new(facets, turn.rotate(&lighting.chaser_km) * 1000.0, sun);
                 Appearance { magnitude: lighting.magnitude(lit.flux_ratio()), lit: LitShape::Body(lit) }
             }
         }

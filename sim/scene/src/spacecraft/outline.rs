@@ -3,7 +3,8 @@
 use contract::{Direction, Icrs, Rotation, Target};
 use nalgebra::Vector3;
 
-use super::plate::{Brick, Plate};
+use super::facet::Facet;
+use super::plate::Brick;
 use crate::aberration::ABERRATION_MARGIN_RAD;
 
 /// Opaque solid of a target.
@@ -11,8 +12,17 @@ use crate::aberration::ABERRATION_MARGIN_RAD;
 pub(super) enum Solid<'a> {
     /// Sphere about the origin of the body frame; its radius, m.
     Sphere(f64),
-    /// All plates, and the boxes whose faces are among the plates.
-    Plates(&'a [Plate], &'a [Brick]),
+    /// All facets of a body, and the space that they enclose.
+    Facets(&'a [Facet], &'a Inside),
+}
+
+/// Space inside a body of facets.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Inside {
+    /// That of boxes.
+    Boxes(Vec<Brick>),
+    /// That of the shells of a mesh.
+    Mesh,
 }
 
 /// The target as seen from one position, lit or unlit. It moves with the chaser, so its direction has no
@@ -38,7 +48,7 @@ impl<'a> Outline<'a> {
     ) -> Self {
         let radius_m = match solid {
             Solid::Sphere(radius_m) => radius_m,
-            Solid::Plates(plates, _) => plates.iter().map(Plate::reach).fold(0.0, f64::max),
+            Solid::Facets(facets, _) => facets.iter().map(Facet::reach).fold(0.0, f64::max),
         };
         let eye_m = target_from_icrs.rotate(chaser_km) * 1000.0;
         let sine = radius_m / eye_m.norm();
@@ -61,7 +71,7 @@ impl<'a> Outline<'a> {
                 let ahead = -self.eye_m.dot(&ray);
                 ahead > 0.0 && (self.eye_m + ray * ahead).norm() < radius_m
             }
-            Solid::Plates(plates, _) => plates.iter().any(|plate| plate.is_hit_by(&self.eye_m, &ray)),
+            Solid::Facets(facets, _) => facets.iter().any(|facet| facet.is_hit_by(&self.eye_m, &ray)),
         }
     }
 
@@ -69,7 +79,25 @@ impl<'a> Outline<'a> {
     pub(super) fn holds_camera(&self) -> bool {
         match self.solid {
             Solid::Sphere(radius_m) => self.eye_m.norm() <= radius_m,
-            Solid::Plates(_, bricks) => bricks.iter().any(|brick| brick.contains(&self.eye_m)),
+            Solid::Facets(_, Inside::Boxes(bricks)) => bricks.iter().any(|brick| brick.contains(&self.eye_m)),
+            // From outside of the enclosing sphere, no sum is needed.
+            Solid::Facets(facets, Inside::Mesh) => self.cos_near == -1.0 && turns(facets, &self.eye_m) > 0.5,
         }
     }
+}
+
+/// Number of times that the shells of a mesh enclose a point: the sum of the solid angles of the triangles
+/// over 4π, each tan(Ω/2) = a · (b × c)/(abc + (a · b) c + (b · c) a + (c · a) b) (Van Oosterom & Strackee
+/// 1983, IEEE Trans. Biomed. Eng. 30, 125).
+fn turns(facets: &[Facet], point_m: &Vector3<f64>) -> f64 {
+    let solid_angle = |facet: &Facet| {
+        let mut corners = facet.corners_m().map(|corner| corner - point_m);
+        let (Some(a), Some(b), Some(c)) = (corners.next(), corners.next(), corners.next()) else {
+            return 0.0;
+        };
+        let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+        let below = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+        2.0 * libm::atan2(a.dot(&b.cross(&c)), below)
+    };
+    facets.iter().map(solid_angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }

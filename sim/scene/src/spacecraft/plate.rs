@@ -1,11 +1,11 @@
 //! Flat plates and boxes of them: the shape of the target, in metres in its body frame.
 
 use contract::OutOfRange;
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::polygon::Polygon;
+use super::facet::Facet;
 use super::surface::SurfaceConfig;
 
 /// Rectangular plate without thickness, opaque from either side.
@@ -50,25 +50,12 @@ pub struct BoxConfig {
     pub surface: SurfaceConfig,
 }
 
-/// Checked plate: `right`, `up` and `normal` are orthonormal and right-handed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Plate {
-    pub centre: Vector3<f64>,
-    pub right: Vector3<f64>,
-    pub up: Vector3<f64>,
-    pub normal: Vector3<f64>,
-    pub half_width: f64,
-    pub half_height: f64,
-    pub front: SurfaceConfig,
-    pub back: Option<SurfaceConfig>,
-}
-
 impl PlateConfig {
     /// Returns the checked plate.
     ///
     /// # Errors
     /// [`OutOfRange`] for the first number outside its range.
-    pub(super) fn plate(&self) -> Result<Plate, OutOfRange> {
+    pub(super) fn plate(&self) -> Result<Facet, OutOfRange> {
         self.front.check("target.plates[].front")?;
         self.back.map_or(Ok(()), |back| back.check("target.plates[].back"))?;
         let unit = |vector: Vector3<f64>| vector.try_normalize(1e-9);
@@ -79,13 +66,14 @@ impl PlateConfig {
             unit(self.up.into()).and_then(|up| unit(up - normal * normal.dot(&up))).ok_or_else(|| {
                 none("target.plates[].up", self.up, "a nonzero vector that is not parallel to the normal")
             })?;
-        Ok(Plate {
+        Ok(Facet {
             centre: self.centre_m.into(),
             right: up.cross(&normal),
             up,
             normal,
             half_width: 0.5 * self.width_m,
             half_height: 0.5 * self.height_m,
+            triangle: None,
             front: self.front,
             back: self.back,
         })
@@ -116,63 +104,23 @@ impl BoxConfig {
     ///
     /// # Errors
     /// [`OutOfRange`] for the first number outside its range.
-    pub(super) fn plates(&self) -> Result<[Plate; 6], OutOfRange> {
+    pub(super) fn plates(&self) -> Result<[Facet; 6], OutOfRange> {
         self.surface.check("target.boxes[].surface")?;
         let face = |axis: usize, side: f64| {
             let unit = |axis: usize| Vector3::ith(axis % 3, 1.0);
             let (normal, up) = (unit(axis) * side, unit(axis + 2));
-            Plate {
+            Facet {
                 centre: Vector3::from(self.centre_m) + normal * (0.5 * self.size_m[axis]),
                 right: up.cross(&normal),
                 up,
                 normal,
                 half_width: 0.5 * self.size_m[(axis + 1) % 3],
                 half_height: 0.5 * self.size_m[(axis + 2) % 3],
+                triangle: None,
                 front: self.surface,
                 back: None,
             }
         };
         Ok([face(0, 1.0), face(0, -1.0), face(1, 1.0), face(1, -1.0), face(2, 1.0), face(2, -1.0)])
-    }
-}
-
-impl Plate {
-    /// Returns true if the ray from `eye` along `ray` meets the plate from either side.
-    pub(super) fn is_hit_by(&self, eye: &Vector3<f64>, ray: &Vector3<f64>) -> bool {
-        let (towards, along) = (self.centre - eye, ray.dot(&self.normal));
-        let reach = towards.dot(&self.normal) / along;
-        let off = ray * reach - towards;
-        // A ray in the plate's plane gives NaN and meets nothing.
-        reach > 0.0
-            && off.dot(&self.right).abs() <= self.half_width
-            && off.dot(&self.up).abs() <= self.half_height
-    }
-
-    /// Upper bound of the distance of the plate's corners from the origin of the body frame, m.
-    pub(super) fn reach(&self) -> f64 {
-        self.centre.norm() + libm::hypot(self.half_width, self.half_height)
-    }
-
-    /// Returns the reversed plate: `front` becomes its front, and its former front becomes its back.
-    pub(super) fn turned(&self, front: SurfaceConfig) -> Self {
-        Self { right: -self.right, normal: -self.normal, front, back: Some(self.front), ..*self }
-    }
-
-    /// Outline in the plate's plane: coordinates right and up from the centre.
-    pub(super) fn outline(&self) -> Polygon {
-        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|(i, j)| Vector2::new(i * self.half_width, j * self.half_height))
-            .to_vec()
-    }
-
-    /// Converts a point of the plate's plane to the body frame.
-    pub(super) fn point_in_body_frame(&self, point: &Vector2<f64>) -> Vector3<f64> {
-        self.centre + self.right * point.x + self.up * point.y
-    }
-
-    /// Converts a point of the body frame to the plate's axes: right, up and height above the front.
-    pub(super) fn local(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        let offset = point - self.centre;
-        Vector3::new(offset.dot(&self.right), offset.dot(&self.up), offset.dot(&self.normal))
     }
 }

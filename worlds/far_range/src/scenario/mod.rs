@@ -184,7 +184,8 @@ impl FarRangeScenario {
             Guidance::Aem { file } => Some(("attitude.guidance.file", file)),
             _ => None,
         };
-        catalog.into_iter().chain(psf).chain(attitude).chain(self.trajectory.paths()).collect()
+        let mesh = self.target.paths();
+        catalog.into_iter().chain(psf).chain(attitude).chain(self.trajectory.paths()).chain(mesh).collect()
     }
 
     /// Returns the motion of chaser and target.
@@ -321,7 +322,7 @@ impl FarRangeScenario {
     }
 
     /// Returns size and brightness of the target, to a factor of two: those of a Lambert sphere of the same
-    /// size at a phase angle of 90° (for plates, with a reflectance of 0.25).
+    /// size at a phase angle of 90° (for plates and meshes, with a reflectance of 0.25).
     fn target_calibration(&self) -> Option<TargetCalibration> {
         let radiometry = Radiometry::new(&self.radiometry).ok()?;
         let sunlit = |radius_m: f64, reflectance: f64| {
@@ -342,6 +343,7 @@ impl FarRangeScenario {
                 let sides = sides.chain(plates.iter().flat_map(|plate| [plate.width_m, plate.height_m]));
                 sunlit(0.5 * sides.fold(0.0, f64::max), GREY_REFLECTANCE)
             }
+            TargetConfig::Mesh(mesh) => sunlit(mesh.radius_m, GREY_REFLECTANCE),
         })
     }
 

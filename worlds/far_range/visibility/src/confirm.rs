@@ -378,12 +378,5 @@ fn inertial(pointing: &Pointing) -> Guidance {
 
 /// Returns the body with its attitude fixed in the orbital frame.
 fn turned(body: &TargetConfig, [phi_deg, theta_deg, psi_deg]: [f64; 3]) -> TargetConfig {
-    match body {
-        TargetConfig::Plates { boxes, plates, .. } => TargetConfig::Plates {
-            attitude: TargetAttitudeConfig::Orbital { phi_deg, theta_deg, psi_deg },
-            boxes: boxes.clone(),
-            plates: plates.clone(),
-        },
-        other => other.clone(),
-    }
+    body.with_attitude(TargetAttitudeConfig::Orbital { phi_deg, theta_deg, psi_deg })
 }

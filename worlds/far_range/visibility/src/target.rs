@@ -71,10 +71,7 @@ impl TargetModel {
         let prepared = Spacecraft::new(body)?;
         let aspects = match (light, scenario) {
             (TargetLight::Phases { phases_deg, attitudes }, _) => {
-                let turns = match body {
-                    TargetConfig::Plates { .. } => *attitudes,
-                    TargetConfig::Beacon { .. } | TargetConfig::LambertSphere { .. } => 1,
-                };
+                let turns = if body.attitude().is_some() { *attitudes } else { 1 };
                 phases_deg.iter().flat_map(|phase| (0..turns).map(|i| at_phase(*phase, i, turns))).collect()
             }
             (TargetLight::Orbit { moments }, Some(scenario)) => along_orbit(&prepared, scenario, *moments)?,

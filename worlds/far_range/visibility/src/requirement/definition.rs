@@ -106,7 +106,11 @@ impl Requirements {
         let target = match &file.target {
             None => None,
             Some(table) => {
-                Some(table.body.clone().or(scenario.as_ref().map(|s| s.target.clone())).ok_or_else(|| {
+                let mut body = table.body.clone();
+                for (_, path) in body.iter_mut().flat_map(TargetConfig::paths) {
+                    *path = folder.join(&*path).to_string_lossy().into_owned();
+                }
+                Some(body.or(scenario.as_ref().map(|s| s.target.clone())).ok_or_else(|| {
                     source.refuse(
                         "target",
                         "has no `body`: set it, or set camera.scenario, which defines it".to_owned(),

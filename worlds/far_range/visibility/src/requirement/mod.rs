@@ -213,12 +213,13 @@ pub struct TargetTable {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum TargetLight {
-    /// Given phase angles, at 1 au, outside any shadow; a body of plates in any attitude, all equally likely.
+    /// Given phase angles, at 1 au, outside any shadow; a body of plates or a mesh in any attitude, all
+    /// equally likely.
     Phases {
         /// Angles Sun–target–camera, degrees, in ascending order, 0 to 170.
         #[schemars(length(min = 1, max = 50), inner(range(min = 0, max = 170)))]
         phases_deg: Vec<f64>,
-        /// Number of attitudes of a body of plates, 1 to 1000.
+        /// Number of attitudes of a body of plates or a mesh, 1 to 1000.
         #[serde(default = "attitudes")]
         #[schemars(range(min = 1, max = 1000))]
         attitudes: u32,
