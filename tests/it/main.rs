@@ -29,6 +29,7 @@ mod files_astropy;
 mod files_by_hand;
 mod files_dataset;
 mod files_truth;
+mod first_minutes;
 mod flight_dynamics;
 mod frozen;
 mod gate;
