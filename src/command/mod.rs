@@ -72,6 +72,8 @@ enum Command {
     Run(run::RunArguments),
     /// Render a dataset for an external pipeline, with the truth apart from the frames
     Render(dataset::RenderArguments),
+    /// Write one picture of the sky, as a camera sees it: PNG, or FITS with world coordinates
+    Sky(far_range::SkyArguments),
     /// Reproduce the tables and figures of a paper whose method is built in
     Reproduce(reproduce::ReproduceArguments),
     /// Run a pipeline on a dataset, which may contain real images
@@ -141,6 +143,7 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Demo(arguments) => demo::demo(&arguments, &output),
         Command::Run(arguments) => run::run(&arguments, &output),
         Command::Render(arguments) => dataset::render(&arguments, &output),
+        Command::Sky(arguments) => far_range::sky(&arguments, &output),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments, &output),
         Command::Process(arguments) => dataset::process(&arguments, &output),
         Command::Score(arguments) => score::score(&arguments, &output),

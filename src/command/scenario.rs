@@ -28,7 +28,8 @@ pub(super) enum ScenarioCommand {
         #[command(flatten)]
         pipeline: PipelineOptions,
     },
-    /// List the built-in cameras, or print one: the tables [camera] and [sensor], each value with its source
+    /// List the built-in cameras, or print one: the tables [camera], [sensor], [psf] and [radiometry], each
+    /// value with its source
     Camera {
         /// A built-in camera
         name: Option<String>,

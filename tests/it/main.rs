@@ -55,6 +55,7 @@ mod sandbox;
 mod scenarios;
 mod shell;
 mod show;
+mod sky;
 #[cfg(unix)]
 mod study;
 mod study_dask;

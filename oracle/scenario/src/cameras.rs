@@ -1,4 +1,4 @@
-//! Camera models for new scenarios: the tables `[camera]` and `[sensor]`.
+//! Camera models for new scenarios: the tables `[camera]`, `[sensor]`, `[psf]` and `[radiometry]`.
 
 use super::BuiltIn;
 
@@ -18,6 +18,7 @@ mod tests {
     use contract::Camera;
     use draws::Seed;
     use serde::Deserialize;
+    use sim::optics::{PsfConfig, RadiometryConfig};
     use sim::sensor::{ExposureInterval, FlatSamplers, Sensor, SensorConfig};
 
     #[derive(Deserialize)]
@@ -25,6 +26,8 @@ mod tests {
     struct Fragment {
         camera: Camera,
         sensor: SensorConfig,
+        psf: PsfConfig,
+        radiometry: RadiometryConfig,
     }
 
     fn fragments() -> impl Iterator<Item = (&'static str, Fragment)> {
@@ -37,6 +40,9 @@ mod tests {
         for (name, fragment) in fragments() {
             fragment.camera.check().unwrap();
             fragment.sensor.check().unwrap_or_else(|error| panic!("{name}: {error}"));
+            fragment.radiometry.check().unwrap_or_else(|error| panic!("{name}: {error}"));
+            let psf = fragment.psf.check();
+            psf.unwrap_or_else(|error| panic!("{name}: {error}"));
         }
     }
 

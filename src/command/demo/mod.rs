@@ -48,7 +48,7 @@ struct DemoResults {
 
 /// Commands to try next, each with its purpose.
 const NEXT: [(&str, &str); 3] = [
-    ("boresight run docking --frames 15000..15500", "ten seconds of another approach"),
+    ("boresight sky --ra 83.6 --dec -5.4 --camera uasc-far-range -o orion.png", "a picture of Orion"),
     ("boresight reproduce argon", "the table of the 2012 paper, in a minute"),
     ("boresight scenario new my.toml", "your own; then boresight run my.toml"),
 ];

@@ -2,16 +2,13 @@
 use std::path::{Path, PathBuf};
 
 use config::toml_file;
-use contract::Camera;
-use far_range::FarRangeScenario;
+use far_range::{CameraPreset, CameraSource, FarRangeScenario};
 use files::Failure;
 use run::ScenarioSource;
 use scenario::{BUILT_IN, BuiltIn, CAMERAS};
-use serde::{Deserialize, Serialize};
 use sim::SimError;
 use sim::optics::{PsfConfig, RadiometryConfig};
 use sim::scene::TargetConfig;
-use sim::sensor::SensorConfig;
 
 use crate::camera::{CameraConfig, CameraModel};
 use crate::requirement::{CameraTable, DetectionRule, RequirementFile, SkyTime, TargetLight};
@@ -35,14 +32,6 @@ pub struct Requirements {
     pub scenario: Option<FarRangeScenario>,
     /// Target body.
     pub target: Option<TargetConfig>,
-}
-
-/// Tables of a built-in camera.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Preset {
-    camera: Camera,
-    sensor: SensorConfig,
 }
 
 /// Text of the requirements, used to locate mistakes.
@@ -170,15 +159,18 @@ impl Source<'_> {
         let needed = |what: &str| {
             self.refuse("camera", format!("has no `{what}`: set it, or set a `scenario` that defines it"))
         };
-        let (camera, sensor) = match (preset, scenario) {
-            (Some(Preset { camera, sensor }), _) => (camera, sensor),
+        let (camera, sensor) = match (&preset, scenario) {
+            (Some(preset), _) => (preset.camera.clone(), preset.sensor.clone()),
             (None, Some(scenario)) => (scenario.camera.clone(), scenario.sensor.clone()),
             (None, None) => {
                 return Err(self.refuse("camera", "is empty, expected a `scenario` or a `preset`".to_owned()));
             }
         };
-        let psf = table.psf.clone().or(scenario.map(|s| s.psf.clone())).ok_or_else(|| needed("psf"))?;
-        let radiometry = table.radiometry.clone().or(scenario.map(|s| s.radiometry.clone()));
+        let optics_of = |preset: CameraPreset| (preset.psf, preset.radiometry);
+        let of_scenario = scenario.map(|scenario| (scenario.psf.clone(), scenario.radiometry.clone()));
+        let (psf, radiometry) = of_scenario.or(preset.map(optics_of)).unzip();
+        let psf = table.psf.clone().or(psf).ok_or_else(|| needed("psf"))?;
+        let radiometry = table.radiometry.clone().or(radiometry);
         let mut config = CameraConfig {
             camera,
             sensor: table.sensor.clone().unwrap_or(sensor),
@@ -212,13 +204,13 @@ impl Source<'_> {
         Ok(config)
     }
 
-    fn preset(&self, name: &str) -> Result<Preset, Failure> {
-        let Some(built_in) = CAMERAS.iter().find(|camera| camera.name == name) else {
+    fn preset(&self, name: &str) -> Result<CameraPreset, Failure> {
+        let Some(built_in) = CameraSource::built_in(name)? else {
             let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
             let message =
                 format!("`{name}` is not a built-in camera; built-in cameras: {}", names.join(", "));
             return Err(self.refuse("camera.preset", message));
         };
-        Ok(toml_file::parse(Path::new(name), built_in.text)?)
+        Ok(built_in.preset)
     }
 }
