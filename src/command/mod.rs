@@ -51,7 +51,7 @@ const VERSION: &str = concat!(
     version = VERSION,
     max_term_width = 110,
     after_help = "First steps:\n  \
-        boresight demo                       two rendezvous, measured and scored, in half a minute\n  \
+        boresight demo                       two rendezvous, measured and scored, in ten seconds\n  \
         boresight reproduce argon            Table 2 of the far-range paper, in a minute\n  \
         boresight scenario new my.toml       a commented scenario to change\n\n\
         Exit status: 0 success, 1 negative result, 2 usage error or invalid input."
@@ -66,7 +66,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Simulate, process and score two small rendezvous in half a minute, and show the results on one page
+    /// Simulate, process and score two small rendezvous in ten seconds, and show the results on one page
     Demo(demo::DemoArguments),
     /// Simulate, process and score a scenario; write a run directory
     Run(run::RunArguments),

@@ -24,8 +24,8 @@ const STARS: [Star; 5] = [
 ];
 
 impl Star {
-    /// Returns the pixel by the gnomonic projection about the boresight (83.6°, −5.4°), north up and east left,
-    /// and the radial distortion of the camera, without aberration.
+    /// Returns the pixel by the gnomonic projection about the boresight (83.6°, −5.4°), north up and east
+    /// left, and the radial distortion of the camera, without aberration.
     fn pixel(&self) -> [f64; 2] {
         let sexagesimal = |[whole, minutes, seconds]: [f64; 3]| whole + minutes / 60.0 + seconds / 3600.0;
         let ra = (15.0 * sexagesimal(self.ra_h_min_s) - 83.6).to_radians();

@@ -5,9 +5,39 @@ use super::BuiltIn;
 /// Built-in cameras, by name: text to be pasted into a scenario, each value with its source.
 pub const CAMERAS: &[BuiltIn] = &[
     BuiltIn {
+        name: "balluff-ca-gt1-0124",
+        text: include_str!("../../../scenarios/cameras/balluff-ca-gt1-0124.toml"),
+    },
+    BuiltIn { name: "cassini-nac", text: include_str!("../../../scenarios/cameras/cassini-nac.toml") },
+    BuiltIn {
+        name: "clementine-star-tracker",
+        text: include_str!("../../../scenarios/cameras/clementine-star-tracker.toml"),
+    },
+    BuiltIn {
         name: "cmos-star-tracker",
         text: include_str!("../../../scenarios/cameras/cmos-star-tracker.toml"),
     },
+    BuiltIn { name: "dawn-fc", text: include_str!("../../../scenarios/cameras/dawn-fc.toml") },
+    BuiltIn {
+        name: "genie-nano-m2450",
+        text: include_str!("../../../scenarios/cameras/genie-nano-m2450.toml"),
+    },
+    BuiltIn {
+        name: "hayabusa2-onc-t",
+        text: include_str!("../../../scenarios/cameras/hayabusa2-onc-t.toml"),
+    },
+    BuiltIn {
+        name: "mvbluefox3-2024a",
+        text: include_str!("../../../scenarios/cameras/mvbluefox3-2024a.toml"),
+    },
+    BuiltIn {
+        name: "new-horizons-lorri",
+        text: include_str!("../../../scenarios/cameras/new-horizons-lorri.toml"),
+    },
+    BuiltIn { name: "rosetta-navcam", text: include_str!("../../../scenarios/cameras/rosetta-navcam.toml") },
+    BuiltIn { name: "sstl-altair-hb", text: include_str!("../../../scenarios/cameras/sstl-altair-hb.toml") },
+    BuiltIn { name: "sstl-rigel-l", text: include_str!("../../../scenarios/cameras/sstl-rigel-l.toml") },
+    BuiltIn { name: "tess-ccd", text: include_str!("../../../scenarios/cameras/tess-ccd.toml") },
     BuiltIn { name: "tv-docking", text: include_str!("../../../scenarios/cameras/tv-docking.toml") },
     BuiltIn { name: "uasc-far-range", text: include_str!("../../../scenarios/cameras/uasc-far-range.toml") },
 ];
@@ -36,7 +66,7 @@ mod tests {
 
     #[test]
     fn every_camera_is_valid_in_a_scenario() {
-        assert!(fragments().count() >= 3);
+        assert!(fragments().count() >= 15);
         for (name, fragment) in fragments() {
             fragment.camera.check().unwrap();
             fragment.sensor.check().unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -51,8 +51,8 @@ pub(in crate::command) struct SkyArguments {
     #[arg(long, value_name = "NAME|FILE")]
     camera: String,
     /// File to write. FILE.png: an 8-bit picture, which replaces an earlier picture of Boresight, but no
-    /// other file; with --raw the digital numbers, 16 bits, in a new file. FILE.fits: the digital numbers with
-    /// world coordinates, in a new file
+    /// other file; with --raw the digital numbers, 16 bits, in a new file. FILE.fits: the digital numbers
+    /// with world coordinates, in a new file
     #[arg(short, long, value_name = "FILE", value_parser = output_path())]
     out: PathBuf,
     /// Exposure time, s, 1e-6 to 1000
@@ -233,7 +233,8 @@ fn panel(picture: &SkyPicture, stretch: Stretch, labelled: &[&ObjectTruth]) -> P
     }
 }
 
-/// Describes the direction of north in the picture: the camera turns clockwise, so the sky turns the other way.
+/// Describes the direction of north in the picture: the camera turns clockwise, so the sky turns the other
+/// way.
 fn north(roll_deg: f64) -> String {
     // An angle from −180 to 180 degrees.
     let turn_deg = (roll_deg + 180.0).rem_euclid(360.0) - 180.0;

@@ -52,8 +52,8 @@ impl CameraSource {
     /// Reads a camera: the name of a built-in one, or the path of a TOML file.
     ///
     /// # Errors
-    /// [`Failure::Usage`] when there is no such camera, with the nearest name or all names; a [`Failure`] with
-    /// the location of the first mistake in the file.
+    /// [`Failure::Usage`] when there is no such camera, with the nearest name or all names; a [`Failure`]
+    /// with the location of the first mistake in the file.
     pub fn read(word: &str) -> Result<Self, Failure> {
         if let Some(built_in) = Self::built_in(word)? {
             return Ok(built_in);

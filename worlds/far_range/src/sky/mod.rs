@@ -37,8 +37,8 @@ pub struct SkyView {
     pub ra_deg: f64,
     /// Declination of the boresight, degrees, −90 to 90.
     pub dec_deg: f64,
-    /// Rotation of the camera about its boresight from x towards y, degrees, −360 to 360; at 0 north is up and
-    /// east to the left.
+    /// Rotation of the camera about its boresight from x towards y, degrees, −360 to 360; at 0 north is up
+    /// and east to the left.
     pub roll_deg: f64,
     /// Exposure time, s, 1e-6 to 1000.
     pub exposure_s: f64,
@@ -61,8 +61,8 @@ impl SkyView {
     /// camera is at rest.
     ///
     /// # Errors
-    /// A [`Failure`] with the location of an invalid value in the file of the camera, or for a time outside of
-    /// the ephemerides.
+    /// A [`Failure`] with the location of an invalid value in the file of the camera, or for a time outside
+    /// of the ephemerides.
     pub fn expose(&self) -> Result<SkyPicture, Failure> {
         let scenario = self.scenario()?;
         let simulation = scenario.simulation()?;
