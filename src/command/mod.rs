@@ -73,6 +73,10 @@ enum Command {
     /// Render a dataset for an external pipeline, with the truth apart from the frames
     Render(dataset::RenderArguments),
     /// Write one picture of the sky, as a camera sees it: PNG, or FITS with world coordinates
+    ///
+    /// Stars of the Hipparcos catalogue, Moon, planets and zodiacal light. The camera is at rest, on the
+    /// orbit of the built-in scenario `starting-point`; neither Sun nor Earth is drawn, and the Earth covers
+    /// no star.
     Sky(far_range::SkyArguments),
     /// Reproduce the tables and figures of a paper whose method is built in
     Reproduce(reproduce::ReproduceArguments),

@@ -54,15 +54,15 @@ impl Paper {
     fn remark(self) -> &'static str {
         match self {
             Self::Argon => {
-                "The table is Table 2 of the far-range paper. `published`: the paper's values; the values above \
-                 them: the paper's method of 2012 on simulated images, with twelve parameters of the scene \
-                 fitted to this table (docs/argon.md); `best mode`: the built-in method of today on the same \
-                 images.\nThe report has the paper's Figs. 2 to 9."
+                "The table is Table 2 of the far-range paper. `published`: values of the paper. Above them: the \
+                 method of 2012 on simulated\nimages; twelve parameters of the scene are fitted to this table \
+                 (docs/argon.md). `best mode`: today's built-in method on the\nsame images. The report has the \
+                 paper's Figs. 2 to 9."
             }
             Self::Docking => {
-                "The docking paper prints no table of accuracy, so there are no published rows: each error \
-                 stands as best estimator / paper's formulas, on the same fields.\nThe report has the paper's \
-                 Figs. 5 and 6 (parameters of the motion and their accuracy)."
+                "The docking paper prints no table of accuracy, so there are no published rows. Each error: best \
+                 estimator / paper's formulas,\non the same fields. The report has the paper's Figs. 5 and 6: \
+                 parameters of the motion, and their accuracy."
             }
         }
     }
