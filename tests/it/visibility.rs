@@ -12,7 +12,7 @@ use boresight::visibility::{
     MotionTable, Pointing, Requirements, Sky, SkyStatistic, SkyTable, StarTrial,
 };
 use serde_json::Value;
-use sim::optics::{OpticsConfig, RadiometryConfig};
+use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use sim::{SimError, Simulator};
 
 use crate::support::{Bench, check_same_files};
@@ -440,6 +440,26 @@ fn all_met_is_exit_status_0() {
     let bench = Bench::new();
     assert!(bench.boresight("visibility --schema").done().json()["properties"]["requirements"].is_object());
     assert!(bench.boresight("visibility --list").done().stdout.contains("uasc-far-range"));
+}
+
+/// A built-in camera alone has all that the model needs; beside a scenario it replaces geometry and detector
+/// only.
+#[test]
+fn a_preset_is_a_whole_camera() {
+    boresight::register_worlds();
+    let read = |camera: &str| {
+        let text = file("").replace("camera.scenario = \"argon\"", camera);
+        Requirements::parse("test".to_owned(), Path::new(""), Path::new("test.toml"), &text).unwrap().camera
+    };
+    let alone = read("camera.preset = \"rosetta-navcam\"");
+    assert_eq!((alone.camera.focal_length_mm, alone.sensor.read_noise_e), (152.5, 25.0));
+    assert_eq!(alone.psf, PsfConfig::Gaussian { sigma_px: 0.45 });
+    let both = read("camera.preset = \"rosetta-navcam\"\ncamera.scenario = \"argon\"");
+    assert_eq!((&both.camera, &both.sensor), (&alone.camera, &alone.sensor));
+    assert_eq!((&both.psf, &both.radiometry), (&camera().psf, &camera().radiometry));
+    let own =
+        read("camera.preset = \"rosetta-navcam\"\ncamera.psf = { kind = \"gaussian\", sigma_px = 1.5 }");
+    assert_eq!(own.psf, PsfConfig::Gaussian { sigma_px: 1.5 });
 }
 
 #[test]

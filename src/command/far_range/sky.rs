@@ -37,14 +37,14 @@ const STAR: Class =
 #[derive(Debug, Args)]
 pub(in crate::command) struct SkyArguments {
     /// Right ascension of the centre of the image, ICRS, degrees, 0 to 360
-    #[arg(long, value_name = "DEG", value_parser = |text: &str| number(text, 0.0, 360.0))]
+    #[arg(long, value_name = "DEG", value_parser = right_ascension)]
     ra: f64,
     /// Declination, degrees, -90 to 90
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = |text: &str| number(text, -90.0, 90.0))]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = declination)]
     dec: f64,
     /// Clockwise rotation of the camera about its boresight, degrees, -360 to 360. At 0 north is up and east
     /// to the left
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = |text: &str| number(text, -360.0, 360.0))]
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true, value_parser = roll)]
     roll: f64,
     /// A built-in camera (`boresight scenario camera` lists them), or a TOML file with the tables [camera],
     /// [sensor], [psf] and [radiometry]
@@ -56,7 +56,7 @@ pub(in crate::command) struct SkyArguments {
     #[arg(short, long, value_name = "FILE", value_parser = output_path())]
     out: PathBuf,
     /// Exposure time, s, 1e-6 to 1000
-    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = |text: &str| number(text, 1e-6, 1000.0))]
+    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = exposure)]
     exposure: f64,
     /// Middle of the exposure, UTC, 1990 to 2050: sets proper motion, aberration, planets, Moon and zodiacal
     /// light
@@ -75,6 +75,26 @@ pub(in crate::command) struct SkyArguments {
     /// Mark the brightest stars with their names, or their numbers in the Hipparcos catalogue
     #[arg(long, conflicts_with = "raw")]
     label: bool,
+}
+
+/// Parses a right ascension, degrees.
+fn right_ascension(text: &str) -> Result<f64, String> {
+    number(text, 0.0, 360.0)
+}
+
+/// Parses a declination, degrees.
+fn declination(text: &str) -> Result<f64, String> {
+    number(text, -90.0, 90.0)
+}
+
+/// Parses a rotation about the boresight, degrees.
+fn roll(text: &str) -> Result<f64, String> {
+    number(text, -360.0, 360.0)
+}
+
+/// Parses an exposure time, s.
+fn exposure(text: &str) -> Result<f64, String> {
+    number(text, 1e-6, 1000.0)
 }
 
 /// Parses a number within limits.

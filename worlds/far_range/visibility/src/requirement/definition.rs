@@ -156,34 +156,22 @@ impl Source<'_> {
         folder: &Path,
     ) -> Result<CameraConfig, Failure> {
         let preset = table.preset.as_ref().map(|name| self.preset(name)).transpose()?;
-        let needed = |what: &str| {
-            self.refuse("camera", format!("has no `{what}`: set it, or set a `scenario` that defines it"))
-        };
-        let (camera, sensor) = match (&preset, scenario) {
-            (Some(preset), _) => (preset.camera.clone(), preset.sensor.clone()),
-            (None, Some(scenario)) => (scenario.camera.clone(), scenario.sensor.clone()),
+        let mut config = match (scenario, &preset) {
+            (Some(scenario), _) => CameraConfig::from_scenario(scenario),
+            (None, Some(preset)) => CameraConfig::from_preset(preset),
             (None, None) => {
                 return Err(self.refuse("camera", "is empty, expected a `scenario` or a `preset`".to_owned()));
             }
         };
-        let optics_of = |preset: CameraPreset| (preset.psf, preset.radiometry);
-        let of_scenario = scenario.map(|scenario| (scenario.psf.clone(), scenario.radiometry.clone()));
-        let (psf, radiometry) = of_scenario.or(preset.map(optics_of)).unzip();
-        let psf = table.psf.clone().or(psf).ok_or_else(|| needed("psf"))?;
-        let radiometry = table.radiometry.clone().or(radiometry);
-        let mut config = CameraConfig {
-            camera,
-            sensor: table.sensor.clone().unwrap_or(sensor),
-            psf,
-            optics: table.optics.clone().or(scenario.map(|s| s.optics.clone())).unwrap_or_default(),
-            radiometry: radiometry.ok_or_else(|| needed("radiometry"))?,
-            background: table
-                .background
-                .clone()
-                .or(scenario.map(|s| s.background.clone()))
-                .unwrap_or_default(),
-            catalog: scenario.map(|s| s.catalog.clone()).unwrap_or_default(),
-        };
+        // A preset beside a scenario replaces geometry and detector only.
+        if let Some(preset) = preset {
+            (config.camera, config.sensor) = (preset.camera, preset.sensor);
+        }
+        replace(&mut config.sensor, &table.sensor);
+        replace(&mut config.psf, &table.psf);
+        replace(&mut config.optics, &table.optics);
+        replace(&mut config.radiometry, &table.radiometry);
+        replace(&mut config.background, &table.background);
         if let (PsfConfig::Sampled { path, .. }, true) = (&mut config.psf, table.psf.is_some()) {
             *path = folder.join(&*path).to_string_lossy().into_owned();
         }
@@ -212,5 +200,12 @@ impl Source<'_> {
             return Err(self.refuse("camera.preset", message));
         };
         Ok(built_in.preset)
+    }
+}
+
+/// Replaces a value by that of the requirement file, if the file has one.
+fn replace<T: Clone>(value: &mut T, given: &Option<T>) {
+    if let Some(given) = given {
+        value.clone_from(given);
     }
 }
