@@ -144,6 +144,7 @@ def make(program, folder):
     keep("json", "small-study.json", portable((folder / "study/study.json").read_text()))
     keep("parquet", "small-cases.parquet", folder / "study/cases.parquet")
     keep("requirements", "small.toml", bare(ROOT / "scenarios/requirements/uasc-far-range.toml"))
+    keep("preset", "small.toml", small(bare(ROOT / "scenarios/cameras/uasc-far-range.toml")))
     for name in ["progress", "apollo", "idss"]:
         keep("target", f"small-{name}.toml", bare(ROOT / f"scenarios/targets/{name}.toml"))
     keep("baseline", "argon.toml", ROOT / "golden/baselines/argon/baseline.toml")

@@ -72,6 +72,7 @@ pub const TARGETS: &[Target] = &[
     Target::new("opm", "orbit parameter messages of CCSDS", flight_dynamics::opm),
     Target::new("parquet", "truth, features, clusters and cases, Parquet", tables::parquet),
     Target::new("png", "PNG with corrected checksums", images::png),
+    Target::new("preset", "cameras of `boresight sky`, TOML", texts::preset),
     Target::new("psf", "a sampled point-spread function", texts::psf),
     Target::new("raw", "raw video", videos::raw),
     Target::new("requirements", "requirements on visibility, TOML", texts::requirements),

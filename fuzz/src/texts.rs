@@ -6,9 +6,9 @@ use std::path::Path;
 use boresight::docking::DockingScenario;
 use boresight::docking::rows::SetupFile;
 use boresight::docking::scoring::DockingScore;
-use boresight::far_range::FarRangeScenario;
 use boresight::far_range::rows::CameraFile;
 use boresight::far_range::scoring::Score;
+use boresight::far_range::{CameraSource, FarRangeScenario};
 use boresight::far_range_views::report::read_visibility;
 use boresight::files::{AtomicFile, Failure};
 use boresight::report::StudyResult;
@@ -88,6 +88,10 @@ pub(crate) fn study(sandbox: &Sandbox, bytes: &[u8]) {
 
 pub(crate) fn requirements(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = Requirements::read(&word(&sandbox.file("requirements.toml", bytes)));
+}
+
+pub(crate) fn preset(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = CameraSource::read(&word(&sandbox.file("preset.toml", bytes)));
 }
 
 pub(crate) fn camera(sandbox: &Sandbox, bytes: &[u8]) {

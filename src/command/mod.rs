@@ -4,6 +4,7 @@
 mod answer;
 mod cluster;
 mod dataset;
+mod demo;
 mod docking;
 mod execute;
 mod far_range;
@@ -15,6 +16,7 @@ mod monitor;
 mod options;
 mod output;
 mod report;
+mod reproduce;
 mod run;
 mod scenario;
 mod score;
@@ -32,11 +34,28 @@ use interrupt::{clean_up_when_interrupted, scratch_directory};
 #[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 use missing_feature::missing_feature;
 
+/// Version, commit of the source and enabled features.
+const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (commit ",
+    env!("BORESIGHT_COMMIT"),
+    "; features: ",
+    env!("BORESIGHT_FEATURES"),
+    ")"
+);
+
 /// Synthetic scene simulator and test oracle for optical navigation.
-///
-/// Without a command: `run argon`.
 #[derive(Debug, Parser)]
-#[command(name = "boresight", version, max_term_width = 110)]
+#[command(
+    name = "boresight",
+    version = VERSION,
+    max_term_width = 110,
+    after_help = "First steps:\n  \
+        boresight demo                       two rendezvous, measured and scored, in ten seconds\n  \
+        boresight reproduce argon            Table 2 of the far-range paper, in a minute\n  \
+        boresight scenario new my.toml       a commented scenario to change\n\n\
+        Exit status: 0 success, 1 negative result, 2 usage error or invalid input."
+)]
 struct Arguments {
     /// Print one JSON document, and nothing else, on stdout
     #[arg(long, global = true)]
@@ -47,10 +66,20 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Simulate, process and score two small rendezvous in ten seconds, and show the results on one page
+    Demo(demo::DemoArguments),
     /// Simulate, process and score a scenario; write a run directory
     Run(run::RunArguments),
     /// Render a dataset for an external pipeline, with the truth apart from the frames
     Render(dataset::RenderArguments),
+    /// Write one picture of the sky, as a camera sees it: PNG, or FITS with world coordinates
+    ///
+    /// Stars of the Hipparcos catalogue, Moon, planets and zodiacal light. The camera is at rest, on the
+    /// orbit of the built-in scenario `starting-point`; neither Sun nor Earth is drawn, and the Earth covers
+    /// no star.
+    Sky(far_range::SkyArguments),
+    /// Reproduce the tables and figures of a paper whose method is built in
+    Reproduce(reproduce::ReproduceArguments),
     /// Run a pipeline on a dataset, which may contain real images
     Process(dataset::ProcessArguments),
     /// Score measurements of any pipeline against the truth of a dataset or run directory
@@ -107,13 +136,19 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         }
     };
     let output = output::Output::new(arguments.json);
-    if !matches!(arguments.command, Some(Command::Monitor(_))) {
+    let Some(command) = arguments.command else {
+        return without_command(&output);
+    };
+    if !matches!(command, Command::Monitor(_)) {
         // The monitor's server handles signals itself.
         clean_up_when_interrupted();
     }
-    let answer = match arguments.command.unwrap_or_else(|| Command::Run(run::RunArguments::argon())) {
+    let answer = match command {
+        Command::Demo(arguments) => demo::demo(&arguments, &output),
         Command::Run(arguments) => run::run(&arguments, &output),
         Command::Render(arguments) => dataset::render(&arguments, &output),
+        Command::Sky(arguments) => far_range::sky(&arguments, &output),
+        Command::Reproduce(arguments) => reproduce::reproduce(&arguments, &output),
         Command::Process(arguments) => dataset::process(&arguments, &output),
         Command::Score(arguments) => score::score(&arguments, &output),
         Command::Study(command) => study::study(&command, &output),
@@ -132,6 +167,19 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(Answer::Yes) => 0,
         Ok(Answer::No) => 1,
         Ok(Answer::Part) => Failure::EXIT_STATUS,
+        Err(failure) => {
+            output.failure(failure);
+            Failure::EXIT_STATUS
+        }
+    }
+}
+
+/// Prints the help of the command; `--json` alone requests no document and is a usage error.
+fn without_command(output: &output::Output) -> u8 {
+    let free = output.check_free("the help without a command");
+    let printed = free.and_then(|()| output.answer(&(), Arguments::command().render_help()));
+    match printed {
+        Ok(()) => 0,
         Err(failure) => {
             output.failure(failure);
             Failure::EXIT_STATUS

@@ -120,9 +120,9 @@ pub(super) fn output_path() -> impl TypedValueParser<Value = PathBuf> {
 }
 
 impl Selection {
-    /// Selects a whole scenario with its default seed.
-    pub(super) fn for_scenario(scenario: &str) -> Self {
-        Self { scenario: scenario.to_owned(), frames: None, seed: None, jobs: None }
+    /// Selects frames of a scenario with its own seed.
+    pub(super) fn for_scenario(scenario: &str, frames: Option<FrameRange>, jobs: Option<u16>) -> Self {
+        Self { scenario: scenario.to_owned(), frames, seed: None, jobs }
     }
 
     /// Returns the scenario, with the requested seed.

@@ -55,22 +55,32 @@ pub(super) struct RunArguments {
     no_report: bool,
     #[command(flatten)]
     renderer: RendererOptions,
+    /// Remark below the score.
+    #[arg(skip)]
+    note: Option<String>,
 }
 
 impl RunArguments {
-    /// Returns the arguments of the command without a subcommand: `run argon`.
-    pub(super) fn argon() -> Self {
+    /// Returns the arguments of a run of the built-in pipeline with the scenario's own seed. `note` is
+    /// printed below the score.
+    pub(super) fn for_built_in(
+        selection: Selection,
+        out: Option<PathBuf>,
+        no_report: bool,
+        note: Option<&str>,
+    ) -> Self {
         Self {
-            selection: Selection::for_scenario("argon"),
-            out: None,
+            selection,
+            out,
             pipeline: PipelineOptions::default(),
             blind: false,
             attitude: AttitudeOption::default(),
             inject: None,
             save_frames: None,
             navigate: None,
-            no_report: false,
+            no_report,
             renderer: RendererOptions::default(),
+            note: note.map(str::to_owned),
         }
     }
 }
@@ -120,7 +130,8 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
     };
     let note = arguments
         .inject
-        .map(|stage| format!("the truth replaced {stage}: this is not a result of the whole pipeline"));
+        .map(|stage| format!("the truth replaced {stage}: this is not a result of the whole pipeline"))
+        .or_else(|| arguments.note.clone());
     let shown = Presentation {
         name: &source.name,
         has_report: !arguments.no_report,

@@ -10,7 +10,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use files::Failure;
 use run::pipeline_choice::PipelineChoice;
 use run::{AnyWorld, Options, ScenarioSource, first_world, json_schema, world_by_name, worlds};
-use scenario::{BUILT_IN, CAMERAS};
+use scenario::{BUILT_IN, BuiltIn, CAMERAS};
 use serde_json::json;
 
 use super::Answer;
@@ -28,7 +28,8 @@ pub(super) enum ScenarioCommand {
         #[command(flatten)]
         pipeline: PipelineOptions,
     },
-    /// List the built-in cameras, or print one: the tables [camera] and [sensor], each value with its source
+    /// List the built-in cameras, or print one: the tables [camera], [sensor], [psf] and [radiometry], each
+    /// value with its source
     Camera {
         /// A built-in camera
         name: Option<String>,
@@ -63,7 +64,8 @@ pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Ans
         }
         ScenarioCommand::Camera { name: None } => {
             let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
-            output.answer(&names, names.join("\n"))
+            let lines: Vec<_> = CAMERAS.iter().map(described).collect();
+            output.answer(&names, lines.join("\n"))
         }
         ScenarioCommand::Camera { name: Some(name) } => camera(name, output),
         ScenarioCommand::Schema { world } => {
@@ -94,6 +96,14 @@ fn list(output: &Output) -> Result<(), Failure> {
         .map(|(name, frames, unit, title)| format!("{name:<16}{frames:>7} {unit}  {title}"))
         .collect();
     output.answer(&document, text.join("\n"))
+}
+
+/// Returns the name of a camera with the first sentence of the comment at the top of its file.
+fn described(camera: &BuiltIn) -> String {
+    let comment = camera.text.lines().map_while(|line| line.strip_prefix("# "));
+    let words = comment.collect::<Vec<_>>().join(" ");
+    let sentence = words.split_once(". ").map_or(words.as_str(), |(first, _)| first);
+    format!("{:<24}{}", camera.name, sentence.trim_end_matches('.'))
 }
 
 fn camera(name: &str, output: &Output) -> Result<(), Failure> {

@@ -266,14 +266,17 @@ const KNOW_NO_WORLD: [&str; 5] = ["config", "contract", "navigation", "oracle", 
 
 /// Files of these folders that may name a world, each with the reason. A file or folder that is named for a
 /// world may, too: it holds the world's part of an interface or of the command.
-const LISTS_OF_WORLDS: [(&str, &str); 11] = [
+const LISTS_OF_WORLDS: [(&str, &str); 14] = [
     ("contract/src/conformance/mod.rs", "modules of the interfaces of pipelines"),
     ("contract/src/lib.rs", "modules of the interfaces of pipelines"),
     ("oracle/scenario/src/builtin.rs", "names of files in scenarios/"),
     ("oracle/scenario/src/cameras.rs", "names of files in scenarios/cameras/"),
     ("src/command/dataset.rs", "options of sequences and renderers"),
+    ("src/command/demo/mod.rs", "parts of the demo"),
+    ("src/command/demo/page.rs", "parts of the demo"),
     ("src/command/execute.rs", "navigation after a run"),
     ("src/command/mod.rs", "commands that only one world has"),
+    ("src/command/reproduce.rs", "names of papers"),
     ("src/command/run.rs", "option --renderer, navigation after a run"),
     ("src/lib.rs", "crates under one name"),
     ("src/tables.rs", "list of the tables"),

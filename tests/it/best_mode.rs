@@ -12,7 +12,7 @@ use nalgebra::{Matrix2x3, Matrix3, Matrix4, Vector3, Vector4};
 use pipeline::far_range::{AberrationConfig, BestConfig, FarRangeConfig, FarRangePipeline};
 use sim::onboard::{RoiConfig, RoiExtractor, ScanOrder, downlink};
 use sim::optics::{Psf, PsfConfig, Stamp};
-use sim::sensor::{BloomingConfig, ExposureInterval, FlatSamplers, RawImage, Sensor, SensorConfig};
+use sim::sensor::{BloomingConfig, ExposureInterval, FrameCharge, RawImage, Sensor, SensorConfig};
 
 const SIGMA_PX: f64 = 0.8;
 const BACKGROUND_E: f64 = 20.0;
@@ -55,7 +55,8 @@ fn draw(sensor: &Sensor, psf: &PsfConfig, points: &[(PixelPoint, f64)], number: 
     let mut raw = sensor.new_raw();
     let seed = Seed { seed: 20_120_423, case: 0 };
     let charge = sensor.collect(&mut image, &ExposureInterval { seed, middle_s: 0.0, exposure_s: 0.25 });
-    sensor.read_out(&charge, &seed, number, &mut FlatSamplers::new(), &mut raw).unwrap();
+    let collected = FrameCharge { charge: &charge, seed, frame: number };
+    sensor.read_out(&collected, &mut sensor.new_sampler(), &mut raw).unwrap();
     raw
 }
 

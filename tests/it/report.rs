@@ -488,6 +488,25 @@ fn directories_that_are_no_results_are_refused_by_name() {
     bench.boresight("report run").done();
 }
 
+/// The frames of the warm-up are in no figure over all frames; the report covers the whole run, even if all
+/// of it is warm-up.
+#[test]
+fn a_run_with_a_warm_up_has_a_report() {
+    let bench = Bench::new();
+    for (built_in, frames, warm_up) in [("starting-point", 6, 4), ("starting-point", 2, 4), ("docking", 6, 4)]
+    {
+        let name = format!("{built_in}-{frames}");
+        bench.scenario("mine.toml", built_in, |table| {
+            table.insert("score".to_owned(), toml::toml! { warm_up_frames = 4 }.into());
+        });
+        bench.boresight(&format!("run mine.toml --frames 0..{frames} --out {name}")).done();
+        let score = bench.json(&format!("{name}/score.json"));
+        assert_eq!(score["frames"].as_u64(), Some(frames.max(warm_up) - warm_up));
+        assert!(bench.read(&format!("{name}/report.html")).contains("warm-up"), "{name}");
+        bench.boresight(&format!("report {name}")).done();
+    }
+}
+
 #[test]
 fn hostile_text_is_shown_and_not_run() {
     let hostile = "</script><script>alert(1)</script><img src=\"http://a.invalid/x\">";

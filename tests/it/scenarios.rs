@@ -124,6 +124,12 @@ fn a_camera_can_be_pasted_into_a_scenario() {
         bench.write(&format!("{name}.toml"), scenario.to_string());
         bench.boresight(&format!("scenario check {name}.toml")).done();
     }
+    let list = bench.boresight("scenario camera").done().stdout;
+    assert_eq!(list.lines().count(), names.as_array().unwrap().len());
+    assert!(
+        list.contains("rosetta-navcam          The navigation camera of Rosetta (Galileo Avionica)"),
+        "{list}"
+    );
     bench.boresight("scenario camera kodak").refused(&["kodak", "uasc-far-range"]);
 }
 

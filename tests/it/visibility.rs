@@ -12,7 +12,7 @@ use boresight::visibility::{
     MotionTable, Pointing, Requirements, Sky, SkyStatistic, SkyTable, StarTrial,
 };
 use serde_json::Value;
-use sim::optics::{OpticsConfig, RadiometryConfig};
+use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use sim::{SimError, Simulator};
 
 use crate::support::{Bench, check_same_files};
@@ -442,6 +442,26 @@ fn all_met_is_exit_status_0() {
     assert!(bench.boresight("visibility --list").done().stdout.contains("uasc-far-range"));
 }
 
+/// A built-in camera alone has all that the model needs; beside a scenario it replaces geometry and detector
+/// only.
+#[test]
+fn a_preset_is_a_whole_camera() {
+    boresight::register_worlds();
+    let read = |camera: &str| {
+        let text = file("").replace("camera.scenario = \"argon\"", camera);
+        Requirements::parse("test".to_owned(), Path::new(""), Path::new("test.toml"), &text).unwrap().camera
+    };
+    let alone = read("camera.preset = \"rosetta-navcam\"");
+    assert_eq!((alone.camera.focal_length_mm, alone.sensor.read_noise_e), (152.5, 25.0));
+    assert_eq!(alone.psf, PsfConfig::Gaussian { sigma_px: 0.45 });
+    let both = read("camera.preset = \"rosetta-navcam\"\ncamera.scenario = \"argon\"");
+    assert_eq!((&both.camera, &both.sensor), (&alone.camera, &alone.sensor));
+    assert_eq!((&both.psf, &both.radiometry), (&camera().psf, &camera().radiometry));
+    let own =
+        read("camera.preset = \"rosetta-navcam\"\ncamera.psf = { kind = \"gaussian\", sigma_px = 1.5 }");
+    assert_eq!(own.psf, PsfConfig::Gaussian { sigma_px: 1.5 });
+}
+
 #[test]
 fn mistakes_are_reported_with_their_position() {
     let bench = Bench::new();
@@ -452,7 +472,6 @@ fn mistakes_are_reported_with_their_position() {
     refused(file("n_stars = 3"), &["r.toml:", "n_stars"]);
     refused(file("").replace("n_min = 10", "n_min = 0"), &["r.toml:3:", "n_min", "1 to 1000"]);
     refused(file("").replace("\"argon\"", "\"argo\""), &["camera.scenario", "argon"]);
-    refused(file("").replace("camera.scenario = \"argon\"", "camera.preset = \"uasc-far-range\""), &["psf"]);
     refused(file("camera.preset = \"hubble\""), &["camera.preset", "uasc-far-range"]);
     refused(file("camera.focal_length_mm = -3.0"), &["camera.focal_length_mm", "0.01 to 1e6"]);
     refused(file("").replace("high_dn = 67", "high_dn = 5000"), &["detection.high_dn", "4095"]);

@@ -34,8 +34,8 @@ pub use self::parquet::{
     ParquetFile, ParquetWriter, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
 };
 pub use complete::{
-    AtomicFile, Checksums, PartialFiles, ReplaceableFile, RunDirectory, file_sha256, refuse_unfinished,
-    sha256,
+    AtomicFile, Checksums, PartialFiles, ReplaceableFile, RunDirectory, create_empty_directory,
+    create_numbered_directory, file_sha256, refuse_unfinished, sha256,
 };
 pub use error::{Failure, FileError, FileLocation, create_new, failure, open_regular};
 pub use frame::{

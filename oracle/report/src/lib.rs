@@ -35,7 +35,7 @@ pub use charts::chart::Chart;
 pub use gate::{FlippedFrames, gate_page};
 pub use page::data_table::DataTable;
 pub use page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
-pub use page::{Block, Page, Section};
+pub use page::{Block, Link, Page, Section};
 pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
 
@@ -111,6 +111,18 @@ pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, 
 /// Those of [`read_report`].
 pub fn read_run_report(directory: &Path, scored: &mut dyn AnyJudgement) -> Result<Page, Failure> {
     page_of_run(directory, Some(scored))
+}
+
+/// Renders frames of a run anew, each with its marks; no pictures for a run of a world without a report of
+/// its own, or for a run whose frames cannot be rendered again.
+///
+/// # Errors
+/// A [`Failure`] that names the file which is missing or cannot be read.
+pub fn pictures_of_run(directory: &Path, frames: &[u64]) -> Result<Vec<Picture>, Failure> {
+    let world = world_of_run(&directory.join("run.toml"))?;
+    let Some(of_world) = world_report(world.code()) else { return Ok(Vec::new()) };
+    let (pictures, _) = (of_world.pictures)(directory, frames)?;
+    Ok(pictures)
 }
 
 /// Earlier reports, which a later report replaces.

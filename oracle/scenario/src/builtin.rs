@@ -13,6 +13,8 @@ pub struct BuiltIn {
 pub const BUILT_IN: &[BuiltIn] = &[
     BuiltIn { name: "argon", text: include_str!("../../../scenarios/argon.toml") },
     BuiltIn { name: "argon-numerical", text: include_str!("../../../scenarios/argon-numerical.toml") },
+    BuiltIn { name: "demo-docking", text: include_str!("../../../scenarios/demo-docking.toml") },
+    BuiltIn { name: "demo-far-range", text: include_str!("../../../scenarios/demo-far-range.toml") },
     BuiltIn { name: "docking", text: include_str!("../../../scenarios/docking.toml") },
     BuiltIn { name: "middle-range", text: include_str!("../../../scenarios/middle-range.toml") },
     BuiltIn { name: "starting-point", text: include_str!("../../../scenarios/starting-point.toml") },

@@ -1,13 +1,43 @@
-//! Camera models for new scenarios: the tables `[camera]` and `[sensor]`.
+//! Camera models for new scenarios: the tables `[camera]`, `[sensor]`, `[psf]` and `[radiometry]`.
 
 use super::BuiltIn;
 
 /// Built-in cameras, by name: text to be pasted into a scenario, each value with its source.
 pub const CAMERAS: &[BuiltIn] = &[
     BuiltIn {
+        name: "balluff-ca-gt1-0124",
+        text: include_str!("../../../scenarios/cameras/balluff-ca-gt1-0124.toml"),
+    },
+    BuiltIn { name: "cassini-nac", text: include_str!("../../../scenarios/cameras/cassini-nac.toml") },
+    BuiltIn {
+        name: "clementine-star-tracker",
+        text: include_str!("../../../scenarios/cameras/clementine-star-tracker.toml"),
+    },
+    BuiltIn {
         name: "cmos-star-tracker",
         text: include_str!("../../../scenarios/cameras/cmos-star-tracker.toml"),
     },
+    BuiltIn { name: "dawn-fc", text: include_str!("../../../scenarios/cameras/dawn-fc.toml") },
+    BuiltIn {
+        name: "genie-nano-m2450",
+        text: include_str!("../../../scenarios/cameras/genie-nano-m2450.toml"),
+    },
+    BuiltIn {
+        name: "hayabusa2-onc-t",
+        text: include_str!("../../../scenarios/cameras/hayabusa2-onc-t.toml"),
+    },
+    BuiltIn {
+        name: "mvbluefox3-2024a",
+        text: include_str!("../../../scenarios/cameras/mvbluefox3-2024a.toml"),
+    },
+    BuiltIn {
+        name: "new-horizons-lorri",
+        text: include_str!("../../../scenarios/cameras/new-horizons-lorri.toml"),
+    },
+    BuiltIn { name: "rosetta-navcam", text: include_str!("../../../scenarios/cameras/rosetta-navcam.toml") },
+    BuiltIn { name: "sstl-altair-hb", text: include_str!("../../../scenarios/cameras/sstl-altair-hb.toml") },
+    BuiltIn { name: "sstl-rigel-l", text: include_str!("../../../scenarios/cameras/sstl-rigel-l.toml") },
+    BuiltIn { name: "tess-ccd", text: include_str!("../../../scenarios/cameras/tess-ccd.toml") },
     BuiltIn { name: "tv-docking", text: include_str!("../../../scenarios/cameras/tv-docking.toml") },
     BuiltIn { name: "uasc-far-range", text: include_str!("../../../scenarios/cameras/uasc-far-range.toml") },
 ];
@@ -18,13 +48,16 @@ mod tests {
     use contract::Camera;
     use draws::Seed;
     use serde::Deserialize;
-    use sim::sensor::{ExposureInterval, FlatSamplers, Sensor, SensorConfig};
+    use sim::optics::{PsfConfig, RadiometryConfig};
+    use sim::sensor::{ExposureInterval, FrameCharge, Sensor, SensorConfig};
 
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Fragment {
         camera: Camera,
         sensor: SensorConfig,
+        psf: PsfConfig,
+        radiometry: RadiometryConfig,
     }
 
     fn fragments() -> impl Iterator<Item = (&'static str, Fragment)> {
@@ -33,10 +66,13 @@ mod tests {
 
     #[test]
     fn every_camera_is_valid_in_a_scenario() {
-        assert!(fragments().count() >= 3);
+        assert!(fragments().count() >= 15);
         for (name, fragment) in fragments() {
             fragment.camera.check().unwrap();
             fragment.sensor.check().unwrap_or_else(|error| panic!("{name}: {error}"));
+            fragment.radiometry.check().unwrap_or_else(|error| panic!("{name}: {error}"));
+            let psf = fragment.psf.check();
+            psf.unwrap_or_else(|error| panic!("{name}: {error}"));
         }
     }
 
@@ -51,14 +87,15 @@ mod tests {
             (sensor.bit_depth, sensor.gain_e_per_dn, sensor.bias_dn) = (16, 0.5, 1000.0);
             let (columns, rows) = (400, 400);
             let device = Sensor::new(&sensor, columns, rows).unwrap();
-            let (mut image, mut samplers) = (device.new_expected(), FlatSamplers::new());
+            let (mut image, mut sampler) = (device.new_expected(), device.new_sampler());
             let frames: Vec<Vec<f64>> = (0..2)
                 .map(|frame| {
                     let mut raw = device.new_raw();
                     image.clear(0.0);
                     let charge =
                         device.collect(&mut image, &ExposureInterval { seed, middle_s: 0.0, exposure_s });
-                    device.read_out(&charge, &seed, frame, &mut samplers, &mut raw).unwrap();
+                    let collected = FrameCharge { charge: &charge, seed, frame };
+                    device.read_out(&collected, &mut sampler, &mut raw).unwrap();
                     raw.dn().iter().map(|dn| f64::from(*dn)).collect()
                 })
                 .collect();

@@ -27,7 +27,7 @@ mod png_file;
 
 pub use error::{MAX_PANELS, ShowError};
 pub use layout::view::Placement;
-pub use layout::{PanelLayout, Picture, picture};
+pub use layout::{PanelLayout, Picture, image, picture};
 pub use panel::class::{Class, Colour, Symbol};
 pub use panel::stretch::Stretch;
 pub use panel::{Mark, Panel, Pixels, PlateScale, Reduction, Shape, Table, Tone, Verdict};

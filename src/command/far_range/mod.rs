@@ -2,8 +2,10 @@
 
 mod export;
 mod navigate;
+mod sky;
 mod visibility;
 
 pub(super) use export::{ExportArguments, export};
 pub(super) use navigate::{EstimatorName, NavigateArguments, navigate};
+pub(super) use sky::{SkyArguments, sky};
 pub(super) use visibility::{VisibilityArguments, visibility};

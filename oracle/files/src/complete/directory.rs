@@ -47,32 +47,7 @@ impl RunDirectory {
     /// [`FileError::OutputTaken`] if the path exists and is not an empty directory; [`FileError::Io`] if the
     /// directory cannot be created or written to.
     pub fn create(path: &Path) -> Result<Self, FileError> {
-        let taken = |reason| FileError::OutputTaken { path: path.to_owned(), reason };
-        if path.as_os_str().is_empty() {
-            return Err(taken("is an empty name, which is not a directory"));
-        }
-        match fs::read_dir(path) {
-            Ok(mut entries) => {
-                if entries.next().is_some() {
-                    return Err(taken(if is_unfinished(path) {
-                        "contains an incomplete run (in progress, killed or failed); nothing is overwritten"
-                    } else {
-                        "exists and is not empty; nothing is overwritten"
-                    }));
-                }
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => {
-                fs::create_dir_all(path).map_err(|source| match source.kind() {
-                    ErrorKind::AlreadyExists => taken("exists and is not a directory"),
-                    _ => FileError::io(path, "create", source),
-                })?;
-            }
-            // Otherwise, a parent of the path is not a directory.
-            Err(error) if error.kind() == ErrorKind::NotADirectory && path.symlink_metadata().is_ok() => {
-                return Err(taken("exists and is not a directory"));
-            }
-            Err(source) => return Err(FileError::io(path, "create", source)),
-        }
+        create_empty_directory(path)?;
         Self::checked(path.to_owned())
     }
 
@@ -81,17 +56,7 @@ impl RunDirectory {
     /// # Errors
     /// [`FileError::Io`] if the directory cannot be created or written to.
     pub fn create_numbered(parent: &Path, name: &str) -> Result<Self, FileError> {
-        fs::create_dir_all(parent).map_err(|source| FileError::io(parent, "create", source))?;
-        let mut number = last_number(parent, name)?;
-        loop {
-            number = number.saturating_add(1);
-            let path = parent.join(format!("{name}-{number:03}"));
-            match fs::create_dir(&path) {
-                Ok(()) => return Self::checked(path),
-                Err(error) if error.kind() == ErrorKind::AlreadyExists && number < u32::MAX => {}
-                Err(source) => return Err(FileError::io(&path, "create", source)),
-            }
-        }
+        Self::checked(create_numbered_directory(parent, name)?)
     }
 
     /// Creates the inner directories, which also verifies before hours of work that the location is writable.
@@ -224,6 +189,56 @@ impl RunDirectory {
     /// Path of the image of a frame.
     pub fn frame(&self, frame: u64, format: ImageFormat) -> PathBuf {
         self.path.join(Self::frame_name(frame, format))
+    }
+}
+
+/// Creates a directory of results with its parents; an existing empty directory is used unchanged.
+///
+/// # Errors
+/// [`FileError::OutputTaken`] if the path exists and is not an empty directory; [`FileError::Io`] if the
+/// directory cannot be created.
+pub fn create_empty_directory(path: &Path) -> Result<(), FileError> {
+    let taken = |reason| FileError::OutputTaken { path: path.to_owned(), reason };
+    if path.as_os_str().is_empty() {
+        return Err(taken("is an empty name, which is not a directory"));
+    }
+    match fs::read_dir(path) {
+        Ok(mut entries) => match entries.next() {
+            None => Ok(()),
+            Some(_) if is_unfinished(path) => Err(taken(
+                "contains an incomplete run (in progress, killed or failed); nothing is overwritten",
+            )),
+            Some(_) => Err(taken("exists and is not empty; nothing is overwritten")),
+        },
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            fs::create_dir_all(path).map_err(|source| match source.kind() {
+                ErrorKind::AlreadyExists => taken("exists and is not a directory"),
+                _ => FileError::io(path, "create", source),
+            })
+        }
+        // Otherwise, a parent of the path is not a directory.
+        Err(error) if error.kind() == ErrorKind::NotADirectory && path.symlink_metadata().is_ok() => {
+            Err(taken("exists and is not a directory"))
+        }
+        Err(source) => Err(FileError::io(path, "create", source)),
+    }
+}
+
+/// Creates the directory `PARENT/NAME-001`, or the next free number, and returns its path.
+///
+/// # Errors
+/// [`FileError::Io`] if the directory cannot be created.
+pub fn create_numbered_directory(parent: &Path, name: &str) -> Result<PathBuf, FileError> {
+    fs::create_dir_all(parent).map_err(|source| FileError::io(parent, "create", source))?;
+    let mut number = last_number(parent, name)?;
+    loop {
+        number = number.saturating_add(1);
+        let path = parent.join(format!("{name}-{number:03}"));
+        match fs::create_dir(&path) {
+            Ok(()) => return Ok(path),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists && number < u32::MAX => {}
+            Err(source) => return Err(FileError::io(&path, "create", source)),
+        }
     }
 }
 

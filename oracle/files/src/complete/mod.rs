@@ -8,5 +8,5 @@ pub mod sha256;
 
 pub use atomic_file::{AtomicFile, ReplaceableFile};
 pub use checksums::{Checksums, file_sha256};
-pub use directory::{RunDirectory, refuse_unfinished};
+pub use directory::{RunDirectory, create_empty_directory, create_numbered_directory, refuse_unfinished};
 pub use partial::PartialFiles;

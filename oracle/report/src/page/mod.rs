@@ -86,10 +86,32 @@ impl Section {
         self
     }
 
+    /// Appends links to other files.
+    pub fn links(mut self, links: Vec<Link>) -> Self {
+        self.blocks.push(Block::Links(links));
+        self
+    }
+
     /// Appends pictures side by side.
     pub fn pictures(mut self, pictures: Vec<Picture>) -> Self {
         self.blocks.push(Block::Pictures(pictures));
         self
+    }
+}
+
+/// Link to another file.
+#[derive(Debug, Clone)]
+pub struct Link {
+    /// Path of the file, relative to that of the page.
+    pub path: String,
+    /// Words of the link.
+    pub words: String,
+}
+
+impl Link {
+    /// Creates a link.
+    pub fn new(path: impl Into<String>, words: impl Into<String>) -> Self {
+        Self { path: path.into(), words: words.into() }
     }
 }
 
@@ -106,6 +128,8 @@ pub enum Block {
     Charts(Vec<Chart>),
     /// A collapsed table that the reader can open, and its heading.
     Folded(String, DataTable),
+    /// Links to other files, in one line.
+    Links(Vec<Link>),
     /// Pictures side by side.
     Pictures(Vec<Picture>),
 }

@@ -77,6 +77,23 @@ pub fn picture(panels: &[Panel]) -> Result<Picture, ShowError> {
     }
 }
 
+/// Draws the view of a panel at its own size, pixel by pixel, with its marks and nothing beside it.
+///
+/// # Errors
+/// [`ShowError::Size`] for a view without pixels.
+pub fn image(panel: &Panel) -> Result<Picture, ShowError> {
+    let Window { x, y, columns, rows } = panel.view;
+    let place =
+        Placement { left: 0, top: 0, width: columns, height: rows, first_column: x, first_row: y, zoom: 1.0 };
+    let mut canvas = Canvas::new(columns, rows, BACKGROUND)?;
+    canvas.copy(0, 0, columns, &raster(panel, panel.view, &place, White::Sky));
+    for mark in &panel.marks {
+        canvas.mark(mark, &place);
+    }
+    label::write(&mut canvas, &place, &panel.marks, &[], &[]);
+    Ok(finished(&canvas, vec![PanelLayout { frame: place, close_up: None }]))
+}
+
 /// Draws a frame with its close-up, table and legend.
 fn single(panel: &Panel) -> Result<Picture, ShowError> {
     let most = (WANTED_COLUMNS / panel.view.columns.max(1)).max(1);
@@ -494,6 +511,26 @@ mod tests {
         let mut empty = panel(8, 8);
         empty.view.columns = 0;
         assert!(picture(&[empty]).is_ok_and(|picture| picture.width > 0));
+    }
+
+    /// Each pixel of the image is one of the frame; a label is text beside its mark.
+    #[test]
+    fn an_image_has_the_size_of_its_view_and_its_marks_only() {
+        let mut panel = panel(90, 60);
+        let plain = Panel { marks: Vec::new(), ..panel.clone() };
+        let drawn = image(&plain).unwrap();
+        assert_eq!((drawn.width, drawn.height, drawn.rgb.len()), (90, 60, 90 * 60));
+        assert!(drawn.rgb.iter().all(|[red, green, blue]| red == green && green == blue));
+        panel.marks[0].label = Some("Rigel".to_owned());
+        let marked = image(&panel).unwrap();
+        let (x, y) = centre(&marked, &marked.panels[0].frame, GREEN).unwrap();
+        assert!((x - 63.0).abs() < 1.0 && (y - 24.0).abs() < 1.0, "({x}, {y})");
+        let changed = |range: std::ops::Range<usize>| {
+            let pairs = marked.rgb.iter().zip(&drawn.rgb).enumerate();
+            pairs.filter(|(i, (a, b))| range.contains(&(i % 90)) && a != b).count()
+        };
+        // The label is right of the mark at x = 27, whose circle ends at 39.
+        assert!(changed(41..54) > 20, "{}", changed(41..54));
     }
 
     #[test]

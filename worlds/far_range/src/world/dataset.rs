@@ -1,5 +1,7 @@
 //! Files common to a run and a rendered dataset: all except measurements and score.
 
+use std::path::Path;
+
 use contract::{Camera, CameraFrame, Direction, Frame, Telemetry};
 use files::{
     Failure, FileError, FrameHeader, ImageFormat, RunDirectory, TableWriter, TanSip, format_utc, write_frame,
@@ -99,6 +101,21 @@ pub(crate) fn save_image(
     run_file: &RunFile<FarRangeScenario>,
     exposure: &Exposure,
 ) -> Result<(), Failure> {
+    let path = directory.frame(exposure.frame.number(), format);
+    write_image(&path, format, simulator, run_file, exposure)
+}
+
+/// Writes the image of an exposure to a file, as [`save_image`].
+///
+/// # Errors
+/// Those of [`save_image`].
+pub(crate) fn write_image(
+    path: &Path,
+    format: ImageFormat,
+    simulator: &Simulator,
+    run_file: &RunFile<FarRangeScenario>,
+    exposure: &Exposure,
+) -> Result<(), Failure> {
     let truth = &exposure.truth;
     let observer = Observer::new(truth.time, truth.position_km, truth.velocity_km_s)?;
     let wcs = match format {
@@ -117,7 +134,7 @@ pub(crate) fn save_image(
         observer_velocity_km_s: Some(observer.barycentric_velocity_km_s()),
         wcs,
     };
-    write_frame(&directory.frame(exposure.frame.number(), format), format, &exposure.frame, &header)?;
+    write_frame(path, format, &exposure.frame, &header)?;
     Ok(())
 }
 

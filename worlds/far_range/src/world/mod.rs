@@ -11,5 +11,6 @@ mod scenario;
 mod score;
 pub(crate) mod star_list;
 
+pub(crate) use self::dataset::write_image;
 pub use self::mission::{FarRangeMission, SceneTruth, simulator};
 pub use self::score::limits;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use contract::{Camera, PixelPoint};
+use far_range::{CameraPreset, FarRangeScenario};
 use sim::SimError;
 use sim::catalog::CatalogConfig;
 use sim::optics::{
@@ -36,6 +37,32 @@ pub struct CameraConfig {
 }
 
 impl CameraConfig {
+    /// Returns the camera of a scenario.
+    pub(crate) fn from_scenario(scenario: &FarRangeScenario) -> Self {
+        Self {
+            camera: scenario.camera.clone(),
+            sensor: scenario.sensor.clone(),
+            psf: scenario.psf.clone(),
+            optics: scenario.optics.clone(),
+            radiometry: scenario.radiometry.clone(),
+            background: scenario.background.clone(),
+            catalog: scenario.catalog.clone(),
+        }
+    }
+
+    /// Returns a built-in camera, with uniform optics, without background, and with the built-in catalogue.
+    pub(crate) fn from_preset(preset: &CameraPreset) -> Self {
+        Self {
+            camera: preset.camera.clone(),
+            sensor: preset.sensor.clone(),
+            psf: preset.psf.clone(),
+            optics: OpticsConfig::default(),
+            radiometry: preset.radiometry.clone(),
+            background: BackgroundConfig::default(),
+            catalog: CatalogConfig::default(),
+        }
+    }
+
     /// Returns the value of a parameter; `None` for a parameter that the camera does not have.
     pub fn value(&self, parameter: Parameter) -> Option<f64> {
         match (parameter, &self.radiometry) {

@@ -20,7 +20,7 @@ use docking::{DockingMission, DockingScenario};
 use files::{Failure, TableReader};
 use run::{Judgement as _, WorldScore as _};
 use scenario::run_file::RunFile;
-use score::UnitVerdict;
+use score::{UnitVerdict, WARM_UP};
 use sim::docking::FieldTruth;
 
 /// Results of a docking run, read from its directory.
@@ -74,12 +74,15 @@ impl DockingRun {
         for field in TableReader::<FieldTruthRow>::open(&directory.join("truth/fields.parquet"))? {
             truths.extend(field?.1.into_iter().map(FieldTruth::from));
         }
-        if truths.is_empty() || score.frames != truths.len() as u64 || verdicts.len() != truths.len() {
+        // The fields of the warm-up are counted in their own group alone.
+        let warm_up = score.groups.get(WARM_UP).map_or(0, |group| group.frames);
+        let expected = (truths.len() as u64).saturating_sub(warm_up);
+        if truths.is_empty() || score.frames != expected || verdicts.len() != truths.len() {
             return Err(Failure::Usage(format!(
-                "{}: `frames` is {}, expected {} as in truth/fields.parquet, and at least 1",
+                "{}: `frames` is {}, expected {expected} as in truth/fields.parquet without its warm-up, and at \
+                 least 1 there",
                 directory.join("score.json").display(),
-                score.frames,
-                truths.len()
+                score.frames
             )));
         }
         let mut answers = read_field_measurements(&measurements)?.into_iter().peekable();

@@ -26,6 +26,7 @@ use hifitime::{Epoch, Unit};
 use navigate::{NavigationRow, TABLE_FILE, read_navigation};
 use run::WorldScore as _;
 use scenario::run_file::RunFile;
+use score::WARM_UP;
 use sim::truth::{FrameTruth, clock};
 
 use super::error_budget::InjectedRun;
@@ -100,12 +101,15 @@ impl FarRangeRun {
                 ))
             })?);
         }
-        if verdicts.is_empty() || score.frames != verdicts.len() as u64 || truths.len() != verdicts.len() {
+        // The frames of the warm-up are counted in their own group alone.
+        let warm_up = score.groups.get(WARM_UP).map_or(0, |group| group.frames);
+        let expected = (truths.len() as u64).saturating_sub(warm_up);
+        if truths.is_empty() || score.frames != expected || verdicts.len() != truths.len() {
             return Err(Failure::Usage(format!(
-                "{}: `frames` is {}, expected {} as in truth/frames.parquet, and at least 1",
+                "{}: `frames` is {}, expected {expected} as in truth/frames.parquet without its warm-up, and at \
+                 least 1 there",
                 directory.join("score.json").display(),
-                score.frames,
-                truths.len()
+                score.frames
             )));
         }
         let table = directory.join(TABLE_FILE);

@@ -2,16 +2,13 @@
 use std::path::{Path, PathBuf};
 
 use config::toml_file;
-use contract::Camera;
-use far_range::FarRangeScenario;
+use far_range::{CameraPreset, CameraSource, FarRangeScenario};
 use files::Failure;
 use run::ScenarioSource;
 use scenario::{BUILT_IN, BuiltIn, CAMERAS};
-use serde::{Deserialize, Serialize};
 use sim::SimError;
 use sim::optics::{PsfConfig, RadiometryConfig};
 use sim::scene::TargetConfig;
-use sim::sensor::SensorConfig;
 
 use crate::camera::{CameraConfig, CameraModel};
 use crate::requirement::{CameraTable, DetectionRule, RequirementFile, SkyTime, TargetLight};
@@ -35,14 +32,6 @@ pub struct Requirements {
     pub scenario: Option<FarRangeScenario>,
     /// Target body.
     pub target: Option<TargetConfig>,
-}
-
-/// Tables of a built-in camera.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Preset {
-    camera: Camera,
-    sensor: SensorConfig,
 }
 
 /// Text of the requirements, used to locate mistakes.
@@ -171,31 +160,22 @@ impl Source<'_> {
         folder: &Path,
     ) -> Result<CameraConfig, Failure> {
         let preset = table.preset.as_ref().map(|name| self.preset(name)).transpose()?;
-        let needed = |what: &str| {
-            self.refuse("camera", format!("has no `{what}`: set it, or set a `scenario` that defines it"))
-        };
-        let (camera, sensor) = match (preset, scenario) {
-            (Some(Preset { camera, sensor }), _) => (camera, sensor),
-            (None, Some(scenario)) => (scenario.camera.clone(), scenario.sensor.clone()),
+        let mut config = match (scenario, &preset) {
+            (Some(scenario), _) => CameraConfig::from_scenario(scenario),
+            (None, Some(preset)) => CameraConfig::from_preset(preset),
             (None, None) => {
                 return Err(self.refuse("camera", "is empty, expected a `scenario` or a `preset`".to_owned()));
             }
         };
-        let psf = table.psf.clone().or(scenario.map(|s| s.psf.clone())).ok_or_else(|| needed("psf"))?;
-        let radiometry = table.radiometry.clone().or(scenario.map(|s| s.radiometry.clone()));
-        let mut config = CameraConfig {
-            camera,
-            sensor: table.sensor.clone().unwrap_or(sensor),
-            psf,
-            optics: table.optics.clone().or(scenario.map(|s| s.optics.clone())).unwrap_or_default(),
-            radiometry: radiometry.ok_or_else(|| needed("radiometry"))?,
-            background: table
-                .background
-                .clone()
-                .or(scenario.map(|s| s.background.clone()))
-                .unwrap_or_default(),
-            catalog: scenario.map(|s| s.catalog.clone()).unwrap_or_default(),
-        };
+        // A preset beside a scenario replaces geometry and detector only.
+        if let Some(preset) = preset {
+            (config.camera, config.sensor) = (preset.camera, preset.sensor);
+        }
+        replace(&mut config.sensor, &table.sensor);
+        replace(&mut config.psf, &table.psf);
+        replace(&mut config.optics, &table.optics);
+        replace(&mut config.radiometry, &table.radiometry);
+        replace(&mut config.background, &table.background);
         if let (PsfConfig::Sampled { path, .. }, true) = (&mut config.psf, table.psf.is_some()) {
             *path = folder.join(&*path).to_string_lossy().into_owned();
         }
@@ -216,13 +196,20 @@ impl Source<'_> {
         Ok(config)
     }
 
-    fn preset(&self, name: &str) -> Result<Preset, Failure> {
-        let Some(built_in) = CAMERAS.iter().find(|camera| camera.name == name) else {
+    fn preset(&self, name: &str) -> Result<CameraPreset, Failure> {
+        let Some(built_in) = CameraSource::built_in(name)? else {
             let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
             let message =
                 format!("`{name}` is not a built-in camera; built-in cameras: {}", names.join(", "));
             return Err(self.refuse("camera.preset", message));
         };
-        Ok(toml_file::parse(Path::new(name), built_in.text)?)
+        Ok(built_in.preset)
+    }
+}
+
+/// Replaces a value by that of the requirement file, if the file has one.
+fn replace<T: Clone>(value: &mut T, given: &Option<T>) {
+    if let Some(given) = given {
+        value.clone_from(given);
     }
 }

@@ -55,8 +55,8 @@ pub struct RequirementFile {
 pub struct CameraTable {
     /// A built-in far-range scenario, or the path of a scenario file, relative to the directory of this file.
     pub scenario: Option<String>,
-    /// A built-in camera (`boresight scenario camera`): geometry and detector. Without a scenario, `psf` and
-    /// `radiometry` are also required.
+    /// A built-in camera (`boresight scenario camera`): geometry and detector, and without a scenario also
+    /// point-spread function and radiometry.
     pub preset: Option<String>,
     /// Focal length, mm, 0.01 to 1e6.
     #[schemars(range(min = 0.01, max = 1e6))]
