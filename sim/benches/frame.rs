@@ -19,15 +19,17 @@ use std::time::Duration;
 
 use boresight_sim::draw::ExpectedImage;
 use boresight_sim::optics::{Psf, PsfConfig, Stamp};
+use boresight_sim::scene::{Lighting, MeshConfig, Spacecraft, TargetConfig};
 use boresight_sim::sensor::{
     ExposureInterval, FixedPatternConfig, FrameCharge, LineNoiseConfig, PixelSampler, RawImage, Sensor,
     SensorConfig,
 };
-use boresight_sim::truth::TrajectorySource;
+use boresight_sim::truth::{TargetAttitudeConfig, TrajectorySource};
 use boresight_sim::{PixelSelection, Simulation, Simulator};
 use contract::PixelPoint;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use draws::{Effect, Seed};
+use nalgebra::Vector3;
 use processor_time::ProcessorTime;
 
 const SEED: Seed = Seed { seed: 1, case: 0 };
@@ -237,6 +239,43 @@ fn stars(c: &mut Criterion<ProcessorTime>) {
     group.finish();
 }
 
+/// The satellite of `scenarios/targets/` at several ranges: its visible, sunlit parts, its brightness and the
+/// points of its image, with 2300 px per radian.
+fn meshes(c: &mut Criterion<ProcessorTime>) {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios/targets"));
+    let config = MeshConfig {
+        path: "smallsat.glb".to_owned(),
+        material_path: None,
+        unit_m: 1.0,
+        radius_m: 2.07,
+        attitude: TargetAttitudeConfig::default(),
+        surface: None,
+        materials: Vec::new(),
+    };
+    let target = Spacecraft::load(&TargetConfig::Mesh(config), folder).unwrap();
+    let mut group = c.benchmark_group("mesh");
+    for range_m in [100.0, 1000.0, 30_000.0] {
+        // From the direction z of the body, with the antenna, the wings and the baffle in view.
+        let chaser_km = Vector3::new(0.0, 0.0, 1e-3 * range_m);
+        let lighting =
+            Lighting { chaser_km, sun_km: Vector3::new(1.0, -0.3, 0.8) * 1.2e8, sunlit_fraction: 1.0 };
+        let project = |point: &Vector3<f64>| {
+            let depth_m = range_m - point.z;
+            Some(PixelPoint::new(400.0 + 2300.0 * point.x / depth_m, 300.0 + 2300.0 * point.y / depth_m))
+        };
+        let mut points = Vec::new();
+        group.bench_function(BenchmarkId::new("image of a satellite", range_m), |b| {
+            b.iter(|| {
+                points.clear();
+                let appearance = target.appearance(&lighting, None);
+                appearance.image(&project, 1 << 18, &mut points);
+                appearance.peak_share(&project, 0.2)
+            });
+        });
+    }
+    group.finish();
+}
+
 fn main() {
     // Every frame is the same amount of work, so one second of measurement is enough.
     let mut criterion = Criterion::default()
@@ -245,7 +284,7 @@ fn main() {
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1))
         .configure_from_args();
-    for group in [floors, argon_frames, stages, sizes, stars] {
+    for group in [floors, argon_frames, stages, sizes, stars, meshes] {
         group(&mut criterion);
     }
     criterion.final_summary();

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use truth::geographic;
 
-use super::poisson::poisson;
+use super::pixel::poisson::poisson;
 
 /// Charged particles that cross the detector.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -248,7 +248,7 @@ impl CosmicRays {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pixel_distribution::tests::{chi_square_p, histogram};
+    use crate::pixel::distribution::tests::{chi_square_p, histogram};
     use statrs::distribution::{Discrete, Poisson};
 
     const SEED: Seed = Seed { seed: 3, case: 0 };

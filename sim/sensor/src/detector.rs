@@ -6,7 +6,7 @@ use truth::SimError;
 use super::config::SensorConfig;
 use super::fixed_pattern::FixedPattern;
 use super::hot_pixels::{HotPixel, hot_pixels};
-use super::pixel_distribution::PixelDistribution;
+use super::pixel::distribution::PixelDistribution;
 use super::raw_image::RawImage;
 
 /// Detector with its readout. Properties that are fixed for its life, including the hot pixels, are computed

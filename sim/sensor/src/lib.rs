@@ -25,34 +25,21 @@
 //! }
 //! ```
 
-mod alias;
-mod blooming;
 mod charge;
 mod config;
 mod cosmic_rays;
-mod dark_pixels;
 mod detector;
-mod direct_sampler;
-mod exceedance;
 mod fixed_pattern;
 mod hot_pixels;
 mod interlace;
-mod mean_tables;
 pub mod onboard;
-mod pixel_distribution;
-mod pixel_sampler;
-mod pixel_words;
-mod poisson;
-mod poisson_digits;
+mod pixel;
 mod raw_image;
 mod readout;
 mod rolling_shutter;
-mod sparse_image;
 mod spill;
 mod telegraph;
 pub mod television;
-mod tiles;
-mod ziggurat;
 
 pub use charge::{Charge, ExposureInterval};
 pub use config::{
@@ -64,14 +51,13 @@ pub use detector::Sensor;
 pub use fixed_pattern::{DarkCurrentDistribution, FixedPatternConfig};
 pub use hot_pixels::HotPixel;
 pub use interlace::{InterlaceConfig, RowParity};
-pub use pixel_sampler::PixelSampler;
-pub use poisson::poisson;
+pub use pixel::poisson::poisson;
+pub use pixel::sampler::PixelSampler;
+pub(crate) use pixel::ziggurat::Ziggurat;
 pub use raw_image::RawImage;
-pub use readout::FrameCharge;
+pub use readout::{FrameCharge, SparseImage};
 pub use rolling_shutter::RollingShutterConfig;
-pub use sparse_image::SparseImage;
 pub use spill::BloomingConfig;
 pub use telegraph::TelegraphConfig;
-pub(crate) use ziggurat::Ziggurat;
 
 pub use truth::Switch;

@@ -4,7 +4,7 @@ use draws::{Effect, Seed, Stream, uniform};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::poisson::poisson;
+use super::pixel::poisson::poisson;
 
 /// Random telegraph switching of a share of the hot pixels, as caused by proton damage in silicon (Hopkins &
 /// Hopkinson, "Random telegraph signals from proton-irradiated CCDs", IEEE Trans. Nucl. Sci. 40, 1993): two

@@ -14,7 +14,7 @@ use crate::polygon::{Polygon, bounds, four_points, keep_above, signed_area, spre
 /// Maximum angle subtended by a cell of the brightness sum, as a share of the angular scale of the
 /// reflectance. The sum is then accurate to 1e-6.
 const CELL_ANGLE: f64 = 0.25;
-/// Maximum number of cells along a side of a plate.
+/// Maximum number of cells along a side of a facet.
 const CELLS: f64 = 512.0;
 /// Side of a cell in the image, px; each cell is represented by four points.
 const CELL_PX: f64 = 0.4;
@@ -173,7 +173,7 @@ impl LitBody {
         sum
     }
 
-    /// Irradiance at the camera from an area of a plate at a point, divided by the Sun's irradiance at the
+    /// Irradiance at the camera from an area of a facet at a point, divided by the Sun's irradiance at the
     /// body.
     fn flux(&self, facet: &Facet, point: &Vector3<f64>, area: f64) -> f64 {
         let to_eye = self.eye_m - point;

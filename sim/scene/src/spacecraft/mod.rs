@@ -33,8 +33,7 @@ use sphere::{LitSphere, lambert_phase};
 use truth::constants::AU_KM;
 use truth::{States, TargetAttitudeConfig};
 
-/// Maximum number of plates of a body, including those of boxes: every plate is compared with every other
-/// plate.
+/// Maximum number of plates of a body, including those of boxes; a larger body is a mesh.
 const MAX_PLATES: usize = 200;
 
 /// The target as modelled for the sensor.

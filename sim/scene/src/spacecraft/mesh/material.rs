@@ -23,7 +23,7 @@ fn in_v([red, green, blue]: [f64; 3]) -> f64 {
 
 /// Returns the reflectance of a material of an MTL file: the luminance of the diffuse colour Kd and of the
 /// specular colour Ks, and the width of the lobe of Phong's exponent Ns, α = (2/(Ns + 2))^½ (Walter et al.
-/// 2007, EGSR, Eq. 35 and Table of exponents).
+/// 2007, EGSR).
 pub(super) fn from_phong(
     diffuse: [f64; 3],
     specular: [f64; 3],

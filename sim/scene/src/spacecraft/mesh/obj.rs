@@ -100,6 +100,9 @@ fn surface(material: &tobj::Material) -> Result<super::SurfaceConfig, String> {
     if material.dissolve.is_some_and(|opacity| opacity != 1.0) {
         return Err("it is transparent (d)".to_owned());
     }
+    if material.unknown_param.get("Tr").is_some_and(|transparency| transparency.parse() != Ok(0.0)) {
+        return Err("it is transparent (Tr)".to_owned());
+    }
     let diffuse = material.diffuse.ok_or("it has no diffuse colour (Kd)")?;
     from_phong(diffuse, material.specular.unwrap_or([0.0; 3]), material.shininess.unwrap_or(0.0))
 }

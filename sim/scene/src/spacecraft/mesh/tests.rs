@@ -477,7 +477,7 @@ fn faulty_keys_and_materials_are_refused_by_name() {
     };
     fn none(_: &mut MeshConfig) {}
     let fine = "newmtl foil\nKd 0.5 0.5 0.5\n";
-    let cases: [(Change, &str, &str); 17] = [
+    let cases: [(Change, &str, &str); 18] = [
         (|c| c.path = "absent.obj".to_owned(), fine, "absent.obj (No such file"),
         (|c| c.path = "mesh.stl".to_owned(), fine, "expected a file named .obj"),
         (|c| c.unit_m = 0.001, fine, "it is 0.000539 m with unit_m = 0.001"),
@@ -506,6 +506,7 @@ fn faulty_keys_and_materials_are_refused_by_name() {
         (none, "newmtl foil\nKd 0.5 0.5 0.5\nmap_refl foil.png\n", "it has a texture (map_refl)"),
         (none, "newmtl foil\nKd 0.5 0.5 0.5\nKe 1 1 1\n", "it emits light (Ke)"),
         (none, "newmtl foil\nKd 0.5 0.5 0.5\nd 0.5\n", "it is transparent (d)"),
+        (none, "newmtl foil\nKd 0.5 0.5 0.5\nTr 0.5\n", "it is transparent (Tr)"),
         (none, "newmtl foil\nKd x y z\n", "which cannot be read"),
         (none, "newmtl foil\nKd 0.5 0.5\n", "line 2 of which is no colour"),
     ];

@@ -17,14 +17,14 @@ use render::draw::TILE;
 use truth::Switch;
 
 use super::alias::AliasTable;
-use super::pixel_distribution::PixelDistribution;
+use super::distribution::PixelDistribution;
 use super::poisson_digits::by_inversion;
 
 /// Tables for the means of the grid, made on first use: 3072 tables of at most
 /// [`MeanTables::MAX_TABLE_WIDTH_DN`] digital numbers, 25 MB. The numbers do not depend on which tables are
 /// made already.
 #[derive(Debug, Clone)]
-pub(super) struct MeanTables {
+pub(crate) struct MeanTables {
     /// Binary logarithm of the number of cells of a table.
     log2_cells: u32,
     /// Packed cells of the tables, by mean in quarters of an electron, then by n; 0 in tables that are not
@@ -43,20 +43,20 @@ const TWO_TO_24: f32 = 16_777_216.0;
 
 /// Pixel that no table holds: a Poisson number of mean `node_e` plus `extra_e` electrons.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Untabulated {
-    pub(super) node_e: f64,
-    pub(super) extra_e: f64,
+pub(crate) struct Untabulated {
+    pub(crate) node_e: f64,
+    pub(crate) extra_e: f64,
 }
 
 impl MeanTables {
     /// Upper end of the grid, electrons: pixels of larger means are drawn directly.
-    pub(super) const END_E: f64 = 256.0;
+    pub(crate) const END_E: f64 = 256.0;
     /// Maximum number of digital numbers in a table.
     const MAX_TABLE_WIDTH_DN: f64 = 1024.0;
 
     /// Creates the grid without any tables. Returns `None` if tables do not fit the distribution: they would
     /// be too wide, or there is no shot noise.
-    pub(super) fn new(distribution: &PixelDistribution) -> Option<Self> {
+    pub(crate) fn new(distribution: &PixelDistribution) -> Option<Self> {
         let width_dn = distribution.width_dn(Self::END_E);
         if distribution.shot == Switch::Off || width_dn > Self::MAX_TABLE_WIDTH_DN {
             return None;
@@ -69,7 +69,7 @@ impl MeanTables {
 
     /// Draws the pixels of the first `tiles` tiles of a batch from their means and words. Tiles that are
     /// marked as flat have the mean `flat`.
-    pub(super) fn draw_batch(&self, registers: Arch, batch: &mut Batch, flat: &FlatMean, tiles: usize) {
+    pub(crate) fn draw_batch(&self, registers: Arch, batch: &mut Batch, flat: &FlatMean, tiles: usize) {
         let mut tile = 0;
         while tile < tiles {
             let (is_flat, from) = (batch.is_flat[tile], tile);
@@ -88,7 +88,7 @@ impl MeanTables {
     ///
     /// # Errors
     /// The pixel, if no table holds its distribution.
-    pub(super) fn draw(
+    pub(crate) fn draw(
         &mut self,
         distribution: &PixelDistribution,
         mean_e: f64,
@@ -222,13 +222,13 @@ impl pulp::WithSimd for LookUp<'_> {
 ///
 /// First all their means are computed, then their words, then their numbers. Each of these reads a different
 /// area of memory, and several accesses of one kind overlap in time.
-pub(super) struct Batch {
+pub(crate) struct Batch {
     /// Expected electrons.
-    pub(super) means_e: [f64; Batch::PIXELS],
+    pub(crate) means_e: [f64; Batch::PIXELS],
     /// Expected electrons with the precision of the tables.
     means: [f32; Batch::PIXELS],
     /// Tiles whose pixels all have the flat mean of the frame.
-    pub(super) is_flat: [bool; Batch::TILES],
+    pub(crate) is_flat: [bool; Batch::TILES],
     /// Words, one per pixel.
     words: [u64; Batch::PIXELS],
     /// Indices of the cells of the tables, and the cells.
@@ -237,17 +237,17 @@ pub(super) struct Batch {
     /// Tiles with pixels whose number is not in a table yet.
     has_open: [bool; Batch::TILES],
     /// Digital numbers, where they are in a table.
-    pub(super) numbers: [u16; Batch::PIXELS],
+    pub(crate) numbers: [u16; Batch::PIXELS],
 }
 
 impl Batch {
     /// Number of tiles.
-    pub(super) const TILES: usize = 32;
+    pub(crate) const TILES: usize = 32;
     /// Number of pixels.
     const PIXELS: usize = Self::TILES * TILE;
 
     /// Creates a batch of pixels that are not drawn yet.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             means_e: [0.0; Self::PIXELS],
             means: [0.0; Self::PIXELS],
@@ -262,7 +262,7 @@ impl Batch {
 
     /// Draws the words of adjacent tiles of a row for some tiles of the batch, after those of `skipped`
     /// tiles.
-    pub(super) fn draw_words(
+    pub(crate) fn draw_words(
         &mut self,
         registers: Arch,
         tiles: Range<usize>,
@@ -274,13 +274,13 @@ impl Batch {
     }
 
     /// Word of pixel `i`.
-    pub(super) fn word(&self, i: usize) -> u64 {
+    pub(crate) fn word(&self, i: usize) -> u64 {
         self.words[i]
     }
 
     /// Returns one bit for each pixel of a tile of the batch whose number is not in a table yet; it is drawn
     /// by [`MeanTables::draw`].
-    pub(super) fn open_pixels(&self, tile: usize) -> u64 {
+    pub(crate) fn open_pixels(&self, tile: usize) -> u64 {
         if !self.has_open[tile] {
             return 0;
         }
@@ -357,7 +357,7 @@ impl TableChoice {
 
 /// Choice of the table for the many pixels with a common mean, prepared once.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct FlatMean {
+pub(crate) struct FlatMean {
     /// Index of the table with 0 extra electrons.
     first: u32,
     /// Values of a word's 24 bits from which on there are at least 1, 2 and 3 extra electrons.
@@ -366,7 +366,7 @@ pub(super) struct FlatMean {
 
 impl FlatMean {
     /// Prepares the choice for a mean, electrons.
-    pub(super) fn new(mean_e: f64) -> Self {
+    pub(crate) fn new(mean_e: f64) -> Self {
         let (quarters, rest) = grid_node(mean_e.max(0.0) as f32);
         // A float represents 24 bits exactly, so a comparison of integers equals a comparison of shares.
         let steps = n_at_most(rest).map(|share| (f64::from(share) * f64::from(TWO_TO_24)).ceil() as i32);
@@ -412,12 +412,12 @@ fn n_at_most(rest: f32) -> [f32; TABLES_PER_MEAN] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::SensorConfig;
-    use super::super::config::tests::twelve_bit;
-    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram};
-    use super::super::pixel_sampler::PixelSampler;
-    use super::super::pixel_words::PixelStreams;
+    use super::super::distribution::tests::{chi_square_p, from_zero, histogram};
+    use super::super::sampler::PixelSampler;
+    use super::super::words::PixelStreams;
     use super::*;
+    use crate::SensorConfig;
+    use crate::config::tests::twelve_bit;
     use draws::{Effect, Seed};
 
     /// A gain of 1 e⁻/DN and a low read noise, so single electrons are distinguishable.

@@ -30,12 +30,12 @@ use optics::simd_kernel::SimdKernel;
 use pulp::Simd;
 use render::draw::ExpectedImage;
 
-use super::exceedance::{DarkLimit, Exceedance};
-use super::pixel_distribution::PixelDistribution;
-use super::pixel_sampler::PixelSampler;
-use super::pixel_words::PixelStreams;
 use super::sparse_image::Pixel;
 use super::tiles::TileSet;
+use crate::pixel::distribution::PixelDistribution;
+use crate::pixel::exceedance::{DarkLimit, Exceedance};
+use crate::pixel::sampler::PixelSampler;
+use crate::pixel::words::PixelStreams;
 
 /// Dark pixels of a frame: their limit in each row, and those above the floor. Reused from frame to frame.
 #[derive(Debug, Default)]
@@ -183,11 +183,9 @@ fn thin_row(
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::{interval, twelve_bit};
-    use super::super::pixel_distribution::tests::{chi_square_p, from_zero};
-    use super::super::{
-        BloomingConfig, FixedPatternConfig, FrameCharge, LineNoiseConfig, Sensor, SensorConfig,
-    };
+    use crate::config::tests::{interval, twelve_bit};
+    use crate::pixel::distribution::tests::{chi_square_p, from_zero};
+    use crate::{BloomingConfig, FixedPatternConfig, FrameCharge, LineNoiseConfig, Sensor, SensorConfig};
     use contract::Window;
     use draws::Seed;
 

@@ -7,32 +7,32 @@
 use truth::Switch;
 
 use super::alias::AliasTable;
-use super::config::SensorConfig;
+use crate::config::SensorConfig;
 
 /// Parameters of a pixel's distribution other than its mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PixelDistribution {
+pub(crate) struct PixelDistribution {
     gain_e_per_dn: f64,
     bias_dn: f64,
     full_well_e: f64,
     read_noise_e: f64,
     non_linearity: f64,
-    pub(super) shot: Switch,
+    pub(crate) shot: Switch,
     full_scale_dn: u16,
 }
 
 /// Probability of each digital number from `first_dn` on.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct DnDistribution {
-    pub(super) first_dn: u16,
-    pub(super) probabilities: Vec<f64>,
+pub(crate) struct DnDistribution {
+    pub(crate) first_dn: u16,
+    pub(crate) probabilities: Vec<f64>,
 }
 
 /// Standard deviations at which a normal distribution is truncated: 6e-14 of it lies beyond, less than 2^-43.
 const NORMAL_REACH: f64 = 7.5;
 
 impl PixelDistribution {
-    pub(super) fn new(config: &SensorConfig) -> Self {
+    pub(crate) fn new(config: &SensorConfig) -> Self {
         Self {
             gain_e_per_dn: config.gain_e_per_dn,
             bias_dn: config.bias_dn,
@@ -47,7 +47,7 @@ impl PixelDistribution {
     /// Returns the digital number for the electrons that a pixel collected, limited to the full well, with
     /// `normal` standard deviations of read noise.
     #[inline(always)]
-    pub(super) fn read(&self, collected_e: f64, normal: f64, offset_e: f64) -> u16 {
+    pub(crate) fn read(&self, collected_e: f64, normal: f64, offset_e: f64) -> u16 {
         let held_e = self.amplified(collected_e.min(self.full_well_e));
         self.digitise(held_e + self.read_noise_e * normal + offset_e)
     }
@@ -62,13 +62,13 @@ impl PixelDistribution {
     }
 
     /// Full well of a pixel, electrons.
-    pub(super) fn full_well_e(&self) -> f64 {
+    pub(crate) fn full_well_e(&self) -> f64 {
         self.full_well_e
     }
 
     /// Mean from which on a pixel may collect more than its full well; below it the probability is less than
     /// 2^-40 (the bound of [`PoissonReach`], solved for the mean).
-    pub(super) fn may_overflow_from_e(&self) -> f64 {
+    pub(crate) fn may_overflow_from_e(&self) -> f64 {
         match self.shot {
             Switch::On => {
                 let shift = 2.0 * PoissonReach::EXPONENT / 3.0;
@@ -88,14 +88,14 @@ impl PixelDistribution {
     }
 
     /// Number of digital numbers that the distribution of a mean covers, without clipping.
-    pub(super) fn width_dn(&self, mean_e: f64) -> f64 {
+    pub(crate) fn width_dn(&self, mean_e: f64) -> f64 {
         let reach = PoissonReach::new(mean_e);
         (reach.high - reach.low + 2.0 * NORMAL_REACH * self.read_noise_e) / self.gain_e_per_dn
     }
 
     /// Returns the probability of every digital number if a Poisson number of mean `mean_e` plus `extra_e`
     /// fixed electrons is collected. The absolute error of a probability is below 2^-40.
-    pub(super) fn probabilities(&self, mean_e: f64, extra_e: u32) -> DnDistribution {
+    pub(crate) fn probabilities(&self, mean_e: f64, extra_e: u32) -> DnDistribution {
         let extra_e = f64::from(extra_e);
         let reach = PoissonReach::new(mean_e);
         let linear = self.non_linearity == 0.0;
@@ -223,11 +223,11 @@ fn normal_cdf(z: f64) -> f64 {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
-    use super::super::config::tests::twelve_bit;
+pub(crate) mod tests {
     use super::super::direct_sampler::DirectSampler;
-    use super::super::pixel_words::PixelStreams;
+    use super::super::words::PixelStreams;
     use super::*;
+    use crate::config::tests::twelve_bit;
     use draws::Seed;
 
     /// Counts the numbers of `count` pixels of one mean that are drawn directly.

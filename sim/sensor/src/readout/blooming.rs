@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::detector::Sensor;
-use super::pixel_sampler::PixelSampler;
-use super::readout::PixelInputs;
+use super::PixelInputs;
 use super::sparse_image::Pixel;
-use super::spill::BloomingConfig;
+use crate::detector::Sensor;
+use crate::pixel::sampler::PixelSampler;
+use crate::spill::BloomingConfig;
 
 /// Inputs for filling the wells of a frame.
 pub(super) struct Overflow<'a> {
@@ -91,9 +91,9 @@ impl ColumnPart {
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::{interval, twelve_bit};
-    use super::super::{FrameCharge, SensorConfig};
     use super::*;
+    use crate::config::tests::{interval, twelve_bit};
+    use crate::{FrameCharge, SensorConfig};
     use draws::Seed;
 
     /// Only the rows near overflowing pixels are examined, extended as far as the electrons spill.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use contract::Window;
 use render::draw::{TILE, set_bits};
 
-use super::mean_tables::Batch;
+use crate::pixel::mean_tables::Batch;
 
 /// Set of tiles of an image: one bit per tile, in separate words for each row.
 #[derive(Debug, Clone)]

@@ -8,9 +8,9 @@
 use pulp::Arch;
 
 use super::direct_sampler::DirectSampler;
+use super::distribution::PixelDistribution;
 use super::mean_tables::{Batch, FlatMean, MeanTables};
-use super::pixel_distribution::PixelDistribution;
-use super::pixel_words::PixelWords;
+use super::words::PixelWords;
 
 /// Sampler of the pixels of a detector, kept from frame to frame. Its tables are made on first use; numbers
 /// do not depend on which are made already.
@@ -23,7 +23,7 @@ pub struct PixelSampler {
 
 impl PixelSampler {
     /// Creates a sampler without any tables.
-    pub(super) fn new(distribution: &PixelDistribution) -> Self {
+    pub(crate) fn new(distribution: &PixelDistribution) -> Self {
         Self {
             distribution: *distribution,
             tables: MeanTables::new(distribution),
@@ -32,20 +32,20 @@ impl PixelSampler {
     }
 
     /// Makes this the sampler of `distribution`, if it was made for another detector.
-    pub(super) fn set_distribution(&mut self, distribution: &PixelDistribution) {
+    pub(crate) fn set_distribution(&mut self, distribution: &PixelDistribution) {
         if self.distribution != *distribution {
             *self = Self::new(distribution);
         }
     }
 
     /// Returns true if there are tables for pixels without an offset.
-    pub(super) fn has_tables(&self) -> bool {
+    pub(crate) fn has_tables(&self) -> bool {
         self.tables.is_some()
     }
 
     /// Draws the first `tiles` tiles of a batch, without offsets; tiles that are marked as flat have the mean
     /// `flat`. Some numbers are still missing: see [`PixelSampler::draw_open`].
-    pub(super) fn draw_batch(&self, registers: Arch, batch: &mut Batch, flat: &FlatMean, tiles: usize) {
+    pub(crate) fn draw_batch(&self, registers: Arch, batch: &mut Batch, flat: &FlatMean, tiles: usize) {
         if let Some(tables) = &self.tables {
             tables.draw_batch(registers, batch, flat, tiles);
         }
@@ -53,7 +53,7 @@ impl PixelSampler {
 
     /// Draws a pixel whose number is not in a table yet ([`Batch::open_pixels`]): the table is made, or the
     /// pixel has none.
-    pub(super) fn draw_open(&mut self, mean_e: f64, word: u64, own_words: &PixelWords) -> u16 {
+    pub(crate) fn draw_open(&mut self, mean_e: f64, word: u64, own_words: &PixelWords) -> u16 {
         let Some(tables) = self.tables.as_mut().filter(|_| mean_e < MeanTables::END_E) else {
             return self.draw_directly(mean_e, 0.0, own_words);
         };
@@ -69,30 +69,30 @@ impl PixelSampler {
     /// Draws a pixel with a mean of `mean_e` electrons (a negative mean counts as 0) to which the readout
     /// adds `offset_e` electrons, in the steps of the detector.
     #[inline(always)]
-    pub(super) fn draw_directly(&mut self, mean_e: f64, offset_e: f64, own_words: &PixelWords) -> u16 {
+    pub(crate) fn draw_directly(&mut self, mean_e: f64, offset_e: f64, own_words: &PixelWords) -> u16 {
         self.direct.draw(&self.distribution, mean_e.max(0.0), offset_e, own_words)
     }
 
     /// Draws the electrons that a pixel collects, before the limit of the full well.
-    pub(super) fn collect(&mut self, mean_e: f64, own_words: &PixelWords) -> f64 {
+    pub(crate) fn collect(&mut self, mean_e: f64, own_words: &PixelWords) -> f64 {
         self.direct.collect(&self.distribution, mean_e.max(0.0), own_words)
     }
 
     /// Draws the digital number of a pixel that collected `collected_e` electrons.
-    pub(super) fn convert(&self, collected_e: f64, offset_e: f64, own_words: &PixelWords) -> u16 {
+    pub(crate) fn convert(&self, collected_e: f64, offset_e: f64, own_words: &PixelWords) -> u16 {
         self.direct.convert(&self.distribution, collected_e, offset_e, own_words)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::{interval, twelve_bit};
-    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram};
-    use super::super::{
+    use super::super::distribution::tests::{chi_square_p, from_zero, histogram};
+    use super::*;
+    use crate::config::tests::{interval, twelve_bit};
+    use crate::{
         BloomingConfig, FixedPatternConfig, FrameCharge, HotPixelConfig, LineNoiseConfig, NoiseConfig,
         Sensor, SensorConfig, TelegraphConfig,
     };
-    use super::*;
     use contract::PixelPoint;
     use draws::Seed;
     use optics::{Psf, PsfConfig, Stamp};

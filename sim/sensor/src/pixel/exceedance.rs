@@ -8,12 +8,12 @@
 
 use std::collections::BTreeMap;
 
-use super::pixel_distribution::PixelDistribution;
+use super::distribution::PixelDistribution;
 
 /// Distribution of the digital numbers above a floor. Tables are made on first use; their content does not
 /// depend on earlier use.
 #[derive(Debug, Clone)]
-pub(super) struct Exceedance {
+pub(crate) struct Exceedance {
     distribution: PixelDistribution,
     floor_dn: u16,
     /// Lower and upper mean, in quarters of an electron, between which the limit of dark pixels follows the
@@ -35,12 +35,12 @@ struct Tail {
 
 /// Largest mean of a dark pixel, and the probability from which its exceedances are thinned.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct DarkLimit {
+pub(crate) struct DarkLimit {
     /// Largest mean of a dark pixel, electrons; a pixel with a larger mean is drawn directly. Negative if
     /// every pixel is drawn directly.
-    pub(super) mean_e: f64,
+    pub(crate) mean_e: f64,
     /// Probability that a pixel of this mean exceeds the floor: the maximum over all dark pixels.
-    pub(super) probability: f64,
+    pub(crate) probability: f64,
 }
 
 impl DarkLimit {
@@ -62,7 +62,7 @@ const NEGLECTED_EXTRA_E: u32 = 8;
 
 impl Exceedance {
     /// Creates the distribution from a pixel's distribution with shot noise.
-    pub(super) fn new(distribution: &PixelDistribution, floor_dn: u16) -> Self {
+    pub(crate) fn new(distribution: &PixelDistribution, floor_dn: u16) -> Self {
         let mut new = Self {
             distribution: *distribution,
             floor_dn,
@@ -87,13 +87,13 @@ impl Exceedance {
     }
 
     /// Returns true if the distribution belongs to this pixel distribution and floor.
-    pub(super) fn is_valid_for(&self, distribution: &PixelDistribution, floor_dn: u16) -> bool {
+    pub(crate) fn is_valid_for(&self, distribution: &PixelDistribution, floor_dn: u16) -> bool {
         self.distribution == *distribution && self.floor_dn == floor_dn
     }
 
     /// Limit of dark pixels over a background of at most `bound_e` electrons per pixel.
     #[inline(always)]
-    pub(super) fn dark_limit(&mut self, bound_e: f64) -> DarkLimit {
+    pub(crate) fn dark_limit(&mut self, bound_e: f64) -> DarkLimit {
         let Some((low, high)) = self.limits else { return DarkLimit::NOWHERE };
         // The cast to an integer saturates.
         let quarters = ((4.0 * bound_e).ceil() as u32).clamp(low, high);
@@ -111,7 +111,7 @@ impl Exceedance {
     /// Draws a number above the floor for a dark pixel with a mean of `mean_e` electrons, or none. A number
     /// is drawn with the probability that the pixel exceeds the floor, divided by the probability of `limit`.
     /// Uses three uniform random numbers.
-    pub(super) fn thin(
+    pub(crate) fn thin(
         &mut self,
         mean_e: f64,
         limit: DarkLimit,
@@ -184,10 +184,10 @@ impl Tail {
 
 #[cfg(test)]
 mod tests {
-    use super::super::SensorConfig;
-    use super::super::config::tests::twelve_bit;
-    use super::super::pixel_distribution::tests::{chi_square_p, from_zero, histogram};
+    use super::super::distribution::tests::{chi_square_p, from_zero, histogram};
     use super::*;
+    use crate::SensorConfig;
+    use crate::config::tests::twelve_bit;
     use draws::{Effect, Seed, uniform};
 
     /// A gain of 1 e⁻/DN and a low read noise, so single electrons are distinguishable.

@@ -139,7 +139,7 @@ fn tail(stream: &mut Stream) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::pixel_distribution::tests::{chi_square_p, histogram};
+    use super::super::distribution::tests::{chi_square_p, histogram};
     use super::*;
     use draws::{Effect, Seed};
 

@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 /// and three words at its own address, from which it is drawn otherwise. No pixel uses the numbers of
 /// another, so the content of one pixel never changes the draw of another.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct PixelStreams {
+pub(crate) struct PixelStreams {
     /// Words of the rows at the addresses 0 to rows − 1, words of the pixels from the address `rows` on.
     noise: Streams,
     /// Words of repeated draws.
@@ -21,7 +21,7 @@ pub(super) struct PixelStreams {
 
 impl PixelStreams {
     /// Creates the addresses of a frame of `columns` × `rows`.
-    pub(super) fn new(seed: &Seed, frame: u64, columns: usize, rows: usize) -> Self {
+    pub(crate) fn new(seed: &Seed, frame: u64, columns: usize, rows: usize) -> Self {
         Self {
             noise: seed.streams(frame, Effect::PixelNoise),
             repeats: seed.streams(frame, Effect::Exceedance),
@@ -32,18 +32,18 @@ impl PixelStreams {
     }
 
     /// Generators of the words of row `y`: one word per pixel, from the left.
-    pub(super) fn row_words(&self, registers: Arch, y: usize) -> GeneratorLanes {
+    pub(crate) fn row_words(&self, registers: Arch, y: usize) -> GeneratorLanes {
         registers.dispatch(RowGenerators { noise: &self.noise, y })
     }
 
     /// Words at the own address of the pixel `index`, counted row by row.
     #[inline(always)]
-    pub(super) fn pixel_words(&self, index: usize) -> PixelWords {
+    pub(crate) fn pixel_words(&self, index: usize) -> PixelWords {
         self.words_at(&self.noise, index as u64)
     }
 
     /// Words for draw `repeat` of the pixel `index`, 1 for the second draw.
-    pub(super) fn repeated_words(&self, index: usize, repeat: u64) -> PixelWords {
+    pub(crate) fn repeated_words(&self, index: usize, repeat: u64) -> PixelWords {
         self.words_at(&self.repeats, index as u64 + repeat * (self.rows + self.pixels))
     }
 
@@ -71,23 +71,23 @@ impl WithSimd for RowGenerators<'_> {
 
 /// Random numbers of a pixel that is drawn directly.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct PixelWords {
+pub(crate) struct PixelWords {
     /// Two words for the number of electrons.
-    pub(super) electrons: [u64; 2],
+    pub(crate) electrons: [u64; 2],
     /// Word for the read noise.
-    pub(super) noise: u64,
+    pub(crate) noise: u64,
     reserve: Streams,
     place: u64,
 }
 
 impl PixelWords {
     /// Further numbers for the electrons.
-    pub(super) fn more_for_electrons(&self) -> Stream {
+    pub(crate) fn more_for_electrons(&self) -> Stream {
         self.reserve.stream_at(2 * self.place)
     }
 
     /// Further numbers for the read noise.
-    pub(super) fn more_for_noise(&self) -> Stream {
+    pub(crate) fn more_for_noise(&self) -> Stream {
         self.reserve.stream_at(2 * self.place + 1)
     }
 }

@@ -3,10 +3,10 @@
 
 use truth::Switch;
 
-use super::pixel_distribution::PixelDistribution;
-use super::pixel_words::PixelWords;
+use super::distribution::PixelDistribution;
 use super::poisson::poisson;
 use super::poisson_digits::PoissonDigits;
+use super::words::PixelWords;
 use super::ziggurat::Ziggurat;
 
 /// Sampler for pixels of any mean and offset. Its tables do not depend on the detector.

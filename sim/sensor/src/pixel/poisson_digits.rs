@@ -1,7 +1,7 @@
 //! Poisson random numbers of any mean from a small number of tables.
 
 use super::alias::AliasTable;
-use super::pixel_distribution::poisson_table;
+use super::distribution::poisson_table;
 
 /// Sampler of Poisson numbers of means from 0 to [`PoissonDigits::END_E`].
 ///
@@ -83,7 +83,7 @@ pub(super) fn by_inversion(mean: f64, u: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::pixel_distribution::tests::{chi_square_p, histogram};
+    use super::super::distribution::tests::{chi_square_p, histogram};
     use super::*;
     use draws::{Effect, Seed};
     use rand::Rng;

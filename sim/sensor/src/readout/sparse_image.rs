@@ -3,8 +3,8 @@
 use render::draw::TILE;
 
 use super::dark_pixels::DarkPixels;
-use super::raw_image::RawImage;
 use super::tiles::{TileRun, TileSet, tile_pixels};
+use crate::raw_image::RawImage;
 
 /// Raw image of which only some tiles, 16 pixels of a row each, are drawn. Reused from frame to frame.
 #[derive(Debug)]

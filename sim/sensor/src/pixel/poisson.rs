@@ -58,7 +58,7 @@ fn by_rejection(mean: f64, stream: &mut Stream) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pixel_distribution::tests::{chi_square_p, histogram};
+    use crate::pixel::distribution::tests::{chi_square_p, histogram};
     use draws::{Effect, Seed};
     use statrs::distribution::{Discrete, Poisson};
 
@@ -104,7 +104,7 @@ mod tests {
                     (a, b) = (0.0, 0.0);
                 }
             }
-            let p = crate::pixel_distribution::tests::chi_square_tail(chi2, bins - 1.0);
+            let p = crate::pixel::distribution::tests::chi_square_tail(chi2, bins - 1.0);
             assert!(p > 1e-5, "mean {mean}: p = {p}");
         }
     }

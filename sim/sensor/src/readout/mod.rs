@@ -1,5 +1,10 @@
 //! Readout: from expected photoelectrons to digital numbers.
 
+mod blooming;
+mod dark_pixels;
+mod sparse_image;
+mod tiles;
+
 use contract::{OutOfRange, Window};
 use draws::{Effect, GeneratorLanes, Seed, normal};
 use optics::simd_kernel::{arch, run_widest};
@@ -7,16 +12,17 @@ use pulp::{Arch, Simd, WithSimd};
 use render::draw::{ExpectedImage, TILE, set_bits};
 use truth::SimError;
 
-use super::blooming::Overflow;
-use super::charge::Charge;
-use super::dark_pixels::{DarkPixelScan, DarkPixels, Redraw};
-use super::detector::Sensor;
-use super::mean_tables::{Batch, FlatMean};
-use super::pixel_sampler::PixelSampler;
-use super::pixel_words::PixelStreams;
-use super::raw_image::RawImage;
-use super::sparse_image::{Pixel, SparseImage};
-use super::tiles::{TileRun, tile_pixels};
+use crate::charge::Charge;
+use crate::detector::Sensor;
+use crate::pixel::mean_tables::{Batch, FlatMean};
+use crate::pixel::sampler::PixelSampler;
+use crate::pixel::words::PixelStreams;
+use crate::raw_image::RawImage;
+use blooming::Overflow;
+use dark_pixels::{DarkPixelScan, DarkPixels, Redraw};
+use sparse_image::Pixel;
+pub use sparse_image::SparseImage;
+use tiles::{TileRun, tile_pixels};
 
 /// Inputs from which a frame is read out.
 pub struct FrameCharge<'a> {
@@ -359,9 +365,9 @@ fn runs_in_a_batch(runs: &[TileRun]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::{interval, twelve_bit};
-    use super::super::{BloomingConfig, LineNoiseConfig, SensorConfig};
     use super::*;
+    use crate::config::tests::{interval, twelve_bit};
+    use crate::{BloomingConfig, LineNoiseConfig, SensorConfig};
     use contract::PixelPoint;
     use optics::{Psf, PsfConfig, Stamp};
     use sha2::{Digest, Sha256};
