@@ -311,9 +311,10 @@ fn without_out_each_run_gets_the_next_numbered_directory() {
 
 /// A complete run of argon takes a minute: it is ended immediately after its start.
 #[test]
-fn the_bare_command_runs_argon_into_a_numbered_directory() {
+fn a_reproduction_of_argon_has_a_numbered_directory() {
     let bench = Bench::new();
     let mut child = Command::new(env!("CARGO_BIN_EXE_boresight"))
+        .args(["reproduce", "argon"])
         .current_dir(bench.path("."))
         .stdout(Stdio::null())
         .stderr(Stdio::null())

@@ -216,6 +216,8 @@ impl Synthetic {
 
 /// Sample of a run as the gate reads it; runs with the same seed have the same frames.
 pub(crate) fn sample_of(seed: u64, frames: &[FrameVerdict]) -> Sample {
+    // The direction in which a figure is better is registered with its world.
+    boresight::register_worlds();
     Sample::new(
         identity("far_range", seed),
         unit_table(frames, &WithinLimits::from_degrees([PIXEL_DEG, 2.0 * PIXEL_DEG])),
