@@ -302,10 +302,10 @@ fn a_run_with_injected_truth_is_marked() {
 #[test]
 fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
     let bench = Bench::new();
-    bench.boresight("run argon --frames 220..240 --out plain --no-report").done();
+    bench.boresight("run argon --frames 5000..5020 --out plain --no-report").done();
     for stage in ["roi", "attitude"] {
         bench
-            .boresight(&format!("run argon --frames 220..240 --inject {stage} --out {stage} --no-report"))
+            .boresight(&format!("run argon --frames 5000..5020 --inject {stage} --out {stage} --no-report"))
             .done();
     }
     bench.boresight("report plain --budget roi --budget attitude").done();
@@ -318,9 +318,9 @@ fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
 
     bench.boresight("report plain --budget plain").refused(&["plain/run.toml", "`inject` is missing"]);
     bench.boresight("report roi --budget attitude").refused(&["--budget", "without --inject"]);
-    bench.boresight("run argon --frames 220..239 --inject attitude --out short --no-report").done();
+    bench.boresight("run argon --frames 5000..5019 --inject attitude --out short --no-report").done();
     bench.boresight("report plain --budget short").refused(&["short/run.toml", "the frames differ"]);
-    bench.boresight("run argon --seed 5 --frames 220..240 --inject attitude --out seed --no-report").done();
+    bench.boresight("run argon --seed 5 --frames 5000..5020 --inject attitude --out seed --no-report").done();
     bench.boresight("report plain --budget seed").refused(&["seed/run.toml", "`scenario`"]);
     bench.boresight("report plain --budget nowhere").refused(&["nowhere/run.toml"]);
     bench.boresight("run docking --frames 24000..24001 --out docking --no-report").done();
@@ -331,7 +331,7 @@ fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
 #[test]
 fn the_runs_of_an_error_budget_are_flown_once_and_kept() {
     let bench = Bench::new();
-    bench.boresight("run argon --frames 220..240 --out run --no-report").done();
+    bench.boresight("run argon --frames 5000..5020 --out run --no-report").done();
     bench.boresight("report run --budget all").done();
     let page = PageText::read(&bench, "run/report.html");
     page.check(&["budget"]);
@@ -345,7 +345,7 @@ fn the_runs_of_an_error_budget_are_flown_once_and_kept() {
         stages.iter().flat_map(|stage| ["run.toml", "score.json"].map(|name| format!("{stage}/{name}")));
     assert_eq!(kept, files.map(Into::into).collect());
     // Identical to a manual run.
-    bench.boresight("run argon --frames 220..240 --inject attitude --out attitude --no-report").done();
+    bench.boresight("run argon --frames 5000..5020 --inject attitude --out attitude --no-report").done();
     bench.check_same("attitude/score.json", "run/budget/attitude/score.json");
     // Existing results are not run again, and are in every later report.
     fs::remove_dir_all(bench.path("run/budget/roi")).unwrap();
