@@ -270,25 +270,34 @@ impl TileLoop<'_> {
 
     /// Sets the numbers of some runs to those of a batch, and draws the pixels that are not in a table.
     fn set_numbers(&mut self, runs: &[TileRun], batch: &Batch) {
-        let streams = &self.inputs.streams;
         let mut tile = 0;
         for run in runs {
+            let columns = run.columns(self.raw.columns);
+            let start = run.y * self.raw.columns;
+            let numbers = &mut self.raw.dn[start + columns.start..start + columns.end];
+            numbers.copy_from_slice(&batch.numbers[tile * TILE..][..columns.len()]);
             for tile_of_row in run.first..run.first + run.tiles {
                 let pixels = tile_pixels(self.raw.columns, run.y, tile_of_row);
-                let (first, in_batch) = (pixels.start, tile * TILE);
-                let numbers = &mut self.raw.dn[pixels];
-                numbers.copy_from_slice(&batch.numbers[in_batch..in_batch + numbers.len()]);
-                let means_e = &batch.means_e[in_batch..in_batch + numbers.len()];
-                for i in set_bits(batch.open_pixels(tile)) {
-                    // The last tile may extend beyond its row.
-                    if let (Some(dn), Some(&mean_e)) = (numbers.get_mut(i), means_e.get(i)) {
-                        let own_words = streams.pixel_words(first + i);
-                        *dn = self.sampler.draw_open(mean_e, batch.word(in_batch + i), &own_words);
-                    }
-                }
-                let mut redraw = Redraw { sampler: self.sampler, streams };
+                self.draw_open_pixels(pixels.start, batch, tile);
+                let means_e = &batch.means_e[tile * TILE..][..pixels.len()];
+                let (first, numbers) = (pixels.start, &mut self.raw.dn[pixels]);
+                let mut redraw = Redraw { sampler: self.sampler, streams: &self.inputs.streams };
                 self.dark.keep_below_floor(run.y, first, means_e, numbers, &mut redraw);
                 tile += 1;
+            }
+        }
+    }
+
+    /// Draws the pixels of a tile that are not in a table; `first` is the index of its first pixel.
+    fn draw_open_pixels(&mut self, first: usize, batch: &Batch, tile: usize) {
+        let row_end = (first / self.raw.columns + 1) * self.raw.columns;
+        for i in set_bits(batch.open_pixels(tile)) {
+            // The last tile may extend beyond its row.
+            if first + i < row_end {
+                let in_batch = tile * TILE + i;
+                let own_words = self.inputs.streams.pixel_words(first + i);
+                self.raw.dn[first + i] =
+                    self.sampler.draw_open(batch.means_e[in_batch], batch.word(in_batch), &own_words);
             }
         }
     }
