@@ -12,9 +12,9 @@
 //!    Random Variate Generation, 1986, X.2): their number is binomial, their positions uniform. A dark
 //!    candidate of mean λ is kept with the probability p(λ)/p₀ (PRNU, DSNU and gradients give every pixel an
 //!    individual mean), and gets a number from its distribution above the floor ([`Exceedance`]).
-//! 2. *All other pixels.* They are drawn as without a floor. A dark pixel whose number is above the floor, but
-//!    which was not selected in the first step, is drawn again until its number is not above the floor: this
-//!    gives its distribution conditional on not exceeding the floor.
+//! 2. *All other pixels.* They are drawn as without a floor. A dark pixel whose number is above the floor,
+//!    but which was not selected in the first step, is drawn again until its number is not above the floor:
+//!    this gives its distribution conditional on not exceeding the floor.
 //!
 //! Pixels brighter than λ₀, near sources, are drawn by the second step only. Every pixel therefore has the
 //! same distribution as without a floor and, if no pixel exceeds the floor, the same number.
