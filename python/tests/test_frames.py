@@ -18,7 +18,8 @@ def argon():
 
 def test_a_scenario_says_what_it_is(argon):
     assert (argon.name, argon.world, argon.seed, argon.frame_count) == ("argon", "far_range", 20120423, 16077)
-    assert boresight.Scenario.builtin_names() == ["argon", "argon-numerical", "docking", "middle-range", "starting-point"]
+    names = ["argon", "argon-numerical", "demo-docking", "demo-far-range", "docking", "middle-range", "starting-point"]
+    assert boresight.Scenario.builtin_names() == names
     assert argon.setup["camera"]["columns"] == 752
 
 
