@@ -7,7 +7,7 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package, Target}
 
 /// Each crate of the project, and the project's crates that it may depend on. The pipelines depend only on
 /// the contract, and therefore cannot share code with the simulator.
-const ARROWS: [(&str, &str); 35] = [
+const ARROWS: [(&str, &str); 36] = [
     ("contract", ""),
     ("config", "contract"),
     ("draws", ""),
@@ -49,6 +49,7 @@ const ARROWS: [(&str, &str); 35] = [
         "boresight",
         "config contract docking docking-views far-range far-range-views files flight-dynamics gate middle-range mitsuba monitor navigate pipeline report run scenario score show sim statistics study view visibility",
     ),
+    ("examples", "boresight contract"),
     ("python", "boresight config contract pipeline sim"),
     ("fuzz", "boresight contract pipeline sim"),
     ("research", "boresight contract draws pipeline sim"),
@@ -204,7 +205,7 @@ const COMPUTING: [&str; 11] = [
 ];
 
 /// Developers' programs, which only read their own input.
-const TOOLS: [&str; 2] = ["boresight-fuzz", "boresight-research"];
+const TOOLS: [&str; 3] = ["boresight-examples", "boresight-fuzz", "boresight-research"];
 
 /// The lints apply to the crates that read input, apart from exempt modules of arithmetic, and to the readers
 /// of the crates that compute.

@@ -66,7 +66,7 @@ fn run_with_navigate_writes_the_files_of_both_commands_and_its_report_has_the_ch
 #[test]
 fn a_program_navigates() {
     let bench = Bench::new();
-    let program = format!("exec:python3 '{}/docs/examples/prior_orbit.py'", env!("CARGO_MANIFEST_DIR"));
+    let program = format!("exec:python3 '{}/examples/prior_orbit.py'", env!("CARGO_MANIFEST_DIR"));
     bench.boresight("run argon --frames 0..30 --no-report --out run").done();
     let words = ["navigate", "run", "--every", "120", "--json", "--navigator", &program];
     let json = bench.boresight_words(&words).done().json();
