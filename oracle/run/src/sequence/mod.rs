@@ -1,5 +1,6 @@
 //! A sequence of frames: rendered, run and scored, followed, or only scored, in the same way for every world.
 
+mod labelling;
 mod processing;
 mod state_log;
 
@@ -8,6 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 use contract::{FailedStarts, Interface, Pipeline, PipelineFactory};
 use files::{AtomicFile, Failure, RunDirectory};
+use labels::LabelFormats;
 use serde::Serialize;
 
 pub use self::processing::{AnswerCount, process, process_into};
@@ -20,8 +22,9 @@ use crate::world::{
     Answers as _, Dataset as _, FrameAnswer, ImageOf, InformedPipeline, Judgement as _, Scorer as _, World,
 };
 
-/// Makes frames and writes them as a dataset; `done` is called after each frame. The frames of a run that
-/// is rendered again have the states of its log, all others the default state.
+/// Makes frames and writes them as a dataset, and then their labels, if any are requested; `done` is called
+/// after each frame and after its labels. The frames of a run that is rendered again have the states of its
+/// log, all others the default state.
 ///
 /// # Errors
 /// A [`Failure`] when a file cannot be written, or the log of the run cannot be read.
@@ -29,6 +32,7 @@ pub fn render<W: World>(
     world: &W,
     directory: &RunDirectory,
     frame_jobs: &FrameJobs<W::Images>,
+    label_formats: Option<&LabelFormats>,
     done: impl Fn(),
 ) -> Result<(), Failure> {
     let mut dataset = world.dataset(directory, frame_jobs)?;
@@ -51,7 +55,11 @@ pub fn render<W: World>(
         },
     )?;
     dataset.finish()?;
-    Ok(directory.seal()?)
+    let tables = match label_formats {
+        Some(formats) => labelling::write_labels(world, directory, frame_jobs, formats, &done)?,
+        None => Vec::new(),
+    };
+    Ok(directory.seal_with(&tables)?)
 }
 
 /// Makes frames, processes them with the pipeline, scores its outcomes and writes everything. `go_on` is
