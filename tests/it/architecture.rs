@@ -51,7 +51,7 @@ const ARROWS: [(&str, &str); 36] = [
     ("middle-range", "contract draws files monitor optics render report run scenario score sensor truth"),
     (
         "boresight",
-        "config contract docking docking-views far-range far-range-views files flight-dynamics gate middle-range mitsuba monitor navigate pipeline report run scenario score show sim statistics study view visibility",
+        "config contract docking docking-views far-range far-range-views files flight-dynamics gate labels middle-range mitsuba monitor navigate pipeline report run scenario score show sim statistics study view visibility",
     ),
     ("python", "boresight config contract pipeline sim"),
     ("fuzz", "boresight contract pipeline sim"),

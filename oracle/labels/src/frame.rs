@@ -29,6 +29,8 @@ pub struct ObjectLabel {
     pub silhouette: RowSpans,
     /// Those of these pixels that no other object hides.
     pub visible: RowSpans,
+    /// True if the object covers the centre of no pixel: its mask is the pixel of its origin.
+    pub is_point: bool,
     /// Keypoints, in the order of the class.
     pub keypoints: Vec<KeypointLabel>,
     /// Pose; `None` for an object without orientation.
@@ -49,8 +51,9 @@ impl ObjectLabel {
         let (columns, rows) = (size.0 as i32, size.1 as i32);
         let pixel =
             anchor.map(|[start, row]| RowSpans::from_spans(vec![Span { row, start, end: start + 1 }]));
+        let is_point = whole.count() == 0;
         let (whole, visible) = match &pixel {
-            Some(pixel) if whole.count() == 0 => (pixel, pixel),
+            Some(pixel) if is_point => (pixel, pixel),
             _ => (whole, visible),
         };
         let silhouette = whole.within(columns, rows);
@@ -62,6 +65,7 @@ impl ObjectLabel {
             whole_bounds,
             silhouette,
             visible: visible.within(columns, rows),
+            is_point,
             keypoints: Vec::new(),
             pose: None,
         })

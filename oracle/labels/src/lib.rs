@@ -28,4 +28,4 @@ mod yolo;
 pub use format::{LabelFormat, LabelFormats};
 pub use frame::{FrameLabels, KeypointLabel, ObjectLabel, ObjectPose, Visibility};
 pub use label_set::{ImageCamera, LabelClass, LabelSet, LabelView, ModelExtent, RowSampling};
-pub use writer::{LabelImages, LabelWriter};
+pub use writer::{LabelCounts, LabelImages, LabelWriter};

@@ -28,6 +28,16 @@ pub struct LabelWriter {
     coco: Option<CocoFile>,
     speed: Option<SpeedFiles>,
     bop: Option<BopFiles>,
+    counts: LabelCounts,
+}
+
+/// Numbers of labels that were written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LabelCounts {
+    /// Number of objects in all frames.
+    pub objects: u64,
+    /// Number of these that are smaller than a pixel, see [`crate::ObjectLabel::is_point`].
+    pub points: u64,
 }
 
 /// Writes the separate files of each frame, in any order and from any thread.
@@ -58,7 +68,7 @@ impl LabelWriter {
             yolo::create_folders(folder)?;
         }
         let images = LabelImages { folder: folder.to_owned(), set, formats: formats.clone() };
-        Ok(Self { images, coco, speed, bop })
+        Ok(Self { images, coco, speed, bop, counts: LabelCounts::default() })
     }
 
     /// Returns the writer of the files of each frame.
@@ -71,6 +81,8 @@ impl LabelWriter {
     /// # Errors
     /// [`FileError::Io`].
     pub fn add(&mut self, frame: &FrameLabels) -> Result<(), FileError> {
+        self.counts.objects += frame.objects.len() as u64;
+        self.counts.points += frame.objects.iter().filter(|object| object.is_point).count() as u64;
         let set = &self.images.set;
         if let Some(coco) = &mut self.coco {
             coco.add(set, frame)?;
@@ -84,12 +96,17 @@ impl LabelWriter {
         Ok(())
     }
 
+    /// Returns the numbers of labels so far.
+    pub fn counts(&self) -> LabelCounts {
+        self.counts
+    }
+
     /// Completes the tables, and returns their paths below the folder of the labels.
     ///
     /// # Errors
     /// [`FileError::Io`]; [`FileError::OutputTaken`] if a file has appeared in the meantime.
     pub fn finish(self) -> Result<Vec<PathBuf>, FileError> {
-        let Self { images: LabelImages { folder, set, formats }, coco, speed, bop } = self;
+        let Self { images: LabelImages { folder, set, formats }, coco, speed, bop, .. } = self;
         let mut paths = Vec::new();
         if let Some(coco) = coco {
             coco.finish(&set)?;

@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use files::{Failure, RunDirectory};
 use indexmap::IndexMap;
-use labels::LabelFormats;
+use labels::{LabelCounts, LabelFormats};
 use scenario::run_file::ScenarioValues as _;
 use score::{Figure, UnitTable};
 use serde_json::Value;
@@ -70,7 +70,7 @@ erased! {
         }
 
         /// Renders a dataset, as [`sequence::render`]; returns a description of the files that it contains
-        /// for a pipeline.
+        /// for a pipeline, and the numbers of labels.
         ///
         /// # Errors
         /// A [`Failure`] when a file cannot be written.
@@ -80,12 +80,12 @@ erased! {
             frame_jobs: &FrameJobs<String>,
             label_formats: Option<&LabelFormats>,
             done: &dyn Fn(),
-        ) -> Result<String, Failure> {
+        ) -> Result<(String, Option<LabelCounts>), Failure> {
             let frame_jobs: FrameJobs<W::Images> = frame_jobs.parse()?;
             let images = frame_jobs.images.unwrap_or(W::IMAGES);
             let frame_jobs = FrameJobs { images: Some(images), ..frame_jobs };
-            sequence::render(self, directory, &frame_jobs, label_formats, done)?;
-            Ok(W::files_for_pipelines(images))
+            let counts = sequence::render(self, directory, &frame_jobs, label_formats, done)?;
+            Ok((W::files_for_pipelines(images), counts))
         }
 
         /// Refuses a flight whose images cannot be written to standard output.

@@ -1,13 +1,13 @@
 //! Labels of a rendered sequence: written apart from the images, with the truth.
 
 use files::{Failure, RunDirectory};
-use labels::{LabelFormats, LabelWriter};
+use labels::{LabelCounts, LabelFormats, LabelWriter};
 
 use crate::frame_jobs::{FrameJobs, process_in_order};
 use crate::world::World;
 
-/// Writes the labels of frames to `truth/labels/`; `done` is called after each frame. Returns the paths of the
-/// tables below `directory`.
+/// Writes the labels of frames to `truth/labels/`; `done` is called after each frame. Returns the numbers
+/// of labels, and the paths of the tables below `directory`.
 ///
 /// # Errors
 /// A [`Failure`] when a file cannot be written, or the world has no labels.
@@ -17,7 +17,7 @@ pub(super) fn write_labels<W: World>(
     frame_jobs: &FrameJobs<W::Images>,
     formats: &LabelFormats,
     done: impl Fn(),
-) -> Result<Vec<String>, Failure> {
+) -> Result<(LabelCounts, Vec<String>), Failure> {
     let set = world.label_set()?;
     set.check(formats)?;
     let mut writer = LabelWriter::create(&directory.truth_labels(), set, formats)?;
@@ -40,6 +40,7 @@ pub(super) fn write_labels<W: World>(
             Ok(())
         },
     )?;
+    let counts = writer.counts();
     let tables = writer.finish()?;
-    Ok(tables.iter().map(|table| format!("truth/labels/{}", table.display())).collect())
+    Ok((counts, tables.iter().map(|table| format!("truth/labels/{}", table.display())).collect()))
 }

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 use contract::{FailedStarts, Interface, Pipeline, PipelineFactory};
 use files::{AtomicFile, Failure, RunDirectory};
-use labels::LabelFormats;
+use labels::{LabelCounts, LabelFormats};
 use serde::Serialize;
 
 pub use self::processing::{AnswerCount, process, process_into};
@@ -24,7 +24,7 @@ use crate::world::{
 
 /// Makes frames and writes them as a dataset, and then their labels, if any are requested; `done` is called
 /// after each frame and after its labels. The frames of a run that is rendered again have the states of its
-/// log, all others the default state.
+/// log, all others the default state. Returns the numbers of labels.
 ///
 /// # Errors
 /// A [`Failure`] when a file cannot be written, or the log of the run cannot be read.
@@ -34,7 +34,7 @@ pub fn render<W: World>(
     frame_jobs: &FrameJobs<W::Images>,
     label_formats: Option<&LabelFormats>,
     done: impl Fn(),
-) -> Result<(), Failure> {
+) -> Result<Option<LabelCounts>, Failure> {
     let mut dataset = world.dataset(directory, frame_jobs)?;
     let states: StateLog<W::State> = match &frame_jobs.states_of {
         Some(run) => StateLog::read(run)?,
@@ -55,11 +55,13 @@ pub fn render<W: World>(
         },
     )?;
     dataset.finish()?;
-    let tables = match label_formats {
-        Some(formats) => labelling::write_labels(world, directory, frame_jobs, formats, &done)?,
-        None => Vec::new(),
+    let Some(formats) = label_formats else {
+        directory.seal()?;
+        return Ok(None);
     };
-    Ok(directory.seal_with(&tables)?)
+    let (counts, tables) = labelling::write_labels(world, directory, frame_jobs, formats, &done)?;
+    directory.seal_with(&tables)?;
+    Ok(Some(counts))
 }
 
 /// Makes frames, processes them with the pipeline, scores its outcomes and writes everything. `go_on` is
