@@ -196,7 +196,7 @@ impl LabelSet {
         let bent = self.views.iter().find(|view| view.camera.distortion().is_none());
         match bent {
             Some(view) if formats.contains(LabelFormat::Speed) => Err(Failure::Usage(format!(
-                "--labels {formats}: camera.json of speed cannot express the distortion of camera {}, expected \
+                "--labels {formats}: camera.json of speed cannot express the distortion of camera `{}`, expected \
                  square pixels or no distortion; coco, bop and yolo have no such limit",
                 view.name
             ))),
@@ -276,7 +276,7 @@ pub(crate) mod tests {
         set(&camera(), None).check(&"coco,yolo".parse().unwrap()).unwrap();
         let oblong = Camera { pixel_height_um: 8.0, radial: [1e-6, 0.0, 0.0], ..camera() };
         let message = set(&oblong, model).check(&all).unwrap_err().to_string();
-        assert!(message.contains("distortion of camera a, expected square pixels"), "{message}");
+        assert!(message.contains("distortion of camera `a`, expected square pixels"), "{message}");
         set(&oblong, model).check(&"coco,bop,yolo".parse().unwrap()).unwrap();
     }
 

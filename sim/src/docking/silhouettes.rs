@@ -122,3 +122,131 @@ fn part_mask(part: &Part, state: &FieldState, painter: &mut MaskPainter) -> RowS
     }
     painter.finish()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use contract::Camera;
+    use contract::docking::Lines;
+    use render::vector::{Drawer, RadianceImage};
+    use scene::docking::{DockingScene, Lighting};
+    use sensor::television::{Interlace, TelevisionConfig};
+    use truth::approach::{ApproachConfig, ConstantVelocityConfig};
+
+    use super::*;
+    use crate::docking::{CameraConfig, DockingSimulation, LensConfig, LightingConfig};
+
+    /// Camera at rest, turned and off the axis, with a distortion of several pixels in the corner.
+    fn simulator(position_m: [f64; 3]) -> DockingSimulator {
+        let camera = Camera {
+            columns: 384,
+            rows: 288,
+            focal_length_mm: 10.0,
+            pixel_width_um: 10.0,
+            pixel_height_um: 10.0,
+            principal_x_px: 180.0,
+            principal_y_px: 150.0,
+            radial: [4e-7, 0.0, 0.0],
+            tangential: [2e-6, -3e-6],
+        };
+        let simulation = DockingSimulation {
+            seed: 7,
+            start_utc: "2004-01-31T13:00:00Z".into(),
+            target: "progress".into(),
+            approach: ApproachConfig::ConstantVelocity(ConstantVelocityConfig {
+                position_m,
+                velocity_m_s: [0.0; 3],
+                phi_deg: [0.4, -0.7, 9.0],
+                phi_rate_deg_s: [0.0; 3],
+                duration_s: 1.0,
+            }),
+            cameras: vec![CameraConfig { name: "TV".into(), until_range_m: 0.0, camera }],
+            lens: LensConfig::default(),
+            lighting: LightingConfig::default(),
+            television: TelevisionConfig { interlace: Interlace::TopFirst, ..TelevisionConfig::default() },
+        };
+        DockingSimulator::new(&simulation, Path::new(".")).unwrap()
+    }
+
+    /// Fraction of each camera pixel that an assembly covers and no other hides, by the renderer: the assembly
+    /// is white and everything else is black.
+    fn visible_coverage(
+        simulator: &DockingSimulator,
+        state: &FieldState,
+        assembly: Assembly,
+    ) -> RadianceImage {
+        let mut scene = DockingScene { parts: simulator.scene().parts.clone() };
+        for part in &mut scene.parts {
+            let reflectance = if part.assembly == assembly { 1.0 } else { 0.0 };
+            part.facets.iter_mut().for_each(|facet| facet.reflectance = reflectance);
+        }
+        let lighting = Lighting { sun: None, fill_radiance: 1.0, sky_radiance: 0.0, floodlight: None };
+        let mut image = RadianceImage::default();
+        let mut drawer = Drawer::new(&simulator.cameras[0].camera).unwrap();
+        drawer.draw(&scene, &lighting, &state.state.pose, &mut image);
+        image
+    }
+
+    /// Returns true for the pixels of a mask, row by row.
+    fn pixels(mask: &RowSpans, columns: usize, rows: usize) -> Vec<bool> {
+        let mut pixels = vec![false; columns * rows];
+        for span in mask.within(columns as i32, rows as i32).spans() {
+            let start = span.row as usize * columns;
+            pixels[start + span.start as usize..start + span.end as usize].fill(true);
+        }
+        pixels
+    }
+
+    /// Masks and areas are independent: the former test the centre of each pixel, the latter sum areas.
+    #[test]
+    fn a_mask_holds_what_the_renderer_draws() {
+        for position_m in [[0.4, -0.3, 9.0], [0.1, 0.05, 2.5], [3.0, -2.0, 60.0]] {
+            let simulator = simulator(position_m);
+            for field in [0, 1] {
+                let state = simulator.field_state(field).unwrap();
+                let mut painter = simulator.mask_painter(&state).unwrap();
+                let silhouettes = simulator.silhouettes(&state, &mut painter);
+                for AssemblySilhouette { assembly, visible, .. } in &silhouettes {
+                    let image = visible_coverage(&simulator, &state, *assembly);
+                    let mask = pixels(visible, image.columns, state.lines.rows(image.rows));
+                    let (mut area, mut count, mut seams) = (0.0, 0, 0);
+                    for (index, is_mask) in mask.iter().enumerate() {
+                        let row = state.lines.camera_row(index / image.columns);
+                        let covered = image.radiance[row * image.columns + index % image.columns];
+                        area += f64::from(covered);
+                        count += usize::from(*is_mask);
+                        // A pixel whose centre is inside may be covered by less than half, and never barely.
+                        let is_clear = if *is_mask { covered > 0.02 } else { covered < 0.98 };
+                        seams += usize::from(!is_clear);
+                    }
+                    // Where circles of few and of many sides meet, the scene has gaps of millimetres, which the
+                    // renderer closes ("disjoint coverage") and a centre may meet.
+                    assert!(seams <= 4, "{assembly:?} {position_m:?}: {seams} pixels");
+                    // The roundings at both borders of each row average out.
+                    let tolerance = 6.0 + 0.01 * area;
+                    assert!((area - count as f64).abs() < tolerance, "{assembly:?} {area} {count}");
+                }
+            }
+        }
+    }
+
+    /// The disk's centre lies behind the cross for a camera on the axis; the marks around it are in view.
+    #[test]
+    fn the_cross_hides_the_centre_of_the_disk() {
+        let simulator = simulator([0.0, 0.0, 5.0]);
+        let state = simulator.field_state(1).unwrap();
+        assert_eq!(state.lines, Lines::Odd);
+        let features = simulator.target_features();
+        let points: Vec<_> = features.iter().map(|feature| feature.position_m).collect();
+        let images = simulator.feature_images(&state, &points);
+        let hidden: Vec<&str> = features
+            .iter()
+            .zip(&images)
+            .filter(|(_, image)| image.is_hidden)
+            .map(|(feature, _)| feature.name.as_str())
+            .collect();
+        assert_eq!(hidden, ["disk_centre"]);
+        assert_eq!(features.len(), 6 + 12);
+    }
+}
