@@ -1,4 +1,4 @@
-//! `boresight render --labels`: what is written, what is refused, and readers of other projects.
+//! `boresight render --labels`: written files, refused requests, and readers of other projects.
 
 use std::path::Path;
 use std::process::Command;
@@ -94,14 +94,14 @@ fn a_target_smaller_than_a_pixel_has_the_box_of_its_pixel() {
 fn a_beacon_is_named_in_a_warning() {
     let bench = Bench::new();
     bench.scenario("beacon.toml", "starting-point", |table| {
-        table["target"] = toml::toml! { kind = "beacon"; magnitude_at_1_km = 0.0 }.into();
+        table["target"] = toml::from_str("kind = \"beacon\"\nmagnitude_at_1_km = 0.0").unwrap();
     });
     let answer = bench.boresight("render beacon.toml --frames 0..1 --labels yolo --out out").done();
     assert!(answer.stderr.contains("the target is a beacon, a point without extent"), "{}", answer.stderr);
 }
 
 #[test]
-fn what_cannot_be_labelled_is_refused_before_anything_is_written() {
+fn requests_without_labels_are_refused_before_anything_is_written() {
     let bench = Bench::new();
     for (words, parts) in [
         ("docking --labels kitti", ["--labels", "`kitti` is no format of labels", "coco, speed, bop, yolo"]),

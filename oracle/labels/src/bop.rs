@@ -1,7 +1,8 @@
 //! BOP: poses, boxes and masks of all objects (bop_toolkit, `docs/bop_datasets_format.md`, scenewise).
 //!
-//! Boxes are [x, y, width, height] with x, y the first pixel and width, height the differences between last and
-//! first pixel, as `scripts/calc_gt_info.py` computes them. `cam_K` is for pixel centres, lengths are mm.
+//! Boxes are [x, y, width, height] with x, y the first pixel and width, height the differences between last
+//! and first pixel, as `scripts/calc_gt_info.py` computes them. `cam_K` is for pixel centres, lengths are
+//! mm.
 
 use std::path::{Path, PathBuf};
 

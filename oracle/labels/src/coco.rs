@@ -1,8 +1,8 @@
 //! COCO: one JSON file with images, categories and annotations (<https://cocodataset.org/#format-data>).
 //!
-//! Boxes are [x, y, width, height] px from the upper left corner of the image, and enclose the visible pixels.
-//! Keypoints are pixel indices: the centre of the first pixel is (0, 0). Masks are run lengths down the columns
-//! that begin with the background.
+//! Boxes are [x, y, width, height] px from the upper left corner of the image, and enclose the visible
+//! pixels. Keypoints are pixel indices: the centre of the first pixel is (0, 0). Masks are run lengths down
+//! the columns that begin with the background.
 
 use std::path::Path;
 
@@ -123,8 +123,8 @@ mod tests {
         RowSpans::from_spans(list.iter().map(|&[row, start, end]| Span { row, start, end }).collect())
     }
 
-    /// The comment of the format's interface, `cocoapi/PythonAPI/pycocotools/mask.py`: M = [0 0 1 1 1 0 1] has
-    /// the counts [2 3 1 1], and M = [1 1 1 1 1 1 0] the counts [0 6 1]. M is read down the columns.
+    /// The comment of the format's interface, `cocoapi/PythonAPI/pycocotools/mask.py`: M = [0 0 1 1 1 0 1]
+    /// has the counts [2 3 1 1], and M = [1 1 1 1 1 1 0] the counts [0 6 1]. M is read down the columns.
     #[test]
     fn run_lengths_are_those_of_the_published_examples() {
         let column = |rows: &[i32]| mask(&rows.iter().map(|row| [*row, 0, 1]).collect::<Vec<_>>());

@@ -38,9 +38,9 @@ pub struct ObjectLabel {
 }
 
 impl ObjectLabel {
-    /// Creates the label of an object in a picture of `size` (columns, rows), with neither keypoints nor pose;
-    /// `None` if it covers no part of the picture. An object too small to cover the centre of a pixel covers
-    /// the pixel `anchor` (column, row), in which its origin lies.
+    /// Creates the label of an object in a picture of `size` (columns, rows), with neither keypoints nor
+    /// pose; `None` if it covers no part of the picture. An object too small to cover the centre of a pixel
+    /// covers the pixel `anchor` (column, row), in which its origin lies.
     pub fn in_picture(
         class: usize,
         size: (usize, usize),

@@ -159,9 +159,10 @@ impl ImageCamera {
         self.camera.radial != [0.0; 3] || self.camera.tangential != [0.0; 2]
     }
 
-    /// Distortion coefficients k1, k2, p1, p2, k3 of OpenCV, which apply to x' = X/Z and y' = Y/Z. `None` for a
-    /// distorted camera whose pixels are not square: its coefficients apply to pixels, which OpenCV's formula
-    /// cannot express. Rows that an image omits do not count: they scale the image after the distortion.
+    /// Distortion coefficients k1, k2, p1, p2, k3 of OpenCV, which apply to x' = X/Z and y' = Y/Z. `None`
+    /// for a distorted camera whose pixels are not square: its coefficients apply to pixels, which OpenCV's
+    /// formula cannot express. Rows that an image omits do not count: they scale the image after the
+    /// distortion.
     pub fn distortion(&self) -> Option<[f64; 5]> {
         if !self.is_distorted() {
             return Some([0.0; 5]);
@@ -179,8 +180,8 @@ impl LabelSet {
     /// Refuses formats that cannot express these labels.
     ///
     /// # Errors
-    /// [`Failure::Usage`] for SPEED or BOP without an orientation, and for SPEED with distorted pixels that are
-    /// not square.
+    /// [`Failure::Usage`] for SPEED or BOP without an orientation, and for SPEED with distorted pixels that
+    /// are not square.
     pub fn check(&self, formats: &LabelFormats) -> Result<(), Failure> {
         for format in [LabelFormat::Speed, LabelFormat::Bop].into_iter().filter(|f| formats.contains(*f)) {
             let without_pose = self.classes.iter().find(|class| class.model.is_none());

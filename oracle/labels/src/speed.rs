@@ -1,9 +1,11 @@
-//! SPEED and SPEED+: pose of one object per image (European Space Agency, Kelvins, pose estimation challenges).
+//! SPEED and SPEED+: pose of one object per image (European Space Agency, Kelvins, pose estimation
+//! challenges).
 //!
-//! VBS is our camera frame (x along columns, y along rows, z along the boresight), TANGO the body frame of the
-//! main object. The published reader projects a point p of TANGO by K (Cᵀ p + r) with the direction cosine
-//! matrix C of `q_vbs2tango`; C of a quaternion is the transpose of Hamilton's R. So p is R p + r in VBS, and
-//! the quaternion is our `q_cam_target`, scalar first. One folder per camera: `camera.json` describes one.
+//! VBS is our camera frame (x along columns, y along rows, z along the boresight), TANGO the body frame of
+//! the main object. The published reader projects a point p of TANGO by K (Cᵀ p + r) with the direction
+//! cosine matrix C of `q_vbs2tango`; C of a quaternion is the transpose of Hamilton's R. So p is R p + r in
+//! VBS, and the quaternion is our `q_cam_target`, scalar first. One folder per camera: `camera.json`
+//! describes one.
 
 use std::path::{Path, PathBuf};
 
@@ -67,8 +69,8 @@ fn record(number: u64, pose: &ObjectPose) -> serde_json::Value {
     })
 }
 
-/// Returns `camera.json` of SPEED+: focal lengths and pixels in metres, the principal point and the matrix for
-/// pixel centres.
+/// Returns `camera.json` of SPEED+: focal lengths and pixels in metres, the principal point and the matrix
+/// for pixel centres.
 fn camera(view: &LabelView) -> String {
     let camera = &view.camera;
     let (columns, rows) = camera.size();
@@ -96,8 +98,8 @@ mod tests {
     use super::*;
     use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-    /// Direction cosine matrix of the published reader (`quat2dcm`, <https://gitlab.com/EuropeanSpaceAgency/speed-utils>),
-    /// with its formula for each element.
+    /// Direction cosine matrix of the published reader (`quat2dcm`,
+    /// <https://gitlab.com/EuropeanSpaceAgency/speed-utils>), with its formula for each element.
     fn published_matrix([q0, q1, q2, q3]: [f64; 4]) -> Matrix3<f64> {
         Matrix3::new(
             2.0 * q0 * q0 - 1.0 + 2.0 * q1 * q1,
@@ -123,7 +125,8 @@ mod tests {
         assert!(pose.wxyz()[0] > 0.0);
     }
 
-    /// By hand: a quarter turn about z takes the body's x to the camera's y. Its quaternion is (√½, 0, 0, √½).
+    /// By hand: a quarter turn about z takes the body's x to the camera's y. Its quaternion is (√½, 0, 0,
+    /// √½).
     #[test]
     fn a_quarter_turn_about_the_boresight_has_its_quaternion() {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);

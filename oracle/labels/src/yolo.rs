@@ -54,7 +54,8 @@ fn most_keypoints(set: &LabelSet) -> usize {
     set.classes.iter().map(|class| class.keypoints.len()).max().unwrap_or(0)
 }
 
-/// Returns the line of an object, with this number of keypoints if it has any; `None` without a visible pixel.
+/// Returns the line of an object, with this number of keypoints if it has any; `None` without a visible
+/// pixel.
 fn line(object: &ObjectLabel, size: (usize, usize), keypoints: Option<usize>) -> Option<String> {
     let [columns, rows] = object.visible.bounds()?;
     let (width, height) = (size.0 as f64, size.1 as f64);
@@ -116,7 +117,8 @@ mod tests {
     use contract::PixelPoint;
     use sim::vector::{RowSpans, Span};
 
-    /// By hand: columns 2 to 4 and row 3 of an image of 8 × 4 pixels; a keypoint at the centre of pixel (3, 3).
+    /// By hand: columns 2 to 4 and row 3 of an image of 8 × 4 pixels; a keypoint at the centre of pixel (3,
+    /// 3).
     #[test]
     fn boxes_and_keypoints_are_fractions_from_the_corner_of_the_image() {
         let pixels = RowSpans::from_spans(vec![Span { row: 3, start: 2, end: 5 }]);

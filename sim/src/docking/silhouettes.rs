@@ -1,4 +1,5 @@
-//! Outlines of the scene's assemblies and positions of the target's features in a field: the source of labels.
+//! Outlines of the scene's assemblies and positions of the target's features in a field: the source of
+//! labels.
 
 use contract::PixelPoint;
 use nalgebra::Vector3;
@@ -40,8 +41,8 @@ pub struct FeatureImage {
 }
 
 impl DockingSimulator {
-    /// Returns the features of the target: the centre of the disk, the centre and the ends of the cross (front
-    /// face; right is +y1, top is +y2), the centres of the marks.
+    /// Returns the features of the target: the centre of the disk, the centre and the ends of the cross
+    /// (front face; right is +y1, top is +y2), the centres of the marks.
     pub fn target_features(&self) -> Vec<TargetFeature> {
         let cross = &self.model.cross;
         let (length, height) = (cross.half_length_m, cross.height_m);
@@ -169,8 +170,8 @@ mod tests {
         DockingSimulator::new(&simulation, Path::new(".")).unwrap()
     }
 
-    /// Fraction of each camera pixel that an assembly covers and no other hides, by the renderer: the assembly
-    /// is white and everything else is black.
+    /// Fraction of each camera pixel that an assembly covers and no other hides, by the renderer: the
+    /// assembly is white and everything else is black.
     fn visible_coverage(
         simulator: &DockingSimulator,
         state: &FieldState,
@@ -200,7 +201,7 @@ mod tests {
 
     /// Masks and areas are independent: the former test the centre of each pixel, the latter sum areas.
     #[test]
-    fn a_mask_holds_what_the_renderer_draws() {
+    fn a_mask_holds_the_drawn_pixels() {
         for position_m in [[0.4, -0.3, 9.0], [0.1, 0.05, 2.5], [3.0, -2.0, 60.0]] {
             let simulator = simulator(position_m);
             for field in [0, 1] {
@@ -220,8 +221,8 @@ mod tests {
                         let is_clear = if *is_mask { covered > 0.02 } else { covered < 0.98 };
                         seams += usize::from(!is_clear);
                     }
-                    // Where circles of few and of many sides meet, the scene has gaps of millimetres, which the
-                    // renderer closes ("disjoint coverage") and a centre may meet.
+                    // Where circles of few and of many sides meet, the scene has gaps of millimetres, which
+                    // the renderer closes ("disjoint coverage") and a centre may meet.
                     assert!(seams <= 4, "{assembly:?} {position_m:?}: {seams} pixels");
                     // The roundings at both borders of each row average out.
                     let tolerance = 6.0 + 0.01 * area;

@@ -84,8 +84,8 @@ impl RunDirectory {
         self.seal_with(&[])
     }
 
-    /// Seals the directory as [`RunDirectory::seal`], with the checksums of further files, given by their paths
-    /// relative to the directory.
+    /// Seals the directory as [`RunDirectory::seal`], with the checksums of further files, given by their
+    /// paths relative to the directory.
     ///
     /// # Errors
     /// Those of [`RunDirectory::seal`].

@@ -67,8 +67,8 @@ impl Facet {
         self.distance_along(eye, ray).is_some()
     }
 
-    /// Returns the distance from `eye` along the unit vector `ray` at which the ray meets the facet from either
-    /// side, m; `None` if it does not.
+    /// Returns the distance from `eye` along the unit vector `ray` at which the ray meets the facet from
+    /// either side, m; `None` if it does not.
     pub(super) fn distance_along(&self, eye: &Vector3<f64>, ray: &Vector3<f64>) -> Option<f64> {
         let (towards, along) = (self.centre - eye, ray.dot(&self.normal));
         let reach = towards.dot(&self.normal) / along;

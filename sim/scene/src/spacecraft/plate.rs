@@ -88,8 +88,8 @@ pub(super) struct Brick {
 }
 
 impl Brick {
-    /// Returns the eight corners, body frame, m: bit 0 of the index is set at the larger x, bit 1 at the larger
-    /// y, bit 2 at the larger z.
+    /// Returns the eight corners, body frame, m: bit 0 of the index is set at the larger x, bit 1 at the
+    /// larger y, bit 2 at the larger z.
     pub(super) fn corners_m(&self) -> [Vector3<f64>; 8] {
         let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
         std::array::from_fn(|i| {

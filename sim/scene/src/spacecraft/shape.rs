@@ -44,10 +44,10 @@ impl Spacecraft {
         }
     }
 
-    /// Returns the named points: `origin` of the body frame; `box_I_corner_0` to `7` of each box; `plate_I_corner_0`
-    /// to `3` of each single plate, counter-clockwise seen from its front; `bounds_corner_0` to `7` of the box
-    /// along the axes of the body frame around a mesh. Bit 0 of a box's corner is set at the larger x, bit 1 at
-    /// the larger y, bit 2 at the larger z.
+    /// Returns the named points: `origin` of the body frame; `box_I_corner_0` to `7` of each box;
+    /// `plate_I_corner_0` to `3` of each single plate, counter-clockwise seen from its front;
+    /// `bounds_corner_0` to `7` of the box along the axes of the body frame around a mesh. Bit 0 of a box's
+    /// corner is set at the larger x, bit 1 at the larger y, bit 2 at the larger z.
     pub fn named_points(&self) -> Vec<NamedPoint> {
         let origin = NamedPoint { name: "origin".to_owned(), position_m: Vector3::zeros() };
         let mut points = vec![origin];
@@ -126,8 +126,8 @@ fn bounding_box_corners(points: &[Vector3<f64>]) -> [Vector3<f64>; 8] {
     std::array::from_fn(|index| Vector3::new(pick(index, 0), pick(index, 1), pick(index, 2)))
 }
 
-/// Returns the circle on a sphere about the origin where lines of sight from `eye_m` touch it, m; empty inside
-/// the sphere.
+/// Returns the circle on a sphere about the origin where lines of sight from `eye_m` touch it, m; empty
+/// inside the sphere.
 fn limb_of_sphere(radius_m: f64, eye_m: &Vector3<f64>) -> Vec<Vector3<f64>> {
     let distance = eye_m.norm();
     if distance <= radius_m {

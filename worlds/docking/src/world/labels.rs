@@ -105,8 +105,8 @@ fn vertices_m(mission: &DockingMission, assembly: Assembly) -> Vec<Vector3<f64>>
     of_assembly.flat_map(|part| part.facets.iter().flat_map(|facet| facet.outer.iter().copied())).collect()
 }
 
-/// Returns the image of the middle of an assembly, px of the camera: it labels an assembly that is smaller than
-/// a pixel.
+/// Returns the image of the middle of an assembly, px of the camera: it labels an assembly that is smaller
+/// than a pixel.
 fn anchor(mission: &DockingMission, state: &FieldState, assembly: Assembly) -> Option<PixelPoint> {
     let model = &mission.setup.target;
     let on_axis = |[y1, y2]: [f64; 2], depth_m: f64| Vector3::new(y1, y2, -depth_m);
