@@ -12,7 +12,8 @@ DATASET/truth/labels are left out, except coco, which the others are compared wi
 - SPEED by the formulas of the published starter kit (quat2dcm, project) and the distortion of OpenCV, at the
   keypoints of COCO.
 - YOLO by supervision: boxes of COCO; keypoints by the published rule of a line.
-- The truth tables: the target's position in the image, which the labels do not use.
+- The truth tables: the target's position in the image, which the labels do not use; and the corners of a target
+  of plates, which its mask reaches.
 
 Prints one line of figures a check; exit 0 when all hold, 1 when one does not, 2 when the labels cannot be read.
 """
@@ -322,6 +323,22 @@ def check_truth(labels, dataset, report):
                  f"{len(distances)} positions of the target, worst {worst(distances):.1e} px")
 
 
+def check_extent(labels, report):
+    """The box of a far-range target of plates ends at its outermost corners."""
+    errors = []
+    for number, objects in labels.annotations.items():
+        if 1 not in objects:
+            continue
+        positions, visibility = labels.keypoints(number, 1)
+        x, y, width, height = objects[1]["bbox"]
+        if len(positions) > 1 and visibility.all():
+            # A mask ends before a right-angled corner: half a pixel where its tip is narrower than a pixel, and
+            # up to one more to the next centre.
+            corners = [*positions.min(axis=0), *positions.max(axis=0)]
+            errors.append(np.abs(np.array([x, y, x + width - 1, y + height - 1]) - corners).max())
+    report.check(worst(errors) <= 1.5, "extent", f"{len(errors)} boxes, worst {worst(errors):.2f} px from the corners")
+
+
 COLOURS = [(255, 170, 0), (0, 200, 255), (190, 110, 255)]
 
 
@@ -367,6 +384,8 @@ def main():
     report = Report()
     check_coco(labels, report)
     check_truth(labels, arguments.dataset, report)
+    if not (arguments.dataset / "setup.toml").exists():
+        check_extent(labels, report)
     for name, check in (("bop", check_bop), ("speed", check_speed), ("yolo", check_yolo)):
         if labels.has(name):
             check(labels, report)
