@@ -343,7 +343,8 @@ COLOURS = [(255, 170, 0), (0, 200, 255), (190, 110, 255)]
 
 
 def draw(labels, number, path):
-    """Draws masks, boxes and keypoints (green visible, red hidden) over an image; a field at twice its height."""
+    """Draws masks, boxes and keypoints (green visible, red hidden) over an image; a field at twice its height.
+    """
     image = labels.coco.loadImgs(number)[0]
     with Image.open(labels.frames / image["file_name"]) as file:
         values = np.asarray(file).astype(float)
