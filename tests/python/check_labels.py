@@ -332,8 +332,8 @@ def check_extent(labels, report):
         positions, visibility = labels.keypoints(number, 1)
         x, y, width, height = objects[1]["bbox"]
         if len(positions) > 1 and visibility.all():
-            # A mask ends before a right-angled corner: half a pixel where its tip is narrower than a pixel, and
-            # up to one more to the next centre.
+            # A mask ends before a right-angled corner: half a pixel where its tip is narrower than a pixel,
+            # and up to one more to the next centre.
             corners = [*positions.min(axis=0), *positions.max(axis=0)]
             errors.append(np.abs(np.array([x, y, x + width - 1, y + height - 1]) - corners).max())
     report.check(worst(errors) <= 1.5, "extent", f"{len(errors)} boxes, worst {worst(errors):.2f} px from the corners")
