@@ -24,12 +24,12 @@ pub struct TargetView {
     pub points: Vec<PointImage>,
 }
 
-/// Image of a named point of the target.
+/// Image of a point of the target; px of the camera, also for a field of interlaced television.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointImage {
     /// Position, px; `None` behind the camera or far outside the picture.
     pub position: Option<PixelPoint>,
-    /// True if the target hides the point.
+    /// True if an object lies between the camera and the point.
     pub is_hidden: bool,
 }
 

@@ -15,7 +15,7 @@ mod truth;
 pub use config::{CameraConfig, DockingSimulation, LensConfig};
 pub use glint::{GlintConfig, GlintImage};
 pub use lighting::{FloodlightConfig, LightingConfig, ShadeConfig, SunConfig};
-pub use silhouettes::{AssemblySilhouette, FeatureImage, TargetFeature};
+pub use silhouettes::AssemblySilhouette;
 pub use simulator::{DockingSimulator, DockingWorkspace, FieldExposure, FieldState};
 pub use truth::FieldTruth;
 

@@ -1,14 +1,15 @@
 //! Outlines of the scene's assemblies and positions of the target's features in a field: the source of
 //! labels.
 
-use contract::PixelPoint;
 use nalgebra::Vector3;
 use render::vector::{MaskPainter, RowSpans};
+use scene::NamedPoint;
 use scene::docking::{Assembly, Part};
 use truth::SimError;
 use truth::approach::target_from_camera;
 
 use super::simulator::{DockingSimulator, FieldState};
+use crate::PointImage;
 
 /// Pixels of an assembly in the image of a field: rows are those of the field, also beyond the picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,29 +22,10 @@ pub struct AssemblySilhouette {
     pub visible: RowSpans,
 }
 
-/// Feature of the target.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TargetFeature {
-    /// Name: `disk_centre`, `cross_centre`, `cross_right`, `cross_top`, `cross_left`, `cross_bottom`, and
-    /// `mark_0` and so on in the order of the target's file.
-    pub name: String,
-    /// Position in the target frame, m.
-    pub position_m: Vector3<f64>,
-}
-
-/// Image of a feature of the target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FeatureImage {
-    /// Position, px of the camera, also for a field; `None` behind the camera or far outside the picture.
-    pub position: Option<PixelPoint>,
-    /// True if a part of the scene lies between the camera and the feature.
-    pub is_hidden: bool,
-}
-
 impl DockingSimulator {
     /// Returns the features of the target: the centre of the disk, the centre and the ends of the cross
     /// (front face; right is +y1, top is +y2), the centres of the marks.
-    pub fn target_features(&self) -> Vec<TargetFeature> {
+    pub fn target_features(&self) -> Vec<NamedPoint> {
         let cross = &self.model.cross;
         let (length, height) = (cross.half_length_m, cross.height_m);
         let fixed = [
@@ -54,7 +36,7 @@ impl DockingSimulator {
             ("cross_left", [-length, 0.0, height]),
             ("cross_bottom", [0.0, -length, height]),
         ];
-        let fixed = fixed.map(|(name, position)| TargetFeature {
+        let fixed = fixed.map(|(name, position)| NamedPoint {
             name: name.to_owned(),
             position_m: Vector3::from(position),
         });
@@ -62,15 +44,15 @@ impl DockingSimulator {
             let centre = corners
                 .iter()
                 .fold(Vector3::zeros(), |sum, [y1, y2]| sum + 0.25 * Vector3::new(*y1, *y2, 0.0));
-            TargetFeature { name: format!("mark_{index}"), position_m: centre }
+            NamedPoint { name: format!("mark_{index}"), position_m: centre }
         });
         fixed.into_iter().chain(marks).collect()
     }
 
     /// Returns the images of points of the target frame, m, in a field.
-    pub fn feature_images(&self, state: &FieldState, points_m: &[Vector3<f64>]) -> Vec<FeatureImage> {
+    pub fn feature_images(&self, state: &FieldState, points_m: &[Vector3<f64>]) -> Vec<PointImage> {
         let pose = &state.state.pose;
-        let image = |point_m: &Vector3<f64>| FeatureImage {
+        let image = |point_m: &Vector3<f64>| PointImage {
             position: self.eyes.get(state.camera).and_then(|eye| eye.image_of(pose, point_m)),
             is_hidden: self.geometry.is_hidden(pose, point_m),
         };

@@ -19,7 +19,7 @@ const CLEARANCE_M: f64 = 1e-6;
 pub struct NamedPoint {
     /// Name, of letters, digits and underscores.
     pub name: String,
-    /// Position in the target's body frame, m.
+    /// Position in the frame of the target, m.
     pub position_m: Vector3<f64>,
 }
 

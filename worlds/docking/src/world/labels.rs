@@ -9,7 +9,9 @@ use contract::docking::{Lines, Pose};
 use files::Failure;
 use nalgebra::{UnitQuaternion, Vector3};
 use run::world::WorldScenario as _;
-use sim::docking::{FeatureImage, FieldState};
+use sim::PointImage;
+use sim::docking::FieldState;
+use sim::scene::NamedPoint;
 use sim::scene::docking::Assembly;
 use sim::truth::approach::target_from_camera;
 
@@ -19,25 +21,32 @@ use super::mission::DockingMission;
 const CLASSES: [(Assembly, &str); 3] =
     [(Assembly::Target, "target"), (Assembly::DockingUnit, "docking_unit"), (Assembly::Station, "station")];
 
-/// Returns the classes and cameras. A field that holds the even rows of a camera and one that holds the odd
-/// rows are two cameras: their principal points differ by half a row.
+/// Camera with the rows of its fields: a field of the even rows and one of the odd rows are two cameras, whose
+/// principal points differ by half a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct FieldView {
+    camera: usize,
+    lines: Lines,
+}
+
+/// Returns the classes and cameras.
 pub(super) fn label_set(mission: &DockingMission) -> LabelSet {
     let run_file = &mission.run_file;
-    let features = mission.simulator.target_features().into_iter().map(|feature| feature.name).collect();
-    let mut keypoints: Vec<Vec<String>> = vec![features];
-    keypoints.resize_with(CLASSES.len(), Vec::new);
-    let class = |((assembly, name), keypoints): ((Assembly, &str), Vec<String>)| LabelClass {
-        name: name.to_owned(),
-        keypoints,
-        model: ModelExtent::from_vertices(&vertices_m(mission, assembly)),
-    };
+    let mut classes = Vec::with_capacity(CLASSES.len());
+    for (assembly, name) in CLASSES {
+        classes.push(LabelClass {
+            name: name.to_owned(),
+            keypoints: features(mission, assembly).into_iter().map(|feature| feature.name).collect(),
+            model: ModelExtent::from_vertices(&vertices_m(mission, assembly)),
+        });
+    }
     LabelSet {
         description: format!(
             "Boresight {}, scenario {}, seed {}",
             run_file.version, run_file.name, run_file.scenario.seed
         ),
-        classes: CLASSES.into_iter().zip(keypoints).map(class).collect(),
-        views: views(mission).into_iter().map(|view| label_view(mission, view)).collect(),
+        classes,
+        views: views(mission).into_iter().filter_map(|view| label_view(mission, view)).collect(),
         note: None,
     }
 }
@@ -49,53 +58,61 @@ pub(super) fn label_set(mission: &DockingMission) -> LabelSet {
 pub(super) fn field_labels(mission: &DockingMission, field: u64) -> Result<FrameLabels, Failure> {
     let simulator = &mission.simulator;
     let state = simulator.field_state(field)?;
-    let view = views(mission).iter().position(|view| *view == (state.camera, state.lines)).unwrap_or(0);
+    let view = FieldView { camera: state.camera, lines: state.lines };
     let mut painter = simulator.mask_painter(&state)?;
     let silhouettes = simulator.silhouettes(&state, &mut painter);
-    let rows = sampling(mission, state.camera, state.lines);
-    let size = (mission.setup.cameras.get(state.camera).map_or(0, |camera| camera.columns), rows.rows);
+    let rows = sampling(mission, view);
+    let size = (mission.setup.cameras.get(view.camera).map_or(0, |camera| camera.columns), rows.rows);
     let mut objects = Vec::with_capacity(CLASSES.len());
     for (class, (assembly, _)) in CLASSES.into_iter().enumerate() {
         let Some(silhouette) = silhouettes.iter().find(|found| found.assembly == assembly) else { continue };
         let anchor = anchor(mission, &state, assembly).and_then(|point| painter.pixel_of(point));
         let label = ObjectLabel::in_picture(class, size, &silhouette.whole, &silhouette.visible, anchor);
         objects.extend(label.map(|label| ObjectLabel {
-            keypoints: if assembly == Assembly::Target {
-                keypoints(mission, &state, rows, size)
-            } else {
-                Vec::new()
-            },
+            keypoints: keypoints(mission, &state, &features(mission, assembly), rows, size),
             pose: Some(object_pose(&state.state.pose)),
             ..label
         }));
     }
+    let view = views(mission).iter().position(|known| *known == view).unwrap_or(0);
     Ok(FrameLabels { number: field, view, objects })
 }
 
-/// Cameras with the rows of their fields: (index of the camera, rows).
-fn views(mission: &DockingMission) -> Vec<(usize, Lines)> {
+/// Returns the cameras of all fields.
+fn views(mission: &DockingMission) -> Vec<FieldView> {
     let interlace = mission.scenario().television.interlace;
     let lines: &[Lines] = match interlace.lines(0) {
         Lines::All => &[Lines::All],
         Lines::Even | Lines::Odd => &[Lines::Even, Lines::Odd],
     };
-    let cameras = 0..mission.setup.cameras.len();
-    cameras.flat_map(|camera| lines.iter().map(move |lines| (camera, *lines))).collect()
+    let mut views = Vec::new();
+    for camera in 0..mission.setup.cameras.len() {
+        views.extend(lines.iter().map(|lines| FieldView { camera, lines: *lines }));
+    }
+    views
 }
 
-#[allow(clippy::indexing_slicing, reason = "views has only cameras of the setup")]
-fn label_view(mission: &DockingMission, (camera, lines): (usize, Lines)) -> LabelView {
+fn label_view(mission: &DockingMission, view: FieldView) -> Option<LabelView> {
+    let FieldView { camera, lines } = view;
     let name = match lines {
         Lines::All => format!("camera-{camera}"),
         Lines::Even | Lines::Odd => format!("camera-{camera}-{}", lines.code()),
     };
-    let rows = sampling(mission, camera, lines);
-    LabelView { name, camera: ImageCamera::new(&mission.setup.cameras[camera], rows) }
+    let rows = sampling(mission, view);
+    Some(LabelView { name, camera: ImageCamera::new(mission.setup.cameras.get(camera)?, rows) })
 }
 
-fn sampling(mission: &DockingMission, camera: usize, lines: Lines) -> RowSampling {
+fn sampling(mission: &DockingMission, FieldView { camera, lines }: FieldView) -> RowSampling {
     let camera_rows = mission.setup.cameras.get(camera).map_or(0, |camera| camera.rows);
     RowSampling { first: lines.camera_row(0), step: lines.step(), rows: lines.rows(camera_rows) }
+}
+
+/// Returns the features that are the keypoints of an assembly.
+fn features(mission: &DockingMission, assembly: Assembly) -> Vec<NamedPoint> {
+    match assembly {
+        Assembly::Target => mission.simulator.target_features(),
+        Assembly::DockingUnit | Assembly::Station => Vec::new(),
+    }
 }
 
 /// Returns the corners of an assembly, target frame, m.
@@ -119,17 +136,17 @@ fn anchor(mission: &DockingMission, state: &FieldState, assembly: Assembly) -> O
     images.first().and_then(|image| image.position)
 }
 
-/// Returns the labels of the target's features.
+/// Returns the labels of features.
 fn keypoints(
     mission: &DockingMission,
     state: &FieldState,
+    features: &[NamedPoint],
     rows: RowSampling,
     size: (usize, usize),
 ) -> Vec<KeypointLabel> {
-    let features = mission.simulator.target_features();
     let points_m: Vec<Vector3<f64>> = features.iter().map(|feature| feature.position_m).collect();
     let images = mission.simulator.feature_images(state, &points_m);
-    let label = |image: &FeatureImage| {
+    let label = |image: &PointImage| {
         let in_rows = |point: PixelPoint| PixelPoint::new(point.x, rows.image_row(point.y));
         KeypointLabel::new(image.position.map(in_rows), image.is_hidden, size)
     };
