@@ -1,25 +1,25 @@
 //! Measurements over time: errors, stars.
 
+use ::report::charts::axis_limits::{limits as axis_limits, outside};
 use ::report::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, cloud, crosses, dashed, line, points, rounded, stacked,
 };
 use ::report::charts::thinning::{sampled, thinned, thinning_caption};
 use ::report::page::Section;
-use far_range::limits;
 use far_range::scoring::Verdict;
 use score::angle;
 
 use super::run::{FarRangeRun, axis_time, broken, by_bins, time_axis};
 
-/// Number of images in the moving mean of Fig. 7.
+/// Number of images in the moving mean of the stars.
 const MEAN_OF: usize = 100;
 
-/// Returns the section on Fig. 5: errors over time.
+/// Returns the section on errors over time.
 pub(super) fn errors(run: &FarRangeRun) -> Section {
-    let section = Section::new("fig-5", "Fig. 5: errors of right ascension and declination");
+    let section = Section::new("errors", "Errors of the direction over time").in_paper("Fig. 5");
     if run.score.attitude.as_deref() == Some("none") {
-        return section.text(
-            "No line of sight was reported: \"All figures\" has the errors of the centroid, in pixels.",
+        return section.absent(
+            "No line of sight was reported: the list of all figures has the errors of the centroid, in pixels.",
         );
     }
     let component = |row: usize, index: usize| {
@@ -37,12 +37,15 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
             .collect()
     };
     let (right, wrong) = (rows_of(false), rows_of(true));
-    let largest = right.iter().flat_map(|&row| [component(row, 0).abs(), component(row, 1).abs()]);
+    if right.is_empty() && wrong.is_empty() {
+        return section.absent("No measurement has a line of sight.");
+    }
     // The errors of wrong measurements are distances to another object; on the same axis they would hide the
     // other errors.
-    let limit = (1.15 * largest.fold(0.0, f64::max)).max(0.06);
+    let scaled = if right.is_empty() { &wrong } else { &right };
+    let ranges = [0, 1].map(|index| axis_limits(scaled.iter().map(|&row| component(row, index))));
     let ends = [&run.truths[0], &run.truths[run.truths.len() - 1]].map(|truth| axis_time(truth.time));
-    let limits = limits(&run.run_file.scenario);
+    let limits = far_range::limits(&run.run_file.scenario);
     let panel = |index: usize, title: &str| {
         let of = |rows: &[usize]| -> (Vec<f64>, Vec<f64>, Vec<u64>) {
             let y = rows.iter().map(|&row| rounded(component(row, index), 5)).collect();
@@ -62,27 +65,37 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
             let limit = dashed(&name, ends.to_vec(), vec![at; 2], BESIDE);
             traces.push(if at > 0.0 { limit } else { limit.not_in_legend() });
         }
-        Panel { range: Some([-limit, limit]), ..Panel::new(title, traces) }
+        Panel { range: Some(ranges[index]), ..Panel::new(title, traces) }
     };
-    let (traces, layout) = stacked(time_axis(run), vec![panel(0, "RA error, °"), panel(1, "Dec error, °")]);
-    let is_beyond = |row: &&usize| (0..2).any(|index| component(**row, index).abs() > limit);
-    let beyond = wrong.iter().filter(is_beyond).count();
+    let (traces, layout) = stacked(time_axis(run), vec![panel(0, "across columns, °"), panel(1, "across rows, °")]);
+    let is_outside = |row: &&usize| {
+        (0..2).any(|index| outside(ranges[index], std::iter::once(component(**row, index))) > 0)
+    };
+    let beyond = [&right, &wrong].map(|rows| rows.iter().filter(is_outside).count());
     let right_only = |row: usize, index: usize| match run.verdicts[row].verdict {
         Verdict::Correct { .. } => component(row, index),
         _ => f64::NAN,
     };
+    let pixel_words = format!(
+        "One pixel is {} across columns and {} across rows (dashed, where it is within the axes).",
+        angle(limits.ra_deg[0]),
+        angle(limits.dec_deg[0])
+    );
     let data = by_bins(
         run,
         &[
-            ("RA error, correct, °", &|row| right_only(row, 0), 4),
-            ("Dec error, correct, °", &|row| right_only(row, 1), 4),
+            ("across columns, correct, °", &|row| right_only(row, 0), 4),
+            ("across rows, correct, °", &|row| right_only(row, 1), 4),
         ],
     );
     section.chart(Chart::new(
         format!(
-            "Angles of the line of sight in the camera system, measured minus true: RA across columns, Dec \
-             across rows. The axes fit the correct measurements; {beyond} of {} wrong ones are outside the \
-             axes (double-click to zoom out). {}",
+            "Angles of the line of sight in the camera system, across columns and across rows, measured minus \
+             true. {pixel_words} Outside the axes: {} of {} correct and {} of {} wrong measurements; double-click to \
+             zoom out. {}",
+            beyond[0],
+            right.len(),
+            beyond[1],
             wrong.len(),
             thinning_caption(&[(right.len(), "correct measurements"), (wrong.len(), "wrong ones")], true)
         ),
@@ -93,14 +106,14 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
     ))
 }
 
-/// Returns the section on Fig. 7: stars per image.
+/// Returns the section on stars per image.
 pub(super) fn stars(run: &FarRangeRun) -> Section {
     let count = run.verdicts.len();
     let number = |row: usize| run.verdicts[row].n_stars.map_or(f64::NAN, f64::from);
     let stated: Vec<usize> = (0..count).filter(|&row| number(row).is_finite()).collect();
-    let section = Section::new("fig-7", "Fig. 7: stars identified in each image");
+    let section = Section::new("stars", "Stars identified in each image").in_paper("Fig. 7");
     if stated.is_empty() {
-        return section.text("The pipeline reports no number of identified stars.");
+        return section.absent("The pipeline reports no number of identified stars.");
     }
     let mut sum = 0.0;
     let mut means = Vec::with_capacity(stated.len());
