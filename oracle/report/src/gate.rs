@@ -250,7 +250,9 @@ fn effects(report: &GateReport) -> Section {
          points; p of a worsening, adjusted for all figures.",
     )
     .narrow();
-    for (name, figure) in &report.figures {
+    let (compared, without): (Vec<Compared<'_>>, Vec<Compared<'_>>) =
+        report.figures.iter().partition(|(_, figure)| figure.baseline.or(figure.result).is_some());
+    for (name, figure) in compared {
         let is_rate = figure_by_name(name).is_rate();
         let number = |value: Option<f64>| match value {
             Some(value) if is_rate => format!("{:.2}", 100.0 * value),
@@ -290,7 +292,12 @@ fn effects(report: &GateReport) -> Section {
             tolerance.";
         section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
     }
-    section.table(table)
+    let section = section.table(table);
+    let without: Vec<String> = without.iter().map(|(name, _)| figure_by_name(name).words).collect();
+    match without.as_slice() {
+        [] => section,
+        names => section.text(format!("Without a value in baseline and result: {}.", names.join(", "))),
+    }
 }
 
 /// Returns a figure's name without its unit, because the axis of differences has another unit.
