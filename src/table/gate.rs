@@ -146,10 +146,10 @@ pub fn baseline_text(baseline: &Baseline) -> String {
             rule.memory
         )
     };
-    format!(
+    wrapped(&format!(
         "{} with seed {}: {} {units} in {} blocks of about {}; {remembers}\n",
         run.name, run.seed, header.units, rule.count, rule.length
-    )
+    ))
 }
 
 fn signed(name: &str, value: f64) -> String {

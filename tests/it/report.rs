@@ -257,7 +257,8 @@ fn the_page_of_a_far_range_run_has_its_figures_and_the_numbers_of_its_score() {
     // Written with a resolution of 0.1 m.
     assert!((squares.iter().sum::<f64>().sqrt() - range_km).abs() < 5e-4, "{squares:?}, {range_km}");
     // The chart of errors holds the errors of the detected frames, one per frame.
-    let errors = page.charts().into_iter().find(|chart| chart.to_string().contains("across columns, °")).unwrap();
+    let errors =
+        page.charts().into_iter().find(|chart| chart.to_string().contains("across columns, °")).unwrap();
     let drawn: usize = ["correct", "wrong"]
         .iter()
         .map(|name| {

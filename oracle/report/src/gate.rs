@@ -153,9 +153,8 @@ fn verdict(report: &GateReport) -> Verdict {
         };
         findings.push(Finding::new(grade, figure_by_name(name).words, change_text(name, figure)));
     }
-    let count = |wanted: FigureVerdict| {
-        report.figures.values().filter(|figure| figure.verdict == wanted).count()
-    };
+    let count =
+        |wanted: FigureVerdict| report.figures.values().filter(|figure| figure.verdict == wanted).count();
     match count(FigureVerdict::NoWorse) {
         0 => {}
         others => findings.push(Finding::new(
@@ -180,14 +179,20 @@ fn verdict(report: &GateReport) -> Verdict {
 fn change_text(name: &str, figure: &FigureReport) -> String {
     let spec = figure_by_name(name);
     let is_rate = spec.is_rate();
-    let unit = if is_rate { "\u{a0}%".to_owned() } else { spec.unit.map_or(String::new(), |u| format!("\u{a0}{u}")) };
+    let unit = if is_rate {
+        "\u{a0}%".to_owned()
+    } else {
+        spec.unit.map_or(String::new(), |u| format!("\u{a0}{u}"))
+    };
     let number = |value: Option<f64>| match value {
         Some(value) if is_rate => format!("{:.2}", 100.0 * value),
         value => cell(value),
     };
     let points = if is_rate { "\u{a0}points".to_owned() } else { unit.clone() };
     let interval = match (figure.low, figure.high) {
-        (Some(_), Some(_)) => format!(" (95\u{a0}% interval {} to {})", number(figure.low), number(figure.high)),
+        (Some(_), Some(_)) => {
+            format!(" (95\u{a0}% interval {} to {})", number(figure.low), number(figure.high))
+        }
         _ => String::new(),
     };
     format!(

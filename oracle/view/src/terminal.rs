@@ -35,9 +35,9 @@ pub fn terminal_width(styled: bool) -> usize {
     plain_table(styled).width().map_or(WIDTH, |width| usize::from(width).max(WIDTH))
 }
 
-/// Aligns numbers to the right, without spaces at the edges; ends with a line feed. A table that is wider than
-/// the terminal, or than [`WIDTH`] where the output is none, is cut into tables below each other, each with
-/// the first column.
+/// Aligns numbers to the right, without spaces at the edges; ends with a line feed. A table that is wider
+/// than the terminal, or than [`WIDTH`] where the output is none, is cut into tables below each other, each
+/// with the first column.
 pub fn finish(table: Table) -> String {
     let width = table.width().map_or(WIDTH, |width| usize::from(width).max(WIDTH));
     finish_within(table, width)

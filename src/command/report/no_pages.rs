@@ -17,12 +17,7 @@ pub(super) fn check_path(_: &Path) -> Result<(), Failure> {
     Err(missing_feature("report"))
 }
 
-pub(in crate::command) fn write_beside_run(
-    _: &Path,
-    _: &mut dyn AnyJudgement,
-    _: Headings,
-    output: &Output,
-) {
+pub(in crate::command) fn write_beside_run(_: &Path, _: &mut dyn AnyJudgement, _: Headings, output: &Output) {
     note(output);
 }
 

@@ -50,7 +50,8 @@ fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Fail
 /// Returns the finding on the error of the range, for which there is no requirement, from the figures.
 fn range_finding(page: &Page) -> Finding {
     let value = |name: &str| page.data.get(name)?.get("value")?.as_f64();
-    let rms = value("range_rms_percent").map(|value| Measured { value, low: None, high: None, count: None, of: 0 });
+    let rms =
+        value("range_rms_percent").map(|value| Measured { value, low: None, high: None, count: None, of: 0 });
     let bias = rms.map(|rms| bias_sentence(rms.value, value("range_bias_mean_percent"), "%"));
     against_baseline("range error", rms, None, "% of the range").and(&bias.unwrap_or_default())
 }
@@ -62,8 +63,10 @@ fn worst_frames(directory: &Path, scored: &[Scored<MiddleRange>]) -> Result<Sect
         .filter(|scored| MiddleRange::judge(scored).0 != "correct")
         .map(|scored| scored.truth.frame)
         .collect();
-    let mut frames: Vec<u64> =
-        evenly_placed(failed.len(), WORST).into_iter().filter_map(|place| failed.get(place).copied()).collect();
+    let mut frames: Vec<u64> = evenly_placed(failed.len(), WORST)
+        .into_iter()
+        .filter_map(|place| failed.get(place).copied())
+        .collect();
     let mut errors: Vec<(f64, u64)> = scored
         .iter()
         .filter_map(|scored| Some((range_error(scored)?.abs(), scored.truth.frame)))

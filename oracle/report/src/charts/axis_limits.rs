@@ -17,7 +17,8 @@ pub fn limits(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let (least, low, high, most) = (at(0.0), at(TAIL), at(1.0 - TAIL), at(1.0));
     let reach = REACH * (high - low);
     // Values that are nearly all equal have no scale: their outliers set it.
-    let (low, high) = if reach > 0.0 { (least.max(low - reach), most.min(high + reach)) } else { (least, most) };
+    let (low, high) =
+        if reach > 0.0 { (least.max(low - reach), most.min(high + reach)) } else { (least, most) };
     let room = (ROOM * (high - low)).max(1e-9);
     [low - room, high + room]
 }

@@ -179,7 +179,10 @@ pub fn bars(name: &str, x: &[String], y: Vec<f64>, colour: &str) -> Trace {
 pub fn bars_across(names: &[String], values: Vec<f64>, colours: Vec<&str>) -> Trace {
     let names: Vec<String> = names.iter().map(|name| plain(name)).collect();
     let marker = Marker::new().colours(&colours);
-    Trace::bars_across(values, names).marker(marker).hover_template("%{y}: %{x}<extra></extra>").not_in_legend()
+    Trace::bars_across(values, names)
+        .marker(marker)
+        .hover_template("%{y}: %{x}<extra></extra>")
+        .not_in_legend()
 }
 
 /// Returns the layout of stacked bars.

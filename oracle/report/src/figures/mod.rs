@@ -112,7 +112,10 @@ mod tests {
     fn every_figure_is_read_with_its_unit() {
         let sense = Sense { kind: Kind::Rate, better: Better::More };
         run::register_figures(vec![
-            FigureSpec { unit: Some("°"), ..FigureSpec::amount("ra_rms_deg", "RMS across columns", Better::Less) },
+            FigureSpec {
+                unit: Some("°"),
+                ..FigureSpec::amount("ra_rms_deg", "RMS across columns", Better::Less)
+            },
             FigureSpec { unit: Some("%"), sense, ..FigureSpec::amount("hit_rate", "hit rate", Better::More) },
         ]);
         let figures = ["ra_rms_deg", "hit_rate", "stars_mean"];

@@ -66,7 +66,8 @@ mod tests {
 
     #[test]
     fn a_key_is_shown_in_words_with_its_unit() {
-        let shown = ["psf.sigma_px", "sensor.dark_current_e_per_s", "far_range.mode", "roi.columns"].map(setting_name);
+        let shown = ["psf.sigma_px", "sensor.dark_current_e_per_s", "far_range.mode", "roi.columns"]
+            .map(setting_name);
         assert_eq!(shown, ["PSF sigma, px", "sensor dark current, e⁻/s", "far range mode", "ROI columns"]);
     }
 }

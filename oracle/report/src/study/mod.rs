@@ -559,16 +559,16 @@ fn settings(study: &StudyResult) -> Section {
     for parameter in study.table.drawn.keys() {
         let numbers = study.table.numbers(parameter).unwrap_or_default();
         let finite = || numbers.iter().copied().filter(|number| number.is_finite());
-        let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-        data.push([
-            setting_name(parameter),
-            format!("`{parameter}`"),
-            significant(least),
-            significant(most),
-        ]);
+        let (least, most) =
+            (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+        data.push([setting_name(parameter), format!("`{parameter}`"), significant(least), significant(most)]);
     }
     let section = Section::new("settings", "Varied settings");
-    if data.rows.is_empty() { section.absent("The study varies no value but the seed.") } else { section.table(data) }
+    if data.rows.is_empty() {
+        section.absent("The study varies no value but the seed.")
+    } else {
+        section.table(data)
+    }
 }
 
 /// Returns the table of the worst cases, with the commands that repeat them.

@@ -21,7 +21,10 @@ pub(super) fn findings(summary: &Summary) -> Vec<Finding> {
     findings.extend(with_causes(judge(&all.collect()), summary));
     findings.extend(spread(summary));
     if summary.error_cases > 0 {
-        let text = format!("{} of {} cases cannot be run; the figures are without them.", summary.error_cases, summary.of);
+        let text = format!(
+            "{} of {} cases cannot be run; the figures are without them.",
+            summary.error_cases, summary.of
+        );
         findings.push(Finding::not_judged("cases that cannot be run", text));
     }
     findings
@@ -81,7 +84,8 @@ fn spread(summary: &Summary) -> Option<Finding> {
         Better::More => figure.p05.as_ref()?,
         Better::Less | Better::Near(_) => figure.p95.as_ref()?,
     };
-    let one: IndexMap<String, Option<Measured>> = [(name.clone(), Some(measured(worst, figure.cases)))].into();
+    let one: IndexMap<String, Option<Measured>> =
+        [(name.clone(), Some(measured(worst, figure.cases)))].into();
     let graded = judge(&one).pop()?;
     let subject = format!("{} in the worst cases", spec.words);
     if graded.grade == Grade::NotJudged {
@@ -93,8 +97,9 @@ fn spread(summary: &Summary) -> Option<Finding> {
         number(name, worst.value)
     );
     let finding = Finding { subject, text, is_about_wrong_answers: false, ..graded };
-    let case = summary.worst.first().map(|worst| {
-        format!("The worst is case {} with {}.", worst.case, number(name, worst.value))
-    });
+    let case = summary
+        .worst
+        .first()
+        .map(|worst| format!("The worst is case {} with {}.", worst.case, number(name, worst.value)));
     Some(finding.and(&case.unwrap_or_default()))
 }

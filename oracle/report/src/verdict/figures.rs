@@ -96,7 +96,8 @@ mod tests {
 
     #[test]
     fn the_key_of_a_figure_selects_its_rule() {
-        let rules = ["wrong_rate", "success_rate", "x_within_1px", "motion_nees_mean", "range_within_3_sigma"];
+        let rules =
+            ["wrong_rate", "success_rate", "x_within_1px", "motion_nees_mean", "range_within_3_sigma"];
         let found: Vec<Option<Rule>> = rules.iter().map(|key| Rule::from_key(key)).collect();
         assert_eq!(found, Rule::ALL.map(Some));
         assert_eq!(Rule::from_key("paper_nees_mean"), None);

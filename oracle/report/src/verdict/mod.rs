@@ -134,8 +134,11 @@ impl Verdict {
 pub fn causes_sentence(counts: &IndexMap<String, u64>, words: fn(&str) -> String) -> String {
     let mut sorted: Vec<(&String, u64)> = counts.iter().map(|(cause, count)| (cause, *count)).collect();
     sorted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let named: Vec<String> =
-        sorted.iter().take(NAMED_CAUSES).map(|(cause, count)| format!("{} ({count})", words(cause))).collect();
+    let named: Vec<String> = sorted
+        .iter()
+        .take(NAMED_CAUSES)
+        .map(|(cause, count)| format!("{} ({count})", words(cause)))
+        .collect();
     let others: u64 = sorted.iter().skip(NAMED_CAUSES).map(|(_, count)| count).sum();
     match (named.as_slice(), others) {
         ([], _) => String::new(),

@@ -63,8 +63,9 @@ impl Measured {
     /// Formats a rate with its counts and interval: `84.2 % (505 of 600; 95 % interval 71.4 to 91.9 %)`.
     fn rate_text(&self) -> String {
         let interval = self.low.zip(self.high);
-        let interval = interval
-            .map(|(low, high)| format!("; 95\u{a0}% interval {:.1} to {:.1}\u{a0}%", 100.0 * low, 100.0 * high));
+        let interval = interval.map(|(low, high)| {
+            format!("; 95\u{a0}% interval {:.1} to {:.1}\u{a0}%", 100.0 * low, 100.0 * high)
+        });
         let counts = match self.count {
             Some(count) => format!("{count} of {}", self.of),
             None => format!("over {} cases", self.of),
@@ -132,8 +133,7 @@ fn rate_at_least(subject: &str, measured: Option<Measured>, [good, fair]: [f64; 
         _ => Grade::Poor,
     };
     let grade = grade_of(rate.value);
-    let text =
-        format!("{}. Good is {} or more, fair {}.", rate.rate_text(), limit(good), limit(fair));
+    let text = format!("{}. Good is {} or more, fair {}.", rate.rate_text(), limit(good), limit(fair));
     let lowest = grade_of(rate.low.unwrap_or(rate.value));
     let doubt = if lowest < grade {
         format!("The interval does not exclude \u{201c}{}\u{201d}: more frames would decide.", lowest.words())
@@ -193,11 +193,8 @@ pub fn nees(subject: &str, measured: Option<Measured>) -> Finding {
     };
     // An interval that reaches the honest range leaves the judgement open.
     let reaches = nees.low.unwrap_or(nees.value) <= high && nees.high.unwrap_or(nees.value) >= low;
-    let doubt = if grade != Grade::Good && reaches {
-        "The interval does not exclude an honest σ."
-    } else {
-        ""
-    };
+    let doubt =
+        if grade != Grade::Good && reaches { "The interval does not exclude an honest σ." } else { "" };
     let text = format!(
         "NEES {}: {words}. Expected 1, honest from {low} to {high}, poor above {MAX_FAIR_NEES}.",
         nees.amount_text()
@@ -306,7 +303,10 @@ mod tests {
     fn a_rate_has_its_grade_and_the_doubt_of_its_interval() {
         assert_eq!(correct_answers("c", rate(600, 600)).grade, Grade::Good);
         let few = correct_answers("c", rate(60, 60));
-        assert!(few.grade == Grade::Good && few.text.contains("does not exclude \u{201c}fair\u{201d}"), "{few:?}");
+        assert!(
+            few.grade == Grade::Good && few.text.contains("does not exclude \u{201c}fair\u{201d}"),
+            "{few:?}"
+        );
         assert_eq!(correct_answers("c", rate(570, 600)).grade, Grade::Fair);
         assert_eq!(correct_answers("c", rate(300, 600)).grade, Grade::Poor);
     }

@@ -27,7 +27,8 @@ impl DockingResults {
 
     /// Returns the findings on the run.
     pub(in crate::command::demo) fn findings(&self) -> Vec<Finding> {
-        let of_part = |finding: Finding| Finding { subject: format!("docking, {}", finding.subject), ..finding };
+        let of_part =
+            |finding: Finding| Finding { subject: format!("docking, {}", finding.subject), ..finding };
         findings(&self.score).into_iter().map(of_part).collect()
     }
 

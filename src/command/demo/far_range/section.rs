@@ -28,7 +28,8 @@ impl FarRangeResults {
 
     /// Returns the findings on the best method.
     pub(in crate::command::demo) fn findings(&self) -> Vec<Finding> {
-        let of_part = |finding: Finding| Finding { subject: format!("far range, {}", finding.subject), ..finding };
+        let of_part =
+            |finding: Finding| Finding { subject: format!("far range, {}", finding.subject), ..finding };
         findings(&self.best.score).into_iter().map(of_part).collect()
     }
 

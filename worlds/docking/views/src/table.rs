@@ -24,7 +24,9 @@ pub fn docking_table(score: &DockingScore, styled: bool) -> String {
     if score.portions > 0 {
         text.push('\n');
         text.push_str(&portions(&rows, styled));
-        text.push_str(&wrapped("RMS errors at the end of portions; in 3σ and NEES from the second report on.\n"));
+        text.push_str(&wrapped(
+            "RMS errors at the end of portions; in 3σ and NEES from the second report on.\n",
+        ));
     }
     text.push_str(&latency(score));
     if let Some(note) = warm_up_note(score.warm_up_frames, "fields") {

@@ -238,7 +238,11 @@ fn fields(run: &DockingRun, sheet: &FieldDetail) -> Result<Section, Failure> {
     if chosen.is_empty() {
         return Ok(section.absent("No field has a measured pose or range."));
     }
-    let text = format!("Measured fields, rendered again from `run.toml`. {}{}", worst_fields::KEY, renderer_note(run));
+    let text = format!(
+        "Measured fields, rendered again from `run.toml`. {}{}",
+        worst_fields::KEY,
+        renderer_note(run)
+    );
     Ok(section.text(text).pictures(sheet.pictures(run, &chosen)?))
 }
 

@@ -37,7 +37,8 @@ pub fn findings(score: &DockingScore) -> Vec<Finding> {
         ));
     }
     findings.push(rules::nees("σ of single fields", measured(names::NEES_MEAN)));
-    findings.push(rules::nees("σ of the motion", measured(&format!("{}{}", names::MOTION, names::NEES_MEAN))));
+    findings
+        .push(rules::nees("σ of the motion", measured(&format!("{}{}", names::MOTION, names::NEES_MEAN))));
     findings
 }
 

@@ -13,7 +13,7 @@ pub(super) const KEY: &str = "Orange: recognised features (cross, circle of the 
     outlines of station and docking unit; violet: rejected or missing marks; green: true centres of cross and \
     disk.";
 /// Number of measured fields with the largest errors.
-const LARGEST_ERRORS: usize = 3;
+const SHOWN_ERRORS: usize = 3;
 
 /// A field to show, with the number of fields of its kind.
 struct Shown {
@@ -75,13 +75,16 @@ fn largest_errors(run: &DockingRun) -> Vec<Shown> {
     let error = |row: usize| {
         let measured = run.outcomes[row].as_ref().and_then(DockingOutcome::measurement)?;
         let truth = &run.truths[row];
-        Some((measured.best.pose.position_m - truth.pose.position_m).norm() / truth.range_m.max(f64::MIN_POSITIVE))
+        Some(
+            (measured.best.pose.position_m - truth.pose.position_m).norm()
+                / truth.range_m.max(f64::MIN_POSITIVE),
+        )
     };
     let mut rows: Vec<(usize, f64)> = (0..run.verdicts.len())
         .filter(|&row| run.verdicts[row].verdict == "success")
         .filter_map(|row| Some((row, error(row)?)))
         .collect();
     rows.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    rows.truncate(LARGEST_ERRORS);
+    rows.truncate(SHOWN_ERRORS);
     rows.into_iter().map(|(row, _)| Shown { row, alike: 1 }).collect()
 }

@@ -57,14 +57,12 @@ pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
         data.push(cells);
     }
     let title = "Position of the chaser in the orbital frame of the target";
-    Ok(Section::new("relative-position", title).in_paper("Fig. 4").chart(
-        Chart::new(
-            "True position. The radial, along-track and cross-track axes move with the target, which is at \
+    Ok(Section::new("relative-position", title).in_paper("Fig. 4").chart(Chart::new(
+        "True position. The radial, along-track and cross-track axes move with the target, which is at \
              (0, 0).",
-            460,
-            data,
-            traces,
-            layout,
-        ),
-    ))
+        460,
+        data,
+        traces,
+        layout,
+    )))
 }

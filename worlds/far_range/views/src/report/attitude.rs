@@ -33,7 +33,8 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
             })
         })
         .collect();
-    let section = Section::new("mounting", "Attitude of the camera with respect to the chaser").in_paper("Fig. 8");
+    let section =
+        Section::new("mounting", "Attitude of the camera with respect to the chaser").in_paper("Fig. 8");
     let stated: Vec<usize> = (0..count).filter(|&row| measured[row][0].is_finite()).collect();
     if stated.is_empty() {
         return section.absent("The pipeline reports no attitude of the camera.");
@@ -50,7 +51,8 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
         });
         let (true_x, true_y) = broken(run, every.iter().map(|&row| (row, rounded(truth(row)[index], 5))));
         traces.push(line("true", true_x, true_y, TRUTH));
-        let range = limits(stated.iter().map(|&row| value(row)).chain(every.iter().map(|&row| truth(row)[index])));
+        let range =
+            limits(stated.iter().map(|&row| value(row)).chain(every.iter().map(|&row| truth(row)[index])));
         beyond += outside(range, stated.iter().map(|&row| value(row)));
         Panel { range: Some(range), ..Panel::new(title, traces) }
     });

@@ -52,7 +52,8 @@ pub(super) fn covariances(score: &Score) -> Section {
 
 /// States in words whether σ is honest.
 fn in_words(score: &Score) -> String {
-    let kinds = [("position in the image", names::CENTROID_NEES_MEAN), ("direction", names::LINE_OF_SIGHT_NEES_MEAN)];
+    let kinds =
+        [("position in the image", names::CENTROID_NEES_MEAN), ("direction", names::LINE_OF_SIGHT_NEES_MEAN)];
     let mut sentences = Vec::new();
     for (what, name) in kinds {
         if let Some(measured) = Measured::from_figure(score.figures.get(name)) {

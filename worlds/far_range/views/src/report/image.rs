@@ -28,7 +28,8 @@ const OVERLAID: usize = 36;
 
 /// Returns the section with a whole image, and overlaid images of one orbit.
 pub(super) fn sample(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
-    let section = Section::new("images", "A whole image, and the superimposed images of an orbit").in_paper("Fig. 2");
+    let section =
+        Section::new("images", "A whole image, and the superimposed images of an orbit").in_paper("Fig. 2");
     if let Some(reason) = sheet.reason() {
         return Ok(section.absent(format!("The frames cannot be rendered again: {reason}")));
     }
@@ -127,7 +128,9 @@ fn true_track(run: &FarRangeRun, at: &dyn Fn(usize) -> [f64; 2]) -> Trace {
 pub(super) fn regions(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
     let section = Section::new("regions", "A whole and a truncated region of interest").in_paper("Fig. 6");
     if run.run_file.scenario.roi.is_none() {
-        return Ok(section.absent("The camera of this scenario transmits whole images: nothing is truncated."));
+        return Ok(
+            section.absent("The camera of this scenario transmits whole images: nothing is truncated.")
+        );
     }
     let dec = |row: usize| match run.verdicts[row].verdict {
         Verdict::Correct { error } => error.centroid_px.map(|[_, y]| y.abs()),

@@ -196,11 +196,10 @@ fn figures_section(run: &FarRangeRun) -> Section {
     let mut head = vec![String::new()];
     head.extend(groups.iter().map(|group| (*group).clone()));
     head.push("all".to_owned());
-    let mut table = DataTable::new(head)
-        .caption(
-            "Percent, with 95 % intervals. Errors of the direction in the camera system, as a rate of the frames \
+    let mut table = DataTable::new(head).caption(
+        "Percent, with 95 % intervals. Errors of the direction in the camera system, as a rate of the frames \
              with a detected target.",
-        );
+    );
     let columns = || {
         score
             .groups
@@ -210,15 +209,13 @@ fn figures_section(run: &FarRangeRun) -> Section {
     };
     let row = |name: &str, cells: Vec<String>| [name.to_owned()].into_iter().chain(cells).collect::<Vec<_>>();
     table.push(row("images", columns().map(|(frames, _)| frames.to_string()).collect()));
-    for ((name, rates), label) in
-        ARGON_TABLE_2.rates().into_iter().zip([
-            "hit rate",
-            "error across columns",
-            "error across columns",
-            "error across rows",
-            "error across rows",
-        ])
-    {
+    for ((name, rates), label) in ARGON_TABLE_2.rates().into_iter().zip([
+        "hit rate",
+        "error across columns",
+        "error across columns",
+        "error across rows",
+        "error across rows",
+    ]) {
         let ours = columns().map(|(_, figures)| percent_cell(figures.get(name)));
         let limit = score.figures.get(name).and_then(|figure| figure.limit_deg);
         let label =

@@ -67,7 +67,8 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
         }
         Panel { range: Some(ranges[index]), ..Panel::new(title, traces) }
     };
-    let (traces, layout) = stacked(time_axis(run), vec![panel(0, "across columns, °"), panel(1, "across rows, °")]);
+    let (traces, layout) =
+        stacked(time_axis(run), vec![panel(0, "across columns, °"), panel(1, "across rows, °")]);
     let is_outside = |row: &&usize| {
         (0..2).any(|index| outside(ranges[index], std::iter::once(component(**row, index))) > 0)
     };

@@ -35,13 +35,18 @@ pub fn findings(score: &Score) -> Vec<Finding> {
 /// Returns the finding on wrong measurements, with what was taken for the target.
 fn wrong_answers(score: &Score) -> Finding {
     let measured = Measured::from_figure(score.figures.get(names::WRONG_RATE));
-    let taken: Vec<String> =
-        score.wrong_taken.iter().map(|(object, count)| format!("{} ({count})", display_name(object))).collect();
+    let taken: Vec<String> = score
+        .wrong_taken
+        .iter()
+        .map(|(object, count)| format!("{} ({count})", display_name(object)))
+        .collect();
     let taken = match taken.is_empty() {
         true => String::new(),
         false => format!("Taken for the target: {}.", taken.join(", ")),
     };
-    rules::wrong_answers("wrong answers", measured).and(&taken).and(&causes_sentence(&score.wrong, display_name))
+    rules::wrong_answers("wrong answers", measured)
+        .and(&taken)
+        .and(&causes_sentence(&score.wrong, display_name))
 }
 
 /// Returns the sentences on misses: their causes, and how many of them no pipeline could avoid.

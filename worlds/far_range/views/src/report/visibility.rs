@@ -212,13 +212,7 @@ fn detection(report: &VisibilityReport) -> Section {
          star of mean colour (grey), because stars of equal V magnitude but different colour are brighter or \
          fainter in the camera's band."
     };
-    section.chart(Chart::new(
-        caption,
-        400,
-        data,
-        traces,
-        axes("V, mag", "probability").legend(true),
-    ))
+    section.chart(Chart::new(caption, 400, data, traces, axes("V, mag", "probability").legend(true)))
 }
 
 /// Returns the section on limiting magnitude and number of stars against exposure time.

@@ -12,7 +12,7 @@ use super::image::KEY;
 use super::run::FarRangeRun;
 
 /// Number of correct measurements with the largest errors.
-const LARGEST_ERRORS: usize = 2;
+const SHOWN_ERRORS: usize = 2;
 
 /// A frame to show, with the number of frames of its kind.
 struct Shown {
@@ -74,7 +74,7 @@ fn correct(run: &FarRangeRun) -> Vec<Shown> {
         .collect();
     let typical = rows.get(rows.len() / 2).copied();
     rows.sort_by(|&a, &b| error_px(run, b).total_cmp(&error_px(run, a)).then(a.cmp(&b)));
-    rows.truncate(LARGEST_ERRORS);
+    rows.truncate(SHOWN_ERRORS);
     rows.extend(typical.filter(|typical| !rows.contains(typical)));
     rows.into_iter().map(|row| Shown { row, alike: 1 }).collect()
 }

@@ -10,8 +10,8 @@ use view::terminal::{WIDTH, finish, finish_within, percent, plain_table, share, 
 pub struct TableStyle<'a> {
     /// True if text is set bold and dim with terminal codes; false if the output is not a terminal.
     pub styled: bool,
-    /// Width of the terminal, columns. If a line does not fit, the intervals are placed below their values; if
-    /// it still does not fit, the columns continue in a table below.
+    /// Width of the terminal, columns. If a line does not fit, the intervals are placed below their values;
+    /// if it still does not fit, the columns continue in a table below.
     pub width: usize,
     /// Published figures to print below those of the score; omitted unless the number of groups is the same.
     pub reference: Option<&'a Table2>,
@@ -224,13 +224,7 @@ fn pixels(px: f64) -> String {
     format!("{px:.3}")
 }
 
-fn sheet(
-    columns: &[Column<'_>],
-    rows: &[Row],
-    before_interval: &str,
-    styled: bool,
-    width: usize,
-) -> String {
+fn sheet(columns: &[Column<'_>], rows: &[Row], before_interval: &str, styled: bool, width: usize) -> String {
     let mut table = plain_table(styled);
     let heading = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
     table.set_header([Cell::new("")].into_iter().chain(columns.iter().map(|column| heading(column.name))));
