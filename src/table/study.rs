@@ -70,8 +70,6 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         text.push('\n');
         text.push_str(&finish(table));
     }
-    let by = &summary.worst_by;
-    let by_label = label(by);
     let figures = shown_figures(summary);
     if let Some(first) = summary.sweep.first() {
         let mut table = plain_table(styled);
@@ -91,23 +89,31 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     }
     text.push_str(&correlations(summary, &figures, styled));
     text.push_str(&indices(summary, &figures, styled));
-    if !summary.worst.is_empty() {
-        let mut table = plain_table(styled);
-        table.set_header(["worst cases", &by_label].map(bold));
-        for case in &summary.worst {
-            table.add_row([format!("case {}", case.case), number(by, case.value)]);
-        }
-        text.push('\n');
-        text.push_str(&finish(table));
-        // A command has its own line, which can be copied.
-        text.push_str("Commands to repeat them:\n");
-        for case in &summary.worst {
-            text.push_str(&format!("{}\n", case.replay));
-        }
-        let more = summary.worst_of.saturating_sub(summary.worst.len() as u64);
-        if more > 0 {
-            text.push_str(&format!("{more} more cases have the same value as the last one listed.\n"));
-        }
+    text.push_str(&worst_cases(summary, styled));
+    text
+}
+
+/// Returns the worst cases with the commands that repeat them as text; empty if there are none.
+fn worst_cases(summary: &Summary, styled: bool) -> String {
+    if summary.worst.is_empty() {
+        return String::new();
+    }
+    let by = &summary.worst_by;
+    let mut table = plain_table(styled);
+    let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
+    table.set_header(["worst cases", &label(by)].map(bold));
+    for case in &summary.worst {
+        table.add_row([format!("case {}", case.case), number(by, case.value)]);
+    }
+    let mut text = format!("\n{}", finish(table));
+    // A command has its own line, which can be copied.
+    text.push_str("Commands to repeat them:\n");
+    for case in &summary.worst {
+        text.push_str(&format!("{}\n", case.replay));
+    }
+    let more = summary.worst_of.saturating_sub(summary.worst.len() as u64);
+    if more > 0 {
+        text.push_str(&format!("{more} more cases have the same value as the last one listed.\n"));
     }
     text
 }

@@ -235,8 +235,13 @@ fn data(report: &GateReport) -> serde_json::Value {
     })
 }
 
-/// Returns the section on the differences with their intervals.
-fn effects(report: &GateReport) -> Section {
+/// Returns true if a figure has a value in the baseline or in the result.
+fn has_value(figure: &FigureReport) -> bool {
+    figure.baseline.or(figure.result).is_some()
+}
+
+/// Returns the table of the figures that have a value, with their differences.
+fn table_of_effects(report: &GateReport) -> DataTable {
     let mut table = DataTable::new([
         "figure",
         "verdict",
@@ -255,9 +260,7 @@ fn effects(report: &GateReport) -> Section {
          points; p of a worsening, adjusted for all figures.",
     )
     .narrow();
-    let (compared, without): (Vec<Compared<'_>>, Vec<Compared<'_>>) =
-        report.figures.iter().partition(|(_, figure)| figure.baseline.or(figure.result).is_some());
-    for (name, figure) in compared {
+    for (name, figure) in report.figures.iter().filter(|(_, figure)| has_value(figure)) {
         let is_rate = figure_by_name(name).is_rate();
         let number = |value: Option<f64>| match value {
             Some(value) if is_rate => format!("{:.2}", 100.0 * value),
@@ -277,6 +280,12 @@ fn effects(report: &GateReport) -> Section {
             figure.blocks.to_string(),
         ]);
     }
+    table
+}
+
+/// Returns the section on the differences with their intervals.
+fn effects(report: &GateReport) -> Section {
+    let table = table_of_effects(report);
     let (rates, amounts): (Vec<Compared<'_>>, Vec<Compared<'_>>) = report
         .figures
         .iter()
@@ -298,7 +307,8 @@ fn effects(report: &GateReport) -> Section {
         section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
     }
     let section = section.table(table);
-    let without: Vec<String> = without.iter().map(|(name, _)| figure_by_name(name).words).collect();
+    let without = report.figures.iter().filter(|(_, figure)| !has_value(figure));
+    let without: Vec<String> = without.map(|(name, _)| figure_by_name(name).words).collect();
     match without.as_slice() {
         [] => section,
         names => section.text(format!("Without a value in baseline and result: {}.", names.join(", "))),

@@ -3,7 +3,7 @@
 /// Part of the values at each end that does not set the limits by itself.
 const TAIL: f64 = 0.05;
 /// Reach of the axis beyond the values between the tails, in units of their span.
-const REACH: f64 = 0.6;
+const REACH: f64 = 1.0;
 /// Empty part at each end of an axis, in units of its length.
 const ROOM: f64 = 0.08;
 

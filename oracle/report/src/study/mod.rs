@@ -166,22 +166,29 @@ fn label(key: &str) -> String {
 /// Returns the section on all figures: the value over all cases, and the quantiles over the cases.
 fn figures(study: &StudyResult) -> Section {
     let summary = &study.summary;
-    let mut table = DataTable::new([
-        "figure",
-        "cases",
-        "all",
-        "5 % of cases below",
-        "median",
-        "95 % of cases below",
-    ])
-    .caption(
-        "With 95 % intervals. All: for a rate, all frames of all cases together; for other figures, the mean \
-         of the cases.",
-    )
-    .narrow();
-    let (with_value, without): (Vec<_>, Vec<_>) =
-        summary.figures.iter().partition(|(_, figure)| figure.cases > 0);
-    for (name, figure) in with_value {
+    let mut section = Section::new("figures", "Figures");
+    if let Some(chart) = rate_chart(summary) {
+        section = section.chart(chart);
+    }
+    section = section.table(table_of_figures(summary));
+    let without = summary.figures.iter().filter(|(_, figure)| figure.cases == 0);
+    let without: Vec<String> = without.map(|(name, _)| figure_by_name(name).words).collect();
+    match without.as_slice() {
+        [] => section,
+        names => section.text(format!("Without a value in any case: {}.", names.join(", "))),
+    }
+}
+
+/// Returns the table of the figures that have a value in a case.
+fn table_of_figures(summary: &Summary) -> DataTable {
+    let head = ["figure", "cases", "all", "5 % of cases below", "median", "95 % of cases below"];
+    let mut table = DataTable::new(head)
+        .caption(
+            "With 95 % intervals. All: for a rate, all frames of all cases together; for other figures, the mean \
+             of the cases.",
+        )
+        .narrow();
+    for (name, figure) in summary.figures.iter().filter(|(_, figure)| figure.cases > 0) {
         let estimate = |estimate: &Option<Estimate>| {
             estimate.as_ref().map_or_else(|| "–".to_owned(), |e| estimate_text(name, e))
         };
@@ -194,19 +201,17 @@ fn figures(study: &StudyResult) -> Section {
             estimate(&figure.p95),
         ]);
     }
+    table
+}
+
+/// Returns the chart of the rates over all frames and of their spread over the cases; `None` without a rate.
+fn rate_chart(summary: &Summary) -> Option<Chart> {
     let is_rate = |(name, _): &(&String, &FigureSummary)| figure_by_name(name).is_rate();
     let rates = summary.figures.iter().filter(is_rate);
     let rates: Vec<(&String, Estimate, &FigureSummary)> =
         rates.filter_map(|(name, figure)| Some((name, figure.all?, figure))).collect();
-    let section = Section::new("figures", "Figures");
-    let without: Vec<String> = without.into_iter().map(|(name, _)| figure_by_name(name).words).collect();
-    let without = match without.as_slice() {
-        [] => String::new(),
-        names => format!("Without a value in any case: {}.", names.join(", ")),
-    };
     if rates.is_empty() {
-        let section = section.table(table);
-        return if without.is_empty() { section } else { section.text(without) };
+        return None;
     }
     // In reverse order, since the axis runs upwards: the first rate is on top.
     let column = |pick: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
@@ -240,8 +245,7 @@ fn figures(study: &StudyResult) -> Section {
     }
     let height = 110 + 30 * rates.len() as u32;
     let caption = "Rates over all frames, and their spread over the cases.";
-    let section = section.chart(Chart::new(caption, height, data, traces, layout)).table(table);
-    if without.is_empty() { section } else { section.text(without) }
+    Some(Chart::new(caption, height, data, traces, layout))
 }
 
 /// Returns the section on the requirements with their verdicts.

@@ -182,15 +182,12 @@ pub fn nees(subject: &str, measured: Option<Measured>) -> Finding {
         return too_few(subject, nees.of);
     }
     let [low, high] = HONEST_NEES;
-    let (grade, words) = if (low..=high).contains(&nees.value) {
-        (Grade::Good, "σ is honest".to_owned())
-    } else if nees.value < low {
-        let factor = 1.0 / nees.value.max(f64::MIN_POSITIVE).sqrt();
-        (Grade::Fair, format!("σ is too large by a factor of {factor:.2}: cautious"))
-    } else {
-        let grade = if nees.value > MAX_FAIR_NEES { Grade::Poor } else { Grade::Fair };
-        (grade, format!("σ is too small by a factor of {:.2}", nees.value.sqrt()))
+    let grade = match nees.value {
+        value if (low..=high).contains(&value) => Grade::Good,
+        value if value > MAX_FAIR_NEES => Grade::Poor,
+        _ => Grade::Fair,
     };
+    let words = format!("σ is {}", honesty_words(nees.value));
     // An interval that reaches the honest range leaves the judgement open.
     let reaches = nees.low.unwrap_or(nees.value) <= high && nees.high.unwrap_or(nees.value) >= low;
     let doubt =
@@ -200,6 +197,20 @@ pub fn nees(subject: &str, measured: Option<Measured>) -> Finding {
         nees.amount_text()
     );
     Finding::new(grade, subject, text).and(doubt)
+}
+
+/// States in words whether σ is honest, by the mean normalised error squared per dimension: `honest`, `too
+/// small by a factor of 1.50`.
+pub fn honesty_words(nees: f64) -> String {
+    let [low, high] = HONEST_NEES;
+    if (low..=high).contains(&nees) {
+        "honest".to_owned()
+    } else if nees < low {
+        let factor = 1.0 / nees.max(f64::MIN_POSITIVE).sqrt();
+        format!("too large by a factor of {factor:.2}")
+    } else {
+        format!("too small by a factor of {:.2}", nees.sqrt())
+    }
 }
 
 /// Grades an error against that of a baseline on the same frames: good if it is smaller by

@@ -25,9 +25,10 @@ use ::report::page::data_table::DataTable;
 use ::report::page::picture::RenderedPictures;
 use ::report::page::{Page, Section};
 use ::report::verdict::Verdict;
+use ::report::verdict::rules::honesty_words;
 use ::run::{AnyJudgement, WorldScenario as _};
 use docking::DockingMission;
-use docking::scoring::DockingGroup;
+use docking::scoring::{DockingGroup, DockingScore};
 use files::{Checksums, Failure};
 use score::{Figure, UnitVerdict, warm_up_note};
 
@@ -125,11 +126,6 @@ fn figures_section(run: &DockingRun) -> Section {
         "RMS errors of measured fields and of the reported range rate; doubtful and grossly wrong poses in \
          percent of the fields, with 95 % intervals; by true range and lens.",
     );
-    let mut honesty = DataTable::new(["range", "within 3 σ", "NEES", "motion within 3 σ", "motion NEES"])
-        .caption(
-            "Consistency of σ: percent of errors within 3 σ, with 95 % intervals (99.73 for normal errors), \
-             and NEES (mean 1 if σ is correct).",
-        );
     for (name, _, _, figures) in groups() {
         let number = |key: &str| cell(figures.get(key).and_then(|figure| figure.value));
         let percent = |key: &str| percent_cell(figures.get(key));
@@ -137,9 +133,6 @@ fn figures_section(run: &DockingRun) -> Section {
         cells.extend(rms.map(number));
         cells.extend(["doubtful_rate", "wrong_rate"].map(percent));
         accuracy.push(cells);
-        let of_fields = [percent("within_3_sigma"), number("nees_mean")];
-        let of_motion = [percent("motion_within_3_sigma"), number("motion_nees_mean")];
-        honesty.push([name.to_owned()].into_iter().chain(of_fields).chain(of_motion).collect::<Vec<_>>());
     }
     let mut answers =
         DataTable::new(["range", "fields", "reports", "success", "of clear ones", "range only", "missed"])
@@ -152,9 +145,38 @@ fn figures_section(run: &DockingRun) -> Section {
     }
     Section::new("figures", "Figures")
         .table(accuracy)
-        .table(honesty)
+        .table(honesty(score))
         .table(answers)
         .folded("All figures", figure_table(&score.figures))
+}
+
+/// Returns the table of the consistency of σ by range and lens, in numbers and in words.
+fn honesty(score: &DockingScore) -> DataTable {
+    let head = [
+        "range",
+        "within 3 σ",
+        "NEES",
+        "σ of fields is",
+        "motion within 3 σ",
+        "motion NEES",
+        "σ of the motion is",
+    ];
+    let mut table = DataTable::new(head).narrow().caption(
+        "Consistency of σ: percent of errors within 3 σ, with 95 % intervals (99.73 for normal errors), and NEES \
+         (mean 1 if σ is correct).",
+    );
+    let groups = score.groups.iter().map(|(name, group)| (name.as_str(), &group.figures));
+    for (name, figures) in groups.chain([("all", &score.figures)]) {
+        let mut cells = vec![name.to_owned()];
+        for (within, nees) in [("within_3_sigma", "nees_mean"), ("motion_within_3_sigma", "motion_nees_mean")]
+        {
+            let value = figures.get(nees).and_then(|figure| figure.value);
+            let words = value.map_or_else(|| "–".to_owned(), honesty_words);
+            cells.extend([percent_cell(figures.get(within)), cell(value), words]);
+        }
+        table.push(cells);
+    }
+    table
 }
 
 /// Returns the chart of the verdicts on the fields, by range.

@@ -46,6 +46,10 @@ use score::{angle, attitude_note, warm_up_note};
 use self::colours::colour_of;
 use self::run::shown_time;
 
+/// Labels of the published rates, in their order.
+const RATE_LABELS: [&str; 5] =
+    ["hit rate", "error across columns", "error across columns", "error across rows", "error across rows"];
+
 /// Returns the report of visibility requirements.
 pub(crate) fn visibility_report() -> OtherReport {
     OtherReport {
@@ -131,7 +135,6 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Fa
             "The truth replaced {stage}: this is a result of the other stages, not of the whole pipeline."
         ));
     }
-    let fact = |name, value: String| (name, value);
     let shown = |name: &str| run.score.figures.get(name).map_or_else(String::new, shown_percent);
     let lead = format!(
         "{} frames: the target was detected in {} of them, in {} correctly and in {} wrongly.",
@@ -169,14 +172,14 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Fa
         warnings,
         verdict: Verdict::new(findings(&run.score)),
         facts: vec![
-            fact("Scenario", run.run_file.name.clone()),
-            fact("Seed", scenario.seed.to_string()),
-            fact("Frames", format!("{} to {}", first.frame, last.frame)),
-            fact("From (UTC)", shown_time(first)),
-            fact("To (UTC)", shown_time(last)),
-            fact("Range", least_to_most(run.truths.iter().map(|truth| truth.range_km), "km")),
-            fact("Camera", format!("{} × {} px", scenario.camera.columns, scenario.camera.rows)),
-            fact("Boresight", run.run_file.version.clone()),
+            ("Scenario", run.run_file.name.clone()),
+            ("Seed", scenario.seed.to_string()),
+            ("Frames", format!("{} to {}", first.frame, last.frame)),
+            ("From (UTC)", shown_time(first)),
+            ("To (UTC)", shown_time(last)),
+            ("Range", least_to_most(run.truths.iter().map(|truth| truth.range_km), "km")),
+            ("Camera", format!("{} × {} px", scenario.camera.columns, scenario.camera.rows)),
+            ("Boresight", run.run_file.version.clone()),
         ],
         sections,
         names_paper: false,
@@ -209,13 +212,7 @@ fn figures_section(run: &FarRangeRun) -> Section {
     };
     let row = |name: &str, cells: Vec<String>| [name.to_owned()].into_iter().chain(cells).collect::<Vec<_>>();
     table.push(row("images", columns().map(|(frames, _)| frames.to_string()).collect()));
-    for ((name, rates), label) in ARGON_TABLE_2.rates().into_iter().zip([
-        "hit rate",
-        "error across columns",
-        "error across columns",
-        "error across rows",
-        "error across rows",
-    ]) {
+    for ((name, rates), label) in ARGON_TABLE_2.rates().into_iter().zip(RATE_LABELS) {
         let ours = columns().map(|(_, figures)| percent_cell(figures.get(name)));
         let limit = score.figures.get(name).and_then(|figure| figure.limit_deg);
         let label =
