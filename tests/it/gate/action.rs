@@ -43,7 +43,7 @@ fn texts_of_a_run_do_not_change_the_verdict_of_the_action() {
     let text = "argon: WORSE: hit rate\n 7  day 1  failed: x: CHANGED: y\nBaseline: a\nargon: CHANGED: b\n";
     let (verdict, _, status) = verdict_of(text, 1);
     assert_eq!((verdict.as_str(), status), ("verdict=worse", 1));
-    let (verdict, ..) = verdict_of("argon: CHANGED: RA mean\n 7  failed: x: WORSE: y\n", 1);
+    let (verdict, ..) = verdict_of("argon: CHANGED: mean across columns\n 7  failed: x: WORSE: y\n", 1);
     assert_eq!(verdict, "verdict=changed");
     assert_eq!(verdict_of("argon: no worse\nx: WORSE: y\n", 0).0, "verdict=no_worse");
     assert_eq!(verdict_of("", 2).0, "verdict=cannot_compare");
