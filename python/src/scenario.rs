@@ -175,12 +175,12 @@ impl Scenario {
         SimulatedFrame::new(py, made.ok_or_else(missing)?, &self.prepared)
     }
 
-    /// World coordinates of a frame as an `astropy.wcs.WCS`: the cards of the frame's FITS file, TAN-SIP, from
-    /// astrometric ICRS coordinates to pixels, with aberration and distortion, made from the truth.
+    /// World coordinates of a frame as an `astropy.wcs.WCS`: the cards of the frame's FITS file, TAN-SIP,
+    /// from astrometric ICRS coordinates to pixels, with aberration and distortion, made from the truth.
     ///
-    /// Pixels are those of the package with `origin=0`, and of `world_to_pixel`: the centre of the first pixel
-    /// is x = 0, y = 0. Far range only. Raises `ImportError` if astropy is missing, and `InputError` for a
-    /// camera whose distortion no SIP polynomial follows to the corners.
+    /// Pixels are those of the package with `origin=0`, and of `world_to_pixel`: the centre of the first
+    /// pixel is x = 0, y = 0. Far range only. Raises `ImportError` if astropy is missing, and `InputError`
+    /// for a camera whose distortion no SIP polynomial follows to the corners.
     fn wcs<'py>(&self, py: Python<'py>, number: i64) -> PyResult<Bound<'py, PyAny>> {
         let astropy = py.import("boresight._astropy")?;
         let text = self.fits_header(py, number)?;

@@ -59,8 +59,8 @@ impl Interruption {
 }
 
 /// Runs work on a separate thread while Python is free to do something else; `ended` is set when the work
-/// must end, by Ctrl-C or by the work itself. `watch` is called at intervals; an error that it returns ends the
-/// work as Ctrl-C does.
+/// must end, by Ctrl-C or by the work itself. `watch` is called at intervals; an error that it returns ends
+/// the work as Ctrl-C does.
 pub(crate) fn interruptibly<T: Send + 'static>(
     py: Python<'_>,
     after: AfterCtrlC,

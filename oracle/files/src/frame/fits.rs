@@ -41,8 +41,8 @@ pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
     Ok(())
 }
 
-/// Returns the header of the FITS file of a frame as text, cards of 80 characters in blocks of 36, without the
-/// checksums. `path` names the file in errors.
+/// Returns the header of the FITS file of a frame as text, cards of 80 characters in blocks of 36, without
+/// the checksums. `path` names the file in errors.
 ///
 /// # Errors
 /// [`FileError::Value`] for a value that FITS cannot represent.
