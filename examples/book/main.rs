@@ -3,6 +3,7 @@
 
 mod command_line;
 mod formats;
+mod pages;
 mod scenario_keys;
 
 use std::fs;
@@ -18,6 +19,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (book, pages) = (Path::new(out), Path::new(out).join("src"));
     copy(docs, &pages)?;
     fs::rename(pages.join("book.toml"), book.join("book.toml"))?;
+    for folder in ["", "evidence", "notebooks"] {
+        pages::complete(&docs.join(folder), &pages.join(folder))?;
+    }
     let formats = formats::filled(&fs::read_to_string(docs.join("formats.md"))?)?;
     fs::write(pages.join("formats.md"), formats)?;
     fs::write(pages.join("command-line.md"), command_line::page(program)?)?;

@@ -56,7 +56,7 @@ impl Paper {
             Self::Argon => {
                 "The table is Table 2 of the far-range paper. `published`: values of the paper. Above them: the \
                  method of 2012 on simulated\nimages; twelve parameters of the scene are fitted to this table \
-                 (docs/argon.md). `best mode`: today's built-in method on the\nsame images. The report has the \
+                 (docs/evidence/argon.md). `best mode`: today's built-in method on the\nsame images. The report has the \
                  paper's Figs. 2 to 9."
             }
             Self::Docking => {

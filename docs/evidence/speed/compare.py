@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Compares frames and their detection with other tools; writes docs/speed/rivals.json, tables of speed.md.
+"""Compares frames and their detection with other tools; writes docs/evidence/speed/rivals.json, tables of speed.md.
 
-    python3 -m venv venv && venv/bin/pip install -r docs/speed/requirements.txt
-    python3 docs/speed/compare.py --python venv/bin/python
+    python3 -m venv venv && venv/bin/pip install -r docs/evidence/speed/requirements.txt
+    python3 docs/evidence/speed/compare.py --python venv/bin/python
 
 Times are processor time of one thread. Every round runs each work once (A B C, A B C, …), so that other load
 on the machine affects all alike; results are the least and the median over the rounds. First, the frames of
@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 # Name for the example frame_speed, name in the table, number of frames in a turn: all where frames differ.
 FRAMES = [
     ("plain", "**Boresight**: the plain frame, whole", 10),
@@ -80,7 +80,7 @@ class Ours:
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--python", help="the interpreter that has docs/speed/requirements.txt; this one otherwise")
+    parser.add_argument("--python", help="the interpreter that has docs/evidence/speed/requirements.txt; this one otherwise")
     parser.add_argument("--rounds", type=int, default=30, help="turns of each work (30)")
     parser.add_argument("--cpu", type=int, help="the core to stay on; the last one otherwise")
     parser.add_argument("--dry", action="store_true", help="print the tables, write nothing")
@@ -169,7 +169,7 @@ def main():
         import page
         import simulators
     except ImportError as error:
-        stop(f"{error}; {sys.executable} needs docs/speed/requirements.txt")
+        stop(f"{error}; {sys.executable} needs docs/evidence/speed/requirements.txt")
     ours = Ours()
     for process in (0, ours.process.pid):
         os.sched_setaffinity(process, {given.cpu})

@@ -1,4 +1,4 @@
-"""Writes generated parts of docs/speed.md and docs/speed/benchmarks.md.
+"""Writes generated parts of docs/evidence/speed.md and docs/evidence/speed/benchmarks.md.
 
 A part is the text between `<!-- NAME: ... -->` and `<!-- end of NAME -->`.
 """

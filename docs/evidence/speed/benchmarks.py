@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs the criterion benchmarks; writes benchmarks.json, benchmarks.md and cost.svg in docs/speed.
 
-    python3 docs/speed/benchmarks.py --python venv/bin/python [--no-run]
+    python3 docs/evidence/speed/benchmarks.py --python venv/bin/python [--no-run]
 
-The interpreter needs matplotlib (docs/speed/requirements.txt). With `--no-run` the estimates of the last run
+The interpreter needs matplotlib (docs/evidence/speed/requirements.txt). With `--no-run` the estimates of the last run
 are read. Times are processor times of one thread, criterion's medians. Exit 0: done; 2: something is missing.
 """
 
@@ -16,7 +16,7 @@ import sys
 
 import page
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 BENCHMARKS = [("boresight-sim", "frame"), ("boresight-pipeline", "far_range")]
 DETECTORS = ["even", "uneven", "row offsets"]
 DETECTOR_WORDS = {"even": "even detector", "uneven": "every pixel its own", "row offsets": "and rows with offsets"}
@@ -147,7 +147,7 @@ def main():
     try:
         chart(found, page.FOLDER / "cost.svg")
     except ImportError as error:
-        print(f"{error}; {sys.executable} needs docs/speed/requirements.txt", file=sys.stderr)
+        print(f"{error}; {sys.executable} needs docs/evidence/speed/requirements.txt", file=sys.stderr)
         sys.exit(2)
     report = {"machine": page.machine(), "median_ns": found}
     (page.FOLDER / "benchmarks.json").write_text(json.dumps(report, indent=1, sort_keys=True) + "\n")

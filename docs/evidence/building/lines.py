@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Counts the lines of production code by crate: without comments, blank lines and tests.
 
-    python3 docs/building/lines.py [DIRECTORY]
+    python3 docs/evidence/building/lines.py [DIRECTORY]
 
 Tests are files and folders named `tests`, and the item after `#[cfg(test)]`. Research programs, examples,
 benchmarks and scripts of other languages are not counted.

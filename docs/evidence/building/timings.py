@@ -2,7 +2,7 @@
 """Sums the units of a `cargo build --timings` report by crate: seconds of compilation, descending, as CSV.
 
     cargo build --release --timings
-    python3 docs/building/timings.py target/cargo-timings/cargo-timing.html >docs/building/after.csv
+    python3 docs/evidence/building/timings.py target/cargo-timings/cargo-timing.html >docs/evidence/building/after.csv
 """
 
 import collections

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Cost of a frame of a star field in a study, by number of stars: table 'Star fields of a study' of
-docs/speed.md.
+docs/evidence/speed.md.
 
-    python3 docs/speed/star_fields.py
+    python3 docs/evidence/speed/star_fields.py
 
 Star fields of the camera of `argon` with 40 regions, rendered, processed by the far-range pipeline and
 scored, on one thread: processor time of cases of 2,000 frames less that of the same number of cases of 20
@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 PROGRAM = ROOT / "target" / "release" / "boresight"
 LIMITS = [3.0, 4.0, 5.0, 6.0, 7.0]
 CASES = 4
