@@ -22,8 +22,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for folder in ["", "evidence", "notebooks"] {
         pages::complete(&docs.join(folder), &pages.join(folder))?;
     }
-    let formats = formats::filled(&fs::read_to_string(docs.join("formats.md"))?)?;
-    fs::write(pages.join("formats.md"), formats)?;
+    let names = ["formats.md", "evidence/formats.md"].map(|name| pages.join(name));
+    let mut texts = names.iter().map(fs::read_to_string).collect::<Result<Vec<_>, _>>()?;
+    formats::fill(&mut texts)?;
+    for (name, text) in names.iter().zip(texts) {
+        fs::write(name, text)?;
+    }
     fs::write(pages.join("command-line.md"), command_line::page(program)?)?;
     let mut keys =
         "# Scenario keys\n\nEvery key of a scenario file with its type, range and default, from the \

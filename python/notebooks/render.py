@@ -19,6 +19,8 @@ from PIL import Image
 HERE = pathlib.Path(__file__).resolve().parent
 PAGES = HERE.parents[1] / "docs" / "notebooks"
 WIDTH = 110
+MAX_CODE_LINES = 6
+"""Longest code that a page shows; longer code is in the notebook."""
 COLOURS = 64
 """Colours of a picture: enough for a chart, and a fifth of the bytes."""
 
@@ -55,8 +57,13 @@ def outputs(cell, name, pictures):
     return "\n".join(texts)
 
 
+def code(source):
+    """The code of a cell, if it is short."""
+    return f"```python\n{source}\n```\n" if len(source.splitlines()) <= MAX_CODE_LINES else ""
+
+
 def page(path):
-    """The page of a notebook."""
+    """The page of a notebook, with a link to the notebook below its title."""
     notebook = nbformat.read(path, as_version=4)
     NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
     parts, pictures = [], []
@@ -64,9 +71,11 @@ def page(path):
         if cell.cell_type == "markdown":
             parts.append(wrapped(cell.source) + "\n")
         else:
-            parts.append(f"```python\n{cell.source}\n```\n")
+            parts.append(code(cell.source))
             parts.append(outputs(cell, path.stem, pictures))
-    return "\n".join(part for part in parts if part)
+    title, rest = "\n".join(part for part in parts if part).split("\n\n", 1)
+    link = f"../../python/notebooks/{path.name}"
+    return f"{title}\n\n*Code of more than {MAX_CODE_LINES} lines is in the [notebook]({link}).*\n\n{rest}"
 
 
 def main():
