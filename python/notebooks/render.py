@@ -10,6 +10,7 @@ compares its text with its numbers, is left out.
 import base64
 import io
 import pathlib
+import re
 import textwrap
 
 import nbformat
@@ -19,7 +20,7 @@ from PIL import Image
 HERE = pathlib.Path(__file__).resolve().parent
 PAGES = HERE.parents[1] / "docs" / "notebooks"
 WIDTH = 110
-MAX_CODE_LINES = 6
+MAX_CODE_LINES = 4
 """Longest code that a page shows; longer code is in the notebook."""
 COLOURS = 64
 """Colours of a picture: enough for a chart, and a fifth of the bytes."""
@@ -40,6 +41,11 @@ def picture(data, path):
     image.quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
+def without_paths(text):
+    """A text with the temporary file of a cell replaced by `cell.py`."""
+    return re.sub(r"/\S*ipykernel_\S+?\.py", "cell.py", text)
+
+
 def outputs(cell, name, pictures):
     """The outputs of a cell as Markdown; appends the names of its pictures."""
     texts = []
@@ -52,7 +58,7 @@ def outputs(cell, name, pictures):
             picture(data["image/png"], PAGES / pictures[-1])
             texts.append(f"![Output of the cell above]({pictures[-1]})\n")
         elif output.get("name") != "stderr":
-            text = output.get("text") or data.get("text/plain", "")
+            text = without_paths(output.get("text") or data.get("text/plain", ""))
             texts.append(f"```text\n{text.rstrip()}\n```\n")
     return "\n".join(texts)
 
@@ -63,9 +69,9 @@ def code(source):
 
 
 def page(path):
-    """The page of a notebook, with a link to the notebook below its title."""
+    """The page of a notebook, with a link to the notebook at its end."""
     notebook = nbformat.read(path, as_version=4)
-    NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
+    NotebookClient(notebook, timeout=600, kernel_name="python3", coalesce_streams=True).execute()
     parts, pictures = [], []
     for cell in notebook.cells[:-1]:
         if cell.cell_type == "markdown":
@@ -73,9 +79,9 @@ def page(path):
         else:
             parts.append(code(cell.source))
             parts.append(outputs(cell, path.stem, pictures))
-    title, rest = "\n".join(part for part in parts if part).split("\n\n", 1)
     link = f"../../python/notebooks/{path.name}"
-    return f"{title}\n\n*Code of more than {MAX_CODE_LINES} lines is in the [notebook]({link}).*\n\n{rest}"
+    parts.append(f"*Code of more than {MAX_CODE_LINES} lines is in the [notebook]({link}).*\n")
+    return "\n".join(part for part in parts if part)
 
 
 def main():

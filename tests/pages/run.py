@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks the commands and the figures of README.md and of the pages in docs/.
 
-    python3 tests/pages/run.py --program target/release/boresight           # what CI runs: under a minute
+    python3 tests/pages/run.py --program target/release/boresight           # what CI runs: two minutes
     python3 tests/pages/run.py --program target/release/boresight --long    # the long commands too
     python3 tests/pages/run.py --list                                       # commands, and figures without a check
 
