@@ -38,7 +38,8 @@ pub(super) fn fill(pages: &mut [String]) -> Result<(), String> {
     let parquet = parquet_tables().into_iter().chain(others).map(|(name, fields)| (name, fields, false));
     for (name, fields, is_csv) in csv.chain(parquet) {
         let mark = format!("<!-- columns of {name} -->\n");
-        let found = pages.iter_mut().find_map(|page| page.find(&mark).map(|place| (page, place + mark.len())));
+        let found =
+            pages.iter_mut().find_map(|page| page.find(&mark).map(|place| (page, place + mark.len())));
         let (page, place) = found.ok_or_else(|| format!("no page of formats has {mark}"))?;
         let rows: String = fields.iter().map(|field| line(field, is_csv)).collect();
         page.insert_str(place, &format!("\n| column | type | is |\n| --- | --- | --- |\n{rows}\n"));

@@ -25,9 +25,8 @@ pub(super) fn complete(docs: &Path, pages: &Path) -> std::io::Result<()> {
 
 /// Returns a page with the file of its mark, if it has one; paths are relative to the folder of the page.
 fn with_include(page: &str, folder: &Path) -> std::io::Result<String> {
-    let Some((before, (file, after))) = page
-        .split_once(INCLUDE)
-        .and_then(|(before, rest)| Some((before, rest.split_once(" -->")?)))
+    let Some((before, (file, after))) =
+        page.split_once(INCLUDE).and_then(|(before, rest)| Some((before, rest.split_once(" -->")?)))
     else {
         return Ok(page.to_owned());
     };
