@@ -69,7 +69,11 @@ fn resolved(from: &str, link: &str) -> String {
     let mut parts: Vec<&str> = std::iter::once("docs").chain(from.split('/')).collect();
     parts.pop();
     for part in link.split('/') {
-        if part == ".." { drop(parts.pop()) } else { parts.push(part) }
+        if part == ".." {
+            parts.pop();
+        } else {
+            parts.push(part);
+        }
     }
     parts.join("/")
 }
