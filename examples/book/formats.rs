@@ -1,11 +1,11 @@
-//! The tables of the page of formats, from the declarations of the crates.
+//! The tables of the pages of formats, from the declarations of the crates.
 
 use boresight::files::{ColumnType, FieldDeclaration};
 use boresight::gate::row_columns;
 use boresight::study::case_columns;
 use boresight::{csv_tables, navigate, parquet_tables, visibility};
 
-/// Row of the page: names, type, and meaning of the columns.
+/// Row of a page: names, type, and meaning of the columns.
 fn line(field: &FieldDeclaration, is_csv: bool) -> String {
     let names: Vec<String> = field.names.iter().map(|name| format!("`{name}`")).collect();
     let names = match names.as_slice() {
@@ -27,8 +27,8 @@ fn line(field: &FieldDeclaration, is_csv: bool) -> String {
     format!("| {names} | {column_type}{empty} | {optional}{} |\n", field.meaning)
 }
 
-/// Returns the page with the declared tables inserted after their marks.
-pub(super) fn filled(source: &str) -> Result<String, String> {
+/// Inserts the declared tables into the pages, after their marks.
+pub(super) fn fill(pages: &mut [String]) -> Result<(), String> {
     let csv = csv_tables()
         .into_iter()
         .chain(visibility::tables())
@@ -36,12 +36,13 @@ pub(super) fn filled(source: &str) -> Result<String, String> {
         .map(|(name, fields)| (name, fields, true));
     let others = [("rows.parquet", row_columns()), ("cases.parquet", case_columns())];
     let parquet = parquet_tables().into_iter().chain(others).map(|(name, fields)| (name, fields, false));
-    let mut page = source.to_owned();
     for (name, fields, is_csv) in csv.chain(parquet) {
         let mark = format!("<!-- columns of {name} -->\n");
-        let place = page.find(&mark).ok_or_else(|| format!("docs/formats.md has no {mark}"))? + mark.len();
+        let found =
+            pages.iter_mut().find_map(|page| page.find(&mark).map(|place| (page, place + mark.len())));
+        let (page, place) = found.ok_or_else(|| format!("no page of formats has {mark}"))?;
         let rows: String = fields.iter().map(|field| line(field, is_csv)).collect();
         page.insert_str(place, &format!("\n| column | type | is |\n| --- | --- | --- |\n{rows}\n"));
     }
-    Ok(page)
+    Ok(())
 }

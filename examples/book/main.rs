@@ -3,6 +3,7 @@
 
 mod command_line;
 mod formats;
+mod pages;
 mod scenario_keys;
 
 use std::fs;
@@ -20,8 +21,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     copy(docs, &pages)?;
     copy_examples(examples, &pages)?;
     fs::rename(pages.join("book.toml"), book.join("book.toml"))?;
-    let formats = formats::filled(&fs::read_to_string(docs.join("formats.md"))?)?;
-    fs::write(pages.join("formats.md"), formats)?;
+    for folder in ["", "evidence", "notebooks"] {
+        pages::complete(&docs.join(folder), &pages.join(folder))?;
+    }
+    let names = ["formats.md", "evidence/formats.md"].map(|name| pages.join(name));
+    let mut texts = names.iter().map(fs::read_to_string).collect::<Result<Vec<_>, _>>()?;
+    formats::fill(&mut texts)?;
+    for (name, text) in names.iter().zip(texts) {
+        fs::write(name, text)?;
+    }
     fs::write(pages.join("command-line.md"), command_line::page(program)?)?;
     let mut keys =
         "# Scenario keys\n\nEvery key of a scenario file with its type, range and default, from the \
@@ -46,11 +54,18 @@ fn copy_examples(examples: &Path, pages: &Path) -> std::io::Result<()> {
             fs::copy(&path, folder.join(name))?;
         }
     }
-    for entry in fs::read_dir(pages)? {
+    // In the tree the examples are beside docs/, in the book they are inside.
+    change_links(pages, "](../examples/", "](examples/")?;
+    change_links(&pages.join("evidence"), "](../../examples/", "](../examples/")
+}
+
+/// Replaces the text `old` by `new` in every page of a folder.
+fn change_links(folder: &Path, old: &str, new: &str) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         if path.extension().is_some_and(|extension| extension == "md") {
             let text = fs::read_to_string(&path)?;
-            fs::write(&path, text.replace("](../examples/", "](examples/"))?;
+            fs::write(&path, text.replace(old, new))?;
         }
     }
     Ok(())

@@ -1,8 +1,8 @@
 //! Benchmark of the far-range pipeline on whole frames of noise with stars, of several sizes and with few and
 //! many stars, compared with a lower bound: reading every pixel once.
 //!
-//! `cargo bench -p boresight-pipeline --bench far_range`; `docs/speed/benchmarks.py` makes tables and a chart
-//! of the results.
+//! `cargo bench -p boresight-pipeline --bench far_range`; `docs/evidence/speed/benchmarks.py` makes tables
+//! and a chart of the results.
 #![allow(clippy::unwrap_used, reason = "a benchmark ends by panicking")]
 
 #[path = "../../benches/support/processor_time.rs"]

@@ -82,6 +82,13 @@ impl Telemetry {
 
 #[pymethods]
 impl Telemetry {
+    /// Middle of the exposure as `astropy.time.Time`, UTC. Raises `ImportError` if astropy is missing.
+    #[getter]
+    fn time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let astropy = py.import("boresight._astropy")?;
+        astropy.call_method1("time_of_text", (&self.time_utc, "Telemetry.time"))
+    }
+
     fn __repr__(&self) -> String {
         format!("<boresight.Telemetry {}, {} s>", self.time_utc, self.exposure_s)
     }

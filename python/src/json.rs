@@ -17,6 +17,12 @@ pub(crate) fn text_to_python<'py>(py: Python<'py>, text: &str) -> PyResult<Bound
     py.import("json")?.call_method1("loads", (text,))
 }
 
+/// Converts the JSON text of a score to a `boresight.Score`.
+pub(crate) fn text_to_score<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    let score = text_to_python(py, text)?;
+    py.import("boresight.scores")?.call_method1("Score", (score,))
+}
+
 /// Converts a Python value, including numpy numbers and arrays; `what` is the name of the argument that
 /// contains it.
 pub(crate) fn from_python(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {

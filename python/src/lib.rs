@@ -27,6 +27,7 @@ mod frame;
 mod json;
 mod navigation;
 mod prepared_scenario;
+mod progress;
 mod python_pipeline;
 mod run;
 mod scenario;

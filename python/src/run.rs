@@ -15,6 +15,8 @@ use tempfile::TempDir;
 
 use crate::arrow::batch;
 use crate::errors::{BoresightError, FileError, file_error, raised, refused};
+use crate::prepared_scenario::PreparedScenario;
+use crate::progress::Progress;
 use crate::python_pipeline::PythonPipeline;
 use crate::scenario::Scenario;
 use crate::table::Table;
@@ -97,7 +99,7 @@ impl Run {
         let path = self.path.join("score.json");
         let text = config::regular_file::read_text(&path, MAX_SCORE_BYTES);
         let text = text.map_err(|error| FileError::new_err(format!("{}: {error}", path.display())))?;
-        json::text_to_python(py, &text)
+        json::text_to_score(py, &text)
     }
 
     /// First failure of the pipeline, (frame, reason); None if the pipeline never failed or the run was
@@ -164,8 +166,14 @@ impl Run {
 /// `Detection`, `NoSolution`, None (no target) or a dictionary with the keys of docs/external-pipeline.md; in
 /// docking `Pose`, `RangeOnly`, `NoSolution` or None. An exception that it raises becomes the outcome of the
 /// frame, with its message; only an exception that is no `Exception` (Ctrl-C) ends the run.
+///
+/// `progress`: None shows a bar in a notebook (with tqdm or ipywidgets) and on a terminal; True shows it on
+/// standard error elsewhere too, False nowhere; a function of (done, total) is called instead.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, frames=None, pipeline=None, jobs=None, out=None, timeout_s=10.0))]
+#[pyo3(signature = (
+    scenario, *, frames=None, pipeline=None, jobs=None, out=None, timeout_s=10.0, progress=None
+))]
+#[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn run(
     py: Python<'_>,
     scenario: &Bound<'_, PyAny>,
@@ -174,6 +182,7 @@ pub(crate) fn run(
     jobs: Option<i64>,
     out: Option<PathBuf>,
     timeout_s: f64,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Run> {
     let prepared = Scenario::from_argument(scenario)?;
     let frames = arguments::frames(frames, prepared.frame_count())?;
@@ -183,19 +192,18 @@ pub(crate) fn run(
         BoresightError::new_err(format!("a temporary directory cannot be made: {error}"))
     };
     let scratch = tempfile::tempdir().map_err(temporary)?;
-    let asked = match pipeline {
-        Some(given) if given.extract::<String>().is_err() => {
-            PipelineArgument::Python(PythonPipeline::new(given, &prepared, &ended)?)
-        }
-        word => {
-            let word = word.map(|word| word.extract()).transpose()?;
-            PipelineArgument::Word(PipelineChoice {
-                word,
-                timeout_s,
-                memory_mb: DEFAULT_MEMORY_MB,
-                sandbox: None,
-            })
-        }
+    let asked = pipeline_argument(pipeline, timeout_s, &prepared, &ended)?;
+    let image = prepared.source.world().image();
+    let count = frames.end - frames.start;
+    let progress = Progress::new(py, progress, count, &format!("{image}s"), &prepared.source.name)?;
+    let counter = progress.counter();
+    let frame_done = || {
+        counter.increment();
+        progress.update().map_err(|error| {
+            ended.set(error);
+            Failure::Interrupted
+        })?;
+        ended.go_on()
     };
     let run = || {
         // The pipeline is created first, before anything is written.
@@ -207,17 +215,16 @@ pub(crate) fn run(
         let (directory, temporary) = create_directory(out.as_deref())?;
         let frame_jobs =
             FrameJobs { frames, jobs, images: None, expectation: Expectation::Dropped, states_of: None };
-        let ran = world.run(&directory, &frame_jobs, &factory, &|| ended.go_on())?;
+        let ran = world.run(&directory, &frame_jobs, &factory, &frame_done)?;
         match ran.incomplete {
             None => Ok((directory, temporary, ran.first_failure)),
             Some(incomplete) => Err(Failure::Usage(incomplete.to_string())),
         }
     };
     let ran: Result<_, Failure> = py.detach(run);
-    if let Some(interrupt) = ended.take() {
-        return Err(interrupt);
-    }
-    let (directory, temporary, first_failure) = ran.map_err(raised)?;
+    let ran = ended.take().map_or_else(|| ran.map_err(raised), Err);
+    let (directory, temporary, first_failure) = ran.inspect_err(|_| progress.abandon(py))?;
+    progress.finish(py)?;
     let is_docking = prepared.source.world().has_scenario::<DockingScenario>();
     Ok(Run { path: directory.path().to_owned(), is_docking, first_failure, _temporary: temporary })
 }
@@ -226,6 +233,25 @@ pub(crate) fn run(
 enum PipelineArgument {
     Word(PipelineChoice),
     Python(PythonPipeline),
+}
+
+/// Reads the argument `pipeline` of a run.
+fn pipeline_argument(
+    pipeline: Option<&Bound<'_, PyAny>>,
+    timeout_s: f64,
+    prepared: &PreparedScenario,
+    ended: &Arc<Interruption>,
+) -> PyResult<PipelineArgument> {
+    match pipeline {
+        Some(given) if given.extract::<String>().is_err() => {
+            Ok(PipelineArgument::Python(PythonPipeline::new(given, prepared, ended)?))
+        }
+        word => {
+            let word = word.map(|word| word.extract()).transpose()?;
+            let choice = PipelineChoice { word, timeout_s, memory_mb: DEFAULT_MEMORY_MB, sandbox: None };
+            Ok(PipelineArgument::Word(choice))
+        }
+    }
 }
 
 /// Creates the directory of a run; without `out` inside a temporary directory, which is returned too.

@@ -35,6 +35,27 @@ impl Scenario {
         }
     }
 
+    /// Checks the number of a frame.
+    fn frame_number(&self, number: i64) -> PyResult<u64> {
+        let count = self.prepared.frame_count();
+        let is_frame = |number: &u64| *number < count;
+        u64::try_from(number).ok().filter(is_frame).ok_or_else(|| {
+            refused("number", number, &format!("a frame of the scenario, 0 to {}", count.saturating_sub(1)))
+        })
+    }
+
+    /// Returns the header of a frame's FITS file as text.
+    fn fits_header(&self, py: Python<'_>, number: i64) -> PyResult<String> {
+        let number = self.frame_number(number)?;
+        let header = py.detach(|| self.prepared.world.fits_header(number));
+        let header = header
+            .ok_or_else(|| refused("wcs", "not available for a docking field", "a frame of the far range"))?;
+        header.map_err(raised)?.ok_or_else(|| {
+            let value = "not available: no SIP polynomial follows the camera's distortion to the corners";
+            refused("wcs", value, "a camera with less distortion")
+        })
+    }
+
     fn checked(py: Python<'_>, source: ScenarioSource) -> PyResult<Self> {
         let prepared = py.detach(|| PreparedScenario::new(source)).map_err(raised)?;
         Ok(Self { prepared: Arc::new(prepared) })
@@ -143,18 +164,27 @@ impl Scenario {
 
     /// Makes one frame, identical to the bit to that frame of a whole run.
     fn frame(&self, py: Python<'_>, number: i64) -> PyResult<Py<SimulatedFrame>> {
-        let count = self.prepared.frame_count();
-        let expected = || {
-            refused("number", number, &format!("a frame of the scenario, 0 to {}", count.saturating_sub(1)))
-        };
-        let number = u64::try_from(number).ok().filter(|number| *number < count).ok_or_else(expected)?;
+        let number = self.frame_number(number)?;
         let mut made = None;
         let mut take = |frame: PendingFrame| {
             made = Some(frame);
             Ok(())
         };
         py.detach(|| self.prepared.world.make(number..number + 1, 1, &mut take)).map_err(raised)?;
-        SimulatedFrame::new(py, made.ok_or_else(expected)?, &self.prepared)
+        let missing = || BoresightError::new_err(format!("frame {number} was not made"));
+        SimulatedFrame::new(py, made.ok_or_else(missing)?, &self.prepared)
+    }
+
+    /// World coordinates of a frame as an `astropy.wcs.WCS`: the cards of the frame's FITS file, TAN-SIP,
+    /// from astrometric ICRS coordinates to pixels, with aberration and distortion, made from the truth.
+    ///
+    /// Pixels are those of the package with `origin=0`, and of `world_to_pixel`: the centre of the first
+    /// pixel is x = 0, y = 0. Far range only. Raises `ImportError` if astropy is missing, and `InputError`
+    /// for a camera whose distortion no SIP polynomial follows to the corners.
+    fn wcs<'py>(&self, py: Python<'py>, number: i64) -> PyResult<Bound<'py, PyAny>> {
+        let astropy = py.import("boresight._astropy")?;
+        let text = self.fits_header(py, number)?;
+        astropy.call_method1("world_coordinates", (text,))
     }
 
     /// Returns an iterator over `SimulatedFrame`, in order. The frames are made ahead on `jobs` threads

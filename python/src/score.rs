@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::arguments;
 use crate::errors::{BoresightError, FileError, raised, refused};
-use crate::json::text_to_python;
+use crate::json::text_to_score;
 use crate::run::Run;
 
 /// Scores measurements against the truth, as the command `boresight score` does.
@@ -38,7 +38,7 @@ pub(crate) fn score<'py>(
     };
     if let Ok(path) = measurements.extract::<PathBuf>() {
         let scored = py.detach(|| score_json(&directory, &path, attitude));
-        return text_to_python(py, &scored.map_err(raised)?);
+        return text_to_score(py, &scored.map_err(raised)?);
     }
     let text: String =
         py.import("boresight._values")?.call_method1("csv_text", (measurements,))?.extract()?;
@@ -57,7 +57,7 @@ pub(crate) fn score<'py>(
             _ => crate::errors::InputError::new_err(told),
         }
     });
-    text_to_python(py, &scored?)
+    text_to_score(py, &scored?)
 }
 
 /// Parses the name of an attitude, as the command does.

@@ -1,6 +1,7 @@
 //! Studies: Monte Carlo campaigns over varied parameters.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use boresight::failure::Failure;
@@ -13,8 +14,9 @@ use pyo3::prelude::*;
 use tempfile::TempDir;
 
 use crate::arguments;
-use crate::errors::{BoresightError, file_error};
+use crate::errors::{BoresightError, file_error, raised};
 use crate::json::text_to_python;
+use crate::progress::{Progress, ProgressCounter};
 use crate::study_pipeline::PythonStudyPipeline;
 use crate::table::Table;
 use crate::wait::{AfterCtrlC, Interruption, interruptibly};
@@ -74,8 +76,11 @@ impl StudyResult {
 /// of such callables, as in `run`. Cases run in parallel and call the pipeline one at a time. A class is
 /// instantiated for every case, with the case's setup; a function is called for frames of several cases in
 /// turn, and must keep no state. An exception that it raises becomes the outcome of the frame.
+///
+/// `progress`: None shows a bar in a notebook (with tqdm or ipywidgets) and on a terminal; True shows it on
+/// standard error elsewhere too, False nowhere; a function of (done, total) is called instead.
 #[pyfunction]
-#[pyo3(signature = (path, *, out=None, pipeline=None, jobs=None, timeout_s=10.0))]
+#[pyo3(signature = (path, *, out=None, pipeline=None, jobs=None, timeout_s=10.0, progress=None))]
 pub(crate) fn study(
     py: Python<'_>,
     path: PathBuf,
@@ -83,6 +88,7 @@ pub(crate) fn study(
     pipeline: Option<&Bound<'_, PyAny>>,
     jobs: Option<i64>,
     timeout_s: f64,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<StudyResult> {
     let jobs = arguments::jobs(jobs)?;
     let ended = Arc::new(Interruption::default());
@@ -104,24 +110,40 @@ pub(crate) fn study(
     let kept = if out.is_none() { Some(tempfile::tempdir().map_err(temporary)?) } else { None };
     let directory = out.or_else(|| kept.as_ref().map(|kept| kept.path().to_owned())).unwrap_or_default();
     let folder = directory.clone();
-    let (summary, first_failure) = interruptibly(py, AfterCtrlC::Ends, &ended, move |ended| {
-        let study = Study::read(&path)?;
+    let study = Study::read(&path).map_err(raised)?;
+    let progress = Progress::new(py, progress, study.cases(), "cases", &study.name)?;
+    let counter = progress.counter();
+    let work = move |ended: &AtomicBool| {
         let campaign = Campaign::open(&study, pipeline.as_ref(), &folder, None)?;
         let workers = Workers { jobs, scratch: scratch.path(), ended: Some(ended) };
-        let first_failure: Mutex<Option<(u64, FirstFailure)>> = Mutex::new(None);
-        let cases = campaign.run(workers, |case| {
-            if let CaseOutcome::Run(CaseResult { row, first_failure: Some(failure), .. }) = case {
-                let mut first = first_failure.lock().unwrap_or_else(PoisonError::into_inner);
-                if first.as_ref().is_none_or(|(case, _)| row.case < *case) {
-                    *first = Some((row.case, failure.clone()));
-                }
-            }
-        })?;
-        let summary = campaign.finish(&path, &cases)?;
-        let summary = serde_json::to_string(&summary)
-            .map_err(|error| Failure::Usage(format!("the summary cannot be written as JSON: {error}")))?;
-        Ok((summary, first_failure.into_inner().unwrap_or_else(PoisonError::into_inner)))
-    })?;
+        run_campaign(&campaign, &path, workers, &counter)
+    };
+    let done = interruptibly(py, AfterCtrlC::Ends, &ended, || progress.update(), work);
+    let (summary, first_failure) = done.inspect_err(|_| progress.abandon(py))?;
+    progress.finish(py)?;
     let cases = directory.join("cases.parquet");
     Ok(StudyResult { directory, cases, summary, first_failure, _temporary: kept })
+}
+
+/// Runs the missing cases; returns the summary as JSON, and the first failure of the pipeline with its case.
+fn run_campaign(
+    campaign: &Campaign<'_>,
+    path: &Path,
+    workers: Workers<'_>,
+    counter: &ProgressCounter,
+) -> Result<(String, Option<(u64, FirstFailure)>), Failure> {
+    let first_failure: Mutex<Option<(u64, FirstFailure)>> = Mutex::new(None);
+    let cases = campaign.run(workers, |case| {
+        counter.increment();
+        if let CaseOutcome::Run(CaseResult { row, first_failure: Some(failure), .. }) = case {
+            let mut first = first_failure.lock().unwrap_or_else(PoisonError::into_inner);
+            if first.as_ref().is_none_or(|(case, _)| row.case < *case) {
+                *first = Some((row.case, failure.clone()));
+            }
+        }
+    })?;
+    let summary = campaign.finish(path, &cases)?;
+    let summary = serde_json::to_string(&summary)
+        .map_err(|error| Failure::Usage(format!("the summary cannot be written as JSON: {error}")))?;
+    Ok((summary, first_failure.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }

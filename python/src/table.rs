@@ -123,6 +123,13 @@ impl Table {
         self.column(py, index)
     }
 
+    /// Returns a column of times as `astropy.time.Time`, UTC, with nanoseconds. Raises `ImportError` if
+    /// astropy is missing, and `InputError` for a column of other values.
+    #[pyo3(signature = (column="time_utc"))]
+    fn time<'py>(slf: &Bound<'py, Self>, column: &str) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("boresight._astropy")?.call_method1("time_of_table", (slf, column))
+    }
+
     /// Returns all columns by name, in the form of `table[name]`.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);

@@ -39,12 +39,18 @@ pub(crate) fn visibility<'py>(
         let allowed = u32::try_from(frames).ok().filter(|frames| *frames <= 100_000);
         requirements.file.confirm.frames = allowed.ok_or_else(|| refused("frames", frames, "0 to 100000"))?;
     }
-    let report = interruptibly(py, AfterCtrlC::IsLeft, &Arc::default(), move |_| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
-        let pool = pool.map_err(|error| Failure::Usage(format!("threads cannot be started: {error}")))?;
-        let report = pool.install(|| assess(&requirements, |_| ()))?;
-        serde_json::to_string(&report)
-            .map_err(|error| Failure::Usage(format!("the report cannot be written as JSON: {error}")))
-    })?;
+    let report = interruptibly(
+        py,
+        AfterCtrlC::IsLeft,
+        &Arc::default(),
+        || Ok(()),
+        move |_| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
+            let pool = pool.map_err(|error| Failure::Usage(format!("threads cannot be started: {error}")))?;
+            let report = pool.install(|| assess(&requirements, |_| ()))?;
+            serde_json::to_string(&report)
+                .map_err(|error| Failure::Usage(format!("the report cannot be written as JSON: {error}")))
+        },
+    )?;
     text_to_python(py, &report)
 }

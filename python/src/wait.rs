@@ -59,11 +59,13 @@ impl Interruption {
 }
 
 /// Runs work on a separate thread while Python is free to do something else; `ended` is set when the work
-/// must end, by Ctrl-C or by the work itself.
+/// must end, by Ctrl-C or by the work itself. `watch` is called at intervals; an error that it returns ends
+/// the work as Ctrl-C does.
 pub(crate) fn interruptibly<T: Send + 'static>(
     py: Python<'_>,
     after: AfterCtrlC,
     ended: &Arc<Interruption>,
+    watch: impl Fn() -> PyResult<()>,
     work: impl FnOnce(&AtomicBool) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
     let own = Arc::clone(ended);
@@ -73,7 +75,7 @@ pub(crate) fn interruptibly<T: Send + 'static>(
         .map_err(|error| BoresightError::new_err(format!("a thread cannot be started: {error}")))?;
     while !worker.is_finished() {
         py.detach(|| std::thread::sleep(CHECK_INTERVAL));
-        if let Err(interrupt) = py.check_signals() {
+        if let Err(interrupt) = py.check_signals().and_then(|()| watch()) {
             ended.is_set.store(true, Ordering::Relaxed);
             if after == AfterCtrlC::Ends {
                 // The interrupt takes precedence over the result of the work.

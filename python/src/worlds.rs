@@ -31,6 +31,8 @@ fn world_entries<P: PythonFactory>() -> [WorldEntry<P>; 2] {
 type DowncastMission = Result<Box<dyn AnyPythonWorld>, Box<dyn Any>>;
 /// Rows and columns of a frame, and its electrons row by row.
 type ExpectedFrame = Result<([usize; 2], Vec<f64>), Failure>;
+/// FITS header as text; `None` if no SIP polynomial follows the distortion of the camera.
+type FitsHeader = Result<Option<String>, Failure>;
 
 /// World: its code, the conversion of its mission, and the factory of a callable pipeline.
 struct WorldEntry<P> {
@@ -136,6 +138,11 @@ pub(crate) trait PythonWorld: World<Interface: PythonInterface, Truth: Send> {
     fn expected(&self, _frame: u64) -> Option<ExpectedFrame> {
         None
     }
+
+    /// Header of the frame's FITS file, if the world has FITS files with world coordinates.
+    fn fits_header(&self, _frame: u64) -> Option<FitsHeader> {
+        None
+    }
 }
 
 impl PythonWorld for FarRangeMission {
@@ -155,6 +162,10 @@ impl PythonWorld for FarRangeMission {
             Ok(([rows, columns], image.iter().collect()))
         };
         Some(make().map_err(|error: sim::SimError| error.into()))
+    }
+
+    fn fits_header(&self, frame: u64) -> Option<FitsHeader> {
+        Some(Self::fits_header(self, frame))
     }
 }
 
@@ -190,6 +201,9 @@ pub(crate) trait AnyPythonWorld: AnyMission {
 
     /// See [`PythonWorld::expected`].
     fn expected(&self, frame: u64) -> Option<ExpectedFrame>;
+
+    /// See [`PythonWorld::fits_header`].
+    fn fits_header(&self, frame: u64) -> Option<FitsHeader>;
 }
 
 impl<W: PythonWorld> AnyPythonWorld for W
@@ -230,5 +244,9 @@ where
 
     fn expected(&self, frame: u64) -> Option<ExpectedFrame> {
         PythonWorld::expected(self, frame)
+    }
+
+    fn fits_header(&self, frame: u64) -> Option<FitsHeader> {
+        PythonWorld::fits_header(self, frame)
     }
 }

@@ -48,6 +48,9 @@ boresight.run("argon", pipeline=nothing)
 boresight.run("docking", pipeline=Docking)
 boresight.run("argon", pipeline="exec:python3 pipeline.py")
 boresight.study("study.toml", pipeline=Docking)
+boresight.run("argon", progress=False).score["figures"]
+boresight.study("study.toml", progress=lambda done, total: print(done, total))
+boresight.run("argon", progress="yes")  # type: ignore[arg-type]
 boresight.run("argon", pipeline=number)  # type: ignore[arg-type]
 
 telemetry = boresight.Scenario.load("argon").frame(0).telemetry

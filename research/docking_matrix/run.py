@@ -15,7 +15,7 @@ the share of measured, doubtful and grossly wrong fields, the share of wrong and
 upper end of its 95 % interval (Clopper and Pearson), NEES over its dimension, and the share of motion
 parameters within 3 σ.
 
---renderer mitsuba renders the scene by Mitsuba (docs/mitsuba.md): half a minute of CPU a field at 64 rays,
+--renderer mitsuba renders the scene by Mitsuba (docs/evidence/mitsuba.md): half a minute of CPU a field at 64 rays,
 which allows a sample of six fields a block; its images are kept in --mitsuba-cache.
 
     python3 research/docking_matrix/run.py --boresight ... --renderer mitsuba --mitsuba venv/bin/mitsuba --blocks 1 --fields 6 --motions constant

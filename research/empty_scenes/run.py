@@ -6,7 +6,7 @@
 Each cell is a built-in scenario with a few changed lines. In the sets `tuned` and `withheld` the target is a
 beacon of V = 20 at 1 km, which no camera here detects; the constants of the tracks were chosen on `tuned`
 only. In the set `faint` the target is near the detection limit. Prints frames, correct and wrong ones of each
-cell; docs/best-mode.md has the table. Needs Python's standard library.
+cell; docs/evidence/best-mode.md has the table. Needs Python's standard library.
 """
 
 import argparse

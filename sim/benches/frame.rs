@@ -2,8 +2,8 @@
 //! stages, and beside them the lower limits that no simulator undercuts: filling the memory of an image, and
 //! its random numbers.
 //!
-//! `cargo bench -p boresight-sim --bench frame`; `docs/speed/benchmarks.py` makes tables and a chart of the
-//! results.
+//! `cargo bench -p boresight-sim --bench frame`; `docs/evidence/speed/benchmarks.py` makes tables and a chart
+//! of the results.
 #![allow(clippy::unwrap_used, reason = "a benchmark ends by panicking")]
 
 use proptest::prelude::Rng;

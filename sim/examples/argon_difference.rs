@@ -1,5 +1,5 @@
 //! Difference between the true motion of the scenarios `argon` (mean elements) and `argon-numerical`, day by
-//! day: prints the table of `docs/argon.md`.
+//! day: prints the table of `docs/evidence/argon.md`.
 //!
 //! ```text
 //! cargo run --release -p boresight-sim --example argon_difference

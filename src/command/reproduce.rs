@@ -56,7 +56,7 @@ impl Paper {
             Self::Argon => {
                 "The table is Table 2 of the far-range paper; its `RA` and `Dec` are `columns` and `rows` here. \
                  `published`: values of the paper. Above them: the method of 2012 on simulated images; twelve \
-                 parameters of the scene are fitted to this table (docs/argon.md). `best mode`: today's built-in \
+                 parameters of the scene are fitted to this table (docs/evidence/argon.md). `best mode`: today's built-in \
                  method on the same images. The report has the paper's Figs. 2 to 9."
             }
             Self::Docking => {

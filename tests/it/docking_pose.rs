@@ -5,7 +5,8 @@ use crate::support::Bench;
 
 /// d (m) and φ (deg) of a camera at rest: six different values, no two of them opposite.
 const POSE: [f64; 6] = [0.06, -0.09, 8.0, 0.4, -0.7, 3.0];
-/// The test examines the signs of small angles and offsets; accuracy is covered by docs/docking-accuracy.md.
+/// The test examines the signs of small angles and offsets; accuracy is covered by
+/// docs/evidence/docking-accuracy.md.
 const TOLERANCE: [f64; 6] = [0.01, 0.01, 0.02, 0.1, 0.1, 0.1];
 
 #[test]

@@ -32,8 +32,8 @@ const FLAT: f64 = 0.01;
 const FINER: usize = 8;
 /// Largest root mean square of the differences between edges, px.
 const AGREE_PX: f64 = 0.02;
-/// Cases in which more pixels on an edge contain a second edge, as measured in docs/mitsuba.md: case, edge,
-/// limits in px with full-size and with small pixels.
+/// Cases in which more pixels on an edge contain a second edge, as measured in docs/evidence/mitsuba.md:
+/// case, edge, limits in px with full-size and with small pixels.
 const TWO_EDGES: [(&str, Kind, [f64; 2]); 4] = [
     ("wide-20", Kind::Disk, [0.08, 0.022]),
     ("narrow-20", Kind::Disk, [0.035, AGREE_PX]),

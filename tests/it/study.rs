@@ -415,12 +415,12 @@ fn the_plan_holds_the_command_of_every_shard() {
     bench.boresight("study merge study.toml --out out").done();
 }
 
-/// The study of docs/studies.md without drawing of dark pixels runs as printed, and is rejected with
+/// The study of docs/evidence/studies.md without drawing of dark pixels runs as printed, and is rejected with
 /// thresholds below the floor.
 #[test]
 fn whole_images_are_drawn_above_a_floor_by_one_word_and_never_read_below() {
     let bench = Bench::new();
-    let page = include_str!("../../docs/studies.md");
+    let page = include_str!("../../docs/evidence/studies.md");
     let study = page.split("```toml").find(|part| part.contains("zero_suppression_dn\"\nvalues")).unwrap();
     let study = study.split("```").next().unwrap();
     bench.write("study.toml", study);

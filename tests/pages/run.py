@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks the commands and the figures of README.md and of the pages in docs/.
 
-    python3 tests/pages/run.py --program target/release/boresight           # what CI runs: under a minute
+    python3 tests/pages/run.py --program target/release/boresight           # what CI runs: two minutes
     python3 tests/pages/run.py --program target/release/boresight --long    # the long commands too
     python3 tests/pages/run.py --program env/bin/boresight --installed      # as a user without this tree
     python3 tests/pages/run.py --list                                       # commands, and figures without a check
@@ -10,7 +10,8 @@
    scripts of `python3` are files of this tree, binaries, examples and test suites of `cargo` exist.
 2. Every check of checks.toml: its commands run, one after the other, in a directory of their own with the tree
    beside it, and each figure that the page prints is compared with the one in their output. A figure of a page
-   must be a text of that page, so a page cannot change without its check.
+   must be a text of that page, so a page cannot change without its check. A block of results on a page must be
+   in the output, line by line; a line `…` stands for omitted ones.
 
 A figure agrees if the output, rounded to the decimals of the page, is the page's figure, or differs from it by
 at most the `within` of its entry, which has a reason. Standard library only; a check that needs numpy or
@@ -40,7 +41,7 @@ GLOBAL = {"--help", "--version", "--json", "--color", "--quiet"}
 
 
 def pages():
-    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    return [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def commands(text):
@@ -158,6 +159,7 @@ class Check:
         self.commands, self.figures = entry["commands"], entry.get("figures", [])
         self.unprinted = entry.get("unprinted", [])
         self.blocks, self.copies = entry.get("blocks", {}), entry.get("copies", {})
+        self.results = entry.get("results", [])
         self.needs, self.is_long = entry.get("needs", []), entry.get("long", False)
         self.exit_status = entry.get("exit_status", 0)
 
@@ -186,7 +188,7 @@ class Check:
             if is_installed:
                 run("boresight examples", program, scratch).check_returncode()
             else:
-                for name in ("docs", "examples", "scenarios", "golden", "sim", "research"):
+                for name in ("docs", "examples", "scenarios", "golden", "sim", "research", "tests"):
                     (scratch / name).symlink_to(ROOT / name)
             for name, (language, number) in self.blocks.items():
                 (scratch / name).write_text(self.block(language, number))
@@ -199,7 +201,12 @@ class Check:
                 expected = self.exit_status if command == self.commands[-1] else 0
                 if done.returncode != expected:
                     return [f"{self.page}: `{command}` ended with {done.returncode}, not {expected}: {done.stderr[-300:]}"]
-            return [fault for figure in self.figures for fault in self.fault(figure, scratch, output)]
+            faults = [fault for number in self.results for fault in self.differing_lines(number, output)]
+            return faults + [fault for figure in self.figures for fault in self.fault(figure, scratch, output)]
+
+    def differing_lines(self, number, output):
+        """The first line of a block of results that is not in the output, after the lines before it."""
+        return [f"{self.page}: `{line}` is not in the output of {self.name}" for line in first_missing(self.block("text", number), output)]
 
     def fault(self, figure, scratch, output):
         """The difference of one figure, as a list of none or one."""
@@ -219,6 +226,15 @@ class Check:
             if not agree(on_page, in_output, figure.get("within", 0.0), figure.get("scale", 1.0)):
                 faults.append(f"{self.page}: `{figure['text']}` prints {on_page}, its commands {in_output}")
         return faults
+
+
+def first_missing(block, output):
+    """The first line of a block that the rest of the output lacks, as a list of none or one."""
+    rest = iter(line.rstrip() for line in output.splitlines())
+    for line in block.splitlines():
+        if line.strip() not in ("", "…") and line.rstrip() not in rest:
+            return [line]
+    return []
 
 
 # Numbers that pages write as words.
@@ -260,6 +276,8 @@ def prove(program):
         not agree("16,077", "16077", 0, 1),
         not agree("64.0", "0.6396", 0, 100),
         not agree("twenty", "20", 0, 1),
+        first_missing("a\n…\nc\n", "a\nb\nc\n") != [],
+        first_missing("c\na\n", "a\nb\nc\n") != ["a"],
         fault_of_boresight(["boresight", "run", "argon", "--frame", "1"], known) is None,
         fault_of_boresight(["boresight", "compare", "a", "b"], known) is None,
         fault_of_boresight(["boresight", "run", "argon", "--frames", "1"], known) is not None,

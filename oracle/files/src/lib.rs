@@ -40,8 +40,8 @@ pub use complete::{
 pub use error::{Failure, FileError, FileLocation, create_new, failure, open_regular};
 pub use frame::{
     ExpectedImage, FrameHeader, ImageFormat, ImageMetadata, RawImage, RequiredSize, Sip, SipTerm, TanSip,
-    WcsError, checked_size, read_expected, read_frame, read_image, read_radiance, write_expected,
-    write_frame, write_png_of_depth, write_radiance,
+    WcsError, checked_size, fits_header, read_expected, read_frame, read_image, read_radiance,
+    write_expected, write_frame, write_png_of_depth, write_radiance,
 };
 pub use listed_images::{locate_alone, locate_image, refuse_twice};
 pub use loaded_table::{LoadedTable, read_csv_table, read_parquet_table};

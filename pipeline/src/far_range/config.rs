@@ -49,7 +49,7 @@ pub struct FarRangeConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
-    /// Attitude from prior and stars, hypotheses for the target, fitted images (docs/best-mode.md).
+    /// Attitude from prior and stars, hypotheses for the target, fitted images (docs/evidence/best-mode.md).
     #[default]
     Best,
     /// Method of the paper.

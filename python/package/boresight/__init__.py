@@ -34,6 +34,7 @@ from boresight._boresight import (
 )
 from boresight.answers import Detection, NoSolution, Pose, RangeOnly
 from boresight.errors import BoresightError, FileError, InputError
+from boresight.scores import Score
 
 __all__ = [
     "BoresightError",
@@ -49,6 +50,7 @@ __all__ = [
     "RangeOnly",
     "Run",
     "Scenario",
+    "Score",
     "SimulatedFrame",
     "StudyResult",
     "Table",

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from typing_extensions import disjoint_base
 
 from boresight.answers import Detection, NoSolution, Pose, RangeOnly
+from boresight.scores import Score
 
 __all__ = [
     "FieldTelemetry",
@@ -42,6 +43,10 @@ _Docking: TypeAlias = Callable[[Frame, FieldTelemetry], Pose | RangeOnly | NoSol
 _Pipeline: TypeAlias = _FarRange | _Docking | Callable[[dict[str, Any]], _FarRange | _Docking]
 """A callable of (frame, telemetry), or a class that is made with the setup and whose instances are such
 callables."""
+
+_Progress: TypeAlias = bool | Callable[[int, int], object] | None
+"""Display of progress: None, a bar in a notebook (with tqdm or ipywidgets) and on a terminal; True, on
+standard error elsewhere too; False, none; or a function of (done, total)."""
 
 _Answers: TypeAlias = Sequence[Mapping[str, Any] | str]
 _Events: TypeAlias = list[dict[str, Any]]
@@ -105,6 +110,9 @@ class Telemetry:
     def time_utc(self) -> str:
         """Middle of the exposure, UTC, ISO 8601 with nanoseconds."""
     @property
+    def time(self) -> Any:
+        """Middle of the exposure as `astropy.time.Time`, UTC. Raises `ImportError` if astropy is missing."""
+    @property
     def exposure_s(self) -> float:
         """Exposure time, s."""
     @property
@@ -152,6 +160,9 @@ class Table:
     def __len__(self) -> int: ...
     def __getitem__(self, key: str, /) -> Any:
         """A numpy array (NaN for missing values; times `datetime64[ns]`), or a list of texts."""
+    def time(self, column: str = "time_utc") -> Any:
+        """A column of times as `astropy.time.Time`, UTC, with nanoseconds. Raises `ImportError` if astropy is
+        missing, and `InputError` for a column of other values."""
     def to_dict(self) -> dict[str, Any]:
         """All columns by name."""
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> Any: ...
@@ -210,6 +221,14 @@ class Scenario:
         """Text of a scenario file with all values, defaults included."""
     def frame(self, number: int) -> SimulatedFrame:
         """Makes one frame, with the bits of a whole run."""
+    def wcs(self, number: int) -> Any:
+        """World coordinates of a frame as an `astropy.wcs.WCS`: the cards of the frame's FITS file, TAN-SIP,
+        from astrometric ICRS coordinates to pixels, with aberration and distortion, made from the truth.
+
+        Pixels are those of the package with `origin=0`, and of `world_to_pixel`: the centre of the first
+        pixel is x = 0, y = 0. Far range only. Raises `ImportError` if astropy is missing, and `InputError`
+        for a camera whose distortion no SIP polynomial follows to the corners.
+        """
     def frames(self, frames: range | None = None, *, jobs: int | None = None) -> FrameStream:
         """Makes frames, in order, on `jobs` threads (1 to 1024; default: all cores) ahead of the caller.
 
@@ -227,9 +246,9 @@ class Run:
     def directory(self) -> Path:
         """Directory of the run."""
     @property
-    def score(self) -> dict[str, Any]:
-        """score.json, described in docs/score.md. Rates are 0 to 1; each figure has its count and its 95 %
-        interval."""
+    def score(self) -> Score:
+        """score.json, described in docs/score.md: a dictionary that is displayed as a table. Rates are 0 to 1;
+        each figure has its count and its 95 % interval."""
     @property
     def first_failure(self) -> tuple[int, str] | None:
         """First failure of the pipeline, (frame, reason); None if it never failed, or for a loaded run."""
@@ -319,6 +338,7 @@ def run(
     jobs: int | None = None,
     out: _Word | None = None,
     timeout_s: float = 10.0,
+    progress: _Progress = None,
 ) -> Run:
     """Makes frames, processes them by a pipeline, and scores the outcomes, with the numbers of the command
     `boresight run`.
@@ -333,6 +353,9 @@ def run(
     `NoSolution`, None (no target) or a dictionary with the keys of docs/external-pipeline.md; in docking
     `Pose`, `RangeOnly`, `NoSolution` or None. An `Exception` becomes the outcome of its frame, with its
     message; other exceptions (Ctrl-C) end the run.
+
+    `progress`: None shows a bar in a notebook (with tqdm or ipywidgets) and on a terminal; True shows it on
+    standard error elsewhere too, False nowhere; a function of (done, total) is called instead.
     """
 
 def score(
@@ -340,7 +363,7 @@ def score(
     measurements: _Word | Table | Mapping[str, Sequence[Any]] | Any,
     *,
     attitude: Literal["telemetry", "true"] | None = None,
-) -> dict[str, Any]:
+) -> Score:
     """Scores measurements against the truth, as the command `boresight score` does.
 
     `truth` is a `Run`, or the directory of a run or of a rendered dataset. `measurements` is a file, or a
@@ -349,7 +372,7 @@ def score(
     `x_px`, `y_px` are enough (docking: `field`, `status`, `d1_m` ... `phi3_deg`). A frame of the truth
     without a row is a miss. Beside a file, `clusters.parquet` (docking: `motion.csv`) is read too: evidence
     for the causes of misses. `attitude`, `telemetry` or `true`, turns centroids without a line of sight into
-    one. Returns the dictionary of score.json.
+    one. Returns score.json: a dictionary that is displayed as a table.
     """
 
 def study(
@@ -359,6 +382,7 @@ def study(
     pipeline: _Pipeline | str | None = None,
     jobs: int | None = None,
     timeout_s: float = 10.0,
+    progress: _Progress = None,
 ) -> StudyResult:
     """Runs the missing cases of a study and summarises it, as the command `boresight study run` does.
 
@@ -371,6 +395,9 @@ def study(
     them, as in `run`. Cases run side by side, and call it one at a time: a class is made anew for every case,
     with the case's setup; a function is called for frames of several cases in turn, and must keep no state.
     An exception becomes the outcome of its frame.
+
+    `progress`: None shows a bar in a notebook (with tqdm or ipywidgets) and on a terminal; True shows it on
+    standard error elsewhere too, False nowhere; a function of (done, total) is called instead.
     """
 
 def visibility(requirement: _Word, *, frames: int | None = None, jobs: int | None = None) -> dict[str, Any]:

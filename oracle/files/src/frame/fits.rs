@@ -11,7 +11,7 @@ use std::path::Path;
 use contract::{Frame, Window};
 use fitsio_pure::BLOCK_SIZE;
 use fitsio_pure::checksum::{checksum_blocks, stamp_checksum};
-use fitsio_pure::header::{Card, parse_header_blocks};
+use fitsio_pure::header::{Card, parse_header_blocks, serialize_header};
 use fitsio_pure::image_writer::ImageWriter;
 use fitsio_pure::primary::build_primary_header;
 use fitsio_pure::value::Value;
@@ -29,21 +29,43 @@ const MAX_HEADER_BLOCKS: usize = 1024;
 /// Writes a frame as unsigned 16-bit FITS. The first row of the frame is the first row of the file, as in
 /// every array: viewers that display it at the bottom show the image and its world coordinates upside down.
 pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<(), FileError> {
-    let cards = fits_cards::frame_cards(path, frame, header)?;
-    let error = |error: fitsio_pure::Error| match error {
-        fitsio_pure::Error::Io(source) => FileError::io(path, "write", source),
-        other => FileError::format(path, "FITS", other),
-    };
+    let error = |error| fits_error(path, error);
     // Subtracting 32768 from a u16 and casting to i16 is a flip of the highest bit.
     let samples = || frame.dn().iter().map(|&dn| (dn ^ 0x8000) as i16);
-    let mut header = build_primary_header(16, &[frame.columns(), frame.rows()]).map_err(error)?;
-    header.extend(cards);
+    let header = primary_header(path, frame, header)?;
     let header = stamp_checksum(&header, &samples().flat_map(i16::to_be_bytes).collect::<Vec<u8>>());
     let file = BufWriter::new(create_new(path)?);
     let mut writer = ImageWriter::new(file, &header).map_err(error)?;
     writer.write_iter(samples()).map_err(error)?;
     writer.finish().map_err(error)?;
     Ok(())
+}
+
+/// Returns the header of the FITS file of a frame as text, cards of 80 characters in blocks of 36, without
+/// the checksums. `path` names the file in errors.
+///
+/// # Errors
+/// [`FileError::Value`] for a value that FITS cannot represent.
+pub fn fits_header(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<String, FileError> {
+    let cards = primary_header(path, frame, header)?;
+    let bytes = serialize_header(&cards).map_err(|error| fits_error(path, error))?;
+    // Every card is checked to be printable ASCII.
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+fn primary_header(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<Vec<Card>, FileError> {
+    let cards = fits_cards::frame_cards(path, frame, header)?;
+    let mandatory = build_primary_header(16, &[frame.columns(), frame.rows()]);
+    let mut all = mandatory.map_err(|error| fits_error(path, error))?;
+    all.extend(cards);
+    Ok(all)
+}
+
+fn fits_error(path: &Path, error: fitsio_pure::Error) -> FileError {
+    match error {
+        fitsio_pure::Error::Io(source) => FileError::io(path, "write", source),
+        other => FileError::format(path, "FITS", other),
+    }
 }
 
 /// Reads the first two-dimensional image of a FITS file: samples of 8, 16, 32 or 64 bits or floating point,

@@ -12,6 +12,7 @@ pub(crate) mod wcs;
 
 pub use self::exr::{ExpectedImage, read_expected, read_radiance, write_expected, write_radiance};
 pub use file::{ImageFormat, read_frame, read_image, write_frame};
+pub use fits::fits_header;
 pub use header::FrameHeader;
 pub use image16::write_png_of_depth;
 pub use raw_image::{ImageMetadata, RawImage, RequiredSize, checked_size};

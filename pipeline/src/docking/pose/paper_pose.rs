@@ -270,7 +270,7 @@ mod tests {
 
     /// The image of a tilted circle is an ellipse whose centre is not the image of the circle's centre: in
     /// the direction of the tilt, by f tan(tilt) (r/d3)² to leading order. The figures are those of
-    /// `docs/docking-method.md`.
+    /// `docs/evidence/docking-method.md`.
     #[test]
     fn a_tilt_biases_the_circles_centre_as_documented() {
         let model = camera([0.0; 3], 10.0);
@@ -289,7 +289,7 @@ mod tests {
     }
 
     /// Errors of the approximations: all of 3.1 on exact images, narrow lens, 5 m. The figures are those of
-    /// `docs/docking-method.md`.
+    /// `docs/evidence/docking-method.md`.
     #[test]
     fn the_approximations_have_their_documented_errors() {
         let model = camera([0.0; 3], 10.0);

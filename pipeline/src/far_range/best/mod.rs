@@ -1,5 +1,5 @@
 //! Best mode: attitude from the prior of telemetry and the stars, hypotheses for the target's cluster, and a
-//! fit of the target's image with all knowledge of the camera (docs/best-mode.md).
+//! fit of the target's image with all knowledge of the camera (docs/evidence/best-mode.md).
 
 mod config;
 mod diagnosis;

@@ -7,7 +7,7 @@
 //!     [--rows wide-5m,narrow-5m]
 //!
 //! Mitsuba renders the square about the target's disk; outside it both images come from the fast renderer.
-//! Rendered images are kept in Mitsuba's cache (docs/mitsuba.md) and are not rendered again.
+//! Rendered images are kept in Mitsuba's cache (docs/evidence/mitsuba.md) and are not rendered again.
 
 mod cases;
 

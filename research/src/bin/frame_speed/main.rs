@@ -1,5 +1,6 @@
-//! Measures the cost of frames and their detection, on request: Boresight's side of `docs/speed/compare.py`,
-//! which requests small amounts of work from each simulator in turn. Linux only.
+//! Measures the cost of frames and their detection, on request: Boresight's side of
+//! `docs/evidence/speed/compare.py`, which requests small amounts of work from each simulator in turn. Linux
+//! only.
 //!
 //!     cargo run --release -p boresight-research --bin frame_speed
 //!

@@ -116,15 +116,30 @@ pub(crate) fn write_image(
     run_file: &RunFile<FarRangeScenario>,
     exposure: &Exposure,
 ) -> Result<(), Failure> {
+    let has_wcs = format == ImageFormat::Fits;
+    let header = frame_header(simulator, run_file, exposure, has_wcs)?;
+    write_frame(path, format, &exposure.frame, &header)?;
+    Ok(())
+}
+
+/// Returns the metadata of an exposure, with world coordinates if they are requested and SIP follows the
+/// distortion of the camera.
+pub(super) fn frame_header(
+    simulator: &Simulator,
+    run_file: &RunFile<FarRangeScenario>,
+    exposure: &Exposure,
+    has_wcs: bool,
+) -> Result<FrameHeader, Failure> {
     let truth = &exposure.truth;
     let observer = Observer::new(truth.time, truth.position_km, truth.velocity_km_s)?;
-    let wcs = match format {
+    let wcs = if has_wcs {
         // Coordinates without the distortion are wrong by more than a hundred pixels at the corners.
-        ImageFormat::Fits => Some(world_coordinates(simulator, &run_file.scenario, truth, &observer)?)
-            .filter(|wcs| wcs.sip.is_some()),
-        ImageFormat::Png | ImageFormat::Exr => None,
+        let wcs = world_coordinates(simulator, &run_file.scenario, truth, &observer)?;
+        Some(wcs).filter(|wcs| wcs.sip.is_some())
+    } else {
+        None
     };
-    let header = FrameHeader {
+    Ok(FrameHeader {
         time: truth.time,
         exposure_s: truth.exposure_s,
         gain_e_per_dn: Some(run_file.scenario.sensor.gain_e_per_dn),
@@ -133,9 +148,7 @@ pub(crate) fn write_image(
         configuration_hash: run_file.hash.clone(),
         observer_velocity_km_s: Some(observer.barycentric_velocity_km_s()),
         wcs,
-    };
-    write_frame(path, format, &exposure.frame, &header)?;
-    Ok(())
+    })
 }
 
 /// Returns the distance from the principal point, px, up to which SIP approximates a camera's distortion;

@@ -1,10 +1,11 @@
 //! A far-range scenario that is ready to run.
 
 use std::convert::Infallible;
+use std::path::Path;
 use std::sync::Arc;
 
 use contract::{ListedStar, Setup, bounds};
-use files::Failure;
+use files::{Failure, ImageFormat, RunDirectory};
 use hifitime::Epoch;
 use run::any_world::ScenarioSource;
 use scenario::run_file::RunFile;
@@ -14,6 +15,7 @@ use sim::catalog::{CatalogConfig, CatalogSource};
 use sim::memo::Memo;
 use sim::truth::{FrameTruth, ObjectTruth};
 
+use super::dataset::frame_header;
 use super::star_list::star_list;
 use crate::rows::StarRow;
 use crate::scenario::FarRangeScenario;
@@ -84,6 +86,21 @@ impl FarRangeMission {
     /// Returns the simulator of the frames.
     pub fn simulator(&self) -> &Simulator {
         &self.simulator
+    }
+
+    /// Returns the header of a frame's FITS file as text, with world coordinates; `None` if no SIP polynomial
+    /// follows the distortion of the camera.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a frame that cannot be exposed.
+    pub fn fits_header(&self, frame: u64) -> Result<Option<String>, Failure> {
+        let exposure = self.simulator.camera()?.expose(frame)?;
+        let header = frame_header(&self.simulator, &self.run_file, &exposure, true)?;
+        if header.wcs.is_none() {
+            return Ok(None);
+        }
+        let name = RunDirectory::frame_name(frame, ImageFormat::Fits);
+        Ok(Some(files::fits_header(Path::new(&name), &exposure.frame, &header)?))
     }
 }
 

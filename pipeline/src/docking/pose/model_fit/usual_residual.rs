@@ -6,7 +6,8 @@
 //! the sky is clipped at black.
 
 /// Ratio to the usual residuals above which a fit is poor. In the approach on which it was chosen
-/// (docs/docking-consistency.md, case 7), fits at the best minimum have up to 1.5, others 2 and more.
+/// (docs/evidence/docking-consistency.md, case 7), fits at the best minimum have up to 1.5, others 2 and
+/// more.
 const MAX_RATIO: f64 = 1.6;
 
 /// Rate at which larger residuals become usual, per field: within a second or two.
