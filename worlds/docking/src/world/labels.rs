@@ -21,8 +21,8 @@ use super::mission::DockingMission;
 const CLASSES: [(Assembly, &str); 3] =
     [(Assembly::Target, "target"), (Assembly::DockingUnit, "docking_unit"), (Assembly::Station, "station")];
 
-/// Camera with the rows of its fields: a field of the even rows and one of the odd rows are two cameras, whose
-/// principal points differ by half a row.
+/// Camera with the rows of its fields: a field of the even rows and one of the odd rows are two cameras,
+/// whose principal points differ by half a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct FieldView {
     camera: usize,
