@@ -28,7 +28,7 @@ fn a_slice_of_argon_gives_estimates_figures_and_a_chart() {
     assert_eq!(bench.json("run/navigation.json"), json);
     // The report has the paper's figure.
     bench.boresight("report run --out run.html").done();
-    assert!(bench.read("run.html").contains("Fig. 10"));
+    assert!(bench.read("run.html").contains("Errors of the relative navigation"));
     // Files of an earlier navigation are not replaced.
     bench.boresight("navigate run").refused(&["navigation"]);
     let table = bench.boresight("navigate run --estimator sequential --out other").done().stdout;
