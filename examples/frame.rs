@@ -1,4 +1,5 @@
-//! Renders one frame of ARGON and lists its contents: `cargo run --release --example frame`.
+//! Renders one frame of ARGON and lists its contents:
+//! `cargo run --release -p boresight-examples --example frame`.
 
 use boresight::far_range::FarRangeMission;
 use boresight::run::ScenarioSource;

@@ -1,5 +1,5 @@
 //! Scores the measurements of any pipeline against the ground truth of a run or a rendered dataset:
-//! `cargo run --release --example score -- DIRECTORY MEASUREMENTS.csv`.
+//! `cargo run --release -p boresight-examples --example score -- DIRECTORY MEASUREMENTS.csv`.
 
 use std::path::Path;
 

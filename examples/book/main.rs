@@ -1,5 +1,5 @@
 //! Writes the sources of the book, the pages of `docs/` and the reference pages that come from the program:
-//! `cargo run --example book -- target/debug/boresight OUT`.
+//! `cargo run -p boresight-examples --example book -- target/debug/boresight OUT`.
 
 mod command_line;
 mod formats;
@@ -15,9 +15,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [program, out] = arguments.as_slice() else {
         return Err("expected two arguments: the program `boresight` and the folder to write".into());
     };
-    let docs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/docs"));
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let docs = &examples.join("../docs");
     let (book, pages) = (Path::new(out), Path::new(out).join("src"));
     copy(docs, &pages)?;
+    copy_examples(examples, &pages)?;
     fs::rename(pages.join("book.toml"), book.join("book.toml"))?;
     for folder in ["", "evidence", "notebooks"] {
         pages::complete(&docs.join(folder), &pages.join(folder))?;
@@ -38,6 +40,34 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         keys.push_str(&scenario_keys::section(title, &serde_json::from_str(&schema)?)?);
     }
     fs::write(pages.join("scenario-keys.md"), keys)?;
+    Ok(())
+}
+
+/// Copies the example files that pages name into the book, and changes the links to them.
+fn copy_examples(examples: &Path, pages: &Path) -> std::io::Result<()> {
+    let folder = pages.join("examples");
+    fs::create_dir_all(&folder)?;
+    for entry in fs::read_dir(examples)? {
+        let path = entry?.path();
+        let is_example = path.extension().is_some_and(|extension| extension == "py" || extension == "toml");
+        if let Some(name) = path.file_name().filter(|_| is_example) {
+            fs::copy(&path, folder.join(name))?;
+        }
+    }
+    // In the tree the examples are beside docs/, in the book they are inside.
+    change_links(pages, "](../examples/", "](examples/")?;
+    change_links(&pages.join("evidence"), "](../../examples/", "](../examples/")
+}
+
+/// Replaces the text `old` by `new` in every page of a folder.
+fn change_links(folder: &Path, old: &str, new: &str) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|extension| extension == "md") {
+            let text = fs::read_to_string(&path)?;
+            fs::write(&path, text.replace(old, new))?;
+        }
+    }
     Ok(())
 }
 

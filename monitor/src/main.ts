@@ -40,24 +40,33 @@ async function start(): Promise<void> {
   let latest: api.Frame | null = null;
 
   const waiting = element("#waiting");
-  const player = new Player(session, progress.from, progress.to - 1, {
-    show(frame) {
+  const panels = document.querySelectorAll<HTMLElement>(".panel");
+  const listener = {
+    show(frame: api.Frame) {
       latest = frame;
+      waiting.hidden = true;
+      document.body.classList.remove("waiting");
       camera.show(frame);
       parameters.show(frame.report);
       header(frame.report);
       controls();
     },
-    wait(state) {
+    wait(state: api.Progress | null) {
+      document.body.classList.add("waiting");
+      panels.forEach((panel) => (panel.dataset["waiting"] = `waiting for frame ${player.frame}`));
       waiting.hidden = state === null;
       if (state) {
         waiting.textContent = state.failure
           ? `The run has ended: ${state.failure}`
-          : `Processing: next frame ${state.processed} of ${state.to - 1}, waiting for ${player.frame}`;
+          : `Processing: next frame ${state.processed} of ${state.to - 1}`;
       }
     },
     change: () => controls(),
-  });
+  };
+  // A reader who asks for little motion starts the pictures by hand.
+  const startsPlaying = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const player = new Player(session, progress.from, progress.to - 1, listener, startsPlaying);
+  listener.wait(null);
 
   function header(report: api.Report): void {
     element("#clock").textContent = `${report.time_utc.slice(0, 23).replace("T", "  ")} UTC`;
@@ -86,6 +95,7 @@ async function start(): Promise<void> {
       number.value = String(player.frame);
     }
     speed.value = String(player.speed);
+    document.body.dataset["playing"] = String(player.playing);
     element("#play-icon").setAttribute("d", player.playing ? "M4 3h3v10H4zM9 3h3v10H9z" : "M4 2v12l9-6z");
   }
 

@@ -20,12 +20,13 @@ interface Fetching {
 
 export interface Listener {
   show(frame: api.Frame): void;
+  /** The frame of the player is not there yet; the progress of the run is known if the server has answered. */
   wait(progress: api.Progress | null): void;
   change(): void;
 }
 
 export class Player {
-  playing = false;
+  playing: boolean;
   speed = 1;
   /** Pictures shown while playing, and how often one was not there in time. */
   readonly counts = { shown: 0, late: 0 };
@@ -39,7 +40,9 @@ export class Player {
     readonly first: number,
     readonly last: number,
     private readonly listener: Listener,
+    startsPlaying: boolean,
   ) {
+    this.playing = startsPlaying;
     this.position = first;
     requestAnimationFrame((now) => this.tick(now));
   }
@@ -56,6 +59,10 @@ export class Player {
   seek(frame: number): void {
     this.position = Math.max(this.first, Math.min(this.last, Math.round(frame)));
     this.due = 0;
+    // What is on the page belongs to another time.
+    if (!this.isShown && this.cache.get(this.frame)?.frame == null) {
+      this.listener.wait(null);
+    }
     this.listener.change();
   }
 
@@ -124,7 +131,6 @@ export class Player {
     if (this.playing) {
       this.counts.shown += 1;
     }
-    this.listener.wait(null);
     this.listener.show(found);
   }
 

@@ -62,13 +62,21 @@ export function problemsOf(page, isOwn) {
   return problems;
 }
 
-/** Opens the monitor's page at its first frame. */
-export async function open(browser, url, options = {}) {
+/** Opens the monitor's page, which plays, and pauses it unless `plays` is true. */
+export async function open(browser, url, { plays = false, ...options } = {}) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: "dark", ...options });
   const problems = problemsOf(page, (asked) => asked.startsWith(url));
   await page.goto(url);
   await page.waitForFunction(() => document.body.dataset.frame !== undefined, null, { timeout: PATIENCE_MS });
+  if (!plays) {
+    await pause(page);
+  }
   return { page, problems };
+}
+
+/** Pauses the page if it plays; it may have stopped at the last frame by itself. */
+export async function pause(page) {
+  await page.evaluate(() => document.body.dataset.playing === "true" && document.querySelector("#play").click());
 }
 
 /** Goes to a frame, waits until it is shown, and until the panels that are drawn less often show it too. */

@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
-import { browser, goTo, monitor, open, PATIENCE_MS, run } from "./browser.js";
+import { browser, goTo, monitor, open, pause, PATIENCE_MS, run } from "./browser.js";
 
 /** How far the middle of what is drawn may lie from that of what it marks, px of the camera. */
 const OVERLAY_PX = 1.5;
@@ -217,6 +217,91 @@ for (const scenario of Object.keys(WORLDS)) {
       assert.deepEqual(problems, []);
     });
   }
+}
+
+for (const [scenario, { frames }] of Object.entries(WORLDS)) {
+  describe(`${scenario}, as a reader opens it`, () => {
+    let served;
+    let page;
+    let problems;
+    before(async () => {
+      served = await monitor(join(directory, scenario));
+    });
+    after(async () => {
+      await served?.stop();
+    });
+
+    test("it plays when it is opened, and not for a reader who asks for little motion", async (context) => {
+      ({ page, problems } = await open(chromium, served.url, { plays: true }));
+      context.after(() => page.close());
+      await page.waitForFunction((first) => Number(document.body.dataset.frame) > first + 3, frames[0], { timeout: PATIENCE_MS });
+      assert.deepEqual(problems, []);
+      const still = await open(chromium, served.url, { plays: true, reducedMotion: "reduce" });
+      context.after(() => still.page.close());
+      await still.page.waitForTimeout(500);
+      assert.equal(await still.page.getAttribute("body", "data-frame"), String(frames[0]));
+    });
+
+    test("after a seek every panel is dimmed at once, until the frame is there", async (context) => {
+      ({ page, problems } = await open(chromium, served.url));
+      context.after(() => page.close());
+      await page.keyboard.press("Home");
+      await page.waitForFunction((n) => document.body.dataset.frame === n, String(frames[0]));
+      const wanted = frames[1] - 1;
+      let release;
+      const held = new Promise((resolve) => (release = resolve));
+      await page.route(`**/api/frames/${wanted}.json`, async (route) => {
+        await held;
+        await route.continue();
+      });
+      // What the page shows in the same moment, before any answer.
+      const seen = await page.evaluate((frame) => {
+        const slider = document.querySelector("#slider");
+        slider.value = String(frame);
+        slider.dispatchEvent(new Event("input"));
+        return [...document.querySelectorAll(".panel")].map((panel) => ({
+          id: panel.id,
+          label: getComputedStyle(panel, "::after").content,
+          shown: getComputedStyle(panel, "::after").visibility,
+          opacity: Number(getComputedStyle(panel.querySelector("canvas, table, .chart")).opacity),
+        }));
+      }, wanted);
+      assert.equal(seen.length, 5);
+      for (const { id, label, shown, opacity } of seen) {
+        assert.ok(label.includes(`waiting for frame ${wanted}`) && shown === "visible" && opacity < 0.5, `${id}: ${label} ${shown} ${opacity}`);
+      }
+      await page.waitForTimeout(300);
+      assert.ok(await page.evaluate(() => document.body.classList.contains("waiting")), "it waits as long as the frame is not there");
+      release();
+      await page.waitForFunction((n) => document.body.dataset.frame === n, String(wanted), { timeout: PATIENCE_MS });
+      assert.ok(!(await page.evaluate(() => document.body.classList.contains("waiting"))), "nothing is dimmed with the frame");
+      assert.deepEqual(problems, []);
+    });
+
+    test("it is no wider than a telephone of 390 px, with and without the truth", async (context) => {
+      ({ page, problems } = await open(chromium, served.url, { viewport: { width: 390, height: 844 } }));
+      context.after(() => page.close());
+      for (const isOn of [false, true]) {
+        if (isOn) {
+          await page.click("#truth");
+        }
+        await pause(page);
+        const { width, outside } = await page.evaluate(() => ({
+          width: document.documentElement.scrollWidth,
+          outside: [...document.querySelectorAll("header > *, footer > *, .panel")]
+            .filter((part) => part.checkVisibility() && part.getBoundingClientRect().right > innerWidth + 0.5)
+            .map((part) => part.id || part.tagName),
+        }));
+        assert.ok(width <= 390, `the page is ${width} px wide`);
+        assert.deepEqual(outside, [], "parts beyond the edge");
+      }
+      for (const id of ["camera", "parameters", "model", "ground", "phase"]) {
+        const { width, height } = await page.locator(`#${id}`).boundingBox();
+        assert.ok(width > 340 && height > 150, `#${id}: ${width} × ${height}`);
+      }
+      assert.deepEqual(problems, []);
+    });
+  });
 }
 
 /** The target of this frame is there and the pipeline misses it. */

@@ -27,35 +27,39 @@ const REPORTS = {
   "far range": {
     words: ["run", "argon", "--frames", "9000..9060", "--out", "DIR"],
     headings: [
-      /^Table 2, with published values$/,
-      /^Fig\. 2: .*images? of an orbit/,
-      /^Fig\. 3: track of the target in pixels$/,
-      /^Fig\. 4: position of the chaser/,
-      /^Fig\. 5: errors of right ascension and declination$/,
-      /^Fig\. 6: a whole and a truncated region/,
-      /^Fig\. 7: stars/,
-      /^Fig\. 8: attitude of the camera/,
-      /^Fig\. 9: angles of the aberration correction$/,
+      /^Worst frames$/,
+      /^Figures by day, with published values$/,
+      /^Errors of the direction over time$/,
       /^Causes/,
-      /^Error budget by stage$/,
-      /^Frames$/,
+      /^Track of the target in pixels$/,
+      /^A whole image, and the superimposed images of an orbit$/,
+      /^Stars identified in each image$/,
+      /^Attitude of the camera/,
+      /^Angles of the aberration correction$/,
+      /^Position of the chaser/,
+      /^Not on this page$/,
     ],
     pictures: 3,
   },
   docking: {
     words: ["run", "docking", "--frames", "24000..24060", "--out", "DIR"],
-    headings: [/^Figures$/, /^Fig\. 5: parameters of the motion$/, /^Fig\. 6: accuracy of the motion$/, /^Fields$/],
+    headings: [/^Worst fields$/, /^Figures$/, /^Parameters of the motion$/, /^Accuracy of the motion$/, /^Typical fields/],
     pictures: 1,
   },
   study: {
     words: ["study", "run", "STUDY", "--out", "DIR"],
-    headings: [/^Figures$/, /^Sensitivities$/, /^Worst cases$/],
+    headings: [/^Worst cases$/, /^Figures$/, /^Varied settings$/],
     pictures: 0,
   },
   visibility: {
     words: ["visibility", "uasc-far-range", "--frames", "0", "--out", "DIR"],
     headings: [/^Detection against magnitude$/, /^Stars over the sky$/, /^Exposure window against range$/],
     pictures: 0,
+  },
+  "middle range": {
+    words: ["run", "middle-range", "--frames", "0..40", "--out", "DIR"],
+    headings: [/^Worst frames$/, /^The approach in pictures$/, /^Range error$/, /^Figures$/],
+    pictures: 3,
   },
   gate: {
     before() {
@@ -182,6 +186,69 @@ for (const [name, { headings, pictures }] of Object.entries(REPORTS)) {
       });
     }
 
+    test("on a telephone nothing but a table in its box is wider than the screen", async (context) => {
+      const { page, problems } = await open(name, { viewport: { width: 390, height: 844 } });
+      context.after(() => page.close());
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+      const beyond = await page.$$eval("body *", (all) =>
+        all
+          .filter((part) => part.checkVisibility() && !part.closest(".table") && !part.closest("svg"))
+          .filter((part) => part.getBoundingClientRect().right > innerWidth + 1)
+          .map((part) => `${part.tagName} ${part.className}`),
+      );
+      assert.deepEqual(beyond, []);
+      // The caption of a table is read without scrolling.
+      const captions = await page.$$eval("caption span", (all) =>
+        all.filter((text) => text.checkVisibility()).map((text) => text.getBoundingClientRect().right - innerWidth),
+      );
+      assert.ok(captions.every((excess) => excess <= 0), `captions: ${captions}`);
+      assert.deepEqual(problems, []);
+    });
+
+    test("a verdict is on top, in words, with what is poor or good and against what", async (context) => {
+      const { page } = await open(name);
+      context.after(() => page.close());
+      const findings = await page.$$eval("header #verdict .findings li", (all) =>
+        all.map((item) => ({ grade: item.querySelector(".grade").textContent, text: item.textContent })),
+      );
+      assert.ok(findings.length > 0, "no findings");
+      const grades = ["poor", "fair", "good", "not judged"];
+      for (const { grade, text } of findings) {
+        assert.ok(grades.includes(grade) && text.length > 20, text);
+      }
+      const summary = await page.$$eval("#verdict .summary dt", (all) => all.map(({ textContent }) => textContent));
+      assert.deepEqual(summary, grades.filter((grade) => findings.some((finding) => finding.grade === grade)));
+    });
+
+    test("no visible text is a key of a file, and no heading or caption numbers a figure of a paper", async (context) => {
+      const { page } = await open(name);
+      context.after(() => page.close());
+      const { keys, numbered } = await page.evaluate(() => {
+        const shown = [];
+        const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+        for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+          if (!node.parentElement.closest("script, style, code, .facts")) {
+            shown.push(node.textContent);
+          }
+        }
+        const titles = [...document.querySelectorAll("h2, figcaption, caption, p")].map(({ textContent }) => textContent);
+        // Names of files keep their underscores.
+        const isKey = (text) => /\b[a-z]+_[a-z_0-9]+\b(?!\.(csv|json|parquet|toml))/.test(text);
+        return { keys: shown.filter(isKey), numbered: titles.filter((text) => /\b(Fig|Figs|Table|Eq|Eqs)\.? \d/.test(text)) };
+      });
+      assert.deepEqual(keys, []);
+      assert.deepEqual(numbered, []);
+    });
+
+    test("no section is empty", async (context) => {
+      const { page } = await open(name);
+      context.after(() => page.close());
+      const empty = await page.$$eval("main section", (all) =>
+        all.filter((section) => !section.querySelector("table, .plot, .picture, dl")).map(({ id }) => id),
+      );
+      assert.deepEqual(empty, []);
+    });
+
     test("on paper it is light, and no chart is wider than the sheet", async (context) => {
       const { page, problems } = await open(name, { colorScheme: "dark" });
       context.after(() => page.close());
@@ -204,16 +271,16 @@ for (const [name, { headings, pictures }] of Object.entries(REPORTS)) {
 test("a reader who points at a chart is told the value, and finds the numbers in the table behind", async (context) => {
   const { page } = await open("far range");
   context.after(() => page.close());
-  const chart = page.locator("#fig-5 .plot");
+  const chart = page.locator("#errors .plot");
   await chart.scrollIntoViewIfNeeded();
   const { x, y } = await chart.locator(".scatterlayer .points path").first().boundingBox();
   await page.mouse.move(x + 2, y + 2, { steps: 3 });
-  const told = await page.locator("#fig-5 .hovertext").first().textContent();
+  const told = await page.locator("#errors .hovertext").first().textContent();
   assert.match(told, /frame 9\d{3}.*°/);
-  assert.ok(!(await page.locator("#fig-5 details table").isVisible()));
-  await page.locator("#fig-5 summary").click();
-  assert.ok(await page.locator("#fig-5 details table").isVisible());
-  assert.ok((await page.locator("#fig-5 details tbody tr").count()) >= 10);
+  assert.ok(!(await page.locator("#errors details table").isVisible()));
+  await page.locator("#errors summary").click();
+  assert.ok(await page.locator("#errors details table").isVisible());
+  assert.ok((await page.locator("#errors details tbody tr").count()) >= 10);
 });
 
 test("the page cannot reach anything, even if a script in it tried", async (context) => {

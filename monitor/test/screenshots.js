@@ -34,6 +34,6 @@ run("run", "argon", "--out", join(directory, "argon"));
 const page = await chromium.newPage({ viewport: { width: 1280, height: 900 } });
 await page.goto(pathToFileURL(join(directory, "argon", "report.html")).href);
 await page.waitForTimeout(1500);
-await page.locator("#fig-5").screenshot({ path: image("report") });
+await page.locator("#errors").screenshot({ path: image("report") });
 rmSync(directory, { recursive: true, force: true });
 await chromium.close();

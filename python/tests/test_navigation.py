@@ -9,7 +9,7 @@ import pytest
 
 import boresight
 
-EXAMPLE = Path(__file__).parents[2] / "docs/examples/prior_orbit.py"
+EXAMPLE = Path(__file__).parents[2] / "examples/prior_orbit.py"
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +19,7 @@ def run(tmp_path_factory):
 
 @pytest.fixture()
 def example(monkeypatch):
-    """Functions of the example in docs/examples, which is a program."""
+    """Functions of the example in examples, which is a program."""
     monkeypatch.setattr("builtins.input", lambda: json.dumps({"setup": {}}))
     monkeypatch.setattr("sys.stdin", io.StringIO())
     spec = importlib.util.spec_from_file_location("prior_orbit", EXAMPLE)

@@ -14,6 +14,7 @@ mod scene_painter;
 mod scene_state;
 mod scene_view;
 mod simulator;
+mod target_view;
 
 pub use expose::{Exposure, SimulatedCamera};
 pub use frame_readout::PixelSelection;
@@ -22,4 +23,5 @@ pub use render::{draw, mitsuba, vector};
 pub use scene;
 pub use sensor::{self, onboard, television};
 pub use simulator::{Simulation, Simulator};
+pub use target_view::{PointImage, TargetView};
 pub use truth::{self, SimError, catalog, memo};

@@ -183,6 +183,11 @@ impl Simulator {
         &self.catalog
     }
 
+    /// The target as a source of light and an obstacle.
+    pub fn target(&self) -> &Spacecraft {
+        &self.target
+    }
+
     /// Times of the images.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use files::{Checksums, Failure, FileError, RunDirectory};
 use indicatif::ProgressBar;
+use labels::{LabelCounts, LabelFormats};
 use run::any_world::ProcessingOrder;
 use run::{AnyWorld, Expectation, FrameJobs, Options, worlds};
 use serde_json::{Map, Value, json};
@@ -31,14 +32,43 @@ pub(super) struct RenderArguments {
     /// Also write the noise-free expected image of every frame, in electrons, to truth/expected/
     #[arg(long)]
     expected: bool,
+    /// Also write labels for machine learning to truth/labels/: one or more of coco, speed, bop, yolo,
+    /// separated by commas; the images are then PNG
+    #[arg(long, value_name = "FORMATS")]
+    labels: Option<LabelFormats>,
     #[command(flatten)]
     renderer: RendererOptions,
 }
 
+impl RenderArguments {
+    /// Returns the format of the images as the user named it. Labels name PNG files.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for labels of other images, or of images without files.
+    fn images(&self) -> Result<Option<String>, Failure> {
+        let Some(labels) = &self.labels else { return Ok(self.format.clone()) };
+        if self.out == Path::new("-") {
+            let message = format!("--labels {labels} with --out -, expected a directory for the labels");
+            return Err(Failure::Usage(message));
+        }
+        match self.format.as_deref() {
+            None | Some(LABELLED_IMAGES) => Ok(Some(LABELLED_IMAGES.to_owned())),
+            Some(format) => Err(Failure::Usage(format!(
+                "--format is `{format}`, expected {LABELLED_IMAGES} with --labels {labels}: labels name an image \
+                 file per frame, of a kind that readers of labels open"
+            ))),
+        }
+    }
+}
+
+/// Format of images with labels.
+const LABELLED_IMAGES: &str = "png";
+
 pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Answer, Failure> {
     let source = arguments.selection.scenario()?;
     let world = source.world();
-    if let Some(word) = &arguments.format {
+    let images = arguments.images()?;
+    if let Some(word) = &images {
         world.check_images(word).map_err(|error| Failure::Usage(format!("--format: {error}")))?;
     }
     let prepared =
@@ -46,7 +76,7 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
     let frame_jobs = FrameJobs {
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.renderer.jobs(&arguments.selection),
-        images: arguments.format.clone(),
+        images,
         expectation: if arguments.expected { Expectation::Kept } else { Expectation::Dropped },
         states_of: source.directory_of_run().map(Path::to_path_buf),
     };
@@ -58,26 +88,48 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
         return Ok(Answer::Yes);
     }
     prepared.check_frame_jobs(&frame_jobs)?;
+    let label_note = match &arguments.labels {
+        Some(formats) => prepared.check_labels(formats)?,
+        None => None,
+    };
     output.warn(&prepared.warnings());
+    output.warn(&Vec::from_iter(label_note));
     let directory = RunDirectory::create(&arguments.out)?;
     note_unfinished_run(&directory);
     let frames = frame_jobs.frames.end - frame_jobs.frames.start;
-    let progress = output.progress(frames, &source.name);
-    let rendered = prepared.render(&directory, &frame_jobs, &|| progress.inc(1));
+    // Each frame is drawn and, if requested, labelled.
+    let passes = if arguments.labels.is_some() { 2 } else { 1 };
+    let progress = output.progress(passes * frames, &source.name);
+    let done = || progress.inc(1);
+    let rendered = prepared.render(&directory, &frame_jobs, arguments.labels.as_ref(), &done);
     progress.finish_and_clear();
-    let files = rendered?;
+    let (files, counts) = rendered?;
     let path = directory.path();
+    let mut document = json!({ "directory": path, "frames": frames });
+    if let (Some(document), Some(counts)) = (document.as_object_mut(), counts) {
+        document.insert("labels".to_owned(), json!({ "objects": counts.objects, "points": counts.points }));
+    }
     output.answer(
-        &json!({ "directory": path, "frames": frames }),
+        &document,
         format!(
             "{frames} {1}s in {0}\n\
-             for a pipeline: {files}; the truth is separate in truth/\n\
+             for a pipeline: {files}; the truth is separate in truth/\n{2}\
              next: boresight process {0}, or your own pipeline and boresight score {0} MEASUREMENTS",
             path.display(),
             world.image(),
+            counts.map_or_else(String::new, describe_labels),
         ),
     )?;
     Ok(Answer::Yes)
+}
+
+/// Returns a line about the labels that were written.
+fn describe_labels(LabelCounts { objects, points }: LabelCounts) -> String {
+    let points = match points {
+        0 => String::new(),
+        points => format!(", {points} of them smaller than a pixel, with the pixel of their position"),
+    };
+    format!("labels of {objects} objects in truth/labels/{points}\n")
 }
 
 #[derive(Debug, Args)]

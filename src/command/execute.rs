@@ -5,20 +5,21 @@ use far_range_views::navigation_table;
 use files::{Failure, FileError, RunDirectory};
 use navigate::NavigationResult;
 use run::{AnyFactory, AnyMission, FrameJobs};
+use view::terminal::wrapped;
 
 use super::Answer;
 use super::far_range::EstimatorName;
 use super::interrupt::report_interruption;
 use super::output::Output;
-use super::report::write_beside_run;
+use super::report::{Headings, write_beside_run};
 use crate::table::score_table;
 
 /// Options for presenting a run.
 pub(super) struct Presentation<'a> {
     /// Name of the run, for the progress bar.
     pub(super) name: &'a str,
-    /// True if the report is written into the directory.
-    pub(super) has_report: bool,
+    /// Report that is written into the directory; `None` for none.
+    pub(super) report: Option<Headings>,
     /// Remark below the score.
     pub(super) note: Option<String>,
     /// Navigator that determines the relative orbit from the measurements of the run.
@@ -61,12 +62,12 @@ pub(super) fn execute(
     if let Ok(Some(result)) = &navigated {
         table = format!("{}\n\n{}", table.trim_end(), navigation_table(result, output.is_terminal()));
     }
-    let notes: String = shown.note.into_iter().map(|note| format!("\n\n{note}")).collect();
+    let notes: String = shown.note.into_iter().map(|note| wrapped(&format!("\n\n{note}"))).collect();
     let text = format!("{}{notes}\n\nresults in {}", table.trim_end(), directory.path().display());
     let file = directory.score();
     let json = toml_file::read_text(&file).map_err(|source| FileError::io(&file, "read", source))?;
-    if shown.has_report {
-        write_beside_run(directory.path(), ran.scored.as_mut(), output);
+    if let Some(headings) = shown.report {
+        write_beside_run(directory.path(), ran.scored.as_mut(), headings, output);
     }
     output.answer_json(
         &with_navigation(json.trim_end(), navigated.as_ref().ok().and_then(Option::as_ref))?,

@@ -6,6 +6,7 @@ mod cluster;
 mod dataset;
 mod demo;
 mod docking;
+mod examples;
 mod execute;
 mod far_range;
 mod gate;
@@ -106,6 +107,8 @@ enum Command {
             again. The name of a built-in scenario takes precedence over a folder of that name (./NAME)."
     )]
     Monitor(monitor::MonitorArguments),
+    /// Write the example pipelines, studies, requirements and targets of the book
+    Examples(examples::ExamplesArguments),
     /// List, check and start scenarios
     #[command(subcommand)]
     Scenario(scenario::ScenarioCommand),
@@ -159,6 +162,7 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Export(arguments) => far_range::export(&arguments, &output),
         Command::Navigate(arguments) => far_range::navigate(&arguments, &output),
         Command::Monitor(arguments) => monitor::monitor(&arguments, &output),
+        Command::Examples(arguments) => examples::examples(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
         Command::Completions(arguments) => shell::completions(&arguments, Arguments::command(), &output),
         Command::Man(arguments) => shell::man(&arguments, Arguments::command(), &output),

@@ -103,8 +103,8 @@ impl Default for PipelineOptions {
 /// Attitude provided to a pipeline that measures only in the image.
 #[derive(Debug, Default, Args)]
 pub(super) struct AttitudeOption {
-    /// Far range: convert a centroid without a line of sight to a line of sight by this attitude, to give RA
-    /// and Dec figures; default: none, unless the scenario sets one ([score] attitude)
+    /// Far range: convert a centroid without a line of sight to a line of sight by this attitude, to give
+    /// figures of the direction; default: none, unless the scenario sets one ([score] attitude)
     #[arg(long = "attitude", value_name = "ATTITUDE", value_enum)]
     pub(super) choice: Option<AttitudeChoice>,
 }

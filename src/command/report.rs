@@ -19,6 +19,16 @@ use super::output::Output;
 
 pub(super) use pages::{write_beside_results, write_beside_run, write_gate};
 
+/// Headings of the report of a run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Headings {
+    /// Subjects.
+    #[default]
+    Subjects,
+    /// Figures and tables of the paper that the run reproduces, with their subjects.
+    OfPaper,
+}
+
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {
     /// Directory of a run, of a study, or of `boresight visibility --out`

@@ -54,14 +54,14 @@ impl Paper {
     fn remark(self) -> &'static str {
         match self {
             Self::Argon => {
-                "The table is Table 2 of the far-range paper. `published`: values of the paper. Above them: the \
-                 method of 2012 on simulated\nimages; twelve parameters of the scene are fitted to this table \
-                 (docs/evidence/argon.md). `best mode`: today's built-in method on the\nsame images. The report has the \
-                 paper's Figs. 2 to 9."
+                "The table is Table 2 of the far-range paper; its `RA` and `Dec` are `columns` and `rows` here. \
+                 `published`: values of the paper. Above them: the method of 2012 on simulated images; twelve \
+                 parameters of the scene are fitted to this table (docs/evidence/argon.md). `best mode`: today's built-in \
+                 method on the same images. The report has the paper's Figs. 2 to 9."
             }
             Self::Docking => {
                 "The docking paper prints no table of accuracy, so there are no published rows. Each error: best \
-                 estimator / paper's formulas,\non the same fields. The report has the paper's Figs. 5 and 6: \
+                 estimator / paper's formulas, on the same fields. The report has the paper's Figs. 5 and 6: \
                  parameters of the motion, and their accuracy."
             }
         }
@@ -72,5 +72,5 @@ pub(super) fn reproduce(arguments: &ReproduceArguments, output: &Output) -> Resu
     let paper = arguments.paper;
     let selection = Selection::for_scenario(paper.scenario(), arguments.frames.clone(), arguments.jobs);
     let note = Some(paper.remark());
-    run(&RunArguments::for_built_in(selection, arguments.out.clone(), arguments.no_report, note), output)
+    run(&RunArguments::for_paper(selection, arguments.out.clone(), arguments.no_report, note), output)
 }

@@ -13,6 +13,7 @@ use super::execute::{Presentation, execute};
 use super::far_range::EstimatorName;
 use super::options::{AttitudeOption, PipelineOptions, Selection, output_path};
 use super::output::Output;
+use super::report::Headings;
 
 /// Parent directory of numbered run directories if `--out` is not given.
 pub(super) const RUNS: &str = "runs";
@@ -58,12 +59,15 @@ pub(super) struct RunArguments {
     /// Remark below the score.
     #[arg(skip)]
     note: Option<String>,
+    /// Headings of the report.
+    #[arg(skip)]
+    headings: Headings,
 }
 
 impl RunArguments {
-    /// Returns the arguments of a run of the built-in pipeline with the scenario's own seed. `note` is
-    /// printed below the score.
-    pub(super) fn for_built_in(
+    /// Returns the arguments of a run that reproduces a paper: with the built-in pipeline, the scenario's own
+    /// seed, and the paper's figures in the headings of the report. `note` is printed below the score.
+    pub(super) fn for_paper(
         selection: Selection,
         out: Option<PathBuf>,
         no_report: bool,
@@ -81,6 +85,7 @@ impl RunArguments {
             no_report,
             renderer: RendererOptions::default(),
             note: note.map(str::to_owned),
+            headings: Headings::OfPaper,
         }
     }
 }
@@ -134,7 +139,7 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         .or_else(|| arguments.note.clone());
     let shown = Presentation {
         name: &source.name,
-        has_report: !arguments.no_report,
+        report: (!arguments.no_report).then_some(arguments.headings),
         note,
         navigate: arguments.navigate,
     };

@@ -20,7 +20,7 @@ use super::execute::{Presentation, execute};
 use super::interrupt::report_interruption;
 use super::options::{PipelineOptions, default_jobs, output_path};
 use super::output::Output;
-use super::report::write_beside_results;
+use super::report::{Headings, write_beside_results};
 use crate::command::cluster::{Engine, check_dask, run_on_dask};
 use crate::table::{LiveFigure, study_table};
 
@@ -440,7 +440,12 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
         Some(path) => RunDirectory::create(path)?,
         None => RunDirectory::create_numbered(Path::new(super::run::RUNS), &name)?,
     };
-    let shown = Presentation { name: &name, has_report: !arguments.no_report, note: None, navigate: None };
+    let shown = Presentation {
+        name: &name,
+        report: (!arguments.no_report).then_some(Headings::Subjects),
+        note: None,
+        navigate: None,
+    };
     execute(prepared.as_ref(), &frame_jobs, &factory, &directory, shown, output)
 }
 

@@ -3,7 +3,7 @@ use comfy_table::{Attribute, Cell};
 use gate::{Baseline, FigureReport, FigureVerdict, Flip, GateReport, Pairing};
 use pipeline::external::protocol::harmless;
 use run::figure_by_name;
-use view::terminal::{finish, percent, plain_table};
+use view::terminal::{finish, percent, plain_table, wrapped};
 
 /// Maximum number of changed units that are printed; the JSON contains all of them.
 const MAX_CHANGED_UNITS: usize = 10;
@@ -50,16 +50,17 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
             report.baseline_seed, report.result_seed
         ),
     };
-    let mut text = format!("{}: {verdict}\n", report.name);
+    let mut text = wrapped(&format!("{}: {verdict}\n", report.name));
     text.push_str(&finish(table));
-    text.push_str(&format!(
-        "{} {} in {} blocks; {paired}. Worse: p, adjusted for all figures, is at most {}, and the worsening exceeds the\n\
-         tolerance; or, for a rate on the same frames, losses in a row or an excess of losses that chance does not explain.\n\
-         Changed: a figure with a best value (a bias) differs as significantly from the baseline, but is no farther from that value.\n\
-         Visible: smallest worsening that is detected with a probability of 95 % or more; none with too little data. Rates in percent.\n\
+    text.push_str(&wrapped(&format!(
+        "{} {} in {} blocks; {paired}. Worse: p, adjusted for all figures, is at most {}, and the worsening \
+         exceeds the tolerance; or, for a rate on the same frames, losses in a row or an excess of losses that \
+         chance does not explain. Changed: a figure with a best value (a bias) differs as significantly from the \
+         baseline, but is no farther from that value. Visible: smallest worsening that is detected with a \
+         probability of 95 % or more; none with too little data. Rates in percent.\n\
          Baseline: {}\n",
         report.count, report.units, report.blocks, report.alpha, report.reason,
-    ));
+    )));
     let left_out = report.figures.len() - rows.len();
     if left_out > 0 {
         text.push_str(&format!(
@@ -67,7 +68,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
         ));
     }
     for note in &report.notes {
-        text.push_str(&format!("Note: {note}\n"));
+        text.push_str(&wrapped(&format!("Note: {note}\n")));
     }
     if let Some(flips) = &report.flips {
         let (lost, won, other) = (flips.lost, flips.won, flips.other);
@@ -145,10 +146,10 @@ pub fn baseline_text(baseline: &Baseline) -> String {
             rule.memory
         )
     };
-    format!(
+    wrapped(&format!(
         "{} with seed {}: {} {units} in {} blocks of about {}; {remembers}\n",
         run.name, run.seed, header.units, rule.count, rule.length
-    )
+    ))
 }
 
 fn signed(name: &str, value: f64) -> String {

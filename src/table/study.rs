@@ -8,7 +8,7 @@ use study::{
     CaseFigure, CaseRow, Estimate, RankCorrelation, RequirementVerdict, StoppingStatus, Study, Summary,
     overall,
 };
-use view::terminal::{finish, percent, plain_table};
+use view::terminal::{finish, percent, plain_table, wrapped};
 
 /// Maximum number of parameters in the sensitivity table.
 const MAX_PARAMETERS: usize = 12;
@@ -43,18 +43,19 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     let draws = if summary.sweep.is_empty() { String::new() } else { format!(" ({} draws)", summary.draws) };
     let mut text = format!("{}: {} cases of {}{draws}{stopped}\n", summary.study, summary.cases, summary.of);
     for note in summary.notes() {
-        text.push_str(&format!("{note}\n"));
+        text.push_str(&wrapped(&format!("{note}\n")));
     }
     text.push_str(&finish(table));
-    text.push_str(
-        "95 % intervals, over independent draws. All cases together: rates over all frames (Wilson, with the scatter between draws),\n\
-         other figures as mean of the cases (Student's t). Quantiles are over the cases (order statistics; none for too few draws).\n",
-    );
+    text.push_str(&wrapped(
+        "95 % intervals, over independent draws. All cases together: rates over all frames (Wilson, with the \
+         scatter between draws), other figures as mean of the cases (Student's t). Quantiles are over the cases \
+         (order statistics; none for too few draws).\n",
+    ));
     if let Some(note) = warm_up_note(summary.warm_up_frames, "frames of every case") {
-        text.push_str(&format!("{note}\n"));
+        text.push_str(&wrapped(&format!("{note}\n")));
     }
     if let Some(note) = attitude_note(summary.attitude.as_deref()) {
-        text.push_str(&format!("{note}\n"));
+        text.push_str(&wrapped(&format!("{note}\n")));
     }
     text.push_str(&requirements(summary, styled));
     if !summary.causes.is_empty() {
@@ -69,8 +70,6 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         text.push('\n');
         text.push_str(&finish(table));
     }
-    let by = &summary.worst_by;
-    let by_label = label(by);
     let figures = shown_figures(summary);
     if let Some(first) = summary.sweep.first() {
         let mut table = plain_table(styled);
@@ -90,18 +89,31 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     }
     text.push_str(&correlations(summary, &figures, styled));
     text.push_str(&indices(summary, &figures, styled));
-    if !summary.worst.is_empty() {
-        let mut table = plain_table(styled);
-        table.set_header(["worst cases", &by_label, "command to repeat the case"].map(bold));
-        for case in &summary.worst {
-            table.add_row([format!("case {}", case.case), number(by, case.value), case.replay.clone()]);
-        }
-        text.push('\n');
-        text.push_str(&finish(table));
-        let more = summary.worst_of.saturating_sub(summary.worst.len() as u64);
-        if more > 0 {
-            text.push_str(&format!("{more} more cases have the same value as the last one listed.\n"));
-        }
+    text.push_str(&worst_cases(summary, styled));
+    text
+}
+
+/// Returns the worst cases with the commands that repeat them as text; empty if there are none.
+fn worst_cases(summary: &Summary, styled: bool) -> String {
+    if summary.worst.is_empty() {
+        return String::new();
+    }
+    let by = &summary.worst_by;
+    let mut table = plain_table(styled);
+    let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
+    table.set_header(["worst cases", &label(by)].map(bold));
+    for case in &summary.worst {
+        table.add_row([format!("case {}", case.case), number(by, case.value)]);
+    }
+    let mut text = format!("\n{}", finish(table));
+    // A command has its own line, which can be copied.
+    text.push_str("Commands to repeat them:\n");
+    for case in &summary.worst {
+        text.push_str(&format!("{}\n", case.replay));
+    }
+    let more = summary.worst_of.saturating_sub(summary.worst.len() as u64);
+    if more > 0 {
+        text.push_str(&format!("{more} more cases have the same value as the last one listed.\n"));
     }
     text
 }
@@ -193,7 +205,8 @@ fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String 
         } else {
             "there are too few cases, or no drawn value is a number"
         };
-        text.push_str(&format!("\n{}: no correlation with drawn values, because {reason}.\n", label(name)));
+        let line = format!("\n{}: no correlation with drawn values, because {reason}.\n", label(name));
+        text.push_str(&wrapped(&line));
     }
     text
 }

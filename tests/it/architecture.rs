@@ -7,7 +7,7 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package, Target}
 
 /// Each crate of the project, and the project's crates that it may depend on. The pipelines depend only on
 /// the contract, and therefore cannot share code with the simulator.
-const ARROWS: [(&str, &str); 35] = [
+const ARROWS: [(&str, &str); 36] = [
     ("contract", ""),
     ("config", "contract"),
     ("draws", ""),
@@ -23,8 +23,9 @@ const ARROWS: [(&str, &str); 35] = [
     ("score", "contract statistics"),
     ("files", "config contract sim"),
     ("flight-dynamics", "config contract files sim"),
+    ("labels", "contract files sim"),
     ("scenario", "config contract files"),
-    ("run", "config contract files pipeline scenario score sim"),
+    ("run", "config contract files labels pipeline scenario score sim"),
     ("study", "config contract draws files pipeline run scenario score statistics"),
     ("gate", "config files run scenario score statistics study"),
     ("show", "contract"),
@@ -32,9 +33,12 @@ const ARROWS: [(&str, &str); 35] = [
     ("report", "config contract files gate run scenario score sim study"),
     ("monitor", "contract files run sim"),
     ("mitsuba", "contract files sim"),
-    ("docking", "config contract files mitsuba pipeline run scenario score sim statistics"),
+    ("docking", "config contract files labels mitsuba pipeline run scenario score sim statistics"),
     ("docking-views", "contract docking files monitor pipeline report run scenario score show sim view"),
-    ("far-range", "config contract draws files flight-dynamics pipeline run scenario score sim statistics"),
+    (
+        "far-range",
+        "config contract draws files flight-dynamics labels pipeline run scenario score sim statistics",
+    ),
     (
         "navigate",
         "config contract draws far-range files flight-dynamics navigation pipeline run scenario score sim",
@@ -47,8 +51,9 @@ const ARROWS: [(&str, &str); 35] = [
     ("middle-range", "contract draws files monitor optics render report run scenario score sensor truth"),
     (
         "boresight",
-        "config contract docking docking-views far-range far-range-views files flight-dynamics gate middle-range mitsuba monitor navigate pipeline report run scenario score show sim statistics study view visibility",
+        "config contract docking docking-views far-range far-range-views files flight-dynamics gate labels middle-range mitsuba monitor navigate pipeline report run scenario score show sim statistics study view visibility",
     ),
+    ("examples", "boresight contract"),
     ("python", "boresight config contract pipeline sim"),
     ("fuzz", "boresight contract pipeline sim"),
     ("research", "boresight contract draws pipeline sim"),
@@ -134,7 +139,7 @@ fn the_root_of_a_crate_reads_like_a_table_of_contents() {
         assert!(modules <= MAX_MODULES, "{}: {modules} modules at its root", package.name);
         crates += 1;
     }
-    assert_eq!(crates, 21, "crates of the oracle and of the worlds, and the package itself");
+    assert_eq!(crates, 22, "crates of the oracle and of the worlds, and the package itself");
 }
 
 /// Arrow took a fifth of the release build. The tables are flat; only Python needs Arrow, to pass them on.
@@ -204,7 +209,7 @@ const COMPUTING: [&str; 11] = [
 ];
 
 /// Developers' programs, which only read their own input.
-const TOOLS: [&str; 2] = ["boresight-fuzz", "boresight-research"];
+const TOOLS: [&str; 3] = ["boresight-examples", "boresight-fuzz", "boresight-research"];
 
 /// The lints apply to the crates that read input, apart from exempt modules of arithmetic, and to the readers
 /// of the crates that compute.

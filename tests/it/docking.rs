@@ -72,7 +72,7 @@ fn the_built_in_pipeline_keeps_the_contract() {
 }
 
 fn example() -> String {
-    format!("python3 {}/docs/examples/fixed_pose.py", env!("CARGO_MANIFEST_DIR"))
+    format!("python3 {}/examples/fixed_pose.py", env!("CARGO_MANIFEST_DIR"))
 }
 
 #[test]

@@ -19,9 +19,9 @@ use serde_json::{Value, json};
 
 use crate::support::{Bench, figure};
 
-/// Command of the example in docs/examples.
+/// Command of the example in examples.
 fn brightest() -> String {
-    format!("exec:python3 '{}/docs/examples/brightest.py'", env!("CARGO_MANIFEST_DIR"))
+    format!("exec:python3 '{}/examples/brightest.py'", env!("CARGO_MANIFEST_DIR"))
 }
 
 /// Frames of the starting point with whole images in which the target outshines the hot pixels.
@@ -138,7 +138,7 @@ fn examples_with_packages_keep_the_contract_and_leave_listed_stars_alone() {
         ("photutils_brightest", PixelPoint::new(30.5, 20.5)),
     ] {
         let scratch = tempfile::tempdir().unwrap();
-        let program = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/examples/{name}.py"));
+        let program = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/{name}.py"));
         let factory = ExternalFactory::<FarRange>::new(
             format!("'{python}' '{}'", program.display()),
             scratch.path().to_owned(),

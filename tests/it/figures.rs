@@ -15,9 +15,9 @@ fn figures_are_read_with_their_units_and_have_a_direction() {
         let figure = all().into_iter().find(|figure| figure.name == name).unwrap();
         assert_eq!((figure.to_string().as_str(), figure.sense.better), (label, better), "{name}");
     };
-    is("ra_rms_deg", "RA RMS, °", Better::Less);
-    is("ra_mean_deg", "RA mean, °", Better::Near(0.0));
-    is("dec_within_1px", "Dec within 1 px, %", Better::More);
+    is("ra_rms_deg", "RMS across columns, °", Better::Less);
+    is("ra_mean_deg", "mean across columns, °", Better::Near(0.0));
+    is("dec_within_1px", "within 1 px across rows, %", Better::More);
     is("correct_rate", "correct rate, %", Better::More);
     is("wrong_rate", "wrong rate, %", Better::Less);
     is("motion_range_rate_rms_m_s", "motion range rate RMS, m/s", Better::Less);

@@ -1,6 +1,7 @@
 //! The first minutes of a user: help without a command, version, demo, reproduction of the papers.
 
 use std::fs;
+use std::path::Path;
 
 use boresight::scenario::BUILT_IN;
 use serde_json::Value;
@@ -33,6 +34,33 @@ fn the_version_names_commit_and_features() {
     assert_eq!(has("monitor"), cfg!(feature = "monitor"), "{version}");
     assert_eq!(has("mitsuba"), cfg!(feature = "mitsuba"), "{version}");
     assert!(!has("default"), "{version}");
+}
+
+/// Each example of the source tree that runs without a compiler is written, byte for byte.
+#[test]
+fn the_examples_are_those_of_the_source_tree() {
+    let bench = Bench::new();
+    let document = bench.boresight("examples --json").done().json();
+    let written: Vec<&str> =
+        document["files"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut compared = 0;
+    for entry in fs::read_dir(root.join("examples")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if (name.ends_with(".py") || name.ends_with(".toml")) && name != "Cargo.toml" {
+            assert!(written.contains(&name.as_str()), "{name} is missing in src/command/examples.rs");
+            assert_eq!(fs::read(bench.path(&format!("examples/{name}"))).unwrap(), fs::read(path).unwrap());
+            compared += 1;
+        }
+    }
+    assert!(compared >= 10, "{compared} files");
+    for name in written {
+        assert!(bench.path(&format!("examples/{name}")).is_file(), "{name}");
+    }
+    bench.boresight("examples").refused(&["examples", "not empty"]);
+    bench.boresight("examples --out other").done();
+    bench.boresight("study check other/argon-optics.toml").done();
 }
 
 /// The links of a page to other files, without those inside of the page.

@@ -38,6 +38,7 @@ mod golden_docking;
 mod identity;
 mod inject;
 mod input_mistakes;
+mod labels;
 #[cfg(unix)]
 mod machine_faults;
 mod middle_range;

@@ -10,7 +10,7 @@ use contract::{Camera, Direction, PixelPoint};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use sim::mitsuba::{Crop, Settings};
 use sim::optics::Projection;
-use sim::scene::docking::{DockingScene, Facet, Floodlight, Lighting, Part, Sun};
+use sim::scene::docking::{Assembly, DockingScene, Facet, Floodlight, Lighting, Part, Sun};
 use sim::vector::RadianceImage;
 
 fn camera(focal_length_px: f64) -> Camera {
@@ -34,7 +34,13 @@ fn square(centre: Vector3<f64>, half: f64, reflectance: f64) -> Facet {
 }
 
 fn scene(facets: Vec<Facet>) -> DockingScene {
-    let part = Part { name: "squares".to_owned(), facets, casts_shadow: true, visible: true };
+    let part = Part {
+        name: "squares".to_owned(),
+        assembly: Assembly::Station,
+        facets,
+        casts_shadow: true,
+        visible: true,
+    };
     DockingScene { parts: vec![part] }
 }
 

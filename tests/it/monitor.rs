@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use boresight::far_range::rows::FrameTruthRow;
 use boresight::files::{TableReader, TableWriter};
-use boresight::monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
+use boresight::monitor::{Feed, Measurements, serve};
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::{Options, ScenarioSource};
 use serde_json::Value;
@@ -429,18 +429,18 @@ fn a_page_that_is_left_alone_leaves_the_processor_alone() {
     assert_eq!(processed(), 24121);
 }
 
-/// A build either contains the page or does not; in both cases the answer is helpful.
 #[test]
-fn the_page_is_served_or_the_command_explains_how_to_build_it() {
-    if is_page_built() {
-        let monitor = Monitor::docking(24000..24002);
-        for (path, part) in [("/", "src=\"monitor.js\""), ("/monitor.js", "api/"), ("/monitor.css", "{")] {
-            let text = String::from_utf8(monitor.body(path)).unwrap();
-            assert!(text.contains(part), "`{part}` in {path}: {text:.200}");
-        }
-    } else {
-        let words = "monitor docking --frames 0..2 --bind 127.0.0.1:0";
-        Bench::new().boresight(words).refused(&[BUILD_COMMAND]);
+fn the_page_is_served_with_the_licences_of_its_packages() {
+    let monitor = Monitor::docking(24000..24002);
+    for (path, part) in [
+        ("/", "src=\"monitor.js\""),
+        ("/monitor.js", "api/"),
+        ("/monitor.css", "{"),
+        ("/icon.svg", "<svg"),
+        ("/licences.txt", "three"),
+    ] {
+        let text = String::from_utf8(monitor.body(path)).unwrap();
+        assert!(text.contains(part), "`{part}` in {path}: {text:.200}");
     }
 }
 

@@ -165,7 +165,7 @@ fn the_format_of_the_files_does_not_matter() {
 #[test]
 fn a_program_may_measure_them_too() {
     let bench = dataset(12, |_, image| TIFF_16(image));
-    let command = format!("exec:python3 '{}/docs/examples/brightest.py'", env!("CARGO_MANIFEST_DIR"));
+    let command = format!("exec:python3 '{}/examples/brightest.py'", env!("CARGO_MANIFEST_DIR"));
     bench.boresight_words(&["process", "real", "--out", "brightest.csv", "--pipeline", &command]).done();
     let statuses: Vec<_> = bench.csv("brightest.csv").iter().map(|row| row["status"].clone()).collect();
     assert_eq!(statuses[0], "no_previous_frame");

@@ -228,7 +228,7 @@ fn centroids_have_lines_of_sight_by_the_attitude_that_is_requested_alone() {
 #[test]
 fn a_run_keeps_the_attitude_that_it_grants() {
     let bench = Bench::new();
-    let program = format!("exec:python3 '{}/docs/examples/brightest.py'", env!("CARGO_MANIFEST_DIR"));
+    let program = format!("exec:python3 '{}/examples/brightest.py'", env!("CARGO_MANIFEST_DIR"));
     let words = ["run", "argon", "--frames", "8000..8006", "--attitude", "telemetry", "--out", "run"];
     bench.boresight_words(&[&words[..], &["--pipeline", &program]].concat()).done();
     let score = bench.json("run/score.json");

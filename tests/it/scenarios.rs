@@ -363,7 +363,7 @@ fn a_mesh_beside_the_scenario_is_found_and_is_part_of_the_hash() {
         let path = format!("{}/scenarios/targets/{file}", env!("CARGO_MANIFEST_DIR"));
         bench.write(&format!("scenarios/targets/{file}"), std::fs::read(path).unwrap());
     }
-    let fragment: toml::Table = include_str!("../../docs/examples/smallsat.toml").parse().unwrap();
+    let fragment: toml::Table = include_str!("../../examples/smallsat.toml").parse().unwrap();
     bench.scenario("scenarios/mine.toml", "starting-point", |scenario| scenario.extend(fragment));
     bench.boresight("scenario check scenarios/mine.toml").done();
     let hash = |run: &str| {

@@ -193,7 +193,7 @@ fn a_study_travels_to_eight_workers_in_another_folder() {
     fs::create_dir(bench.path("inputs")).unwrap();
     let root = env!("CARGO_MANIFEST_DIR");
     fs::copy(format!("{root}/scenarios/starting-point.toml"), bench.path("inputs/scenario.toml")).unwrap();
-    fs::copy(format!("{root}/docs/examples/brightest.py"), bench.path("brightest.py")).unwrap();
+    fs::copy(format!("{root}/examples/brightest.py"), bench.path("brightest.py")).unwrap();
     let program = ["--pipeline", "exec:python3 brightest.py"];
 
     let (_scheduler, address) = scheduler();

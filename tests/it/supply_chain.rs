@@ -153,8 +153,11 @@ fn packages_of_continuous_integration_are_pinned() {
                     if matches!(word, "-r" | "-c") {
                         let list = words.next().unwrap();
                         assert!(Path::new(ROOT).join(list).is_file(), "{file}: {list}");
-                    } else if word.starts_with("./python") || word.starts_with("wheels/") {
+                    } else if word.starts_with("./python") || word.starts_with("dist/") {
                         assert!(constrained, "{file}: {line}");
+                    } else if word == "${WHEEL:-boresight==$VERSION}" {
+                        // The choice of the user of the action, who pins it.
+                        assert_eq!(file, ".github/actions/install/install.sh");
                     } else {
                         assert!(word.starts_with('-') || is_pinned(word), "{file}: `{word}` of {line}");
                     }
@@ -169,5 +172,5 @@ fn packages_of_continuous_integration_are_pinned() {
         }
     }
     // An installation method unknown to this test must not pass.
-    assert!(packages >= 5 && tools >= 2 && pages >= 2, "{packages} by pip, {tools} by cargo, {pages} by npm");
+    assert!(packages >= 5 && tools >= 2 && pages >= 1, "{packages} by pip, {tools} by cargo, {pages} by npm");
 }

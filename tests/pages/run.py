@@ -3,6 +3,7 @@
 
     python3 tests/pages/run.py --program target/release/boresight           # what CI runs: two minutes
     python3 tests/pages/run.py --program target/release/boresight --long    # the long commands too
+    python3 tests/pages/run.py --program env/bin/boresight --installed      # as a user without this tree
     python3 tests/pages/run.py --list                                       # commands, and figures without a check
 
 1. Every command on a page exists: subcommand and options of `boresight` are those of its help,
@@ -162,6 +163,10 @@ class Check:
         self.needs, self.is_long = entry.get("needs", []), entry.get("long", False)
         self.exit_status = entry.get("exit_status", 0)
 
+    def needs_tree(self):
+        """Whether a command needs a file of this tree that `boresight examples` does not write, or a compiler."""
+        return any(re.search(r"\b(golden|research|scenarios|sim|tests)/|^cargo (?!run --release -- )", c) for c in self.commands)
+
     def missing(self):
         return [name for name in self.needs if not importlib.util.find_spec(name)]
 
@@ -170,7 +175,7 @@ class Check:
         text = (ROOT / self.page).read_text()
         return re.findall(rf"```{language}\n(.*?)```", text, flags=re.S)[number]
 
-    def faults(self, program):
+    def faults(self, program, is_installed):
         text = (ROOT / self.page).read_text()
         for figure in self.figures:
             if figure["text"] not in text:
@@ -180,8 +185,11 @@ class Check:
                 return [f"{self.page} lacks the command `{command}` of a check"]
         with tempfile.TemporaryDirectory() as scratch:
             scratch = pathlib.Path(scratch)
-            for name in ("docs", "scenarios", "golden", "sim", "research", "tests"):
-                (scratch / name).symlink_to(ROOT / name)
+            if is_installed:
+                run("boresight examples", program, scratch).check_returncode()
+            else:
+                for name in ("docs", "examples", "scenarios", "golden", "sim", "research", "tests"):
+                    (scratch / name).symlink_to(ROOT / name)
             for name, (language, number) in self.blocks.items():
                 (scratch / name).write_text(self.block(language, number))
             for name, source in self.copies.items():
@@ -273,7 +281,7 @@ def prove(program):
         fault_of_boresight(["boresight", "run", "argon", "--frame", "1"], known) is None,
         fault_of_boresight(["boresight", "compare", "a", "b"], known) is None,
         fault_of_boresight(["boresight", "run", "argon", "--frames", "1"], known) is not None,
-        fault_of_python(["python3", "docs/examples/absent.py"]) is None,
+        fault_of_python(["python3", "examples/absent.py"]) is None,
         fault_of_cargo(["cargo", "run", "--bin", "absent"]) is None,
     ]
     if any(wrong):
@@ -293,6 +301,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default="target/release/boresight")
     parser.add_argument("--long", action="store_true", help="run the long checks too")
+    parser.add_argument("--installed", action="store_true", help="without this tree: only the commands that need none")
     parser.add_argument("--only", default="", help="part of the name of the checks to run")
     parser.add_argument("--list", action="store_true", help="list the commands that no check runs")
     options = parser.parse_args()
@@ -307,11 +316,14 @@ def main():
     for check in checks:
         if options.only not in check.name or check.is_long and not options.long:
             continue
+        if options.installed and check.needs_tree():
+            print(f"{check.name}: left out, needs the source tree", flush=True)
+            continue
         if check.missing():
             print(f"{check.name}: left out, needs {', '.join(check.missing())}", flush=True)
             continue
         begin = time.monotonic()
-        found = check.faults(program)
+        found = check.faults(program, options.installed)
         faults += found
         verdict = "differs" if found else "agrees"
         print(f"{check.name}: {len(check.figures)} figures, {verdict}, {time.monotonic() - begin:.0f} s", flush=True)

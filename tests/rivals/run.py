@@ -78,7 +78,7 @@ def main():
             correct, best = scored(given.program, scenario, frames, None)
             line = [(correct, rms(best, best))]
             for rival in RIVALS:
-                found_correct, found = scored(given.program, scenario, frames, f"exec:{sys.executable} docs/examples/{rival}.py")
+                found_correct, found = scored(given.program, scenario, frames, f"exec:{sys.executable} examples/{rival}.py")
                 line.append((found_correct, rms(found, found)))
                 if correct < found_correct - 0.001:
                     failures.append(f"{name}: {rival} is correct in {found_correct:.4f}, the best mode in {correct:.4f}")

@@ -24,6 +24,5 @@ mod server;
 pub mod session;
 
 pub use feed::{Feed, MAX_FRAMES, Measurements, register};
-pub use server::assets::{BUILD_COMMAND, is_page_built};
 pub use server::overview::camera;
 pub use server::serve;

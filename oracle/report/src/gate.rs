@@ -13,6 +13,7 @@ use crate::figures::{cell, significant};
 use crate::page::data_table::DataTable;
 use crate::page::picture::Picture;
 use crate::page::{Page, Section};
+use crate::verdict::{Finding, Grade, Verdict, causes_sentence};
 use crate::worlds::world_report;
 
 /// Maximum number of flipped frames shown as pictures.
@@ -124,17 +125,104 @@ pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
         version: report.result_version.clone(),
         lead: vec![lead, format!("Reason for the baseline: {}", report.reason)],
         warnings: report.notes.clone(),
+        verdict: verdict(report),
         facts: vec![
             ("Compared", format!("{} {}", report.count, report.units)),
             ("Pairs", pairing.to_owned()),
             ("Blocks", format!("{} of about {:.0} {}", report.blocks, report.block_length, report.units)),
-            ("Alpha", significant(report.alpha)),
+            ("Probability of a false alarm", format!("{}\u{a0}%", significant(100.0 * report.alpha))),
             ("Seeds", format!("{} and {}", report.baseline_seed, report.result_seed)),
             ("Versions", format!("{} and {}", report.baseline_version, report.result_version)),
         ],
-        sections: vec![effects(report), flipped_units(report, frames)],
+        sections: vec![flipped_units(report, frames), effects(report)],
+        names_paper: false,
         data: data(report),
     }
+}
+
+/// Returns the verdict: the worse figures, the better ones, those that are neither, those with too little
+/// data, and the changed frames with their causes. The gate itself grades the figures.
+fn verdict(report: &GateReport) -> Verdict {
+    let mut findings = Vec::new();
+    for (name, figure) in &report.figures {
+        let grade = match figure.verdict {
+            verdict if verdict.is_worse() => Grade::Poor,
+            FigureVerdict::Changed => Grade::Fair,
+            FigureVerdict::Better => Grade::Good,
+            _ => continue,
+        };
+        findings.push(Finding::new(grade, figure_by_name(name).words, change_text(name, figure)));
+    }
+    let count =
+        |wanted: FigureVerdict| report.figures.values().filter(|figure| figure.verdict == wanted).count();
+    match count(FigureVerdict::NoWorse) {
+        0 => {}
+        others => findings.push(Finding::new(
+            Grade::Good,
+            format!("{others} figures no worse"),
+            "No worsening beyond the tolerance and beyond chance; the table has the smallest worsening that \
+             would have been visible.",
+        )),
+    }
+    match count(FigureVerdict::TooLittleData) {
+        0 => {}
+        others => findings.push(Finding::not_judged(
+            format!("{others} figures with too little data"),
+            "Too few frames have them in the baseline or in the result.",
+        )),
+    }
+    findings.extend(flips_finding(report));
+    Verdict::new(findings)
+}
+
+/// Describes the change of a figure: both values, the difference with its interval, and the tolerance.
+fn change_text(name: &str, figure: &FigureReport) -> String {
+    let spec = figure_by_name(name);
+    let is_rate = spec.is_rate();
+    let unit = if is_rate {
+        "\u{a0}%".to_owned()
+    } else {
+        spec.unit.map_or(String::new(), |u| format!("\u{a0}{u}"))
+    };
+    let number = |value: Option<f64>| match value {
+        Some(value) if is_rate => format!("{:.2}", 100.0 * value),
+        value => cell(value),
+    };
+    let points = if is_rate { "\u{a0}points".to_owned() } else { unit.clone() };
+    let interval = match (figure.low, figure.high) {
+        (Some(_), Some(_)) => {
+            format!(" (95\u{a0}% interval {} to {})", number(figure.low), number(figure.high))
+        }
+        _ => String::new(),
+    };
+    format!(
+        "{}{unit} in the baseline, {}{unit} now: difference {}{points}{interval}, tolerance {}{points}.",
+        number(figure.baseline),
+        number(figure.result),
+        number(figure.difference),
+        number(Some(figure.tolerance))
+    )
+}
+
+/// Returns the finding on the changed units; `None` if none is lost or changed otherwise.
+fn flips_finding(report: &GateReport) -> Option<Finding> {
+    let flips = report.flips.as_ref()?;
+    let mut causes: indexmap::IndexMap<String, u64> = indexmap::IndexMap::new();
+    for flip in flips.units.iter().filter(|flip| flip.kind == FlipKind::Lost) {
+        *causes.entry(change(flip)).or_default() += 1;
+    }
+    let text = format!(
+        "{} correct only in the baseline, {} only in the result, {} changed otherwise, of {}.",
+        flips.lost, flips.won, flips.other, report.count
+    );
+    let grade = match (flips.lost, flips.won + flips.other) {
+        (0, 0) => return None,
+        (0, _) => Grade::Good,
+        (lost, _) if lost > flips.won => Grade::Poor,
+        _ => Grade::Fair,
+    };
+    let words = |change: &str| change.to_owned();
+    Some(Finding::new(grade, format!("changed {}", report.units), text).and(&causes_sentence(&causes, words)))
 }
 
 /// Returns the report without its list of units, which may be as long as the run.
@@ -147,8 +235,13 @@ fn data(report: &GateReport) -> serde_json::Value {
     })
 }
 
-/// Returns the section on the differences with their intervals.
-fn effects(report: &GateReport) -> Section {
+/// Returns true if a figure has a value in the baseline or in the result.
+fn has_value(figure: &FigureReport) -> bool {
+    figure.baseline.or(figure.result).is_some()
+}
+
+/// Returns the table of the figures that have a value, with their differences.
+fn table_of_effects(report: &GateReport) -> DataTable {
     let mut table = DataTable::new([
         "figure",
         "verdict",
@@ -167,7 +260,7 @@ fn effects(report: &GateReport) -> Section {
          points; p of a worsening, adjusted for all figures.",
     )
     .narrow();
-    for (name, figure) in &report.figures {
+    for (name, figure) in report.figures.iter().filter(|(_, figure)| has_value(figure)) {
         let is_rate = figure_by_name(name).is_rate();
         let number = |value: Option<f64>| match value {
             Some(value) if is_rate => format!("{:.2}", 100.0 * value),
@@ -187,6 +280,12 @@ fn effects(report: &GateReport) -> Section {
             figure.blocks.to_string(),
         ]);
     }
+    table
+}
+
+/// Returns the section on the differences with their intervals.
+fn effects(report: &GateReport) -> Section {
+    let table = table_of_effects(report);
     let (rates, amounts): (Vec<Compared<'_>>, Vec<Compared<'_>>) = report
         .figures
         .iter()
@@ -207,7 +306,13 @@ fn effects(report: &GateReport) -> Section {
             tolerance.";
         section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
     }
-    section.table(table)
+    let section = section.table(table);
+    let without = report.figures.iter().filter(|(_, figure)| !has_value(figure));
+    let without: Vec<String> = without.map(|(name, _)| figure_by_name(name).words).collect();
+    match without.as_slice() {
+        [] => section,
+        names => section.text(format!("Without a value in baseline and result: {}.", names.join(", "))),
+    }
 }
 
 /// Returns a figure's name without its unit, because the axis of differences has another unit.
@@ -258,21 +363,21 @@ fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &st
 fn flipped_units(report: &GateReport, frames: FlippedFrames) -> Section {
     let section = Section::new("flips", format!("{} with changed verdict", capital(&report.units)));
     let Some(flips) = &report.flips else {
-        return section.text("The frames differ: blocks are compared, not single frames.");
+        return section.absent("The frames differ: blocks are compared, not single frames.");
     };
+    if flips.units.is_empty() {
+        return section.absent("No frame has another verdict than in the baseline.");
+    }
     let section = section.text(format!(
         "{} lost (correct only in the baseline), {} won (correct only in the result), {} changed otherwise.",
         flips.lost, flips.won, flips.other
     ));
-    if flips.units.is_empty() {
-        return section;
-    }
     let section = match frames.reason {
-        Some(reason) => section.text(format!("No pictures: {reason}")),
+        Some(reason) => section.text(format!("There are no pictures: {reason}")),
         None if frames.pictures.is_empty() => section,
         None => section
             .text(
-                "One frame for each kind of change, rendered again from the result's run.toml, with the \
+                "One frame for each kind of change, rendered again from the result's `run.toml`, with the \
                  result's measurement. Green: truth; orange: measurement; yellow: clusters or outlines, with \
                  the pipeline's classification.",
             )

@@ -27,6 +27,7 @@ pub mod page;
 pub mod read;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod study;
+pub mod verdict;
 mod worlds;
 
 use std::path::{Path, PathBuf};

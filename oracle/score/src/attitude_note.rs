@@ -17,16 +17,16 @@ pub fn attitude_word(own: bool, centroids: bool, granted: Option<&str>) -> Optio
     }
 }
 
-/// Returns a note for readers of RA and Dec figures about an [`attitude_word`]; `None` if all lines of sight
-/// are those of the pipeline.
+/// Returns a note for readers of figures of the direction about an [`attitude_word`]; `None` if all lines of
+/// sight are those of the pipeline.
 pub fn attitude_note(word: Option<&str>) -> Option<String> {
     match word? {
         "own" => None,
-        "none" => {
-            Some("No measurement has a line of sight: no figures for RA and Dec (docs/score.md).".to_owned())
-        }
+        "none" => Some(
+            "No measurement has a line of sight: no figures of the direction (docs/score.md).".to_owned(),
+        ),
         word => Some(format!(
-            "RA and Dec by the attitude `{word}`, not only by the pipeline's own (docs/score.md)."
+            "Errors of the direction by the attitude `{word}`, not only by the pipeline's own (docs/score.md)."
         )),
     }
 }

@@ -10,6 +10,9 @@ pub(crate) fn register() {
         sense: Sense { kind: Kind::Rate, better: Better::More },
         ..FigureSpec::amount(name, name.replace('_', " "), Better::More)
     };
-    let amount = FigureSpec { unit: Some("°"), ..FigureSpec::amount("ra_rms_deg", "RA RMS", Better::Less) };
+    let amount = FigureSpec {
+        unit: Some("°"),
+        ..FigureSpec::amount("ra_rms_deg", "RMS across columns", Better::Less)
+    };
     register_figures(vec![rate("correct_rate"), rate("hit_rate"), amount]);
 }

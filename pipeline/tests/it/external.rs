@@ -151,7 +151,7 @@ fn dies(bench: &Bench, expected: &str) {
 }
 
 fn example() -> Bench {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/examples/brightest.py");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/brightest.py");
     Bench::command(format!("python3 '{}'", path.display()))
 }
 

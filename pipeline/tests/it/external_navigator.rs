@@ -61,7 +61,7 @@ fn python(body: &str) -> (TempDir, ExternalNavigatorFactory) {
 }
 
 fn example() -> ExternalNavigatorFactory {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/examples/prior_orbit.py");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/prior_orbit.py");
     ExternalNavigatorFactory::new(format!("python3 '{}'", path.display()), std::env::temp_dir(), write_time)
 }
 

@@ -19,7 +19,7 @@ class Detection:
     """Row of the target's centroid."""
     los_j2000: Sequence[float] | None = None
     """Line of sight to the target, unit vector along the axes of ICRS. Without it the score has the error of
-    the centroid, px, and figures of RA and Dec only with an attitude chosen for the score (docs/score.md)."""
+    the centroid, px, and figures of the direction only with an attitude chosen for the score (docs/score.md)."""
     q_cam_j2000: Sequence[float] | None = None
     """Attitude of the camera, unit quaternion (w, x, y, z); recorded, not scored."""
     n_stars: int | None = None

@@ -21,8 +21,8 @@ pub use camera_motion::CameraMotion;
 pub use source::Source;
 pub use spacecraft::Outline;
 pub use spacecraft::{
-    Appearance, BoxConfig, Lighting, MaterialConfig, MeshConfig, PlateConfig, Spacecraft, SurfaceConfig,
-    TargetConfig,
+    Appearance, BoxConfig, Lighting, MaterialConfig, MeshConfig, NamedPoint, PlateConfig, Spacecraft,
+    SurfaceConfig, TargetConfig, TargetShape,
 };
 pub use star_field::StarField;
 pub use vibration::Vibration;

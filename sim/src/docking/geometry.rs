@@ -191,6 +191,12 @@ impl TargetGeometry {
         })
     }
 
+    /// Returns true if an object lies between the camera and a point of the target frame, m.
+    pub(super) fn is_hidden(&self, pose: &Pose, point_m: &Vector3<f64>) -> bool {
+        let point = Region { centre: *point_m, radius_m: 0.0 };
+        self.hiding.between_region_and_point(&point, &pose.position_m).separate(point_m, &pose.position_m)
+    }
+
     /// Fraction of the plate illuminated by the Sun or the lamp.
     pub(super) fn plate_lit(&self, lighting: &Lighting) -> f64 {
         let light = self.plate_lighting(lighting);

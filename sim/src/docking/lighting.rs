@@ -4,7 +4,7 @@ use contract::OutOfRange;
 use contract::bounds::{self, require};
 use contract::docking::Pose;
 use nalgebra::{Rotation3, Unit, Vector3};
-use scene::docking::{Facet, Floodlight, Lighting, Part, Sun};
+use scene::docking::{Assembly, Facet, Floodlight, Lighting, Part, Sun};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use truth::approach::target_from_camera;
@@ -139,6 +139,7 @@ impl ShadeConfig {
         }
         Ok(Part {
             name: format!("shade {index}"),
+            assembly: Assembly::Station,
             facets: vec![Facet { outer, holes: Vec::new(), normal, reflectance: 0.0 }],
             casts_shadow: true,
             visible: false,

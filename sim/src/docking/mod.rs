@@ -8,12 +8,14 @@ mod geometry;
 mod glint;
 mod lighting;
 mod occlusion;
+mod silhouettes;
 mod simulator;
 mod truth;
 
 pub use config::{CameraConfig, DockingSimulation, LensConfig};
 pub use glint::{GlintConfig, GlintImage};
 pub use lighting::{FloodlightConfig, LightingConfig, ShadeConfig, SunConfig};
+pub use silhouettes::AssemblySilhouette;
 pub use simulator::{DockingSimulator, DockingWorkspace, FieldExposure, FieldState};
 pub use truth::FieldTruth;
 

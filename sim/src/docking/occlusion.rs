@@ -149,6 +149,8 @@ fn encloses(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use scene::docking::Assembly;
+
     use super::*;
 
     /// Square of side 2 at y3 = 1 with a square hole of side 1.
@@ -164,7 +166,13 @@ mod tests {
             normal: Vector3::z(),
             reflectance: 0.5,
         };
-        let part = Part { name: "frame".into(), facets: vec![facet], casts_shadow: true, visible: true };
+        let part = Part {
+            name: "frame".into(),
+            assembly: Assembly::Station,
+            facets: vec![facet],
+            casts_shadow: true,
+            visible: true,
+        };
         Occluders::new([&part], |_| true)
     }
 

@@ -12,7 +12,7 @@ fn tango() -> TargetConfig {
     struct Fragment {
         target: TargetConfig,
     }
-    let fragment: Fragment = toml::from_str(include_str!("../../../docs/examples/tango.toml")).unwrap();
+    let fragment: Fragment = toml::from_str(include_str!("../../../examples/tango.toml")).unwrap();
     fragment.target
 }
 
@@ -22,7 +22,7 @@ fn smallsat() -> TargetConfig {
     struct Fragment {
         target: TargetConfig,
     }
-    let fragment: Fragment = toml::from_str(include_str!("../../../docs/examples/smallsat.toml")).unwrap();
+    let fragment: Fragment = toml::from_str(include_str!("../../../examples/smallsat.toml")).unwrap();
     let mut target = fragment.target;
     for (_, path) in target.paths() {
         *path = format!("{}/../scenarios/{path}", env!("CARGO_MANIFEST_DIR"));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use boresight_sim::scene::docking::{DockingScene, Facet, Lighting, Part, Sun};
+use boresight_sim::scene::docking::{Assembly, DockingScene, Facet, Lighting, Part, Sun};
 use boresight_sim::vector::{Drawer, RadianceImage};
 use contract::Camera;
 use contract::docking::Pose;
@@ -93,7 +93,7 @@ pub(crate) fn cross(half_length: f64, width: f64) -> Vec<[f64; 2]> {
 }
 
 pub(crate) fn part(name: &str, facets: Vec<Facet>) -> Part {
-    Part { name: name.to_owned(), facets, casts_shadow: true, visible: true }
+    Part { name: name.to_owned(), assembly: Assembly::Station, facets, casts_shadow: true, visible: true }
 }
 
 pub(crate) fn scene(parts: Vec<Part>) -> DockingScene {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use files::Failure;
 use report::page::data_table::DataTable;
+use report::verdict::Verdict;
 use report::{Page, Section, write_page};
 use serde_json::json;
 
@@ -27,8 +28,10 @@ pub(super) fn write(results: &DemoResults, directory: &Path, _: &Output) -> Resu
                 .to_owned(),
         ],
         warnings: Vec::new(),
+        verdict: Verdict::new([results.far_range.findings(), results.docking.findings()].concat()),
         facts: results.far_range.facts().into_iter().chain(results.docking.facts()).collect(),
         sections: vec![results.far_range.section()?, results.docking.section()?, next_steps()],
+        names_paper: false,
         data: json!({
             "far_range": results.far_range.document(),
             "docking": results.docking.document(),

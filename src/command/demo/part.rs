@@ -9,7 +9,7 @@ use run::{Expectation, FrameJobs, Options, ScenarioSource};
 use crate::command::execute::note_unfinished_run;
 use crate::command::options::PipelineOptions;
 use crate::command::output::Output;
-use crate::command::report::write_beside_run;
+use crate::command::report::{Headings, write_beside_run};
 
 /// A scenario, and the directory of its run inside of the demo's.
 pub(super) struct Part {
@@ -53,7 +53,7 @@ impl Part {
         let score = ran.scored.json()?;
         // Without the feature, the page states once that it is missing.
         if cfg!(feature = "report") {
-            write_beside_run(directory.path(), ran.scored.as_mut(), output);
+            write_beside_run(directory.path(), ran.scored.as_mut(), Headings::Subjects, output);
         }
         Ok(FinishedPart { directory: directory.path().to_owned(), score })
     }

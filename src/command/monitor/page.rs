@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::Path;
 
 use files::Failure;
-use monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
+use monitor::{Feed, Measurements, serve};
 use run::{Options, ScenarioSource};
 use scenario::BUILT_IN;
 use serde_json::json;
@@ -28,12 +28,6 @@ pub(in crate::command) fn monitor(arguments: &MonitorArguments, output: &Output)
     } else {
         live(arguments, scratch.path())?
     };
-    if !is_page_built() {
-        return Err(Failure::Usage(format!(
-            "this executable was built without the monitor's page; build the page with {BUILD_COMMAND}, then \
-             build or run boresight again"
-        )));
-    }
     let mut announced = Ok(());
     let ready = |address: SocketAddr| {
         let url = format!("http://{address}/");

@@ -5,6 +5,7 @@ use files::Failure;
 use gate::GateReport;
 use run::AnyJudgement;
 
+use super::Headings;
 use crate::command::missing_feature;
 use crate::command::output::Output;
 
@@ -16,7 +17,7 @@ pub(super) fn check_path(_: &Path) -> Result<(), Failure> {
     Err(missing_feature("report"))
 }
 
-pub(in crate::command) fn write_beside_run(_: &Path, _: &mut dyn AnyJudgement, output: &Output) {
+pub(in crate::command) fn write_beside_run(_: &Path, _: &mut dyn AnyJudgement, _: Headings, output: &Output) {
     note(output);
 }
 

@@ -9,6 +9,7 @@ use report::{
 };
 use run::AnyJudgement;
 
+use super::Headings;
 use super::budget::run_budget;
 use crate::command::output::Output;
 
@@ -40,8 +41,15 @@ pub(super) fn write_report(
 }
 
 /// Writes the report of a run that has just been scored into its directory.
-pub(in crate::command) fn write_beside_run(directory: &Path, scored: &mut dyn AnyJudgement, output: &Output) {
-    write_beside(read_run_report(directory, scored), directory, output);
+pub(in crate::command) fn write_beside_run(
+    directory: &Path,
+    scored: &mut dyn AnyJudgement,
+    headings: Headings,
+    output: &Output,
+) {
+    let names_paper = headings == Headings::OfPaper;
+    let page = read_run_report(directory, scored).map(|page| Page { names_paper, ..page });
+    write_beside(page, directory, output);
 }
 
 /// Writes the report of a directory of complete results into it.

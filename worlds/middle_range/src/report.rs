@@ -6,9 +6,12 @@ use ::report::WorldReport;
 use ::report::charts::chart::{Chart, MEASURED, REFERENCE, axes, band, line, points, rounded};
 use ::report::charts::thinning::evenly;
 use ::report::figures::run_page::run_page;
+use ::report::figures::words::{capital, display_name};
 use ::report::page::data_table::DataTable;
 use ::report::page::picture::{Mark, Picture, Pixels, RenderedPictures, RowMapping, Shape, Stretch};
 use ::report::page::{Page, Section};
+use ::report::verdict::rules::{Measured, against_baseline, bias_sentence};
+use ::report::verdict::{Finding, Verdict};
 use contract::{PixelPoint, Window};
 use files::Failure;
 use run::plain::{Plain, PlainWorld, Scored, read_scored};
@@ -18,6 +21,8 @@ use crate::world::{MiddleRange, range_error};
 
 /// Number of pictures of a report.
 const PICTURES: usize = 6;
+/// Number of pictures of the worst frames.
+const WORST: usize = 3;
 /// Rows of the table behind the chart.
 const TABLE_ROWS: usize = 24;
 
@@ -34,9 +39,49 @@ fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Fail
         rows.iter().filter_map(|row| scored.get(*row)).map(|scored| scored.truth.frame).collect::<Vec<_>>();
     let (pictures, _) = pictures(directory, &shown)?;
     page.kind = "Middle range: a run";
+    let findings = page.verdict.findings().iter().cloned().chain([range_finding(&page)]).collect();
+    page.verdict = Verdict::new(findings);
     page.sections.insert(0, errors(&scored));
     page.sections.insert(0, Section::new("approach", "The approach in pictures").pictures(pictures));
+    page.sections.insert(0, worst_frames(directory, &scored)?);
     Ok(page)
+}
+
+/// Returns the finding on the error of the range, for which there is no requirement, from the figures.
+fn range_finding(page: &Page) -> Finding {
+    let value = |name: &str| page.data.get(name)?.get("value")?.as_f64();
+    let rms =
+        value("range_rms_percent").map(|value| Measured { value, low: None, high: None, count: None, of: 0 });
+    let bias = rms.map(|rms| bias_sentence(rms.value, value("range_bias_mean_percent"), "%"));
+    against_baseline("range error", rms, None, "% of the range").and(&bias.unwrap_or_default())
+}
+
+/// Returns pictures of wrong and missed frames, spread over the run, and of the largest errors of the range.
+fn worst_frames(directory: &Path, scored: &[Scored<MiddleRange>]) -> Result<Section, Failure> {
+    let failed: Vec<u64> = scored
+        .iter()
+        .filter(|scored| MiddleRange::judge(scored).0 != "correct")
+        .map(|scored| scored.truth.frame)
+        .collect();
+    let mut frames: Vec<u64> = evenly_placed(failed.len(), WORST)
+        .into_iter()
+        .filter_map(|place| failed.get(place).copied())
+        .collect();
+    let mut errors: Vec<(f64, u64)> = scored
+        .iter()
+        .filter_map(|scored| Some((range_error(scored)?.abs(), scored.truth.frame)))
+        .filter(|(_, frame)| !failed.contains(frame))
+        .collect();
+    errors.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    frames.extend(errors.iter().take(WORST.saturating_sub(frames.len())).map(|(_, frame)| *frame));
+    let section = Section::new("worst-frames", "Worst frames");
+    if frames.is_empty() {
+        return Ok(section.absent("No frame has a measurement."));
+    }
+    let (shown, _) = pictures(directory, &frames)?;
+    let text = "Wrong and missed frames, then the largest errors of the range as a part of it. Green: true disk; \
+        orange: measured disk.";
+    Ok(section.text(text).pictures(shown))
 }
 
 /// Returns the error of the measured range over the range, with the stated standard deviations.
@@ -97,8 +142,17 @@ fn picture(mission: &Plain<MiddleRange>, scored: &Scored<MiddleRange>) -> Result
     let window = around(truth.centre, truth.radius_px, columns, rows);
     let pixels = Pixels { columns, rows, dn: frame.dn() };
     let mut picture = Picture::new(pixels, window, RowMapping::WHOLE, Stretch::Linear)?;
-    picture.title = format!("Frame {}", truth.frame);
-    picture.caption = format!("{:.3} km, {:.2} ms", truth.range_km, 1000.0 * truth.exposure_s);
+    let (verdict, cause) = MiddleRange::judge(scored);
+    let cause = cause.map_or_else(String::new, |cause| format!(": {}", display_name(&cause)));
+    picture.title = format!("{}{cause}.", capital(&display_name(verdict)));
+    let error = range_error(scored);
+    let error = error.map_or_else(String::new, |share| format!(", range error {:.2} %", 100.0 * share));
+    picture.caption = format!(
+        "Frame {}, {:.3} km, exposure {:.2} ms{error}.",
+        truth.frame,
+        truth.range_km,
+        1000.0 * truth.exposure_s
+    );
     let disk = |at, radius_px, class, title: &str| Mark {
         at,
         shape: Shape::Circle(radius_px),
@@ -112,7 +166,7 @@ fn picture(mission: &Plain<MiddleRange>, scored: &Scored<MiddleRange>) -> Result
         scored.answer.as_ref().and_then(|answer| answer.centre.zip(answer.radius_px))
     {
         let [x, y] = centre;
-        picture.marks.push(disk(PixelPoint::new(x, y), radius_px, "answer", "measured disk"));
+        picture.marks.push(disk(PixelPoint::new(x, y), radius_px, "measured", "measured disk"));
     }
     Ok(picture)
 }

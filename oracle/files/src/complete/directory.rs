@@ -81,7 +81,17 @@ impl RunDirectory {
     /// # Errors
     /// [`FileError::Io`] if a file cannot be read or the checksums cannot be written.
     pub fn seal(&self) -> Result<(), FileError> {
-        Checksums::write(&self.path, &SEALED)?;
+        self.seal_with(&[])
+    }
+
+    /// Seals the directory as [`RunDirectory::seal`], with the checksums of further files, given by their
+    /// paths relative to the directory.
+    ///
+    /// # Errors
+    /// Those of [`RunDirectory::seal`].
+    pub fn seal_with(&self, more: &[String]) -> Result<(), FileError> {
+        let names: Vec<&str> = SEALED.into_iter().chain(more.iter().map(String::as_str)).collect();
+        Checksums::write(&self.path, &names)?;
         let path = self.path.join(UNFINISHED);
         fs::remove_file(&path).map_err(|source| FileError::io(&path, "remove", source))
     }
@@ -133,6 +143,11 @@ impl RunDirectory {
     pub fn create_expected(&self) -> Result<(), FileError> {
         let folder = self.path.join("truth/expected");
         fs::create_dir(&folder).map_err(|source| FileError::io(&folder, "create", source))
+    }
+
+    /// Path of `truth/labels/`: labels of the images for machine learning.
+    pub fn truth_labels(&self) -> PathBuf {
+        self.path.join("truth/labels")
     }
 
     /// Path of the noise-free expectation of a frame, electrons.

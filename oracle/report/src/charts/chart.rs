@@ -175,6 +175,16 @@ pub fn bars(name: &str, x: &[String], y: Vec<f64>, colour: &str) -> Trace {
     Trace::bars(names, y).name(plain(name)).marker(Marker::new().colour(colour))
 }
 
+/// Returns horizontal bars, one per name, each with its colour; the last is on top.
+pub fn bars_across(names: &[String], values: Vec<f64>, colours: Vec<&str>) -> Trace {
+    let names: Vec<String> = names.iter().map(|name| plain(name)).collect();
+    let marker = Marker::new().colours(&colours);
+    Trace::bars_across(values, names)
+        .marker(marker)
+        .hover_template("%{y}: %{x}<extra></extra>")
+        .not_in_legend()
+}
+
 /// Returns the layout of stacked bars.
 pub fn stacked_bars(x_title: &str, y_title: &str) -> Layout {
     // The legend is forced: with a single kind of bar it would be hidden, and the kind unnamed.

@@ -184,6 +184,11 @@ impl Marker {
         Self(self.0.with("color", colour))
     }
 
+    /// Sets the colour of every bar.
+    pub fn colours(self, colours: &[&str]) -> Self {
+        Self(self.0.with("color", colours.to_vec()))
+    }
+
     /// Sets the opacity, 0 to 1.
     pub fn opacity(self, opacity: f64) -> Self {
         Self(self.0.with("opacity", number(opacity)))
@@ -230,6 +235,11 @@ impl Trace {
     /// Creates vertical bars.
     pub fn bars(x: impl Into<Values>, y: impl Into<Values>) -> Self {
         Self::new("bar", x, y)
+    }
+
+    /// Creates horizontal bars; `y` has the names.
+    pub fn bars_across(x: impl Into<Values>, y: impl Into<Values>) -> Self {
+        Self::new("bar", x, y).with("orientation", "h")
     }
 
     /// Creates coloured cells; `z` has a row of numbers for each `y`, and each row a number for each `x`.

@@ -112,14 +112,17 @@ mod tests {
     fn every_figure_is_read_with_its_unit() {
         let sense = Sense { kind: Kind::Rate, better: Better::More };
         run::register_figures(vec![
-            FigureSpec { unit: Some("°"), ..FigureSpec::amount("ra_rms_deg", "RA RMS", Better::Less) },
+            FigureSpec {
+                unit: Some("°"),
+                ..FigureSpec::amount("ra_rms_deg", "RMS across columns", Better::Less)
+            },
             FigureSpec { unit: Some("%"), sense, ..FigureSpec::amount("hit_rate", "hit rate", Better::More) },
         ]);
         let figures = ["ra_rms_deg", "hit_rate", "stars_mean"];
         let figures = figures.map(|name| (name.to_owned(), Figure::mean(&[vec![0.5, 1.0]])));
         let labels: Vec<String> =
             figure_table(&figures.into()).rows.into_iter().filter_map(|row| row.into_iter().next()).collect();
-        assert_eq!(labels, ["RA RMS, °", "hit rate", "stars mean"]);
+        assert_eq!(labels, ["RMS across columns, °", "hit rate", "stars mean"]);
     }
 
     #[test]

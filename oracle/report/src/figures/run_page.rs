@@ -12,6 +12,8 @@ use super::words::display_name;
 use crate::page::data_table::DataTable;
 use crate::page::{Page, Section};
 use crate::read::missing;
+use crate::verdict::figures::{judge, measured};
+use crate::verdict::{Finding, Verdict, causes_sentence};
 
 /// Reads a run directory and returns its page.
 ///
@@ -34,24 +36,46 @@ pub fn run_page(directory: &Path) -> Result<Page, Failure> {
         *counts.entry((unit.verdict.as_str(), unit.cause.as_deref().unwrap_or("–"))).or_default() += 1;
     }
     let mut verdicts = DataTable::new(["verdict", "cause", "count"]);
-    for ((verdict, cause), count) in counts {
+    for ((verdict, cause), count) in &counts {
         verdicts.push([display_name(verdict), display_name(cause), count.to_string()]);
     }
+    let findings = with_causes(judge(&measured(scored.figures())), &counts);
     Ok(Page {
         title: run.scenario.title().to_owned(),
         kind: "Run",
         version: run.version,
-        lead: vec![format!("{} {}s of the world {}.", units.len(), world.image(), world.code())],
+        lead: vec![format!("{} {}s.", units.len(), world.image())],
         warnings: Vec::new(),
+        verdict: Verdict::new(findings),
         facts: vec![
             ("Scenario", run.name),
             ("Seed", run.scenario.seed().to_string()),
-            ("Configuration", run.hash),
+            ("Configuration", run.hash.chars().take(12).collect()),
         ],
         sections: vec![
             Section::new("figures", "Figures").table(figure_table(scored.figures())),
             Section::new("verdicts", "Verdicts").table(verdicts),
         ],
+        names_paper: false,
         data: json!(scored.figures()),
     })
+}
+
+/// Adds the causes of wrong and of missing answers to the findings on wrong and on correct answers.
+fn with_causes(findings: Vec<Finding>, counts: &IndexMap<(&str, &str), u64>) -> Vec<Finding> {
+    let of = |is_wanted: fn(&str) -> bool| -> IndexMap<String, u64> {
+        let wanted = counts.iter().filter(|((verdict, cause), _)| is_wanted(verdict) && *cause != "–");
+        wanted.map(|((_, cause), count)| ((*cause).to_owned(), *count)).collect()
+    };
+    let wrong = causes_sentence(&of(|verdict| verdict == "wrong"), display_name);
+    let missed = causes_sentence(&of(|verdict| verdict == "missed"), display_name);
+    let mut of_missed = Some(missed);
+    findings
+        .into_iter()
+        .map(|finding| match finding.is_about_wrong_answers {
+            true => finding.and(&wrong),
+            // The first finding on other than wrong answers is that on correct ones.
+            false => finding.and(&of_missed.take().unwrap_or_default()),
+        })
+        .collect()
 }

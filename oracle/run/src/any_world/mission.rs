@@ -7,6 +7,7 @@ use std::str::FromStr;
 
 use files::{Failure, RunDirectory};
 use indexmap::IndexMap;
+use labels::{LabelCounts, LabelFormats};
 use scenario::run_file::ScenarioValues as _;
 use score::{Figure, UnitTable};
 use serde_json::Value;
@@ -57,8 +58,19 @@ erased! {
             W::check_frame_jobs(self, &frame_jobs.parse()?)
         }
 
+        /// Refuses label formats that cannot express the labels of the world, before anything is written;
+        /// returns a note for the user about the labels, if there is one.
+        ///
+        /// # Errors
+        /// [`Failure::Usage`] with the reason.
+        fn check_labels(&self, formats: &LabelFormats) -> Result<Option<String>, Failure> {
+            let set = self.label_set()?;
+            set.check(formats)?;
+            Ok(set.note)
+        }
+
         /// Renders a dataset, as [`sequence::render`]; returns a description of the files that it contains
-        /// for a pipeline.
+        /// for a pipeline, and the numbers of labels.
         ///
         /// # Errors
         /// A [`Failure`] when a file cannot be written.
@@ -66,13 +78,14 @@ erased! {
             &self,
             directory: &RunDirectory,
             frame_jobs: &FrameJobs<String>,
+            label_formats: Option<&LabelFormats>,
             done: &dyn Fn(),
-        ) -> Result<String, Failure> {
+        ) -> Result<(String, Option<LabelCounts>), Failure> {
             let frame_jobs: FrameJobs<W::Images> = frame_jobs.parse()?;
             let images = frame_jobs.images.unwrap_or(W::IMAGES);
             let frame_jobs = FrameJobs { images: Some(images), ..frame_jobs };
-            sequence::render(self, directory, &frame_jobs, done)?;
-            Ok(W::files_for_pipelines(images))
+            let counts = sequence::render(self, directory, &frame_jobs, label_formats, done)?;
+            Ok((W::files_for_pipelines(images), counts))
         }
 
         /// Refuses a flight whose images cannot be written to standard output.

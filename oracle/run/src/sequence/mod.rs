@@ -1,5 +1,6 @@
 //! A sequence of frames: rendered, run and scored, followed, or only scored, in the same way for every world.
 
+mod labelling;
 mod processing;
 mod state_log;
 
@@ -8,6 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 use contract::{FailedStarts, Interface, Pipeline, PipelineFactory};
 use files::{AtomicFile, Failure, RunDirectory};
+use labels::{LabelCounts, LabelFormats};
 use serde::Serialize;
 
 pub use self::processing::{AnswerCount, process, process_into};
@@ -20,8 +22,9 @@ use crate::world::{
     Answers as _, Dataset as _, FrameAnswer, ImageOf, InformedPipeline, Judgement as _, Scorer as _, World,
 };
 
-/// Makes frames and writes them as a dataset; `done` is called after each frame. The frames of a run that
-/// is rendered again have the states of its log, all others the default state.
+/// Makes frames and writes them as a dataset, and then their labels, if any are requested; `done` is called
+/// after each frame and after its labels. The frames of a run that is rendered again have the states of its
+/// log, all others the default state. Returns the numbers of labels.
 ///
 /// # Errors
 /// A [`Failure`] when a file cannot be written, or the log of the run cannot be read.
@@ -29,8 +32,9 @@ pub fn render<W: World>(
     world: &W,
     directory: &RunDirectory,
     frame_jobs: &FrameJobs<W::Images>,
+    label_formats: Option<&LabelFormats>,
     done: impl Fn(),
-) -> Result<(), Failure> {
+) -> Result<Option<LabelCounts>, Failure> {
     let mut dataset = world.dataset(directory, frame_jobs)?;
     let states: StateLog<W::State> = match &frame_jobs.states_of {
         Some(run) => StateLog::read(run)?,
@@ -51,7 +55,13 @@ pub fn render<W: World>(
         },
     )?;
     dataset.finish()?;
-    Ok(directory.seal()?)
+    let Some(formats) = label_formats else {
+        directory.seal()?;
+        return Ok(None);
+    };
+    let (counts, tables) = labelling::write_labels(world, directory, frame_jobs, formats, &done)?;
+    directory.seal_with(&tables)?;
+    Ok(Some(counts))
 }
 
 /// Makes frames, processes them with the pipeline, scores its outcomes and writes everything. `go_on` is

@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use contract::Interface as _;
 use files::{Failure, FileError, RunDirectory};
+use labels::{FrameLabels, LabelSet};
 
 use super::{ImageOf, SetupOf, TelemetryOf, WorldFrames, WorldPipelines};
 use crate::frame_jobs::FrameJobs;
@@ -59,6 +60,22 @@ pub trait WorldFiles: WorldPipelines {
         Ok(())
     }
 
+    /// Returns the classes and cameras of labels, for a world that labels its images.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a world without labels.
+    fn label_set(&self) -> Result<LabelSet, Failure> {
+        Err(no_labels(Self::CODE))
+    }
+
+    /// Returns the labels of a frame, which depend on its number alone.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the frame does not exist; [`Failure::Usage`] for a world without labels.
+    fn frame_labels(&self, _frame: u64) -> Result<FrameLabels, Failure> {
+        Err(no_labels(Self::CODE))
+    }
+
     /// Opens a dataset for a pipeline, of real or rendered images.
     ///
     /// # Errors
@@ -92,6 +109,10 @@ pub trait WorldFiles: WorldPipelines {
     fn stream(&self, frame_jobs: &FrameJobs<Self::Images>) -> Result<(), Failure> {
         self.check_stream(frame_jobs)
     }
+}
+
+fn no_labels(world: &str) -> Failure {
+    Failure::Usage(format!("--labels requires a world that labels its images, which {world} does not"))
 }
 
 /// A dataset for a pipeline, before its images are read.

@@ -160,6 +160,8 @@ impl Triangles {
 
 #[cfg(test)]
 mod tests {
+    use scene::docking::Assembly;
+
     use super::*;
 
     const FILL: Layer = Layer::Fill { fill_radiance: 1.0, sky_radiance: 0.0 };
@@ -179,7 +181,7 @@ mod tests {
     }
 
     fn part(facets: Vec<Facet>, visible: bool) -> Part {
-        Part { name: "a <b>".to_owned(), facets, casts_shadow: true, visible }
+        Part { name: "a <b>".to_owned(), assembly: Assembly::Station, facets, casts_shadow: true, visible }
     }
 
     fn area_vector(triangles: &Triangles) -> Vector3<f64> {

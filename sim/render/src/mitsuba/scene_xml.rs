@@ -124,7 +124,7 @@ fn sensor(pose: &Pose, camera: &Camera, settings: &Settings, crop: &Crop) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::docking::{Facet, Lighting, Part, Sun};
+    use scene::docking::{Assembly, Facet, Lighting, Part, Sun};
 
     fn camera() -> Camera {
         Camera {
@@ -148,7 +148,13 @@ mod tests {
         let ring = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let outer = ring.map(|(x, y)| Vector3::new(x, y, 0.0)).to_vec();
         let facet = Facet { outer, holes: Vec::new(), normal: Vector3::z(), reflectance: 0.5 };
-        let part = Part { name: "plate".to_owned(), facets: vec![facet], casts_shadow: true, visible: true };
+        let part = Part {
+            name: "plate".to_owned(),
+            assembly: Assembly::Station,
+            facets: vec![facet],
+            casts_shadow: true,
+            visible: true,
+        };
         DockingScene { parts: vec![part] }
     }
 

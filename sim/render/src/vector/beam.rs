@@ -126,7 +126,7 @@ mod tests {
     use super::super::view::Lens;
     use super::*;
     use crate::vector::planes::PreparedScene;
-    use scene::docking::{DockingScene, Facet, Part};
+    use scene::docking::{Assembly, DockingScene, Facet, Part};
 
     const WINDOW: Window = Window { left: 30, right: 60, top: 20, bottom: 45 };
 
@@ -149,7 +149,13 @@ mod tests {
         let corners = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]];
         let outer = corners.map(|[x, y]| Vector3::new(x, y, 0.0)).to_vec();
         let facet = Facet { outer, holes: Vec::new(), normal: Vector3::z(), reflectance: 0.5 };
-        let part = Part { name: "ground".into(), facets: vec![facet], casts_shadow: false, visible: true };
+        let part = Part {
+            name: "ground".into(),
+            assembly: Assembly::Station,
+            facets: vec![facet],
+            casts_shadow: false,
+            visible: true,
+        };
         PreparedScene::new(&DockingScene { parts: vec![part] }).planes.remove(0).surface
     }
 

@@ -12,9 +12,11 @@ mod bounds;
 mod coverage;
 mod lamp;
 mod loops;
+mod mask;
 mod painting;
 mod planes;
 mod radiance_cache;
+mod row_spans;
 mod shadow;
 mod silhouette;
 mod view;
@@ -27,8 +29,10 @@ use truth::SimError;
 
 use self::body::Body;
 use self::coverage::Coverage;
+pub use self::mask::MaskPainter;
 use self::painting::{Canvas, Painting};
 use self::planes::PreparedScene;
+pub use self::row_spans::{RowSpans, Span};
 use self::shadow::Shadows;
 use self::view::{Lens, View};
 

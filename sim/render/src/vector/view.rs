@@ -54,6 +54,18 @@ impl Lens {
         Ok(lens)
     }
 
+    /// Creates the lens for outlines that reach beyond the picture by up to its size on each side. Where the
+    /// distortion is not one-to-one it is continued in proportion ([`Projection::pixel_position`]).
+    pub(super) fn beyond_picture(camera: &Camera) -> Result<Self, SimError> {
+        const TIMES: f64 = 4.0;
+        let mut lens = Self::new(camera)?;
+        if let Some(reach) = &mut lens.reach {
+            reach.low = reach.low.map(|offset| TIMES * offset);
+            reach.high = reach.high.map(|offset| TIMES * offset);
+        }
+        Ok(lens)
+    }
+
     /// Returns the bounds of the detector's border after removal of the distortion, with a margin.
     fn reach_of(&self, camera: &Camera) -> Reach {
         const POINTS: usize = 129;
@@ -190,6 +202,12 @@ impl<'a> View<'a> {
         let ideal = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
         let attitude = ideal * Rotation3::new(pose.phi_rad).into_inner();
         Self { lens, position: pose.position_m, attitude, camera_from_target: attitude.transpose() }
+    }
+
+    /// Creates the view of points that are given in the camera frame.
+    pub(super) fn in_camera_frame(lens: &'a Lens) -> Self {
+        let (attitude, camera_from_target) = (Matrix3::identity(), Matrix3::identity());
+        Self { lens, position: Vector3::zeros(), attitude, camera_from_target }
     }
 
     /// Returns the borders of a window of the image as planes through the camera: their outward normals,

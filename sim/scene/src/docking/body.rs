@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checks::{check_source, vector};
 use super::shapes::{block, cylinder, facet};
-use super::{Facet, Part};
+use super::{Assembly, Facet, Part};
 
 /// Maximum number of cells of a panel.
 const MAX_CELLS: usize = 64;
@@ -124,7 +124,10 @@ impl Bodies {
                 let facets = body.facets();
                 let [low_m, high_m] = extent(&facets);
                 let name = format!("{name} {i}");
-                (low_m + high_m, Part { name, facets, casts_shadow, visible: true })
+                (
+                    low_m + high_m,
+                    Part { name, assembly: Assembly::Station, facets, casts_shadow, visible: true },
+                )
             })
             .collect();
         parts.sort_by(|(a, _), (b, _)| a.total_cmp(b));

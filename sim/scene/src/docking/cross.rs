@@ -7,9 +7,9 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Part;
 use super::checks::check_source;
 use super::shapes::{cylinder, flat, wall};
+use super::{Assembly, Part};
 
 /// Number of sides of the post.
 const POST_SIDES: usize = 16;
@@ -68,8 +68,13 @@ impl CrossTable {
         );
         // The ends of the post are hidden by the plate and the bars.
         let post = post.into_iter().take(POST_SIDES).collect();
-        let part =
-            |name: &str, facets| Part { name: name.to_owned(), facets, casts_shadow: true, visible: true };
+        let part = |name: &str, facets| Part {
+            name: name.to_owned(),
+            assembly: Assembly::Target,
+            facets,
+            casts_shadow: true,
+            visible: true,
+        };
         // Back to front.
         [
             part("post", post),

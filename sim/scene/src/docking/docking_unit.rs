@@ -8,9 +8,9 @@ use contract::docking::Outline;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Part;
 use super::checks::check_source;
 use super::shapes::{COARSE_SAGITTA_M, Circle, FINE_SAGITTA_M, block, flat, hollow, wall};
+use super::{Assembly, Part};
 
 /// Number of sides of walls and cone: a polygon of 64 sides deviates from a circle of radius 0.66 m by 0.5
 /// mm, visible only from the side.
@@ -116,6 +116,7 @@ impl DockingUnitTable {
         );
         let part = |name: &str, facets, casts_shadow| Part {
             name: name.to_owned(),
+            assembly: Assembly::DockingUnit,
             facets,
             casts_shadow,
             visible: true,

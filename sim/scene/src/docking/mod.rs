@@ -27,6 +27,6 @@ pub use cross::CrossTable;
 pub use docking_unit::{BlockRing, DockingUnitTable};
 pub use lighting::{Floodlight, Lighting, Sun};
 pub use plate::{MarkQuad, MarkRing, MarksTable, PlateTable};
-pub use solid::{DockingScene, Facet, Part};
+pub use solid::{Assembly, DockingScene, Facet, Part};
 pub use station::StationTable;
 pub use target_file::{ContactTable, TargetFile};

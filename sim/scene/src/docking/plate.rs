@@ -7,9 +7,9 @@ use contract::bounds::require;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Part;
 use super::checks::check_source;
 use super::shapes::{COARSE_SAGITTA_M, Circle, FINE_SAGITTA_M, flat};
+use super::{Assembly, Part};
 
 /// Maximum number of marks on a plate: each mark is a hole in the plate, is compared with every other mark,
 /// and has a bit in the truth of a field.
@@ -91,7 +91,13 @@ impl PlateTable {
         let mut facets = vec![flat(&outline, &holes, 0.0, self.reflectance)];
         let bright = marks.map_or(0.0, |marks| marks.reflectance);
         facets.extend(quads.iter().map(|quad| flat(quad, &[], 0.0, bright)));
-        Part { name: "plate".to_owned(), facets, casts_shadow: true, visible: true }
+        Part {
+            name: "plate".to_owned(),
+            assembly: Assembly::Target,
+            facets,
+            casts_shadow: true,
+            visible: true,
+        }
     }
 }
 

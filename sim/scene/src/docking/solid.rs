@@ -15,11 +15,24 @@ pub struct Facet {
     pub reflectance: f64,
 }
 
+/// Assembly that a part of the scene belongs to: an object of its own in labels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Assembly {
+    /// Docking target: plate with marks, and stand-off cross.
+    Target,
+    /// Docking unit.
+    DockingUnit,
+    /// Everything else: the station's end with its fittings, and the structure behind it.
+    Station,
+}
+
 /// Body or surface: facets that do not cover each other, from any viewpoint in front of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     /// Name, for messages and for Mitsuba's shapes.
     pub name: String,
+    /// Assembly that the part belongs to.
+    pub assembly: Assembly,
     /// The facets; those that face away from a camera are invisible to it.
     pub facets: Vec<Facet>,
     /// True if the part casts shadows on parts behind it; every facet does so, also those that face away.

@@ -6,11 +6,11 @@ use contract::docking::Outline;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Part;
 use super::blankets::BlanketsTable;
 use super::checks::check_source;
 use super::docking_unit::DockingUnitTable;
 use super::shapes::{COARSE_SAGITTA_M, Circle, flat, wall};
+use super::{Assembly, Part};
 
 /// Number of sides of the wall.
 const WALL_SIDES: usize = 48;
@@ -78,6 +78,7 @@ impl StationTable {
         let wall = wall(&outline.polygon(WALL_SIDES), -self.back_m(), -self.depth_m, self.rim_reflectance);
         let part = |name: &str, facets, casts_shadow| Part {
             name: name.to_owned(),
+            assembly: Assembly::Station,
             facets,
             casts_shadow,
             visible: true,

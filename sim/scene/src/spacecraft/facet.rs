@@ -64,12 +64,22 @@ impl Facet {
 
     /// Returns true if the ray from `eye` along `ray` meets the facet from either side.
     pub(super) fn is_hit_by(&self, eye: &Vector3<f64>, ray: &Vector3<f64>) -> bool {
+        self.distance_along(eye, ray).is_some()
+    }
+
+    /// Returns the distance from `eye` along the unit vector `ray` at which the ray meets the facet from
+    /// either side, m; `None` if it does not.
+    pub(super) fn distance_along(&self, eye: &Vector3<f64>, ray: &Vector3<f64>) -> Option<f64> {
         let (towards, along) = (self.centre - eye, ray.dot(&self.normal));
         let reach = towards.dot(&self.normal) / along;
         let off = ray * reach - towards;
         let at = Vector2::new(off.dot(&self.right), off.dot(&self.up));
         // A ray in the facet's plane gives NaN and meets nothing.
-        reach > 0.0 && at.x.abs() <= self.half_width && at.y.abs() <= self.half_height && self.has_within(&at)
+        let is_met = reach > 0.0
+            && at.x.abs() <= self.half_width
+            && at.y.abs() <= self.half_height
+            && self.has_within(&at);
+        is_met.then_some(reach)
     }
 
     /// Returns true if a point of the enclosing rectangle is in the facet or on its border.

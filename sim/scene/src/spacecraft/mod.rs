@@ -6,6 +6,7 @@ mod mesh;
 mod outline;
 mod overlaps;
 mod plate;
+mod shape;
 mod sphere;
 mod surface;
 mod visible;
@@ -15,6 +16,7 @@ mod body_tests;
 
 pub use mesh::{MaterialConfig, MeshConfig};
 pub use plate::{BoxConfig, PlateConfig};
+pub use shape::{NamedPoint, TargetShape};
 pub use surface::SurfaceConfig;
 
 use std::path::Path;

@@ -88,6 +88,16 @@ pub(super) struct Brick {
 }
 
 impl Brick {
+    /// Returns the eight corners, body frame, m: bit 0 of the index is set at the larger x, bit 1 at the
+    /// larger y, bit 2 at the larger z.
+    pub(super) fn corners_m(&self) -> [Vector3<f64>; 8] {
+        let side = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
+        std::array::from_fn(|i| {
+            let signs = Vector3::new(side(i & 1), side(i & 2), side(i & 4));
+            self.centre + self.half_size.component_mul(&signs)
+        })
+    }
+
     /// Returns true if a point of the body frame, m, is inside the box or on its surface.
     pub(super) fn contains(&self, point: &Vector3<f64>) -> bool {
         (self.half_size - (point - self.centre).abs()).min() >= 0.0

@@ -6,7 +6,9 @@
 use super::hex::hex;
 use super::{CatalogStar, radial_velocity};
 
-static BYTES: &[u8] = include_bytes!("../../../data/hipparcos2.bin");
+/// The embedded catalogue: a header of 48 bytes and 29 bytes for each of 117,955 stars, little-endian, as
+/// `sim/data/make_hipparcos2.py` describes.
+pub const HIPPARCOS_BYTES: &[u8] = include_bytes!("../../../data/hipparcos2.bin");
 
 const HEADER: usize = 48;
 const SHA256: std::ops::Range<usize> = 16..48;
@@ -16,13 +18,13 @@ const UNKNOWN: i64 = -32768;
 
 /// SHA-256 of hip2.dat, in hexadecimal.
 pub(super) fn sha256() -> String {
-    hex(&BYTES[SHA256])
+    hex(&HIPPARCOS_BYTES[SHA256])
 }
 
 /// All stars, in ascending order of HIP. The bytes are part of this crate, and a test reads every one of
 /// them.
 pub(super) fn stars() -> Vec<CatalogStar> {
-    let (records, _) = BYTES[HEADER..].as_chunks::<RECORD>();
+    let (records, _) = HIPPARCOS_BYTES[HEADER..].as_chunks::<RECORD>();
     records.iter().map(star).collect()
 }
 
@@ -69,10 +71,10 @@ mod tests {
 
     #[test]
     fn the_header_agrees_with_the_decoder() {
-        assert_eq!(&BYTES[..8], b"BSHIP2\0\0");
-        assert_eq!(BYTES[8..12], 1_u32.to_le_bytes());
-        assert_eq!(BYTES[12..16], 117_955_u32.to_le_bytes());
-        assert_eq!(BYTES.len(), HEADER + 117_955 * RECORD);
+        assert_eq!(&HIPPARCOS_BYTES[..8], b"BSHIP2\0\0");
+        assert_eq!(HIPPARCOS_BYTES[8..12], 1_u32.to_le_bytes());
+        assert_eq!(HIPPARCOS_BYTES[12..16], 117_955_u32.to_le_bytes());
+        assert_eq!(HIPPARCOS_BYTES.len(), HEADER + 117_955 * RECORD);
         assert_eq!(sha256(), "c45d6325bd59dd691764af173a9702e543804a2b6c1d9fea59210e8332e50a4a");
     }
 

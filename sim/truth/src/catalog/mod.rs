@@ -18,4 +18,5 @@ pub use cone::ConeIndex;
 pub use config::{CatalogConfig, CatalogSource, ConeConfig};
 pub use contents::Exclusion;
 pub use error::CatalogError;
+pub use hipparcos::HIPPARCOS_BYTES;
 pub use star::CatalogStar;

@@ -1,9 +1,11 @@
 //! Section of the demo's page on docking.
 
 use docking::scoring::DockingGroup;
+use docking_views::report::findings;
 use files::Failure;
 use report::charts::chart::{BESIDE, Chart, MEASURED, axes, bars, rounded};
 use report::page::data_table::DataTable;
+use report::verdict::Finding;
 use report::{Link, Section, pictures_of_run};
 
 use super::{DockingResults, ESTIMATORS};
@@ -21,6 +23,13 @@ impl DockingResults {
             ("Docking", format!("{} fields", self.score.frames)),
             ("Distance", format!("{farthest:.1} to {nearest:.1} m")),
         ]
+    }
+
+    /// Returns the findings on the run.
+    pub(in crate::command::demo) fn findings(&self) -> Vec<Finding> {
+        let of_part =
+            |finding: Finding| Finding { subject: format!("docking, {}", finding.subject), ..finding };
+        findings(&self.score).into_iter().map(of_part).collect()
     }
 
     /// Returns the section: errors of both estimators, fields, link.

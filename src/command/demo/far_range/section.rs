@@ -1,11 +1,13 @@
 //! Section of the demo's page on the far range.
 
 use far_range::scoring::names;
+use far_range_views::report::findings;
 use files::Failure;
 use report::charts::chart::{
     BESIDE, Chart, MEASURED, REFERENCE, TRUTH, WRONG, axes, bars, rounded, stacked_bars,
 };
 use report::page::data_table::DataTable;
+use report::verdict::Finding;
 use report::{Link, Section, pictures_of_run};
 
 use super::{FarRangeResults, MethodResult, direction_rms_arcsec};
@@ -22,6 +24,13 @@ impl FarRangeResults {
             ("Far range", format!("{} images", self.best.score.frames)),
             ("Distance", format!("{farthest:.0} to {nearest:.1} km")),
         ]
+    }
+
+    /// Returns the findings on the best method.
+    pub(in crate::command::demo) fn findings(&self) -> Vec<Finding> {
+        let of_part =
+            |finding: Finding| Finding { subject: format!("far range, {}", finding.subject), ..finding };
+        findings(&self.best.score).into_iter().map(of_part).collect()
     }
 
     /// Returns the section: outcomes and errors of both methods, frames, links.

@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 use std::path::Path;
 
+use ::labels::{FrameLabels, LabelSet};
 use contract::docking::Digitiser;
 use files::{Failure, RunDirectory};
 use run::frame_jobs::{FrameJobs, process_in_order};
@@ -10,6 +11,7 @@ use run::world::{OpenDataset, WorldFiles, WorldFrames as _, WorldScenario as _};
 use sim::docking::DockingWorkspace;
 
 use super::dataset::{FieldDataset, FieldImages};
+use super::labels;
 use super::mission::DockingMission;
 use crate::rows::{FieldRow, SetupFile, read_field_telemetry};
 use crate::video::{FieldSource, SequenceOptions, Y4mWriter};
@@ -44,6 +46,14 @@ impl WorldFiles for DockingMission {
         frame_jobs: &FrameJobs<FieldImages>,
     ) -> Result<FieldDataset<'a>, Failure> {
         FieldDataset::create(&self.run_file, &self.setup, directory, frame_jobs.images)
+    }
+
+    fn label_set(&self) -> Result<LabelSet, Failure> {
+        Ok(labels::label_set(self))
+    }
+
+    fn frame_labels(&self, field: u64) -> Result<FrameLabels, Failure> {
+        labels::field_labels(self, field)
     }
 
     fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure> {

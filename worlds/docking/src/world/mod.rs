@@ -7,6 +7,7 @@ pub(crate) mod answers;
 mod dataset;
 mod files;
 mod frames;
+mod labels;
 mod mission;
 mod picture;
 mod pipelines;

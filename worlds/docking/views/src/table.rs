@@ -5,7 +5,7 @@ use contract::docking::FailedCheck;
 use docking::scoring::{DockingGroup, DockingScore, GrossError, MissCause, names};
 use indexmap::IndexMap;
 use score::{Figure, warm_up_note};
-use view::terminal::{finish, percent, plain_table, share};
+use view::terminal::{finish, percent, plain_table, share, wrapped};
 
 /// Returns the score of a docking run as text: single fields, estimates at the end of portions, misses and
 /// wrong results by cause. Ends with a line feed.
@@ -13,21 +13,24 @@ pub fn docking_table(score: &DockingScore, styled: bool) -> String {
     let rows = rows(score);
     let mut text = if score.renderer == "mitsuba" { "Scene rendered by Mitsuba.\n" } else { "" }.to_owned();
     text.push_str(&fields(&rows, styled));
-    text.push_str(
-        "Pose: all six parameters reported and none grossly wrong, percent (95 % interval) of the fields with a resolved target or\n\
-         with a reported pose. Of clear: percent of the fields with a resolved target wholly in the image. Range only: measured from\n\
-         the station's outline, percent of the fields (RMS error). Errors: RMS over the poses, best estimator / paper's formulas;\n\
-         across: d1 and d2 together. In 3σ: errors within three standard deviations. NEES: mean 1 if σ is correct. Doubtful: failed\n\
-         the pipeline's own tests.\n",
-    );
+    text.push_str(&wrapped(
+        "Pose: all six parameters reported and none grossly wrong, percent (95 % interval) of the fields with a \
+         resolved target or with a reported pose. Of clear: percent of the fields with a resolved target wholly \
+         in the image. Range only: measured from the station's outline, percent of the fields (RMS error). \
+         Errors: RMS over the poses, best estimator / paper's formulas; across: d1 and d2 together. In 3σ: \
+         errors within three standard deviations. NEES: mean 1 if σ is correct. Doubtful: failed the pipeline's \
+         own tests.\n",
+    ));
     if score.portions > 0 {
         text.push('\n');
         text.push_str(&portions(&rows, styled));
-        text.push_str("RMS errors at the end of portions; in 3σ and NEES from the second report on.\n");
+        text.push_str(&wrapped(
+            "RMS errors at the end of portions; in 3σ and NEES from the second report on.\n",
+        ));
     }
     text.push_str(&latency(score));
     if let Some(note) = warm_up_note(score.warm_up_frames, "fields") {
-        text.push_str(&format!("{note}\n"));
+        text.push_str(&wrapped(&format!("{note}\n")));
     }
     let misses = |row: &Row<'_>| row.misses.clone();
     text.push('\n');
@@ -206,7 +209,7 @@ fn latency(score: &DockingScore) -> String {
     let speed = value(names::SPEED_SCORE_MEAN)
         .map(|score| format!("Mean SPEED pose score of the poses: {score:.4}."));
     let lines: Vec<String> = [latency, portion, renewed, speed].into_iter().flatten().collect();
-    if lines.is_empty() { String::new() } else { format!("\n{}\n", lines.join("\n")) }
+    if lines.is_empty() { String::new() } else { wrapped(&format!("\n{}\n", lines.join("\n"))) }
 }
 
 /// Counts by cause, one column each, with their fraction of the row's fields; a single line if there are
@@ -317,8 +320,10 @@ mod tests {
     #[test]
     fn a_row_a_group_and_the_paper_beside_the_best() {
         let text = docking_table(&score(&[("50–30 m, 15.0°", 80, 100), ("30–20 m, 15.0°", 100, 100)]), false);
-        let line = text.lines().find(|line| line.starts_with("30–20 m")).unwrap();
-        assert!(line.contains("100 (") && line.contains(" mm / "), "{line}");
+        // A group has a line in each of the tables below each other.
+        let lines: String = text.lines().filter(|line| line.starts_with("30–20 m")).collect();
+        assert!(lines.contains("100 (") && lines.contains(" mm / "), "{lines}");
+        assert!(text.lines().all(|line| line.chars().count() <= view::terminal::WIDTH), "{text}");
         assert!(text.lines().any(|line| line.starts_with("all")), "{text}");
         assert!(text.contains("too far") && text.ends_with("Wrong measurements by error: none\n"), "{text}");
     }

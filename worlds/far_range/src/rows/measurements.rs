@@ -25,8 +25,8 @@ table! {
         status: String,
         /// centre of the target's image, on the detector (−0.5 to columns − 0.5, rows − 0.5)
         position: Option<PixelPoint> = POSITION,
-        /// line of sight, unit vector within 1e-5; all three or none. Without it, RA and Dec have no figures
-        /// unless an attitude is supplied for the score
+        /// line of sight, unit vector within 1e-5; all three or none. Without it, the direction has no
+        /// figures unless an attitude is supplied for the score
         line_of_sight: Option<Direction<Icrs>> = optional(LINE_OF_SIGHT),
         /// attitude of the camera, norm 1 within 1e-5; not scored
         camera_from_icrs: Option<Rotation<CameraFrame, Icrs>> =

@@ -324,10 +324,10 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
     let stars = |frame: &FrameVerdict| frame.n_stars.map(f64::from);
     let mut list = vec![
         of_all(names::HIT_RATE, "hit rate", |frame| frame.verdict.is_detected()),
-        within(names::RA_WITHIN_1PX, "RA within 1 px", ra, ra_1px),
-        within(names::RA_WITHIN_2PX, "RA within 2 px", ra, ra_2px),
-        within(names::DEC_WITHIN_1PX, "Dec within 1 px", dec, dec_1px),
-        within(names::DEC_WITHIN_2PX, "Dec within 2 px", dec, dec_2px),
+        within(names::RA_WITHIN_1PX, "within 1 px across columns", ra, ra_1px),
+        within(names::RA_WITHIN_2PX, "within 2 px across columns", ra, ra_2px),
+        within(names::DEC_WITHIN_1PX, "within 1 px across rows", dec, dec_1px),
+        within(names::DEC_WITHIN_2PX, "within 2 px across rows", dec, dec_2px),
         of_all(names::CORRECT_RATE, "correct rate", |frame| matches!(frame.verdict, Verdict::Correct { .. })),
         of_all(names::WRONG_RATE, "wrong rate", |frame| matches!(frame.verdict, Verdict::Wrong { .. }))
             .with_direction(Better::Less),
@@ -337,12 +337,12 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
         .with_direction(Better::Less),
         of_all(names::MISS_RATE, "miss rate", |frame| matches!(frame.verdict, Verdict::Missed { .. }))
             .with_direction(Better::Less),
-        deg(names::RA_RMS_DEG, "RA RMS", Reduction::Rms, ra),
-        deg(names::DEC_RMS_DEG, "Dec RMS", Reduction::Rms, dec),
-        deg(names::RA_MEAN_DEG, "RA mean", Reduction::Mean, ra),
-        deg(names::DEC_MEAN_DEG, "Dec mean", Reduction::Mean, dec),
-        deg(names::RA_MEDIAN_DEG, "RA median", Reduction::Median, ra),
-        deg(names::DEC_MEDIAN_DEG, "Dec median", Reduction::Median, dec),
+        deg(names::RA_RMS_DEG, "RMS across columns", Reduction::Rms, ra),
+        deg(names::DEC_RMS_DEG, "RMS across rows", Reduction::Rms, dec),
+        deg(names::RA_MEAN_DEG, "mean across columns", Reduction::Mean, ra),
+        deg(names::DEC_MEAN_DEG, "mean across rows", Reduction::Mean, dec),
+        deg(names::RA_MEDIAN_DEG, "median across columns", Reduction::Median, ra),
+        deg(names::DEC_MEDIAN_DEG, "median across rows", Reduction::Median, dec),
         px(names::CENTROID_X_RMS_PX, "centroid x RMS", Reduction::Rms, x_px),
         px(names::CENTROID_Y_RMS_PX, "centroid y RMS", Reduction::Rms, y_px),
         px(names::CENTROID_X_MEAN_PX, "centroid x mean", Reduction::Mean, x_px),

@@ -18,29 +18,29 @@ pub mod names {
     pub const FALSE_ALARM_RATE: &str = "false_alarm_rate";
     /// Frames whose measurement states a line of sight, as a fraction of the detected frames.
     pub const LINE_OF_SIGHT_RATE: &str = score::LINE_OF_SIGHT_RATE;
-    /// Frames with an |RA error| below the limit of one pixel, as a fraction of the detected frames with a
-    /// line of sight.
+    /// Frames with an |error across columns| below the limit of one pixel, as a fraction of the detected
+    /// frames with a line of sight.
     pub const RA_WITHIN_1PX: &str = "ra_within_1px";
-    /// Frames with an |RA error| below the limit of two pixels, as a fraction of the detected frames with a
-    /// line of sight.
+    /// Frames with an |error across columns| below the limit of two pixels, as a fraction of the detected
+    /// frames with a line of sight.
     pub const RA_WITHIN_2PX: &str = "ra_within_2px";
-    /// Frames with a |Dec error| below the limit of one pixel, as a fraction of the detected frames with a
-    /// line of sight.
+    /// Frames with an |error across rows| below the limit of one pixel, as a fraction of the detected frames
+    /// with a line of sight.
     pub const DEC_WITHIN_1PX: &str = "dec_within_1px";
-    /// Frames with a |Dec error| below the limit of two pixels, as a fraction of the detected frames with a
-    /// line of sight.
+    /// Frames with an |error across rows| below the limit of two pixels, as a fraction of the detected frames
+    /// with a line of sight.
     pub const DEC_WITHIN_2PX: &str = "dec_within_2px";
-    /// Root mean square of the RA error over correct measurements with a line of sight, degrees.
+    /// Root mean square of the error across columns over correct measurements with a line of sight, degrees.
     pub const RA_RMS_DEG: &str = "ra_rms_deg";
-    /// Root mean square of the Dec error over correct measurements with a line of sight, degrees.
+    /// Root mean square of the error across rows over correct measurements with a line of sight, degrees.
     pub const DEC_RMS_DEG: &str = "dec_rms_deg";
-    /// Mean RA error (bias) over correct measurements with a line of sight, degrees.
+    /// Mean error across columns (bias) over correct measurements with a line of sight, degrees.
     pub const RA_MEAN_DEG: &str = "ra_mean_deg";
-    /// Mean Dec error (bias) over correct measurements with a line of sight, degrees.
+    /// Mean error across rows (bias) over correct measurements with a line of sight, degrees.
     pub const DEC_MEAN_DEG: &str = "dec_mean_deg";
-    /// Median RA error over correct measurements with a line of sight, degrees.
+    /// Median error across columns over correct measurements with a line of sight, degrees.
     pub const RA_MEDIAN_DEG: &str = "ra_median_deg";
-    /// Median Dec error over correct measurements with a line of sight, degrees.
+    /// Median error across rows over correct measurements with a line of sight, degrees.
     pub const DEC_MEDIAN_DEG: &str = "dec_median_deg";
     /// Root mean square of the centroid error across columns over correct measurements, px.
     pub const CENTROID_X_RMS_PX: &str = "centroid_x_rms_px";

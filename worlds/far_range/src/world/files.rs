@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 use std::path::Path;
 
+use ::labels::{FrameLabels, LabelSet};
 use contract::Setup;
 use files::{ExpectedImage, Failure, ImageFormat, RunDirectory, write_expected};
 use run::frame_jobs::{Expectation, FrameJobs};
@@ -10,6 +11,7 @@ use run::world::{OpenDataset, WorldFiles};
 use sim::catalog::Catalog;
 
 use super::dataset::{FrameDataset, save_image};
+use super::labels;
 use super::mission::FarRangeMission;
 use super::star_list::star_list;
 use crate::rows::{Dataset, StarRow, TelemetryRow, read_stars, read_telemetry};
@@ -60,6 +62,14 @@ impl WorldFiles for FarRangeMission {
             write_expected(&path, &ExpectedImage { columns, rows, electrons })?;
         }
         Ok(())
+    }
+
+    fn label_set(&self) -> Result<LabelSet, Failure> {
+        Ok(labels::label_set(self))
+    }
+
+    fn frame_labels(&self, frame: u64) -> Result<FrameLabels, Failure> {
+        labels::frame_labels(self, frame)
     }
 
     fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure> {

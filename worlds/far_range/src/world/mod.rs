@@ -5,6 +5,7 @@ mod dataset;
 mod files;
 mod frames;
 mod inject;
+mod labels;
 mod mission;
 mod pipelines;
 mod scenario;

@@ -24,6 +24,7 @@ mod table;
 use far_range::FarRangeMission;
 use far_range::scoring::FarRangeJudgement;
 use run::{AnyJudgement, ErasedWorld, WorldScenario as _};
+use view::terminal::terminal_width;
 use view::{CloseUp, WorldViews};
 
 pub use self::table::{
@@ -55,6 +56,6 @@ pub fn register() {
 fn printed_table(scored: &dyn AnyJudgement, styled: bool) -> Option<String> {
     let scored = scored.typed::<FarRangeJudgement>()?;
     let best_mode = scored.best_mode.as_deref();
-    let style = TableStyle { styled, reference: scored.published, best_mode, ..TableStyle::default() };
+    let style = TableStyle { styled, width: terminal_width(styled), reference: scored.published, best_mode };
     Some(far_range_table(&scored.score, style))
 }

@@ -1,5 +1,6 @@
 //! Errors of single fields against the truth.
 
+use ::report::charts::axis_limits::{limits, note_outside, outside};
 use ::report::charts::chart::{Chart, MEASURED, Panel, WRONG, cloud, crosses, points, rounded, stacked};
 use ::report::charts::plotly::Axis;
 use ::report::charts::thinning::{bins, sampled, summary, thinning_caption};
@@ -7,7 +8,6 @@ use ::report::page::Section;
 use ::report::page::data_table::DataTable;
 use contract::docking::DockingOutcome;
 
-use super::limits::{limits, note_outside, outside};
 use super::run::DockingRun;
 
 /// Number of rows of the table behind the chart.
@@ -20,7 +20,7 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
         .filter(|&row| run.outcomes[row].as_ref().is_some_and(|outcome| outcome.measurement().is_some()))
         .collect();
     if rows.is_empty() {
-        return section.text("No field has a measured pose.");
+        return section.absent("No field has a measured pose.");
     }
     let error = |row: usize, i: usize| {
         let measured = run.outcomes[row].as_ref().and_then(DockingOutcome::measurement);
@@ -41,7 +41,8 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
         let of = |rows: &[usize]| -> (Vec<f64>, Vec<f64>) {
             rows.iter().map(|&row| (rounded(run.truths[row].time_s, 3), rounded(error(row, i), 5))).unzip()
         };
-        let range = limits(right.iter().map(|&row| error(row, i)));
+        let scaled = if right.is_empty() { &wrong } else { &right };
+        let range = limits(scaled.iter().map(|&row| error(row, i)));
         beyond += outside(range, rows.iter().map(|&row| error(row, i)));
         let mut traces = cloud("correct", &right, Some(&|row| error(row, i)), MEASURED, |rows| {
             let (x, y) = of(rows);
@@ -69,7 +70,7 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
     section.chart(Chart::new(
         format!(
             "Measured minus true. {} {}",
-            note_outside(beyond, 6 * rows.len()),
+            note_outside(beyond, 6 * rows.len(), "errors"),
             thinning_caption(&[(right.len(), "correct fields"), (wrong.len(), "wrong ones")], true)
         ),
         900,

@@ -1,11 +1,12 @@
-//! Report of a docking run: the figures of the docking paper, errors against the truth, pictures of fields.
+//! Report of a docking run: verdict, worst fields, figures by range, motion, errors against the truth.
 
 mod colours;
 mod field_detail;
 mod field_errors;
-mod limits;
 mod motion;
 mod run;
+mod verdict;
+mod worst_fields;
 
 use std::path::Path;
 
@@ -13,6 +14,7 @@ use indexmap::IndexMap;
 
 pub use field_detail::FieldDetail;
 pub use run::{DockingRun, PortionReport};
+pub use verdict::findings;
 
 use ::report::WorldReport;
 use ::report::charts::chart::{BESIDE, Chart, MEASURED, bars, rounded, stacked_bars};
@@ -22,9 +24,11 @@ use ::report::figures::{cell, figure_table, least_to_most, percent_cell, shown_p
 use ::report::page::data_table::DataTable;
 use ::report::page::picture::RenderedPictures;
 use ::report::page::{Page, Section};
+use ::report::verdict::Verdict;
+use ::report::verdict::rules::honesty_words;
 use ::run::{AnyJudgement, WorldScenario as _};
 use docking::DockingMission;
-use docking::scoring::DockingGroup;
+use docking::scoring::{DockingGroup, DockingScore};
 use files::{Checksums, Failure};
 use score::{Figure, UnitVerdict, warm_up_note};
 
@@ -59,10 +63,9 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldDetail) -> Result<Page, Failu
     let (first, last) = (&run.truths[0], &run.truths[run.truths.len() - 1]);
     let scenario = &run.run_file.scenario;
     let figure = |name: &str| run.score.figures.get(name).map_or_else(String::new, shown_percent);
-    let mut sections = vec![figures_section(run)];
+    let mut sections = vec![worst_fields::fields(run, sheet)?, figures_section(run), verdicts(run)];
     sections.extend(motion::sections(run));
     sections.push(field_errors::field_errors(run));
-    sections.push(verdicts(run));
     sections.push(fields(run, sheet)?);
     Ok(Page {
         title: scenario.title.clone(),
@@ -81,6 +84,7 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldDetail) -> Result<Page, Failu
         .chain(warm_up_note(run.score.warm_up_frames, "fields"))
         .collect(),
         warnings: Vec::new(),
+        verdict: Verdict::new(findings(&run.score)),
         facts: vec![
             ("Scenario", run.run_file.name.clone()),
             ("Seed", scenario.seed.to_string()),
@@ -92,6 +96,7 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldDetail) -> Result<Page, Failu
             ("Boresight", run.run_file.version.clone()),
         ],
         sections,
+        names_paper: false,
         data: serde_json::json!({ "score": run.score }),
     })
 }
@@ -121,11 +126,6 @@ fn figures_section(run: &DockingRun) -> Section {
         "RMS errors of measured fields and of the reported range rate; doubtful and grossly wrong poses in \
          percent of the fields, with 95 % intervals; by true range and lens.",
     );
-    let mut honesty = DataTable::new(["range", "within 3 σ", "NEES", "motion within 3 σ", "motion NEES"])
-        .caption(
-            "Consistency of σ: percent of errors within 3 σ, with 95 % intervals (99.73 for normal errors), \
-             and NEES (mean 1 if σ is correct).",
-        );
     for (name, _, _, figures) in groups() {
         let number = |key: &str| cell(figures.get(key).and_then(|figure| figure.value));
         let percent = |key: &str| percent_cell(figures.get(key));
@@ -133,9 +133,6 @@ fn figures_section(run: &DockingRun) -> Section {
         cells.extend(rms.map(number));
         cells.extend(["doubtful_rate", "wrong_rate"].map(percent));
         accuracy.push(cells);
-        let of_fields = [percent("within_3_sigma"), number("nees_mean")];
-        let of_motion = [percent("motion_within_3_sigma"), number("motion_nees_mean")];
-        honesty.push([name.to_owned()].into_iter().chain(of_fields).chain(of_motion).collect::<Vec<_>>());
     }
     let mut answers =
         DataTable::new(["range", "fields", "reports", "success", "of clear ones", "range only", "missed"])
@@ -148,9 +145,38 @@ fn figures_section(run: &DockingRun) -> Section {
     }
     Section::new("figures", "Figures")
         .table(accuracy)
-        .table(honesty)
+        .table(honesty(score))
         .table(answers)
         .folded("All figures", figure_table(&score.figures))
+}
+
+/// Returns the table of the consistency of σ by range and lens, in numbers and in words.
+fn honesty(score: &DockingScore) -> DataTable {
+    let head = [
+        "range",
+        "within 3 σ",
+        "NEES",
+        "σ of fields is",
+        "motion within 3 σ",
+        "motion NEES",
+        "σ of the motion is",
+    ];
+    let mut table = DataTable::new(head).narrow().caption(
+        "Consistency of σ: percent of errors within 3 σ, with 95 % intervals (99.73 for normal errors), and NEES \
+         (mean 1 if σ is correct).",
+    );
+    let groups = score.groups.iter().map(|(name, group)| (name.as_str(), &group.figures));
+    for (name, figures) in groups.chain([("all", &score.figures)]) {
+        let mut cells = vec![name.to_owned()];
+        for (within, nees) in [("within_3_sigma", "nees_mean"), ("motion_within_3_sigma", "motion_nees_mean")]
+        {
+            let value = figures.get(nees).and_then(|figure| figure.value);
+            let words = value.map_or_else(|| "–".to_owned(), honesty_words);
+            cells.extend([percent_cell(figures.get(within)), cell(value), words]);
+        }
+        table.push(cells);
+    }
+    table
 }
 
 /// Returns the chart of the verdicts on the fields, by range.
@@ -200,7 +226,11 @@ fn verdicts(run: &DockingRun) -> Section {
     for (cause, all) in &score.misses {
         add("missed", cause, counted(&|group| group.misses.get(cause).copied().unwrap_or(0)), *all);
     }
-    Section::new("verdicts", "Outcomes of the fields").chart(Chart::new(
+    let section = Section::new("verdicts", "Outcomes of the fields");
+    if traces.is_empty() {
+        return section.absent("The run has no field outside its warm-up.");
+    }
+    section.chart(Chart::new(
         "Percent of the fields at each range and lens.",
         420,
         data,
@@ -209,8 +239,7 @@ fn verdicts(run: &DockingRun) -> Section {
     ))
 }
 
-/// Returns pictures of fields: successes of every range, and one of every kind of miss and of wrong
-/// measurement.
+/// Returns pictures of typical fields: successes of every range, and a field with a range only.
 fn fields(run: &DockingRun, sheet: &FieldDetail) -> Result<Section, Failure> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut evenly = |count: usize, is: &dyn Fn(&UnitVerdict) -> bool| {
@@ -224,25 +253,27 @@ fn fields(run: &DockingRun, sheet: &FieldDetail) -> Result<Section, Failure> {
         evenly(successes, &|unit| unit.verdict == "success" && unit.group == *group);
     }
     evenly(1, &|unit| unit.verdict == "range_only");
-    for (verdict, causes) in [("wrong", &run.score.wrong), ("missed", &run.score.misses)] {
-        for cause in causes.keys() {
-            evenly(1, &|unit| unit.verdict == verdict && unit.cause.as_deref() == Some(cause));
-        }
+    let section = Section::new("fields", "Typical fields of every range");
+    if let Some(reason) = sheet.reason() {
+        return Ok(section.absent(format!("The fields cannot be rendered again: {reason}")));
     }
-    let mut section = Section::new("fields", "Fields").text(
-        "One success or more for each range, then the middle field of each kind of wrong measurement and of \
-         miss, rendered again from run.toml. Orange: recognised features (cross, circle of the marks, used \
-         marks); yellow: outlines of station and docking unit; violet: rejected or missing marks; green: \
-         true centres of cross and disk.",
+    if chosen.is_empty() {
+        return Ok(section.absent("No field has a measured pose or range."));
+    }
+    let text = format!(
+        "Measured fields, rendered again from `run.toml`. {}{}",
+        worst_fields::KEY,
+        renderer_note(run)
     );
-    if run.score.renderer != "fast" {
-        section = section.text(format!(
-            "The run used {}; these pictures are from the fast renderer: the same scene with other shading.",
-            run.score.renderer
-        ));
+    Ok(section.text(text).pictures(sheet.pictures(run, &chosen)?))
+}
+
+/// Returns the sentence on the renderer of the pictures, with a space before it; empty if it is the run's.
+fn renderer_note(run: &DockingRun) -> String {
+    match run.score.renderer.as_str() {
+        "fast" => String::new(),
+        other => format!(
+            " The run used {other}; these pictures are from the fast renderer: the same scene with other shading."
+        ),
     }
-    Ok(match sheet.reason() {
-        Some(reason) => section.text(format!("No pictures: {reason}")),
-        None => section.pictures(sheet.pictures(run, &chosen)?),
-    })
 }

@@ -1,5 +1,6 @@
 //! Reported motion at the end of portions: its parameters and their accuracy.
 
+use ::report::charts::axis_limits::{limits, note_outside, outside};
 use ::report::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, band, cloud, line, points, rounded, stacked,
 };
@@ -11,7 +12,6 @@ use contract::docking::{Motion, Pose};
 use docking::scoring::ApproachParameters;
 use nalgebra::Vector3;
 
-use super::limits::{limits, note_outside, outside};
 use super::run::{DockingRun, PortionReport};
 
 /// Number of rows of the tables behind the charts.
@@ -20,7 +20,7 @@ const TABLE_BINS: usize = 60;
 const SAMPLED: &str = "A regular selection of the reports; motion.csv has all of them.";
 /// Fill of a band of three standard deviations.
 const BAND: &str = "rgba(47,127,193,0.2)";
-/// The seven parameters of the paper (3.2): name, unit, number of decimals.
+/// The seven parameters: name, unit, number of decimals.
 const PARAMETERS: [(&str, &str, i32); 7] = [
     ("ρ", "m", 6),
     ("u", "m/s", 6),
@@ -70,14 +70,14 @@ fn approach_parameters(pose: &Pose, velocity_m_s: &Vector3<f64>) -> [f64; 7] {
     [shown.rho_m, shown.u_m_s, degrees[0], degrees[1], degrees[2], degrees[3], degrees[4]]
 }
 
-/// Returns the sections on Figs. 5 and 6: the motion and its accuracy.
+/// Returns the sections on the motion and on its accuracy.
 pub(super) fn sections(run: &DockingRun) -> [Section; 2] {
-    let five = Section::new("fig-5", "Fig. 5: parameters of the motion");
-    let six = Section::new("fig-6", "Fig. 6: accuracy of the motion");
+    let five = Section::new("motion", "Parameters of the motion").in_paper("Fig. 5");
+    let six = Section::new("motion-errors", "Accuracy of the motion").in_paper("Fig. 6");
     let best = MotionEstimate::from_reports(run, |report| &report.best);
     if best.is_empty() {
         let none = "No portion of fields in this run ended with a motion estimate.";
-        return [five.text(none), six.text(none)];
+        return [five.absent(none), six.absent(none)];
     }
     let paper = MotionEstimate::from_reports(run, |report| &report.paper);
     let about = "Errors of the best estimate";
@@ -122,6 +122,7 @@ fn parameters(run: &DockingRun, best: &[MotionEstimate]) -> Chart {
         .map(|row| &run.truths[row])
         .map(|truth| (rounded(truth.time_s, 3), approach_parameters(&truth.pose, &truth.velocity_m_s)))
         .collect();
+    let mut beyond = 0;
     let panels = PARAMETERS.iter().enumerate().map(|(i, (name, unit, decimals))| {
         let kept = thinned(best.len(), &[&|k| best[k].values[i]]);
         let of = |sigmas: f64| {
@@ -143,6 +144,7 @@ fn parameters(run: &DockingRun, best: &[MotionEstimate]) -> Chart {
             [-3.0, 3.0].map(|sigmas| estimate.values[i] + sigmas * estimate.sigmas[i])
         };
         let range = limits(best.iter().flat_map(of_band).chain(truth.iter().map(|row| row.1[i])));
+        beyond += outside(range, best.iter().map(|estimate| estimate.values[i]));
         Panel { range: Some(range), ..Panel::new(format!("{name}, {unit}"), traces) }
     });
     let (traces, layout) = stacked(Axis::titled("time, s"), panels.collect());
@@ -159,13 +161,14 @@ fn parameters(run: &DockingRun, best: &[MotionEstimate]) -> Chart {
     }
     let caption = format!(
         "Range, range rate, passive pitch and yaw, and the three active angles at the end of each portion, \
-         with ±3 σ as reported by the pipeline, and the truth. {}",
+         with ±3 σ as reported by the pipeline, and the truth. {} {}",
+        note_outside(beyond, 7 * best.len(), "estimates"),
         thinning_caption(&[(best.len(), "reports")], true)
     );
     Chart::new(caption, 1080, data, traces, layout)
 }
 
-/// Returns the chart of the standard deviations over time, as in the paper's Fig. 6.
+/// Returns the chart of the standard deviations over time, by group of parameters.
 fn sigmas(best: &[MotionEstimate]) -> Chart {
     let of = |name: &str, i: usize, colour| {
         let kept = thinned(best.len(), &[&|k| best[k].sigmas[i]]);
@@ -237,7 +240,7 @@ fn errors(all: &[MotionEstimate], about: &str, name: &str, colour: &'static str)
     }
     let caption = format!(
         "{about}, measured minus true, with bands of ±3 σ as reported by the pipeline. {} {}",
-        note_outside(beyond, 7 * all.len()),
+        note_outside(beyond, 7 * all.len(), "errors"),
         thinning_caption(&[(all.len(), "reports")], true)
     );
     Chart::new(caption, 1080, data, traces, layout)

@@ -12,7 +12,7 @@ use super::run::{FarRangeRun, shown_time};
 /// Number of rows of the table behind the chart.
 const TABLE_BINS: usize = 60;
 
-/// Returns the section on Fig. 4: the chaser in the orbital frame of the target.
+/// Returns the section on the chaser in the orbital frame of the target.
 pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
     let trajectory = run.run_file.scenario.trajectory()?;
     let rtn_km: Vec<[f64; 3]> =
@@ -56,14 +56,13 @@ pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
         cells.extend([radial, along, cross, truth.range_km].map(|value| format!("{value:.4}")));
         data.push(cells);
     }
-    Ok(Section::new("fig-4", "Fig. 4: position of the chaser in the orbital frame of the target").chart(
-        Chart::new(
-            "True position. The radial, along-track and cross-track axes move with the target, which is at \
+    let title = "Position of the chaser in the orbital frame of the target";
+    Ok(Section::new("relative-position", title).in_paper("Fig. 4").chart(Chart::new(
+        "True position. The radial, along-track and cross-track axes move with the target, which is at \
              (0, 0).",
-            460,
-            data,
-            traces,
-            layout,
-        ),
-    ))
+        460,
+        data,
+        traces,
+        layout,
+    )))
 }

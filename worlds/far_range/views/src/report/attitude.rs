@@ -1,5 +1,6 @@
 //! Attitude of the camera, and the effect of aberration on it.
 
+use ::report::charts::axis_limits::{limits, note_outside, outside};
 use ::report::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, cloud, line, points, rounded, stacked,
 };
@@ -17,7 +18,7 @@ const TABLE_BINS: usize = 60;
 /// Speed of light, km/s.
 const LIGHT_KM_S: f64 = 299_792.458;
 
-/// Returns the section on Fig. 8: the camera's attitude with respect to the chaser.
+/// Returns the section on the camera's attitude with respect to the chaser.
 pub(super) fn mounting(run: &FarRangeRun) -> Section {
     let count = run.truths.len();
     let degrees = |rotation: Rotation<CameraFrame, Body>| {
@@ -32,14 +33,16 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
             })
         })
         .collect();
-    let section = Section::new("fig-8", "Fig. 8: attitude of the camera with respect to the chaser");
+    let section =
+        Section::new("mounting", "Attitude of the camera with respect to the chaser").in_paper("Fig. 8");
     let stated: Vec<usize> = (0..count).filter(|&row| measured[row][0].is_finite()).collect();
     if stated.is_empty() {
-        return section.text("The pipeline reports no attitude of the camera.");
+        return section.absent("The pipeline reports no attitude of the camera.");
     }
     let truth =
         |row: usize| degrees(run.truths[row].camera_from_icrs * run.truths[row].body_from_icrs.inverse());
     let every = thinned(count, &[]);
+    let mut beyond = 0;
     let panels = ["φ, °", "θ, °", "ψ, °"].into_iter().enumerate().map(|(index, title)| {
         let value = |row: usize| measured[row][index];
         let mut traces = cloud("measured", &stated, Some(&value), MEASURED, |rows| {
@@ -48,9 +51,13 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
         });
         let (true_x, true_y) = broken(run, every.iter().map(|&row| (row, rounded(truth(row)[index], 5))));
         traces.push(line("true", true_x, true_y, TRUTH));
-        Panel::new(title, traces)
+        let range =
+            limits(stated.iter().map(|&row| value(row)).chain(every.iter().map(|&row| truth(row)[index])));
+        beyond += outside(range, stated.iter().map(|&row| value(row)));
+        Panel { range: Some(range), ..Panel::new(title, traces) }
     });
-    let (traces, layout) = stacked(time_axis(run), panels.collect());
+    let panels: Vec<Panel> = panels.collect();
+    let (traces, layout) = stacked(time_axis(run), panels);
     let data = by_bins(
         run,
         &[
@@ -62,7 +69,8 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
     section.chart(Chart::new(
         format!(
             "Euler angles 123 of the rotation from the chaser's body to the camera: the camera's attitude by \
-             the pipeline against the body's attitude by telemetry. It contains the noise of both. {}",
+             the pipeline against the body's attitude by telemetry. It contains the noise of both. {} {}",
+            note_outside(beyond, 3 * stated.len(), "angles"),
             thinning_caption(&[(stated.len(), "attitudes")], true)
         ),
         600,
@@ -72,7 +80,7 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
     ))
 }
 
-/// Returns the section on Fig. 9: the correction angles of the aberration.
+/// Returns the section on the correction angles of the aberration.
 pub(super) fn aberration(run: &FarRangeRun) -> Result<Section, Failure> {
     let count = run.truths.len();
     // The angles are smooth functions of time: a sparse sample suffices.
@@ -107,8 +115,8 @@ pub(super) fn aberration(run: &FarRangeRun) -> Result<Section, Failure> {
             format!("{:.6}", angle[2]),
         ]);
     }
-    Ok(Section::new("fig-9", "Fig. 9: angles of the aberration correction").chart(Chart::new(
-        "Correction of Eqs. 20 to 24 about the camera's axes, for the true velocity about the Sun. It \
+    Ok(Section::new("aberration", "Angles of the aberration correction").in_paper("Fig. 9").chart(Chart::new(
+        "Rotation of the camera's attitude about its axes that corrects for aberration, for the true velocity about the Sun. It \
          oscillates along the orbit, because the chaser's orbital velocity adds to the Earth's.",
         340,
         data,

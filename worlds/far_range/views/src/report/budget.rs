@@ -18,7 +18,7 @@ pub(super) fn budget(run: &FarRangeRun) -> Section {
         return section;
     }
     if run.budget.is_empty() {
-        return section.text(
+        return section.absent(
             "This run has no budget yet. `boresight report DIR --budget all` runs the same frames once per \
              stage, with the truth instead of that stage's result, and shows here the contribution of each \
              stage of the built-in pipeline to the error (docs/report.md).",
@@ -62,7 +62,10 @@ pub(super) fn budget(run: &FarRangeRun) -> Section {
         let stages: Vec<String> = figures.into_iter().map(|figure| figure.0).collect();
         intervals(label, stages, y, &low, &high, colour)
     };
-    let traces = vec![of("RA", names::RA_RMS_DEG, MEASURED), of("Dec", names::DEC_RMS_DEG, BESIDE)];
+    let traces = vec![
+        of("across columns", names::RA_RMS_DEG, MEASURED),
+        of("across rows", names::DEC_RMS_DEG, BESIDE),
+    ];
     section
         .text(
             "The same frames, each time with the truth instead of one stage's result: the improvement is the \

@@ -4,6 +4,7 @@ use ::report::figures::words::display_name;
 use ::report::figures::{cell, percent_cell};
 use ::report::page::Section;
 use ::report::page::data_table::DataTable;
+use ::report::verdict::rules::{Measured, nees};
 use far_range::scoring::{Score, names};
 use indexmap::IndexMap;
 use run::figure_by_name;
@@ -23,7 +24,7 @@ const FIGURES: [&str; 6] = [
 pub(super) fn covariances(score: &Score) -> Section {
     let section = Section::new("covariances", "Covariances of the measurements");
     if score.consistency.is_empty() {
-        return section;
+        return section.absent("No correct measurement states a covariance.");
     }
     let labels = FIGURES.map(|name| figure_by_name(name).words);
     let mut table = DataTable::new([String::new(), "frames".to_owned()].into_iter().chain(labels)).caption(
@@ -46,7 +47,20 @@ pub(super) fn covariances(score: &Score) -> Section {
     for row in &score.consistency {
         push(format!("{}: {}", row.by, display_name(&row.value)), row.frames, &row.figures);
     }
-    section.table(table.narrow())
+    section.table(table.narrow()).text(in_words(score))
+}
+
+/// States in words whether σ is honest.
+fn in_words(score: &Score) -> String {
+    let kinds =
+        [("position in the image", names::CENTROID_NEES_MEAN), ("direction", names::LINE_OF_SIGHT_NEES_MEAN)];
+    let mut sentences = Vec::new();
+    for (what, name) in kinds {
+        if let Some(measured) = Measured::from_figure(score.figures.get(name)) {
+            sentences.push(format!("All frames, {what}: {}", nees(what, Some(measured)).text));
+        }
+    }
+    sentences.join(" ")
 }
 
 /// Formats a figure with its interval; a dash if its denominator is 0.

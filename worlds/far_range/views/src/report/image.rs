@@ -1,4 +1,4 @@
-//! Images of the report: whole images, the track of the target, regions, frames of every kind.
+//! Images of the report: whole images, the track of the target, regions.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use ::report::charts::plotly::{Axis, Layout, Trace};
 use ::report::charts::thinning::{bins, evenly, sampled, thinning_caption};
 use ::report::page::Section;
 use contract::Outcome;
-use far_range::scoring::{Cause, Verdict};
+use far_range::scoring::Verdict;
 use files::Failure;
 use sim::truth::{Elements, State};
 
@@ -18,19 +18,20 @@ use super::run::{FarRangeRun, by_bins};
 /// Margin around the detector, so that a mark at its edge is drawn completely, px.
 const ROOM_PX: f64 = 8.0;
 /// Legend of the marks in a picture.
-const KEY: &str = "Green: true position of the target; orange cross: measurement; blue: true stars that can \
+pub(super) const KEY: &str = "Green: true position of the target; orange cross: measurement; blue: true stars that can \
     be detected; violet: planets, the Moon, hot pixels, cosmic-ray hits; yellow: clusters, with the \
     pipeline's classification; dashed: transmitted regions.";
-/// Range of the images in the paper's Fig. 2, km.
+/// Range of the whole image, km.
 const SAMPLE_RANGE_KM: f64 = 16.0;
 /// Number of overlaid images: ten degrees of an orbit between consecutive images.
 const OVERLAID: usize = 36;
 
-/// Returns the section on Fig. 2: a whole image, and overlaid images of one orbit.
+/// Returns the section with a whole image, and overlaid images of one orbit.
 pub(super) fn sample(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
-    let section = Section::new("fig-2", "Fig. 2: a whole image, and the superimposed images of an orbit");
+    let section =
+        Section::new("images", "A whole image, and the superimposed images of an orbit").in_paper("Fig. 2");
     if let Some(reason) = sheet.reason() {
-        return Ok(section.text(format!("No pictures: {reason}")));
+        return Ok(section.absent(format!("The frames cannot be rendered again: {reason}")));
     }
     let away = |row: &usize| (run.truths[*row].range_km - SAMPLE_RANGE_KM).abs();
     let nearest = |rows: &mut dyn Iterator<Item = usize>| rows.min_by(|a, b| away(a).total_cmp(&away(b)));
@@ -42,7 +43,7 @@ pub(super) fn sample(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, 
     let pictures = [sheet.full_frame(run, row)?, sheet.overlaid(run, &overlaid)?];
     Ok(section
         .text(format!(
-            "The frame nearest to the paper's 16 km, with all detectable objects, and the maximum of each \
+            "The frame nearest to {SAMPLE_RANGE_KM} km, with all detectable objects, and the maximum of each \
              pixel over the frames of the orbit around it: the target moves along its ellipse, stars along \
              their tracks. {KEY}"
         ))
@@ -63,7 +64,7 @@ fn one_orbit(run: &FarRangeRun, row: usize) -> Range<usize> {
     first..last + 1
 }
 
-/// Returns the section on Fig. 3: the target in the image.
+/// Returns the section on the target in the image.
 pub(super) fn track(run: &FarRangeRun) -> Section {
     let camera = &run.run_file.scenario.camera;
     let at = |row: usize| run.truths[row].target_position.map_or([f64::NAN; 2], |p| [p.x, p.y]);
@@ -91,7 +92,7 @@ pub(super) fn track(run: &FarRangeRun) -> Section {
     let y_axis = Axis::titled("y, px (rows, downwards)").range([rows - 0.5 + ROOM_PX, -0.5 - ROOM_PX]);
     let layout = Layout::new(x_axis.constrain_domain(), y_axis.same_scale_as("x").constrain_domain());
     let data = by_bins(run, &[("true x, px", &|row| at(row)[0], 1), ("true y, px", &|row| at(row)[1], 1)]);
-    Section::new("fig-3", "Fig. 3: track of the target in pixels").chart(Chart::new(
+    Section::new("track", "Track of the target in pixels").in_paper("Fig. 3").chart(Chart::new(
         format!(
             "True and measured position of the target, whole detector. {}",
             thinning_caption(&[(right.len(), "correct measurements"), (wrong.len(), "wrong ones")], false)
@@ -123,11 +124,13 @@ fn true_track(run: &FarRangeRun, at: &dyn Fn(usize) -> [f64; 2]) -> Trace {
     line("true", x, y, TRUTH).custom_data(frames).opacity(0.7)
 }
 
-/// Returns the section on Fig. 6: a whole and a truncated region.
+/// Returns the section on a whole and a truncated region.
 pub(super) fn regions(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
-    let section = Section::new("fig-6", "Fig. 6: a whole and a truncated region of interest");
+    let section = Section::new("regions", "A whole and a truncated region of interest").in_paper("Fig. 6");
     if run.run_file.scenario.roi.is_none() {
-        return Ok(section.text("The camera of this scenario transmits whole images: nothing is truncated."));
+        return Ok(
+            section.absent("The camera of this scenario transmits whole images: nothing is truncated.")
+        );
     }
     let dec = |row: usize| match run.verdicts[row].verdict {
         Verdict::Correct { error } => error.centroid_px.map(|[_, y]| y.abs()),
@@ -154,32 +157,9 @@ pub(super) fn regions(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section,
     };
     let pictures: Vec<_> = whole.into_iter().chain(truncated).collect();
     if pictures.is_empty() {
-        return Ok(section.text(note));
+        return Ok(section.absent(note));
     }
     let key = "Green: true centre of the target, and a circle around its image; orange: measurement; dashed: \
         transmitted region.";
     Ok(section.text(format!("{note} {key}")).pictures(pictures))
-}
-
-/// Returns pictures of frames: every kind of miss and of wrong measurement, and correct ones for comparison.
-pub(super) fn frames(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, Failure> {
-    let mut chosen: Vec<usize> = Vec::new();
-    let mut middle = |is: &dyn Fn(&Verdict) -> bool| {
-        let rows: Vec<usize> =
-            (0..run.verdicts.len()).filter(|&row| is(&run.verdicts[row].verdict)).collect();
-        chosen.extend(rows.get(rows.len() / 2));
-    };
-    middle(&|verdict| matches!(verdict, Verdict::Correct { .. }));
-    for of in Cause::ALL {
-        middle(&|verdict| matches!(verdict, Verdict::Missed { cause } if *cause == of));
-        middle(&|verdict| matches!(verdict, Verdict::Wrong { cause, .. } if *cause == of));
-    }
-    let section = Section::new("frames", "Frames").text(format!(
-        "A correct measurement, then the middle frame of each kind of miss and of wrong measurement, \
-         rendered again from run.toml. {KEY} Each picture has its own brightness scale."
-    ));
-    Ok(match sheet.reason() {
-        Some(reason) => section.text(format!("No pictures: {reason}")),
-        None => section.pictures(sheet.pictures(run, &chosen)?),
-    })
 }

@@ -1,4 +1,4 @@
-//! Report of a far-range run: the figures of the far-range paper by name, its Table 2, causes, frames.
+//! Report of a far-range run: verdict, worst frames, figures by day, errors, causes, what the pipeline saw.
 
 mod approach;
 mod attitude;
@@ -13,7 +13,9 @@ mod run;
 mod series;
 mod sky_map;
 mod thresholds;
+mod verdict;
 mod visibility;
+mod worst_frames;
 
 use std::path::{Path, PathBuf};
 
@@ -22,18 +24,20 @@ use indexmap::IndexMap;
 pub use error_budget::{InjectedRun, kept_budget};
 pub use frame_detail::FrameDetail;
 pub use run::FarRangeRun;
+pub use verdict::findings;
 pub use visibility::{read_visibility, visibility_page};
 
-use ::report::charts::chart::{Chart, bars, rounded, stacked_bars};
+use ::report::charts::chart::{Chart, axes, bars, bars_across, rounded, stacked_bars};
 use ::report::charts::plotly::Trace;
 use ::report::figures::words::display_name;
 use ::report::figures::{figure_table, least_to_most, percent_cell, shown_percent};
 use ::report::page::data_table::DataTable;
 use ::report::page::picture::RenderedPictures;
 use ::report::page::{Page, Section};
+use ::report::verdict::Verdict;
 use ::report::{BudgetPlan, BudgetReport, OtherReport, WorldReport};
 use ::run::{AnyJudgement, WorldScenario as _};
-use far_range::scoring::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore};
+use far_range::scoring::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore, Score};
 use far_range::{FarRangeMission, is_argon};
 use files::{Checksums, Failure};
 use scenario::Stage;
@@ -41,6 +45,10 @@ use score::{angle, attitude_note, warm_up_note};
 
 use self::colours::colour_of;
 use self::run::shown_time;
+
+/// Labels of the published rates, in their order.
+const RATE_LABELS: [&str; 5] =
+    ["hit rate", "error across columns", "error across columns", "error across rows", "error across rows"];
 
 /// Returns the report of visibility requirements.
 pub(crate) fn visibility_report() -> OtherReport {
@@ -127,7 +135,6 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Fa
             "The truth replaced {stage}: this is a result of the other stages, not of the whole pipeline."
         ));
     }
-    let fact = |name, value: String| (name, value);
     let shown = |name: &str| run.score.figures.get(name).map_or_else(String::new, shown_percent);
     let lead = format!(
         "{} frames: the target was detected in {} of them, in {} correctly and in {} wrongly.",
@@ -136,24 +143,23 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Fa
         shown("correct_rate"),
         shown("wrong_rate")
     );
-    let mut sections = vec![
+    let sections = vec![
+        worst_frames::frames(run, sheet)?,
         figures_section(run),
-        image::sample(run, sheet)?,
-        image::track(run),
-        approach::relative_position(run)?,
         series::errors(run),
+        causes(run),
+        covariances::covariances(&run.score),
+        thresholds::thresholds(&run.score),
+        budget::budget(run),
+        image::track(run),
+        image::sample(run, sheet)?,
         image::regions(run, sheet)?,
         series::stars(run),
         attitude::mounting(run),
         attitude::aberration(run)?,
+        approach::relative_position(run)?,
         navigation::errors(run),
-        thresholds::thresholds(&run.score),
-        covariances::covariances(&run.score),
-        causes(run),
-        budget::budget(run),
-        image::frames(run, sheet)?,
     ];
-    sections.retain(|section| !section.blocks.is_empty());
     Ok(Page {
         title: scenario.title.clone(),
         kind: "Far range: a run",
@@ -164,22 +170,25 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Page, Fa
             .chain(attitude_note(run.score.attitude.as_deref()))
             .collect(),
         warnings,
+        verdict: Verdict::new(findings(&run.score)),
         facts: vec![
-            fact("Scenario", run.run_file.name.clone()),
-            fact("Seed", scenario.seed.to_string()),
-            fact("Frames", format!("{} to {}", first.frame, last.frame)),
-            fact("From (UTC)", shown_time(first)),
-            fact("To (UTC)", shown_time(last)),
-            fact("Range", least_to_most(run.truths.iter().map(|truth| truth.range_km), "km")),
-            fact("Camera", format!("{} × {} px", scenario.camera.columns, scenario.camera.rows)),
-            fact("Boresight", run.run_file.version.clone()),
+            ("Scenario", run.run_file.name.clone()),
+            ("Seed", scenario.seed.to_string()),
+            ("Frames", format!("{} to {}", first.frame, last.frame)),
+            ("From (UTC)", shown_time(first)),
+            ("To (UTC)", shown_time(last)),
+            ("Range", least_to_most(run.truths.iter().map(|truth| truth.range_km), "km")),
+            ("Camera", format!("{} × {} px", scenario.camera.columns, scenario.camera.rows)),
+            ("Boresight", run.run_file.version.clone()),
         ],
         sections,
+        names_paper: false,
         data: serde_json::json!({ "score": run.score }),
     })
 }
 
-/// Returns Table 2, with the paper's values if the frames are those of the paper, and all figures.
+/// Returns the figures by group, with the paper's values if the frames are those of the paper, and all
+/// figures.
 fn figures_section(run: &FarRangeRun) -> Section {
     let score = &run.score;
     let published = is_argon(&run.run_file.scenario).then_some(&ARGON_TABLE_2);
@@ -190,8 +199,10 @@ fn figures_section(run: &FarRangeRun) -> Section {
     let mut head = vec![String::new()];
     head.extend(groups.iter().map(|group| (*group).clone()));
     head.push("all".to_owned());
-    let mut table = DataTable::new(head)
-        .caption("Percent, with 95 % intervals; rates of errors refer to the frames with a detected target.");
+    let mut table = DataTable::new(head).caption(
+        "Percent, with 95 % intervals. Errors of the direction in the camera system, as a rate of the frames \
+             with a detected target.",
+    );
     let columns = || {
         score
             .groups
@@ -201,9 +212,7 @@ fn figures_section(run: &FarRangeRun) -> Section {
     };
     let row = |name: &str, cells: Vec<String>| [name.to_owned()].into_iter().chain(cells).collect::<Vec<_>>();
     table.push(row("images", columns().map(|(frames, _)| frames.to_string()).collect()));
-    for ((name, rates), label) in
-        ARGON_TABLE_2.rates().into_iter().zip(["hit rate", "RA error", "RA error", "Dec error", "Dec error"])
-    {
+    for ((name, rates), label) in ARGON_TABLE_2.rates().into_iter().zip(RATE_LABELS) {
         let ours = columns().map(|(_, figures)| percent_cell(figures.get(name)));
         let limit = score.figures.get(name).and_then(|figure| figure.limit_deg);
         let label =
@@ -221,12 +230,16 @@ fn figures_section(run: &FarRangeRun) -> Section {
             table.push(row("— published", cells.collect()));
         }
     }
-    let title = if published.is_some() { "Table 2, with published values" } else { "Table 2" };
-    let mut section = Section::new("table-2", title);
+    let title = match (published.is_some(), groups.len()) {
+        (true, _) => "Figures by day, with published values",
+        (false, 0 | 1) => "Figures",
+        (false, _) => "Figures by group",
+    };
+    let mut section = Section::new("figures", title).in_paper("Table 2");
     if published.is_some() {
         section = section.text(
             "Published: Benninghoff, Tzschichholz, Boge and Gaias, the ARGON experiment of PRISMA, 23–27 \
-             April 2012, their Table 2; its figures are for whole days.",
+             April 2012; the published figures are for whole days.",
         );
     }
     if let Some(distance) = published.and_then(|table| table.distance(score)) {
@@ -241,45 +254,67 @@ fn figures_section(run: &FarRangeRun) -> Section {
 /// Returns the section on misses and wrong measurements by cause.
 fn causes(run: &FarRangeRun) -> Section {
     let score = &run.score;
-    let groups: Vec<&String> = score.groups.keys().collect();
-    let mut section = Section::new("causes", "Causes of misses and of wrong measurements");
-    type Counts = fn(&GroupScore) -> &IndexMap<String, u64>;
-    let kinds: [(&str, &IndexMap<String, u64>, Counts); 2] = [
-        ("Misses", &score.misses, |group| &group.misses),
-        ("Wrong measurements", &score.wrong, |group| &group.wrong),
-    ];
-    for (title, all, of) in kinds {
-        if all.is_empty() {
-            section = section.text(format!("{title}: none."));
-            continue;
-        }
-        let mut head = vec!["cause".to_owned()];
-        head.extend(groups.iter().map(|group| (*group).clone()));
-        head.push("all".to_owned());
-        let mut data = DataTable::new(head);
+    let section = Section::new("causes", "Causes of misses and of wrong measurements");
+    let wrong = CauseChart { title: "Wrong measurements", all: &score.wrong, of_group: |group| &group.wrong };
+    let missed = CauseChart { title: "Misses", all: &score.misses, of_group: |group| &group.misses };
+    let occurring: Vec<CauseChart<'_>> =
+        [wrong, missed].into_iter().filter(|chart| !chart.all.is_empty()).collect();
+    if occurring.is_empty() {
+        return section.absent("Every frame has a correct measurement.");
+    }
+    occurring.iter().fold(section, |section, chart| section.chart(chart.chart(score)))
+}
+
+/// Counts by cause, of all frames and of every group.
+struct CauseChart<'a> {
+    title: &'static str,
+    all: &'a IndexMap<String, u64>,
+    of_group: fn(&GroupScore) -> &IndexMap<String, u64>,
+}
+
+impl CauseChart<'_> {
+    /// Returns the chart: bars by group, or by cause if there is only one group.
+    fn chart(&self, score: &Score) -> Chart {
+        if score.groups.len() > 1 { self.by_group(score) } else { self.by_cause(score.frames) }
+    }
+
+    /// Returns stacked bars, one per group.
+    fn by_group(&self, score: &Score) -> Chart {
+        let groups: Vec<String> = score.groups.keys().cloned().collect();
+        let mut data =
+            DataTable::new([vec!["cause".to_owned()], groups.clone(), vec!["all".to_owned()]].concat());
         let mut traces: Vec<Trace> = Vec::new();
-        for (cause, total) in all {
-            let counts: Vec<u64> =
-                score.groups.values().map(|group| of(group).get(cause).copied().unwrap_or(0)).collect();
+        for (cause, total) in self.all {
             let mut cells = vec![display_name(cause)];
-            cells.extend(counts.iter().map(u64::to_string));
+            let mut percent = Vec::new();
+            for group in score.groups.values() {
+                let count = (self.of_group)(group).get(cause).copied().unwrap_or(0);
+                cells.push(count.to_string());
+                percent.push(rounded(100.0 * count as f64 / group.frames.max(1) as f64, 3));
+            }
             cells.push(total.to_string());
             data.push(cells);
-            let percent = counts
-                .iter()
-                .zip(score.groups.values())
-                .map(|(count, group)| rounded(100.0 * *count as f64 / group.frames.max(1) as f64, 3));
-            let names: Vec<String> = groups.iter().map(|group| (*group).clone()).collect();
-            let bars = bars(&display_name(cause), &names, percent.collect(), colour_of(cause));
+            let bars = bars(&display_name(cause), &groups, percent, colour_of(cause));
             traces.push(bars.hover_template("%{x}: %{y} %"));
         }
-        section = section.chart(Chart::new(
-            format!("{title} by cause, percent of the frames in each group."),
-            340,
-            data,
-            traces,
-            stacked_bars("", "% of frames"),
-        ));
+        let caption = format!("{} by cause, percent of the frames in each group.", self.title);
+        Chart::new(caption, 340, data, traces, stacked_bars("", "% of frames"))
     }
-    section
+
+    /// Returns one bar per cause, the most frequent on top.
+    fn by_cause(&self, frames: u64) -> Chart {
+        let mut counts: Vec<(&String, u64)> = self.all.iter().map(|(cause, count)| (cause, *count)).collect();
+        counts.sort_by_key(|(_, count)| *count);
+        let mut data = DataTable::new(["cause", "frames", "% of all frames"]);
+        for (cause, count) in counts.iter().rev() {
+            let percent = format!("{:.2}", 100.0 * *count as f64 / frames.max(1) as f64);
+            data.push([display_name(cause), count.to_string(), percent]);
+        }
+        let names: Vec<String> = counts.iter().map(|(cause, _)| display_name(cause)).collect();
+        let numbers: Vec<f64> = counts.iter().map(|(_, count)| *count as f64).collect();
+        let colours = counts.iter().map(|(cause, _)| colour_of(cause)).collect();
+        let height = 110 + 34 * counts.len() as u32;
+        let caption = format!("{} by cause, of {frames} frames.", self.title);
+        Chart::new(caption, height, data, vec![bars_across(&names, numbers, colours)], axes("frames", ""))
+    }
 }

@@ -18,10 +18,10 @@ const FILLS: [&str; 3] = ["rgba(54, 134, 201, 0.16)", "rgba(224, 117, 45, 0.18)"
 /// Colours of the lines, in the order R, T, N.
 const COLOURS: [&str; 3] = [MEASURED, BESIDE, TRUTH];
 
-/// Returns the section on Fig. 10: errors of the relative orbit determination; without a block if the run has
+/// Returns the section on the errors of the relative orbit determination; without a block if the run has
 /// no `navigation.csv`.
 pub(super) fn errors(run: &FarRangeRun) -> Section {
-    let section = Section::new("fig-10", "Fig. 10: errors of the relative navigation");
+    let section = Section::new("navigation", "Errors of the relative navigation").in_paper("Fig. 10");
     let estimated: Vec<(&NavigationRow, [f64; 3], [f64; 3])> = run
         .navigation
         .iter()
@@ -29,8 +29,8 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
         .collect();
     if estimated.is_empty() {
         return match run.navigation.is_empty() {
-            true => section,
-            false => section.text("navigation.csv has no estimate."),
+            true => section.absent("The run has no navigation; `boresight navigate RUN` adds it."),
+            false => section.absent("`navigation.csv` has no estimate."),
         };
     }
     let shown = evenly(estimated.len());

@@ -21,7 +21,7 @@ pub(super) fn thresholds(score: &Score) -> Section {
     let section = Section::new("thresholds", "Hits and false alarms by threshold");
     let curve = &score.threshold_curve;
     if curve.is_empty() {
-        return section;
+        return section.absent("No measurement states the odds that it is right.");
     }
     let mut table = DataTable::new(["smallest ln(odds)"].into_iter().chain(RATES.map(|(name, ..)| name)));
     for point in curve {
@@ -29,7 +29,7 @@ pub(super) fn thresholds(score: &Score) -> Section {
         table.push([format!("{:.0}", point.min_log_odds)].into_iter().chain(rates));
     }
     let caption = "Rates if a measurement counts only from these odds on. The curve begins at the smallest \
-                   stated odds; `min_log_odds` of the best mode sets them.";
+                   stated odds; the key `min_log_odds` of the best mode sets them.";
     let layout = axes("smallest natural logarithm of the odds", "rate, %");
     section.chart(Chart::new(caption, 320, table, traces(curve), layout))
 }

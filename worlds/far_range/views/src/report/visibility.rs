@@ -12,7 +12,8 @@ use ::report::figures::{cell, probability, significant};
 use ::report::page::data_table::DataTable;
 use ::report::page::{Page, Section};
 use ::report::read::read_json;
-use ::visibility::{SimulatedRate, VisibilityReport, read_sky};
+use ::report::verdict::{Finding, Grade, Verdict};
+use ::visibility::{SimulatedRate, Status, VisibilityReport, read_sky};
 use files::Failure;
 
 use super::sky_map::sky_map;
@@ -46,6 +47,7 @@ pub fn visibility_page(report: &VisibilityReport) -> Page {
         version: report.version.clone(),
         lead: vec![format!("{met} of {} requirements are met.", report.requirements.len())],
         warnings: Vec::new(),
+        verdict: Verdict::new(report.requirements.iter().map(finding).collect()),
         facts: vec![
             ("File", report.name.clone()),
             ("Field", field),
@@ -57,9 +59,31 @@ pub fn visibility_page(report: &VisibilityReport) -> Page {
             ("Background", format!("{} e/s per pixel", significant(camera.background_e_per_s))),
             ("Boresight", report.version.clone()),
         ],
-        sections: sections.into_iter().filter(|section| !section.blocks.is_empty()).collect(),
+        sections,
+        names_paper: false,
         data: serde_json::json!({ "visibility": report }),
     }
+}
+
+/// Returns the finding on a requirement: good if the model and the simulation show it, fair if only the model
+/// does.
+fn finding(requirement: &::visibility::Verdict) -> Finding {
+    let grade = match requirement.status {
+        Status::MetSimulated => Grade::Good,
+        Status::MetModel => Grade::Fair,
+        Status::NotMet | Status::Impossible => Grade::Poor,
+        Status::NotDecided => Grade::NotJudged,
+    };
+    let subject = format!("{} {}", requirement.id, requirement.status.words());
+    let evidence = match &requirement.binds {
+        Some(binds) => format!("{}. Binding constraint: {binds}.", requirement.evidence),
+        None => format!("{}.", requirement.evidence),
+    };
+    let doubt = match requirement.status {
+        Status::MetModel => "Shown by the model alone; `--frames N` simulates it.",
+        _ => "",
+    };
+    Finding::new(grade, subject, format!("{}: {evidence}", requirement.text)).and(doubt)
 }
 
 fn rate_text(simulated: Option<&SimulatedRate>) -> String {
@@ -124,14 +148,14 @@ fn requirements(report: &VisibilityReport) -> Section {
         }
     }
     let section = Section::new("requirements", "Verification table").table(table.wordy());
-    if found.rows.is_empty() { section } else { section.table(found) }
+    if found.rows.is_empty() { section } else { section.table(found.wordy()) }
 }
 
 /// Returns the section on the probability of detection against magnitude.
 fn detection(report: &VisibilityReport) -> Section {
     let section = Section::new("detection", "Detection against magnitude");
     if report.detection.is_empty() {
-        return section.text("No star is detected with a probability of 50 % at the nominal exposure.");
+        return section.absent("No star is detected with a probability of 50 % at the nominal exposure.");
     }
     let model = &report.detection;
     let seen = &report.detection_simulated;
@@ -179,16 +203,16 @@ fn detection(report: &VisibilityReport) -> Section {
             number(|s| s.analytic),
         ]);
     }
-    section.chart(Chart::new(
+    let caption = if seen.is_empty() {
+        "Probability that a star of mean colour is detected at the nominal exposure, by the model. No frame was \
+         simulated."
+    } else {
         "Probability that a star is detected at the nominal exposure. Compare the simulation (orange) with \
          the model averaged over the same stars (blue squares). Both curves are flatter than the model for a \
          star of mean colour (grey), because stars of equal V magnitude but different colour are brighter or \
-         fainter in the camera's band.",
-        400,
-        data,
-        traces,
-        axes("V, mag", "probability").legend(true),
-    ))
+         fainter in the camera's band."
+    };
+    section.chart(Chart::new(caption, 400, data, traces, axes("V, mag", "probability").legend(true)))
 }
 
 /// Returns the section on limiting magnitude and number of stars against exposure time.
@@ -196,7 +220,7 @@ fn limiting_magnitude(report: &VisibilityReport) -> Section {
     let curve = &report.limiting_magnitude;
     let section = Section::new("limiting-magnitude", "Limiting magnitude against exposure");
     if curve.is_empty() {
-        return section.text("No curve.");
+        return section.absent("The result has no curve.");
     }
     let x: Vec<f64> = curve.iter().map(|p| p.exposure_s).collect();
     let y = |pick: &dyn Fn(&visibility::LimitPoint) -> Option<f64>| {
@@ -245,7 +269,7 @@ fn sky(report: &VisibilityReport) -> Section {
     let sky = &report.sky;
     let section = Section::new("sky", "Stars over the sky");
     if sky.map.is_empty() {
-        return section.text("No pointing was evaluated.");
+        return section.absent("No pointing was evaluated.");
     }
     let counted: Vec<_> = sky.map.iter().filter(|p| p.excluded.is_none()).collect();
     let (traces, layout) = sky_map(&counted, sky.map.len());
@@ -314,7 +338,7 @@ fn exposure_window(report: &VisibilityReport) -> Section {
     let curve = &report.exposure_window;
     let section = Section::new("exposure-window", "Exposure window against range");
     if curve.is_empty() {
-        return section.text("The file defines no target: no over-exposure limits the exposure.");
+        return section.absent("The file defines no target: no over-exposure limits the exposure.");
     }
     let x: Vec<f64> = curve.iter().map(|p| rounded(p.range_km, 6)).collect();
     let y = |pick: &dyn Fn(&visibility::WindowPoint) -> Option<f64>| {
@@ -368,7 +392,7 @@ fn target_range(report: &VisibilityReport) -> Section {
     let curve = &report.target_range;
     let section = Section::new("target-range", "Greatest range of the target");
     if curve.is_empty() {
-        return section;
+        return section.absent("The file defines no target.");
     }
     let middle: Vec<f64> = curve.iter().map(|p| 0.5 * (p.phases_deg[0] + p.phases_deg[1])).collect();
     let y = |pick: &dyn Fn(&visibility::RangeByPhase) -> Option<f64>| {

@@ -1,7 +1,7 @@
 //! Text output of relative navigation for a user.
 use comfy_table::Cell;
 use navigate::{Axis, BoundReport, NavigationBudget, NavigationResult};
-use view::terminal::{finish, percent, plain_table};
+use view::terminal::{finish, percent, plain_table, wrapped};
 
 /// Number of characters of a time to the second.
 const TIME_LENGTH: usize = 19;
@@ -40,14 +40,14 @@ pub fn navigation_table(result: &NavigationResult, styled: bool) -> String {
         text.push_str(&finish(table));
     }
     let shown = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), number);
-    text.push_str(&format!(
+    let mut lines = format!(
         "NEES per dimension: position {}, position and velocity {}, elements {} (1 is consistent)\n",
         shown(score.nees_position_per_dimension),
         shown(score.nees_state_per_dimension),
         shown(score.nees_elements_per_dimension)
-    ));
+    );
     if let Some(before) = &score.before_report {
-        text.push_str(&format!(
+        lines.push_str(&format!(
             "Between a manoeuvre and its report: {} estimates; NEES per dimension of the others: position {}, \
              position and velocity {}\n",
             before.estimates,
@@ -55,7 +55,7 @@ pub fn navigation_table(result: &NavigationResult, styled: bool) -> String {
             shown(before.others_nees_state_per_dimension)
         ));
     }
-    text.push_str(&format!(
+    lines.push_str(&format!(
         "Distance: error {} % rms, {} % at the end; below 1 % after {}\n",
         shown(score.range_error_rms_percent),
         shown(score.range_error_end_percent),
@@ -65,9 +65,10 @@ pub fn navigation_table(result: &NavigationResult, styled: bool) -> String {
         if !counts.is_empty() {
             let counts: Vec<String> =
                 counts.iter().map(|(name, count)| format!("{count} {}", name.replace('_', " "))).collect();
-            text.push_str(&format!("{name}: {}\n", counts.join(", ")));
+            lines.push_str(&format!("{name}: {}\n", counts.join(", ")));
         }
     }
+    text.push_str(&wrapped(&lines));
     text
 }
 

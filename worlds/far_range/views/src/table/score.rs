@@ -3,14 +3,15 @@ use comfy_table::{Attribute, Cell};
 use far_range::scoring::{Cause, ConsistencyRow, Score, Table2, Table2Distance, names};
 use indexmap::IndexMap;
 use score::{Figure, angle, attitude_note, warm_up_note};
-use view::terminal::{finish, percent, plain_table, share};
+use view::terminal::{WIDTH, finish, finish_within, percent, plain_table, share, wrapped};
 
 /// Style of a printed score.
 #[derive(Debug, Clone, Copy)]
 pub struct TableStyle<'a> {
     /// True if text is set bold and dim with terminal codes; false if the output is not a terminal.
     pub styled: bool,
-    /// Width of the terminal, columns. If a line does not fit, the intervals are placed below their values.
+    /// Width of the terminal, columns. If a line does not fit, the intervals are placed below their values;
+    /// if it still does not fit, the columns continue in a table below.
     pub width: usize,
     /// Published figures to print below those of the score; omitted unless the number of groups is the same.
     pub reference: Option<&'a Table2>,
@@ -20,9 +21,9 @@ pub struct TableStyle<'a> {
 }
 
 impl Default for TableStyle<'_> {
-    /// Returns a plain style with 120 columns, without published figures.
+    /// Returns a plain style with 80 columns, without published figures.
     fn default() -> Self {
-        Self { styled: false, width: 120, reference: None, best_mode: None }
+        Self { styled: false, width: WIDTH, reference: None, best_mode: None }
     }
 }
 
@@ -33,36 +34,10 @@ pub fn far_range_table(score: &Score, style: TableStyle<'_>) -> String {
     let reference = style.reference.filter(|table| table.images.len() == columns.len());
     let best_mode = style.best_mode.map(self::columns).filter(|best_mode| best_mode.len() == columns.len());
     let rows = rows(&columns, reference, best_mode.as_deref());
-    let one_line = sheet(&columns, &rows, " ", style.styled);
+    let one_line = sheet(&columns, &rows, " ", style.styled, usize::MAX);
     let fits = one_line.lines().next().is_some_and(|line| line.chars().count() <= style.width);
-    let mut text = if fits { one_line } else { sheet(&columns, &rows, "\n", style.styled) };
-    text.push_str(
-        "Rates in percent with 95 % intervals. RMS of correct measurements: RA and Dec in arcsec, centroid\n\
-         (x, y) in pixels. Start-up: frames before the first 20 correct measurements in a row. Cause of a\n\
-         wrong measurement: reason why the target was not selected.\n",
-    );
-    if is_counted_in_any(&columns, names::FALSE_ALARM_RATE) {
-        text.push_str("False alarms: wrong measurements in frames without a visible target.\n");
-    }
-    if !score.consistency.is_empty() {
-        text.push_str(
-            "NEES and percent within 1 and 3 σ by the covariances of correct measurements; correct covariances\n\
-             give 1, 68.3 and 99.7.\n",
-        );
-    }
-    if let Some(note) = warm_up_note(score.warm_up_frames, "frames") {
-        text.push_str(&format!("{note}\n"));
-    }
-    if let Some(note) = attitude_note(score.attitude.as_deref()) {
-        text.push_str(&format!("{note}\n"));
-    }
-    if let Some(distance) = style.reference.and_then(|table| table.distance(score)) {
-        let Table2Distance { mean_points, worst_points } = distance;
-        text.push_str(&format!(
-            "The 30 cells differ from the published values by {mean_points:.1} points on average, \
-             {worst_points:.1} at most.\n"
-        ));
-    }
+    let mut text = if fits { one_line } else { sheet(&columns, &rows, "\n", style.styled, style.width) };
+    text.push_str(&wrapped(&notes(score, &columns, style.reference)));
     for (title, pick) in [
         ("Misses by cause", (|column: &Column<'_>| column.misses) as Counts),
         ("Wrong measurements by cause", |column| column.wrong),
@@ -73,6 +48,39 @@ pub fn far_range_table(score: &Score, style: TableStyle<'_>) -> String {
     if !score.consistency.is_empty() {
         text.push('\n');
         text.push_str(&consistency(&score.consistency, style.styled));
+    }
+    text
+}
+
+/// Returns the explanation of the rows, and notes on the figures. Ends with a line feed.
+fn notes(score: &Score, columns: &[Column<'_>], reference: Option<&Table2>) -> String {
+    let mut text = String::from(
+        "Rates in percent with 95 % intervals. Columns and rows: errors of the direction in the camera system, \
+         across columns and across rows. RMS of correct measurements: direction in arcsec, centroid (x, y) in \
+         pixels. Start-up: frames before the first 20 correct measurements in a row. Cause of a wrong \
+         measurement: reason why the target was not selected.\n",
+    );
+    if is_counted_in_any(columns, names::FALSE_ALARM_RATE) {
+        text.push_str("False alarms: wrong measurements in frames without a visible target.\n");
+    }
+    if !score.consistency.is_empty() {
+        text.push_str(
+            "NEES and percent within 1 and 3 σ by the covariances of correct measurements; correct covariances \
+             give 1, 68.3 and 99.7.\n",
+        );
+    }
+    if let Some(note) = warm_up_note(score.warm_up_frames, "frames") {
+        text.push_str(&format!("{note}\n"));
+    }
+    if let Some(note) = attitude_note(score.attitude.as_deref()) {
+        text.push_str(&format!("{note}\n"));
+    }
+    if let Some(distance) = reference.and_then(|table| table.distance(score)) {
+        let Table2Distance { mean_points, worst_points } = distance;
+        text.push_str(&format!(
+            "The 30 cells differ from the published values by {mean_points:.1} points on average, \
+             {worst_points:.1} at most.\n"
+        ));
     }
     text
 }
@@ -134,17 +142,17 @@ fn rows(columns: &[Column<'_>], reference: Option<&Table2>, best_mode: Option<&[
     };
     let of = |pick: fn(&Table2) -> [f64; 6]| reference.map(pick);
     add("hit rate", names::HIT_RATE, percent, of(|t| t.hit_rate));
-    add("RA", names::RA_WITHIN_1PX, percent, of(|t| t.ra_within_1px));
-    add("RA", names::RA_WITHIN_2PX, percent, of(|t| t.ra_within_2px));
-    add("Dec", names::DEC_WITHIN_1PX, percent, of(|t| t.dec_within_1px));
-    add("Dec", names::DEC_WITHIN_2PX, percent, of(|t| t.dec_within_2px));
+    add("columns", names::RA_WITHIN_1PX, percent, of(|t| t.ra_within_1px));
+    add("columns", names::RA_WITHIN_2PX, percent, of(|t| t.ra_within_2px));
+    add("rows", names::DEC_WITHIN_1PX, percent, of(|t| t.dec_within_1px));
+    add("rows", names::DEC_WITHIN_2PX, percent, of(|t| t.dec_within_2px));
     add("correct", names::CORRECT_RATE, percent, None);
     add("wrong", names::WRONG_RATE, percent, None);
     if is_counted_in_any(columns, names::FALSE_ALARM_RATE) {
         add("false alarms", names::FALSE_ALARM_RATE, percent, None);
     }
-    add("RA RMS", names::RA_RMS_DEG, arcsec, None);
-    add("Dec RMS", names::DEC_RMS_DEG, arcsec, None);
+    add("columns RMS", names::RA_RMS_DEG, arcsec, None);
+    add("rows RMS", names::DEC_RMS_DEG, arcsec, None);
     add("x RMS, px", names::CENTROID_X_RMS_PX, pixels, None);
     add("y RMS, px", names::CENTROID_Y_RMS_PX, pixels, None);
     for (label, name, format) in CONSISTENCY {
@@ -170,9 +178,9 @@ const CONSISTENCY: [(&str, &str, Format); 6] = [
     ("x/y NEES", names::CENTROID_NEES_MEAN, number),
     ("x/y < 1 σ", names::CENTROID_WITHIN_1SIGMA_RATE, percent),
     ("x/y < 3 σ", names::CENTROID_WITHIN_3SIGMA_RATE, percent),
-    ("RA/Dec NEES", names::LINE_OF_SIGHT_NEES_MEAN, number),
-    ("RA/Dec < 1 σ", names::LINE_OF_SIGHT_WITHIN_1SIGMA_RATE, percent),
-    ("RA/Dec < 3 σ", names::LINE_OF_SIGHT_WITHIN_3SIGMA_RATE, percent),
+    ("direction NEES", names::LINE_OF_SIGHT_NEES_MEAN, number),
+    ("direction < 1 σ", names::LINE_OF_SIGHT_WITHIN_1SIGMA_RATE, percent),
+    ("direction < 3 σ", names::LINE_OF_SIGHT_WITHIN_3SIGMA_RATE, percent),
 ];
 
 /// Returns the consistency of the covariances, by the state of the image and by the source of the attitude.
@@ -216,7 +224,7 @@ fn pixels(px: f64) -> String {
     format!("{px:.3}")
 }
 
-fn sheet(columns: &[Column<'_>], rows: &[Row], before_interval: &str, styled: bool) -> String {
+fn sheet(columns: &[Column<'_>], rows: &[Row], before_interval: &str, styled: bool, width: usize) -> String {
     let mut table = plain_table(styled);
     let heading = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
     table.set_header([Cell::new("")].into_iter().chain(columns.iter().map(|column| heading(column.name))));
@@ -232,7 +240,7 @@ fn sheet(columns: &[Column<'_>], rows: &[Row], before_interval: &str, styled: bo
             },
         ));
     }
-    finish(table)
+    finish_within(table, width)
 }
 
 /// Counts by cause with their fraction of the column's frames, or a single line if there are none.
@@ -323,7 +331,7 @@ mod tests {
 
     #[test]
     fn five_days_and_all_fit_120_columns_on_one_line_each() {
-        let text = far_range_table(&score(5, 3000), TableStyle::default());
+        let text = far_range_table(&score(5, 3000), TableStyle { width: 120, ..TableStyle::default() });
         assert!(widest(&text) <= 120, "{}\n{text}", widest(&text));
         assert_eq!(line(&text, "hit rate").matches("94.0 (").count(), 6, "{text}");
     }
@@ -336,7 +344,15 @@ mod tests {
     }
 
     #[test]
-    fn the_attitude_behind_ra_and_dec_is_reported() {
+    fn five_days_with_published_rows_fit_80_columns() {
+        let style = TableStyle { reference: Some(&ARGON_TABLE_2), ..TableStyle::default() };
+        let text = far_range_table(&score(5, 3000), style);
+        assert!(widest(&text) <= WIDTH, "{}\n{text}", widest(&text));
+        assert_eq!(text.matches("day 5").count(), 2, "the figures and the misses have each day once: {text}");
+    }
+
+    #[test]
+    fn the_attitude_behind_the_direction_is_reported() {
         let text = |attitude: Option<&str>| {
             let score = Score { attitude: attitude.map(str::to_owned), ..score(5, 3000) };
             far_range_table(&score, TableStyle { width: 100, ..TableStyle::default() })
@@ -366,14 +382,14 @@ mod tests {
         assert!(line(&text, "x/y NEES").contains("1.25 ("), "{text}");
         let cells: Vec<&str> = line(&text, "attitude: too few stars").split_whitespace().collect();
         assert_eq!(cells, ["attitude:", "too", "few", "stars", "3", "1.25", "–", "–", "–", "–", "–"]);
-        assert!(line(&text, "image: cut").contains("1.25") && widest(&text) <= 120, "{text}");
+        assert!(line(&text, "image: cut").contains("1.25") && widest(&text) <= WIDTH, "{text}");
     }
 
     #[test]
     fn limits_are_those_of_the_figures() {
         let mut score = score(1, 300);
         score.figures[names::DEC_WITHIN_1PX].limit_deg = Some(0.0236);
-        assert!(far_range_table(&score, TableStyle::default()).contains("\nDec < 0.0236°"));
+        assert!(far_range_table(&score, TableStyle::default()).contains("\nrows < 0.0236°"));
     }
 
     #[test]

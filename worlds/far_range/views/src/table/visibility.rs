@@ -1,6 +1,6 @@
 //! Text output of requirements for a user: the verification table and the curves, for the terminal and as
 //! Markdown.
-use view::terminal::{finish, plain_table};
+use view::terminal::{finish, plain_table, wrapped};
 use visibility::{Status, Verdict, VisibilityReport, digits};
 
 /// Approximate number of points of a curve that are shown.
@@ -15,10 +15,12 @@ struct TextTable {
 
 /// Returns the report as text; headings are bold with terminal codes if `styled`. Ends with a line feed.
 pub fn visibility_table(report: &VisibilityReport, styled: bool) -> String {
-    let mut text = format!("{}: {}\n{}\n", report.name, report.title, in_figures(report));
+    let mut text = wrapped(&format!("{}: {}\n{}\n", report.name, report.title, in_figures(report)));
     for verdict in &report.requirements {
         let [id, says, status, margin, evidence] = requirement(verdict);
-        text.push_str(&format!("\n{id}  {status}  (margin {margin})\n    {says}\n    {evidence}\n"));
+        let heading = format!("\n{id}  {status}  (margin {margin})\n");
+        text.push_str(&heading);
+        text.push_str(&wrapped(&format!("    {says}\n    {evidence}\n")));
     }
     for sheet in curves(report) {
         text.push_str(&format!("\n{}\n", sheet.title));
@@ -30,7 +32,7 @@ pub fn visibility_table(report: &VisibilityReport, styled: bool) -> String {
         text.push_str(&finish(table));
     }
     for line in remarks(report) {
-        text.push_str(&format!("\n{line}\n"));
+        text.push_str(&wrapped(&format!("\n{line}\n")));
     }
     text
 }

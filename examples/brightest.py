@@ -1,4 +1,4 @@
-"""A pipeline for Boresight in plain Python: --pipeline "exec:python3 docs/examples/brightest.py"
+"""A pipeline for Boresight in plain Python: --pipeline "exec:python3 examples/brightest.py"
 
 The target is the brightest cluster of two pixels or more that has moved by less than 8 px since the frame
 before: right while the camera follows the target and the stars stream through. It measures in the image only.

@@ -1,4 +1,4 @@
-"""Minimal pipeline for Boresight: --pipeline "exec:python3 docs/examples/argmax.py"
+"""Minimal pipeline for Boresight: --pipeline "exec:python3 examples/argmax.py"
 
 The target is the brightest pixel. Needs numpy and astropy.
 """

@@ -1,4 +1,4 @@
-"""A pipeline for Boresight with SEP: --pipeline "exec:python3 docs/examples/sep_brightest.py"
+"""A pipeline for Boresight with SEP: --pipeline "exec:python3 examples/sep_brightest.py"
 
 Subtracts the median, detects objects above five sigmas, and takes the brightest away from listed stars, at
 its windowed centre. Needs numpy, astropy and sep.

@@ -1,4 +1,4 @@
-"""A docking pipeline for Boresight in plain Python: --pipeline "exec:python3 docs/examples/fixed_pose.py"
+"""A docking pipeline for Boresight in plain Python: --pipeline "exec:python3 examples/fixed_pose.py"
 
 It measures nothing and always reports that the camera is 10 m in front of the target. It shows the protocol,
 with a setting for the digitiser in its first answer.

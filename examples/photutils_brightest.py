@@ -1,4 +1,4 @@
-"""A pipeline for Boresight with photutils: --pipeline "exec:python3 docs/examples/photutils_brightest.py"
+"""A pipeline for Boresight with photutils: --pipeline "exec:python3 examples/photutils_brightest.py"
 
 Background and noise by clipping, segments above five sigmas, and among those away from listed stars the
 brightest. Needs numpy, astropy and photutils.

@@ -2,8 +2,8 @@
 """Makes a folder of night-sky images for docs/tutorial-night-sky.md, or compares attitudes with the true
 ones.
 
-    python3 docs/examples/night_sky.py make sky
-    python3 docs/examples/night_sky.py compare sky
+    python3 examples/night_sky.py make sky
+    python3 examples/night_sky.py compare sky
 
 Needs numpy. Uses nothing of Boresight except its copy of the Hipparcos catalogue (sim/data/hipparcos2.bin):
 stars are Gaussians with Poisson noise, at the positions of the date of telemetry.csv (proper motion in a
@@ -54,7 +54,10 @@ prior = "none"
 def stars():
     """Unit vectors of the date and magnitudes (Hp) of Hipparcos to 8.5; the format is at the head of
     sim/data/make_hipparcos2.py."""
-    data = (pathlib.Path(__file__).parents[2] / "sim/data/hipparcos2.bin").read_bytes()[48:]
+    here = pathlib.Path(__file__).resolve().parent
+    # `boresight examples` writes the catalogue beside this file; in the source tree the simulator has it.
+    places = (here / "hipparcos2.bin", here.parent / "sim/data/hipparcos2.bin")
+    data = next(place for place in places if place.exists()).read_bytes()[48:]
     rows = np.frombuffer(data, np.uint8).reshape(-1, 29).astype(np.int64)
 
     def number(first, size):

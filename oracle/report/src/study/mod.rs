@@ -1,5 +1,7 @@
 //! Report of a study: figures with intervals, their sensitivities, the worst cases.
 
+mod verdict;
+
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -16,10 +18,11 @@ use crate::charts::chart::{
 use crate::charts::plotly::{Axis, ColourScale, Layout, Mode, Trace};
 use crate::charts::thinning::{bins, summary as summed, thinning_caption};
 use crate::figures::significant;
-use crate::figures::words::capital;
+use crate::figures::words::{capital, display_name, setting_name};
 use crate::page::data_table::DataTable;
 use crate::page::{Page, Section};
 use crate::read::read_json;
+use crate::verdict::Verdict;
 
 /// Upper limit on the number of rows of the tables behind the charts. Each row summarises the cases in a
 /// range of the drawn value; cases.parquet has every case.
@@ -79,7 +82,7 @@ pub fn study_page(study: &StudyResult) -> Page {
         ),
         None => format!("{} cases.", summary.cases),
     };
-    let mut sections = vec![figures(study)];
+    let mut sections = vec![worst(study), figures(study)];
     if !summary.requirements.is_empty() {
         sections.insert(0, requirements(summary));
     }
@@ -94,7 +97,7 @@ pub fn study_page(study: &StudyResult) -> Page {
         sections.push(indices(study));
     }
     sections.push(scatter(study));
-    sections.push(worst(study));
+    sections.push(settings(study));
     Page {
         title: if summary.title.is_empty() {
             format!("Study {}", summary.study)
@@ -109,6 +112,7 @@ pub fn study_page(study: &StudyResult) -> Page {
             .chain(attitude_note(summary.attitude.as_deref()))
             .collect(),
         warnings: summary.notes(),
+        verdict: Verdict::new(verdict::findings(summary)),
         facts: vec![
             ("Study", summary.study.clone()),
             ("Cases", format!("{} of {} at most", summary.cases, summary.of)),
@@ -120,6 +124,7 @@ pub fn study_page(study: &StudyResult) -> Page {
             ("Boresight", summary.version.clone()),
         ],
         sections,
+        names_paper: false,
         data: serde_json::json!({ "summary": summary }),
     }
 }
@@ -161,20 +166,29 @@ fn label(key: &str) -> String {
 /// Returns the section on all figures: the value over all cases, and the quantiles over the cases.
 fn figures(study: &StudyResult) -> Section {
     let summary = &study.summary;
-    let mut table = DataTable::new([
-        "figure",
-        "cases",
-        "all",
-        "5 % of cases below",
-        "median",
-        "95 % of cases below",
-    ])
-    .caption(
-        "With 95 % intervals. All: for a rate, all frames of all cases together; for other figures, the mean \
-         of the cases.",
-    )
-    .narrow();
-    for (name, figure) in &summary.figures {
+    let mut section = Section::new("figures", "Figures");
+    if let Some(chart) = rate_chart(summary) {
+        section = section.chart(chart);
+    }
+    section = section.table(table_of_figures(summary));
+    let without = summary.figures.iter().filter(|(_, figure)| figure.cases == 0);
+    let without: Vec<String> = without.map(|(name, _)| figure_by_name(name).words).collect();
+    match without.as_slice() {
+        [] => section,
+        names => section.text(format!("Without a value in any case: {}.", names.join(", "))),
+    }
+}
+
+/// Returns the table of the figures that have a value in a case.
+fn table_of_figures(summary: &Summary) -> DataTable {
+    let head = ["figure", "cases", "all", "5 % of cases below", "median", "95 % of cases below"];
+    let mut table = DataTable::new(head)
+        .caption(
+            "With 95 % intervals. All: for a rate, all frames of all cases together; for other figures, the mean \
+             of the cases.",
+        )
+        .narrow();
+    for (name, figure) in summary.figures.iter().filter(|(_, figure)| figure.cases > 0) {
         let estimate = |estimate: &Option<Estimate>| {
             estimate.as_ref().map_or_else(|| "–".to_owned(), |e| estimate_text(name, e))
         };
@@ -187,13 +201,17 @@ fn figures(study: &StudyResult) -> Section {
             estimate(&figure.p95),
         ]);
     }
+    table
+}
+
+/// Returns the chart of the rates over all frames and of their spread over the cases; `None` without a rate.
+fn rate_chart(summary: &Summary) -> Option<Chart> {
     let is_rate = |(name, _): &(&String, &FigureSummary)| figure_by_name(name).is_rate();
     let rates = summary.figures.iter().filter(is_rate);
     let rates: Vec<(&String, Estimate, &FigureSummary)> =
         rates.filter_map(|(name, figure)| Some((name, figure.all?, figure))).collect();
-    let section = Section::new("figures", "Figures");
     if rates.is_empty() {
-        return section.table(table);
+        return None;
     }
     // In reverse order, since the axis runs upwards: the first rate is on top.
     let column = |pick: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
@@ -227,7 +245,7 @@ fn figures(study: &StudyResult) -> Section {
     }
     let height = 110 + 30 * rates.len() as u32;
     let caption = "Rates over all frames, and their spread over the cases.";
-    section.chart(Chart::new(caption, height, data, traces, layout)).table(table)
+    Some(Chart::new(caption, height, data, traces, layout))
 }
 
 /// Returns the section on the requirements with their verdicts.
@@ -249,7 +267,7 @@ fn requirements(summary: &Summary) -> Section {
             result.verdict_words(),
         ]);
     }
-    Section::new("requirements", "Requirements").table(table)
+    Section::new("requirements", "Requirements").table(table.wordy())
 }
 
 /// Returns the section on the causes of missed and wrong frames.
@@ -263,10 +281,15 @@ fn causes(summary: &Summary) -> Section {
             let interval = interval.map(|(low, high)| format!(" ({} to {})", percent(low), percent(high)));
             format!("{}{}", percent(share.value), interval.unwrap_or_default())
         });
-        let words = name.replacen('.', ": ", 1).replace('_', " ");
+        let words = cause_words(name);
         table.push([words, cause.frames.to_string(), share, cause.cases.to_string()]);
     }
     Section::new("causes", "Misses and wrong measurements by cause").table(table)
+}
+
+/// Returns the words for a cause such as `missed.cut_by_roi`.
+fn cause_words(name: &str) -> String {
+    display_name(&name.replacen('.', ": ", 1))
 }
 
 /// Returns the section on the sweep: a curve of each figure, starting with the figure that ranks the worst
@@ -297,7 +320,7 @@ type Curve = Vec<(String, Estimate)>;
 /// Returns the chart of a figure over the swept parameter with the most values; each combination of the other
 /// parameters has a curve.
 fn curve(summary: &Summary, name: &str) -> Chart {
-    let label_of = |path: &str, value: &str| format!("{path} = {value}");
+    let label_of = |path: &str, value: &str| format!("{} = {value}", setting_name(path));
     let values_of = |path: &String| {
         let values: BTreeSet<&String> = summary.sweep.iter().filter_map(|point| point.at.get(path)).collect();
         values.len()
@@ -334,7 +357,7 @@ fn curve(summary: &Summary, name: &str) -> Chart {
         320,
         data,
         traces,
-        axes(&plain(across), &plain(&figure_by_name(name).to_string())).legend(has_legend),
+        axes(&plain(&setting_name(across)), &plain(&figure_by_name(name).to_string())).legend(has_legend),
     )
 }
 
@@ -348,14 +371,14 @@ fn differences(summary: &Summary) -> DataTable {
         let changed = step.from.iter().find(|(path, from)| step.to.get(*path) != Some(from));
         let Some((path, from)) = changed else { continue };
         let others = step.from.iter().filter(|(other, _)| *other != path);
-        let at: String = others.map(|(path, value)| format!(", {path} = {value}")).collect();
+        let at: String = others.map(|(path, value)| format!(", {} = {value}", setting_name(path))).collect();
         let number = |value: f64| significant(scale(&step.figure) * value);
         let interval = step.difference.low.zip(step.difference.high);
         let interval =
             interval.map_or(String::new(), |(low, high)| format!(" ({} to {})", number(low), number(high)));
         table.push([
             label(&step.figure),
-            format!("{path}{at}"),
+            format!("{}{at}", setting_name(path)),
             from.clone(),
             step.to.get(path).cloned().unwrap_or_default(),
             format!("{}{interval}", number(step.difference.value)),
@@ -370,7 +393,10 @@ fn sensitivities(study: &StudyResult) -> Section {
     let correlations = &study.summary.correlations;
     let section = Section::new("sensitivities", "Sensitivities");
     if correlations.is_empty() {
-        return section.text("No correlations: too few cases, or no drawn value is a number.");
+        return section.absent(
+            "No correlations: too few cases, no drawn value is a number, or every figure is equal in nearly \
+             all cases.",
+        );
     }
     let mut figures: Vec<&String> = Vec::new();
     let mut parameters: Vec<&String> = Vec::new();
@@ -392,7 +418,7 @@ fn sensitivities(study: &StudyResult) -> Section {
         .rev()
         .map(|figure| parameters.iter().map(|parameter| of(figure, parameter)).collect())
         .collect();
-    let names: Vec<String> = parameters.iter().map(|name| plain(name)).collect();
+    let names: Vec<String> = parameters.iter().map(|name| plain(&setting_name(name))).collect();
     let labels: Vec<String> =
         figures.iter().rev().map(|name| plain(&figure_by_name(name).to_string())).collect();
     let map = Trace::heat_map(names, labels, &z)
@@ -404,7 +430,7 @@ fn sensitivities(study: &StudyResult) -> Section {
     for c in correlations {
         data.push([
             label(&c.figure),
-            c.parameter.clone(),
+            setting_name(&c.parameter),
             format!("{:.3}", c.correlation),
             bound(c.low),
             bound(c.high),
@@ -435,13 +461,13 @@ fn indices(study: &StudyResult) -> Section {
             index.total_interval[0],
             index.total_interval[1],
         ];
-        let mut cells = vec![label(&index.figure), index.parameter.clone()];
+        let mut cells = vec![label(&index.figure), setting_name(&index.parameter)];
         cells.extend(numbers.map(|number| format!("{number:.3}")));
         data.push(cells);
     }
     let own: Vec<_> = summary.indices.iter().filter(|index| index.figure == summary.worst_by).collect();
     let trace = |name: &str, value: fn(&study::SobolIndex) -> (f64, [f64; 2]), colour| {
-        let names: Vec<String> = own.iter().map(|index| plain(&index.parameter)).collect();
+        let names: Vec<String> = own.iter().map(|index| plain(&setting_name(&index.parameter))).collect();
         let values: Vec<(f64, [f64; 2])> = own.iter().map(|index| value(index)).collect();
         let low: Vec<f64> = values.iter().map(|(_, interval)| interval[0]).collect();
         let high: Vec<f64> = values.iter().map(|(_, interval)| interval[1]).collect();
@@ -477,7 +503,12 @@ fn scatter(study: &StudyResult) -> Section {
     let name = &summary.worst_by;
     let section =
         Section::new("scatter", format!("{} against drawn values", capital(&figure_by_name(name).words)));
-    let Some(values) = table.figure(name) else { return section.text("No case has the figure.") };
+    let Some(values) = table.figure(name) else { return section.absent("No case has the figure.") };
+    let mut found = values.iter().filter_map(|value| value.value);
+    let first = found.next();
+    if found.all(|value| Some(value) == first) {
+        return section.absent("The figure is equal in all cases.");
+    }
     let mut charts = Vec::new();
     for parameter in table.drawn.keys() {
         let Some(numbers) = table.numbers(parameter) else { continue };
@@ -503,14 +534,16 @@ fn scatter(study: &StudyResult) -> Section {
         }
         charts.push(Chart::new(
             format!(
-                "{} against {parameter}, one point per case. {}",
+                "{} against {}, one point per case. {}",
                 figure_by_name(name),
+                setting_name(parameter),
                 thinning_caption(&[(rows.len(), "cases")], true)
             ),
             260,
             data,
             traces,
-            axes(&plain(parameter), &plain(&figure_by_name(name).to_string())).legend(!is_drawn_whole),
+            axes(&plain(&setting_name(parameter)), &plain(&figure_by_name(name).to_string()))
+                .legend(!is_drawn_whole),
         ));
     }
     let left_out = charts.len().saturating_sub(MAX_SCATTERS);
@@ -520,7 +553,26 @@ fn scatter(study: &StudyResult) -> Section {
     } else {
         section
     };
-    if charts.is_empty() { section.text("No drawn value is a number.") } else { section.charts(charts) }
+    if charts.is_empty() { section.absent("No drawn value is a number.") } else { section.charts(charts) }
+}
+
+/// Returns the table of the varied settings: words, key in the scenario, and smallest and largest value.
+fn settings(study: &StudyResult) -> Section {
+    let mut data = DataTable::new(["setting", "key in the scenario", "smallest", "largest"])
+        .caption("Values that differ between the cases; the key is that of the scenario and of `[[vary]]`.");
+    for parameter in study.table.drawn.keys() {
+        let numbers = study.table.numbers(parameter).unwrap_or_default();
+        let finite = || numbers.iter().copied().filter(|number| number.is_finite());
+        let (least, most) =
+            (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+        data.push([setting_name(parameter), format!("`{parameter}`"), significant(least), significant(most)]);
+    }
+    let section = Section::new("settings", "Varied settings");
+    if data.rows.is_empty() {
+        section.absent("The study varies no value but the seed.")
+    } else {
+        section.table(data)
+    }
 }
 
 /// Returns the table of the worst cases, with the commands that repeat them.
@@ -533,11 +585,11 @@ fn worst(study: &StudyResult) -> Section {
     };
     let section = Section::new("worst", "Worst cases");
     if summary.worst.is_empty() {
-        return section.text("No case has the figure that ranks the cases.");
+        return section.absent("No case has the figure that ranks the cases.");
     }
     let drawn: Vec<&String> = summary.worst[0].drawn.keys().collect();
     let mut head = vec!["case".to_owned(), label(&summary.worst_by)];
-    head.extend(drawn.iter().map(|name| (*name).clone()));
+    head.extend(drawn.iter().map(|name| setting_name(name)));
     head.push("command to repeat the case".to_owned());
     let mut table = DataTable::new(head).wordy();
     for case in &summary.worst {
@@ -546,7 +598,7 @@ fn worst(study: &StudyResult) -> Section {
             Some(text) => text.parse::<f64>().map_or_else(|_| text.clone(), significant),
             None => String::new(),
         }));
-        cells.push(case.replay.clone());
+        cells.push(format!("`{}`", case.replay));
         table.push(cells);
     }
     let more = match summary.worst_of.saturating_sub(summary.worst.len() as u64) {

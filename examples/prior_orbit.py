@@ -1,4 +1,4 @@
-"""A navigator for Boresight in plain Python: --navigator "exec:python3 docs/examples/prior_orbit.py"
+"""A navigator for Boresight in plain Python: --navigator "exec:python3 examples/prior_orbit.py"
 
 It answers with the prior, moved along its orbit and through the manoeuvres, and uses no line of sight: the
 error that a navigator must reduce. Equations of D'Amico (2010), chapter 2, without J2.
