@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the notebooks and writes them with their outputs as pages of the book, docs/notebooks/NAME.md.
+"""Runs the notebooks and writes their texts and outputs as pages of the book, docs/notebooks/NAME.md.
 
     python3 python/notebooks/render.py
 
@@ -20,8 +20,6 @@ from PIL import Image
 HERE = pathlib.Path(__file__).resolve().parent
 PAGES = HERE.parents[1] / "docs" / "notebooks"
 WIDTH = 110
-MAX_CODE_LINES = 4
-"""Longest code that a page shows; longer code is in the notebook."""
 COLOURS = 64
 """Colours of a picture: enough for a chart, and a fifth of the bytes."""
 
@@ -56,16 +54,11 @@ def outputs(cell, name, pictures):
         if "image/png" in data:
             pictures.append(f"{name}-{len(pictures) + 1}.png")
             picture(data["image/png"], PAGES / pictures[-1])
-            texts.append(f"![Output of the cell above]({pictures[-1]})\n")
+            texts.append(f"![Chart {len(pictures)} of the notebook]({pictures[-1]})\n")
         elif output.get("name") != "stderr":
             text = without_paths(output.get("text") or data.get("text/plain", ""))
             texts.append(f"```text\n{text.rstrip()}\n```\n")
     return "\n".join(texts)
-
-
-def code(source):
-    """The code of a cell, if it is short."""
-    return f"```python\n{source}\n```\n" if len(source.splitlines()) <= MAX_CODE_LINES else ""
 
 
 def page(path):
@@ -77,10 +70,9 @@ def page(path):
         if cell.cell_type == "markdown":
             parts.append(wrapped(cell.source) + "\n")
         else:
-            parts.append(code(cell.source))
             parts.append(outputs(cell, path.stem, pictures))
     link = f"../../python/notebooks/{path.name}"
-    parts.append(f"*Code of more than {MAX_CODE_LINES} lines is in the [notebook]({link}).*\n")
+    parts.append(f"*The code is in the [notebook]({link}).*\n")
     return "\n".join(part for part in parts if part)
 
 
