@@ -7,7 +7,7 @@ use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package, Target}
 
 /// Each crate of the project, and the project's crates that it may depend on. The pipelines depend only on
 /// the contract, and therefore cannot share code with the simulator.
-const ARROWS: [(&str, &str); 36] = [
+const ARROWS: [(&str, &str); 37] = [
     ("contract", ""),
     ("config", "contract"),
     ("draws", ""),
