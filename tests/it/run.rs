@@ -181,7 +181,7 @@ fn the_table_has_a_column_for_each_day_and_one_for_all() {
     };
     assert_eq!(cells("day 1"), ["day 1", "day 2", "all"]);
     assert_eq!(cells("images"), ["images", "20", "30", "50"]);
-    for label in ["hit rate", "RA < 0.024°", "RA < 0.048°", "Dec < 0.024°", "Dec < 0.048°"] {
+    for label in ["hit rate", "columns < 0.024°", "columns < 0.048°", "rows < 0.024°", "rows < 0.048°"] {
         let cells = cells(label);
         assert_eq!(cells.len(), 4, "{cells:?}");
         assert!(cells[1..].iter().all(|cell| cell.contains('(') && cell.contains('–')), "{cells:?}");

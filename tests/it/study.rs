@@ -294,7 +294,9 @@ fn a_swept_value_without_a_result_is_named() {
     assert_eq!(shown.status, Some(1), "{}", shown.stderr);
     let note = "1 of 2 sweep points without a result, because none of their cases can be run: differences and \
                 curves leave them out. sensor.read_noise_e = -1.";
-    assert!(shown.stdout.contains(note), "{}", shown.stdout);
+    // The text is wrapped at the width of a terminal.
+    let unwrapped = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(unwrapped(&shown.stdout).contains(note), "{}", shown.stdout);
     assert!(shown.stdout.contains("not decided: no case can be run"), "{}", shown.stdout);
     assert!(bench.read("out/report.html").contains(note));
     let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
@@ -318,7 +320,7 @@ fn a_swept_value_without_a_result_is_named() {
     let words = ["study", "run", "fails.toml", "--out", "fails", "--pipeline", "exec:python3 fails.py"];
     let shown = bench.boresight_words(&words);
     assert!(
-        shown.stdout.contains("2 of 2 sweep points at which the pipeline failed in every case"),
+        unwrapped(&shown.stdout).contains("2 of 2 sweep points at which the pipeline failed in every case"),
         "{}",
         shown.stdout
     );

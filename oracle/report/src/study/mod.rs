@@ -260,7 +260,7 @@ fn requirements(summary: &Summary) -> Section {
         let cell = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
         table.push([
             result.requirement_words(&label(name), |value| number(name, value)),
-            if result.at.is_empty() { "–".to_owned() } else { result.at_words() },
+            if result.at.is_empty() { "–".to_owned() } else { at_words(&result.at) },
             cell(result.value),
             cell(result.low),
             cell(result.high),
@@ -268,6 +268,13 @@ fn requirements(summary: &Summary) -> Section {
         ]);
     }
     Section::new("requirements", "Requirements").table(table.wordy())
+}
+
+/// Returns swept values in words: `sensor read noise, e⁻ = 5`.
+fn at_words(at: &IndexMap<String, String>) -> String {
+    let pairs: Vec<String> =
+        at.iter().map(|(path, value)| format!("{} = {value}", setting_name(path))).collect();
+    pairs.join("; ")
 }
 
 /// Returns the section on the causes of missed and wrong frames.
