@@ -5,7 +5,7 @@
 
 Runs the studies beside this file (a population of 240 cases of 20 or 25 frames each), writes the counts of
 each case to DIR/NAME.csv, and draws studies of 12, 20, 40 and 100 draws from each with replacement, by the
-example `interval_coverage` of boresight-statistics; docs/studies.md has the table. Needs pyarrow.
+example `interval_coverage` of boresight-statistics; docs/evidence/studies.md has the table. Needs pyarrow.
 """
 
 import argparse

@@ -395,7 +395,7 @@ fn the_built_in_example_shows_where_the_stars_are_lost_and_does_not_depend_on_th
     check_same_files(&bench.tree("a"), &bench.tree("b"));
     let report = bench.json("a/visibility.json");
     assert_eq!(report, one.json());
-    // In the run of `argon`, half of the frames have ten stars at 7.2 km (docs/visibility.md).
+    // In the run of `argon`, half of the frames have ten stars at 7.2 km (docs/evidence/visibility.md).
     let lost_km = report["stars_lost"]["half_of_frames_km"].as_f64().unwrap();
     assert!((6.2..8.2).contains(&lost_km), "{lost_km}");
     let statuses: Vec<_> = report["requirements"].as_array().unwrap().iter().map(|r| &r["status"]).collect();

@@ -6,7 +6,7 @@
 Makes measurements of a rendered far-range dataset: true positions and lines of sight with normal errors of
 known covariances, in which every third frame is scaled so that covariances are too small by half. Runs
 `BORESIGHT score` on them, and computes NEES, shares within 1 and 3 sigma and the rows of `consistency` from
-`measurements.csv` and the tables of truth, by the definitions of docs/score.md and with matrices inverted by
+`measurements.csv` and the tables of truth, by the definitions of docs/evidence/score.md and with matrices inverted by
 numpy.
 
 Prints a line a figure; exit 0 when all agree to 1e-9, 1 when one does not.

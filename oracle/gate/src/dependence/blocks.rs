@@ -12,7 +12,7 @@ pub const MIN_BLOCKS: usize = 5;
 /// is one block.
 const SHORTEST_BLOCK: usize = 30;
 /// Length of a block in autocorrelation times. In a sequence with exponential autocorrelation, neighbouring
-/// means are then correlated by 2.5 %, and a test at 5 % rejects in 5.4 % (docs/gate.md).
+/// means are then correlated by 2.5 %, and a test at 5 % rejects in 5.4 % (docs/evidence/gate.md).
 const MEMORIES_A_BLOCK: f64 = 10.0;
 /// Smallest number of blocks that a longer block length must leave, if the sequence is long enough.
 const ENOUGH_BLOCKS: usize = 20;

@@ -3,8 +3,8 @@
 //! Every field is counted exactly once and has one [`Verdict`]: success, range only, doubtful, grossly wrong,
 //! or missed with one cause. The sizes of the errors, and their consistency with the stated covariances
 //! ([`consistency`]), are counted over the successes. The motions reported at the end of portions
-//! (`portions`), and the time until a report, have separate figures. `docs/score.md` has the complete
-//! definitions.
+//! (`portions`), and the time until a report, have separate figures. `docs/evidence/score.md` has the
+//! complete definitions.
 
 mod accumulate;
 mod approach_parameters;

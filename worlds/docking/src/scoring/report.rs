@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use score::Figure;
 use serde::{Deserialize, Serialize};
 
-/// Names of the docking figures that other code uses; `docs/formats.md` lists all of them.
+/// Names of the docking figures that other code uses; `docs/evidence/formats.md` lists all of them.
 pub mod names {
     /// Fields with six measured parameters, none grossly wrong, as a fraction of the fields in which they can
     /// be required: the target is resolved, or they are measured.
