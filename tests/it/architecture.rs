@@ -271,7 +271,7 @@ const KNOW_NO_WORLD: [&str; 5] = ["config", "contract", "navigation", "oracle", 
 
 /// Files of these folders that may name a world, each with the reason. A file or folder that is named for a
 /// world may, too: it holds the world's part of an interface or of the command.
-const LISTS_OF_WORLDS: [(&str, &str); 14] = [
+const LISTS_OF_WORLDS: [(&str, &str); 15] = [
     ("contract/src/conformance/mod.rs", "modules of the interfaces of pipelines"),
     ("contract/src/lib.rs", "modules of the interfaces of pipelines"),
     ("oracle/scenario/src/builtin.rs", "names of files in scenarios/"),
@@ -279,6 +279,7 @@ const LISTS_OF_WORLDS: [(&str, &str); 14] = [
     ("src/command/dataset.rs", "options of sequences and renderers"),
     ("src/command/demo/mod.rs", "parts of the demo"),
     ("src/command/demo/page.rs", "parts of the demo"),
+    ("src/command/examples.rs", "names of files in scenarios/"),
     ("src/command/execute.rs", "navigation after a run"),
     ("src/command/mod.rs", "commands that only one world has"),
     ("src/command/reproduce.rs", "names of papers"),
