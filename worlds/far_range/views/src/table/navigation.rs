@@ -9,7 +9,7 @@ const TIME_LENGTH: usize = 19;
 /// Returns the figures of a relative orbit determination as text. Ends with a line feed.
 pub fn navigation_table(result: &NavigationResult, styled: bool) -> String {
     let score = &result.score;
-    let mut text = format!(
+    let mut text = wrapped(&format!(
         "{}, {}: {} lines of sight, {} manoeuvres; {} of {} times have an estimate\n",
         result.scenario,
         result.estimator,
@@ -17,7 +17,7 @@ pub fn navigation_table(result: &NavigationResult, styled: bool) -> String {
         result.manoeuvres,
         score.estimates,
         score.requested
-    );
+    ));
     if !score.position_m.is_empty() {
         let mut table = plain_table(styled);
         table.set_header(["error", "unit", "rms", "mean", "largest", "σ (rms)", "within 3 σ"]);
