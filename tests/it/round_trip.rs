@@ -235,7 +235,7 @@ fn a_run_keeps_the_attitude_that_it_grants() {
     assert_eq!(score["attitude"], "telemetry");
     assert!(score["figures"]["ra_rms_deg"]["of"].as_u64() > Some(0), "{score}");
     assert_eq!(bench.boresight("score run run/measurements.csv --json").done().json(), score);
-    assert!(bench.read("run/report.html").contains("by the attitude `telemetry`"));
+    assert!(bench.read("run/report.html").contains("by the attitude <code>telemetry</code>"));
     let message = "requires a world whose measurements are lines of sight";
     bench
         .boresight("run docking --frames 0..2 --attitude true --out other")
