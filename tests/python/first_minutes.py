@@ -74,8 +74,8 @@ def demo(trial):
     if shutil.which("chromium", path=trial.environment["PATH"]):
         profile = f"--user-data-dir={trial.home / 'profile'}"
         text = trial.run(*CHROMIUM, profile, page.as_uri())
-    if "<h1" not in text or "<img" not in text:
-        sys.exit(f"{page} has no heading or no picture")
+    if "<h1" not in text or "<image" not in text:
+        sys.exit(f"{page} has no heading or no frame")
 
 
 def monitor(trial):
