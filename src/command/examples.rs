@@ -1,7 +1,7 @@
 //! `boresight examples`: the example files of the book, which a program without its source tree carries.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use files::{AtomicFile, Failure, FileError, create_empty_directory};
@@ -30,7 +30,7 @@ struct Example {
 
 /// The files, those of one subject together. A test compares the list with the folder `examples/` of the
 /// source tree.
-const EXAMPLES: [Example; 16] = [
+const EXAMPLES: [Example; 15] = [
     Example {
         name: "brightest.py",
         bytes: include_bytes!("../../examples/brightest.py"),
@@ -72,11 +72,6 @@ const EXAMPLES: [Example; 16] = [
         words: "images of a night sky, and their comparison with a solution",
     },
     Example {
-        name: "hipparcos2.bin",
-        bytes: HIPPARCOS_BYTES,
-        words: "star catalogue of the simulator, for the program above",
-    },
-    Example {
         name: "argon-campaigns.toml",
         bytes: include_bytes!("../../scenarios/studies/argon-campaigns.toml"),
         words: "study: many campaigns of ARGON",
@@ -113,6 +108,10 @@ const EXAMPLES: [Example; 16] = [
     },
 ];
 
+/// Name of the star catalogue, which `night_sky.py` reads. Its bytes are those of the simulator: in the table
+/// above, the program would contain them twice.
+const CATALOGUE: &str = "hipparcos2.bin";
+
 /// Writes the example files into a directory that is new or empty.
 pub(super) fn examples(arguments: &ExamplesArguments, output: &Output) -> Result<Answer, Failure> {
     let folder = &arguments.out;
@@ -120,23 +119,30 @@ pub(super) fn examples(arguments: &ExamplesArguments, output: &Output) -> Result
     let targets = folder.join("targets");
     std::fs::create_dir(&targets).map_err(|source| FileError::io(&targets, "create", source))?;
     for example in &EXAMPLES {
-        let path = folder.join(example.name);
-        let file = AtomicFile::create_new(&path)?;
-        file.file().write_all(example.bytes).map_err(|source| FileError::io(&path, "write", source))?;
-        file.commit_new()?;
+        write(&folder.join(example.name), example.bytes)?;
     }
-    let names: Vec<&str> = EXAMPLES.iter().map(|example| example.name).collect();
+    write(&folder.join(CATALOGUE), HIPPARCOS_BYTES)?;
+    let mut names: Vec<&str> = EXAMPLES.iter().map(|example| example.name).collect();
+    names.push(CATALOGUE);
     output.answer(&json!({ "folder": folder, "files": names }), listing(arguments))?;
     Ok(Answer::Yes)
+}
+
+/// Writes a new file, which appears when it is complete.
+fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    let file = AtomicFile::create_new(path)?;
+    file.file().write_all(bytes).map_err(|source| FileError::io(path, "write", source))?;
+    file.commit_new()
 }
 
 /// Returns the files with their descriptions, a line each, and a command to try.
 fn listing(arguments: &ExamplesArguments) -> String {
     let folder = arguments.out.display();
-    let mut text = format!("{} files in {folder}:\n", EXAMPLES.len());
+    let mut text = format!("{} files in {folder}:\n", EXAMPLES.len() + 1);
     for example in &EXAMPLES {
         text += &format!("  {:<24}{}\n", example.name, example.words);
     }
+    text += &format!("  {CATALOGUE:<24}star catalogue of the simulator, for night_sky.py\n");
     text + &format!(
         "try: boresight run argon --frames 8000..8010 --pipeline \"exec:python3 {folder}/brightest.py\""
     )

@@ -27,7 +27,7 @@ pub const MAX_FAIR_NEES: f64 = 4.0;
 pub const MIN_GOOD_WITHIN_3_SIGMA: f64 = 0.99;
 /// Smallest rate of errors within 3 σ that is fair.
 pub const MIN_FAIR_WITHIN_3_SIGMA: f64 = 0.95;
-/// Smallest ratio of a mean error to its RMS at which the error is mostly bias.
+/// Smallest ratio of a mean error to the RMS at which a bias is named: a quarter of the mean square.
 pub const MIN_BIAS_SHARE: f64 = 0.5;
 /// Relative difference from which a result differs from that of its baseline.
 pub const BASELINE_MARGIN: f64 = 0.1;
@@ -163,11 +163,11 @@ pub fn image_error(subject: &str, rms_px: Option<Measured>, mean_px: Option<Meas
     Finding::new(grade, subject, text).and(&bias_sentence(rms.value, mean_px.map(|mean| mean.value), "px"))
 }
 
-/// Returns a sentence if an error is mostly bias: its mean is at least [`MIN_BIAS_SHARE`] of its RMS.
+/// Returns a sentence on the bias of an error whose mean is at least [`MIN_BIAS_SHARE`] of its RMS.
 pub fn bias_sentence(rms: f64, mean: Option<f64>, unit: &str) -> String {
     match mean {
         Some(mean) if rms > 0.0 && mean.abs() >= MIN_BIAS_SHARE * rms => {
-            format!("Mostly a bias: the mean error is {}.", with_unit(&significant_3(mean), unit))
+            format!("Part of it is a bias: the mean error is {}.", with_unit(&significant_3(mean), unit))
         }
         _ => String::new(),
     }
@@ -235,7 +235,7 @@ pub fn against_baseline(
     let (grade, words) = if ratio < 1.0 - BASELINE_MARGIN {
         (Grade::Good, format!("{} times smaller than", significant_3(1.0 / ratio.max(f64::MIN_POSITIVE))))
     } else if ratio <= 1.0 + BASELINE_MARGIN {
-        (Grade::Fair, "within a tenth of".to_owned())
+        (Grade::Fair, "within 10\u{a0}% of".to_owned())
     } else {
         (Grade::Poor, format!("{} times larger than", significant_3(ratio)))
     };

@@ -8,7 +8,7 @@ use super::{CatalogStar, radial_velocity};
 
 /// The embedded catalogue: a header of 48 bytes and 29 bytes for each of 117,955 stars, little-endian, as
 /// `sim/data/make_hipparcos2.py` describes.
-pub const HIPPARCOS_BYTES: &[u8] = include_bytes!("../../../data/hipparcos2.bin");
+pub static HIPPARCOS_BYTES: &[u8] = include_bytes!("../../../data/hipparcos2.bin");
 
 const HEADER: usize = 48;
 const SHA256: std::ops::Range<usize> = 16..48;
