@@ -99,6 +99,9 @@ pub enum Solution {
 pub enum AttitudeSource {
     /// Solved from a sufficient number of stars in this frame.
     Stars,
+    /// Solved from the stars in this frame, at another focal length than that of the setup, which they
+    /// contradict.
+    RescaledStars,
     /// Too few stars to solve the attitude: the last filtered mounting was used.
     TooFewStars,
     /// No stars: the last filtered mounting was used.
@@ -109,16 +112,23 @@ pub enum AttitudeSource {
 
 impl AttitudeSource {
     /// All variants.
-    pub const ALL: [Self; 4] = [Self::Stars, Self::TooFewStars, Self::NoStars, Self::NoMatch];
+    pub const ALL: [Self; 5] =
+        [Self::Stars, Self::RescaledStars, Self::TooFewStars, Self::NoStars, Self::NoMatch];
 
     /// Returns the name used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Stars => "stars",
+            Self::RescaledStars => "rescaled_stars",
             Self::TooFewStars => "too_few_stars",
             Self::NoStars => "no_stars",
             Self::NoMatch => "no_match",
         }
+    }
+
+    /// Returns true if the stars of the frame determine the attitude.
+    pub fn is_by_stars(self) -> bool {
+        matches!(self, Self::Stars | Self::RescaledStars)
     }
 
     /// Parses the result of [`AttitudeSource::code`].

@@ -3,7 +3,6 @@
 //! The model is exact: the absolute states of chaser and target are subtracted. The linear map of relative
 //! elements to R, T, N omits the curvature of the orbit, 63 m at 30 km.
 
-use contract::AttitudeSource;
 use contract::navigation::{AngleErrors, LineOfSightErrors, LineOfSightMeasurement, RelativeElements, Use};
 use hifitime::Epoch;
 use nalgebra::{Matrix2x3, Matrix2x6, Matrix3, Vector3};
@@ -76,7 +75,7 @@ impl Sight {
     ) -> Result<Self, Use> {
         let seconds = seconds_between(epoch, measurement.time);
         let class = match measurement.attitude_source {
-            Some(AttitudeSource::Stars) => ErrorClass::WithStars,
+            Some(source) if source.is_by_stars() => ErrorClass::WithStars,
             _ => ErrorClass::WithoutStars,
         };
         let noise = match &measurement.covariance {

@@ -69,6 +69,12 @@ impl CameraModel {
         Direction::from_vector(Vector3::new(u / self.focal_x_px, v / self.focal_y_px, 1.0)).ok()
     }
 
+    /// Returns the camera with its focal length multiplied by `ratio`, greater than 0. The distortion, a map
+    /// of pixels, stays.
+    pub(crate) fn with_focal_ratio(&self, ratio: f64) -> Self {
+        Self { focal_x_px: self.focal_x_px * ratio, focal_y_px: self.focal_y_px * ratio, ..self.clone() }
+    }
+
     /// Returns the focal length along columns and along rows, px.
     pub(crate) fn focal_px(&self) -> (f64, f64) {
         (self.focal_x_px, self.focal_y_px)

@@ -29,6 +29,7 @@ mod navigation;
 mod prepared_scenario;
 mod progress;
 mod python_pipeline;
+mod report;
 mod run;
 mod scenario;
 mod score;
@@ -50,6 +51,8 @@ mod _boresight {
     use crate::frame::{FieldTelemetry, Frame, Telemetry};
     #[pymodule_export]
     use crate::navigation::{Navigation, navigate};
+    #[pymodule_export]
+    use crate::report::report;
     #[pymodule_export]
     use crate::run::{Run, run};
     #[pymodule_export]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use boresight::failure::Failure;
-use boresight::files::Checksums;
+use boresight::files::{Checksums, existing_file_beside};
 use boresight::run::world_of_run;
 use boresight::scenario::AttitudeChoice;
 use boresight::toml_file::read_text;
@@ -84,10 +84,7 @@ fn score_json(
     };
     read_text(&run_file).map_err(unreadable)?;
     let world = world_of_run(&run_file)?;
-    let neighbouring_file = || {
-        let path = measurements.with_file_name(world.facts().evidence_file?);
-        path.is_file().then_some(path)
-    };
+    let neighbouring_file = || existing_file_beside(measurements, world.facts().evidence_file?);
     let json = world.score(directory, measurements, neighbouring_file().as_deref(), attitude)?.json()?;
     Checksums::check(directory, |_| true)?;
     Ok(json)

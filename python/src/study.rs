@@ -31,6 +31,13 @@ pub(crate) struct StudyResult {
     _temporary: Option<TempDir>,
 }
 
+impl StudyResult {
+    /// Returns the directory of the study.
+    pub(crate) fn path(&self) -> &Path {
+        &self.directory
+    }
+}
+
 #[pymethods]
 impl StudyResult {
     /// Directory of the study.

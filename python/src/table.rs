@@ -9,9 +9,9 @@ use arrow_schema::ffi::FFI_ArrowSchema;
 use arrow_schema::{ArrowError, DataType, SchemaRef};
 use boresight::files::LoadedTable;
 use numpy::PyArray1;
-use pyo3::exceptions::PyKeyError;
+use pyo3::exceptions::{PyIndexError, PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyCapsule, PyDict, PyList};
+use pyo3::types::{PyCapsule, PyDict, PyList, PySlice};
 
 use crate::arrow::{batch, schema};
 use crate::errors::BoresightError;
@@ -41,6 +41,38 @@ impl Table {
 
     fn rows(&self) -> usize {
         self.batches.iter().map(RecordBatch::num_rows).sum()
+    }
+
+    /// Returns the rows of a slice as a table.
+    fn slice(&self, slice: &Bound<'_, PySlice>) -> PyResult<Self> {
+        let span = slice.indices(self.rows() as isize)?;
+        if span.step != 1 {
+            let message = format!("the step of the slice is {}, expected 1", span.step);
+            return Err(PyValueError::new_err(message));
+        }
+        let (mut skipped, mut missing) = (span.start as usize, span.slicelength);
+        let mut batches = Vec::new();
+        for batch in &self.batches {
+            let first = skipped.min(batch.num_rows());
+            let count = missing.min(batch.num_rows() - first);
+            batches.push(batch.slice(first, count));
+            (skipped, missing) = (skipped - first, missing - count);
+        }
+        Ok(Self { schema: SchemaRef::clone(&self.schema), batches })
+    }
+
+    /// Returns the row of an index, which counts from the end if it is negative.
+    fn row_at(&self, index: isize) -> PyResult<RecordBatch> {
+        let count = self.rows();
+        let row = if index < 0 { count.checked_add_signed(index) } else { usize::try_from(index).ok() };
+        let mut rest = row.unwrap_or(count);
+        for batch in &self.batches {
+            if rest < batch.num_rows() {
+                return Ok(batch.slice(rest, 1));
+            }
+            rest -= batch.num_rows();
+        }
+        Err(PyIndexError::new_err(format!("row {index} of a table of {count} rows")))
     }
 
     fn column<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
@@ -113,10 +145,20 @@ impl Table {
         self.rows()
     }
 
-    /// Returns a column: numbers and truth values as a numpy array (NaN for missing values), times as
-    /// `datetime64[ns]` (UTC), text as a list (None for missing values).
-    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let index = self.schema.index_of(name).map_err(|_| {
+    /// Returns a column by its name: numbers and truth values as a numpy array (NaN for missing values),
+    /// times as `datetime64[ns]` (UTC), text as a list (None for missing values). A slice (`table[:2]`) is a
+    /// table of these rows, an index (`table[-1]`) a row as a dictionary.
+    fn __getitem__<'py>(&self, py: Python<'py>, key: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        if let Ok(slice) = key.cast::<PySlice>() {
+            return Ok(self.slice(slice)?.into_pyobject(py)?.into_any());
+        }
+        if let Ok(index) = key.extract::<isize>() {
+            return Ok(row(py, self.row_at(index)?)?.into_any());
+        }
+        let name: String = key.extract().map_err(|_| {
+            PyTypeError::new_err("expected the name of a column, the index of a row or a slice of rows")
+        })?;
+        let index = self.schema.index_of(&name).map_err(|_| {
             let known = self.column_names().join(", ");
             PyKeyError::new_err(format!("no column `{name}`; available columns: {known}"))
         })?;

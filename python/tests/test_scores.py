@@ -39,6 +39,19 @@ def test_a_notebook_displays_a_score_as_html(run):
     assert "<td>correct_rate</td>" in text and text.count("<tr>") == text.count("</tr>") > 5
 
 
+def test_a_report_is_written_of_a_run_and_of_measurements_of_another_pipeline(run, tmp_path):
+    path = boresight.report(run)
+    assert path == run.directory / "report.html" and path.read_text().startswith("<!doctype html>")
+    lines = (run.directory / "measurements.csv").read_text().splitlines(keepends=True)
+    (tmp_path / "mine.csv").write_text("".join(lines[:-10]))
+    mine = boresight.report(run, tmp_path / "pages" / "mine.html", measurements=tmp_path / "mine.csv")
+    assert "not reported" in mine.read_text() and "not reported" not in path.read_text()
+    with pytest.raises(boresight.InputError, match="out is None, expected a path"):
+        boresight.report(run, measurements=tmp_path / "mine.csv")
+    with pytest.raises(boresight.FileError):
+        boresight.report(run, tmp_path / "mine.csv")
+
+
 def test_text_in_a_score_is_escaped():
     score = boresight.Score(scenario="<b>", frames=1, figures={"<i>": {"value": 1.0, "count": 1, "of": 1}})
     assert "<b>" not in score._repr_html_() and "<i>" not in score._repr_html_()

@@ -37,6 +37,23 @@ def test_columns_have_numpy_types_and_nan_where_nothing_is(run):
         measured["x"]
 
 
+def test_rows_are_sliced_and_indexed_like_those_of_a_list(run):
+    measured = run.measurements
+    frames = list(measured["frame"])
+    for rows in (slice(2), slice(-3, None), slice(5, 5), slice(38, 99), slice(None)):
+        part = measured[rows]
+        assert isinstance(part, boresight.Table) and list(part["frame"]) == frames[rows]
+    assert measured[0]["frame"] == 8000 and measured[-1]["frame"] == frames[-1]
+    assert measured[:3][2] == measured[2]
+    assert polars.DataFrame(measured[1:3])["frame"].to_list() == frames[1:3]
+    with pytest.raises(ValueError, match="the step of the slice is 2, expected 1"):
+        measured[::2]
+    with pytest.raises(IndexError, match="row 40 of a table of 40 rows"):
+        measured[40]
+    with pytest.raises(TypeError, match="the name of a column"):
+        measured[1.5]
+
+
 def test_a_table_outlives_its_run():
     table = boresight.run("argon", frames=range(8000, 8002)).truth_objects
     frame = polars.DataFrame(table)

@@ -4,12 +4,12 @@ use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use files::{Checksums, Failure, FileError, RunDirectory};
+use files::{Checksums, Failure, FileError, RunDirectory, file_beside};
 use indicatif::ProgressBar;
 use labels::{LabelCounts, LabelFormats};
 use run::any_world::ProcessingOrder;
 use run::{AnyWorld, Expectation, FrameJobs, Options, worlds};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, json};
 
 use super::Answer;
 use super::docking::{RendererOptions, SequenceArguments, is_docking, process_sequence};
@@ -141,9 +141,10 @@ pub(super) struct ProcessArguments {
     pub(super) directory: PathBuf,
     #[command(flatten)]
     pub(super) sequence: SequenceArguments,
-    /// File to write the measurements to; other results are written beside it (clusters.parquet; docking:
-    /// motion.csv, features.parquet). Default: `measurements.csv` in the dataset; for a video, in the current
-    /// directory. Docking: `-` writes only the measurements, to standard output, one after the other
+    /// File to write the measurements to. Other results are written beside it: clusters.parquet (docking:
+    /// motion.csv, features.parquet) beside measurements.csv, NAME.clusters.parquet beside NAME.csv. Default:
+    /// `measurements.csv` in the dataset; for a video, in the current directory. Docking: `-` writes only the
+    /// measurements, to standard output, one after the other
     #[arg(short, long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
     #[command(flatten)]
@@ -205,14 +206,17 @@ fn process_dataset(
     let processed = processed?;
     output.first_failure(processed.first_failure.as_ref());
     let frames = processed.frames;
-    let files = processed.files.iter().map(|file| {
-        (file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default(), json!(file))
-    });
-    // The measurements may have any name.
-    let files = [("measurements".to_owned(), json!(measurements))].into_iter().chain(files.skip(1));
-    let summary = processed.summary.iter().map(|summary| (summary.key.to_owned(), json!(summary.counts)));
-    let document: Map<String, Value> =
-        files.chain([("frames".to_owned(), json!(frames))]).chain(summary).collect();
+    let mut document = Map::new();
+    document.insert("measurements".to_owned(), json!(measurements));
+    for name in processed.beside {
+        // The key is the name without its extension: `clusters`.
+        let key = name.split_once('.').map_or(*name, |(stem, _)| stem);
+        document.insert(key.to_owned(), json!(file_beside(&measurements, name)));
+    }
+    document.insert("frames".to_owned(), json!(frames));
+    if let Some(summary) = &processed.summary {
+        document.insert(summary.key.to_owned(), json!(summary.counts));
+    }
     let mut text = format!("{frames} {}s processed, outcomes in {}", world.image(), measurements.display());
     if let Some(summary) = &processed.summary {
         text.push('\n');

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use files::{AtomicFile, Failure};
 use gate::{
-    Baseline, CompareOptions, GateReport, Replacement, compare, junit, junit_of_failure, read_result,
+    Baseline, CompareOptions, GateReport, JUNIT_DOCUMENTS, Replacement, compare, junit, junit_of_failure,
+    read_result,
 };
 use indexmap::IndexMap;
 use scenario::AttitudeChoice;
@@ -53,7 +54,8 @@ struct CompareArguments {
     /// Reason why these figures may change
     #[arg(long, value_name = "TEXT", requires = "accept_changed", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     reason: Option<String>,
-    /// Also write the report as JUnit XML, or the reason why nothing could be compared; a new file
+    /// Also write the report as JUnit XML, or the reason why nothing could be compared;
+    /// replaces an earlier report of this kind, but no other file
     #[arg(long, value_name = "FILE", value_parser = output_path())]
     junit: Option<PathBuf>,
     /// Also write the report as one HTML file, with flipped frames as pictures; replaces an existing file
@@ -151,11 +153,8 @@ fn make_baseline(arguments: &BaselineArguments, output: &Output) -> Result<Answe
 
 fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Failure> {
     // Checked now, before minutes are spent on a report that could not be written.
-    if let Some(path) = arguments.junit.as_ref().filter(|path| path.exists()) {
-        return Err(Failure::Usage(format!(
-            "--junit is {}, which exists; expected the name of a new file",
-            path.display()
-        )));
+    if let Some(path) = &arguments.junit {
+        JUNIT_DOCUMENTS.check(path)?;
     }
     check_option(arguments.report.as_ref())?;
     let compared = compared(arguments);
@@ -164,7 +163,7 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
             Ok(report) => junit(report)?,
             Err(failure) => junit_of_failure(failure)?,
         };
-        AtomicFile::with_text(path, &xml)?.commit_new()?;
+        AtomicFile::with_text(path, &xml)?.replace(JUNIT_DOCUMENTS)?;
     }
     let report = compared?;
     if let Some(path) = &arguments.report {

@@ -34,6 +34,7 @@ use files::Failure;
 use interrupt::{clean_up_when_interrupted, scratch_directory};
 #[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 use missing_feature::missing_feature;
+pub use report::write_page_of;
 
 /// Version, commit of the source and enabled features.
 const VERSION: &str = concat!(
@@ -79,6 +80,9 @@ enum Command {
     /// orbit of the built-in scenario `starting-point`; neither Sun nor Earth is drawn, and the Earth covers
     /// no star.
     Sky(far_range::SkyArguments),
+    /// Determine a camera from its frames
+    #[command(subcommand)]
+    Camera(far_range::CameraCommand),
     /// Reproduce the tables and figures of a paper whose method is built in
     Reproduce(reproduce::ReproduceArguments),
     /// Run a pipeline on a dataset, which may contain real images
@@ -151,6 +155,7 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Run(arguments) => run::run(&arguments, &output),
         Command::Render(arguments) => dataset::render(&arguments, &output),
         Command::Sky(arguments) => far_range::sky(&arguments, &output),
+        Command::Camera(command) => far_range::camera(&command, &output),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments, &output),
         Command::Process(arguments) => dataset::process(&arguments, &output),
         Command::Score(arguments) => score::score(&arguments, &output),

@@ -17,6 +17,7 @@ use super::Answer;
 use super::options::output_path;
 use super::output::Output;
 
+pub use pages::write_page_of;
 pub(super) use pages::{write_beside_results, write_beside_run, write_gate};
 
 /// Headings of the report of a run.
@@ -31,9 +32,13 @@ pub(super) enum Headings {
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {
-    /// Directory of a run, of a study, or of `boresight visibility --out`
+    /// Directory of a run, of a processed dataset, of a study, or of `boresight visibility --out`
     #[arg(value_name = "DIR")]
     directory: PathBuf,
+    /// Measurements of any pipeline on the frames of the directory, CSV; default: `measurements.csv` in the
+    /// directory
+    #[arg(long, value_name = "FILE", requires = "out", conflicts_with = "budget")]
+    measurements: Option<PathBuf>,
     /// File to write, replaced if it exists; default: `report.html` in the directory
     #[arg(short, long, value_name = "FILE", value_parser = output_path())]
     out: Option<PathBuf>,
@@ -56,7 +61,10 @@ pub(super) fn check_option(report: Option<&PathBuf>) -> Result<(), Failure> {
 pub(super) fn report(arguments: &ReportArguments, output: &Output) -> Result<Answer, Failure> {
     let path = arguments.out.clone().unwrap_or_else(|| arguments.directory.join("report.html"));
     check_option(Some(&path))?;
-    let bytes = pages::write_report(&arguments.directory, &arguments.budget, &path, output)?;
+    let bytes = match &arguments.measurements {
+        Some(file) => pages::write_report_on_measurements(&arguments.directory, file, &path)?,
+        None => pages::write_report(&arguments.directory, &arguments.budget, &path, output)?,
+    };
     output.answer(
         &json!({ "report": path, "bytes": bytes }),
         format!("{} ({:.1} MB)", path.display(), bytes as f64 / 1e6),

@@ -149,6 +149,9 @@ fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Ans
 fn new(file: &PathBuf, world: &dyn AnyWorld, output: &Output) -> Result<(), Failure> {
     let refuse =
         |error: std::io::Error| Failure::Usage(format!("{}: cannot be created: {error}", file.display()));
+    if let Some(folder) = file.parent() {
+        std::fs::create_dir_all(folder).map_err(refuse)?;
+    }
     let mut created = OpenOptions::new().write(true).create_new(true).open(file).map_err(refuse)?;
     created.write_all(world.starting_point().as_bytes()).map_err(refuse)?;
     let document = json!({ "file": file });

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use files::{Checksums, Failure, refuse_unfinished};
+use files::{Checksums, Failure, existing_file_beside, refuse_unfinished};
 use run::{IncompleteRun, world_of_run, worlds};
 use serde_json::{Map, Value};
 
@@ -20,11 +20,11 @@ pub(super) struct ScoreArguments {
     /// (docs/formats.md)
     measurements: PathBuf,
     /// The pipeline's classification of each cluster, Parquet: evidence for the causes of misses. Default:
-    /// `clusters.parquet` beside the measurements, if it exists
+    /// `clusters.parquet` beside `measurements.csv`, `NAME.clusters.parquet` beside `NAME.csv`, if it exists
     #[arg(long, value_name = "FILE")]
     clusters: Option<PathBuf>,
-    /// Docking: the pipeline's motion estimates at the end of portions, CSV. Default: `motion.csv` beside the
-    /// measurements, if it exists
+    /// Docking: the pipeline's motion estimates at the end of portions, CSV. Default: `motion.csv` beside
+    /// `measurements.csv`, `NAME.motion.csv` beside `NAME.csv`, if it exists
     #[arg(long, value_name = "FILE")]
     motion: Option<PathBuf>,
     #[command(flatten)]
@@ -51,10 +51,7 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
             evidence = Some(given.clone());
         }
     }
-    let neighbouring_file = || {
-        let path = arguments.measurements.with_file_name(world.facts().evidence_file?);
-        path.is_file().then_some(path)
-    };
+    let neighbouring_file = || existing_file_beside(&arguments.measurements, world.facts().evidence_file?);
     let evidence = evidence.or_else(neighbouring_file);
     let (directory, attitude) = (&arguments.directory, arguments.attitude.choice);
     let scored = world.score(directory, &arguments.measurements, evidence.as_deref(), attitude)?;

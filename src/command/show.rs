@@ -34,7 +34,7 @@ pub(super) struct ShowArguments {
     #[arg(long, value_name = "VIEW", value_enum, default_value_t)]
     view: ShownArea,
     /// Outcomes to draw, CSV; default: `measurements.csv` in RUN, if it exists. The features and clusters
-    /// that the pipeline recognised (features.parquet, clusters.parquet) are read from the same directory
+    /// that the pipeline recognised (features.parquet, clusters.parquet) are read beside it
     #[arg(long, value_name = "FILE")]
     measurements: Option<PathBuf>,
 }

@@ -11,6 +11,9 @@ const MAX_CHANGED_UNITS: usize = 10;
 /// Maximum number of rows of the table, unless more figures are worse or better.
 const MAX_ROWS: usize = 20;
 
+/// The remedy for a changed figure, within 80 columns.
+const HOW_TO_ACCEPT: &str = "If the change is intended, state it: --accept-changed --reason \"…\"\n";
+
 /// Returns a report as text: one row per figure, then the changed units. Ends with a line feed.
 pub fn gate_table(report: &GateReport, styled: bool) -> String {
     let mut table = plain_table(styled);
@@ -51,6 +54,9 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
         ),
     };
     let mut text = wrapped(&format!("{}: {verdict}\n", report.name));
+    if report.verdict == FigureVerdict::Changed && report.accepted.is_none() {
+        text.push_str(HOW_TO_ACCEPT);
+    }
     text.push_str(&finish(table));
     text.push_str(&wrapped(&format!(
         "{} {} in {} blocks; {paired}. Worse: p, adjusted for all figures, is at most {}, and the worsening \

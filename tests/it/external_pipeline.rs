@@ -286,3 +286,47 @@ fn a_program_is_given_no_truth() {
         assert!(!of_truth.iter().any(|keyword| header.contains(keyword)), "{header}");
     }
 }
+
+/// A pipeline that never finds a target.
+const BLIND: &str = r#"
+import json, sys
+
+sys.stdin.readline()
+print(json.dumps({"boresight_pipeline": 1, "name": "blind"}), flush=True)
+for line in sys.stdin:
+    print(json.dumps({"frame": json.loads(line)["frame"], "status": "no_target"}), flush=True)
+"#;
+
+/// Outcomes of several pipelines on one dataset stand side by side, each with its own files, and each is
+/// scored and reported by itself.
+#[test]
+fn one_dataset_holds_outcomes_of_several_pipelines() {
+    let bench = Bench::new();
+    bench.write("blind.py", BLIND);
+    bench.boresight("render starting-point --frames 100..105 --out data").done();
+    bench.boresight("process data").done();
+    let process = |out: &str, world: &str| {
+        bench.boresight_words(&["process", "data", "--out", out, "--pipeline", world]).done().stdout
+    };
+    process("data/mine.csv", "exec:python3 blind.py");
+    process("new/folder/mine.csv", "far_range");
+    for name in ["data/clusters.parquet", "data/mine.clusters.parquet", "new/folder/mine.clusters.parquet"] {
+        assert!(bench.path(name).is_file(), "{name}");
+    }
+    let rate = |file: &str| bench.boresight(&format!("score data {file} --json")).done().json();
+    let [own, other] = ["data/measurements.csv", "data/mine.csv"].map(rate);
+    assert_eq!(figure(&own, "hit_rate"), 1.0);
+    assert_eq!(other["misses"]["unexplained"], 5, "{other}");
+    bench.boresight("report data").done();
+    bench.boresight("report data --measurements data/mine.csv --out data/mine.html").done();
+    assert!(!bench.read("data/report.html").contains("unexplained"));
+    assert!(bench.read("data/mine.html").contains("unexplained"));
+    bench.boresight("render docking --frames 0..4 --out approach").done();
+    bench
+        .boresight("report approach")
+        .refused(&["approach/measurements.csv: is missing", "boresight process"]);
+    bench.boresight("process approach --out approach/first.csv").done();
+    bench.boresight("process approach").done();
+    bench.boresight("report approach --measurements approach/first.csv --out first.html").done();
+    assert!(bench.path("approach/first.motion.csv").is_file() && bench.path("first.html").is_file());
+}

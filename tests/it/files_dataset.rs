@@ -145,6 +145,19 @@ fn an_image_that_is_not_named_is_an_error() {
 }
 
 #[test]
+fn a_run_without_images_is_refused_with_the_remedy() {
+    let (_parent, run) = dataset(ImageFormat::Png);
+    for number in NUMBERS {
+        edit(&run.telemetry(), &format!("frames/{number:06}.png"), "");
+    }
+    let message = refusal(run.path());
+    assert!(
+        message.contains("`file` is `empty in every row`") && message.contains("--save-frames"),
+        "{message}"
+    );
+}
+
+#[test]
 fn no_image_outside_the_directory_is_read() {
     let elsewhere = ["../secret.png", "/etc/hostname", "frames/../../secret.png"];
     for outside in elsewhere {

@@ -211,7 +211,11 @@ fn the_same_run_is_no_worse_and_a_worse_one_shuts_the_gate() {
     let junit = quick_junit::Report::deserialize_from_str(&bench.read("junit.xml")).unwrap();
     assert_eq!(junit.tests, report["figures"].as_object().unwrap().len());
     assert!(junit.failures >= 2, "{}", bench.read("junit.xml"));
-    bench.boresight("gate base worse --junit junit.xml").refused(&["--junit is junit.xml", "exists"]);
+    // An earlier document is replaced, and no other file.
+    assert_eq!(bench.boresight("gate base worse --junit junit.xml").status, Some(1));
+    bench.write("mine.xml", "<testsuites name=\"mine\"/>");
+    bench.boresight("gate base worse --junit mine.xml").refused(&["mine.xml", "a file of another kind"]);
+    assert_eq!(bench.read("mine.xml"), "<testsuites name=\"mine\"/>");
 
     // A failed comparison is an error in the XML, too.
     bench.boresight("gate base nowhere --junit error.xml").refused(&["nowhere"]);
@@ -329,7 +333,7 @@ fn another_seed_is_compared_by_blocks_and_another_scenario_is_not() {
     bench.boresight("run sharp.toml --frames 0..60 --out sharp").done();
     bench
         .boresight("gate base sharp")
-        .refused(&["`scenario.psf.sigma_px` is `0.8` in the baseline and `0.7` in the result"]);
+        .refused(&["the baseline is of `argon` and the result of `sharp`", "`scenario.psf.sigma_px`"]);
     bench.boresight("run docking --frames 20000..20010 --out docking").done();
     bench.boresight("gate base docking").refused(&["`world` is `far_range`", "`docking`"]);
 }

@@ -98,7 +98,7 @@ fn other_conventions_of_the_quaternion_are_recognised() {
     check_mistake(&bench, "the first component of the telemetry's quaternions is their last\n");
     bench.write("set/telemetry.csv", &stated);
     std::fs::remove_file(bench.path("answers.csv")).unwrap();
-    std::fs::remove_file(bench.path("clusters.parquet")).unwrap();
+    std::fs::remove_file(bench.path("answers.clusters.parquet")).unwrap();
     change_quaternions(&bench, |[x, y, z, w]| [-x, -y, -z, w]);
     check_mistake(&bench, "the quaternions of the telemetry are those of the inverse rotation\n");
 }

@@ -180,5 +180,5 @@ fn nothing_is_written_into_the_dataset_if_the_measurements_are_written_elsewhere
     bench.boresight("process real --out out/mine.csv").done();
     check_same_files(&before, &bench.tree("real"));
     let names: Vec<_> = bench.tree("out").into_keys().collect();
-    assert_eq!(names, ["clusters.parquet", "mine.csv", "notes.txt"].map(std::path::PathBuf::from));
+    assert_eq!(names, ["mine.clusters.parquet", "mine.csv", "notes.txt"].map(std::path::PathBuf::from));
 }

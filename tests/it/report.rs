@@ -6,6 +6,7 @@ use std::fs;
 
 use boresight::far_range::scoring::Verdict;
 use boresight::far_range_views::report::{FarRangeRun, FrameDetail, far_range_page};
+use boresight::report::RunFiles;
 use boresight::report::page::Block;
 use contract::Angle;
 use serde_json::Value;
@@ -163,7 +164,7 @@ fn check_points(words: &str, chart: &Value) {
 fn the_drawn_points_of_a_long_run_are_distributed_as_all_its_errors() {
     let bench = Bench::new();
     bench.boresight("run argon --frames 40..60 --out run --no-report").done();
-    let mut run = FarRangeRun::read(&bench.path("run")).unwrap();
+    let mut run = FarRangeRun::read(&RunFiles::of_directory(&bench.path("run"))).unwrap();
     // Many copies of the frames, with errors that have a sharp peak and long tails: a few in each stretch are
     // far out.
     let (verdicts, truths) = (run.verdicts.clone(), run.truths.clone());
@@ -190,7 +191,8 @@ fn the_drawn_points_of_a_long_run_are_distributed_as_all_its_errors() {
             verdict
         })
         .collect();
-    let page = far_range_page(&run, &FrameDetail::open(&bench.path("run")).unwrap()).unwrap();
+    let page = far_range_page(&run, &FrameDetail::open(&RunFiles::of_directory(&bench.path("run"))).unwrap())
+        .unwrap();
     let bytes = page.html().unwrap().len();
     assert!(bytes < MAX_BYTES, "{bytes} bytes");
     let section = page.sections.iter().find(|section| section.id == "errors").unwrap();
@@ -506,7 +508,7 @@ fn directories_that_are_no_results_are_refused_by_name() {
     bench.write("empty/notes.txt", "nothing");
     bench.boresight("report empty").refused(&["empty", "run.toml", "summary.json", "visibility.json"]);
     bench.boresight("render argon --frames 300..302 --out set").done();
-    bench.boresight("report set").refused(&["set/score.json", "is missing"]);
+    bench.boresight("report set").refused(&["set/measurements.csv", "is missing", "boresight process set"]);
     bench.boresight("run argon --frames 300..302 --out run --no-report").done();
     for (name, part) in [
         ("measurements.csv", "is missing"),
@@ -525,7 +527,7 @@ fn directories_that_are_no_results_are_refused_by_name() {
     bench.write("run/score.json", score.replacen("\"frames\": 2", "\"frames\": 3", 1));
     bench.boresight("report run").refused(&["run/score.json", "`frames` is 3", "truth/frames.parquet"]);
     bench.write("run/score.json", &score);
-    bench.boresight("report run --out nowhere/report.html").refused(&["nowhere"]);
+    bench.boresight("report run --out empty/notes.txt/report.html").refused(&["empty/notes.txt"]);
     bench.boresight("report run").done();
 }
 

@@ -52,10 +52,6 @@ fn an_exr_dataset_processed_and_scored_gives_the_score_of_the_run() {
 fn a_run_with_images_is_a_dataset_too() {
     let bench = Bench::new();
     bench.boresight(&format!("run argon --frames {FRAMES} --save-frames png --out run")).done();
-    bench
-        .boresight("process run --out again/measurements.csv")
-        .refused(&["again/measurements.csv", "cannot create"]);
-    std::fs::create_dir(bench.path("again")).unwrap();
     bench.boresight("process run --out again/measurements.csv").done();
     for file in ["measurements.csv", "clusters.parquet"] {
         bench.check_same(&format!("again/{file}"), &format!("run/{file}"));

@@ -88,6 +88,108 @@ fn the_truth_is_out_of_reach() {
     assert_eq!(reached(&bench, &more), "failed: foreign folder");
 }
 
+/// A program that is started by its own name lies beside the scenario and the results, as a script does.
+#[test]
+fn the_folder_of_the_program_hides_the_truth_as_well() {
+    let bench = Bench::new();
+    bench.scenario("sky.toml", "starting-point", |_| {});
+    bench.write("beside.py", "WORD = 'own'\n");
+    bench.boresight("run sky.toml --frames 0..2 --out earlier --no-report").done();
+    let words = ["run", "sky.toml", "--frames", "0..2", "--no-report", "--sandbox"];
+    for (program, out) in [("curious", "out"), ("bin/curious", "out-bin")] {
+        bench.write(
+            program,
+            format!("#!/usr/bin/env python3\n{}", CURIOUS.replace("\"out\"", &format!("{out:?}"))),
+        );
+        bench.write("bin/beside.py", "WORD = 'own'\n");
+        make_executable(&bench, program);
+        let pipeline = format!("exec:./{program}");
+        let words: Vec<&str> = words.into_iter().chain(["--out", out, "--pipeline", &pipeline]).collect();
+        bench.boresight_words(&words).done();
+        assert_eq!(
+            bench.csv(&format!("{out}/measurements.csv"))[1]["status"],
+            "failed: nothing",
+            "{program}"
+        );
+    }
+}
+
+fn make_executable(bench: &Bench, program: &str) {
+    let permissions = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+    std::fs::set_permissions(bench.path(program), permissions).unwrap();
+}
+
+/// Copies the interpreter and its standard library to a directory.
+const COPY_PYTHON: &str = r#"
+import os, pathlib, shutil, sys, sysconfig
+
+target, library = pathlib.Path(sys.argv[1]), pathlib.Path(sysconfig.get_path("stdlib"))
+left_out = shutil.ignore_patterns("test", "*-packages", "__pycache__", "idlelib", "tkinter", "config-*")
+shutil.copytree(library, target / "lib" / library.name, ignore=left_out)
+(target / "bin").mkdir()
+shutil.copy(os.path.realpath(sys.executable), target / "bin" / "python3")
+"#;
+
+/// Python environments outside the search path, based on a Python outside it: a script of the environment,
+/// and an environment with a copy of the interpreter in place of a link to it.
+#[test]
+fn a_python_environment_outside_the_search_path_starts() {
+    let mut bench = Bench::new();
+    bench.scenario("sky.toml", "starting-point", |_| {});
+    let base = Bench::new();
+    base.write("copy_python.py", COPY_PYTHON);
+    let copied = std::process::Command::new("/usr/bin/python3")
+        .arg(base.path("copy_python.py"))
+        .arg(base.path("python"))
+        .status();
+    assert!(copied.unwrap().success());
+    let python = base.path("python/bin/python3").display().to_string();
+    bench.set("PATH", "/usr/bin:/bin");
+    bench.write("beside.py", "WORD = 'own'\n");
+    for (environment, options) in [("linked", "--symlinks"), ("copied", "--copies")] {
+        let made = std::process::Command::new(&python)
+            .args(["-m", "venv", options, "--without-pip"])
+            .arg(base.path(environment))
+            .status();
+        assert!(made.unwrap().success());
+        let interpreter = base.path(environment).join("bin/python3").display().to_string();
+        bench.write(environment, format!("#!{interpreter}\n{CURIOUS}"));
+        make_executable(&bench, environment);
+        bench.write("curious.py", CURIOUS);
+        for (index, command) in
+            [format!("{interpreter} curious.py"), format!("./{environment}")].iter().enumerate()
+        {
+            let out = format!("out-{environment}-{index}");
+            let pipeline = format!("exec:{command}");
+            let words = [
+                "run",
+                "sky.toml",
+                "--frames",
+                "0..2",
+                "--no-report",
+                "--sandbox",
+                "--out",
+                &out,
+                "--pipeline",
+                &pipeline,
+            ];
+            bench.boresight_words(&words).done();
+            assert_eq!(
+                bench.csv(&format!("{out}/measurements.csv"))[1]["status"],
+                "failed: nothing",
+                "{command}"
+            );
+        }
+    }
+    // What a program lacks nevertheless is named, with the remedy.
+    bench.write("mine.py", format!("import sys\nsys.path.append({:?})\nimport weights\n", base.path("own")));
+    base.write("own/weights.py", "");
+    let words =
+        ["run", "sky.toml", "--frames", "0..3", "--no-report", "--sandbox", "--out", "out", "--pipeline"];
+    let words: Vec<&str> = words.into_iter().chain(["exec:python3 mine.py"]).collect();
+    bench.boresight_words(&words).refused(&["No module named 'weights'", "--sandbox-read"]);
+}
+
 #[test]
 fn a_dataset_hides_its_truth_as_well() {
     let bench = Bench::new();

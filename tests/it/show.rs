@@ -108,9 +108,9 @@ fn truth_and_answer_are_drawn_where_the_files_have_them() {
     for name in ["panel", "close_up"] {
         let panel = PanelLocation(frame[name].clone());
         let at = panel.picture_position(target.position);
-        check_at(panel.centre(&image, ORANGE, at, 40.0), at, "target");
+        check_at(panel.centre(&image, GREEN, at, 40.0), at, "target");
         let at = panel.picture_position(answer);
-        check_at(panel.centre(&image, GREEN, at, 14.0), at, "answer");
+        check_at(panel.centre(&image, ORANGE, at, 14.0), at, "answer");
     }
     // A star without neighbours.
     let panel = PanelLocation(frame["panel"].clone());
@@ -369,8 +369,9 @@ fn only_an_earlier_picture_is_replaced() {
     }
     bench.boresight("show run 10200 -o picture.jpg").refused(&["picture.jpg", ".png"]);
     bench
-        .boresight("show run 10200 -o missing/picture.png")
-        .refused(&["missing/picture.png", "cannot create"]);
+        .boresight("show run 10200 -o picture.png/picture.png")
+        .refused(&["picture.png/picture.png", "cannot create"]);
+    bench.boresight("show run 10200 -o new/folder/picture.png").done();
     let left: Vec<_> = bench.tree(".").into_keys().filter(|path| is_partial(path)).collect();
     assert!(left.is_empty(), "{left:?}");
 }

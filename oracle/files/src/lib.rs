@@ -16,6 +16,7 @@
     )
 )]
 
+mod beside;
 mod complete;
 mod csv;
 mod error;
@@ -33,15 +34,17 @@ pub use self::csv::{
 pub use self::parquet::{
     ParquetFile, ParquetWriter, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
 };
+pub use beside::{existing_file_beside, file_beside};
 pub use complete::{
     AtomicFile, Checksums, PartialFiles, ReplaceableFile, RunDirectory, create_empty_directory,
     create_numbered_directory, file_sha256, refuse_unfinished, sha256,
 };
 pub use error::{Failure, FileError, FileLocation, create_new, failure, open_regular};
 pub use frame::{
-    ExpectedImage, FrameHeader, ImageFormat, ImageMetadata, RawImage, RequiredSize, Sip, SipTerm, TanSip,
-    WcsError, checked_size, fits_header, read_expected, read_frame, read_image, read_radiance,
-    write_expected, write_frame, write_png_of_depth, write_radiance,
+    ExpectedImage, FrameHeader, GreyImage, ImageFormat, ImageMetadata, PixelConversion, RawImage,
+    RequiredSize, Sip, SipTerm, TanSip, WcsError, checked_size, fits_header, read_expected, read_frame,
+    read_grey_image, read_image, read_radiance, write_expected, write_frame, write_png_of_depth,
+    write_radiance,
 };
 pub use listed_images::{locate_alone, locate_image, refuse_twice};
 pub use loaded_table::{LoadedTable, read_csv_table, read_parquet_table};

@@ -116,6 +116,13 @@ impl Identity {
                 let (a, b) = (self.scenario_sha256.clone(), result.scenario_sha256.clone());
                 ("scenario_sha256".to_owned(), a, b)
             });
+            if self.name != result.name {
+                return Err(Failure::Usage(format!(
+                    "cannot compare: the baseline is of `{}` and the result of `{}`, expected the same scenario; \
+                     they differ first in `scenario{at}`, which is `{of_baseline}` and `{of_result}`",
+                    self.name, result.name
+                )));
+            }
             return Err(cannot(&format!("scenario{at}"), &of_baseline, &of_result));
         }
         let same = self.seed == result.seed && self.frames_sha256 == result.frames_sha256;
@@ -177,6 +184,10 @@ mod tests {
             let message = identity(SCENARIO).pairing(&other).unwrap_err().to_string();
             assert!(parts.iter().all(|part| message.contains(part)), "{message}");
         }
+        let other = identity(&SCENARIO.replace("sigma_px = 0.8", "sigma_px = 0.9"));
+        let other = Identity { name: "another".to_owned(), ..other };
+        let message = identity(SCENARIO).pairing(&other).unwrap_err().to_string();
+        assert!(message.contains("the baseline is of `test` and the result of `another`"), "{message}");
         let study = Identity { kind: SourceKind::Study, ..identity(SCENARIO) };
         let message = identity(SCENARIO).pairing(&study).unwrap_err().to_string();
         assert!(message.contains("`run` in the baseline and `study` in the result"), "{message}");

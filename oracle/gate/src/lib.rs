@@ -42,6 +42,6 @@ pub use dependence::blocks::{Blocks, MIN_BLOCKS};
 pub use dependence::runs::LossRun;
 pub use identity::{Identity, Pairing, SourceKind};
 pub use read::read_result;
-pub use report::junit::{junit, junit_of_failure};
+pub use report::junit::{JUNIT_DOCUMENTS, junit, junit_of_failure};
 pub use report::{FigureReport, FigureVerdict, GateReport};
 pub use sample::Sample;

@@ -6,6 +6,7 @@ use std::path::Path;
 use files::Failure;
 use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
 
+use crate::RunFiles;
 use crate::charts::chart::{BESIDE, Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
 use crate::charts::plotly::{Layout, Trace};
 use crate::figures::words::{capital, display_name};
@@ -45,7 +46,7 @@ impl FlippedFrames {
         let Some(world) = world_report(&report.world) else { return Ok(none) };
         let chosen = first_flip_of_each_kind(&flips.units);
         let numbers: Vec<u64> = chosen.iter().map(|flip| flip.number).collect();
-        let (mut pictures, reason) = (world.pictures)(result, &numbers)?;
+        let (mut pictures, reason) = (world.pictures)(&RunFiles::of_directory(result), &numbers)?;
         for (picture, flip) in pictures.iter_mut().zip(&chosen) {
             picture.title = format!("{}: {}.", kind_words(flip.kind), change(flip));
         }

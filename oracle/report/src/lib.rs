@@ -25,6 +25,7 @@ pub mod figures;
 mod gate;
 pub mod page;
 pub mod read;
+mod run_files;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod study;
 pub mod verdict;
@@ -38,6 +39,7 @@ pub use page::data_table::DataTable;
 pub use page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
 pub use page::{Block, Link, Page, Section};
 pub use read::ResultKind;
+pub use run_files::RunFiles;
 pub use study::{StudyResult, study_page};
 
 use self::figures::run_page::run_page;
@@ -54,7 +56,7 @@ use self::worlds::{world_report, worlds_with_budget};
 /// A [`Failure`] that names the file which is missing or cannot be read.
 pub fn read_report(directory: &Path) -> Result<Page, Failure> {
     let page = match ResultKind::from_directory(directory)? {
-        ResultKind::Run => return page_of_run(directory, None),
+        ResultKind::Run => return report_on_measurements(&RunFiles::of_directory(directory)),
         ResultKind::Study => study_page(&StudyResult::read(directory)?),
         ResultKind::Other(other) => (other.page)(directory)?,
     };
@@ -62,15 +64,25 @@ pub fn read_report(directory: &Path) -> Result<Page, Failure> {
     Ok(page)
 }
 
+/// Returns the report of measurements of a run or of a rendered dataset, which are scored for it unless the
+/// run has written their score.
+///
+/// # Errors
+/// A [`Failure`] that names the file which is missing or cannot be read.
+pub fn report_on_measurements(files: &RunFiles) -> Result<Page, Failure> {
+    page_of_run(files, None)
+}
+
 /// Returns the page of a run, made by the run's world, with a warning if the run is not complete.
-fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
-    refuse_unfinished(directory)?;
-    let world = world_of_run(&directory.join("run.toml"))?;
+fn page_of_run(files: &RunFiles, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+    refuse_unfinished(&files.directory)?;
+    let world = world_of_run(&files.path("run.toml"))?;
     let mut page = match world_report(world.code()) {
-        Some(of_world) => (of_world.page)(directory, scored)?,
-        None => run_page(directory)?,
+        Some(of_world) => (of_world.page)(files, scored)?,
+        None => run_page(files)?,
     };
-    if let Some(incomplete) = IncompleteRun::read_from_directory(directory)? {
+    let folder = files.measurements.parent().unwrap_or(&files.directory);
+    if let Some(incomplete) = IncompleteRun::read_from_directory(folder)? {
         page.warnings.push(format!("The run is not complete: {incomplete}."));
     }
     Ok(page)
@@ -111,7 +123,7 @@ pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, 
 /// # Errors
 /// Those of [`read_report`].
 pub fn read_run_report(directory: &Path, scored: &mut dyn AnyJudgement) -> Result<Page, Failure> {
-    page_of_run(directory, Some(scored))
+    page_of_run(&RunFiles::of_directory(directory), Some(scored))
 }
 
 /// Renders frames of a run anew, each with its marks; no pictures for a run of a world without a report of
@@ -122,7 +134,7 @@ pub fn read_run_report(directory: &Path, scored: &mut dyn AnyJudgement) -> Resul
 pub fn pictures_of_run(directory: &Path, frames: &[u64]) -> Result<Vec<Picture>, Failure> {
     let world = world_of_run(&directory.join("run.toml"))?;
     let Some(of_world) = world_report(world.code()) else { return Ok(Vec::new()) };
-    let (pictures, _) = (of_world.pictures)(directory, frames)?;
+    let (pictures, _) = (of_world.pictures)(&RunFiles::of_directory(directory), frames)?;
     Ok(pictures)
 }
 

@@ -63,7 +63,7 @@ impl ResultKind {
 /// Returns the failure for a missing file of a run.
 pub fn missing(directory: &Path, name: &str) -> Failure {
     Failure::Usage(format!(
-        "{}: is missing, expected the directory of a run; a rendered dataset has no results to report",
+        "{}: is missing, expected the directory of a run or of a rendered dataset",
         directory.join(name).display()
     ))
 }

@@ -8,6 +8,7 @@ use files::Failure;
 use run::AnyJudgement;
 use scenario::Stage;
 
+use crate::RunFiles;
 use crate::page::Page;
 use crate::page::picture::RenderedPictures;
 
@@ -16,11 +17,11 @@ use crate::page::picture::RenderedPictures;
 pub struct WorldReport {
     /// Code of the world.
     pub code: &'static str,
-    /// Makes the page of a run directory and verifies the checksums of the files that it read. For a run of
-    /// this process, the page uses the run's verdicts, which it may move out.
-    pub page: fn(&Path, Option<&mut dyn AnyJudgement>) -> Result<Page, Failure>,
-    /// Renders frames of a run directory anew.
-    pub pictures: fn(&Path, &[u64]) -> Result<RenderedPictures, Failure>,
+    /// Makes the page of a run and verifies the checksums of the files that it read. For a run of this
+    /// process, the page uses the run's verdicts, which it may move out.
+    pub page: fn(&RunFiles, Option<&mut dyn AnyJudgement>) -> Result<Page, Failure>,
+    /// Renders frames of a run anew.
+    pub pictures: fn(&RunFiles, &[u64]) -> Result<RenderedPictures, Failure>,
     /// Error budget of a run; `None` for a world without stages that can be replaced.
     pub budget: Option<BudgetReport>,
 }

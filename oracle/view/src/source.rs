@@ -2,7 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use files::{Checksums, Failure, FileError, Row, TableReader};
+use files::{Checksums, Failure, FileError, Row, TableReader, existing_file_beside};
 use run::{AnyWorld, world_of_run, worlds};
 
 /// A run directory or a dataset.
@@ -72,7 +72,7 @@ impl Source {
 
     /// Returns the path of a file beside the measurements, if it exists.
     pub fn beside_measurements(&self, name: &str) -> Option<PathBuf> {
-        self.measurements.as_ref().map(|path| path.with_file_name(name)).filter(|path| path.is_file())
+        self.measurements.as_ref().and_then(|path| existing_file_beside(path, name))
     }
 
     /// Returns the requested rows of the telemetry, in the requested order.

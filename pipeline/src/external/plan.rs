@@ -107,13 +107,27 @@ impl ProcessPlan {
             .and_then(|line| read(&line).map_err(Fault::Broken));
         match greeted {
             Ok(answer) => Ok((process, answer)),
-            Err(fault) => Err(StartError::Program(format!("during the greeting, {}", process.end(fault)))),
+            Err(fault) => {
+                let reason = format!("during the greeting, {}{}", process.end(fault), self.sandbox_hint());
+                Err(StartError::Program(reason))
+            }
         }
     }
 
     fn start_error(&self, error: &std::io::Error) -> StartError {
         let reason = format!("`{}` cannot be started: {error}", self.program);
-        if is_of_machine(error) { StartError::Machine(reason) } else { StartError::Program(reason) }
+        if is_of_machine(error) {
+            return StartError::Machine(reason);
+        }
+        StartError::Program(reason + self.sandbox_hint())
+    }
+
+    /// Returns the remedy for a program whose files the sandbox hides.
+    fn sandbox_hint(&self) -> &'static str {
+        if self.sandbox.is_none() {
+            return "";
+        }
+        " (if it lacks a file in the sandbox, allow the file or its folder by --sandbox-read PATH)"
     }
 }
 

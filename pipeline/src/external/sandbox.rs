@@ -55,12 +55,22 @@ const DEVICES: [&str; 10] = [
 #[cfg(target_os = "linux")]
 const PROGRAMS: [&str; 4] = ["bin", "sbin", "shims", "scripts"];
 
+/// Entries of an installation that its programs need.
+#[cfg(target_os = "linux")]
+const INSTALLATION: [&str; 5] = ["lib", "lib64", "libexec", "share", "pyvenv.cfg"];
+
+/// Number of bytes that are read of a script or of the settings of an environment.
+#[cfg(target_os = "linux")]
+const BEGINNING_BYTES: u64 = 4096;
+
 /// File that marks a directory as a run.
 #[cfg(target_os = "linux")]
 const RUN_FILE: &str = "run.toml";
 
 #[cfg(target_os = "linux")]
 mod landlocked {
+    use std::io::Read;
+
     use landlock::{
         ABI, Access, AccessFs, AccessNet, CompatLevel, Compatible, LandlockStatus, PathBeneath, PathFd,
         Ruleset, RulesetAttr, RulesetCreated, RulesetCreatedAttr, Scope,
@@ -128,13 +138,12 @@ mod landlocked {
             grants.whole.push(scratch.to_owned());
             grants.whole.extend(self.readable.iter().cloned());
             let search_path = std::env::var_os("PATH").unwrap_or_default();
-            let folders = std::env::split_paths(&search_path).filter(|path| path.is_absolute());
-            grants.whole.extend(folders.map(|path| prefix(&path)));
-            let program = which::which(command.get_program()).into_iter().flat_map(|program| {
-                let resolved = program.canonicalize().ok();
-                [Some(program), resolved].into_iter().flatten()
-            });
-            grants.whole.extend(program.filter_map(|program| Some(prefix(program.parent()?))));
+            for folder in std::env::split_paths(&search_path).filter(|path| path.is_absolute()) {
+                self.grant_folder(&prefix(&folder), &mut grants);
+            }
+            if let Ok(program) = which::which(command.get_program()) {
+                self.grant_program(&program, &mut grants);
+            }
             for word in std::iter::once(command.get_program()).chain(command.get_args()) {
                 let path = Path::new(word);
                 match path.parent() {
@@ -151,6 +160,25 @@ mod landlocked {
             match std::env::current_exe().and_then(|program| program.canonicalize()) {
                 Ok(own) => without(grants, &own),
                 Err(_) => grants,
+            }
+        }
+
+        /// Grants access to a program and to the installation to which it belongs.
+        fn grant_program(&self, program: &Path, grants: &mut Readable) {
+            let resolved = program.canonicalize().unwrap_or_else(|_| program.to_owned());
+            for path in [program, &resolved] {
+                let Some(folder) = path.parent() else { continue };
+                self.grant_folder(&prefix(folder), grants);
+                grant_base_of_environment(folder, grants);
+            }
+            if let Some(interpreter) = interpreter_of_script(&resolved) {
+                let resolved = interpreter.canonicalize().unwrap_or_else(|_| interpreter.clone());
+                for path in [interpreter, resolved] {
+                    let Some(folder) = path.parent() else { continue };
+                    grant_installation(folder, grants);
+                    grant_base_of_environment(folder, grants);
+                    grants.whole.push(path);
+                }
             }
         }
 
@@ -171,6 +199,48 @@ mod landlocked {
                 }
             }
         }
+    }
+
+    /// Returns the interpreter that the first line of a script names, as in `#!/home/ada/venv/bin/python`.
+    fn interpreter_of_script(script: &Path) -> Option<PathBuf> {
+        let beginning = read_beginning(script)?;
+        let line = beginning.strip_prefix(b"#!")?.split(|byte| *byte == b'\n').next()?;
+        let path = std::str::from_utf8(line).ok()?.split_whitespace().next()?;
+        Some(PathBuf::from(path)).filter(|path| path.is_absolute())
+    }
+
+    /// Grants access to the installation on which a Python environment is based, which its file `pyvenv.cfg`
+    /// names: an environment has no standard library of its own.
+    fn grant_base_of_environment(programs: &Path, grants: &mut Readable) {
+        let settings = programs.parent().map(|environment| environment.join("pyvenv.cfg"));
+        let Some(text) = settings.and_then(|path| read_beginning(&path)) else { return };
+        let text = String::from_utf8_lossy(&text);
+        let mut entries = text.lines().filter_map(|line| line.split_once('='));
+        if let Some((_, home)) = entries.find(|(key, _)| key.trim() == "home") {
+            grant_installation(Path::new(home.trim()), grants);
+        }
+    }
+
+    /// Grants access to an installation by the directory of its programs. A script and an environment state
+    /// that directory themselves, so only the directories of an installation are granted, and not all that
+    /// lies beside them.
+    fn grant_installation(programs: &Path, grants: &mut Readable) {
+        if !PROGRAMS.iter().any(|name| programs.ends_with(name)) {
+            return;
+        }
+        let resolved = programs.canonicalize().unwrap_or_else(|_| programs.to_owned());
+        if let Some(installation) = resolved.parent() {
+            grants.whole.extend(INSTALLATION.map(|name| installation.join(name)));
+        }
+        grants.whole.push(resolved);
+    }
+
+    /// Returns the beginning of a regular file.
+    fn read_beginning(path: &Path) -> Option<Vec<u8>> {
+        let mut beginning = Vec::new();
+        let file = std::fs::File::open(path).ok().filter(|_| path.is_file())?;
+        file.take(BEGINNING_BYTES).read_to_end(&mut beginning).ok()?;
+        Some(beginning)
     }
 
     /// Paths that a command may read.

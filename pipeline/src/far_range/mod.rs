@@ -26,8 +26,8 @@ mod unusable_frame;
 pub use aberration::aberration_correction;
 pub use attitude::AttitudeConfig;
 pub use best::{
-    AttitudePrior, BestConfig, InputMistake, Mounting, PixelOrder, QuaternionForm, QuaternionOrder,
-    UnmatchedFrame, find_mistake,
+    AttitudePrior, BestConfig, InputMistake, Mounting, PixelOrder, PlateSolution, PlateSolver,
+    QuaternionForm, QuaternionOrder, UnmatchedFrame, find_mistake,
 };
 pub use config::{AberrationConfig, FarRangeConfig, Mode};
 pub use detect::Weights;

@@ -5,7 +5,7 @@ CONVENTIONS.md.
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ __all__ = [
     "__version__",
     "command",
     "navigate",
+    "report",
     "requirement_names",
     "run",
     "score",
@@ -158,8 +159,15 @@ class Table:
     def num_rows(self) -> int:
         """Number of rows."""
     def __len__(self) -> int: ...
+    @overload
     def __getitem__(self, key: str, /) -> Any:
-        """A numpy array (NaN for missing values; times `datetime64[ns]`), or a list of texts."""
+        """A column: a numpy array (NaN for missing values; times `datetime64[ns]`), or a list of texts."""
+    @overload
+    def __getitem__(self, key: slice, /) -> Table:
+        """A table of some rows, as in `table[:2]`; the step is 1."""
+    @overload
+    def __getitem__(self, key: int, /) -> dict[str, Any]:
+        """A row by column; an index below 0 counts from the end."""
     def time(self, column: str = "time_utc") -> Any:
         """A column of times as `astropy.time.Time`, UTC, with nanoseconds. Raises `ImportError` if astropy is
         missing, and `InputError` for a column of other values."""
@@ -356,6 +364,18 @@ def run(
 
     `progress`: None shows a bar in a notebook (with tqdm or ipywidgets) and on a terminal; True shows it on
     standard error elsewhere too, False nowhere; a function of (done, total) is called instead.
+    """
+
+def report(
+    results: Run | StudyResult | _Word, out: _Word | None = None, *, measurements: _Word | None = None
+) -> Path:
+    """Writes the report of results as one HTML file, as the command `boresight report` does, and returns its
+    path.
+
+    `results` is a `Run`, a `StudyResult`, or the directory of a run, of a study, of a processed dataset or of
+    `boresight visibility --out`. `out` is the file, which replaces an earlier report and no other file;
+    default: `report.html` in the directory. `measurements` is a file of measurements on the frames of the
+    directory, in place of its `measurements.csv`; it needs `out`.
     """
 
 def score(

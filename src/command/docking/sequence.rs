@@ -7,7 +7,7 @@ use contract::docking::Digitiser;
 use docking::rows::SetupFile;
 use docking::video::{FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions};
 use docking::{DockingMission, DockingRenderer, DockingScenario, FieldAnswers};
-use files::Failure;
+use files::{Failure, file_beside};
 use run::{AnyWorld, ScenarioSource, WorldFrames as _, WorldScenario as _};
 use serde_json::{Map, json};
 
@@ -149,8 +149,8 @@ pub(in crate::command) fn process_sequence(
     let fields = processed.frames;
     let mut document = Map::from_iter([
         ("measurements".to_owned(), json!(measurements)),
-        ("motion".to_owned(), json!(measurements.with_file_name("motion.csv"))),
-        ("features".to_owned(), json!(measurements.with_file_name("features.parquet"))),
+        ("motion".to_owned(), json!(file_beside(&measurements, "motion.csv"))),
+        ("features".to_owned(), json!(file_beside(&measurements, "features.parquet"))),
         ("frames".to_owned(), json!(fields)),
     ]);
     let mut text = format!("{fields} fields processed, outcomes in {}", measurements.display());

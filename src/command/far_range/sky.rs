@@ -98,7 +98,7 @@ fn exposure(text: &str) -> Result<f64, String> {
 }
 
 /// Parses a number within limits.
-fn number(text: &str, low: f64, high: f64) -> Result<f64, String> {
+pub(super) fn number(text: &str, low: f64, high: f64) -> Result<f64, String> {
     let parsed: Option<f64> = text.parse().ok();
     parsed
         .filter(|value| (low..=high).contains(value))
@@ -106,7 +106,7 @@ fn number(text: &str, low: f64, high: f64) -> Result<f64, String> {
 }
 
 /// Parses a time for which the simulator has ephemerides.
-fn time(text: &str) -> Result<Epoch, String> {
+pub(super) fn time(text: &str) -> Result<Epoch, String> {
     let time = parse_utc(text).map_err(|expected| format!("expected {expected}"))?;
     let limits = [parse_utc("1990-01-01T00:00:00Z")?, parse_utc("2050-01-05T00:00:00Z")?];
     let is_known = (limits[0]..=limits[1]).contains(&time);

@@ -13,6 +13,18 @@ pub(super) fn write_report(_: &Path, _: &[PathBuf], _: &Path, _: &Output) -> Res
     Err(missing_feature("report"))
 }
 
+pub(super) fn write_report_on_measurements(_: &Path, _: &Path, _: &Path) -> Result<u64, Failure> {
+    Err(missing_feature("report"))
+}
+
+/// Reports that this build cannot write reports.
+///
+/// # Errors
+/// Always.
+pub fn write_page_of(_: &Path, _: Option<&Path>, _: &Path) -> Result<(), Failure> {
+    Err(missing_feature("report"))
+}
+
 pub(super) fn check_path(_: &Path) -> Result<(), Failure> {
     Err(missing_feature("report"))
 }

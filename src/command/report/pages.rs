@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use files::Failure;
 use gate::GateReport;
 use report::{
-    FlippedFrames, Page, REPORTS, gate_page, read_report, read_run_report, report_with_budget, write_page,
+    FlippedFrames, Page, REPORTS, RunFiles, gate_page, read_report, read_run_report, report_on_measurements,
+    report_with_budget, write_page,
 };
 use run::AnyJudgement;
 
@@ -38,6 +39,34 @@ pub(super) fn write_report(
         directories => report_with_budget(directory, directories)?,
     };
     write_page(&page, path)
+}
+
+/// Writes the report of measurements of a run or of a rendered dataset to `path`, and returns its size,
+/// bytes.
+///
+/// # Errors
+/// A [`Failure`] for measurements that do not belong to the directory, or a file that cannot be written.
+pub(super) fn write_report_on_measurements(
+    directory: &Path,
+    measurements: &Path,
+    path: &Path,
+) -> Result<u64, Failure> {
+    let files = RunFiles { directory: directory.to_owned(), measurements: measurements.to_owned() };
+    write_page(&report_on_measurements(&files)?, path)
+}
+
+/// Writes the report of a directory of results to `path`, for the Python package. An earlier report is
+/// replaced.
+///
+/// # Errors
+/// A [`Failure`] for a directory without results, or a file that cannot be written.
+pub fn write_page_of(directory: &Path, measurements: Option<&Path>, path: &Path) -> Result<(), Failure> {
+    check_path(path)?;
+    match measurements {
+        Some(measurements) => write_report_on_measurements(directory, measurements, path)?,
+        None => write_page(&read_report(directory)?, path)?,
+    };
+    Ok(())
 }
 
 /// Writes the report of a run that has just been scored into its directory.

@@ -178,8 +178,10 @@ fn images_of_another_size_and_an_empty_input_are_refused() {
 fn a_second_set_of_answers_in_a_folder_is_refused() {
     let bench = video();
     bench.boresight("process set/fields.avi --camera 1 --out first.csv").done();
-    let again = "process set/fields.avi --camera 1 --out second.csv";
-    check_refused(&bench, again, &["motion.csv exists", "another folder with --out"]);
+    let again = "process set/fields.avi --camera 1 --out first.csv";
+    check_refused(&bench, again, &["first.csv exists", "another folder with --out"]);
+    std::fs::remove_file(bench.path("first.csv")).unwrap();
+    check_refused(&bench, again, &["first.motion.csv exists", "another folder with --out"]);
 }
 
 /// Each value is reported with its line in the file.

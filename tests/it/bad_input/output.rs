@@ -118,7 +118,7 @@ fn measurements_are_not_overwritten() {
     let bench = dataset();
     bench.write("mine.csv", "mine");
     check_refused(&bench, "process set --out mine.csv", &["mine.csv", "exists", "--out"]);
-    check_refused(&bench, "process set --out nowhere/mine.csv", &["nowhere/mine.csv", "cannot create"]);
-    bench.write("new/clusters.parquet", "mine");
-    check_refused(&bench, "process set --out new/mine.csv", &["new/clusters.parquet", "exists"]);
+    check_refused(&bench, "process set --out mine.csv/mine.csv", &["mine.csv/mine.csv", "cannot create"]);
+    bench.write("new/mine.clusters.parquet", "mine");
+    check_refused(&bench, "process set --out new/mine.csv", &["new/mine.clusters.parquet", "exists"]);
 }

@@ -156,4 +156,13 @@ fn a_slip_of_a_thousand_is_reported() {
         set(table, "schedule.count", 10);
     }));
     assert_eq!(document["warnings"][0], "shutter.max_s is 250, usually 0.00001 to 100; was 0.25 meant?");
+    let principal =
+        |y: f64| check(&with_change("starting-point", |table| set(table, "camera.principal_y_px", y))).1;
+    let told = principal(1500.0)["warnings"][0].as_str().unwrap().to_owned();
+    assert!(
+        told.starts_with("camera.principal_y_px is 1500, far outside a detector of 580 pixels"),
+        "{told}"
+    );
+    // A detector may cover a part of the image circle.
+    assert_eq!(principal(-300.0)["warnings"].as_array().map(Vec::len), Some(0));
 }

@@ -180,5 +180,7 @@ fn a_new_scenario_does_not_overwrite_a_file() {
     let bench = Bench::new();
     bench.write("mine.toml", "precious");
     check_refused(&bench, "scenario new mine.toml", &["mine.toml", "exists"]);
-    check_refused(&bench, "scenario new nowhere/mine.toml", &["nowhere/mine.toml", "No such file"]);
+    bench.write("file", "mine");
+    check_refused(&bench, "scenario new file/mine.toml", &["file/mine.toml", "cannot be created"]);
+    bench.boresight("scenario new folder/new.toml").done();
 }

@@ -1,8 +1,5 @@
 //! Report of a run: errors over the range, pictures along the approach.
 
-use std::path::Path;
-
-use ::report::WorldReport;
 use ::report::charts::chart::{Chart, MEASURED, REFERENCE, axes, band, line, points, rounded};
 use ::report::charts::thinning::evenly;
 use ::report::figures::run_page::run_page;
@@ -12,6 +9,7 @@ use ::report::page::picture::{Mark, Picture, Pixels, RenderedPictures, RowMappin
 use ::report::page::{Page, Section};
 use ::report::verdict::rules::{Measured, against_baseline, bias_sentence};
 use ::report::verdict::{Finding, Verdict};
+use ::report::{RunFiles, WorldReport};
 use contract::{PixelPoint, Window};
 use files::Failure;
 use run::plain::{Plain, PlainWorld, Scored, read_scored};
@@ -31,19 +29,19 @@ pub(crate) fn world_report() -> WorldReport {
     WorldReport { code: Plain::<MiddleRange>::CODE, page, pictures, budget: None }
 }
 
-fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
-    let mut page = run_page(directory)?;
-    let scored = read_scored::<MiddleRange>(directory, &directory.join("measurements.csv"))?;
+fn page(files: &RunFiles, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+    let mut page = run_page(files)?;
+    let scored = read_scored::<MiddleRange>(&files.directory, &files.measurements)?;
     let rows: Vec<usize> = evenly_placed(scored.len(), PICTURES);
     let shown =
         rows.iter().filter_map(|row| scored.get(*row)).map(|scored| scored.truth.frame).collect::<Vec<_>>();
-    let (pictures, _) = pictures(directory, &shown)?;
+    let (pictures, _) = pictures(files, &shown)?;
     page.kind = "Middle range: a run";
     let findings = page.verdict.findings().iter().cloned().chain([range_finding(&page)]).collect();
     page.verdict = Verdict::new(findings);
     page.sections.insert(0, errors(&scored));
     page.sections.insert(0, Section::new("approach", "The approach in pictures").pictures(pictures));
-    page.sections.insert(0, worst_frames(directory, &scored)?);
+    page.sections.insert(0, worst_frames(files, &scored)?);
     Ok(page)
 }
 
@@ -57,7 +55,7 @@ fn range_finding(page: &Page) -> Finding {
 }
 
 /// Returns pictures of wrong and missed frames, spread over the run, and of the largest errors of the range.
-fn worst_frames(directory: &Path, scored: &[Scored<MiddleRange>]) -> Result<Section, Failure> {
+fn worst_frames(files: &RunFiles, scored: &[Scored<MiddleRange>]) -> Result<Section, Failure> {
     let failed: Vec<u64> = scored
         .iter()
         .filter(|scored| MiddleRange::judge(scored).0 != "correct")
@@ -78,7 +76,7 @@ fn worst_frames(directory: &Path, scored: &[Scored<MiddleRange>]) -> Result<Sect
     if frames.is_empty() {
         return Ok(section.absent("No frame has a measurement."));
     }
-    let (shown, _) = pictures(directory, &frames)?;
+    let (shown, _) = pictures(files, &frames)?;
     let text = "Wrong and missed frames, then the largest errors of the range as a part of it. Green: true disk; \
         orange: measured disk.";
     Ok(section.text(text).pictures(shown))
@@ -123,11 +121,11 @@ fn evenly_placed(length: usize, count: usize) -> Vec<usize> {
     (0..shown).map(|i| if shown > 1 { i * (length - 1) / (shown - 1) } else { 0 }).collect()
 }
 
-/// Draws frames of a run directory again, each with the exposure time of its truth.
-fn pictures(directory: &Path, frames: &[u64]) -> Result<RenderedPictures, Failure> {
-    let source = ScenarioSource::read(&directory.join("run.toml").to_string_lossy())?;
+/// Draws frames of a run again, each with the exposure time of its truth.
+fn pictures(files: &RunFiles, frames: &[u64]) -> Result<RenderedPictures, Failure> {
+    let source = ScenarioSource::read(&files.path("run.toml").to_string_lossy())?;
     let mission = Plain::<MiddleRange>::prepare(&source, source.typed("report")?, Options::default())?;
-    let scored = read_scored::<MiddleRange>(directory, &directory.join("measurements.csv"))?;
+    let scored = read_scored::<MiddleRange>(&files.directory, &files.measurements)?;
     let mut pictures = Vec::new();
     for scored in scored.iter().filter(|scored| frames.contains(&scored.truth.frame)) {
         pictures.push(picture(&mission, scored)?);

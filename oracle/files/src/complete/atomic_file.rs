@@ -62,6 +62,16 @@ impl ReplaceableFile<'_> {
     }
 }
 
+/// Creates the folder of a file that will be written, with all folders above it, and returns its path.
+///
+/// # Errors
+/// [`FileError::Io`] if it cannot be created.
+pub(super) fn create_folder_of(path: &Path) -> Result<&Path, FileError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder).map_err(|source| FileError::io(path, "create", source))?;
+    Ok(folder)
+}
+
 /// A file that is being written; removed on drop unless it has been committed.
 #[derive(Debug)]
 pub struct AtomicFile {
@@ -70,12 +80,13 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Creates an empty temporary file, readable by all users, that will become `path`.
+    /// Creates an empty temporary file, readable by all users, that will become `path`, and the missing
+    /// folders above it.
     ///
     /// # Errors
     /// [`FileError::Io`] if it cannot be created in the directory of `path`.
     pub fn create(path: &Path) -> Result<Self, FileError> {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = create_folder_of(path)?;
         let mut builder = tempfile::Builder::new();
         // Normal permissions of a file, instead of access for the owner only.
         #[cfg(unix)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::atomic_file::{PARTIAL, output_taken};
+use super::atomic_file::{PARTIAL, create_folder_of, output_taken};
 use crate::{AtomicFile, FileError};
 
 /// Output files that get their names when they are complete; until then they have temporary names, and are
@@ -17,16 +17,19 @@ pub struct PartialFiles {
 }
 
 impl PartialFiles {
-    /// Prepares files for `names`; none of them may exist.
+    /// Prepares files for `names`, none of which may exist, and creates the missing folders above them.
     ///
     /// # Errors
-    /// [`FileError::OutputTaken`] if one exists; [`FileError::Io`] if a parent directory does not exist.
+    /// [`FileError::OutputTaken`] if one exists; [`FileError::Io`] if a folder cannot be created.
     pub fn for_paths(names: &[&Path]) -> Result<Self, FileError> {
         for name in names {
             if name.exists() {
                 return Err(output_taken(name));
             }
-            folder_of(name).metadata().map_err(|source| FileError::io(name, "create", source))?;
+        }
+        let mut folders = Vec::new();
+        for name in names {
+            folders.push(create_folder_of(name)?);
         }
         // Unique name: another process may be writing the same files.
         static COUNT: AtomicU64 = AtomicU64::new(0);
@@ -38,7 +41,7 @@ impl PartialFiles {
         let names: Vec<PathBuf> = names.iter().map(|name| name.to_path_buf()).collect();
         let files = Self { paths: names.iter().map(partial).collect(), names };
         files.remove(); // What a process of the same number left that was killed.
-        files.names.iter().map(|name| folder_of(name)).for_each(AtomicFile::remove_abandoned);
+        folders.into_iter().for_each(AtomicFile::remove_abandoned);
         Ok(files)
     }
 
@@ -73,10 +76,6 @@ impl PartialFiles {
             let _ = std::fs::remove_file(path);
         }
     }
-}
-
-fn folder_of(name: &Path) -> &Path {
-    name.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 impl Drop for PartialFiles {

@@ -182,7 +182,11 @@ impl FileError {
     }
 }
 
-/// Creates a file for writing; an existing file is an error and is not overwritten.
+/// Creates a file for writing, and the missing folders above it; an existing file is an error and is not
+/// overwritten.
 pub fn create_new(path: &Path) -> Result<File, FileError> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|source| FileError::io(path, "create", source))?;
+    }
     File::create_new(path).map_err(|source| FileError::io(path, "create", source))
 }

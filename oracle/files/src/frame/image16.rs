@@ -125,7 +125,22 @@ fn decoder(path: &Path, format: image::ImageFormat) -> Result<impl ImageDecoder,
     reader.into_decoder().map_err(|error| image_error(path, error))
 }
 
-fn image_error(path: &Path, error: image::ImageError) -> FileError {
+/// Returns a decoder of an image of any pixel type, whose size and memory the file justifies.
+pub(crate) fn decoder_of_camera(
+    path: &Path,
+    format: image::ImageFormat,
+) -> Result<impl ImageDecoder, FileError> {
+    let mut decoder = decoder(path, format)?;
+    let (columns, rows) = decoder.dimensions();
+    checked_size(path, u64::from(columns), u64::from(rows), None)?;
+    check_claim(path, decoder.total_bytes())?;
+    let mut limits = limits();
+    limits.max_alloc = Some(ABOUT_PIXELS_BYTES.saturating_add(decoder.total_bytes().saturating_mul(2)));
+    decoder.set_limits(limits).map_err(|error| image_error(path, error))?;
+    Ok(decoder)
+}
+
+pub(crate) fn image_error(path: &Path, error: image::ImageError) -> FileError {
     match error {
         image::ImageError::IoError(source) if source.kind() != std::io::ErrorKind::UnexpectedEof => {
             FileError::io(path, "read or write", source)

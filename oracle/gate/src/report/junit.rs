@@ -1,8 +1,20 @@
 //! Report as JUnit XML for continuous integration, with one test case per figure.
-use files::Failure;
+use files::{Failure, ReplaceableFile};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use crate::report::{FigureReport, FigureVerdict, GateReport};
+
+/// Name of the documents, which identifies them.
+const DOCUMENT_NAME: &str = "boresight gate";
+
+/// A document of an earlier gate: a pipeline that runs again replaces it.
+pub const JUNIT_DOCUMENTS: ReplaceableFile<'_> =
+    ReplaceableFile { description: "an earlier JUnit report of a gate", matches: &is_document };
+
+fn is_document(beginning: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(beginning);
+    text.contains(&format!("<testsuites name=\"{DOCUMENT_NAME}\""))
+}
 
 /// Returns the report as a JUnit document. Figures that are worse or gone are failures, as are changed
 /// figures unless the change was accepted; figures with too little data are skipped.
@@ -47,27 +59,38 @@ pub fn junit_of_failure(failure: &Failure) -> Result<String, Failure> {
 }
 
 fn written(suite: TestSuite) -> Result<String, Failure> {
-    let mut document = Report::new("boresight gate");
+    let mut document = Report::new(DOCUMENT_NAME);
     document.add_test_suite(suite);
     document
         .to_string()
         .map_err(|error| Failure::Usage(format!("the report cannot be written as JUnit XML: {error}")))
 }
 
-/// Describes a figure in one sentence.
+/// Describes a figure in one sentence. A difference is stated where both results have the figure.
 fn message(name: &str, figure: &FigureReport) -> String {
-    let shown = |value: Option<f64>| value.map_or_else(|| "nothing".to_owned(), |value| value.to_string());
-    format!(
-        "{name}: {}; {} in the baseline, {} in the result, difference {} (95 %: {} to {}), adjusted p {}, smallest visible {}",
+    let mut text = format!(
+        "{name}: {}; {}; {}",
         figure.verdict.words(),
-        shown(figure.baseline),
-        shown(figure.result),
-        shown(figure.difference),
-        shown(figure.low),
-        shown(figure.high),
-        figure.adjusted_p,
-        shown(figure.smallest_visible),
-    )
+        value_of("baseline", figure.baseline),
+        value_of("result", figure.result)
+    );
+    if let Some(difference) = figure.difference {
+        text.push_str(&format!("; difference {difference}"));
+        if let (Some(low), Some(high)) = (figure.low, figure.high) {
+            text.push_str(&format!(" (95 %: {low} to {high})"));
+        }
+        text.push_str(&format!("; adjusted p {}", figure.adjusted_p));
+    }
+    match figure.smallest_visible {
+        Some(size) => text.push_str(&format!("; smallest visible worsening {size}")),
+        None => text.push_str("; no worsening would be found with so little data"),
+    }
+    text
+}
+
+/// Describes the value of the figure in a baseline or in a result.
+fn value_of(whose: &str, value: Option<f64>) -> String {
+    value.map_or_else(|| format!("no value in the {whose}"), |value| format!("{whose} {value}"))
 }
 
 #[cfg(test)]
@@ -77,7 +100,8 @@ mod tests {
 
     fn suite(text: &str) -> TestSuite {
         let report = Report::deserialize_from_str(text).unwrap();
-        assert_eq!(report.name.as_ref().map(|name| name.as_str()), Some("boresight gate"));
+        assert_eq!(report.name.as_ref().map(|name| name.as_str()), Some(DOCUMENT_NAME));
+        assert!(is_document(text.as_bytes()));
         assert_eq!(report.test_suites.len(), 1, "{text}");
         report.test_suites[0].clone()
     }
@@ -114,13 +138,23 @@ mod tests {
     #[test]
     fn a_failure_describes_the_change_in_a_sentence() {
         let report = report(&[("hit_rate", FigureVerdict::Worse)]);
-        let expected = "hit_rate: worse; 0.75 in the baseline, 0.5 in the result, difference -0.25 (95 %: -0.375 to -0.125), \
-                        adjusted p 0.03125, smallest visible nothing";
+        let expected = "hit_rate: worse; baseline 0.75; result 0.5; difference -0.25 (95 %: -0.375 to -0.125); \
+                        adjusted p 0.03125; no worsening would be found with so little data";
         let suite = suite(&junit(&report).unwrap());
         let case = &suite.test_cases[0];
         let TestCaseStatus::NonSuccess { message, .. } = &case.status else { panic!("{case:?}") };
         assert_eq!(message.as_ref().map(|message| message.as_str()), Some(expected));
         assert_eq!(case.system_out.as_ref().map(|text| text.as_str()), Some(expected));
+    }
+
+    #[test]
+    fn a_figure_that_is_gone_has_no_difference() {
+        let mut report = report(&[("hit_rate", FigureVerdict::Gone)]);
+        let figure = report.figures.get_mut("hit_rate").unwrap();
+        (figure.result, figure.difference, figure.smallest_visible) = (None, None, Some(0.25));
+        let expected =
+            "hit_rate: gone; baseline 0.75; no value in the result; smallest visible worsening 0.25";
+        assert_eq!(message("hit_rate", figure), expected);
     }
 
     #[test]

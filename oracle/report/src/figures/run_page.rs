@@ -1,7 +1,5 @@
 //! Report of a run of any world: its figures and its verdicts.
 
-use std::path::Path;
-
 use files::{Checksums, Failure};
 use indexmap::IndexMap;
 use run::world_of_run;
@@ -9,27 +7,24 @@ use serde_json::json;
 
 use super::figure_table;
 use super::words::display_name;
+use crate::RunFiles;
 use crate::page::data_table::DataTable;
 use crate::page::{Page, Section};
-use crate::read::missing;
 use crate::verdict::figures::{judge, measured};
 use crate::verdict::{Finding, Verdict, causes_sentence};
 
-/// Reads a run directory and returns its page.
+/// Reads the files of a run and returns its page.
 ///
 /// # Errors
 /// A [`Failure`] that names the file which is missing or cannot be read.
-pub fn run_page(directory: &Path) -> Result<Page, Failure> {
-    let path = directory.join("run.toml");
+pub fn run_page(files: &RunFiles) -> Result<Page, Failure> {
+    let path = files.path("run.toml");
     let world = world_of_run(&path)?;
     let run = world.read_run(&path)?;
-    let measurements = directory.join("measurements.csv");
-    if !measurements.is_file() {
-        return Err(missing(directory, "measurements.csv"));
-    }
-    let evidence = world.facts().evidence_file.map(|name| directory.join(name)).filter(|path| path.is_file());
-    let scored = world.score(directory, &measurements, evidence.as_deref(), None)?;
-    Checksums::check(directory, |_| true)?;
+    files.check(&[])?;
+    let evidence = world.facts().evidence_file.and_then(|name| files.beside(name));
+    let scored = world.score(&files.directory, &files.measurements, evidence.as_deref(), None)?;
+    Checksums::check(&files.directory, |_| true)?;
     let units = scored.units().units;
     let mut counts: IndexMap<(&str, &str), u64> = IndexMap::new();
     for unit in &units {

@@ -3,7 +3,7 @@
 use std::any::TypeId;
 use std::fmt::Debug;
 use std::marker::PhantomData;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use config::toml_file::TomlError;
 use contract::Interface as _;
@@ -187,7 +187,7 @@ fn process_dataset<W: World>(order: &ProcessingOrder<'_>) -> Result<DatasetAnswe
     )?;
     Ok(DatasetAnswers {
         frames: processed.frames,
-        files: W::Answers::files(order.measurements),
+        beside: W::Answers::BESIDE,
         first_failure: processed.first_failure,
         summary: processed.summary,
     })
@@ -246,8 +246,8 @@ pub struct ProcessingOrder<'a> {
 pub struct DatasetAnswers {
     /// Number of frames.
     pub frames: u64,
-    /// Written files, the measurements first.
-    pub files: Vec<PathBuf>,
+    /// Names of the files written beside the measurements, of [`files::file_beside`].
+    pub beside: &'static [&'static str],
     /// First failure of the pipeline, if any.
     pub first_failure: Option<FirstFailure>,
     /// Summary of the outcomes, if the world provides one.

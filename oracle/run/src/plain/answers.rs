@@ -68,9 +68,7 @@ pub(super) fn read_answers<A: CsvLine>(path: &Path) -> Result<Vec<(u64, Answer<A
 pub struct PlainAnswers<P: PlainWorld>(CsvWriter<AnswerLine<P::Answer>>);
 
 impl<P: PlainWorld> Answers<Plain<P>> for PlainAnswers<P> {
-    fn files(measurements: &Path) -> Vec<PathBuf> {
-        vec![measurements.to_owned()]
-    }
+    const BESIDE: &'static [&'static str] = &[];
 
     fn create(files: &[PathBuf]) -> Result<Self, FileError> {
         let [measurements] = paths(files)?;

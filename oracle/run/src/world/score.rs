@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use contract::Interface;
-use files::{Failure, FileError};
+use files::{Failure, FileError, file_beside};
 use indexmap::IndexMap;
 use scenario::AttitudeChoice;
 use score::{Figure, FigureSpec, UnitTable};
@@ -69,8 +69,14 @@ pub trait Scorer<W: WorldScore> {
 
 /// Writes the outcomes of a pipeline.
 pub trait Answers<I: Interface>: Sized {
-    /// Returns the paths of the files: the measurements first, then the files beside them.
-    fn files(measurements: &Path) -> Vec<PathBuf>;
+    /// Names of the files that are written beside `measurements.csv`.
+    const BESIDE: &'static [&'static str];
+
+    /// Returns the paths of the files: the measurements first, then those of [`Self::BESIDE`].
+    fn files(measurements: &Path) -> Vec<PathBuf> {
+        let beside = Self::BESIDE.iter().map(|name| file_beside(measurements, name));
+        [measurements.to_owned()].into_iter().chain(beside).collect()
+    }
 
     /// Creates the files.
     ///

@@ -59,7 +59,7 @@ impl Class {
     pub const TARGET: Self = Self {
         code: "target",
         words: "target, truth",
-        colour: Colour::Orange,
+        colour: Colour::Green,
         symbol: Symbol::Circle,
         rank: 0,
     };
@@ -67,7 +67,7 @@ impl Class {
     pub const ANSWER: Self = Self {
         code: "answer",
         words: "measurement",
-        colour: Colour::Green,
+        colour: Colour::Orange,
         symbol: Symbol::Cross,
         rank: 100,
     };

@@ -13,6 +13,10 @@ pub struct BestConfig {
     /// Initial attitude of a frame: `telemetry`, or `none` for an attitude from the stars of the frame only,
     /// independent of the attitude in the telemetry.
     pub prior: AttitudePrior,
+    /// Largest relative error of the focal length with which the stars of a frame without a prior attitude
+    /// are looked up, 0 to 0.2. If they contradict the stated focal length, theirs is used.
+    #[schemars(range(min = 0, max = 0.2))]
+    pub focal_length_tolerance: f64,
     /// Position error of a star in addition to that of its centroid (list, distortion, trail), px, 0 to 10.
     #[schemars(range(min = 0, max = 10))]
     pub star_floor_px: f64,
@@ -52,6 +56,7 @@ impl Default for BestConfig {
         Self {
             sequence: true,
             prior: AttitudePrior::default(),
+            focal_length_tolerance: 0.02,
             star_floor_px: 0.015,
             target_floor_px: 0.0,
             psf_width_error: 0.05,

@@ -130,7 +130,7 @@ pub fn find_mistake(setup: &Setup, frames: &[UnmatchedFrame]) -> Option<InputMis
     let frames = frames.get(..MAX_FRAMES).unwrap_or(frames);
     let (camera, ratio) = fitting_camera(setup, frames)?;
     let model = CameraModel::new(&camera).ok()?;
-    let solver = LostInSpace::new(&setup.stars, &model, f64::INFINITY);
+    let solver = LostInSpace::new(&setup.stars, &model, f64::INFINITY, 0.0);
     let solved = PIXEL_ORDERS.map(|image| (image, solve_all(&solver, &model, frames, image)));
     let most = solved.iter().map(|(_, frames)| frames.len()).max().filter(|most| *most > 0)?;
     // A mirrored image never fits together with one that is not.
@@ -147,6 +147,12 @@ pub fn find_mistake(setup: &Setup, frames: &[UnmatchedFrame]) -> Option<InputMis
             tried: frames.len(),
         }
     };
+    let [as_stated, ..] = QUATERNION_FORMS;
+    if frames.iter().all(|frame| frame.body_from_icrs == Rotation::identity()) {
+        // A table without attitudes: the format requires one, and the identity stands in its place.
+        let (image, solved) = possible().next()?;
+        return Some(with(*image, as_stated, Mounting::AsStated, solved)).filter(InputMistake::is_one);
+    }
     for quaternion in QUATERNION_FORMS {
         for (image, solved) in possible() {
             if let Some(mounting) = constant_mounting(solved, quaternion)
@@ -162,7 +168,6 @@ pub fn find_mistake(setup: &Setup, frames: &[UnmatchedFrame]) -> Option<InputMis
             }
         }
     }
-    let [as_stated, ..] = QUATERNION_FORMS;
     let (image, solved) = possible().next()?;
     let mounting = constant_mounting(solved, as_stated).filter(|_| solved.len() > 1);
     Some(with(*image, as_stated, mounting.map_or(Mounting::None, Mounting::Other), solved))
@@ -178,7 +183,7 @@ fn fitting_camera(setup: &Setup, frames: &[UnmatchedFrame]) -> Option<(Camera, f
         let mut camera = setup.camera.clone();
         camera.focal_length_mm *= ratio;
         let model = CameraModel::new(&camera).ok()?;
-        let solver = LostInSpace::new(&setup.stars, &model, f64::INFINITY);
+        let solver = LostInSpace::new(&setup.stars, &model, f64::INFINITY, 0.0);
         // An image in any other order is one of these, turned.
         for image in [PixelOrder::AsExpected, PixelOrder::RowsReversed] {
             let solved = solve_all(&solver, &model, frames, image);

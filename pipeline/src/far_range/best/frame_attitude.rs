@@ -150,10 +150,10 @@ impl BestPipeline {
         [(fx * turn.y * part).abs().min(20.0), (fy * turn.x * part).abs().min(20.0)]
     }
 
-    /// Returns the initial attitude of the frame. Returns `None` when there is no prior and the stars do not
-    /// determine an attitude.
+    /// Returns the initial attitude of the frame, and without a prior sets the camera to the focal length of
+    /// its stars. Returns `None` when there is no prior and the stars do not determine an attitude.
     pub(super) fn start(
-        &self,
+        &mut self,
         sources: &[Source],
         telemetry: &Telemetry,
         overrides: &Overrides<'_>,
@@ -170,7 +170,10 @@ impl BestPipeline {
                     .filter(|source| source.spike.is_none())
                     .map(|source| (source.centre, source.flux_e))
                     .collect();
-                solver.solve(&stars).map(|found| AttitudeStart::from_found(&found))
+                let found = solver.solve(&stars)?;
+                self.model = self.stated_model.with_focal_ratio(found.focal_ratio);
+                self.is_rescaled = found.focal_ratio != 1.0;
+                Some(AttitudeStart::from_found(&found))
             }
         }
     }
@@ -227,6 +230,7 @@ impl BestPipeline {
             _ if is_chance => AttitudeSource::NoMatch,
             0 => AttitudeSource::NoStars,
             1 => AttitudeSource::TooFewStars,
+            _ if self.is_rescaled => AttitudeSource::RescaledStars,
             _ => AttitudeSource::Stars,
         };
         FrameAttitude {

@@ -7,8 +7,10 @@
 //! stars predicted by that attitude, against sources anywhere in the image (Lang, Hogg, Mierle, Blanton &
 //! Roweis 2010, AJ 139, 1782, section 2.3).
 //!
-//! Brightness is used only to order sources and stars: neither zero point nor exposure is needed.
+//! Brightness is used only to order sources and stars: neither zero point nor exposure is needed. The focal
+//! length may be wrong by a stated tolerance: it is then found with the attitude.
 
+mod free_focal_length;
 mod hypothesis;
 mod selection;
 mod separations;
@@ -32,6 +34,8 @@ use triangles::{TriangleSearch, pyramid_order};
 #[derive(Debug)]
 pub(super) struct LostInSpace {
     model: CameraModel,
+    /// Largest relative error of the model's focal length.
+    focal_length_tolerance: f64,
     /// Brightest stars of each field.
     stars: Vec<ListedStar>,
     list: StarList,
@@ -45,6 +49,10 @@ pub(super) struct FoundAttitude {
     /// Covariance of the attitude's error, a small rotation about the camera's axes, rad², for sources with
     /// an error of 0.4 px along an axis. The rotation about the boresight is the least accurate.
     pub(super) covariance: Matrix3<f64>,
+    /// Focal length over the stated one: 1, unless the stars contradict it.
+    pub(super) focal_ratio: f64,
+    /// Standard deviation of the natural logarithm of `focal_ratio`; 0 for the stated focal length.
+    pub(super) focal_sigma: f64,
     /// Sources, by their index in the argument, with their stars: at least four, each source and each star
     /// once.
     pub(super) matched: Vec<(usize, ListedStar)>,
@@ -77,36 +85,63 @@ const MAX_REFINEMENTS: usize = 20;
 /// Smallest number of stars of a final attitude, including the three of the triangle.
 pub(super) const MIN_MATCHED: usize = 4;
 
+/// Smallest number of stars of a final attitude with a free focal length: ten coordinates for four unknowns.
+const MIN_MATCHED_WITH_FREE_FOCAL_LENGTH: usize = 5;
+
+/// Largest error, in standard deviations, of a focal length that counts as the stated one.
+const STATED_SIGMAS: f64 = 4.0;
+
 impl LostInSpace {
     /// Creates a solver with the stars of `stars` up to the V magnitude `max_magnitude`, limited to the
-    /// brightest of each field of the camera.
-    pub(super) fn new(stars: &[ListedStar], model: &CameraModel, max_magnitude: f64) -> Self {
+    /// brightest of each field of the camera. The focal length of `model` may be wrong by the share
+    /// `focal_length_tolerance`, 0 to 0.2.
+    pub(super) fn new(
+        stars: &[ListedStar],
+        model: &CameraModel,
+        max_magnitude: f64,
+        focal_length_tolerance: f64,
+    ) -> Self {
         let stars = brightest_of_each_field(stars, model, max_magnitude);
+        let widest = model.with_focal_ratio(1.0 - focal_length_tolerance);
         Self {
-            list: StarList::new(&stars, f64::INFINITY, model),
-            pairs: StarPairs::new(&stars, largest_chord(model)),
+            list: StarList::new(&stars, f64::INFINITY, &widest),
+            pairs: StarPairs::new(&stars, largest_chord(&widest)),
             model: model.clone(),
+            focal_length_tolerance,
             stars,
         }
     }
 
     /// Returns the attitude determined by the sources of a frame, each a position in px and a flux in any
-    /// unit. Returns `None` when no attitude reaches odds of 10⁹. Sources that are not finite or that the
-    /// camera cannot see are ignored.
+    /// unit, and the focal length where it is not the stated one. Returns `None` when no attitude reaches
+    /// odds of 10⁹. Sources that are not finite or that the camera cannot see are ignored.
     pub(super) fn solve(&self, sources: &[(PixelPoint, f64)]) -> Option<FoundAttitude> {
         let sources = self.brightest(sources);
+        if self.focal_length_tolerance == 0.0 {
+            return self.solve_with_known_focal_length(&sources);
+        }
+        let found = self.solve_with_free_focal_length(&sources)?;
+        if libm::log(found.focal_ratio).abs() > STATED_SIGMAS * found.focal_sigma {
+            return Some(found);
+        }
+        // The stars confirm the stated focal length, which is then better known than by them.
+        self.refined(&sources, found.matches(&sources), FocalLength::Stated).or(Some(found))
+    }
+
+    /// Returns the attitude determined by sources at the stated focal length.
+    fn solve_with_known_focal_length(&self, sources: &[ImageSource]) -> Option<FoundAttitude> {
         let mut search = TriangleSearch::new(&self.stars, &self.pairs, &self.model);
         let mut tested = 0;
         for corners in pyramid_order(sources.len().min(MAX_TRIANGLE_SOURCES)) {
             let corners = corners.map(|corner| sources[corner]);
-            for stars in search.matching_triples(corners.map(|corner| corner.direction)) {
+            for stars in search.matching_triples(corners.map(|corner| corner.direction), 0.0) {
                 let triangle: Vec<Match> = corners
                     .into_iter()
                     .zip(stars)
                     .map(|(source, star)| Match { source, star: self.stars[star as usize] })
                     .collect();
                 tested += 1;
-                if let Some(found) = self.test(&sources, &triangle) {
+                if let Some(found) = self.test(sources, &triangle) {
                     return Some(found);
                 }
             }
@@ -140,27 +175,81 @@ impl LostInSpace {
     /// Returns the attitude of a triangle, refined with all its stars, if the other sources support it with
     /// the smallest odds or more.
     fn test(&self, sources: &[ImageSource], triangle: &[Match]) -> Option<FoundAttitude> {
-        let mut hypothesis = Hypothesis::new(triangle, &self.model)?;
-        let support = hypothesis.support(sources, triangle, &self.list, &self.model);
+        let hypothesis = Hypothesis::with_known_focal_length(triangle, &self.model)?;
+        let support = hypothesis.support(sources, triangle, &self.list);
         if support.log_odds < MIN_LOG_ODDS {
             return None;
         }
-        let mut matched = support.matched;
-        let mut is_settled = false;
+        self.refined(sources, support.matched, FocalLength::Stated)
+    }
+
+    /// Solves the matched sources and matches all sources anew, until the matches are stable. `None` if they
+    /// do not become so, are too few, or the focal length is outside the tolerance.
+    fn refined(
+        &self,
+        sources: &[ImageSource],
+        mut matched: Vec<Match>,
+        mut focal_length: FocalLength,
+    ) -> Option<FoundAttitude> {
+        let fewest = match focal_length {
+            FocalLength::Stated => MIN_MATCHED,
+            FocalLength::Free { .. } => MIN_MATCHED_WITH_FREE_FOCAL_LENGTH,
+        };
         for _ in 0..MAX_REFINEMENTS {
-            hypothesis = Hypothesis::new(&matched, &self.model)?;
-            let next = hypothesis.support(sources, &[], &self.list, &self.model).matched;
-            is_settled = next.len() == matched.len()
-                && next.iter().all(|pair| matched.iter().any(|before| before.is_same_as(pair)));
+            let hypothesis = match focal_length {
+                FocalLength::Stated => Hypothesis::with_known_focal_length(&matched, &self.model)?,
+                FocalLength::Free { ratio } => {
+                    Hypothesis::with_free_focal_length(&matched, &self.model, ratio)?
+                }
+            };
+            if let FocalLength::Free { ratio } = &mut focal_length {
+                *ratio = hypothesis.focal_ratio;
+            }
+            let next = hypothesis.support(sources, &[], &self.list).matched;
+            let is_settled = are_same(&next, &matched);
             matched = next;
             if is_settled {
-                break;
+                let is_found = matched.len() >= fewest && self.is_within_tolerance(hypothesis.focal_ratio);
+                return is_found.then(|| FoundAttitude::from_hypothesis(&hypothesis, &matched));
             }
         }
-        (is_settled && matched.len() >= MIN_MATCHED).then(|| FoundAttitude {
+        None
+    }
+
+    fn is_within_tolerance(&self, ratio: f64) -> bool {
+        (ratio - 1.0).abs() <= self.focal_length_tolerance
+    }
+}
+
+/// Returns true if two lists have the same sources with the same stars.
+fn are_same(a: &[Match], b: &[Match]) -> bool {
+    a.len() == b.len() && a.iter().all(|pair| b.iter().any(|other| other.is_same_as(pair)))
+}
+
+/// Focal length with which matched sources are solved.
+#[derive(Debug, Clone, Copy)]
+enum FocalLength {
+    /// The stated one.
+    Stated,
+    /// That of the stars, with a first value over the stated one.
+    Free { ratio: f64 },
+}
+
+impl FoundAttitude {
+    fn from_hypothesis(hypothesis: &Hypothesis, matched: &[Match]) -> Self {
+        Self {
             camera_from_icrs: hypothesis.camera_from_icrs,
-            covariance: hypothesis.covariance,
-            matched: matched.into_iter().map(|pair| (pair.source.index, pair.star)).collect(),
-        })
+            covariance: hypothesis.covariance.fixed_view::<3, 3>(0, 0).into_owned(),
+            focal_ratio: hypothesis.focal_ratio,
+            focal_sigma: hypothesis.covariance[(3, 3)].sqrt(),
+            matched: matched.iter().map(|pair| (pair.source.index, pair.star)).collect(),
+        }
+    }
+
+    /// Returns the matched sources of those from which the attitude was found.
+    fn matches(&self, sources: &[ImageSource]) -> Vec<Match> {
+        let of_index = |index: usize| sources.iter().find(|source| source.index == index).copied();
+        let matched = self.matched.iter();
+        matched.filter_map(|&(index, star)| Some(Match { source: of_index(index)?, star })).collect()
     }
 }

@@ -14,6 +14,7 @@ mod mounting;
 mod normal_equations;
 mod photometry;
 mod pipeline;
+mod plate_solver;
 mod point_image;
 mod stars;
 mod start;
@@ -27,4 +28,5 @@ pub use config::{AttitudePrior, BestConfig};
 pub use diagnosis::{
     InputMistake, Mounting, PixelOrder, QuaternionForm, QuaternionOrder, UnmatchedFrame, find_mistake,
 };
+pub use plate_solver::{PlateSolution, PlateSolver};
 pub(super) use state::BestPipeline;

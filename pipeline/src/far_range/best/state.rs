@@ -22,6 +22,8 @@ use crate::{CameraModel, PipelineError};
 #[derive(Debug)]
 pub(in crate::far_range) struct BestPipeline {
     pub(super) config: FarRangeConfig,
+    /// Camera as stated, and with the focal length in use.
+    pub(super) stated_model: CameraModel,
     pub(super) model: CameraModel,
     pub(super) stars: StarList,
     /// Magnitude that counts as the limit of the star list; `None` for an empty list.
@@ -29,6 +31,8 @@ pub(in crate::far_range) struct BestPipeline {
     pub(super) readout: Option<Readout>,
     pub(super) calibration: PhotometryCalibration,
     pub(super) mounting: MountingFilter,
+    /// True if the stars of the frame contradict the stated focal length.
+    pub(super) is_rescaled: bool,
     /// Solver for frames without a prior attitude.
     pub(super) lost_in_space: Option<LostInSpace>,
     pub(super) psf: PointImageEstimate,
@@ -98,10 +102,14 @@ impl BestPipeline {
         }
         let model = CameraModel::new(&setup.camera)?;
         let calibration = &setup.calibration;
+        let widest = match config.best.prior {
+            AttitudePrior::None => model.with_focal_ratio(1.0 - config.best.focal_length_tolerance),
+            AttitudePrior::Telemetry => model.clone(),
+        };
         Ok(Self {
             star_limit: magnitude_limit(&setup.stars)
                 .map(|limit| limit.min(config.identification.max_magnitude)),
-            stars: StarList::new(&setup.stars, config.identification.max_magnitude, &model),
+            stars: StarList::new(&setup.stars, config.identification.max_magnitude, &widest),
             readout: setup.readout,
             calibration: PhotometryCalibration {
                 response: calibration.response_sigma.unwrap_or(UNKNOWN_RESPONSE),
@@ -110,8 +118,10 @@ impl BestPipeline {
                 zero_magnitude_e_per_s: calibration.zero_magnitude_e_per_s,
                 target: calibration.target,
             },
-            lost_in_space: (config.best.prior == AttitudePrior::None)
-                .then(|| LostInSpace::new(&setup.stars, &model, config.identification.max_magnitude)),
+            lost_in_space: (config.best.prior == AttitudePrior::None).then(|| {
+                let max_magnitude = config.identification.max_magnitude;
+                LostInSpace::new(&setup.stars, &model, max_magnitude, config.best.focal_length_tolerance)
+            }),
             mounting: MountingFilter::new(setup.camera_from_body, calibration.attitude),
             psf: PointImageEstimate::new(calibration, config.best.psf_width_error),
             brightness: Brightness {
@@ -122,6 +132,7 @@ impl BestPipeline {
                     _ => ScaleSource::Unknown,
                 },
             },
+            is_rescaled: false,
             hot_pixels: HotPixels::default(),
             tracks: Tracks::default(),
             background: BackgroundEstimator::default(),
@@ -129,6 +140,7 @@ impl BestPipeline {
             faint_points: FaintPoints::default(),
             fitter: SourceFitter::default(),
             last: None,
+            stated_model: model.clone(),
             model,
             config,
         })

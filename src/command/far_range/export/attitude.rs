@@ -111,7 +111,8 @@ pub(super) fn measured_attitude(
         }
         continued = Some(group);
     }
-    let by_stars = measured.values().filter(|(_, source)| *source == Some(AttitudeSource::Stars)).count();
+    let by_stars =
+        measured.values().filter(|(_, source)| source.is_some_and(AttitudeSource::is_by_stars)).count();
     let mut comments = vec![format!(
         "Attitudes of the camera that the pipeline states: {} by stars of the frame, {} by others or not stated.",
         by_stars,

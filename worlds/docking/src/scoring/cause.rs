@@ -5,12 +5,14 @@ use contract::docking::NoPose;
 use super::truth::{TargetVisibility, TrueField};
 
 /// Cause of a field with neither pose nor range. When several apply, the first in this order is taken: a
-/// missing row, then, by the truth only, a cause that no pipeline could have avoided, then the reason that
-/// the pipeline states.
+/// missing row; a failure of the pipeline, of which every one is counted, whatever the field showed; by the
+/// truth only, a cause that no pipeline could have avoided; the reason that the pipeline states.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum MissCause {
     /// The measurements have no row for the field.
     NotReported,
+    /// The pipeline failed.
+    PipelineFailed,
     /// The target is not resolved: a bar of its cross is narrower than two pixels.
     TooFar,
     /// The target is outside the image ([`TargetVisibility::Outside`]), or partly outside if the pipeline
@@ -20,8 +22,6 @@ pub enum MissCause {
     LostLines,
     /// At least half of the marks are illuminated by neither Sun nor lamp.
     InShadow,
-    /// The pipeline failed.
-    PipelineFailed,
     /// The reason that the pipeline states, if the truth shows no other cause; never [`NoPose::Failed`].
     NoPose(NoPose),
 }
@@ -33,11 +33,11 @@ impl MissCause {
     /// Codes of all causes, in order of precedence.
     pub const CODES: [&str; 13] = [
         "not_reported",
+        "pipeline_failed",
         "too_far",
         "outside_field",
         "lost_lines",
         "in_shadow",
-        "pipeline_failed",
         "empty_field",
         "saturated_field",
         "no_target",
@@ -51,6 +51,9 @@ impl MissCause {
     /// without an outcome.
     pub(super) fn from_truth(truth: &TrueField, is_resolved: bool, reason: Option<&NoPose>) -> Self {
         let Some(reason) = reason else { return Self::NotReported };
+        if matches!(reason, NoPose::Failed(_)) {
+            return Self::PipelineFailed;
+        }
         let visibility = truth.visibility;
         if !is_resolved {
             Self::TooFar
@@ -62,8 +65,6 @@ impl MissCause {
             Self::LostLines
         } else if truth.marks_in_shadow >= 0.5 {
             Self::InShadow
-        } else if matches!(reason, NoPose::Failed(_)) {
-            Self::PipelineFailed
         } else {
             Self::NoPose(reason.clone())
         }
@@ -73,11 +74,11 @@ impl MissCause {
     pub fn code(&self) -> &'static str {
         match self {
             Self::NotReported => "not_reported",
+            Self::PipelineFailed => "pipeline_failed",
             Self::TooFar => "too_far",
             Self::OutsideField => "outside_field",
             Self::LostLines => "lost_lines",
             Self::InShadow => "in_shadow",
-            Self::PipelineFailed => "pipeline_failed",
             Self::NoPose(reason) => reason.code(),
         }
     }
@@ -117,6 +118,8 @@ mod tests {
 
     #[test]
     fn a_failure_of_the_pipeline_is_one_cause_regardless_of_its_text() {
-        assert_eq!(cause(|_, _| (), Some(NoPose::Failed("out of film".to_owned()))), "pipeline_failed");
+        let failed = || Some(NoPose::Failed("out of film".to_owned()));
+        assert_eq!(cause(|_, _| (), failed()), "pipeline_failed");
+        assert_eq!(cause(|_, is_resolved| *is_resolved = false, failed()), "pipeline_failed");
     }
 }

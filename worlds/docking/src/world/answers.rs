@@ -2,7 +2,7 @@
 //! measurements.
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use contract::docking::{Docking, DockingOutcome, DockingSetup, FieldTelemetry};
 use files::{FileError, TableWriter};
@@ -35,10 +35,7 @@ impl FieldAnswers {
 }
 
 impl Answers<Docking> for FieldAnswers {
-    fn files(measurements: &Path) -> Vec<PathBuf> {
-        let beside = ["motion.csv", "features.parquet"].map(|name| measurements.with_file_name(name));
-        [measurements.to_owned()].into_iter().chain(beside).collect()
-    }
+    const BESIDE: &'static [&'static str] = &["motion.csv", "features.parquet"];
 
     fn create(files: &[PathBuf]) -> Result<Self, FileError> {
         let [measurements, motion, features] = paths(files)?;

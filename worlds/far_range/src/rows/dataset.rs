@@ -125,6 +125,11 @@ impl Dataset {
         let camera = CameraFile::read(&directory.join("camera.toml"))?;
         let table = directory.join("telemetry.csv");
         let rows = read_with_lines(&table)?;
+        if !rows.is_empty() && rows.iter().all(|(_, row)| row.file.is_none()) {
+            let expected = "names of images; a run keeps its images with --save-frames";
+            let file = "empty in every row";
+            return Err(FileError::value(&table, FileLocation::Header, "file", file, expected));
+        }
         let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
         let locate =
             |(line, row): (u64, TelemetryRow)| match locate_image(directory, &root, row.file.as_deref()) {

@@ -344,6 +344,7 @@ mod tests {
         let solution = prop_oneof![detected, reason.prop_map(Solution::NoSolution)];
         let source = prop::option::of(prop_oneof![
             Just(AttitudeSource::Stars),
+            Just(AttitudeSource::RescaledStars),
             Just(AttitudeSource::TooFewStars),
             Just(AttitudeSource::NoStars),
             Just(AttitudeSource::NoMatch),

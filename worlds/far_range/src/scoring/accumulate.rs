@@ -353,7 +353,7 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
         Definition::amount(names::STARS_MEAN, "stars mean", None, Reduction::Mean, stars)
             .with_direction(Better::More),
         of_all(names::ATTITUDE_FROM_STARS_RATE, "attitude from stars rate", |frame| {
-            frame.attitude_source == Some(AttitudeSource::Stars)
+            frame.attitude_source.is_some_and(AttitudeSource::is_by_stars)
         }),
     ];
     list.extend(consistency::definitions());

@@ -7,11 +7,12 @@ use super::cluster_members::{covers, holds, merged_with, target};
 
 /// Cause of a miss or of a wrong measurement. When several apply, the first in this order is taken:
 ///
-/// 1. there is no row ([`Cause::NotReported`]), and thus no further information about the outcome;
+/// 1. there is no answer to judge: no row ([`Cause::NotReported`]), or a failure of the pipeline
+///    ([`Cause::PipelineFailed`]), of which every one is counted, whatever the frame showed;
 /// 2. by the truth only, a cause that no pipeline could have avoided: [`Cause::OutsideField`],
 ///    [`Cause::InEclipse`], [`Cause::TooFaint`], [`Cause::CutByRoi`];
-/// 3. the reason that the pipeline states: [`Cause::PipelineFailed`], [`Cause::SaturatedFrame`],
-///    [`Cause::NoPreviousFrame`], and an empty frame as [`Cause::BelowThreshold`];
+/// 3. the reason that the pipeline states: [`Cause::SaturatedFrame`], [`Cause::NoPreviousFrame`], and an
+///    empty frame as [`Cause::BelowThreshold`];
 /// 4. if the pipeline reports its clusters, the label of the cluster that is nearest to the target and within
 ///    its reach of max(`radius_px`, 1.5) px, along its columns by `bloom_px` farther; without such a cluster,
 ///    a cluster at a star, planet, the Moon, a hot pixel or cosmic-ray hit that touches the target (distance
@@ -25,6 +26,8 @@ use super::cluster_members::{covers, holds, merged_with, target};
 pub enum Cause {
     /// The measurements have no row for the frame.
     NotReported,
+    /// The pipeline failed, or its measurement is not a direction.
+    PipelineFailed,
     /// The centre of the target's image is off the detector, or the target is behind the camera.
     OutsideField,
     /// The target is wholly or partly in the Earth's shadow and not detectable.
@@ -33,8 +36,6 @@ pub enum Cause {
     TooFaint,
     /// More than half of the target's electrons are outside the transmitted regions.
     CutByRoi,
-    /// The pipeline failed, or its measurement is not a direction.
-    PipelineFailed,
     /// The pipeline gave up because a large part of the frame is saturated.
     SaturatedFrame,
     /// The pipeline had no previous frame from which to measure motion.
@@ -69,11 +70,11 @@ impl Cause {
     /// All causes, in order of precedence.
     pub const ALL: [Self; 18] = [
         Self::NotReported,
+        Self::PipelineFailed,
         Self::OutsideField,
         Self::InEclipse,
         Self::TooFaint,
         Self::CutByRoi,
-        Self::PipelineFailed,
         Self::SaturatedFrame,
         Self::NoPreviousFrame,
         Self::MergedWithStar,
@@ -151,6 +152,9 @@ pub(super) fn cause(
     detector: Detector,
 ) -> Cause {
     let Some(outcome) = outcome else { return Cause::NotReported };
+    if matches!(outcome.solution, Solution::NoSolution(NoSolution::Failed(_))) {
+        return Cause::PipelineFailed;
+    }
     let target = target(objects);
     let neighbour = target.and_then(|target| merged_with(target, objects));
     undetectable_cause(truth, target, detector)
@@ -186,11 +190,10 @@ fn undetectable_cause(truth: &FrameTruth, target: Option<&ObjectTruth>, detector
 /// Returns the reason stated by the pipeline, if it applies to the whole frame.
 fn pipeline_reason(solution: &Solution) -> Option<Cause> {
     match solution {
-        Solution::NoSolution(NoSolution::Failed(_)) => Some(Cause::PipelineFailed),
         Solution::NoSolution(NoSolution::SaturatedFrame) => Some(Cause::SaturatedFrame),
         Solution::NoSolution(NoSolution::NoPreviousFrame) => Some(Cause::NoPreviousFrame),
         Solution::NoSolution(NoSolution::EmptyFrame) => Some(Cause::BelowThreshold),
-        Solution::NoSolution(NoSolution::NoTarget) | Solution::Detected(_) => None,
+        Solution::NoSolution(NoSolution::NoTarget | NoSolution::Failed(_)) | Solution::Detected(_) => None,
     }
 }
 
@@ -299,6 +302,16 @@ mod tests {
         {
             let target = ObjectTruth { cut, ..target_with(1000.0) };
             assert_eq!(cause(&frame(0), &[target], Some(&no_target()), DETECTOR), expected);
+        }
+    }
+
+    #[test]
+    fn a_failure_of_the_pipeline_precedes_the_truth() {
+        let crashed = Outcome::without_solution(NoSolution::Failed("exit status 1".into()));
+        let invisible = FrameTruth { target_visibility: Visibility::Invisible, ..frame(0) };
+        let cut = ObjectTruth { cut: 0.6, ..target_with(1000.0) };
+        for (truth, target) in [(&frame(0), cut), (&invisible, target_with(1.0))] {
+            assert_eq!(cause(truth, &[target], Some(&crashed), DETECTOR), Cause::PipelineFailed);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Output files of a pipeline: `measurements.csv` and `clusters.parquet`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use contract::{AttitudeSource, FarRange, Outcome, Setup, Telemetry};
 use files::{FileError, TableWriter};
@@ -16,7 +16,7 @@ pub struct FrameAnswers {
     measurements: MeasurementWriter,
     clusters: TableWriter<FrameCluster>,
     attitudes: AttitudeCounts,
-    /// First frames without a matched star, among those that have clusters enough.
+    /// First frames whose stars do not fit the inputs as stated, among those that have clusters enough.
     unmatched: Vec<UnmatchedFrame>,
 }
 
@@ -25,9 +25,7 @@ const KEPT_FRAMES: usize = 8;
 const KEPT_CLUSTERS: usize = 5;
 
 impl Answers<FarRange> for FrameAnswers {
-    fn files(measurements: &Path) -> Vec<PathBuf> {
-        vec![measurements.to_owned(), measurements.with_file_name("clusters.parquet")]
-    }
+    const BESIDE: &'static [&'static str] = &["clusters.parquet"];
 
     fn create(files: &[PathBuf]) -> Result<Self, FileError> {
         let [measurements, clusters] = paths(files)?;
@@ -65,8 +63,8 @@ impl Answers<FarRange> for FrameAnswers {
 
 impl FrameAnswers {
     fn keep_unmatched(&mut self, telemetry: &Telemetry, outcome: &Outcome) {
-        let is_unmatched =
-            matches!(outcome.attitude_source, Some(AttitudeSource::NoMatch | AttitudeSource::NoStars));
+        use AttitudeSource::{NoMatch, NoStars, RescaledStars};
+        let is_unmatched = matches!(outcome.attitude_source, Some(NoMatch | NoStars | RescaledStars));
         if !is_unmatched || outcome.clusters.len() < KEPT_CLUSTERS || self.unmatched.len() >= KEPT_FRAMES {
             return;
         }
@@ -90,7 +88,8 @@ impl AttitudeCounts {
         }
     }
 
-    /// Returns true if stars determine the attitude in fewer than half of the frames.
+    /// Returns true if stars determine the attitude, with the inputs as stated, in fewer than half of the
+    /// frames.
     fn are_mostly_unmatched(&self) -> bool {
         let of_stars = self.stated.get(AttitudeSource::Stars.code()).copied().unwrap_or(0);
         2 * of_stars < self.frames
@@ -103,6 +102,7 @@ impl AttitudeCounts {
         let others = AttitudeSource::ALL.into_iter().filter_map(|source| {
             let words = match source {
                 AttitudeSource::Stars => return None,
+                AttitudeSource::RescaledStars => "at another focal length",
                 AttitudeSource::TooFewStars => "with too few stars",
                 AttitudeSource::NoStars => "without a star",
                 AttitudeSource::NoMatch => "without a match",
@@ -115,8 +115,8 @@ impl AttitudeCounts {
             .filter(|(count, _)| *count > 0)
             .map(|(count, words)| format!("{count} {words}"))
             .collect();
-        let mut text =
-            format!("attitude from stars in {} of {} frames", count(AttitudeSource::Stars), self.frames);
+        let by_stars = count(AttitudeSource::Stars) + count(AttitudeSource::RescaledStars);
+        let mut text = format!("attitude from stars in {by_stars} of {} frames", self.frames);
         if !others.is_empty() {
             text.push_str("; ");
             text.push_str(&others.join(", "));
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn the_sources_of_the_attitude_are_reported_in_a_line() {
-        use AttitudeSource::{NoMatch, NoStars, Stars, TooFewStars};
+        use AttitudeSource::{NoMatch, NoStars, RescaledStars, Stars, TooFewStars};
         let sources = [Stars, TooFewStars, Stars, Stars, NoMatch, Stars, TooFewStars, Stars].map(Some);
         let summary_of_sources = summary(&sources).unwrap();
         assert_eq!(
@@ -147,7 +147,12 @@ mod tests {
         );
         assert_eq!(
             summary_of_sources.counts.into_iter().collect::<Vec<_>>(),
-            [("stars", 5), ("too_few_stars", 2), ("no_stars", 0), ("no_match", 1)]
+            [("stars", 5), ("rescaled_stars", 0), ("too_few_stars", 2), ("no_stars", 0), ("no_match", 1)]
+        );
+        let rescaled = summary(&[Stars, RescaledStars, NoMatch].map(Some)).unwrap();
+        assert_eq!(
+            rescaled.text,
+            "attitude from stars in 2 of 3 frames; 1 at another focal length, 1 without a match"
         );
         assert_eq!(summary(&[Some(Stars)]).unwrap().text, "attitude from stars in 1 of 1 frames");
         let none = summary(&[Some(NoStars), None]).unwrap();

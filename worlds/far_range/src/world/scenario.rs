@@ -128,8 +128,26 @@ impl WorldScenario for FarRangeMission {
             )
         });
         let mut warnings: Vec<String> = beyond.into_iter().collect();
+        warnings.extend(distant_principal_point(&self.scenario().camera));
         warnings.extend(self.scenario().motion_remarks());
         warnings.extend(passing_speed(&self.simulator));
         warnings
     }
+}
+
+/// Returns a remark on a principal point farther outside the detector than the detector's side: a value in
+/// another unit, or counted from another corner.
+fn distant_principal_point(camera: &contract::Camera) -> Option<String> {
+    let sides = [
+        ("principal_x_px", camera.principal_x_px, camera.columns),
+        ("principal_y_px", camera.principal_y_px, camera.rows),
+    ];
+    let (name, value, count) = sides.into_iter().find(|(_, value, count)| {
+        let side = *count as f64;
+        *value < -side || *value > 2.0 * side
+    })?;
+    Some(format!(
+        "camera.{name} is {value}, far outside a detector of {count} pixels; pixels are counted from 0 at the \
+         first one"
+    ))
 }

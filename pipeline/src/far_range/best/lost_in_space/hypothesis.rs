@@ -1,12 +1,13 @@
-//! Attitude hypothesis, and its odds by the sources of a frame.
+//! Hypothesis of an attitude, and if it is free of the focal length too, with its odds by the sources of a
+//! frame.
 
 use contract::{CameraFrame, Icrs, ListedStar, PixelPoint, Rotation};
-use nalgebra::{Matrix2, Matrix3, Vector2};
+use nalgebra::{Matrix2, Matrix2x4, Matrix3, Matrix4, Vector2};
 
 use super::source::{ImageSource, SOURCE_SIGMA_PX};
 use crate::CameraModel;
 use crate::far_range::attitude::{StarPair, solve_q_method};
-use crate::far_range::best::stars::{image_covariance, turn_derivative};
+use crate::far_range::best::stars::turn_derivative;
 use crate::far_range::identify::StarList;
 
 /// Source matched with a star.
@@ -22,12 +23,17 @@ impl Match {
     }
 }
 
-/// Attitude from matched sources, with the covariance, rad², of its error as a rotation about the camera's
-/// axes.
-#[derive(Debug, Clone, Copy)]
+/// Attitude from matched sources, for a known or a free focal length.
+#[derive(Debug, Clone)]
 pub(super) struct Hypothesis {
     pub(super) camera_from_icrs: Rotation<CameraFrame, Icrs>,
-    pub(super) covariance: Matrix3<f64>,
+    /// Camera with the focal length of the hypothesis.
+    pub(super) model: CameraModel,
+    /// Focal length over the stated one; 1 if it is known.
+    pub(super) focal_ratio: f64,
+    /// Covariance of the errors: of the attitude as a rotation about the camera's axes, rad, and of the
+    /// natural logarithm of the focal length, 0 if it is known.
+    pub(super) covariance: Matrix4<f64>,
 }
 
 /// Support of an attitude by the sources of a frame.
@@ -53,22 +59,54 @@ struct Prediction {
     star: ListedStar,
     position: PixelPoint,
     information: Matrix2<f64>,
-    /// Density at the centre of the distribution, px⁻².
-    peak: f64,
+    /// Natural logarithm of the density at the centre of the distribution, px⁻².
+    log_peak: f64,
     is_taken: bool,
 }
+
+/// Number of rounds in which attitude and focal length are solved in turn. Each reduces the error of the
+/// focal length by the share of the sources' scatter that a turn of the camera can take up, a hundredth or
+/// less.
+const FOCAL_ROUNDS: usize = 4;
 
 impl Hypothesis {
     /// Returns the attitude that best rotates the stars onto their sources, with equal weights; `None` when
     /// they do not determine it.
-    pub(super) fn new(matched: &[Match], model: &CameraModel) -> Option<Self> {
-        let pairs: Vec<StarPair> = matched
+    pub(super) fn with_known_focal_length(matched: &[Match], model: &CameraModel) -> Option<Self> {
+        let camera_from_icrs = attitude(matched, 1.0)?;
+        let information: Matrix3<f64> =
+            matched.iter().map(|pair| turn_information(&derivatives(pair, model, 1.0))).sum();
+        let mut covariance = Matrix4::zeros();
+        covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&information.try_inverse()?);
+        Some(Self { camera_from_icrs, model: model.clone(), focal_ratio: 1.0, covariance })
+    }
+
+    /// Returns the attitude and the focal length that best map the stars onto their sources, with equal
+    /// weights; `None` when they do not determine both. `stated` is the camera as stated, `ratio` a first
+    /// value of the focal length over the stated one.
+    pub(super) fn with_free_focal_length(
+        matched: &[Match],
+        stated: &CameraModel,
+        mut ratio: f64,
+    ) -> Option<Self> {
+        let mut camera_from_icrs = attitude(matched, ratio)?;
+        for _ in 0..FOCAL_ROUNDS {
+            ratio = focal_ratio(matched, &camera_from_icrs, stated)?;
+            camera_from_icrs = attitude(matched, ratio)?;
+        }
+        let information: Matrix4<f64> = matched
             .iter()
-            .map(|pair| StarPair { camera: pair.source.direction, icrs: pair.star.direction, weight: 1.0 })
-            .collect();
-        let camera_from_icrs = solve_q_method(&pairs)?;
-        let information: Matrix3<f64> = matched.iter().map(|pair| information(pair, model)).sum();
-        Some(Self { camera_from_icrs, covariance: information.try_inverse()? })
+            .map(|pair| {
+                let by = derivatives(pair, stated, ratio) / SOURCE_SIGMA_PX;
+                by.transpose() * by
+            })
+            .sum();
+        Some(Self {
+            camera_from_icrs,
+            model: stated.with_focal_ratio(ratio),
+            focal_ratio: ratio,
+            covariance: information.try_inverse()?,
+        })
     }
 
     /// Compares sources, in order of flux, with all predicted stars. The matches in `given`, from which the
@@ -78,36 +116,23 @@ impl Hypothesis {
     /// 1/A by chance (Lang et al. 2010, Eqs. 6 to 13 with one variance for each star: that of the source and
     /// of the attitude). N is that of the likeliest star instead of the sum over stars, which is a lower
     /// bound. Each star matches at most one source.
-    pub(super) fn support(
-        &self,
-        sources: &[ImageSource],
-        given: &[Match],
-        list: &StarList,
-        model: &CameraModel,
-    ) -> Support {
-        let mut predictions = self.predictions(list, model);
+    pub(super) fn support(&self, sources: &[ImageSource], given: &[Match], list: &StarList) -> Support {
+        let mut predictions = self.predictions(list);
         for pair in given {
             predictions.retain(|prediction| prediction.star != pair.star);
         }
-        let (columns, rows) = model.size_px();
+        let (columns, rows) = self.model.size_px();
         let gain = (1.0 - DISTRACTORS) * columns as f64 * rows as f64 / predictions.len().max(1) as f64;
         let mut support = Support { log_odds: 0.0, matched: given.to_vec() };
         for source in sources {
             if given.iter().any(|pair| pair.source.index == source.index) {
                 continue;
             }
-            let likeliest = predictions
-                .iter_mut()
-                .filter(|prediction| !prediction.is_taken)
-                .map(|prediction| {
-                    let distance = prediction.squared_distance(source.position);
-                    (prediction.peak * libm::exp(-0.5 * distance), distance, prediction)
-                })
-                .max_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((density, distance, prediction)) = likeliest else {
+            let Some((prediction, distance)) = likeliest(&mut predictions, source.position) else {
                 support.log_odds += libm::log(DISTRACTORS);
                 continue;
             };
+            let density = libm::exp(prediction.log_peak - 0.5 * distance);
             support.log_odds += libm::log(DISTRACTORS + gain * density);
             if distance <= MATCH_GATE {
                 prediction.is_taken = true;
@@ -117,19 +142,20 @@ impl Hypothesis {
         support
     }
 
-    fn predictions(&self, list: &StarList, model: &CameraModel) -> Vec<Prediction> {
-        let (fx, fy) = model.focal_px();
-        list.predict(&self.camera_from_icrs, model)
+    fn predictions(&self, list: &StarList) -> Vec<Prediction> {
+        let focal_px = self.model.focal_px();
+        list.predict(&self.camera_from_icrs, &self.model)
             .into_iter()
             .filter_map(|predicted| {
                 let r = self.camera_from_icrs.rotate(predicted.star.direction.vector());
-                let of_attitude = image_covariance(&self.covariance, r.x / r.z, r.y / r.z, (fx, fy));
-                let covariance = of_attitude + Matrix2::identity() * (SOURCE_SIGMA_PX * SOURCE_SIGMA_PX);
+                let by = derivatives_at(r.x / r.z, r.y / r.z, focal_px);
+                let of_hypothesis = by * self.covariance * by.transpose();
+                let covariance = of_hypothesis + Matrix2::identity() * (SOURCE_SIGMA_PX * SOURCE_SIGMA_PX);
                 Some(Prediction {
                     star: predicted.star,
                     position: predicted.position,
                     information: covariance.try_inverse()?,
-                    peak: 1.0 / (std::f64::consts::TAU * covariance.determinant().sqrt()),
+                    log_peak: -libm::log(std::f64::consts::TAU * covariance.determinant().sqrt()),
                     is_taken: false,
                 })
             })
@@ -137,18 +163,82 @@ impl Hypothesis {
     }
 }
 
-/// Returns the information of a matched source on a rotation of the camera about its axes, rad⁻².
-fn information(pair: &Match, model: &CameraModel) -> Matrix3<f64> {
+/// Returns the attitude that best rotates the stars onto the directions of their sources at a focal length.
+fn attitude(matched: &[Match], focal_ratio: f64) -> Option<Rotation<CameraFrame, Icrs>> {
+    let mut pairs = Vec::with_capacity(matched.len());
+    for pair in matched {
+        let camera = pair.source.direction_at(focal_ratio)?;
+        pairs.push(StarPair { camera, icrs: pair.star.direction, weight: 1.0 });
+    }
+    solve_q_method(&pairs)
+}
+
+/// Returns the focal length over the stated one that best maps the stars, rotated by an attitude, onto their
+/// sources: Σ u·p/Σ |p|², for the sources' offsets u from the principal point, px, without distortion, and
+/// the stars' offsets p at the stated focal length.
+fn focal_ratio(
+    matched: &[Match],
+    camera_from_icrs: &Rotation<CameraFrame, Icrs>,
+    stated: &CameraModel,
+) -> Option<f64> {
+    let (fx, fy) = stated.focal_px();
+    let (mut products, mut squares) = (0.0, 0.0);
+    for pair in matched {
+        let source = pair.source.direction.vector();
+        let star = camera_from_icrs.rotate(pair.star.direction.vector());
+        let measured = Vector2::new(fx * source.x / source.z, fy * source.y / source.z);
+        let expected = Vector2::new(fx * star.x / star.z, fy * star.y / star.z);
+        products += measured.dot(&expected);
+        squares += expected.norm_squared();
+    }
+    Some(products / squares).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+}
+
+/// Returns the derivatives of the position of a matched source, px, by a turn of the camera about its axes,
+/// rad, and by the natural logarithm of the focal length.
+fn derivatives(pair: &Match, stated: &CameraModel, focal_ratio: f64) -> Matrix2x4<f64> {
     let r = pair.source.direction.vector();
-    let (fx, fy) = model.focal_px();
-    let by = turn_derivative(r.x / r.z, r.y / r.z, fx, fy) / SOURCE_SIGMA_PX;
+    let (fx, fy) = stated.focal_px();
+    derivatives_at(r.x / r.z / focal_ratio, r.y / r.z / focal_ratio, (fx * focal_ratio, fy * focal_ratio))
+}
+
+/// Returns the derivatives of [`derivatives`] at a direction (x, y, 1) of the camera.
+fn derivatives_at(x: f64, y: f64, (fx, fy): (f64, f64)) -> Matrix2x4<f64> {
+    let mut by = Matrix2x4::zeros();
+    by.fixed_view_mut::<2, 3>(0, 0).copy_from(&turn_derivative(x, y, fx, fy));
+    by[(0, 3)] = fx * x;
+    by[(1, 3)] = fy * y;
+    by
+}
+
+/// Returns the information of a matched source on a turn of the camera about its axes, rad⁻².
+fn turn_information(derivatives: &Matrix2x4<f64>) -> Matrix3<f64> {
+    let by = derivatives.fixed_view::<2, 3>(0, 0) / SOURCE_SIGMA_PX;
     by.transpose() * by
 }
 
 impl Prediction {
     /// Returns the squared distance of a position from the predicted one, in standard deviations.
     fn squared_distance(&self, position: PixelPoint) -> f64 {
-        let d = Vector2::new(position.x - self.position.x, position.y - self.position.y);
-        (d.transpose() * self.information * d).x
+        let (dx, dy) = (position.x - self.position.x, position.y - self.position.y);
+        let information = &self.information;
+        (dx * information.m11 + dy * information.m21) * dx
+            + (dx * information.m12 + dy * information.m22) * dy
     }
+}
+
+/// Returns the prediction without a source whose distribution has the largest density at a position, and its
+/// squared distance; `None` if all have a source.
+fn likeliest(predictions: &mut [Prediction], position: PixelPoint) -> Option<(&mut Prediction, f64)> {
+    let mut best = None;
+    let mut highest = f64::NEG_INFINITY;
+    for prediction in predictions.iter_mut().filter(|prediction| !prediction.is_taken) {
+        let distance = prediction.squared_distance(position);
+        let log_density = prediction.log_peak - 0.5 * distance;
+        if log_density >= highest {
+            highest = log_density;
+            best = Some((prediction, distance));
+        }
+    }
+    best
 }

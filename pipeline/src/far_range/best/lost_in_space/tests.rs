@@ -136,6 +136,9 @@ struct Tally {
     /// Number of fields off by more than 0.1°, including the rotation about the boresight.
     turned: u32,
     false_matches: u32,
+    /// Number of fields whose focal length is off by more than five standard deviations of its error, 0.4 px
+    /// of each source.
+    other_focal_lengths: u32,
 }
 
 /// Solves `fields` random fields with at least ten stars of the list. In each field, the brightest stars are
@@ -148,13 +151,29 @@ fn tally(
     most_detectable: usize,
     change: impl Fn(PixelPoint) -> PixelPoint,
 ) -> Tally {
-    let solver = LostInSpace::new(sky, model, 30.0);
-    let all = StarList::new(sky, 30.0, model);
+    tally_with_focal_errors(sky, model, 0.0, fields, seed, most_detectable, change)
+}
+
+/// Works like [`tally`] for cameras whose focal length differs from the stated one by a random share up to
+/// `tolerance`.
+fn tally_with_focal_errors(
+    sky: &[ListedStar],
+    stated: &CameraModel,
+    tolerance: f64,
+    fields: u32,
+    seed: u64,
+    most_detectable: usize,
+    change: impl Fn(PixelPoint) -> PixelPoint,
+) -> Tally {
+    let solver = LostInSpace::new(sky, stated, 30.0, tolerance);
+    let all = StarList::new(sky, 30.0, &stated.with_focal_ratio(1.0 - tolerance));
     let mut random = Random(seed);
     let mut tally = Tally::default();
     let mut done = 0;
     while done < fields {
         let attitude = random.attitude();
+        let ratio = if tolerance > 0.0 { 1.0 + tolerance * (2.0 * random.uniform() - 1.0) } else { 1.0 };
+        let model = &stated.with_focal_ratio(ratio);
         let mut stars = all.predict(&attitude, model);
         if stars.len() < 10 {
             continue;
@@ -178,6 +197,14 @@ fn tally(
             tally.wrong += 1;
         }
         tally.turned += u32::from(error.norm().to_degrees() > 0.1);
+        let (fx, fy) = model.focal_px();
+        let mut squares = 0.0;
+        for (_, star) in &found.matched {
+            let r = attitude.rotate(star.direction.vector());
+            squares += libm::pow(fx * r.x / r.z, 2.0) + libm::pow(fy * r.y / r.z, 2.0);
+        }
+        let focal_error = libm::log(found.focal_ratio / ratio) * squares.sqrt() / 0.4;
+        tally.other_focal_lengths += u32::from(focal_error.abs() > 5.0);
         for (source, star) in found.matched {
             let truth = model.project(&(attitude * star.direction));
             if truth.is_none_or(|truth| change(truth).distance(sources[source].0) > 3.0) {
@@ -196,6 +223,41 @@ fn check(sky: &[ListedStar], model: &CameraModel, most_detectable: usize, least:
         tally.solved >= least && tally.wrong == 0 && tally.turned <= 1 && tally.false_matches == 0,
         "{tally:?}"
     );
+    assert_eq!(tally.other_focal_lengths, 0, "{tally:?}");
+}
+
+/// Checks that at least `least` of `fields` fields are solved although the focal length is wrong by up to
+/// `tolerance`, and that attitude and focal length are within their errors in all that are solved.
+fn check_with_focal_errors(model: &CameraModel, tolerance: f64, fields: u32, least: u32) {
+    let sky = real_sky();
+    let tally =
+        tally_with_focal_errors(&sky, model, tolerance, fields, 71, MAX_DETECTABLE, |position| position);
+    println!("of {fields} fields, {tolerance}: {tally:?}");
+    assert!(tally.solved >= least && tally.wrong == 0 && tally.false_matches == 0, "{tally:?}");
+    assert_eq!(tally.other_focal_lengths, 0, "{tally:?}");
+}
+
+#[test]
+fn a_focal_length_wrong_by_two_percent_is_found() {
+    check_with_focal_errors(&argon(), 0.02, 100, 99);
+}
+
+#[test]
+fn a_focal_length_wrong_by_up_to_twenty_percent_is_found() {
+    check_with_focal_errors(&argon(), 0.2, 30, 29);
+    check_with_focal_errors(&camera(1024, 1024, 60.0, -1e-8), 0.2, 30, 29);
+}
+
+/// With a free focal length more attitudes are tested, with higher odds: still none is found.
+#[test]
+fn sources_at_random_have_no_attitude_at_any_focal_length() {
+    let model = argon();
+    let solver = LostInSpace::new(&real_sky(), &model, 30.0, 0.1);
+    let mut random = Random(12);
+    for _ in 0..5 {
+        let sources: Vec<_> = (0..40).map(|_| (random.position(&model), random.uniform())).collect();
+        assert!(solver.solve(&sources).is_none());
+    }
 }
 
 #[test]
@@ -225,7 +287,7 @@ fn a_field_of_2_degrees_is_solved_where_the_list_is_deep_enough() {
 
 #[test]
 fn a_field_of_2_degrees_has_too_few_stars_of_a_shallow_list() {
-    let solver = LostInSpace::new(&real_sky(), &camera(1024, 1024, 2.0, 0.0), 7.5);
+    let solver = LostInSpace::new(&real_sky(), &camera(1024, 1024, 2.0, 0.0), 7.5, 0.0);
     let mut random = Random(3);
     let model = camera(1024, 1024, 2.0, 0.0);
     for _ in 0..50 {
@@ -244,7 +306,7 @@ fn a_mirrored_image_is_not_solved() {
 #[test]
 fn sources_at_random_have_no_attitude() {
     let model = argon();
-    let solver = LostInSpace::new(&real_sky(), &model, 30.0);
+    let solver = LostInSpace::new(&real_sky(), &model, 30.0, 0.0);
     let mut random = Random(11);
     for _ in 0..100 {
         let sources: Vec<_> = (0..40).map(|_| (random.position(&model), random.uniform())).collect();
@@ -259,14 +321,14 @@ fn fewer_than_four_sources_and_an_empty_list_have_no_attitude() {
     let stars = list.predict(&Random(2).attitude(), &model);
     let brightest: Vec<_> =
         stars.iter().map(|star| (star.position, libm::pow(10.0, -0.4 * star.star.magnitude))).collect();
-    let solver = LostInSpace::new(&sky, &model, 30.0);
+    let solver = LostInSpace::new(&sky, &model, 30.0, 0.0);
     assert!(solver.solve(&brightest).is_some());
     for count in 0..4 {
         assert!(solver.solve(&brightest[..count]).is_none());
     }
-    assert!(LostInSpace::new(&[], &model, 30.0).solve(&brightest).is_none());
-    assert!(LostInSpace::new(&sky[..2], &model, 30.0).solve(&brightest).is_none());
-    assert!(LostInSpace::new(&sky, &model, -30.0).solve(&brightest).is_none());
+    assert!(LostInSpace::new(&[], &model, 30.0, 0.0).solve(&brightest).is_none());
+    assert!(LostInSpace::new(&sky[..2], &model, 30.0, 0.0).solve(&brightest).is_none());
+    assert!(LostInSpace::new(&sky, &model, -30.0, 0.0).solve(&brightest).is_none());
 }
 
 #[test]
@@ -280,7 +342,7 @@ fn sources_that_are_not_finite_are_passed_over() {
         .collect();
     let nan = PixelPoint::new(f64::NAN, f64::INFINITY);
     sources.splice(0..0, [(nan, 1e9), (PixelPoint::new(1.0, 1.0), f64::NAN)]);
-    let found = LostInSpace::new(&sky, &model, 30.0).solve(&sources).unwrap();
+    let found = LostInSpace::new(&sky, &model, 30.0, 0.0).solve(&sources).unwrap();
     assert!(found.camera_from_icrs.angle_to(&attitude).degrees() < 1e-3);
     assert!(found.matched.iter().all(|(source, _)| *source >= 2));
 }
@@ -296,7 +358,7 @@ fn the_memory_of_a_crowded_list_is_bounded() {
             ListedStar { id, direction, magnitude: random.uniform() }
         })
         .collect();
-    let solver = LostInSpace::new(&crowd, &argon(), 30.0);
+    let solver = LostInSpace::new(&crowd, &argon(), 30.0, 0.0);
     assert_eq!(solver.stars.len(), 24);
 }
 

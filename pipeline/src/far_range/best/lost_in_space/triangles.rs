@@ -57,14 +57,23 @@ impl<'a> TriangleSearch<'a> {
         }
     }
 
+    /// Returns the largest difference of the separations of two sources and their stars, as a chord.
+    pub(super) fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// Returns the number of star pairs visited so far.
     pub(super) fn visited(&self) -> usize {
         self.visited
     }
 
     /// Returns the triples of star indices that have the separations of the corners and their sense of
-    /// rotation.
-    pub(super) fn matching_triples(&mut self, corners: [Direction<CameraFrame>; 3]) -> Vec<[u32; 3]> {
+    /// rotation. Each separation may also differ by the share `slack`, 0 for a known focal length.
+    pub(super) fn matching_triples(
+        &mut self,
+        corners: [Direction<CameraFrame>; 3],
+        slack: f64,
+    ) -> Vec<[u32; 3]> {
         let chord = |a: usize, b: usize| (corners[a].vector() - corners[b].vector()).norm();
         // Sides opposite to the corners.
         let sides = [chord(1, 2), chord(2, 0), chord(0, 1)];
@@ -72,10 +81,12 @@ impl<'a> TriangleSearch<'a> {
         let turn = |[a, b, c]: [&nalgebra::Vector3<f64>; 3]| a.dot(&b.cross(c));
         let seen = turn([0, 1, 2].map(|corner| corners[corner].vector()));
         // Height: twice the area over the base.
-        if longest > self.pairs.largest_chord() + self.tolerance || seen.abs() < self.least_height * longest {
+        if longest > self.pairs.largest_chord() + self.tolerance + slack * longest
+            || seen.abs() < self.least_height * longest
+        {
             return Vec::new();
         }
-        let windows = sides.map(|side| self.pairs.within(side, self.tolerance));
+        let windows = sides.map(|side| self.pairs.within(side, self.tolerance + slack * side));
         // The corner opposite to the side with the most pairs joins the other two.
         let joint = (0..3).max_by_key(|&corner| windows[corner].len()).unwrap_or(0);
         let (second, third) = ((joint + 1) % 3, (joint + 2) % 3);
@@ -92,7 +103,8 @@ impl<'a> TriangleSearch<'a> {
                     stars[third] = at_third;
                     let directions = stars.map(|star| self.stars[star as usize].direction);
                     let [_, b, c] = [joint, second, third].map(|corner| directions[corner]);
-                    if ((b.vector() - c.vector()).norm() - sides[joint]).abs() <= self.tolerance
+                    if ((b.vector() - c.vector()).norm() - sides[joint]).abs()
+                        <= self.tolerance + slack * sides[joint]
                         && turn(directions.each_ref().map(|direction| direction.vector())) * seen > 0.0
                     {
                         found.push(stars);

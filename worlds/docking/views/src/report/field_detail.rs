@@ -1,7 +1,8 @@
 //! Fields of a docking run, drawn anew one by one, with the recognised features.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use ::report::RunFiles;
 use ::report::figures::words::{capital, display_name};
 use ::report::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch};
 use ::report::read::rows_of_each;
@@ -30,8 +31,8 @@ impl FieldDetail {
     ///
     /// # Errors
     /// A [`Failure`] when `run.toml` cannot be read.
-    pub fn open(directory: &Path) -> Result<Self, Failure> {
-        let path = directory.join("run.toml");
+    pub fn open(files: &RunFiles) -> Result<Self, Failure> {
+        let path = files.path("run.toml");
         let source = ScenarioSource::read(&path.to_string_lossy())?;
         let simulator = simulator(&source, source.typed("the report of a docking run")?);
         Ok(Self {
@@ -41,7 +42,7 @@ impl FieldDetail {
                     (simulator, setup)
                 })
                 .map_err(|failure| failure.to_string()),
-            features: Some(directory.join("features.parquet")).filter(|path| path.is_file()),
+            features: files.beside("features.parquet"),
         })
     }
 

@@ -8,15 +8,12 @@ mod run;
 mod verdict;
 mod worst_fields;
 
-use std::path::Path;
-
 use indexmap::IndexMap;
 
 pub use field_detail::FieldDetail;
 pub use run::{DockingRun, PortionReport};
 pub use verdict::findings;
 
-use ::report::WorldReport;
 use ::report::charts::chart::{BESIDE, Chart, MEASURED, bars, rounded, stacked_bars};
 use ::report::charts::plotly::Trace;
 use ::report::figures::words::display_name;
@@ -26,6 +23,7 @@ use ::report::page::picture::RenderedPictures;
 use ::report::page::{Page, Section};
 use ::report::verdict::Verdict;
 use ::report::verdict::rules::honesty_words;
+use ::report::{RunFiles, WorldReport};
 use ::run::{AnyJudgement, WorldScenario as _};
 use docking::DockingMission;
 use docking::scoring::{DockingGroup, DockingScore};
@@ -39,18 +37,18 @@ pub(crate) fn world_report() -> WorldReport {
     WorldReport { code: DockingMission::CODE, page, pictures, budget: None }
 }
 
-/// Reads a run directory and returns its page.
-fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
-    let page = docking_page(&DockingRun::read(directory)?, &FieldDetail::open(directory)?)?;
-    Checksums::check(directory, |_| true)?;
+/// Reads the files of a run and returns its page.
+fn page(files: &RunFiles, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+    let page = docking_page(&DockingRun::read(files)?, &FieldDetail::open(files)?)?;
+    Checksums::check(&files.directory, |_| true)?;
     Ok(page)
 }
 
-/// Returns pictures of the given fields of a run directory.
-fn pictures(directory: &Path, fields: &[u64]) -> Result<RenderedPictures, Failure> {
-    let run = DockingRun::read(directory)?;
+/// Returns pictures of the given fields of a run.
+fn pictures(files: &RunFiles, fields: &[u64]) -> Result<RenderedPictures, Failure> {
+    let run = DockingRun::read(files)?;
     let row = |field: &u64| run.truths.binary_search_by_key(field, |truth| truth.field).ok();
-    let sheet = FieldDetail::open(directory)?;
+    let sheet = FieldDetail::open(files)?;
     let pictures = sheet.pictures(&run, &fields.iter().filter_map(row).collect::<Vec<_>>())?;
     Ok((pictures, sheet.reason().map(str::to_owned)))
 }

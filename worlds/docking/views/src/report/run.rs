@@ -10,9 +10,8 @@
         clippy::unreachable
     )
 )]
-use std::path::Path;
-
-use ::report::read::{missing, read_json};
+use ::report::RunFiles;
+use ::report::read::read_json;
 use contract::docking::{DockingOutcome, Motion};
 use docking::rows::{FieldRow, FieldTruthRow, read_field_measurements, read_field_telemetry, read_motion};
 use docking::scoring::DockingScore;
@@ -52,24 +51,22 @@ pub struct PortionReport {
 }
 
 impl DockingRun {
-    /// Reads a run directory.
+    /// Reads the files of a run.
     ///
     /// # Errors
     /// A [`Failure`] that names the file which is missing, cannot be read, or does not cover the same fields
     /// as the other files.
-    pub fn read(directory: &Path) -> Result<Self, Failure> {
-        for name in ["score.json", "measurements.csv", "telemetry.csv", "setup.toml", "truth/fields.parquet"]
-        {
-            if !directory.join(name).is_file() {
-                return Err(missing(directory, name));
-            }
-        }
-        let run_file = RunFile::<DockingScenario>::read(&directory.join("run.toml"))?;
-        let score: DockingScore = read_json(&directory.join("score.json"), "score")?;
-        let measurements = directory.join("measurements.csv");
-        let motion = Some(directory.join("motion.csv")).filter(|path| path.is_file());
-        let verdicts =
-            DockingMission::score_files(directory, &measurements, motion.as_deref(), None)?.units().units;
+    pub fn read(files: &RunFiles) -> Result<Self, Failure> {
+        files.check(&["telemetry.csv", "setup.toml", "truth/fields.parquet"])?;
+        let (directory, measurements) = (&files.directory, &files.measurements);
+        let run_file = RunFile::<DockingScenario>::read(&files.path("run.toml"))?;
+        let motion = files.beside("motion.csv");
+        let scored = DockingMission::score_files(directory, measurements, motion.as_deref(), None)?;
+        let score: DockingScore = match files.score() {
+            Some(path) => read_json(&path, "score")?,
+            None => scored.score.clone(),
+        };
+        let verdicts = scored.units().units;
         let mut truths = Vec::with_capacity(verdicts.len());
         for field in TableReader::<FieldTruthRow>::open(&directory.join("truth/fields.parquet"))? {
             truths.extend(field?.1.into_iter().map(FieldTruth::from));
@@ -85,7 +82,7 @@ impl DockingRun {
                 score.frames
             )));
         }
-        let mut answers = read_field_measurements(&measurements)?.into_iter().peekable();
+        let mut answers = read_field_measurements(measurements)?.into_iter().peekable();
         let mut rows = read_field_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
         let mut reports_by_field =
             motion.as_deref().map(read_motion).transpose()?.unwrap_or_default().into_iter().peekable();

@@ -1,8 +1,7 @@
 //! Frames of a far-range run, rendered anew one by one: frame N can be rendered independently of the other
 //! frames of the run.
 
-use std::path::Path;
-
+use ::report::RunFiles;
 use ::report::figures::least_to_most;
 use ::report::figures::words::display_name;
 use ::report::page::picture::{Mark, Picture, Pixels, RowMapping, Shape, Stretch, window_around};
@@ -25,18 +24,18 @@ pub struct FrameDetail {
 }
 
 impl FrameDetail {
-    /// Opens the frames of a run directory. If its scenario can no longer be simulated (a file that it names
+    /// Opens the frames of a run. If its scenario can no longer be simulated (a file that it names
     /// is missing), there are no pictures, and [`FrameDetail::reason`] returns the reason.
     ///
     /// # Errors
     /// A [`Failure`] when `run.toml` cannot be read.
-    pub fn open(directory: &Path) -> Result<Self, Failure> {
-        let path = directory.join("run.toml");
+    pub fn open(files: &RunFiles) -> Result<Self, Failure> {
+        let path = files.path("run.toml");
         let source = ScenarioSource::read(&path.to_string_lossy())?;
         let simulator = simulator(&source, source.typed("the report of a far-range run")?);
         Ok(Self {
             simulator: simulator.map_err(|failure| failure.to_string()),
-            clusters: Some(directory.join("clusters.parquet")).filter(|path| path.is_file()),
+            clusters: files.beside("clusters.parquet"),
         })
     }
 

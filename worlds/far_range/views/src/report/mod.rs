@@ -35,7 +35,7 @@ use ::report::page::data_table::DataTable;
 use ::report::page::picture::RenderedPictures;
 use ::report::page::{Page, Section};
 use ::report::verdict::Verdict;
-use ::report::{BudgetPlan, BudgetReport, OtherReport, WorldReport};
+use ::report::{BudgetPlan, BudgetReport, OtherReport, RunFiles, WorldReport};
 use ::run::{AnyJudgement, WorldScenario as _};
 use far_range::scoring::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore, Score};
 use far_range::{FarRangeMission, is_argon};
@@ -71,7 +71,7 @@ pub(crate) fn world_report() -> WorldReport {
 
 /// Returns the frames of a run and the stages of its pipeline whose result can be replaced by the truth.
 fn plan(directory: &Path) -> Result<BudgetPlan, Failure> {
-    let run = FarRangeRun::read(directory)?;
+    let run = FarRangeRun::read(&RunFiles::of_directory(directory))?;
     if run.run_file.inject.is_some() {
         return Err(Failure::Usage(
             "--budget is all, which applies only to the report of a run without --inject".to_owned(),
@@ -93,31 +93,36 @@ fn plan(directory: &Path) -> Result<BudgetPlan, Failure> {
 /// Returns the page of a run with its error budget; `budget` lists directories of runs on the same frames,
 /// each with the truth in place of one stage's result.
 fn page_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
-    let mut run = FarRangeRun::read(directory)?;
+    let files = RunFiles::of_directory(directory);
+    let mut run = FarRangeRun::read(&files)?;
     run.budget = InjectedRun::read_all(budget, &run.run_file, &run.score)?;
-    far_range_page(&run, &FrameDetail::open(directory)?)
+    far_range_page(&run, &FrameDetail::open(&files)?)
 }
 
-/// Returns the page of a run directory with its stored error budget; if `scored` holds the verdicts, they are
-/// used, and the page has no error budget.
-fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+/// Returns the page of a run with its stored error budget; if `scored` holds the verdicts, they are used, and
+/// the page has no error budget.
+fn page(files: &RunFiles, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
     let run = match scored.and_then(|scored| scored.typed_mut::<FarRangeJudgement>()) {
-        Some(scored) => FarRangeRun::with_verdicts(directory, std::mem::take(&mut scored.verdicts))?,
+        Some(scored) => FarRangeRun::with_verdicts(files, std::mem::take(&mut scored.verdicts))?,
         None => {
-            let mut run = FarRangeRun::read(directory)?;
-            run.budget = InjectedRun::read_all(&kept_budget(directory), &run.run_file, &run.score)?;
-            Checksums::check(directory, |_| true)?;
+            let mut run = FarRangeRun::read(files)?;
+            // An error budget is that of the run's own measurements.
+            if files.score().is_some() {
+                let budget = kept_budget(&files.directory);
+                run.budget = InjectedRun::read_all(&budget, &run.run_file, &run.score)?;
+            }
+            Checksums::check(&files.directory, |_| true)?;
             run
         }
     };
-    far_range_page(&run, &FrameDetail::open(directory)?)
+    far_range_page(&run, &FrameDetail::open(files)?)
 }
 
-/// Returns pictures of the given frames of a run directory.
-fn pictures(directory: &Path, frames: &[u64]) -> Result<RenderedPictures, Failure> {
-    let run = FarRangeRun::read(directory)?;
+/// Returns pictures of the given frames of a run.
+fn pictures(files: &RunFiles, frames: &[u64]) -> Result<RenderedPictures, Failure> {
+    let run = FarRangeRun::read(files)?;
     let row = |frame: &u64| run.truths.binary_search_by_key(frame, |truth| truth.frame).ok();
-    let sheet = FrameDetail::open(directory)?;
+    let sheet = FrameDetail::open(files)?;
     let pictures = sheet.pictures(&run, &frames.iter().filter_map(row).collect::<Vec<_>>())?;
     Ok((pictures, sheet.reason().map(str::to_owned)))
 }

@@ -11,12 +11,11 @@
     )
 )]
 
-use std::path::Path;
-
+use ::report::RunFiles;
 use ::report::charts::plotly::Axis;
 use ::report::charts::thinning::{bins, summary};
 use ::report::page::data_table::DataTable;
-use ::report::read::{missing, read_json};
+use ::report::read::read_json;
 use contract::Outcome;
 use far_range::rows::{FrameTruthRow, TelemetryRow, read_measurements, read_telemetry};
 use far_range::scoring::{FrameVerdict, Score};
@@ -38,7 +37,7 @@ const TABLE_BINS: usize = 60;
 pub struct FarRangeRun {
     /// Content of `run.toml`.
     pub run_file: RunFile<FarRangeScenario>,
-    /// Content of `score.json`.
+    /// Content of `score.json`, or the score of other measurements.
     pub score: Score,
     /// One verdict per frame, from truth and measurements.
     pub verdicts: Vec<FrameVerdict>,
@@ -56,38 +55,44 @@ pub struct FarRangeRun {
 }
 
 impl FarRangeRun {
-    /// Reads a run directory.
+    /// Reads the files of a run.
     ///
     /// # Errors
     /// A [`Failure`] that names the file which is missing, cannot be read, or does not cover the same frames
     /// as the other files.
-    pub fn read(directory: &Path) -> Result<Self, Failure> {
-        check_files(directory)?;
-        let clusters = Some(directory.join("clusters.parquet")).filter(|path| path.is_file());
-        let scored = FarRangeMission::score_files(
-            directory,
-            &directory.join("measurements.csv"),
-            clusters.as_deref(),
-            None,
-        )?;
-        Self::with_verdicts(directory, scored.verdicts)
+    pub fn read(files: &RunFiles) -> Result<Self, Failure> {
+        files.check(&FILES)?;
+        let clusters = files.beside("clusters.parquet");
+        let scored =
+            FarRangeMission::score_files(&files.directory, &files.measurements, clusters.as_deref(), None)?;
+        let score = match files.score() {
+            Some(path) => read_json(&path, "score")?,
+            None => scored.score,
+        };
+        Self::with_score(files, score, scored.verdicts)
     }
 
-    /// Reads the directory of a run whose verdicts are available. The table of objects, by far the longest,
-    /// is then not read.
+    /// Reads the files of a run whose verdicts are available. The table of objects, by far the longest, is
+    /// then not read.
     ///
     /// # Errors
     /// Those of [`FarRangeRun::read`].
-    pub fn with_verdicts(directory: &Path, verdicts: Vec<FrameVerdict>) -> Result<Self, Failure> {
-        check_files(directory)?;
+    pub fn with_verdicts(files: &RunFiles, verdicts: Vec<FrameVerdict>) -> Result<Self, Failure> {
+        files.check(&["score.json"])?;
+        files.check(&FILES)?;
+        let score = read_json(&files.path("score.json"), "score")?;
+        Self::with_score(files, score, verdicts)
+    }
+
+    /// Reads the files of a run whose score is available.
+    fn with_score(files: &RunFiles, score: Score, verdicts: Vec<FrameVerdict>) -> Result<Self, Failure> {
+        let (directory, measurements) = (&files.directory, &files.measurements);
         let run_file = RunFile::<FarRangeScenario>::read(&directory.join("run.toml"))?;
-        let score: Score = read_json(&directory.join("score.json"), "score")?;
-        let measurements = directory.join("measurements.csv");
         let mut truths = Vec::with_capacity(verdicts.len());
         for frame in TableReader::<FrameTruthRow>::open(&directory.join("truth/frames.parquet"))? {
             truths.extend(frame?.1.into_iter().map(|row| row.0));
         }
-        let mut answers = read_measurements(&measurements, &run_file.scenario.camera)?.into_iter().peekable();
+        let mut answers = read_measurements(measurements, &run_file.scenario.camera)?.into_iter().peekable();
         let mut rows = read_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
         let mut telemetry = Vec::with_capacity(verdicts.len());
         let mut outcomes = Vec::with_capacity(verdicts.len());
@@ -127,15 +132,8 @@ impl FarRangeRun {
     }
 }
 
-/// Refuses a directory that lacks a file of a run.
-fn check_files(directory: &Path) -> Result<(), Failure> {
-    let names =
-        ["score.json", "measurements.csv", "telemetry.csv", "truth/frames.parquet", "truth/objects.parquet"];
-    match names.into_iter().find(|name| !directory.join(name).is_file()) {
-        Some(name) => Err(missing(directory, name)),
-        None => Ok(()),
-    }
-}
+/// Files that every run and every rendered dataset contains.
+const FILES: [&str; 3] = ["telemetry.csv", "truth/frames.parquet", "truth/objects.parquet"];
 
 /// Returns a line through the given rows of a run, in order, broken where another group begins, since days
 /// are not contiguous.

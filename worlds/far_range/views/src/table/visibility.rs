@@ -176,6 +176,15 @@ fn requirement(verdict: &Verdict) -> [String; 5] {
     [verdict.id.clone(), verdict.text.clone(), verdict.status.words().to_owned(), margin, evidence]
 }
 
+/// Returns the ranges below a limit as words. Without a limit they are none or all of the ranges examined.
+fn ranges_below(limit_km: Option<f64>, is_enough_at_nearest: bool) -> String {
+    match limit_km {
+        Some(km) => format!("nearer than {} km", digits(km)),
+        None if is_enough_at_nearest => "at none of the ranges examined".to_owned(),
+        None => "at any of the ranges examined".to_owned(),
+    }
+}
+
 fn remarks(report: &VisibilityReport) -> Vec<String> {
     let sky = &report.sky;
     let [sun, moon, earth] = sky.excluded;
@@ -196,17 +205,15 @@ fn remarks(report: &VisibilityReport) -> Vec<String> {
         percent(report.camera.probability)
     )];
     if let Some(lost) = &report.stars_lost {
-        let nearer = |range: Option<f64>, what: &str| {
-            range.map_or_else(
-                || format!("at no range, or at every range, of the curve {what}"),
-                |km| format!("nearer than {} km {what}", digits(km)),
-            )
-        };
+        let nearest = report.exposure_window.last();
+        let half_at_nearest = nearest.is_some_and(|point| point.probability >= 0.5);
+        let open_at_nearest = nearest.is_some_and(|point| point.is_open);
         lines.push(format!(
-            "Fewer than {} stars remain: {}; {}.",
+            "Half of the frames have fewer than {} stars {}. No exposure both spares the target and has as many \
+             stars with the required probability {}.",
             lost.n_min,
-            nearer(lost.half_of_frames_km, "in half of the frames"),
-            nearer(lost.window_closes_km, "no exposure meets both limits with the required probability")
+            ranges_below(lost.half_of_frames_km, half_at_nearest),
+            ranges_below(lost.window_closes_km, open_at_nearest)
         ));
     }
     let count = |status| report.requirements.iter().filter(|verdict| verdict.status == status).count();

@@ -300,10 +300,11 @@ pub struct StarsLost {
     /// Required number of stars.
     pub n_min: u32,
     /// Range at which the window of exposures closes, km: nearer than this, enough stars are not detected
-    /// with the required probability. `None` when the window is open, or closed, at all ranges.
+    /// with the required probability. `None` when the window is open, or closed, at all ranges:
+    /// [`WindowPoint::is_open`].
     pub window_closes_km: Option<f64>,
     /// Range within which fewer than `n_min` stars are detected in half of the frames at the median exposure,
-    /// km.
+    /// km. `None` when it is so at no range or at all ranges: [`WindowPoint::probability`].
     pub half_of_frames_km: Option<f64>,
 }
 

@@ -199,8 +199,11 @@ impl Source<'_> {
     fn preset(&self, name: &str) -> Result<CameraPreset, Failure> {
         let Some(built_in) = CameraSource::built_in(name)? else {
             let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
-            let message =
-                format!("`{name}` is not a built-in camera; built-in cameras: {}", names.join(", "));
+            let message = format!(
+                "`{name}` is not a built-in camera; for a camera of your own give `scenario`, a scenario with its \
+                 tables; built-in cameras: {}",
+                names.join(", ")
+            );
             return Err(self.refuse("camera.preset", message));
         };
         Ok(built_in.preset)

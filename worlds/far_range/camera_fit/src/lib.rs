@@ -1,0 +1,26 @@
+//! Camera from frames of the night sky.
+//!
+//! The steps, each a module:
+//!
+//! 1. [`sources`]: stars and hot pixels of each image, with positions and their errors.
+//! 2. [`solution`]: attitude of each frame and the focal length, by the patterns of the stars.
+//! 3. [`adjustment`]: all frames together, by least squares: focal length, principal point, distortion, and
+//!    the attitude of each frame, with the covariance of every figure.
+//! 4. [`terms`]: the terms of the distortion that the stars carry, by stars left out.
+//!
+//! [`fit_camera`] is these steps in order. The star list has apparent places for the time of the frames, seen
+//! from the centre of the Earth: proper motion, parallax, light deflection and aberration by the Earth's
+//! motion around the Sun. The motion of a spacecraft around the Earth (5″) is a common shift, which the
+//! attitudes absorb, and a change of scale of 2.5 · 10⁻⁵.
+
+pub mod adjustment;
+mod background;
+mod fit;
+mod photometry;
+pub mod solution;
+pub mod sources;
+mod star_list;
+pub mod terms;
+
+pub use fit::{CameraFit, FirstGuess, FitError, FittedFrame, SkyFrame, UnsolvedFrame, fit_camera};
+pub use photometry::Photometry;
