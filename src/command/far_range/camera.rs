@@ -331,8 +331,7 @@ fn camera_toml(fit: &CameraFit, arguments: &FitArguments) -> String {
         let found = fit.sigmas.iter().find(|(of, _, _)| *of == term);
         match found {
             Some((_, sigma, true)) => format!("± {sigma:.2e}"),
-            Some(_) => "not determined by the frames".to_owned(),
-            None => "the stars carry no such term".to_owned(),
+            _ => "not determined by the frames".to_owned(),
         }
     };
     let bits = if fit.full_scale > 255.0 { 16 } else { 8 };

@@ -65,15 +65,16 @@ impl Term {
     ];
 
     /// Standard deviation of the prior, in units of the unknown: 20 % of the focal length, 10 % of h for the
-    /// principal point (sensors are mounted to some 2 % of their size), 5 % of the position at the corner for
-    /// each radial term, 0.3 % for the tangential ones.
+    /// principal point (sensors are mounted to some 2 % of their size); of the position at the corner, 20 %,
+    /// 5 % and 2 % for the radial terms and 0.2 % for the tangential ones.
     pub fn prior_sigma(self) -> f64 {
         match self {
             Self::FocalLength => 0.2,
             Self::PrincipalX | Self::PrincipalY => 0.1,
             Self::Radial1 => 0.2,
-            Self::Radial2 | Self::Radial3 => 0.1,
-            Self::Tangential1 | Self::Tangential2 => 0.01,
+            Self::Radial2 => 0.05,
+            Self::Radial3 => 0.02,
+            Self::Tangential1 | Self::Tangential2 => 0.002,
         }
     }
 }
@@ -221,12 +222,11 @@ pub fn adjust(
         errors = problem.position_errors(&state);
     }
     state = problem.solve(state, errors)?;
-    let information = problem.equations(&state, errors).0;
-    let inverse = information.cholesky()?.inverse();
+    let of_all = problem.covariance(&state, errors)?;
     let mut covariance = [[0.0; TERMS]; TERMS];
     for (i, a) in free.iter().enumerate() {
         for (j, b) in free.iter().enumerate() {
-            covariance[*a as usize][*b as usize] = inverse[(i, j)];
+            covariance[*a as usize][*b as usize] = of_all[(i, j)];
         }
     }
     let residuals = problem.residuals(&state);
@@ -238,6 +238,23 @@ pub fn adjust(
 struct State {
     terms: CameraTerms,
     attitudes: Vec<Rotation<CameraFrame, Icrs>>,
+}
+
+/// An observation with the derivatives of its computed position.
+struct Linearised {
+    /// Measured minus computed position, px.
+    residual: [f64; 2],
+    /// Weight, px⁻².
+    weight: f64,
+    /// Derivatives by the unknowns, by their index: the free terms of the camera, then three turns per frame.
+    slopes: Vec<(usize, [f64; 2])>,
+}
+
+impl Linearised {
+    /// Returns the gradient along an unknown with the given derivatives.
+    fn gradient_along(&self, slope: &[f64; 2]) -> f64 {
+        self.weight * (slope[0] * self.residual[0] + slope[1] * self.residual[1])
+    }
 }
 
 struct Problem<'a> {
@@ -301,18 +318,64 @@ impl Problem<'_> {
             information[(index, index)] += weight;
             gradient[index] -= weight * state.terms[*term as usize];
         }
+        for row in self.linearised(state, errors) {
+            for (i, a) in &row.slopes {
+                gradient[*i] += row.gradient_along(a);
+                for (j, b) in &row.slopes {
+                    information[(*i, *j)] += row.weight * (a[0] * b[0] + a[1] * b[1]);
+                }
+            }
+        }
+        (information, gradient)
+    }
+
+    /// Returns the covariance of all unknowns, N⁻¹ (S + P) N⁻¹ with the information N, the information P of
+    /// the priors and the scatter S of the gradients of the single observations (White 1980, Econometrica 48,
+    /// 817): it holds whatever the true errors of the positions are. S is enlarged by the share of the
+    /// residuals that the unknowns have absorbed. Not less than N⁻¹, which few observations can fall below by
+    /// chance.
+    fn covariance(&self, state: &State, errors: PositionErrors) -> Option<DMatrix<f64>> {
+        let information = self.equations(state, errors).0;
+        let count = information.nrows();
+        let inverse = information.cholesky()?.inverse();
+        let enlarged = 1.0 / self.share_left(state);
+        let mut scatter = DMatrix::zeros(count, count);
+        for (index, term) in self.free.iter().enumerate() {
+            scatter[(index, index)] += 1.0 / (term.prior_sigma() * term.prior_sigma());
+        }
+        for row in self.linearised(state, errors) {
+            for (i, a) in &row.slopes {
+                for (j, b) in &row.slopes {
+                    scatter[(*i, *j)] += enlarged * row.gradient_along(a) * row.gradient_along(b);
+                }
+            }
+        }
+        let robust = &inverse * scatter * &inverse;
+        let growth: Vec<f64> =
+            (0..count).map(|i| (inverse[(i, i)] / robust[(i, i)]).max(1.0).sqrt()).collect();
+        Some(DMatrix::from_fn(count, count, |i, j| growth[i] * robust[(i, j)] * growth[j]))
+    }
+
+    /// Returns the share of the squared residuals that the unknowns leave: 1 − unknowns/coordinates.
+    fn share_left(&self, state: &State) -> f64 {
+        let coordinates = 2.0 * self.observations.len() as f64;
+        let unknowns = (self.free.len() + 3 * state.attitudes.len()) as f64;
+        (1.0 - unknowns / coordinates).max(0.1)
+    }
+
+    /// Returns residual, weight and derivatives of each observation in front of the camera.
+    fn linearised(&self, state: &State, errors: PositionErrors) -> Vec<Linearised> {
         let camera = self.camera.camera(&state.terms);
         let varied: Vec<[Camera; 2]> = self.free.iter().map(|term| self.varied(state, *term)).collect();
+        let mut rows = Vec::with_capacity(self.observations.len());
         for observation in self.observations {
             let direction = state.attitudes[observation.frame].rotate(&observation.direction);
             let Some(computed) = project(&camera, &direction) else { continue };
             let residual = [observation.position.x - computed.x, observation.position.y - computed.y];
-            let weight = weight(residual, errors.sigma_px(observation.sigma_px));
-            // Derivatives by the terms of the camera and by the three turns of the frame.
-            let mut columns: Vec<(usize, [f64; 2])> = Vec::with_capacity(self.free.len() + 3);
+            let mut slopes: Vec<(usize, [f64; 2])> = Vec::with_capacity(self.free.len() + 3);
             for (index, [lower, upper]) in varied.iter().enumerate() {
                 if let Some(slope) = slope(project(lower, &direction), project(upper, &direction)) {
-                    columns.push((index, slope));
+                    slopes.push((index, slope));
                 }
             }
             for axis in 0..3 {
@@ -320,17 +383,13 @@ impl Problem<'_> {
                 turn[axis] = DERIVATIVE_STEP;
                 let turned = |sign: f64| project(&camera, &(direction + (sign * turn).cross(&direction)));
                 if let Some(slope) = slope(turned(-1.0), turned(1.0)) {
-                    columns.push((self.free.len() + 3 * observation.frame + axis, slope));
+                    slopes.push((self.free.len() + 3 * observation.frame + axis, slope));
                 }
             }
-            for (i, a) in &columns {
-                gradient[*i] += weight * (a[0] * residual[0] + a[1] * residual[1]);
-                for (j, b) in &columns {
-                    information[(*i, *j)] += weight * (a[0] * b[0] + a[1] * b[1]);
-                }
-            }
+            let weight = weight(residual, errors.sigma_px(observation.sigma_px));
+            rows.push(Linearised { residual, weight, slopes });
         }
-        (information, gradient)
+        rows
     }
 
     /// Returns the cameras a step below and above the state in one term.
@@ -377,9 +436,7 @@ impl Problem<'_> {
     /// unknowns have absorbed a part of the residuals, by the number of unknowns over that of coordinates.
     fn position_errors(&self, state: &State) -> PositionErrors {
         let residuals = self.residuals(state);
-        let coordinates = 2.0 * residuals.len() as f64;
-        let unknowns = (self.free.len() + 3 * state.attitudes.len()) as f64;
-        let left = (1.0 - unknowns / coordinates).max(0.1);
+        let left = self.share_left(state);
         let ratio = |common_px: f64| {
             let mut squares = Vec::with_capacity(residuals.len());
             for (observation, [x, y]) in self.observations.iter().zip(&residuals) {

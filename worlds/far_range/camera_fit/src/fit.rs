@@ -7,11 +7,11 @@ use rayon::prelude::*;
 use sim::SimError;
 
 use crate::adjustment::{AdjustedCamera, Adjustment, Observation, PositionErrors, Term, adjust, project};
+use crate::left_out::{MAX_SQUARE, left_out_rms_px};
 use crate::photometry::{Photometry, StarLight, photometry};
 use crate::solution::{FrameSolution, solve_frames};
 use crate::sources::{ImageSources, find_sources};
 use crate::star_list::SkyList;
-use crate::terms::{MAX_SQUARE, SETS, choose_terms};
 
 /// Largest distance between a listed star and its source in the first and in later rounds, px.
 const GATES_PX: [f64; 4] = [4.0, 3.0, 2.0, 1.5];
@@ -20,6 +20,9 @@ const GATES_PX: [f64; 4] = [4.0, 3.0, 2.0, 1.5];
 /// square once in 3000. Not below half a pixel.
 const GATE_SIGMAS: f64 = 4.0;
 const MIN_GATE_PX: f64 = 0.5;
+
+/// Terms of the first round, when only the stars near the centre are matched.
+const FIRST_TERMS: [Term; 2] = [Term::FocalLength, Term::Radial1];
 
 /// Smallest number of stars in a frame that takes part.
 const MIN_STARS: usize = 4;
@@ -127,7 +130,7 @@ pub struct FittedFrame {
 pub struct CameraFit {
     /// Camera.
     pub camera: Camera,
-    /// Free terms with the standard deviation of their parameter (mm, px, px⁻², px⁻⁴, px⁻⁶, px⁻¹), and true
+    /// Terms with the standard deviation of their parameter (mm, px, px⁻², px⁻⁴, px⁻⁶, px⁻¹), and true
     /// if the stars determine it: at least twice as well as what is assumed beforehand.
     pub sigmas: Vec<(Term, f64, bool)>,
     /// Adjustment with all stars.
@@ -180,8 +183,7 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
         ..first_camera.clone()
     });
     let mut fitted = camera.camera(&[0.0; crate::adjustment::TERMS]);
-    let [simplest, ..] = SETS;
-    let (mut free, mut left_out_rms_px) = (simplest, f64::NAN);
+    let mut left_out = None;
     let mut adjusted = None;
     for (round, gate_px) in GATES_PX.into_iter().enumerate() {
         let is_last = round + 1 == GATES_PX.len();
@@ -191,9 +193,9 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
         if observations.len() < MIN_ALL_STARS {
             return Err(FitError::TooFewStars(observations.len()));
         }
+        let free: &[Term] = if round == 0 { &FIRST_TERMS } else { &Term::ALL };
         if is_last {
-            let chosen = choose_terms(&camera, &solved.attitudes, &observations);
-            (free, left_out_rms_px) = (chosen.free, chosen.left_out_rms_px);
+            left_out = left_out_rms_px(&camera, free, &solved.attitudes, &observations);
         }
         let found = adjust(&camera, free, &solved.attitudes, &observations)
             .ok_or(FitError::TooFewStars(observations.len()))?;
@@ -205,10 +207,10 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
     let observations = solved.observations(&sources, &list);
     let stars = observations.len();
     Ok(CameraFit {
-        sigmas: free.iter().map(|term| parameter(&camera, *term, &adjustment, &fitted)).collect(),
+        sigmas: Term::ALL.iter().map(|term| parameter(&camera, *term, &adjustment, &fitted)).collect(),
         frames: solved.fitted_frames(frames, &adjustment),
         rms_px: rms_px(&observations, &adjustment),
-        left_out_rms_px,
+        left_out_rms_px: left_out.unwrap_or(f64::NAN),
         stars,
         width_px: median(solved.widths_px(&sources)),
         background_dn: median(sources.iter().map(|frame| frame.background_dn).collect()).unwrap_or(f64::NAN),

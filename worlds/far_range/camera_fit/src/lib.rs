@@ -6,7 +6,6 @@
 //! 2. [`solution`]: attitude of each frame and the focal length, by the patterns of the stars.
 //! 3. [`adjustment`]: all frames together, by least squares: focal length, principal point, distortion, and
 //!    the attitude of each frame, with the covariance of every figure.
-//! 4. [`terms`]: the terms of the distortion that the stars carry, by stars left out.
 //!
 //! [`fit_camera`] is these steps in order. The star list has apparent places for the time of the frames, seen
 //! from the centre of the Earth: proper motion, parallax, light deflection and aberration by the Earth's
@@ -16,11 +15,11 @@
 pub mod adjustment;
 mod background;
 mod fit;
+mod left_out;
 mod photometry;
 pub mod solution;
 pub mod sources;
 mod star_list;
-pub mod terms;
 
 pub use fit::{CameraFit, FirstGuess, FitError, FittedFrame, SkyFrame, UnsolvedFrame, fit_camera};
 pub use photometry::Photometry;
