@@ -450,7 +450,7 @@ mod tests {
                 let picture = picture(&vec![panel(columns, rows); count]).unwrap();
                 assert_eq!(picture.panels.len(), count);
                 for place in picture.panels.iter().map(|place| &place.frame) {
-                    for (colour, part) in [(ORANGE, 0.3), (GREEN, 0.7)] {
+                    for (colour, part) in [(GREEN, 0.3), (ORANGE, 0.7)] {
                         let (x, y) = centre(&picture, place, colour).unwrap();
                         let error = (x - part * columns as f64).abs().max((y - 0.4 * rows as f64).abs());
                         // Tolerance: one pixel of the picture.
@@ -523,7 +523,7 @@ mod tests {
         assert!(drawn.rgb.iter().all(|[red, green, blue]| red == green && green == blue));
         panel.marks[0].label = Some("Rigel".to_owned());
         let marked = image(&panel).unwrap();
-        let (x, y) = centre(&marked, &marked.panels[0].frame, GREEN).unwrap();
+        let (x, y) = centre(&marked, &marked.panels[0].frame, ORANGE).unwrap();
         assert!((x - 63.0).abs() < 1.0 && (y - 24.0).abs() < 1.0, "({x}, {y})");
         let changed = |range: std::ops::Range<usize>| {
             let pairs = marked.rgb.iter().zip(&drawn.rgb).enumerate();
