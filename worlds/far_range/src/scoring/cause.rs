@@ -398,8 +398,8 @@ mod tests {
     #[test]
     fn causes_beyond_any_pipeline_precede_the_pipelines_reason() {
         let truth = FrameTruth { target_visibility: Visibility::Invisible, ..frame(0) };
-        let failed = Outcome::without_solution(NoSolution::Failed("no light".into()));
-        assert_eq!(cause(&truth, &[target_with(1.0)], Some(&failed), DETECTOR), Cause::TooFaint);
+        let saturated = Outcome::without_solution(NoSolution::SaturatedFrame);
+        assert_eq!(cause(&truth, &[target_with(1.0)], Some(&saturated), DETECTOR), Cause::TooFaint);
     }
 
     #[test]
