@@ -46,7 +46,7 @@ def test_a_report_is_written_of_a_run_and_of_measurements_of_another_pipeline(ru
     (tmp_path / "mine.csv").write_text("".join(lines[:-10]))
     mine = boresight.report(run, tmp_path / "pages" / "mine.html", measurements=tmp_path / "mine.csv")
     assert "not reported" in mine.read_text() and "not reported" not in path.read_text()
-    with pytest.raises(boresight.InputError, match="out is None, expected a path"):
+    with pytest.raises(boresight.InputError, match="`out` is None, expected a path"):
         boresight.report(run, measurements=tmp_path / "mine.csv")
     with pytest.raises(boresight.FileError):
         boresight.report(run, tmp_path / "mine.csv")
