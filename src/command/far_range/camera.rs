@@ -11,7 +11,7 @@ use hifitime::Epoch;
 use pipeline::CameraModel;
 use serde_json::{Value, json};
 
-use super::sky::{number, time};
+use super::sky::{exposure, number, time};
 use crate::command::Answer;
 use crate::command::options::output_path;
 use crate::command::output::Output;
@@ -74,10 +74,6 @@ fn tolerance(text: &str) -> Result<f64, String> {
 
 fn pixel(text: &str) -> Result<f64, String> {
     number(text, 0.01, 1e4)
-}
-
-fn exposure(text: &str) -> Result<f64, String> {
-    number(text, 1e-6, 1000.0)
 }
 
 pub(in crate::command) fn camera(command: &CameraCommand, output: &Output) -> Result<Answer, Failure> {
@@ -169,20 +165,6 @@ fn parameter_name(term: Term) -> &'static str {
     }
 }
 
-fn parameter_value(term: Term, fit: &CameraFit) -> f64 {
-    let camera = &fit.camera;
-    match term {
-        Term::FocalLength => camera.focal_length_mm,
-        Term::PrincipalX => camera.principal_x_px,
-        Term::PrincipalY => camera.principal_y_px,
-        Term::Radial1 => camera.radial[0],
-        Term::Radial2 => camera.radial[1],
-        Term::Radial3 => camera.radial[2],
-        Term::Tangential1 => camera.tangential[0],
-        Term::Tangential2 => camera.tangential[1],
-    }
-}
-
 /// Returns a value with its standard deviation, to two digits of the latter.
 fn with_sigma(value: f64, sigma: f64) -> String {
     if value.abs() < 1e-2 {
@@ -206,7 +188,7 @@ fn fit_text(fit: &CameraFit) -> String {
     }
     let (focal_px, _) = fit.camera.focal_length_px();
     for (term, sigma, is_determined) in &fit.sigmas {
-        let value = with_sigma(parameter_value(*term, fit), *sigma);
+        let value = with_sigma(term.parameter(&fit.camera), *sigma);
         text.push_str(&format!("\n  {:<22} {value}", parameter_name(*term)));
         if *term == Term::FocalLength {
             text.push_str(&format!(" ({focal_px:.2} px)"));
@@ -235,7 +217,7 @@ fn fit_text(fit: &CameraFit) -> String {
     text
 }
 
-/// Returns what the frames tell of the sensor and the optics.
+/// Returns the figures of the sensor and the optics as text.
 fn sensor_text(fit: &CameraFit) -> String {
     let mut text =
         format!("\n  background {:.2} DN, noise {:.2} DN per pixel", fit.background_dn, fit.noise_dn);
@@ -289,7 +271,7 @@ fn document(fit: &CameraFit) -> Value {
         .sigmas
         .iter()
         .map(|(term, sigma, is_determined)| {
-            let value = parameter_value(*term, fit);
+            let value = term.parameter(&fit.camera);
             json!({ "name": parameter_name(*term), "value": value, "sigma": sigma, "determined": is_determined })
         })
         .collect();

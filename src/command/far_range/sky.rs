@@ -93,7 +93,7 @@ fn roll(text: &str) -> Result<f64, String> {
 }
 
 /// Parses an exposure time, s.
-fn exposure(text: &str) -> Result<f64, String> {
+pub(super) fn exposure(text: &str) -> Result<f64, String> {
     number(text, 1e-6, 1000.0)
 }
 

@@ -170,10 +170,12 @@ impl BestPipeline {
                     .filter(|source| source.spike.is_none())
                     .map(|source| (source.centre, source.flux_e))
                     .collect();
-                let found = solver.solve(&stars)?;
-                self.model = self.stated_model.with_focal_ratio(found.focal_ratio);
-                self.is_rescaled = found.focal_ratio != 1.0;
-                Some(AttitudeStart::from_found(&found))
+                let found = solver.solve(&stars);
+                // A frame without an attitude has the stated focal length, not that of the frame before.
+                let focal_ratio = found.as_ref().map_or(1.0, |found| found.focal_ratio);
+                self.model = self.stated_model.with_focal_ratio(focal_ratio);
+                self.is_rescaled = focal_ratio != 1.0;
+                found.as_ref().map(AttitudeStart::from_found)
             }
         }
     }

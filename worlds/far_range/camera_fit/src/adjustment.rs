@@ -64,6 +64,22 @@ impl Term {
         Self::Tangential2,
     ];
 
+    /// Returns the parameter of a camera that the term changes: mm, px, px⁻², px⁻⁴, px⁻⁶, px⁻¹.
+    pub fn parameter(self, camera: &Camera) -> f64 {
+        let [k1, k2, k3] = camera.radial;
+        let [p1, p2] = camera.tangential;
+        match self {
+            Self::FocalLength => camera.focal_length_mm,
+            Self::PrincipalX => camera.principal_x_px,
+            Self::PrincipalY => camera.principal_y_px,
+            Self::Radial1 => k1,
+            Self::Radial2 => k2,
+            Self::Radial3 => k3,
+            Self::Tangential1 => p1,
+            Self::Tangential2 => p2,
+        }
+    }
+
     /// Standard deviation of the prior, in units of the unknown: 20 % of the focal length, 10 % of h for the
     /// principal point (sensors are mounted to some 2 % of their size); of the position at the corner, 20 %,
     /// 5 % and 2 % for the radial terms and 0.2 % for the tangential ones.
@@ -122,9 +138,6 @@ pub struct PositionErrors {
 }
 
 impl PositionErrors {
-    /// The stated standard deviations.
-    pub const STATED: Self = Self { common_px: 0.0, scale: 1.0 };
-
     /// Returns the standard deviation of a position with a stated one, px.
     pub fn sigma_px(&self, stated_px: f64) -> f64 {
         self.scale * libm::hypot(stated_px, self.common_px)
@@ -331,7 +344,7 @@ impl Problem<'_> {
 
     /// Returns the covariance of all unknowns, N⁻¹ (S + P) N⁻¹ with the information N, the information P of
     /// the priors and the scatter S of the gradients of the single observations (White 1980, Econometrica 48,
-    /// 817): it holds whatever the true errors of the positions are. S is enlarged by the share of the
+    /// 817): it holds for positions with other errors than the assumed ones, too. S is enlarged by the share of the
     /// residuals that the unknowns have absorbed. Not less than N⁻¹, which few observations can fall below by
     /// chance.
     fn covariance(&self, state: &State, errors: PositionErrors) -> Option<DMatrix<f64>> {

@@ -173,7 +173,7 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
     let solutions = solve_frames(&sources, &list.stars, &first_camera, guess.tolerance).map_err(|error| {
         FitError::Guess(OutOfRange::new("field_deg", error.to_string(), "a possible camera"))
     })?;
-    let unsolved = unsolved_frames(frames, &sources, &solutions);
+    let mut unsolved = unsolved_frames(frames, &sources, &solutions);
     let mut solved = SolvedFrames::new(&solutions);
     if solved.frames.is_empty() {
         return Err(FitError::NoAttitude(unsolved));
@@ -204,6 +204,11 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
         adjusted = Some(found);
     }
     let Some(adjustment) = adjusted else { return Err(FitError::NoFrames) };
+    for &frame in &solved.dropped {
+        let reason = format!("fewer than {MIN_STARS} stars fit the camera of the other frames");
+        let name = frames[frame].name.clone();
+        unsolved.push(UnsolvedFrame { name, sources: star_like(&sources[frame]), reason });
+    }
     let observations = solved.observations(&sources, &list);
     let stars = observations.len();
     Ok(CameraFit {
@@ -281,7 +286,7 @@ fn unsolved_frames(
         if solution.is_some() {
             continue;
         }
-        let count = sources[index].sources.iter().filter(|source| !source.is_spike).count();
+        let count = star_like(&sources[index]);
         let reason = match count {
             0 => "no star-like source".to_owned(),
             1..=4 => format!("{count} star-like sources, five are needed"),
@@ -290,6 +295,11 @@ fn unsolved_frames(
         unsolved.push(UnsolvedFrame { name: frames[index].name.clone(), sources: count, reason });
     }
     unsolved
+}
+
+/// Returns the number of sources that are no spikes.
+fn star_like(frame: &ImageSources) -> usize {
+    frame.sources.iter().filter(|source| !source.is_spike).count()
 }
 
 /// Returns the standard deviation of a parameter, and true if the stars determine it.
@@ -310,6 +320,8 @@ struct SolvedFrames {
     attitudes: Vec<Rotation<CameraFrame, Icrs>>,
     /// Matched sources of each frame with their stars, by index.
     matched: Vec<Vec<(usize, usize)>>,
+    /// Index of each frame whose stars do not fit the camera of all frames.
+    dropped: Vec<usize>,
     /// Median focal length over that of the first guess.
     focal_ratio: f64,
 }
@@ -325,11 +337,12 @@ impl SolvedFrames {
             }
         }
         let matched = vec![Vec::new(); frames.len()];
-        Self { frames, attitudes, matched, focal_ratio: median(ratios).unwrap_or(1.0) }
+        let focal_ratio = median(ratios).unwrap_or(1.0);
+        Self { frames, attitudes, matched, dropped: Vec::new(), focal_ratio }
     }
 
     /// Matches listed stars and sources that are nearest to each other, within a gate. Frames that are left
-    /// with too few stars take no part.
+    /// with too few stars are dropped: nothing would determine their attitude.
     fn match_stars(
         &mut self,
         camera: &Camera,
@@ -338,10 +351,19 @@ impl SolvedFrames {
         gate_px: f64,
         errors: Option<PositionErrors>,
     ) {
-        for (place, &frame) in self.frames.iter().enumerate() {
-            let places = star_places(camera, &self.attitudes[place], list);
+        let frames = std::mem::take(&mut self.frames);
+        let attitudes = std::mem::take(&mut self.attitudes);
+        self.matched.clear();
+        for (frame, attitude) in frames.into_iter().zip(attitudes) {
+            let places = star_places(camera, &attitude, list);
             let matched = mutual_matches(&places, &sources[frame], gate_px, errors);
-            self.matched[place] = if matched.len() < MIN_STARS { Vec::new() } else { matched };
+            if matched.len() < MIN_STARS {
+                self.dropped.push(frame);
+                continue;
+            }
+            self.frames.push(frame);
+            self.attitudes.push(attitude);
+            self.matched.push(matched);
         }
     }
 
@@ -492,4 +514,51 @@ fn hot_pixels(sources: &[ImageSources]) -> Option<usize> {
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use contract::{Angle, Direction};
+
+    use super::*;
+    use crate::sources::Source;
+
+    /// A frame without matching sources has no observations, and its turns would make the equations singular.
+    #[test]
+    fn a_frame_that_loses_its_stars_is_dropped() {
+        let image = GreyImage {
+            columns: 800,
+            rows: 600,
+            values: Vec::new(),
+            full_scale: 255.0,
+            conversion: PixelConversion::None,
+        };
+        let frame = SkyFrame { name: "a".to_owned(), image };
+        let time = Epoch::from_gregorian_utc_at_midnight(2026, 3, 1);
+        let guess = FirstGuess { field_deg: 15.0, tolerance: 0.1, pixel_um: [5.0; 2], time };
+        let camera = first_camera(&[frame], &guess).unwrap();
+        let list = SkyList::new(time).unwrap();
+        let orion = Direction::<Icrs>::from_ra_dec(Angle::from_degrees(84.0), Angle::from_degrees(-1.0));
+        let turn =
+            nalgebra::UnitQuaternion::rotation_between(orion.vector(), &nalgebra::Vector3::z()).unwrap();
+        let camera_from_icrs = Rotation::from_unit_quaternion(turn);
+        let source = |at| Source {
+            position: at,
+            flux_dn: 100.0,
+            significance: 50.0,
+            sigma_px: 0.1,
+            width_px: 1.0,
+            peak: [0, 0],
+            is_spike: false,
+            is_saturated: false,
+        };
+        let places = star_places(&camera, &camera_from_icrs, &list);
+        let sources = [places.iter().map(|(_, at)| source(*at)).collect(), Vec::new()]
+            .map(|sources| ImageSources { sources, background_dn: 0.0, noise_dn: 1.0 });
+        let solution = FrameSolution { camera_from_icrs, focal_ratio: 1.0, matched: Vec::new() };
+        let mut solved = SolvedFrames::new(&[Some(solution.clone()), Some(solution)]);
+        solved.match_stars(&camera, &sources, &list, 1.5, None);
+        assert_eq!((solved.frames, solved.dropped), (vec![0], vec![1]));
+        assert_eq!((solved.attitudes.len(), solved.matched.len()), (1, 1));
+    }
 }

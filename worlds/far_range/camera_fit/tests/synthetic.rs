@@ -138,18 +138,8 @@ fn frames(
 
 /// Returns the error of a term over its standard deviation.
 fn normalised_error(fit: &CameraFit, truth: &Camera, term: Term) -> f64 {
-    let of = |camera: &Camera| match term {
-        Term::FocalLength => camera.focal_length_mm,
-        Term::PrincipalX => camera.principal_x_px,
-        Term::PrincipalY => camera.principal_y_px,
-        Term::Radial1 => camera.radial[0],
-        Term::Radial2 => camera.radial[1],
-        Term::Radial3 => camera.radial[2],
-        Term::Tangential1 => camera.tangential[0],
-        Term::Tangential2 => camera.tangential[1],
-    };
     let (_, sigma, _) = fit.sigmas.iter().find(|(found, _, _)| *found == term).expect("a free term");
-    (of(&fit.camera) - of(truth)) / sigma
+    (term.parameter(&fit.camera) - term.parameter(truth)) / sigma
 }
 
 /// Twenty cameras of 6° to 30°, 1 to 6 frames each: errors agree with their standard deviations.
