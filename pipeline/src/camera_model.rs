@@ -55,7 +55,7 @@ impl CameraModel {
     }
 
     /// Projects a vector of any length, as [`CameraModel::project`] does a direction.
-    pub(crate) fn project_vector(&self, r: &Vector3<f64>) -> Option<PixelPoint> {
+    pub fn project_vector(&self, r: &Vector3<f64>) -> Option<PixelPoint> {
         if r.z.is_nan() || r.z <= 0.0 {
             return None;
         }

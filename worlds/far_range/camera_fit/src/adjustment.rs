@@ -7,6 +7,7 @@
 
 use contract::{Camera, CameraFrame, Icrs, PixelPoint, Rotation};
 use nalgebra::{DMatrix, DVector, Vector3};
+use pipeline::CameraModel;
 
 /// Number of unknowns of a camera.
 pub const TERMS: usize = 8;
@@ -185,6 +186,11 @@ impl AdjustedCamera {
         }
     }
 
+    /// Returns the mapping of the camera with the given terms; `None` for a camera that is not possible.
+    pub fn model(&self, terms: &CameraTerms) -> Option<CameraModel> {
+        CameraModel::new(&self.camera(terms)).ok()
+    }
+
     /// Returns the standard deviation of the parameter of a camera for that of its unknown: mm, px, px⁻²,
     /// px⁻⁴, px⁻⁶, px⁻¹.
     pub fn parameter_sigma(&self, term: Term, sigma: f64, camera: &Camera) -> f64 {
@@ -198,24 +204,6 @@ impl AdjustedCamera {
             Term::Tangential1 | Term::Tangential2 => sigma / h,
         }
     }
-}
-
-/// Returns the image position of a direction in camera axes (formula at [`Camera`]); `None` behind the
-/// camera.
-pub fn project(camera: &Camera, direction: &Vector3<f64>) -> Option<PixelPoint> {
-    if direction.z <= 0.0 {
-        return None;
-    }
-    let (fx, fy) = camera.focal_length_px();
-    let (u, v) = (fx * direction.x / direction.z, fy * direction.y / direction.z);
-    let [k1, k2, k3] = camera.radial;
-    let [p1, p2] = camera.tangential;
-    let r2 = u * u + v * v;
-    let scale = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-    Some(PixelPoint::new(
-        camera.principal_x_px + u * scale + 2.0 * p1 * u * v + p2 * (r2 + 2.0 * u * u),
-        camera.principal_y_px + v * scale + p1 * (r2 + 2.0 * v * v) + 2.0 * p2 * u * v,
-    ))
 }
 
 /// Adjusts the free terms of a camera and the attitudes of frames to observations. `attitudes` are first
@@ -344,9 +332,9 @@ impl Problem<'_> {
 
     /// Returns the covariance of all unknowns, N⁻¹ (S + P) N⁻¹ with the information N, the information P of
     /// the priors and the scatter S of the gradients of the single observations (White 1980, Econometrica 48,
-    /// 817): it holds for positions with other errors than the assumed ones, too. S is enlarged by the share of the
-    /// residuals that the unknowns have absorbed. Not less than N⁻¹, which few observations can fall below by
-    /// chance.
+    /// 817): it holds for positions with other errors than the assumed ones, too. S is enlarged by the share
+    /// of the residuals that the unknowns have absorbed. Not less than N⁻¹, which few observations can fall
+    /// below by chance.
     fn covariance(&self, state: &State, errors: PositionErrors) -> Option<DMatrix<f64>> {
         let information = self.equations(state, errors).0;
         let count = information.nrows();
@@ -378,23 +366,27 @@ impl Problem<'_> {
 
     /// Returns residual, weight and derivatives of each observation in front of the camera.
     fn linearised(&self, state: &State, errors: PositionErrors) -> Vec<Linearised> {
-        let camera = self.camera.camera(&state.terms);
-        let varied: Vec<[Camera; 2]> = self.free.iter().map(|term| self.varied(state, *term)).collect();
+        let model = self.camera.model(&state.terms);
+        let varied: Vec<[Option<CameraModel>; 2]> =
+            self.free.iter().map(|term| self.varied(state, *term)).collect();
         let mut rows = Vec::with_capacity(self.observations.len());
         for observation in self.observations {
             let direction = state.attitudes[observation.frame].rotate(&observation.direction);
-            let Some(computed) = project(&camera, &direction) else { continue };
+            let Some(computed) = project(model.as_ref(), &direction) else { continue };
             let residual = [observation.position.x - computed.x, observation.position.y - computed.y];
             let mut slopes: Vec<(usize, [f64; 2])> = Vec::with_capacity(self.free.len() + 3);
             for (index, [lower, upper]) in varied.iter().enumerate() {
-                if let Some(slope) = slope(project(lower, &direction), project(upper, &direction)) {
+                if let Some(slope) =
+                    slope(project(lower.as_ref(), &direction), project(upper.as_ref(), &direction))
+                {
                     slopes.push((index, slope));
                 }
             }
             for axis in 0..3 {
                 let mut turn = Vector3::zeros();
                 turn[axis] = DERIVATIVE_STEP;
-                let turned = |sign: f64| project(&camera, &(direction + (sign * turn).cross(&direction)));
+                let turned =
+                    |sign: f64| project(model.as_ref(), &(direction + (sign * turn).cross(&direction)));
                 if let Some(slope) = slope(turned(-1.0), turned(1.0)) {
                     slopes.push((self.free.len() + 3 * observation.frame + axis, slope));
                 }
@@ -406,20 +398,20 @@ impl Problem<'_> {
     }
 
     /// Returns the cameras a step below and above the state in one term.
-    fn varied(&self, state: &State, term: Term) -> [Camera; 2] {
+    fn varied(&self, state: &State, term: Term) -> [Option<CameraModel>; 2] {
         [-DERIVATIVE_STEP, DERIVATIVE_STEP].map(|step| {
             let mut terms = state.terms;
             terms[term as usize] += step;
-            self.camera.camera(&terms)
+            self.camera.model(&terms)
         })
     }
 
     fn residuals(&self, state: &State) -> Vec<[f64; 2]> {
-        let camera = self.camera.camera(&state.terms);
+        let model = self.camera.model(&state.terms);
         let mut residuals = Vec::with_capacity(self.observations.len());
         for observation in self.observations {
             let direction = state.attitudes[observation.frame].rotate(&observation.direction);
-            residuals.push(match project(&camera, &direction) {
+            residuals.push(match project(model.as_ref(), &direction) {
                 Some(at) => [observation.position.x - at.x, observation.position.y - at.y],
                 None => [f64::NAN; 2],
             });
@@ -470,6 +462,10 @@ impl Problem<'_> {
         }
         PositionErrors { common_px: high, scale: 1.0 }
     }
+}
+
+fn project(model: Option<&CameraModel>, direction: &Vector3<f64>) -> Option<PixelPoint> {
+    model?.project_vector(direction)
 }
 
 /// Returns Huber's weight of a residual with a standard deviation along each axis.

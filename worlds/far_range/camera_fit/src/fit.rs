@@ -3,10 +3,11 @@
 use contract::{Camera, CameraFrame, Icrs, OutOfRange, Rotation};
 use files::{GreyImage, PixelConversion};
 use hifitime::Epoch;
+use pipeline::CameraModel;
 use rayon::prelude::*;
 use sim::SimError;
 
-use crate::adjustment::{AdjustedCamera, Adjustment, Observation, PositionErrors, Term, adjust, project};
+use crate::adjustment::{AdjustedCamera, Adjustment, Observation, PositionErrors, Term, adjust};
 use crate::left_out::{MAX_SQUARE, left_out_rms_px};
 use crate::photometry::{Photometry, StarLight, photometry};
 use crate::solution::{FrameSolution, solve_frames};
@@ -440,6 +441,7 @@ fn star_places(
     attitude: &Rotation<CameraFrame, Icrs>,
     list: &SkyList,
 ) -> Vec<(usize, contract::PixelPoint)> {
+    let Ok(model) = CameraModel::new(camera) else { return Vec::new() };
     let (fx, fy) = camera.focal_length_px();
     // The undistorted field is at most a half larger than the detector: beyond, the polynomial means nothing.
     let reach = |side: usize, focal: f64| 0.75 * side as f64 / focal;
@@ -451,7 +453,7 @@ fn star_places(
         let is_near = direction.z > 0.0
             && direction.x.abs() <= reach_x * direction.z
             && direction.y.abs() <= reach_y * direction.z;
-        if let Some(at) = is_near.then(|| project(camera, &direction)).flatten()
+        if let Some(at) = is_near.then(|| model.project_vector(&direction)).flatten()
             && at.is_on_detector(camera.columns, camera.rows)
         {
             places.push((index, at));

@@ -2,7 +2,7 @@
 
 use contract::{CameraFrame, Icrs, Rotation};
 
-use crate::adjustment::{AdjustedCamera, Observation, Term, adjust, project};
+use crate::adjustment::{AdjustedCamera, Observation, Term, adjust};
 
 /// Number of parts of the stars, each left out once.
 const FOLDS: usize = 5;
@@ -25,12 +25,12 @@ pub(crate) fn left_out_rms_px(
             if index % FOLDS == fold { left_out.push(*observation) } else { used.push(*observation) }
         }
         let adjusted = adjust(camera, free, attitudes, &used)?;
-        let fitted = camera.camera(&adjusted.terms);
+        let fitted = camera.model(&adjusted.terms)?;
         for observation in left_out {
             let direction = adjusted.attitudes[observation.frame].rotate(&observation.direction);
             let sigma_px = adjusted.errors.sigma_px(observation.sigma_px);
             let largest_px2 = MAX_SQUARE * sigma_px * sigma_px;
-            squares_px2 += project(&fitted, &direction).map_or(largest_px2, |at| {
+            squares_px2 += fitted.project_vector(&direction).map_or(largest_px2, |at| {
                 let distance = at.distance(observation.position);
                 (distance * distance).min(largest_px2)
             });

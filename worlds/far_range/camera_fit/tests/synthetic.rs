@@ -1,12 +1,13 @@
 //! Cameras that are drawn at random, with images of their stars by a renderer of its own: Gaussians
 //! integrated over the pixels, photon noise, read noise, hot pixels.
 
-use boresight_camera_fit::adjustment::{Term, project};
+use boresight_camera_fit::adjustment::Term;
 use boresight_camera_fit::{CameraFit, FirstGuess, FitError, SkyFrame, fit_camera};
 use contract::{Camera, CameraFrame, Direction, Icrs, Rotation};
 use files::{GreyImage, PixelConversion};
 use hifitime::Epoch;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use pipeline::CameraModel;
 use sim::catalog::Catalog;
 use sim::truth::{Observer, StarMotion};
 
@@ -87,13 +88,14 @@ fn image(
 ) -> GreyImage {
     let mut electrons = vec![BACKGROUND_E; camera.columns * camera.rows];
     let (fx, _) = camera.focal_length_px();
+    let model = CameraModel::new(camera).expect("a possible camera");
     let reach = 1.5 * camera.columns as f64 / fx;
     for (direction, magnitude) in sky {
         let seen = attitude.rotate(direction.vector());
         if seen.z <= 0.0 || seen.x.abs() > reach * seen.z || seen.y.abs() > reach * seen.z {
             continue;
         }
-        let Some(at) = project(camera, &seen) else { continue };
+        let Some(at) = model.project_vector(&seen) else { continue };
         let flux_e = ZERO_MAGNITUDE_E * libm::pow(10.0, -0.4 * magnitude);
         let share = |pixel: i64, centre: f64| {
             let edge = |x: f64| 0.5 * libm::erf((x - centre) / (SIGMA_PX * std::f64::consts::SQRT_2));
