@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use files::Failure;
+use files::{Failure, parse_utc};
+use hifitime::Epoch;
 use pipeline::external::{DEFAULT_MEMORY_MB, Sandbox};
 use run::ScenarioSource;
 use run::pipeline_choice::PipelineChoice;
@@ -155,6 +156,27 @@ impl Selection {
 /// Returns one thread per core.
 pub(super) fn default_jobs() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// Parses an exposure time, s.
+pub(in crate::command) fn exposure(text: &str) -> Result<f64, String> {
+    number(text, 1e-6, 1000.0)
+}
+
+/// Parses a number within limits.
+pub(in crate::command) fn number(text: &str, low: f64, high: f64) -> Result<f64, String> {
+    let parsed: Option<f64> = text.parse().ok();
+    parsed
+        .filter(|value| (low..=high).contains(value))
+        .ok_or_else(|| format!("expected a number from {low} to {high}"))
+}
+
+/// Parses a time for which the simulator has ephemerides.
+pub(in crate::command) fn time(text: &str) -> Result<Epoch, String> {
+    let time = parse_utc(text).map_err(|expected| format!("expected {expected}"))?;
+    let limits = [parse_utc("1990-01-01T00:00:00Z")?, parse_utc("2050-01-05T00:00:00Z")?];
+    let is_known = (limits[0]..=limits[1]).contains(&time);
+    is_known.then_some(time).ok_or_else(|| "expected a time from 1990-01-01 to 2050-01-05".to_owned())
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use contract::PixelPoint;
 use far_range::{CameraSource, SkyPicture, SkyView, star_name};
-use files::{AtomicFile, Failure, FileError, ImageFormat, ReplaceableFile, format_utc, parse_utc};
+use files::{AtomicFile, Failure, FileError, ImageFormat, ReplaceableFile, format_utc};
 use hifitime::Epoch;
 use serde_json::{Value, json};
 use show::{
@@ -16,7 +16,7 @@ use show::{
 use sim::truth::{ObjectKind, ObjectTruth};
 
 use crate::command::Answer;
-use crate::command::options::output_path;
+use crate::command::options::{exposure, number, output_path, time};
 use crate::command::output::Output;
 
 /// Number of the brightest stars that are listed and, with `--label`, marked.
@@ -90,27 +90,6 @@ fn declination(text: &str) -> Result<f64, String> {
 /// Parses a rotation about the boresight, degrees.
 fn roll(text: &str) -> Result<f64, String> {
     number(text, -360.0, 360.0)
-}
-
-/// Parses an exposure time, s.
-pub(super) fn exposure(text: &str) -> Result<f64, String> {
-    number(text, 1e-6, 1000.0)
-}
-
-/// Parses a number within limits.
-pub(super) fn number(text: &str, low: f64, high: f64) -> Result<f64, String> {
-    let parsed: Option<f64> = text.parse().ok();
-    parsed
-        .filter(|value| (low..=high).contains(value))
-        .ok_or_else(|| format!("expected a number from {low} to {high}"))
-}
-
-/// Parses a time for which the simulator has ephemerides.
-pub(super) fn time(text: &str) -> Result<Epoch, String> {
-    let time = parse_utc(text).map_err(|expected| format!("expected {expected}"))?;
-    let limits = [parse_utc("1990-01-01T00:00:00Z")?, parse_utc("2050-01-05T00:00:00Z")?];
-    let is_known = (limits[0]..=limits[1]).contains(&time);
-    is_known.then_some(time).ok_or_else(|| "expected a time from 1990-01-01 to 2050-01-05".to_owned())
 }
 
 /// Kind of the file to write.
