@@ -16,16 +16,16 @@ const ROUNDING_DN: f64 = 0.288_675_134_594_812_9;
 
 /// Background on a grid of cells, with the noise of a pixel.
 #[derive(Debug, Clone)]
-pub(crate) struct Background {
+pub struct Background {
     cells: [usize; 2],
     levels_dn: Vec<f64>,
     /// Standard deviation of a pixel about the background, DN.
-    pub(crate) noise_dn: f64,
+    pub noise_dn: f64,
 }
 
 impl Background {
     /// Estimates the background of an image.
-    pub(crate) fn of(image: &GreyImage) -> Self {
+    pub fn of(image: &GreyImage) -> Self {
         let cells = [image.columns.div_ceil(CELL_PX), image.rows.div_ceil(CELL_PX)];
         let mut levels_dn = Vec::with_capacity(cells[0] * cells[1]);
         for row in 0..cells[1] {
@@ -45,7 +45,7 @@ impl Background {
     }
 
     /// Returns the background at a pixel, DN: bilinear between the centres of the cells.
-    pub(crate) fn at(&self, column: usize, row: usize) -> f64 {
+    pub fn at(&self, column: usize, row: usize) -> f64 {
         let along = |pixel: usize, count: usize| {
             let position = (pixel as f64 + 0.5) / CELL_PX as f64 - 0.5;
             let position = position.clamp(0.0, count as f64 - 1.0);
@@ -61,7 +61,7 @@ impl Background {
     }
 
     /// Returns the median of the cells, DN.
-    pub(crate) fn median_dn(&self) -> f64 {
+    pub fn median_dn(&self) -> f64 {
         let mut levels = self.levels_dn.clone();
         levels.sort_by(f64::total_cmp);
         levels[levels.len() / 2]
@@ -80,7 +80,7 @@ fn cell_values(image: &GreyImage, column: usize, row: usize) -> Vec<f64> {
 
 /// Returns mean and standard deviation of values without those far from the mean. The first limit is about
 /// the median, by the deviations of half of the values.
-pub(crate) fn clipped(values: &[f64]) -> (f64, f64) {
+pub fn clipped(values: &[f64]) -> (f64, f64) {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let mut mean = sorted[sorted.len() / 2];

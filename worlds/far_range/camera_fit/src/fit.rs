@@ -1,6 +1,6 @@
 //! The steps of a fit in order.
 
-use contract::{Camera, CameraFrame, Icrs, OutOfRange, Rotation};
+use contract::{Camera, CameraFrame, Icrs, OutOfRange, PixelPoint, Rotation};
 use files::{GreyImage, PixelConversion};
 use hifitime::Epoch;
 use pipeline::CameraModel;
@@ -10,6 +10,7 @@ use sim::SimError;
 use crate::adjustment::{AdjustedCamera, Adjustment, Observation, PositionErrors, Term, adjust};
 use crate::left_out::{MAX_SQUARE, left_out_rms_px};
 use crate::photometry::{Photometry, StarLight, photometry};
+use crate::profile::{ProfileStar, StarProfile, star_profile};
 use crate::solution::{FrameSolution, solve_frames};
 use crate::sources::{ImageSources, find_sources};
 use crate::star_list::SkyList;
@@ -27,6 +28,9 @@ const FIRST_TERMS: [Term; 2] = [Term::FocalLength, Term::Radial1];
 
 /// Smallest number of stars in a frame that takes part.
 const MIN_STARS: usize = 4;
+
+/// Smallest distance of a star whose profile is fitted from any other source, px.
+const PROFILE_DISTANCE_PX: f64 = 12.0;
 
 /// Smallest number of stars of all frames.
 const MIN_ALL_STARS: usize = 8;
@@ -126,6 +130,31 @@ pub struct FittedFrame {
     pub rms_px: f64,
 }
 
+/// A star of a frame that took part in a fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MatchedStar {
+    /// Index of the frame in [`CameraFit::frames`].
+    pub frame: usize,
+    /// Number in the Hipparcos catalogue.
+    pub id: u32,
+    /// Visual magnitude.
+    pub magnitude: f64,
+    /// Colour index B−V, if known.
+    pub b_v: Option<f64>,
+    /// Measured position, px.
+    pub position: PixelPoint,
+    /// Measured minus computed position, px.
+    pub residual_px: [f64; 2],
+    /// Standard deviation of the residual along an axis, px.
+    pub sigma_px: f64,
+    /// Flux above the background, DN.
+    pub flux_dn: f64,
+    /// Width of the profile, standard deviation of a Gaussian, px; NaN if it is wider than the window.
+    pub width_px: f64,
+    /// Height in the smoothed image, standard deviations of its noise.
+    pub significance: f64,
+}
+
 /// A fitted camera.
 #[derive(Debug, Clone)]
 pub struct CameraFit {
@@ -147,6 +176,10 @@ pub struct CameraFit {
     pub left_out_rms_px: f64,
     /// Number of stars.
     pub stars: usize,
+    /// Stars of all frames.
+    pub matched: Vec<MatchedStar>,
+    /// Profile of the stars; `None` with too few bright ones.
+    pub profile: Option<StarProfile>,
     /// Median of the widths of unsaturated stars, standard deviation of a Gaussian, px; `None` without one.
     pub width_px: Option<f64>,
     /// Background and noise of a pixel, medians over the frames, DN.
@@ -218,6 +251,8 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
         rms_px: rms_px(&observations, &adjustment),
         left_out_rms_px: left_out.unwrap_or(f64::NAN),
         stars,
+        matched: solved.matched_stars(&sources, &list, &adjustment),
+        profile: star_profile(&fitted, &solved.profile_stars(frames, &sources)),
         width_px: median(solved.widths_px(&sources)),
         background_dn: median(sources.iter().map(|frame| frame.background_dn).collect()).unwrap_or(f64::NAN),
         noise_dn: median(sources.iter().map(|frame| frame.noise_dn).collect()).unwrap_or(f64::NAN),
@@ -401,6 +436,63 @@ impl SolvedFrames {
         fitted
     }
 
+    /// Returns the stars of all frames, in the order of the residuals.
+    fn matched_stars(
+        &self,
+        sources: &[ImageSources],
+        list: &SkyList,
+        adjustment: &Adjustment,
+    ) -> Vec<MatchedStar> {
+        let mut stars: Vec<MatchedStar> = Vec::with_capacity(adjustment.residuals.len());
+        for (place, matched) in self.matched.iter().enumerate() {
+            for &(source, star) in matched {
+                let Some(&residual_px) = adjustment.residuals.get(stars.len()) else { return stars };
+                let source = &sources[self.frames[place]].sources[source];
+                stars.push(MatchedStar {
+                    frame: place,
+                    id: list.stars[star].id,
+                    magnitude: list.stars[star].magnitude,
+                    b_v: list.b_v[star],
+                    position: source.position,
+                    residual_px,
+                    sigma_px: adjustment.errors.sigma_px(source.sigma_px),
+                    flux_dn: source.flux_dn,
+                    width_px: source.width_px,
+                    significance: source.significance,
+                });
+            }
+        }
+        stars
+    }
+
+    /// Returns the stars whose profile can be fitted: no other source shares their pixels.
+    fn profile_stars<'image>(
+        &self,
+        frames: &'image [SkyFrame],
+        sources: &[ImageSources],
+    ) -> Vec<ProfileStar<'image>> {
+        let mut stars = Vec::new();
+        for (place, matched) in self.matched.iter().enumerate() {
+            let of_frame = &sources[self.frames[place]];
+            for &(index, _) in matched {
+                let source = &of_frame.sources[index];
+                let is_alone = of_frame.sources.iter().enumerate().all(|(other, rival)| {
+                    other == index || rival.position.distance(source.position) > PROFILE_DISTANCE_PX
+                });
+                if is_alone {
+                    stars.push(ProfileStar {
+                        image: &frames[self.frames[place]].image,
+                        noise_dn: of_frame.noise_dn,
+                        position: source.position,
+                        peak: source.peak,
+                        significance: source.significance,
+                    });
+                }
+            }
+        }
+        stars
+    }
+
     fn widths_px(&self, sources: &[ImageSources]) -> Vec<f64> {
         let mut widths = Vec::new();
         for (place, matched) in self.matched.iter().enumerate() {
@@ -440,7 +532,7 @@ fn star_places(
     camera: &Camera,
     attitude: &Rotation<CameraFrame, Icrs>,
     list: &SkyList,
-) -> Vec<(usize, contract::PixelPoint)> {
+) -> Vec<(usize, PixelPoint)> {
     let Ok(model) = CameraModel::new(camera) else { return Vec::new() };
     let (fx, fy) = camera.focal_length_px();
     // The undistorted field is at most a half larger than the detector: beyond, the polynomial means nothing.
@@ -466,7 +558,7 @@ fn star_places(
 /// the errors of the positions where they are known. A second star within twice
 /// the gate blends with the first: its source belongs to neither.
 fn mutual_matches(
-    places: &[(usize, contract::PixelPoint)],
+    places: &[(usize, PixelPoint)],
     frame: &ImageSources,
     gate_px: f64,
     errors: Option<PositionErrors>,

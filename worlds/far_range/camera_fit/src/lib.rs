@@ -6,6 +6,7 @@
 //! 2. [`solution`]: attitude of each frame and the focal length, by the patterns of the stars.
 //! 3. [`adjustment`]: all frames together, by least squares: focal length, principal point, distortion, and
 //!    the attitude of each frame, with the covariance of every figure.
+//! 4. `profile` and `photometry`: width and brightness of the stars.
 //!
 //! [`fit_camera`] is these steps in order. The star list has apparent places for the time of the frames, seen
 //! from the centre of the Earth: proper motion, parallax, light deflection and aberration by the Earth's
@@ -17,9 +18,14 @@ mod background;
 mod fit;
 mod left_out;
 mod photometry;
+mod profile;
 pub mod solution;
 pub mod sources;
 mod star_list;
 
-pub use fit::{CameraFit, FirstGuess, FitError, FittedFrame, SkyFrame, UnsolvedFrame, fit_camera};
+pub use background::{Background, clipped};
+pub use fit::{
+    CameraFit, FirstGuess, FitError, FittedFrame, MatchedStar, SkyFrame, UnsolvedFrame, fit_camera,
+};
 pub use photometry::Photometry;
+pub use profile::{ProfileKind, StarProfile};
