@@ -198,7 +198,8 @@ impl ScenarioSource {
         scenario
     }
 
-    /// Returns the scenario with other values, in the form of [`ScenarioValues::to_json`](scenario::run_file::ScenarioValues::to_json), and another seed.
+    /// Returns the scenario with other values, in the form of
+    /// [`ScenarioValues::to_json`](scenario::run_file::ScenarioValues::to_json), and another seed.
     /// `label` is the origin named in error messages.
     ///
     /// # Errors

@@ -2,9 +2,9 @@
 //!
 //! All stars are fitted together. A star's pixels are b + F P(x, y) + F dx ∂P/∂x + F dy ∂P/∂y, linear in its
 //! background b, its flux F and the small shift (dx, dy) of its measured position; these four are eliminated
-//! (variable projection: Golub & Pereyra 1973), so that the unknowns of the adjustment are those of the profile
-//! alone: its width, 1/β of a Moffat function (0: a Gaussian), and the growth a: at ρ, the distance from the
-//! principal point over that of the farthest corner, the width is 1 + a ρ² times that of the centre.
+//! (variable projection: Golub & Pereyra 1973), so that the unknowns of the adjustment are those of the
+//! profile alone: its width, 1/β of a Moffat function (0: a Gaussian), and the growth a: at ρ, the distance
+//! from the principal point over that of the farthest corner, the width is 1 + a ρ² times that of the centre.
 
 use contract::{Camera, PixelPoint};
 use files::GreyImage;
@@ -78,8 +78,8 @@ pub struct StarProfile {
     pub kind: ProfileKind,
     /// Relative error of its width, one standard deviation.
     pub width_error: f64,
-    /// Growth a of the width towards the corners, with its standard deviation: the width at ρ is 1 + a ρ² times
-    /// that of the centre. 0 where the stars do not show one.
+    /// Growth a of the width towards the corners, with its standard deviation: the width at ρ is 1 + a ρ²
+    /// times that of the centre. 0 where the stars do not show one.
     pub growth: [f64; 2],
     /// Number of stars.
     pub stars: usize,
@@ -178,7 +178,8 @@ impl Unknowns {
     }
 }
 
-/// Returns the part of a Gaussian line of unit area that lies within half a pixel of `offset` from its centre.
+/// Returns the part of a Gaussian line of unit area that lies within half a pixel of `offset` from its
+/// centre.
 fn gaussian_share(offset: f64, sigma: f64) -> f64 {
     let scale = std::f64::consts::FRAC_1_SQRT_2 / sigma;
     0.5 * (libm::erf((offset + 0.5) * scale) - libm::erf((offset - 0.5) * scale))
@@ -302,8 +303,8 @@ impl Fitted {
     }
 }
 
-/// Fits the unknowns by Gauss–Newton steps, halved until the sum decreases. A growth that the stars do not show
-/// is set to 0, and the width fitted again.
+/// Fits the unknowns by Gauss–Newton steps, halved until the sum decreases. A growth that the stars do not
+/// show is set to 0, and the width fitted again.
 fn fit(cuts: &[Cut], start: &Unknowns) -> Option<Fitted> {
     let fitted = fit_free(cuts, start, start.free())?;
     let sigma = fitted.covariance[(1, 1)].sqrt();
@@ -508,7 +509,7 @@ mod tests {
     }
 
     #[test]
-    fn a_moffat_function_is_told_from_a_gaussian() {
+    fn a_moffat_function_is_distinguished_from_a_gaussian() {
         let (fwhm, beta) = (2.0, 2.8);
         let alpha = 0.5 * fwhm / (libm::exp2(1.0 / beta) - 1.0_f64).sqrt();
         let (image, places) = draw(|_, r, flux| {
