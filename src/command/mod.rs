@@ -83,6 +83,12 @@ enum Command {
     /// Determine a camera from its frames
     #[command(subcommand)]
     Camera(far_range::CameraCommand),
+    /// Write a scenario that simulates the frames of a camera: the camera fitted to them, at their pointings
+    ///
+    /// `boresight compare` then states where the simulated frames differ from those of the camera.
+    Twin(far_range::TwinArguments),
+    /// State where the frames of a camera differ from those of its simulated twin; exit status 1 if they do
+    Compare(far_range::CompareArguments),
     /// Reproduce the tables and figures of a paper whose method is built in
     Reproduce(reproduce::ReproduceArguments),
     /// Run a pipeline on a dataset, which may contain real images
@@ -156,6 +162,8 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Render(arguments) => dataset::render(&arguments, &output),
         Command::Sky(arguments) => far_range::sky(&arguments, &output),
         Command::Camera(command) => far_range::camera(&command, &output),
+        Command::Twin(arguments) => far_range::twin(&arguments, &output),
+        Command::Compare(arguments) => far_range::compare(&arguments, &output),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments, &output),
         Command::Process(arguments) => dataset::process(&arguments, &output),
         Command::Score(arguments) => score::score(&arguments, &output),

@@ -65,4 +65,5 @@ mod study_dask;
 mod study_rows;
 mod study_scale;
 mod supply_chain;
+mod twin;
 mod visibility;

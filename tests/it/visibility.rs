@@ -136,7 +136,7 @@ fn enough_stars_are_detected_as_often_as_the_model_predicts() {
 /// middle: the number of stars to a magnitude follows by counting.
 fn plain(side_px: usize, focal_length_mm: f64) -> CameraModel {
     let mut config = camera();
-    config.radiometry = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6 };
+    config.radiometry = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6, colour_term: 0.0 };
     (config.optics, config.background) = (OpticsConfig::default(), Default::default());
     let camera = &mut config.camera;
     (camera.columns, camera.rows, camera.radial) = (side_px, side_px, [0.0; 3]);

@@ -17,7 +17,9 @@ pub use image_blur::ImageBlur;
 pub use image_blur::{correlate, gaussian_kernel, pad};
 pub use projection::Projection;
 pub use psf::{Psf, PsfConfig};
-pub use radiometry::{KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};
+pub use radiometry::{
+    KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig, SUN_B_MINUS_V, SUN_V_MAG_AT_1_AU,
+};
 pub use stamp::{Stamp, StampTruth};
 pub use trail::{ImagePoint, trail};
 pub use vignetting::Vignetting;

@@ -137,7 +137,7 @@ mod tests {
     use truth::clock;
 
     fn radiometry() -> Radiometry {
-        Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6 }).unwrap()
+        Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6, colour_term: 0.0 }).unwrap()
     }
 
     fn projection() -> Projection {

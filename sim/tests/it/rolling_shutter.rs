@@ -98,7 +98,7 @@ fn one_star() -> (Simulation, ObjectTruth) {
     simulation.sensor.background_e_per_s = 0.0;
     simulation.sensor.dark_current_e_per_s = 0.0;
     // The floor of a stamp then cuts off no visible part of a short exposure.
-    simulation.radiometry = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1.5e8 };
+    simulation.radiometry = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1.5e8, colour_term: 0.0 };
     let (frame, _) = expose(&simulator(&shifted(simulation.clone(), 0.0)));
     let is_inside = |object: &&ObjectTruth| {
         object.kind == ObjectKind::Star

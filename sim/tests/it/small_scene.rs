@@ -62,7 +62,7 @@ pub(crate) fn still() -> Simulation {
         },
         psf: PsfConfig::GaussianHalo { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.03 },
         optics: OpticsConfig::default(),
-        radiometry: RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1.5e6 },
+        radiometry: RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1.5e6, colour_term: 0.0 },
         background: BackgroundConfig::default(),
         sensor: SensorConfig {
             bit_depth: 12,

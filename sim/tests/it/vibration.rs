@@ -28,7 +28,7 @@ const NODES: [(f64, f64); 5] = [
 /// The small scene in a stronger light, in which the floor of a stamp cuts off no visible part of it.
 fn scene() -> Simulation {
     let mut simulation = still();
-    simulation.radiometry = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1.5e8 };
+    simulation.radiometry = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1.5e8, colour_term: 0.0 };
     simulation.sensor.hot_pixels.count = 0;
     simulation
 }

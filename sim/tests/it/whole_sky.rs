@@ -62,7 +62,8 @@ fn at_every_pointing_the_field_has_every_star_and_no_other() {
     // The reference transforms every star of the catalogue into the camera frame.
     let apparent: Vec<(u32, Direction<Icrs>)> =
         catalog.stars().iter().map(|star| (star.id, observer.apparent(&StarMotion::new(star)))).collect();
-    let radiometry = Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6 }).unwrap();
+    let radiometry =
+        Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6, colour_term: 0.0 }).unwrap();
     let field = StarField::new(&catalog, &radiometry);
     let (mut stars, mut fewest) = (0, usize::MAX);
     for i in 0..POINTINGS {

@@ -6,7 +6,7 @@ mod navigate;
 mod sky;
 mod visibility;
 
-pub(super) use camera::{CameraCommand, camera};
+pub(super) use camera::{CameraCommand, CompareArguments, TwinArguments, camera, compare, twin};
 pub(super) use export::{ExportArguments, export};
 pub(super) use navigate::{EstimatorName, NavigateArguments, navigate};
 pub(super) use sky::{SkyArguments, sky};

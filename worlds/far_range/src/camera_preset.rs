@@ -8,7 +8,7 @@ use files::Failure;
 use scenario::CAMERAS;
 use serde::{Deserialize, Serialize};
 use sim::SimError;
-use sim::optics::{PsfConfig, RadiometryConfig};
+use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use sim::sensor::SensorConfig;
 
 /// Content of a camera file: tables with the names and keys of a scenario.
@@ -21,6 +21,9 @@ pub struct CameraPreset {
     pub sensor: SensorConfig,
     /// Point-spread function of the optics.
     pub psf: PsfConfig,
+    /// Variation of the optics over the field; absent: none.
+    #[serde(default)]
+    pub optics: OpticsConfig,
     /// Conversion from magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
 }

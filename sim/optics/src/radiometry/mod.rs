@@ -20,6 +20,9 @@ use truth::memo::Memo;
 /// V magnitude of the Sun at 1 au (Willmer 2018, ApJS 236, 47: −26.76, Vega system, Johnson V).
 pub const SUN_V_MAG_AT_1_AU: f64 = -26.76;
 
+/// Colour B − V of the Sun, mag (Ramírez et al. 2012, ApJ 752, 5: 0.653).
+pub const SUN_B_MINUS_V: f64 = 0.653;
+
 /// Planck's constant times the speed of light, J nm (SI, exact): 6.62607015e-34 J s · 299792458 m/s · 1e9
 /// nm/m.
 const HC_J_NM: f64 = 6.626_070_15e-34 * 299_792_458.0 * 1e9;
@@ -28,12 +31,17 @@ const HC_J_NM: f64 = 6.626_070_15e-34 * 299_792_458.0 * 1e9;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum RadiometryConfig {
-    /// Aperture, transmission, passband and quantum efficiency in one number, equal for every colour.
+    /// Aperture, transmission, passband and quantum efficiency in one number, with a term for the colour.
     ZeroPoint {
         /// Photoelectrons per second from a star of magnitude V = 0, over its whole image, greater than 0, at
         /// most 1e15.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e15))]
         zero_point_e_per_s: f64,
+        /// Colour term c, magnitudes by which a star is brighter per magnitude of B−V, −2 to 2: its electrons
+        /// per second are the zero point times 10^(0.4 c (B−V)) at V = 0. 0: every colour is equal.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        #[schemars(range(min = -2, max = 2))]
+        colour_term: f64,
     },
     /// From spectra: stars by their colour, sunlit bodies by the spectrum of the Sun.
     Spectral {
@@ -101,6 +109,10 @@ pub struct Radiometry {
     collecting_area_m2: Option<f64>,
 }
 
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 /// Cache of the latest conversions: only a few cameras occur, and each requires the integrals over all
 /// spectra.
 static PREPARED: Memo<RadiometryConfig, Radiometry> = Memo::new();
@@ -118,11 +130,14 @@ impl Radiometry {
     fn compute(config: &RadiometryConfig) -> Result<Self, OutOfRange> {
         config.check()?;
         let prepared = match config {
-            RadiometryConfig::ZeroPoint { zero_point_e_per_s } => Self {
-                stars: [*zero_point_e_per_s; spectra::STARS],
-                sunlight: *zero_point_e_per_s,
-                collecting_area_m2: None,
-            },
+            RadiometryConfig::ZeroPoint { zero_point_e_per_s, colour_term } => {
+                let of_colour = |b_v: f64| zero_point_e_per_s * libm::pow(10.0, 0.4 * colour_term * b_v);
+                Self {
+                    stars: std::array::from_fn(|number| of_colour(spectra::b_v(number))),
+                    sunlight: of_colour(SUN_B_MINUS_V),
+                    collecting_area_m2: None,
+                }
+            }
             RadiometryConfig::Spectral {
                 aperture_diameter_mm,
                 transmission,
@@ -219,8 +234,20 @@ mod tests {
     }
 
     #[test]
+    fn a_colour_term_brightens_red_stars() {
+        let config = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6, colour_term: 0.3 };
+        let radiometry = Radiometry::new(&config).unwrap();
+        for b_v in [0.0, 0.65, 1.2] {
+            // Between two stars of the sequence the relation is linear in electrons.
+            let expected = 1e6 * libm::pow(10.0, 0.4 * 0.3 * b_v);
+            assert!((radiometry.zero_point_e_per_s(Some(b_v), None) / expected - 1.0).abs() < 1e-3);
+        }
+    }
+
+    #[test]
     fn a_single_zero_point_ignores_colour_and_five_magnitudes_are_a_factor_of_100() {
-        let one = Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 2e6 }).unwrap();
+        let one = Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 2e6, colour_term: 0.0 })
+            .unwrap();
         assert_eq!(one.star(0.0, Some(1.5), Some(2.7)), 2e6);
         assert_eq!(one.star(0.0, None, None), one.sunlit(0.0));
         // Tolerance: a few units in the last digit of pow.
@@ -282,9 +309,11 @@ mod tests {
 
     #[test]
     fn a_radiometry_without_signal_is_refused() {
-        let zero = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 0.0 };
+        let zero = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 0.0, colour_term: 0.0 };
         assert!(zero.check().is_err());
-        assert!(RadiometryConfig::ZeroPoint { zero_point_e_per_s: f64::NAN }.check().is_err());
+        assert!(
+            RadiometryConfig::ZeroPoint { zero_point_e_per_s: f64::NAN, colour_term: 0.0 }.check().is_err()
+        );
         let blind = RadiometryConfig::Spectral {
             aperture_diameter_mm: 20.0,
             transmission: 0.5,

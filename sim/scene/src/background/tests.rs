@@ -18,7 +18,7 @@ fn camera() -> Camera {
 }
 
 fn one_zero_point() -> Radiometry {
-    Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e7 }).unwrap()
+    Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e7, colour_term: 0.0 }).unwrap()
 }
 
 fn spectral() -> Radiometry {

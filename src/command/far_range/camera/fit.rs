@@ -1,38 +1,53 @@
 //! `boresight camera fit`: a camera from frames of the night sky.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use camera_fit::{FirstGuess, FitError, SkyFrame, fit_camera};
 use clap::Args;
-use files::{AtomicFile, Failure, read_grey_image};
+use files::{AtomicFile, Failure};
 use hifitime::Epoch;
 use serde_json::json;
+use twin::{FrameSet, Origin, TwinCamera, camera_toml};
 
-use super::camera_file::camera_toml;
 use super::fit_text::{document, fit_text};
-use super::images::{has_extension, images};
+use super::images::{images, read_frames};
+use super::pages::write_fit_page;
 use crate::command::Answer;
 use crate::command::options::{exposure, number, output_path, time};
 use crate::command::output::Output;
+use crate::command::report::check_option;
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct FitArguments {
     /// Directory with the images, all of one camera
     #[arg(value_name = "DIR")]
-    pub(super) directory: PathBuf,
+    directory: PathBuf,
+    #[command(flatten)]
+    guess: GuessArguments,
+    /// A new file for the camera, TOML: for `boresight sky --camera FILE`, or to be pasted into a scenario
+    #[arg(short, long, value_name = "FILE", value_parser = output_path())]
+    out: Option<PathBuf>,
+    /// Also write the residuals, profiles and figures as one HTML file, replaced if it is a report
+    #[arg(long, value_name = "FILE", value_parser = output_path())]
+    report: Option<PathBuf>,
+}
+
+/// What is known of the camera beforehand.
+#[derive(Debug, Args)]
+pub(in crate::command) struct GuessArguments {
     /// Width of the field along the columns, degrees, 0.5 to 120
     #[arg(long, value_name = "DEG", value_parser = field)]
-    pub(super) field_deg: f64,
+    field_deg: f64,
     /// Largest relative error of the field, 0 to 0.2
     #[arg(long, value_name = "SHARE", default_value_t = 0.1, value_parser = tolerance)]
-    pub(super) tolerance: f64,
+    tolerance: f64,
     /// Width of a pixel, µm, 0.01 to 1e4: sets the unit of the focal length, which in pixels does not depend
     /// on it
     #[arg(long, value_name = "UM", default_value_t = 5.0, value_parser = pixel)]
-    pub(super) pixel_um: f64,
+    pixel_um: f64,
     /// Height of a pixel, µm, where it is not square
     #[arg(long, value_name = "UM", value_parser = pixel)]
-    pub(super) pixel_height_um: Option<f64>,
+    pixel_height_um: Option<f64>,
     /// Time of the frames, UTC, 1990 to 2050: sets proper motion and aberration. A day wrong changes
     /// directions by half an arc second
     #[arg(long, value_name = "UTC", default_value = "2026-01-01T00:00:00Z", value_parser = time)]
@@ -40,9 +55,21 @@ pub(in crate::command) struct FitArguments {
     /// Exposure time of the frames, s, 1e-6 to 1000: for the brightness of stars per second
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = exposure)]
     pub(super) exposure: f64,
-    /// A new file for the camera, TOML: for `boresight sky --camera FILE`, or to be pasted into a scenario
-    #[arg(short, long, value_name = "FILE", value_parser = output_path())]
-    pub(super) out: Option<PathBuf>,
+}
+
+impl GuessArguments {
+    pub(super) fn first_guess(&self) -> FirstGuess {
+        FirstGuess {
+            field_deg: self.field_deg,
+            tolerance: self.tolerance,
+            pixel_um: [self.pixel_um, self.pixel_height_um.unwrap_or(self.pixel_um)],
+            time: self.time,
+        }
+    }
+
+    pub(super) fn origin<'a>(&self, directory: &'a Path) -> Origin<'a> {
+        Origin { directory, time: self.time, exposure_s: self.exposure }
+    }
 }
 
 fn field(text: &str) -> Result<f64, String> {
@@ -62,39 +89,43 @@ pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, F
     if let Some(out) = arguments.out.as_deref().filter(|out| out.exists()) {
         return Err(Failure::Usage(format!("--out is {}, which exists; expected a new file", out.display())));
     }
-    let progress = output.progress_of(paths.len() as u64, "images", "reading");
-    let mut frames = Vec::with_capacity(paths.len());
-    for path in &paths {
-        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        frames.push(SkyFrame { name, image: read_grey_image(path)? });
-        progress.inc(1);
-    }
-    progress.finish_and_clear();
-    let guess = FirstGuess {
-        field_deg: arguments.field_deg,
-        tolerance: arguments.tolerance,
-        pixel_um: [arguments.pixel_um, arguments.pixel_height_um.unwrap_or(arguments.pixel_um)],
-        time: arguments.time,
+    check_option(arguments.report.as_ref())?;
+    let frames = read_frames(&paths, output)?;
+    let Some(set) = fitted(&arguments.directory, frames, &arguments.guess.first_guess(), output)? else {
+        return Ok(Answer::No);
     };
-    let fit = match fit_camera(&frames, &guess) {
-        Ok(fit) => fit,
-        Err(error @ (FitError::NoAttitude(_) | FitError::TooFewStars(_))) => {
-            let text = format!("{}: {error}", arguments.directory.display());
-            output.answer(&json!({ "ok": false, "error": text }), text)?;
-            return Ok(Answer::No);
-        }
-        Err(error) => return Err(Failure::Usage(format!("{}: {error}", arguments.directory.display()))),
-    };
-    if paths.iter().any(|path| has_extension(path, &["jpg", "jpeg"])) {
-        output.note("warning: JPEG changes faint stars and widths; raw images give a better camera");
+    let mut text = fit_text(&set.fit);
+    let twin = TwinCamera::of(&set);
+    if let Some(path) = &arguments.report {
+        write_fit_page(&set, &twin, &arguments.directory, path)?;
+        text.push_str(&format!("\nreport in {}", path.display()));
     }
     if let Some(out) = &arguments.out {
-        AtomicFile::with_text(out, &camera_toml(&fit, arguments))?.commit_new()?;
-    }
-    let mut text = fit_text(&fit);
-    if let Some(out) = &arguments.out {
+        let camera = camera_toml(&set.fit, &twin, &arguments.guess.origin(&arguments.directory));
+        AtomicFile::with_text(out, &camera)?.commit_new()?;
         text.push_str(&format!("\ncamera in {}", out.display()));
     }
-    output.answer(&document(&fit), text)?;
+    output.answer(&document(&set.fit), text)?;
     Ok(Answer::Yes)
+}
+
+/// Fits a camera to frames; `None` after an answer that says why there is none.
+///
+/// # Errors
+/// [`Failure::Usage`] for frames that are not of one camera, or an invalid first guess.
+pub(super) fn fitted(
+    directory: &Path,
+    frames: Vec<SkyFrame>,
+    guess: &FirstGuess,
+    output: &Output,
+) -> Result<Option<FrameSet>, Failure> {
+    match fit_camera(&frames, guess) {
+        Ok(fit) => Ok(Some(FrameSet { frames, fit })),
+        Err(error @ (FitError::NoAttitude(_) | FitError::TooFewStars(_))) => {
+            let text = format!("{}: {error}", directory.display());
+            output.answer(&json!({ "ok": false, "error": text }), text)?;
+            Ok(None)
+        }
+        Err(error) => Err(Failure::Usage(format!("{}: {error}", directory.display()))),
+    }
 }

@@ -9,20 +9,6 @@ use serde_json::{Value, json};
 /// Number of frames that are printed; the JSON lists all.
 const PRINTED_FRAMES: usize = 20;
 
-/// Name of a term's parameter, with its unit.
-fn parameter_name(term: Term) -> &'static str {
-    match term {
-        Term::FocalLength => "focal length, mm",
-        Term::PrincipalX => "principal point x, px",
-        Term::PrincipalY => "principal point y, px",
-        Term::Radial1 => "k1, px^-2",
-        Term::Radial2 => "k2, px^-4",
-        Term::Radial3 => "k3, px^-6",
-        Term::Tangential1 => "p1, px^-1",
-        Term::Tangential2 => "p2, px^-1",
-    }
-}
-
 /// Returns a value with its standard deviation, to two digits of the latter.
 fn with_sigma(value: f64, sigma: f64) -> String {
     if value.abs() < 1e-2 {
@@ -47,7 +33,7 @@ pub(super) fn fit_text(fit: &CameraFit) -> String {
     let (focal_px, _) = fit.camera.focal_length_px();
     for (term, sigma, is_determined) in &fit.sigmas {
         let value = with_sigma(term.parameter(&fit.camera), *sigma);
-        text.push_str(&format!("\n  {:<22} {value}", parameter_name(*term)));
+        text.push_str(&format!("\n  {:<22} {value}", term.name()));
         if *term == Term::FocalLength {
             text.push_str(&format!(" ({focal_px:.2} px)"));
         }
@@ -130,7 +116,7 @@ pub(super) fn document(fit: &CameraFit) -> Value {
         .iter()
         .map(|(term, sigma, is_determined)| {
             let value = term.parameter(&fit.camera);
-            json!({ "name": parameter_name(*term), "value": value, "sigma": sigma, "determined": is_determined })
+            json!({ "name": term.name(), "value": value, "sigma": sigma, "determined": is_determined })
         })
         .collect();
     let frames: Vec<Value> = fit

@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use files::{Failure, FileError};
+use camera_fit::SkyFrame;
+use files::{Failure, FileError, read_grey_image};
+
+use crate::command::output::Output;
 
 /// Extensions of image files.
 const EXTENSIONS: [&str; 9] = ["fits", "fit", "fts", "png", "tif", "tiff", "exr", "jpg", "jpeg"];
@@ -37,7 +40,23 @@ pub(super) fn images(directory: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(paths)
 }
 
-pub(super) fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
     extension.is_some_and(|extension| extensions.contains(&extension.as_str()))
+}
+
+/// Reads images, with a warning about JPEG.
+pub(super) fn read_frames(paths: &[PathBuf], output: &Output) -> Result<Vec<SkyFrame>, Failure> {
+    let progress = output.progress_of(paths.len() as u64, "images", "reading");
+    let mut frames = Vec::with_capacity(paths.len());
+    for path in paths {
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        frames.push(SkyFrame { name, image: read_grey_image(path)? });
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    if paths.iter().any(|path| has_extension(path, &["jpg", "jpeg"])) {
+        output.note("warning: JPEG changes faint stars and widths; raw images give a better camera");
+    }
+    Ok(frames)
 }

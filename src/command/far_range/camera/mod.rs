@@ -1,9 +1,18 @@
 //! `boresight camera`: a camera from its frames.
 
-mod camera_file;
+mod compare;
 mod fit;
 mod fit_text;
 mod images;
+#[cfg(feature = "report")]
+mod pages;
+#[cfg(not(feature = "report"))]
+#[path = "no_pages.rs"]
+mod pages;
+mod twin;
+
+pub(in crate::command) use compare::{CompareArguments, compare};
+pub(in crate::command) use twin::{TwinArguments, twin};
 
 use clap::Subcommand;
 use files::Failure;

@@ -65,6 +65,20 @@ impl Term {
         Self::Tangential2,
     ];
 
+    /// Name of the parameter, with its unit.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FocalLength => "focal length, mm",
+            Self::PrincipalX => "principal point x, px",
+            Self::PrincipalY => "principal point y, px",
+            Self::Radial1 => "k1, px^-2",
+            Self::Radial2 => "k2, px^-4",
+            Self::Radial3 => "k3, px^-6",
+            Self::Tangential1 => "p1, px^-1",
+            Self::Tangential2 => "p2, px^-1",
+        }
+    }
+
     /// Returns the parameter of a camera that the term changes: mm, px, px⁻², px⁻⁴, px⁻⁶, px⁻¹.
     pub fn parameter(self, camera: &Camera) -> f64 {
         let [k1, k2, k3] = camera.radial;

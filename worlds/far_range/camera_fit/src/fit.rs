@@ -26,6 +26,9 @@ const MIN_GATE_PX: f64 = 0.5;
 /// Terms of the first round, when only the stars near the centre are matched.
 const FIRST_TERMS: [Term; 2] = [Term::FocalLength, Term::Radial1];
 
+/// Number of pixels with the largest value of all frames from which it is the saturation level.
+const MIN_SATURATED: usize = 4;
+
 /// Smallest number of stars in a frame that takes part.
 const MIN_STARS: usize = 4;
 
@@ -190,7 +193,10 @@ pub struct CameraFit {
     pub hot_pixels: Option<usize>,
     /// Brightness scale; `None` with too few stars.
     pub photometry: Option<Photometry>,
-    /// Largest value of a pixel in the files.
+    /// Value of a saturated pixel, DN: the largest value of the frames if several pixels have it, otherwise
+    /// `full_scale`.
+    pub saturation_dn: f64,
+    /// Largest value that a pixel of the files can have.
     pub full_scale: f64,
     /// True if the frames were converted from colour.
     pub is_colour: bool,
@@ -203,7 +209,9 @@ pub struct CameraFit {
 pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, FitError> {
     let first_camera = first_camera(frames, guess)?;
     let list = SkyList::new(guess.time).map_err(FitError::Time)?;
-    let sources: Vec<ImageSources> = frames.par_iter().map(|frame| find_sources(&frame.image)).collect();
+    let saturation_dn = saturation_dn(frames);
+    let sources: Vec<ImageSources> =
+        frames.par_iter().map(|frame| find_sources(&frame.image, saturation_dn)).collect();
     let solutions = solve_frames(&sources, &list.stars, &first_camera, guess.tolerance).map_err(|error| {
         FitError::Guess(OutOfRange::new("field_deg", error.to_string(), "a possible camera"))
     })?;
@@ -258,12 +266,31 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
         noise_dn: median(sources.iter().map(|frame| frame.noise_dn).collect()).unwrap_or(f64::NAN),
         hot_pixels: hot_pixels(&sources),
         photometry: photometry(&solved.lights(&fitted, &sources, &list)),
+        saturation_dn,
         full_scale: frames.iter().map(|frame| frame.image.full_scale).fold(0.0, f64::max),
         is_colour: frames.iter().any(|frame| frame.image.conversion == PixelConversion::MeanOfColours),
         camera: fitted,
         adjustment,
         unsolved,
     })
+}
+
+/// Returns the value of a saturated pixel: the largest value of all frames if pixels pile up at it (at least
+/// four, and more than in the tenth below it), otherwise the largest value that the files can hold. A
+/// converter of 12 or 14 bits fills files of 16 bits only to a part.
+fn saturation_dn(frames: &[SkyFrame]) -> f64 {
+    let full_scale = frames.iter().map(|frame| frame.image.full_scale).fold(0.0, f64::max);
+    let mut largest = f32::NEG_INFINITY;
+    for frame in frames {
+        largest = frame.image.values.iter().copied().fold(largest, f32::max);
+    }
+    let (mut at_largest, mut below) = (0, 0);
+    for value in frames.iter().flat_map(|frame| &frame.image.values) {
+        at_largest += usize::from(*value == largest);
+        below += usize::from(*value < largest && *value >= 0.9 * largest);
+    }
+    let is_piled_up = at_largest >= MIN_SATURATED && at_largest > below;
+    if is_piled_up { f64::from(largest) } else { full_scale }
 }
 
 /// Returns the camera of the first guess.
@@ -520,6 +547,7 @@ impl SolvedFrames {
                     magnitude: list.stars[star].magnitude,
                     b_v: list.b_v[star],
                     flux_dn: source.map(|source| source.flux_dn),
+                    significance: source.map_or(0.0, |source| source.significance),
                 });
             }
         }

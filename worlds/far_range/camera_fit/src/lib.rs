@@ -29,3 +29,4 @@ pub use fit::{
 };
 pub use photometry::Photometry;
 pub use profile::{ProfileKind, StarProfile};
+pub use sources::FLUX_REACH_PX;

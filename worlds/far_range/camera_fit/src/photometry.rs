@@ -9,6 +9,8 @@ pub(crate) struct StarLight {
     pub(crate) b_v: Option<f64>,
     /// Flux of its source above the background, DN; `None` if it has none.
     pub(crate) flux_dn: Option<f64>,
+    /// Height of the source above the noise, standard deviations; 0 if it has none.
+    pub(crate) significance: f64,
 }
 
 /// Brightness scale of the frames: V = zero point − 2.5 lg(flux in DN) + colour term · (B − V).
@@ -33,15 +35,22 @@ const ROUNDS: usize = 6;
 /// Smallest number of stars of a brightness scale.
 const MIN_STARS: usize = 8;
 
+/// Significance from which a star takes part, if enough have it: of fainter ones, those are found that noise
+/// or a neighbour makes brighter.
+const MIN_SIGNIFICANCE: f64 = 25.0;
+const MIN_SIGNIFICANT: usize = 20;
+
 /// Width of a bin of magnitudes, and smallest number of stars in it.
 const BIN_MAG: f64 = 0.5;
 const MIN_IN_BIN: usize = 5;
 
 /// Fits the brightness scale; `None` with too few stars.
 pub(crate) fn photometry(stars: &[StarLight]) -> Option<Photometry> {
+    let significant = stars.iter().filter(|star| star.significance >= MIN_SIGNIFICANCE).count();
+    let limit = if significant >= MIN_SIGNIFICANT { MIN_SIGNIFICANCE } else { 0.0 };
     // Rows (B−V, V + 2.5 lg flux).
     let mut rows: Vec<[f64; 2]> = Vec::new();
-    for star in stars {
+    for star in stars.iter().filter(|star| star.significance >= limit) {
         if let (Some(b_v), Some(flux_dn)) = (star.b_v, star.flux_dn.filter(|flux| *flux > 0.0)) {
             rows.push([b_v, star.magnitude + 2.5 * libm::log10(flux_dn)]);
         }
@@ -152,7 +161,8 @@ mod tests {
             // Two of three stars have a source below V = 7, none beyond.
             let is_seen = magnitude < 7.0 && i % 3 != 0;
             let flux_dn = is_seen.then(|| libm::pow(10.0, lg_flux));
-            stars.push(StarLight { magnitude, b_v: Some(b_v), flux_dn });
+            let significance = flux_dn.map_or(0.0, |flux| flux / 100.0);
+            stars.push(StarLight { magnitude, b_v: Some(b_v), flux_dn, significance });
         }
         // A wrong star.
         stars[1].flux_dn = Some(1.0);

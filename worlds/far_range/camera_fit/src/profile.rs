@@ -85,6 +85,34 @@ pub struct StarProfile {
     pub stars: usize,
 }
 
+impl StarProfile {
+    /// Returns the share of the flux of a star at the principal point that lies within `reach` pixels of its
+    /// central pixel along both axes; the star is centred on that pixel.
+    pub fn share_within(&self, reach: u32) -> f64 {
+        let unknowns = self.unknowns();
+        let reach = reach as i32;
+        let mut sum = 0.0;
+        for y in -reach..=reach {
+            for x in -reach..=reach {
+                sum += unknowns.pixel(0.0, f64::from(x), f64::from(y));
+            }
+        }
+        sum
+    }
+
+    fn unknowns(&self) -> Unknowns {
+        let [growth, _] = self.growth;
+        match self.kind {
+            ProfileKind::Gaussian { sigma_px } => {
+                Unknowns { lg_width: libm::log(sigma_px), inverse_beta: 0.0, growth }
+            }
+            ProfileKind::Moffat { fwhm_px, beta } => {
+                Unknowns { lg_width: libm::log(fwhm_px / FWHM_PER_SIGMA), inverse_beta: 1.0 / beta, growth }
+            }
+        }
+    }
+}
+
 /// A star whose pixels are used.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ProfileStar<'image> {
@@ -520,6 +548,10 @@ mod tests {
         let ProfileKind::Moffat { fwhm_px, beta: found_beta } = found.kind else { panic!("{found:?}") };
         assert!((fwhm_px / fwhm - 1.0).abs() < 5.0 * found.width_error.max(0.002), "{found:?}");
         assert!((found_beta / beta - 1.0).abs() < 0.1, "{found:?}");
+        // Within a circle of r the share is 1 − (1 + r²/α²)^(1 − β); the square of 9 × 9 pixels has the area
+        // of a circle of 5.08 px.
+        let within = 1.0 - libm::pow(1.0 + 5.08 * 5.08 / (alpha * alpha), 1.0 - beta);
+        assert!((found.share_within(4) - within).abs() < 0.01, "{} {within}", found.share_within(4));
         assert_eq!(found.growth[0], 0.0, "{found:?}");
     }
 

@@ -18,7 +18,10 @@ const MIN_SIGMAS: f64 = 5.0;
 
 /// Standard deviation of the window of a centroid, px, and its reach.
 const WINDOW_PX: f64 = 1.5;
-const WINDOW_REACH: i64 = 4;
+const WINDOW_REACH: i64 = FLUX_REACH_PX as i64;
+
+/// Distance from the pixel of its maximum, along both axes, up to which the flux of a source is summed, px.
+pub const FLUX_REACH_PX: u32 = 4;
 
 /// Distance from the edge of the image below which a source is left out, px.
 const EDGE_PX: usize = WINDOW_REACH as usize + 1;
@@ -32,7 +35,7 @@ const CENTROID_WAY_PX: f64 = 2.0;
 /// star of σ = 0.5 px, centred on a pixel, has 0.47.
 const SPIKE_SHARE: f64 = 0.7;
 
-/// Share of the full scale above which a pixel is saturated.
+/// Share of the saturation level above which a pixel is saturated.
 const SATURATED_SHARE: f64 = 0.98;
 
 /// Largest number of sources of an image, most significant first.
@@ -70,8 +73,8 @@ pub struct ImageSources {
     pub noise_dn: f64,
 }
 
-/// Finds the sources of an image.
-pub fn find_sources(image: &GreyImage) -> ImageSources {
+/// Finds the sources of an image. `saturation_dn` is the value of a saturated pixel.
+pub fn find_sources(image: &GreyImage, saturation_dn: f64) -> ImageSources {
     let background = Background::of(image);
     let mut residual = Vec::with_capacity(image.values.len());
     for row in 0..image.rows {
@@ -84,7 +87,7 @@ pub fn find_sources(image: &GreyImage) -> ImageSources {
     // Measured, because neighbouring pixels of a camera with processing are not independent.
     let smoothed_noise_dn = clipped(&smoothed.values).1;
     let threshold_dn = MIN_SIGMAS * smoothed_noise_dn;
-    let saturation_dn = SATURATED_SHARE * image.full_scale - background.median_dn();
+    let saturation_dn = SATURATED_SHARE * saturation_dn - background.median_dn();
     let mut sources = Vec::new();
     for row in EDGE_PX..image.rows.saturating_sub(EDGE_PX) {
         for column in EDGE_PX..image.columns.saturating_sub(EDGE_PX) {

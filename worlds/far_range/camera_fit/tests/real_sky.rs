@@ -129,7 +129,7 @@ fn write_the_table() {
     let mut text = "# frame, x px, y px, significance, 1 for a spike; origin: real_sky.rs\n".to_owned();
     for (name, _) in SOLVED {
         let image = read_grey_image(&Path::new(&folder).join(format!("{name}.png"))).unwrap();
-        for source in find_sources(&image).sources.iter().take(60) {
+        for source in find_sources(&image, image.full_scale).sources.iter().take(60) {
             let PixelPoint { x, y } = source.position;
             let spike = u8::from(source.is_spike);
             writeln!(text, "{name},{x:.3},{y:.3},{:.2},{spike}", source.significance).unwrap();

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use sim::Simulation;
 use sim::catalog::{CatalogConfig, CatalogSource};
 use sim::onboard::{RoiConfig, ShutterConfig};
-use sim::optics::{OpticsConfig, PsfConfig, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};
+use sim::optics::{OpticsConfig, PsfConfig, Radiometry, RadiometryConfig, SUN_B_MINUS_V, SUN_V_MAG_AT_1_AU};
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::{SensorConfig, Switch};
 use sim::truth::{
@@ -164,9 +164,6 @@ const MOUNTING_SIGMA_ARCSEC: f64 = 180.0;
 
 /// Reflectance assumed for a spacecraft of unknown reflectance.
 const GREY_REFLECTANCE: f64 = 0.25;
-
-/// Colour B − V of the Sun, mag (Ramírez et al. 2012, ApJ 752, 5: 0.653).
-const SUN_B_MINUS_V: f64 = 0.653;
 
 scenario_file!(FarRangeScenario, "far_range", crate::STARTING_POINT, paths_of_files);
 

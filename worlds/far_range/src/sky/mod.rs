@@ -87,6 +87,7 @@ impl SkyView {
         scenario.camera = preset.camera;
         scenario.sensor = preset.sensor;
         scenario.psf = preset.psf;
+        scenario.optics = preset.optics;
         scenario.radiometry = preset.radiometry;
         scenario.background = BackgroundConfig { zodiacal: Switch::On, ..BackgroundConfig::default() };
         scenario.shutter = ShutterConfig::Fixed { exposure_s: self.exposure_s };

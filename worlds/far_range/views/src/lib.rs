@@ -28,8 +28,8 @@ use view::terminal::terminal_width;
 use view::{CloseUp, WorldViews};
 
 pub use self::table::{
-    TableStyle, bound_table, budget_table, far_range_table, navigation_table, visibility_markdown,
-    visibility_table,
+    TableStyle, bound_table, budget_table, far_range_table, likeness_table, navigation_table,
+    visibility_markdown, visibility_table,
 };
 
 /// Registers the world and its views for the rest of the process.

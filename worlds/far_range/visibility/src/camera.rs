@@ -50,13 +50,13 @@ impl CameraConfig {
         }
     }
 
-    /// Returns a built-in camera, with uniform optics, without background, and with the built-in catalogue.
+    /// Returns a built-in camera, without background, and with the built-in catalogue.
     pub(crate) fn from_preset(preset: &CameraPreset) -> Self {
         Self {
             camera: preset.camera.clone(),
             sensor: preset.sensor.clone(),
             psf: preset.psf.clone(),
-            optics: OpticsConfig::default(),
+            optics: preset.optics.clone(),
             radiometry: preset.radiometry.clone(),
             background: BackgroundConfig::default(),
             catalog: CatalogConfig::default(),

@@ -3,11 +3,13 @@
 mod approach;
 mod attitude;
 mod budget;
+mod camera_fit;
 mod colours;
 mod covariances;
 mod error_budget;
 mod frame_detail;
 mod image;
+mod likeness;
 mod navigation;
 mod run;
 mod series;
@@ -21,8 +23,10 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
+pub use camera_fit::camera_fit_page;
 pub use error_budget::{InjectedRun, kept_budget};
 pub use frame_detail::FrameDetail;
+pub use likeness::likeness_page;
 pub use run::FarRangeRun;
 pub use verdict::findings;
 pub use visibility::{read_visibility, visibility_page};

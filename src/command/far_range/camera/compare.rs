@@ -1,0 +1,87 @@
+//! `boresight compare`: the likeness of the frames of a camera and of its twin.
+
+use std::path::{Path, PathBuf};
+
+use camera_fit::FirstGuess;
+use clap::Args;
+use far_range::FarRangeScenario;
+use far_range_views::likeness_table;
+use files::{Failure, parse_utc};
+use run::ScenarioSource;
+use serde_json::{Value, json};
+use twin::likeness::{Comparison, Likeness, compare as compare_sets};
+use twin::{FrameSet, twin_frames};
+
+use super::fit::fitted;
+use super::images::{images, read_frames};
+use super::pages::write_likeness_page;
+use crate::command::Answer;
+use crate::command::options::output_path;
+use crate::command::output::Output;
+use crate::command::report::check_option;
+
+/// Largest relative error of the field of the twin's scenario.
+const TOLERANCE: f64 = 0.05;
+
+#[derive(Debug, Args)]
+pub(in crate::command) struct CompareArguments {
+    /// Directory with the images of the camera
+    #[arg(value_name = "DIR")]
+    directory: PathBuf,
+    /// Scenario of the twin, TOML (`boresight twin` writes one): its frames are simulated and compared
+    #[arg(value_name = "TWIN")]
+    twin: PathBuf,
+    /// Also write figures, spectra and pictures as one HTML file, replaced if it is a report
+    #[arg(long, value_name = "FILE", value_parser = output_path())]
+    report: Option<PathBuf>,
+}
+
+pub(in crate::command) fn compare(arguments: &CompareArguments, output: &Output) -> Result<Answer, Failure> {
+    check_option(arguments.report.as_ref())?;
+    let paths = images(&arguments.directory)?;
+    let source = ScenarioSource::read(&arguments.twin.to_string_lossy())?;
+    let scenario: &FarRangeScenario = source.typed("boresight compare")?;
+    let guess = first_guess(scenario, &arguments.twin)?;
+    let frames = read_frames(&paths, output)?;
+    let simulated = twin_frames(scenario, &source.folder)?;
+    let Some(camera) = fitted(&arguments.directory, frames, &guess, output)? else { return Ok(Answer::No) };
+    let Some(twin) = fitted(&arguments.twin, simulated, &guess, output)? else { return Ok(Answer::No) };
+    let found = compare_sets(&camera, &twin);
+    if let Some(path) = &arguments.report {
+        write_likeness_page(&camera, &twin, &found, &arguments.directory, path)?;
+    }
+    let is_alike = found.figures.iter().all(Likeness::is_indistinguishable);
+    output.answer(
+        &document(&camera, &twin, &found),
+        likeness_table(&camera, &twin, &found, output.is_terminal()),
+    )?;
+    Ok(if is_alike { Answer::Yes } else { Answer::No })
+}
+
+/// Returns what the scenario of the twin says of the camera.
+fn first_guess(scenario: &FarRangeScenario, path: &Path) -> Result<FirstGuess, Failure> {
+    let camera = &scenario.camera;
+    let (focal_px, _) = camera.focal_length_px();
+    let half_field = libm::atan(0.5 * camera.columns as f64 / focal_px);
+    let start = scenario.schedule.first().map_or("", |group| group.start_utc.as_str());
+    let time = parse_utc(start).map_err(|expected| {
+        Failure::Usage(format!("{}: schedule[0].start_utc is `{start}`, expected {expected}", path.display()))
+    })?;
+    Ok(FirstGuess {
+        field_deg: 2.0 * half_field.to_degrees(),
+        tolerance: TOLERANCE,
+        pixel_um: [camera.pixel_width_um, camera.pixel_height_um],
+        time,
+    })
+}
+
+/// Returns the comparison as JSON.
+fn document(camera: &FrameSet, twin: &FrameSet, found: &Comparison) -> Value {
+    json!({
+        "ok": found.figures.iter().all(Likeness::is_indistinguishable),
+        "frames": [camera.fit.frames.len(), twin.fit.frames.len()],
+        "shared_stars": found.stars.len(),
+        "figures": found.figures,
+        "not_compared": found.missing,
+    })
+}
