@@ -1,9 +1,13 @@
-//! `boresight camera`: a camera from its frames.
+//! `boresight camera`: cameras from frames of the sky, and calibrations of other tools.
 
 mod camera_file;
+mod export;
 mod fit;
 mod fit_text;
 mod images;
+mod import;
+
+use std::path::Path;
 
 use clap::Subcommand;
 use files::Failure;
@@ -18,10 +22,27 @@ pub(in crate::command) enum CameraCommand {
     /// Needs the field to about ten percent and no attitude. Images are grey or colour PNG, TIFF, JPEG
     /// (colour: the mean of the three), grey FITS or OpenEXR, not mirrored.
     Fit(fit::FitArguments),
+    /// Read a calibration of OpenCV, ROS or Kalibr, and write a camera file
+    ///
+    /// Reads YAML and JSON of OpenCV's FileStorage, camera_info of ROS and camchain.yaml of Kalibr: pinhole
+    /// cameras with the distortion k1, k2, p1, p2, k3. Detector and optics of the camera file are assumed.
+    Import(import::ImportArguments),
+    /// Write a camera as a calibration for OpenCV, ROS or Kalibr
+    Export(export::CameraExportArguments),
+}
+
+/// Refuses an output file that exists, before the work begins.
+fn refuse_existing(out: &Path) -> Result<(), Failure> {
+    if out.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!("--out is {}, which exists; expected a new file", out.display())))
 }
 
 pub(in crate::command) fn camera(command: &CameraCommand, output: &Output) -> Result<Answer, Failure> {
     match command {
         CameraCommand::Fit(arguments) => fit::fit(arguments, output),
+        CameraCommand::Import(arguments) => import::import(arguments, output),
+        CameraCommand::Export(arguments) => export::export(arguments, output),
     }
 }
