@@ -97,7 +97,7 @@ impl Distortion {
     /// Adjusts the terms that are not 0 to another distortion by linear least squares over the samples.
     fn nearest_to(&self, other: &Self, samples: &[[f64; 2]]) -> Option<Self> {
         let free: Vec<usize> = (0..5).filter(|index| self.terms.get(*index) != Some(&0.0)).collect();
-        // Unknowns: relative corrections δ of the terms. Their displacements A δ are those that are missing, b.
+        // Unknowns: relative corrections δ of the terms, whose displacements A δ are the missing ones, b.
         let mut design = DMatrix::zeros(2 * samples.len(), free.len());
         let mut missing = DVector::zeros(2 * samples.len());
         for (sample, [u, v]) in samples.iter().enumerate() {

@@ -4,8 +4,8 @@ use contract::{Camera, OutOfRange};
 
 use super::distortion::{Detector, Distortion, Refit};
 
-/// Pinhole camera with radial and tangential distortion in normalised coordinates: the model of OpenCV's first
-/// five coefficients, of the `plumb_bob` of ROS and of the pinhole-radtan of Kalibr.
+/// Pinhole camera with radial and tangential distortion in normalised coordinates: the model of OpenCV's
+/// first five coefficients, of the `plumb_bob` of ROS and of the pinhole-radtan of Kalibr.
 ///
 /// With x = X/Z, y = Y/Z and r² = x² + y², a point is seen at column cx + fx (x (1 + k1 r² + k2 r⁴ + k3 r⁶) +
 /// 2 p1 x y + p2 (r² + 2 x²)) and row cy + fy (y (1 + k1 r² + k2 r⁴ + k3 r⁶) + p1 (r² + 2 y²) + 2 p2 x y).
@@ -53,7 +53,8 @@ impl LensCalibration {
     ///
     /// The distortion of the contract is in pixels: k1 / f², k2 / f⁴, k3 / f⁶, p1 / f, p2 / f are the same
     /// model where fx = fy = f. Where they differ, so do the models: r² is a sum of squares of pixels in one
-    /// and of tangents in the other. Then the terms that are not 0 are fitted by least squares over the image.
+    /// and of tangents in the other. Then the terms that are not 0 are fitted by least squares over the
+    /// image.
     ///
     /// # Errors
     /// [`OutOfRange`] for a value that [`Camera::check`] refuses, and for a distortion that no part of the

@@ -55,8 +55,8 @@ pub(super) fn size(path: &Path, field: &str, node: &Node) -> Result<[usize; 2], 
     }
 }
 
-/// Returns the numbers of a matrix row by row, with its lines: of a table with `rows`, `cols` and `data`, of a
-/// list, or of a list of rows.
+/// Returns the numbers of a matrix row by row: of a table with `rows`, `cols` and `data`, of a list, or of a
+/// list of rows.
 pub(super) fn numbers(path: &Path, field: &str, node: &Node) -> Result<Vec<f64>, FileError> {
     match &node.content {
         Content::Table(_) => {
