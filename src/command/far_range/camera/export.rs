@@ -60,7 +60,7 @@ pub(super) fn export(arguments: &CameraExportArguments, output: &Output) -> Resu
             displacement_px,
             arguments.max_displacement_px,
         )?;
-        output.note(&format!("warning: {words}"));
+        output.note(format!("warning: {words}"));
     }
     let text = calibration_text(Path::new(&arguments.camera), &lens, format)?;
     AtomicFile::with_text(&arguments.out, &text)?.commit_new()?;

@@ -66,7 +66,7 @@ pub(super) fn import(arguments: &ImportArguments, output: &Output) -> Result<Ans
     }
     warnings.extend(pixels_without_direction(&camera));
     for warning in &warnings {
-        output.note(&format!("warning: {warning}"));
+        output.note(format!("warning: {warning}"));
     }
     let text = camera_toml(&camera, file, &warnings);
     AtomicFile::with_text(&arguments.out, &text)?.commit_new()?;
