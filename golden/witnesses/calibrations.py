@@ -173,14 +173,21 @@ def board_image(kind):
     return cv2.copyMakeBorder(drawing, SIDE_PX, SIDE_PX, SIDE_PX, SIDE_PX, cv2.BORDER_CONSTANT, value=255), find
 
 
-def view(drawing, size, matrix, coefficients, rotation, translation):
-    """Image of a board through a camera: each pixel's rays meet the board's plane, 3 x 3 per pixel."""
-    fine = 3
-    columns, rows = (np.arange(n * fine) / fine - (fine - 1) / 2 / fine for n in size)
+# Rays per pixel along columns and rows.
+FINE = 3
+
+
+def rays_of(size, matrix, coefficients):
+    """Rays (x, y, 1) of an image, FINE x FINE per pixel."""
+    columns, rows = (np.arange(n * FINE) / FINE - (FINE - 1) / 2 / FINE for n in size)
     pixels = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 1, 2)
     until = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 60, 1e-12)
     rays = cv2.undistortPoints(pixels, matrix, coefficients, criteria=until)
-    rays = np.column_stack([rays.reshape(-1, 2), np.ones(len(pixels))])
+    return np.column_stack([rays.reshape(-1, 2), np.ones(len(pixels))])
+
+
+def view(drawing, size, rays, rotation, translation):
+    """Image of a board through a camera: its rays meet the board's plane."""
     turn = cv2.Rodrigues(rotation)[0]
     # R p + t = s ray, with p in the plane z = 0.
     normal = turn[:, 2]
@@ -188,7 +195,7 @@ def view(drawing, size, matrix, coefficients, rotation, translation):
     board = (rays * scale[:, None] - translation) @ turn
     # The first pixel of the drawing is half a pixel inside of the margin.
     where = (board[:, :2] / SIDE_M + 1) * SIDE_PX - 0.5
-    shape = (size[1] * fine, size[0] * fine)
+    shape = (size[1] * FINE, size[0] * FINE)
     maps = [where[:, axis].astype(np.float32).reshape(shape) for axis in (0, 1)]
     fine_image = cv2.remap(drawing, *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=128)
     image = cv2.resize(fine_image, size, interpolation=cv2.INTER_AREA)
@@ -200,6 +207,7 @@ def boards(program, folder, arguments):
     size = (768, 576)
     matrix = np.array([[1055.0, 0, 389.5], [0, 1055.0, 284.0], [0, 0, 1]])
     coefficients = np.array([-0.22, 0.09, 8e-4, -5e-4, 0.0])
+    rays = rays_of(size, matrix, coefficients)
     figures = []
     for kind in ["chessboard", "charuco"]:
         random = np.random.default_rng(arguments.seed)
@@ -212,7 +220,7 @@ def boards(program, folder, arguments):
             depth = random.uniform(0.42, 0.65)
             middle = np.array([*random.uniform((-0.18, -0.12), (0.18, 0.12)), 1]) * depth
             translation = middle - turn @ (np.array([*SQUARES, 0]) / 2 * SIDE_M)
-            image = view(drawing, size, matrix, coefficients, rotation, translation)
+            image = view(drawing, size, rays, rotation, translation)
             image = np.clip(image + random.normal(0, 1.5, image.shape), 0, 255).round().astype(np.uint8)
             pair = find(image)
             if pair is not None:
