@@ -41,6 +41,65 @@ f -3 -2 -1
 """
 
 
+# A calibration in the notations of OpenCV, its stereo sample, ROS (a file and a message) and Kalibr.
+CALIBRATIONS = {
+    "small-opencv.yaml": """%YAML:1.0
+---
+image_width: 640
+image_height: 480
+camera_matrix: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 6.575e+02, 0., 3.195e+02, 0., 658.25, 239.25, 0., 0., 1. ]
+distortion_coefficients: !!opencv-matrix
+   rows: 5
+   cols: 1
+   dt: d
+   data: [ -0.25, 0.125, 1e-03, -2e-03, 0.5 ]
+""",
+    "small-opencv.json": """{ "imageSize": [640, 480],
+  "cameraMatrix": { "type_id": "opencv-matrix", "rows": 3, "cols": 3, "dt": "d",
+    "data": [ 657.5, 0.0, 319.5, 0.0, 657.5, 239.25, 0.0, 0.0, 1.0 ] },
+  "distCoeffs": [[-0.25, 0.125, 0.001, -0.002]] }
+""",
+    "small-stereo.yaml": """%YAML:1.0
+M1: &m !!opencv-matrix
+   rows: 3
+   cols: 3
+   data: [ 657.5, 0., 319.5, 0., 658.25, 239.25, 0., 0., 1. ]
+D1: [ -0.25, 0.125, 0, 0, 0, 0, 0, 0 ]
+M2: *m
+D2: [ 0, 0, 0, 0 ]
+""",
+    "small-camera-info.yaml": """image_width: 640
+image_height: 480
+camera_matrix: {rows: 3, cols: 3, data: [657.5, 0, 319.5, 0, 658.25, 239.25, 0, 0, 1]}
+distortion_model: plumb_bob
+distortion_coefficients: {rows: 1, cols: 5, data: [-0.25, 0.125, 0.001, -0.002, 0]}
+""",
+    "small-message.yaml": """height: 480
+width: 640
+distortion_model: plumb_bob
+d: [-0.25, 0.125, 0.001, -0.002, 0]
+k: [657.5, 0, 319.5, 0, 658.25, 239.25, 0, 0, 1]
+binning_x: 1
+roi: {x_offset: 0, do_rectify: false}
+---
+""",
+    "small-camchain.yaml": """cam0:
+  camera_model: pinhole
+  distortion_coeffs: [-0.25, 0.125, 0.001, -0.002]
+  distortion_model: radtan
+  intrinsics: [657.5, 658.25, 319.5, 239.25]
+  resolution: [640, 480]
+cam1:
+  camera_model: omni
+  intrinsics: [1.2, 657.5, 658.25, 319.5, 239.25]
+""",
+}
+
+
 def main(program):
     with tempfile.TemporaryDirectory() as folder:
         make(pathlib.Path(program).resolve(), pathlib.Path(folder))
@@ -145,6 +204,8 @@ def make(program, folder):
     keep("parquet", "small-cases.parquet", folder / "study/cases.parquet")
     keep("requirements", "small.toml", bare(ROOT / "scenarios/requirements/uasc-far-range.toml"))
     keep("preset", "small.toml", small(bare(ROOT / "scenarios/cameras/uasc-far-range.toml")))
+    for name, text in CALIBRATIONS.items():
+        keep("calibration", name, text)
     for name in ["progress", "apollo", "idss"]:
         keep("target", f"small-{name}.toml", bare(ROOT / f"scenarios/targets/{name}.toml"))
     keep("baseline", "argon.toml", ROOT / "golden/baselines/argon/baseline.toml")

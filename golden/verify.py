@@ -139,7 +139,7 @@ def remade(folder, script="make.py", requirements=None, arguments=lambda python:
 
 def references(folder):
     """Names of the committed files that a script makes."""
-    return sorted(path.name for path in (GOLDEN / folder).iterdir() if path.suffix in {".csv", ".bin", ".avi", ".y4m", ".oem", ".aem", ".tdm", ".tle", ".xml", ".bsp"})
+    return sorted(path.name for path in (GOLDEN / folder).iterdir() if path.suffix in {".csv", ".bin", ".avi", ".y4m", ".oem", ".aem", ".tdm", ".tle", ".xml", ".bsp", ".yaml", ".json"})
 
 
 def compared(committed, made, names):
@@ -236,6 +236,14 @@ def night_sky(workspace):
     return claims_of(workspace.run(python, GOLDEN / "night_sky" / "check.py", workspace.program("boresight"), *more))
 
 
+def calibrations(workspace):
+    """Calibrations by OpenCV, made again, imported and exported."""
+    said = remade("calibrations")(workspace)
+    python = workspace.environment("calibrations", GOLDEN / "calibrations" / "requirements.txt")
+    fewer = ["--cameras", "4"] if workspace.fast else []
+    return f"{said}; " + claims_of(workspace.run(python, GOLDEN / "witnesses" / "calibrations.py", workspace.program("boresight"), *fewer))
+
+
 def fetched(workspace, python, pin):
     """The source distribution that a file pins by its hash; it is not installed."""
     folder = workspace.work / pin.stem
@@ -309,6 +317,7 @@ WITNESSES = {
     "tetra3rs": ("tetra3rs: boresights, lost in space", looks("plate_solve.py", ["--pointings", "60"])),
     "astrometry.net": ("astrometry.net: boresights, lost in space", looks("astrometry_net.py", ["--pointings", "15"], needs=ASTROMETRY_NET)),
     "night_sky": ("GalSim, OpenCV, ERFA, a real frame: attitudes of night-sky images", night_sky),
+    "calibrations": ("OpenCV, PyYAML: calibrations of cameras, read and written", calibrations),
     "opencv": ("OpenCV: poses of the docking target", opencv),
     "mitsuba": ("Mitsuba: closed forms", mitsuba),
 }

@@ -53,6 +53,7 @@ pub const TARGETS: &[Target] = &[
     Target::new("avi", "AVI, uncompressed and Motion-JPEG", videos::avi),
     Target::new("baseline", "baseline.toml with matching rows", tables::baseline),
     Target::new("baseline_rows", "rows.parquet of a baseline", tables::baseline_rows),
+    Target::new("calibration", "calibrations of OpenCV, ROS and Kalibr, YAML and JSON", texts::calibration),
     Target::new("camera", "camera.toml of a dataset", texts::camera),
     Target::new("catalogue_csv", "a star catalogue, CSV", texts::catalogue_csv),
     Target::new("catalogue_dat", "a star catalogue, hip2.dat or hip_main.dat", texts::catalogue_dat),

@@ -10,7 +10,9 @@ use boresight::far_range::rows::CameraFile;
 use boresight::far_range::scoring::Score;
 use boresight::far_range::{CameraSource, FarRangeScenario};
 use boresight::far_range_views::report::read_visibility;
-use boresight::files::{AtomicFile, Failure};
+use boresight::files::{
+    AtomicFile, CalibrationFormat, Failure, FileError, LensCalibration, calibration_text, read_calibration,
+};
 use boresight::report::StudyResult;
 use boresight::run::{Options, ScenarioSource};
 use boresight::scenario::run_file::{RunFile, ScenarioFile};
@@ -92,6 +94,27 @@ pub(crate) fn requirements(sandbox: &Sandbox, bytes: &[u8]) {
 
 pub(crate) fn preset(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = CameraSource::read(&word(&sandbox.file("preset.toml", bytes)));
+}
+
+/// The camera of a file, or the first ones that another tool would select.
+pub(crate) fn calibration(sandbox: &Sandbox, bytes: &[u8]) {
+    let path = sandbox.file("calibration.yaml", bytes);
+    for name in [None, Some("cam0"), Some("1"), Some("left")] {
+        if let Ok(lens) = read_calibration(&path, name) {
+            let size_px = lens.size_px.unwrap_or([640, 480]);
+            if let Ok(camera) = lens.to_camera(size_px, 5.0) {
+                let _ = LensCalibration::from_camera(&camera.value);
+            }
+            let formats = [CalibrationFormat::OpenCvYaml, CalibrationFormat::OpenCvJson];
+            let with_size = [CalibrationFormat::Ros].into_iter().filter(|_| lens.size_px.is_some());
+            for format in formats.into_iter().chain(with_size) {
+                let write = |path: &Path, lens: &LensCalibration| -> Result<(), FileError> {
+                    AtomicFile::with_text(path, &calibration_text(path, lens, format)?)?.commit_new()
+                };
+                written::check(sandbox, "again.yaml", &lens, write, |path| read_calibration(path, None));
+            }
+        }
+    }
 }
 
 pub(crate) fn camera(sandbox: &Sandbox, bytes: &[u8]) {

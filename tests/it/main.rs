@@ -12,6 +12,7 @@ mod best_mode;
 mod blinking_dot;
 mod bounds;
 mod calibration;
+mod camera_calibration;
 mod camera_fit;
 mod cameras;
 mod docking;

@@ -17,6 +17,7 @@
 )]
 
 mod beside;
+mod calibration;
 mod complete;
 mod csv;
 mod error;
@@ -35,6 +36,9 @@ pub use self::parquet::{
     ParquetFile, ParquetWriter, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
 };
 pub use beside::{existing_file_beside, file_beside};
+pub use calibration::{
+    CalibrationFormat, Conversion, LensCalibration, calibration_text, parse_calibration, read_calibration,
+};
 pub use complete::{
     AtomicFile, Checksums, PartialFiles, ReplaceableFile, RunDirectory, create_empty_directory,
     create_numbered_directory, file_sha256, refuse_unfinished, sha256,

@@ -80,14 +80,15 @@ fn tolerance(text: &str) -> Result<f64, String> {
     number(text, 0.0, 0.2)
 }
 
-fn pixel(text: &str) -> Result<f64, String> {
+/// Parses the side of a pixel, µm.
+pub(super) fn pixel(text: &str) -> Result<f64, String> {
     number(text, 0.01, 1e4)
 }
 
 pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, Failure> {
     let paths = images(&arguments.directory)?;
-    if let Some(out) = arguments.out.as_deref().filter(|out| out.exists()) {
-        return Err(Failure::Usage(format!("--out is {}, which exists; expected a new file", out.display())));
+    if let Some(out) = &arguments.out {
+        super::refuse_existing(out)?;
     }
     check_option(arguments.report.as_ref())?;
     let frames = read_frames(&paths, output)?;

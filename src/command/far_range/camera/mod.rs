@@ -1,15 +1,19 @@
-//! `boresight camera`: a camera from its frames.
+//! `boresight camera`: cameras from frames of the sky, and calibrations of other tools.
 
 mod compare;
+mod export;
 mod fit;
 mod fit_text;
 mod images;
+mod import;
 #[cfg(feature = "report")]
 mod pages;
 #[cfg(not(feature = "report"))]
 #[path = "no_pages.rs"]
 mod pages;
 mod twin;
+
+use std::path::Path;
 
 pub(in crate::command) use compare::{CompareArguments, compare};
 pub(in crate::command) use twin::{TwinArguments, twin};
@@ -27,10 +31,27 @@ pub(in crate::command) enum CameraCommand {
     /// Needs the field to about ten percent and no attitude. Images are grey or colour PNG, TIFF, JPEG
     /// (colour: the mean of the three), grey FITS or OpenEXR, not mirrored.
     Fit(fit::FitArguments),
+    /// Read a calibration of OpenCV, ROS or Kalibr, and write a camera file
+    ///
+    /// Reads YAML and JSON of OpenCV's FileStorage, camera_info of ROS and camchain.yaml of Kalibr: pinhole
+    /// cameras with the distortion k1, k2, p1, p2, k3. Detector and optics of the camera file are assumed.
+    Import(import::ImportArguments),
+    /// Write a camera as a calibration for OpenCV, ROS or Kalibr
+    Export(export::CameraExportArguments),
+}
+
+/// Refuses an output file that exists, before the work begins.
+fn refuse_existing(out: &Path) -> Result<(), Failure> {
+    if out.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!("--out is {}, which exists; expected a new file", out.display())))
 }
 
 pub(in crate::command) fn camera(command: &CameraCommand, output: &Output) -> Result<Answer, Failure> {
     match command {
         CameraCommand::Fit(arguments) => fit::fit(arguments, output),
+        CameraCommand::Import(arguments) => import::import(arguments, output),
+        CameraCommand::Export(arguments) => export::export(arguments, output),
     }
 }

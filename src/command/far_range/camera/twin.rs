@@ -13,12 +13,13 @@ use twin::{FrameSet, TwinCamera, camera_toml, pointings, scenario_text, twin_fra
 use super::fit::{GuessArguments, fitted};
 use super::fit_text::fit_text;
 use super::images::{images, read_frames};
+use super::refuse_existing;
 use crate::command::Answer;
 use crate::command::options::output_path;
 use crate::command::output::Output;
 
-/// Number of times that a twin is corrected by its own frames.
-const CORRECTIONS: usize = 2;
+/// Largest number of times that a twin is corrected by its own frames.
+const MAX_CORRECTIONS: usize = 4;
 
 #[derive(Debug, Args)]
 pub(in crate::command) struct TwinArguments {
@@ -37,10 +38,7 @@ pub(in crate::command) fn twin(arguments: &TwinArguments, output: &Output) -> Re
     let paths = images(&arguments.directory)?;
     let (scenario, attitudes) = (&arguments.out, arguments.out.with_extension("aem"));
     for file in [scenario, &attitudes] {
-        if file.exists() {
-            let message = format!("--out: {} exists; expected a new file", file.display());
-            return Err(Failure::Usage(message));
-        }
+        refuse_existing(file)?;
     }
     let frames = read_frames(&paths, output)?;
     let guess = &arguments.guess;
@@ -84,12 +82,17 @@ fn corrected_scenario(
         scenario_text(&set.fit, &camera_toml(&set.fit, twin, &origin), &name, guess.time, guess.exposure)
     };
     let mut twin = TwinCamera::of(set);
-    for _ in 0..CORRECTIONS {
+    for _ in 0..MAX_CORRECTIONS {
         let folder = arguments.out.parent().map(Path::to_path_buf).unwrap_or_default();
         let source = ScenarioSource::parse("twin".to_owned(), folder, arguments.out.clone(), text_of(&twin))?;
         let frames = twin_frames(source.typed("boresight twin")?, &source.folder)?;
         match fit_camera(&frames, &guess.first_guess()) {
-            Ok(fit) => twin.correct(&compare(set, &FrameSet { frames, fit })),
+            Ok(fit) => {
+                let is_changed = twin.correct(&compare(set, &FrameSet { frames, fit }));
+                if !is_changed {
+                    break;
+                }
+            }
             Err(error) => {
                 output.note(&format!(
                     "warning: the frames of the twin have no camera, and do not correct it: {error}"

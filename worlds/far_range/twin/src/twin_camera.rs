@@ -111,7 +111,10 @@ impl TwinCamera {
     /// Corrects the twin by a comparison of its frames with those of the camera: level, noise, offsets,
     /// brightness and width where they differ, each by its difference. Faint stars, for example, are part of
     /// the noise that was measured, and the simulator draws them, too.
-    pub fn correct(&mut self, comparison: &Comparison) {
+    ///
+    /// Returns true if it changed.
+    pub fn correct(&mut self, comparison: &Comparison) -> bool {
+        let before = self.clone();
         for figure in &comparison.figures {
             if figure.is_indistinguishable() {
                 continue;
@@ -137,6 +140,7 @@ impl TwinCamera {
                 _ => {}
             }
         }
+        *self != before
     }
 }
 
