@@ -13,6 +13,7 @@ mod blinking_dot;
 mod bounds;
 mod calibration;
 mod camera_fit;
+mod camera_sensor;
 mod cameras;
 mod docking;
 mod docking_artefacts;

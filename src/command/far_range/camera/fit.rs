@@ -11,6 +11,7 @@ use serde_json::json;
 use super::camera_file::camera_toml;
 use super::fit_text::{document, fit_text};
 use super::images::{has_extension, images};
+use super::sensor_file::SensorSource;
 use crate::command::Answer;
 use crate::command::options::{exposure, number, output_path, time};
 use crate::command::output::Output;
@@ -40,6 +41,10 @@ pub(in crate::command) struct FitArguments {
     /// Exposure time of the frames, s, 1e-6 to 1000: for the brightness of stars per second
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = exposure)]
     pub(super) exposure: f64,
+    /// Sensor file of `boresight camera sensor`: its gain, bias, noise and dark current are those of the
+    /// camera
+    #[arg(long, value_name = "FILE")]
+    pub(super) sensor: Option<PathBuf>,
     /// A new file for the camera, TOML: for `boresight sky --camera FILE`, or to be pasted into a scenario
     #[arg(short, long, value_name = "FILE", value_parser = output_path())]
     pub(super) out: Option<PathBuf>,
@@ -62,6 +67,7 @@ pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, F
     if let Some(out) = arguments.out.as_deref().filter(|out| out.exists()) {
         return Err(Failure::Usage(format!("--out is {}, which exists; expected a new file", out.display())));
     }
+    let sensor = arguments.sensor.as_deref().map(SensorSource::read).transpose()?;
     let progress = output.progress_of(paths.len() as u64, "images", "reading");
     let mut frames = Vec::with_capacity(paths.len());
     for path in &paths {
@@ -89,7 +95,7 @@ pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, F
         output.note("warning: JPEG changes faint stars and widths; raw images give a better camera");
     }
     if let Some(out) = &arguments.out {
-        AtomicFile::with_text(out, &camera_toml(&fit, arguments))?.commit_new()?;
+        AtomicFile::with_text(out, &camera_toml(&fit, arguments, sensor.as_ref())?)?.commit_new()?;
     }
     let mut text = fit_text(&fit);
     if let Some(out) = &arguments.out {
